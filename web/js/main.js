@@ -5,7 +5,18 @@ import { sendPlan } from './net/upload.js';
 import { Hooks } from './hooks.js';
 import { roomPage } from './panels/room_page.js';
 import { startPage } from './panels/start_page.js';
+import { OwnName } from './state/own_name.js';
+import { Thumbnails } from './state/thumbnails.js';
 import { isId } from './wire/check.js';
+
+/** What the browser keeps between visits; null where it keeps nothing. */
+function storage() {
+  try {
+    return localStorage;
+  } catch {
+    return null;
+  }
+}
 
 const clock = {
   now: () => performance.now(),
@@ -15,7 +26,11 @@ const clock = {
 const schedule = (callback) => requestAnimationFrame(callback);
 const hooks = new Hooks(clock);
 const api = makeApi((...request) => fetch(...request));
-const enter = (room) => { location.hash = `#/rooms/${room}`; };
+const enter = (room, plan) => { location.hash = address(room, plan); };
+/** "#/rooms/ID/PLAN": the plan is there for the time after the room, which then can be opened again. */
+const address = (room, plan) => `#/rooms/${room}${plan ? `/${plan}` : ''}`;
+const ownName = new OwnName(storage());
+const thumbnails = new Thumbnails(api, URL);
 
 const send = ({ publicName, ...task }) => sendPlan({ ...task, url: api.uploadUrl(publicName), makeRequest: () => new XMLHttpRequest() });
 
@@ -34,9 +49,11 @@ function connect(room) {
   url.hash = '';
   const { member = '', secret = '' } = remembered(room);
   const isGone = () => api.room(room).then(() => false, (problem) => problem.type === '/problems/not-found');
-  const connection = new Connection(url.href, { makeSocket: (address) => new WebSocket(address), clock, isGone }, { member, secret });
+  const connection = new Connection(url.href, { makeSocket: (address) => new WebSocket(address), clock, isGone }, { name: ownName.value.value, member, secret });
   connection.addEventListener('message', ({ detail }) => {
-    if (detail.type === 'welcome') sessionStorage.setItem(`room ${room}`, JSON.stringify({ member: detail.member, secret: detail.secret }));
+    if (detail.type !== 'welcome') return;
+    sessionStorage.setItem(`room ${room}`, JSON.stringify({ member: detail.member, secret: detail.secret }));
+    history.replaceState(null, '', address(room, detail.plan_id));
   });
   return connection;
 }
@@ -44,13 +61,13 @@ function connect(room) {
 let leave = () => {};
 
 function route() {
-  const [, place, id] = location.hash.split('/');
+  const [, place, id, plan = ''] = location.hash.split('/');
   if (location.hash.startsWith('#picture-')) return; // the skip link's target, not a page
   leave();
   const host = document.querySelector('#page');
   leave = place === 'rooms' && isId(id)
-    ? roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks })
-    : startPage(host, { api, clock, enter, send });
+    ? roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, plan: isId(plan) ? plan : '' })
+    : startPage(host, { api, clock, enter, send, ownName, thumbnails });
 }
 
 addEventListener('hashchange', route);

@@ -10,6 +10,7 @@ test('a size is never made up: what was not counted is a dash', () => {
   assert.equal(bytes(undefined), '–');
   assert.equal(bytes(12), '12 B');
   assert.equal(bytes(28500), '28.5 kB');
+  assert.equal(bytes(518799), '519 kB');
   assert.equal(bytes(2.2e6), '2.2 MB');
   assert.equal(bytes(3.14e9), '3.1 GB');
 });

@@ -1,5 +1,7 @@
 // Calls of the HTTP API (proto/http.json) that the page uses. Every failure is a Problem with a sentence.
 
+const thumbnailPx = [192, 116]; // twice the size on the page
+
 /** An RFC 9457 problem, or a request that did not reach the server. */
 export class Problem extends Error {
   /** @param {{type?: string, status?: number, detail?: string, title?: string}} problem */
@@ -12,7 +14,7 @@ export class Problem extends Error {
 
 /** @param {typeof fetch} fetch @param {string} base */
 export function makeApi(fetch, base = 'api/v1') {
-  async function call(method, path, { body, signal } = {}) {
+  async function call(method, path, { body, signal, isPicture = false } = {}) {
     let response;
     try {
       response = await fetch(`${base}/${path}`, {
@@ -28,7 +30,7 @@ export function makeApi(fetch, base = 'api/v1') {
     const isJson = /json/.test(response.headers.get('Content-Type') ?? '');
     const answer = isJson ? await response.json().catch(() => null) : null;
     if (!response.ok) throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
-    return answer;
+    return isPicture ? response.blob() : answer;
   }
   const id = encodeURIComponent;
   return {
@@ -40,6 +42,8 @@ export function makeApi(fetch, base = 'api/v1') {
     uploadUrl: (name) => (name ? `${base}/plans?name=${id(name)}` : `${base}/plans`),
     job: (job, signal) => call('GET', `jobs/${id(job)}`, { signal }),
     cancelJob: (job) => call('DELETE', `jobs/${id(job)}`),
+    thumbnail: (plan) => call('POST', `plans/${id(plan)}/render`, { isPicture: true, body: { view: { kind: '3d', size_px: thumbnailPx }, format: 'jpeg', quality: 85, only_loaded: true } }),
+    rooms: (signal) => call('GET', 'rooms', { signal }),
     makeRoom: (plan) => call('POST', 'rooms', { body: { plan } }),
     room: (room) => call('GET', `rooms/${id(room)}`),
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),

@@ -1,4 +1,4 @@
-// Shown over the page: toasts, the list of keys, the notice that a room has ended.
+// Shown over the page: toasts, the list of keys.
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { icon } from './icons.js';
@@ -9,11 +9,6 @@ export const toasts = ({ ui }) => html`${repeat(ui.toasts.value, (toast) => toas
   <div class="toast" role=${kind === 'err' ? 'alert' : 'status'}><span class=${kind}>${icon(signs[kind])}</span><span>${text}</span>
     ${action ? html`<button class="toast-act" @click=${() => { ui.dismiss(id); action.act(); }}>${action.word}${action.keys ? html` <kbd>${action.keys}</kbd>` : nothing}</button>` : nothing}
     <button class="icon-button small" aria-label="Dismiss" @click=${() => ui.dismiss(id)}>${icon('close', 12)}</button><i></i></div>`)}`;
-
-/** The notice that a room has ended, with the reason and a link to the start page; the last pictures stay visible. */
-export const ended = ({ room }) => (room.link.value.state !== 'ended' ? nothing : html`<section class="card ended" role="alert">${icon('disconnected')}
-  <div><b>You are no longer in this room</b><p>${room.link.value.reason ? `${room.link.value.reason[0].toUpperCase()}${room.link.value.reason.slice(1)}.` : 'The server gave no reason.'}</p></div>
-  <a class="button" href="#/">All plans</a></section>`);
 
 const keys = [
   ['Left drag', 'Turn in 3-D, crosshair in slices (Alt: free, not on voxels only)'],

@@ -35,11 +35,11 @@ export const position = ([left, posterior, superior]) => `L ${number(left, 1)}  
 /** A value of an image and its unit: whole numbers as they are (139, \u22121 024 HU), others by three significant figures. */
 export const imageValue = (value, unit) => ({ text: Number.isInteger(value) ? number(value) : significant(value), unit: unitText(unit) });
 
-/** "6.6 MB"; a dash for nothing, as of a plan that cannot be read. */
+/** "6.6 MB", "519 kB"; a dash for nothing, as of a plan that cannot be read. */
 export function bytes(n) {
   if (!Number.isFinite(n) || n <= 0) return '–';
   if (n < 1e3) return `${number(n)} B`;
-  if (n < 1e6) return `${number(n / 1e3, 1)} kB`;
+  if (n < 1e6) return `${number(n / 1e3, n < 99950 ? 1 : 0)} kB`;
   return n < 1e9 ? `${number(n / 1e6, 1)} MB` : `${number(n / 1e9, 1)} GB`;
 }
 

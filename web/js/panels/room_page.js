@@ -1,6 +1,7 @@
 // The room page: four panes with the panels around them, connected to the room's state.
 import { html } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
+import { AfterRoom } from '../state/after_room.js';
 import { Comparison } from '../state/comparison.js';
 import { crosshair } from '../state/plan.js';
 import { Refusals, inQuestion } from '../state/refusals.js';
@@ -10,7 +11,8 @@ import { UiState } from '../state/ui.js';
 import { Undo, listenUndo } from '../state/undo.js';
 import { banner } from './banner.js';
 import { figuresDialog } from './figures.js';
-import { ended, help, toasts } from './float.js';
+import { ended, watchEnd } from './ended.js';
+import { help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { mount } from './mount.js';
 import { Pane } from './pane.js';
@@ -31,10 +33,10 @@ const frame = () => html`<div class="room">
 
 /**
  * @param {HTMLElement} host @param {string} id of the room
- * @param {object} world {api, connect, clock, schedule, decode, hooks}
+ * @param {object} world {api, connect, clock, schedule, decode, hooks, enter, plan: the room's, as far as the address knows it}
  * @returns {() => void} leaves the room
  */
-export function roomPage(host, id, { api, connect, clock, schedule, decode, hooks }) {
+export function roomPage(host, id, { api, connect, clock, schedule, decode, hooks, enter, plan = '' }) {
   const stops = [mount(host, frame)];
   const part = (name) => host.querySelector(name);
   const ui = new UiState(clock);
@@ -55,11 +57,12 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
-  const world = { room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes };
+  const after = new AfterRoom({ api, enter });
+  const world = { after, room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
@@ -86,7 +89,7 @@ function layOut(element, ui) {
 }
 
 function describeTitle(room) {
-  document.title = `${room.plan.value?.name ?? room.planId.value} – Beamroom`;
+  document.title = [room.plan.value?.name ?? room.planId.value, 'Beamroom'].filter(Boolean).join(' – ');
 }
 
 /** Requests the values at the crosshair whenever it has moved; only the newest answer is used. */

@@ -76,9 +76,9 @@ function row(uploads, upload) {
   if (upload.state === 'asking') return asking(uploads, upload);
   const percent = upload.state === 'sending' ? (100 * upload.sent) / Math.max(upload.bytes, 1) : upload.job?.percent ?? 0;
   const hasFailed = upload.state === 'failed';
-  return html`<li class="plan upload" data-upload=${upload.key}><div class="plan-row"><div class="title"><b>${upload.name}</b><code>upload</code></div><div class="parts"></div>
-      <div class="end">${bytes(upload.bytes)}</div><div class="plan-state">${hasFailed ? html`<span class="err">${icon('error')} Refused</span>` : html`<b>Uploading</b>`}</div>
-      <div class="end">${hasFailed ? html`<button @click=${() => uploads.dismiss(upload.key)}>Dismiss</button>` : html`<button @click=${() => uploads.cancel(upload.key)}>${icon('close')}<span>Cancel</span></button>`}</div></div>
+  return html`<li class="plan upload" data-upload=${upload.key}><div class="plan-row"><span class="thumb">${icon(hasFailed ? 'error' : 'upload')}</span><div class="title"><b>${upload.name}</b><code>upload</code></div><div class="parts"></div>
+      <div class="end size">${bytes(upload.bytes)}</div><div class="plan-state">${hasFailed ? html`<span class="err">${icon('error')} Refused</span>` : html`<b>Uploading</b>`}</div>
+      <div class="end buttons-of">${hasFailed ? html`<button @click=${() => uploads.dismiss(upload.key)}>Dismiss</button>` : html`<button @click=${() => uploads.cancel(upload.key)}>${icon('close')}<span>Cancel</span></button>`}</div></div>
     ${hasFailed ? html`<div class="refusal" role="alert">${icon('error')}<div><p>${upload.error}</p><p class="place">Nothing was kept.</p></div></div>`
       : html`<div class="progress" role="progressbar" aria-label=${`Upload of ${upload.name}`} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(percent)}>
         <i class="bar" ${variables({ '--fill': `${percent}%` })}></i><b>${number(percent)} %</b><span class="phase">${icon('phase')} ${words(upload)}</span></div>`}</li>`;

@@ -1,9 +1,19 @@
-// State of the start page: the plans, the jobs that load them, the report of the chosen plan.
+// State of the start page: the plans and rooms, the jobs that load plans, the report of the chosen plan.
 import { batch, computed, signal } from '../../lib/signals-core.js';
+import { Problem } from '../net/api.js';
 import { readReport } from './plan.js';
 
 const listMs = 4000;
 const jobMs = 150;
+
+/** True for a problem of the server as a whole, such as too many open plans, and not of the plan. */
+export const isOfServer = (problem) => ['/problems/busy', '/problems/limit'].includes(problem?.type);
+
+/** True for a folder that is listed but is no plan: nothing in it can be shown, and nothing says that it is meant to be one. */
+export const isNoPlan = (plan) => plan.state === 'unreadable' && !plan.has_plan_file && !plan.uploaded;
+
+/** The members that are in a room now. */
+export const present = (room) => room.members.filter(({ connected }) => connected !== false);
 
 export class PlansState {
   #api;
@@ -12,26 +22,33 @@ export class PlansState {
   #timer = 0;
   #isStopped = false;
   #newest = 0;
+  #seen;
 
-  /** @param {object} world {api, clock, enter: (room: string) => void} */
-  constructor({ api, clock, enter }) {
+  /** @param {object} world {api, clock, enter: (room: string, plan: string) => void, seen: is told of each new list of plans} */
+  constructor({ api, clock, enter, seen = () => {} }) {
+    this.#seen = seen;
     this.#api = api;
     this.#clock = clock;
     this.#enter = enter;
     this.plans = signal(null); // null until the first answer
+    this.rooms = signal([]);
     this.version = signal(null);
     this.error = signal('');
     this.jobs = signal({}); // by plan: {id, state, phase, percent, problem, isOpening}
     this.refusals = signal({}); // by plan: a sentence
+    this.notice = signal(''); // what the server as a whole cannot do at the moment
     this.chosen = signal('');
     this.report = signal(null); // {plan, loadMs, lines, dropped} of the chosen plan; null without one
     this.filter = signal('all'); // all | ready | warnings
     this.search = signal('');
     this.isJoining = signal(false);
-    this.deleting = signal(''); // the plan whose deletion the user has yet to confirm
+    this.isNaming = signal(false);
+    this.deleting = signal(null); // {plan, rooms: those on it, null while unknown} while the user has yet to confirm a deletion
+    this.folders = computed(() => (this.plans.value ?? []).filter(isNoPlan));
     this.shown = computed(() => {
       const words = this.search.value.trim().toLowerCase();
       return (this.plans.value ?? []).filter((plan) => {
+        if (isNoPlan(plan)) return false;
         if (this.filter.value === 'ready' && plan.state !== 'ready') return false;
         if (this.filter.value === 'warnings' && !plan.n_warnings) return false;
         return !words || `${plan.name} ${plan.id}`.toLowerCase().includes(words);
@@ -59,14 +76,15 @@ export class PlansState {
     if (this.jobs.value[id]) return;
     this.choose(id);
     this.#refuse(id, '');
+    this.notice.value = '';
     this.#setJob(id, { id: '', state: 'queued', phase: '', percent: 0 });
     try {
       const job = await this.#finish(id, await this.#api.openPlan(id));
       if (!job || this.#isStopped) return;
       const room = await this.#api.makeRoom(id);
-      if (!this.#isStopped) this.#enter(room.id);
+      if (!this.#isStopped) this.#enter(room.id, id);
     } catch (error) {
-      this.#refuse(id, error.message);
+      this.#tell(id, error);
     } finally {
       this.#setJob(id, null);
       this.#list();
@@ -85,9 +103,17 @@ export class PlansState {
     if (!this.#isStopped) this.choose(id);
   }
 
+  /** Asks the user whether a plan is to be deleted, and looks who is in rooms on it. */
+  async askToRemove(id) {
+    const plan = this.plans.value.find((other) => other.id === id);
+    this.deleting.value = { plan, rooms: null };
+    const rooms = await this.#api.rooms().then((answer) => answer.rooms, () => this.rooms.value);
+    if (this.deleting.value?.plan === plan) this.deleting.value = { plan, rooms: rooms.filter((room) => room.plan === id) };
+  }
+
   /** Deletes an uploaded plan with all its files. */
   async remove(id) {
-    this.deleting.value = '';
+    this.deleting.value = null;
     try {
       await this.#api.removePlan(id);
       if (this.chosen.value === id) this.chosen.value = '';
@@ -103,7 +129,7 @@ export class PlansState {
       this.#setJob(id, job);
       if (job.state === 'done') return job;
       if (job.state === 'cancelled') return null;
-      if (job.state === 'failed') throw new Error(job.problem?.detail ?? 'The plan cannot be loaded.');
+      if (job.state === 'failed') throw new Problem(job.problem ?? { detail: 'The plan cannot be loaded.' });
       await new Promise((resolve) => { this.#clock.setTimeout(resolve, jobMs); });
       job = await this.#api.job(job.id);
     }
@@ -113,12 +139,15 @@ export class PlansState {
   async #list() {
     this.#clock.clearTimeout(this.#timer);
     try {
-      const { plans } = await this.#api.plans();
+      const [{ plans }, { rooms }] = await Promise.all([this.#api.plans(), this.#api.rooms()]);
       batch(() => {
         this.plans.value = plans;
+        this.rooms.value = rooms;
         this.error.value = '';
       });
-      if (!this.chosen.value && plans.length) this.choose((plans.find((plan) => plan.state === 'ready') ?? plans[0]).id);
+      if (!this.#isStopped) this.#seen(plans);
+      const known = plans.filter((plan) => !isNoPlan(plan));
+      if (!this.chosen.value && known.length) this.choose((known.find((plan) => plan.state === 'ready') ?? known[0]).id);
       else this.#readReport();
     } catch (error) {
       this.error.value = error.message;
@@ -146,6 +175,11 @@ export class PlansState {
   #setJob(id, job) {
     const { [id]: _, ...others } = this.jobs.value;
     this.jobs.value = job ? { ...others, [id]: job } : others;
+  }
+
+  #tell(id, error) {
+    if (isOfServer(error)) this.notice.value = error.message;
+    else this.#refuse(id, error.message);
   }
 
   #refuse(id, sentence) {

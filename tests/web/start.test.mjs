@@ -1,0 +1,231 @@
+// The start page as people use it: rooms, names, thumbnails, folders that are no plans, a full server, a deletion, an address without
+// a room; with the keyboard, and without a finding of axe-core in any state.
+import assert from 'node:assert/strict';
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { call, openPlan } from '../api/daemon.mjs';
+import { Client } from '../api/ws_client.mjs';
+import { axe } from './axe.mjs';
+import { full, missing, shoot, startWorld } from './browser.mjs';
+
+const sizes = [[1280, 720], [390, 844]];
+
+describe('the start page', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  let folder;
+  const guests = [];
+
+  const enter = async (room, name) => {
+    const guest = await Client.open(world.daemon.url, `/api/v1/rooms/${room}/ws`);
+    guest.send({ type: 'hello', protocol: 1, name });
+    await guest.message('welcome');
+    guests.push(guest);
+    return guest;
+  };
+  const newPage = async (address = '', options = {}) => {
+    const page = await world.newPage(address, options);
+    if (!address) await page.locator('[data-plan]').first().waitFor();
+    return page;
+  };
+  /** areForced: the browser paints in forced colours, which axe-core does not know: it measures the contrast of those in the style sheets. */
+  const isClean = async (page, state, areForced = false) => assert.deepEqual((await axe(page)).filter((line) => !areForced || !line.startsWith('color-contrast:')), [], state);
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'beamroom-start-'));
+    for (const name of ['letters', 'photos']) {
+      mkdirSync(join(folder, 'plans', name), { recursive: true });
+      writeFileSync(join(folder, 'plans', name, 'a.txt'), 'no plan at all');
+    }
+    mkdirSync(join(folder, 'plans/broken'), { recursive: true });
+    writeFileSync(join(folder, 'plans/broken/plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Broken', images: [{ id: 'ct', path: 'ct.nii' }] }));
+    world = await startWorld({ plans: [join(folder, 'plans')], args: ['--max-renderers', '2'] });
+  });
+  after(async () => {
+    for (const guest of guests) guest.cut();
+    await world?.stop();
+    if (folder) rmSync(folder, { recursive: true, force: true });
+  });
+
+  it('folders that are no plans are one folded line, and a broken plan is not among them', async () => {
+    const page = await newPage();
+    await page.locator('.folders summary', { hasText: '2 folders are not plans' }).waitFor();
+    assert.equal(await page.locator('.refusal').count(), 1, 'of the broken plan alone');
+    assert.ok(!await page.locator('.folders li').first().isVisible());
+    await page.locator('.folders summary').press('Enter');
+    assert.deepEqual(await page.locator('.folders li code').allTextContents(), ['letters', 'photos']);
+    await isClean(page, 'list with a refused plan and folders');
+    await page.context().close();
+  });
+
+  it('a plan that is not loaded has no thumbnail and is not loaded for one; a loaded plan has one', async () => {
+    const page = await newPage();
+    const thumbnail = page.locator('[data-plan="phantom"] .thumb img');
+    await page.waitForResponse(/\/api\/v1\/plans$/); // a second list
+    assert.equal(await thumbnail.count(), 0);
+    assert.equal((await call(`${world.daemon.url}/api/v1/plans/phantom`)).json.state, 'not-loaded');
+    await openPlan(world.daemon.url, 'phantom');
+    await thumbnail.waitFor();
+    assert.deepEqual(await thumbnail.evaluate(async (image) => {
+      await image.decode();
+      return [image.naturalWidth, image.naturalHeight];
+    }), [192, 116]);
+    await page.context().close();
+  });
+
+  it('the name is asked for once, and goes along into a room that is joined with one click', async () => {
+    const room = await world.newRoom();
+    await enter(room, 'Dr Alvarez');
+    const page = await newPage();
+    await page.getByLabel('Your name').fill('Maija');
+    await page.keyboard.press('Enter');
+    await page.locator('.own-name').waitFor({ state: 'detached' });
+    const row = page.locator(`[data-room="${room}"]`);
+    assert.match(await row.textContent(), /Dr Alvarez/);
+    await row.getByRole('button').click();
+    await full(page);
+    assert.deepEqual((await call(`${world.daemon.url}/api/v1/rooms/${room}`)).json.members.map(({ name }) => name).sort(), ['Dr Alvarez', 'Maija']);
+    await page.goto(`${world.daemon.url}/#/`);
+    await page.locator('[data-plan]').first().waitFor();
+    assert.equal(await page.locator('main .own-name').count(), 0, 'asked once');
+    await page.getByRole('button', { name: 'Maija', exact: true }).click();
+    await isClean(page, 'changing the name');
+    await page.getByLabel('Your name').fill('Dr Ojala');
+    await page.keyboard.press('Enter');
+    await page.getByRole('button', { name: 'Dr Ojala', exact: true }).waitFor();
+    await page.context().close();
+  });
+
+  it('a full server says so for itself, and the plan is not refused', async () => {
+    const page = await newPage();
+    const second = await upload(page, 'Second');
+    const { json: { id: room } } = await call(`${world.daemon.url}/api/v1/rooms`, 'POST', { plan: second });
+    for (const name of ['Chen', 'Dr B']) await enter(room, name);
+    const id = await upload(page, 'Third');
+    await page.locator(`[data-plan="${id}"] button`, { hasText: 'Open' }).click(); // people look at the two plans that may be open
+    await page.locator('.notice', { hasText: 'The server is full' }).waitFor();
+    await shoot(page, 'start-full');
+    assert.equal(await page.locator(`[data-plan="${id}"] .refusal`).count(), 0);
+    assert.equal(await page.locator(`[data-plan="${id}"] .plan-state`).textContent(), 'Not loaded');
+    await isClean(page, 'full');
+    await page.locator('.notice button').click();
+    await page.locator('.notice').waitFor({ state: 'detached' });
+    await page.context().close();
+  });
+
+  it('before a plan is deleted, who is looking at it is named; with the keyboard too', async () => {
+    const page = await newPage();
+    const id = 'second'; // where Chen and Dr B are
+    await page.locator(`[data-plan="${id}"] [aria-label^="Delete"]`).focus();
+    await page.keyboard.press('Enter');
+    const dialog = page.getByRole('alertdialog');
+    await dialog.getByText('2 people are looking at it').waitFor();
+    assert.match(await dialog.textContent(), /Chen and Dr B/);
+    assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Keep', 'the safe answer has the focus');
+    await shoot(page, 'start-delete-warning');
+    await isClean(page, 'delete dialog');
+    await page.keyboard.press('Escape');
+    await dialog.waitFor({ state: 'hidden' });
+    assert.match(await page.evaluate(() => document.activeElement.getAttribute('aria-label')), /^Delete/, 'the focus is back');
+    assert.equal((await call(`${world.daemon.url}/api/v1/plans/${id}`)).status, 200);
+    await page.keyboard.press('Enter');
+    await dialog.getByText('2 people are looking at it').waitFor();
+    await dialog.getByRole('button', { name: 'Delete for good' }).click();
+    await page.locator(`[data-plan="${id}"]`).waitFor({ state: 'detached' });
+    await page.context().close();
+  });
+
+  it('an address without a room says so, and offers its plan in a new room', async () => {
+    const page = await newPage('#/rooms/nowhere/phantom');
+    const card = page.locator('.ended', { hasText: 'There is no room at this address' });
+    await card.waitFor();
+    assert.equal(await page.locator('.panes').isVisible(), false);
+    await card.getByRole('button', { name: 'Join' }).first().waitFor(); // where Dr Alvarez still is
+    await isClean(page, 'unknown room');
+    await shoot(page, 'start-unknown-room');
+    await card.getByRole('button', { name: /^Open Phantom.* in a new room$/ }).click();
+    await page.waitForURL((url) => /#\/rooms\/(?!nowhere)[a-z0-9-]+\/phantom$/.test(url.href));
+    await full(page);
+    await page.goto(`${world.daemon.url}/#/rooms/nowhere/letters`);
+    await page.locator('.ended', { hasText: 'no longer on this server' }).waitFor();
+    await page.locator('.ended a', { hasText: 'All plans' }).click();
+    await page.locator('[data-plan]').first().waitFor();
+    await page.context().close();
+  });
+
+  for (const [width, height] of sizes)
+    for (const forcedColors of ['none', 'active'])
+      it(`at ${width} x ${height}${forcedColors === 'active' ? ' in forced colours' : ''}, axe-core finds nothing in any state, and nothing is wider than the window`, async () => {
+        const page = await newPage('', { viewport: { width, height }, forcedColors });
+        const check = async (state) => {
+          await isClean(page, state, forcedColors === 'active');
+          const wide = await page.evaluate(() => [...document.querySelectorAll('.start *')].filter((element) => element.checkVisibility() && element.getBoundingClientRect().right > innerWidth + 0.5).map((element) => element.outerHTML.slice(0, 80)));
+          assert.deepEqual(wide, [], state);
+        };
+        await page.locator('.thumb img').first().waitFor();
+        await check('list');
+        await shoot(page, `start-${width}${forcedColors === 'active' ? '-forced' : ''}`);
+        await page.locator('button', { hasText: 'Join a room' }).click();
+        await check('joining');
+        await page.keyboard.press('Escape');
+        await page.route('**/api/v1/plans/phantom/open', (route) => route.fulfill({ json: { id: 'j', state: 'running', phase: 'regions', percent: 58 } }));
+        await page.route('**/api/v1/jobs/j', (route) => route.fulfill({ json: { id: 'j', state: 'running', phase: 'regions', percent: 58 } }));
+        await page.locator('[data-plan="phantom"] button', { hasText: 'Open' }).click();
+        await page.getByRole('progressbar').waitFor();
+        await check('loading');
+        await page.locator('[aria-label="Files of a plan"]').setInputFiles([{ name: 'notes.zip', mimeType: 'application/zip', buffer: Buffer.from('no archive at all') }]);
+        await page.locator('.upload input[name="name"]').waitFor();
+        await check('naming an upload');
+        await page.locator('.upload input[name="name"]').press('Enter');
+        await page.locator('.upload [role="alert"]').waitFor();
+        await check('upload refused');
+        await page.getByLabel('Find a plan').fill('no such plan');
+        await page.locator('.empty', { hasText: 'No plan fits' }).waitFor();
+        await check('nothing found');
+        await page.route('**/api/v1/plans', (route) => route.abort());
+        await page.locator('.notice.bad').waitFor();
+        await check('no server');
+        await page.context().close();
+      });
+
+  it('every control is reached by the keyboard in the order of the page, with a ring around it', async () => {
+    const page = await newPage();
+    await page.evaluate(() => document.activeElement.blur());
+    const seen = [];
+    for (let i = 0; i < 60; i++) {
+      await page.keyboard.press('Tab');
+      const found = await page.evaluate(() => {
+        const element = document.activeElement;
+        if (element === document.body) return null;
+        const { y, x } = element.getBoundingClientRect();
+        const region = element.closest('.banner, main, aside, footer')?.className || element.closest('main')?.tagName || '';
+        return { name: element.getAttribute('aria-label') || element.labels?.[0]?.textContent.trim() || element.textContent.trim(), region, ring: getComputedStyle(element).outlineStyle, x, y };
+      });
+      if (!found) break;
+      seen.push(found);
+    }
+    for (const { name, ring } of seen) assert.notEqual(ring, 'none', name);
+    const regions = seen.map(({ region }) => region);
+    assert.deepEqual([...new Set(regions)], ['banner', 'MAIN', 'load-report']);
+    assert.deepEqual(regions, [...regions].sort((a, b) => ['banner', 'MAIN', 'load-report'].indexOf(a) - ['banner', 'MAIN', 'load-report'].indexOf(b)));
+    const names = seen.map(({ name }) => name);
+    for (const name of ['Find a plan', 'Join a room', 'Your name, as others in a room see it', 'Open Phantom: modified Snyder head', 'Choose files', 'Choose a folder'])
+      assert.ok(names.includes(name), `${name} is among ${names.join(' | ')}`);
+    await page.context().close();
+  });
+
+  it('has had no error', () => assert.deepEqual(world.errors, []));
+
+  /** Sends a copy of a small plan. @returns {Promise<string>} its id */
+  async function upload(page, name) {
+    const header = Buffer.from('NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 8 8 8\nspace directions: (10,0,0) (0,10,0) (0,0,10)\nspace origin: (0,0,0)\nendian: little\nencoding: raw\n\n');
+    const body = Buffer.concat([header, Buffer.alloc(2 * 8 ** 3, 1)]);
+    await page.locator('[aria-label="Files of a plan"]').setInputFiles([{ name: 'ct.nrrd', mimeType: 'application/octet-stream', buffer: body }]);
+    await page.locator('.upload input[name="name"]').fill(name);
+    await page.keyboard.press('Enter');
+    const id = name.toLowerCase();
+    await page.locator(`[data-plan="${id}"]`).waitFor();
+    return id;
+  }
+});
