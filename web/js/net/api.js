@@ -32,6 +32,11 @@ export function makeApi(fetch, base = 'api/v1') {
     if (!response.ok) throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
     return isPicture ? response.blob() : answer;
   }
+  async function picture(path) {
+    const response = await fetch(`${base}/${path}`).catch(() => { throw new Problem({ detail: 'The server does not answer.' }); });
+    if (!response.ok) throw new Problem({ status: response.status, ...(await response.json().catch(() => ({ detail: `The server answered ${response.status}.` }))) });
+    return { blob: await response.blob(), revision: Number(response.headers.get('Beamroom-Revision')) };
+  }
   const id = encodeURIComponent;
   return {
     version: (signal) => call('GET', 'version', { signal }),
@@ -51,6 +56,7 @@ export function makeApi(fetch, base = 'api/v1') {
       call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`),
     surface: (plan, region, query, signal) => call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),
     surfaceUrl: (plan, region, query) => `${base}/plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`,
-    snapshotUrl: (room, view, format) => `${base}/rooms/${id(room)}/snapshot?view=${id(JSON.stringify(view))}&format=${format}`,
+    /** The annotated picture as a PNG, with the revision of the scene it shows. @returns {Promise<{blob: Blob, revision: number}>} */
+    snapshot: (room, view) => picture(`rooms/${id(room)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true`),
   };
 }

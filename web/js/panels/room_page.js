@@ -7,6 +7,7 @@ import { crosshair } from '../state/plan.js';
 import { Refusals, inQuestion } from '../state/refusals.js';
 import { shapeQuery } from '../state/shapes.js';
 import { RoomState } from '../state/room.js';
+import { Printout } from '../state/printout.js';
 import { UiState } from '../state/ui.js';
 import { Undo, listenUndo } from '../state/undo.js';
 import { banner } from './banner.js';
@@ -16,6 +17,8 @@ import { help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { mount } from './mount.js';
 import { Pane } from './pane.js';
+import { printoutDialog } from './printout.js';
+import { listenSnapshots, otherPlanDialog, resumeSnapshot } from './snapshots.js';
 import { status } from './status.js';
 import { toolStrip } from './tools.js';
 import { tree } from './tree.js';
@@ -23,7 +26,7 @@ import { tree } from './tree.js';
 const probeMs = 60;
 const tickMs = 250;
 
-const floating = (world) => html`${help(world)}${figuresDialog(world)}${ended(world)}`;
+const floating = (world) => html`${help(world)}${figuresDialog(world)}${ended(world)}${otherPlanDialog(world)}${printoutDialog(world)}`;
 
 const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>
@@ -58,11 +61,11 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
   const after = new AfterRoom({ api, enter });
-  const world = { after, room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes };
+  const world = { after, room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), listenSnapshots(world), resumeSnapshot(world));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
@@ -191,7 +194,7 @@ function adapt(ui) {
 /** Moves the focus into a dialog that opens, and back afterwards to the element that opened it. */
 function moveFocus(host, ui) {
   let opener = null;
-  const isDialog = computed(() => ['help', 'figures'].includes(ui.popover.value));
+  const isDialog = computed(() => ['help', 'figures', 'printout', 'other-plan'].includes(ui.popover.value));
   return effect(() => {
     const isOpen = isDialog.value;
     if (!isOpen && !opener) return;
@@ -212,7 +215,7 @@ function listenKeys(ui, room) {
     else if (event.key === '?' && !isTyping) ui.toggle('help');
   };
   const onPress = (event) => {
-    if (ui.popover.value && !['help', 'figures'].includes(ui.popover.value) && !event.target.closest('.anchor')) ui.popover.value = '';
+    if (ui.popover.value && !['help', 'figures', 'printout', 'other-plan'].includes(ui.popover.value) && !event.target.closest('.anchor')) ui.popover.value = '';
   };
   addEventListener('keydown', onKey);
   addEventListener('pointerdown', onPress);

@@ -13,6 +13,7 @@ import { askName, nameButton, roomsList } from './lobby.js';
 import { mount } from './mount.js';
 import { planList, refusalOf } from './plan_list.js';
 import { reportLines } from './report.js';
+import { openDroppedSnapshot } from './snapshots.js';
 import { dropZone, listenDrops } from './upload.js';
 
 /** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, thumbnails} @returns {() => void} leaves the page */
@@ -21,7 +22,7 @@ export function startPage(host, world) {
   const uploads = new UploadsState({ ...world, arrived: (plan) => state.arrived(plan).then(() => reveal(host, plan)), limit: () => state.version.value?.max_upload_bytes ?? Infinity });
   const unmount = mount(host, () => page(state, uploads, world));
   const unwatch = watchDialog(host, state);
-  const unlisten = listenDrops(uploads);
+  const unlisten = listenDrops(uploads, (file) => openDroppedSnapshot(world.api, file, world.enter));
   let newest = 0;
   const unscroll = effect(() => { // scrolls to a newly chosen upload, which asks for its name
     const { key = 0 } = uploads.rows.value.at(-1) ?? {};

@@ -4,6 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from './icons.js';
 import { undoButtons } from './undo_buttons.js';
 import { roomChip } from './room_chip.js';
+import { snapshotMenu } from './snapshots.js';
 
 const tools = [
   ['crosshair', 'Crosshair', 'Crosshair in slices, turn in 3-D'],
@@ -29,15 +30,8 @@ export function roving(event) {
 }
 
 export function toolStrip(world) {
-  const { room, ui, panes, api } = world;
+  const { room, ui, panes } = world;
   const active = panes()[ui.active.value - 1];
-  const snapshot = () => {
-    const view = room.view(ui.active.value);
-    const link = document.createElement('a');
-    link.href = api.snapshotUrl(room.id, view.document.value, 'png');
-    link.download = `${room.planId.value}-${view.kind}.png`;
-    link.click();
-  };
   const setLayout = (layout) => {
     ui.maximised.value = 0;
     ui.layout.value = layout;
@@ -52,6 +46,6 @@ export function toolStrip(world) {
     ${roomChip({ room, ui }, 'strip')}
     ${undoButtons(world)}
     <button class="tool plain" tabindex="-1" title="Reset this view (R)" aria-label="Reset view" ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
-    <button class="tool plain" tabindex="-1" title="Save this picture as a file" aria-label="Snapshot" ?disabled=${!room.canChange.value} @click=${snapshot}>${icon('camera')}</button>
+    ${snapshotMenu(world)}
   </div>`;
 }

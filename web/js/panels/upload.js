@@ -13,8 +13,8 @@ function take(uploads, files) {
   if (files.length) uploads.offer(bodyOf(files));
 }
 
-/** Accepts drops anywhere on the page. @returns {() => void} stops */
-export function listenDrops(uploads, target = globalThis) {
+/** Accepts drops anywhere on the page. openPicture: true if the one file that was dropped is a snapshot. @returns {() => void} stops */
+export function listenDrops(uploads, openPicture = async () => false, target = globalThis) {
   const isFiles = (event) => event.dataTransfer?.types.includes('Files');
   const over = (event) => {
     if (!isFiles(event)) return;
@@ -26,7 +26,8 @@ export function listenDrops(uploads, target = globalThis) {
     if (!isFiles(event)) return;
     event.preventDefault();
     uploads.isOver.value = false;
-    filesOfDrop(event.dataTransfer).then((files) => take(uploads, files), (error) => { uploads.error.value = error.message; });
+    const handle = async (files) => { if (files.length !== 1 || !(await openPicture(files[0].file))) take(uploads, files); };
+    filesOfDrop(event.dataTransfer).then(handle).catch((error) => { uploads.error.value = error.message; });
   };
   target.addEventListener('dragover', over);
   target.addEventListener('dragleave', leave);

@@ -1,0 +1,174 @@
+// Snapshots in the browser: saved, dropped on the page and shown again; the report to print, as PDF.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { bin, call } from '../api/daemon.mjs';
+import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { textOfPages } from './pdf_text.mjs';
+
+describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  let folder;
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'beamroom-snapshots-'));
+    const made = spawnSync(join(bin, 'beamroom'), ['phantom', join(folder, 'other'), '--size', '48x48x32']);
+    assert.equal(made.status, 0, String(made.stderr));
+    world = await startWorld({ plans: [folder] });
+  });
+  after(async () => {
+    await world?.stop();
+    if (folder) rmSync(folder, { recursive: true, force: true });
+  });
+
+  const menu = async (page, name) => {
+    await page.getByRole('button', { name: 'Snapshot', exact: true }).click();
+    await page.getByRole('menuitem', { name }).click();
+  };
+  const choose = (page, view) => page.locator(`#picture-${view}`).focus();
+  const saved = async (page) => {
+    const [download] = await Promise.all([page.waitForEvent('download'), menu(page, 'Save the active pane as PNG')]);
+    return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+  };
+  const drop = (page, bytes, name = 'picture.png') => page.evaluate(([data, as]) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([Uint8Array.from(data)], as));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  }, [[...bytes], name]);
+  const patch = (room, change) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', change, { 'If-Match': '*' });
+  /** The picture that the server draws of the room's scene with the first view's camera. */
+  const drawn = async (room, view) => Buffer.from(await (await fetch(`${world.daemon.url}/api/v1/rooms/${room}/snapshot?view=${encodeURIComponent(JSON.stringify(view))}`)).arrayBuffer());
+
+  it('are saved with a caption and, dropped on the page, bring scene and view back', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`);
+    await full(page, 1);
+    const before = await world.scene(room);
+    const matrix = (await header(page, 1)).clip_from_lps_mm;
+    const { name, bytes } = await saved(page);
+    assert.equal(name, 'phantom-3d.png');
+    assert.ok(bytes.readUInt32BE(16) >= 1200, 'wide enough for paper');
+    const { scene_revision: revision } = await header(page, 1);
+    const plain = await drawn(room, { size_px: [200, 150] });
+
+    await patch(room, { regions: { scalp: { visible: false }, brain: { opacity: 0.9, color: '#00ff00' } }, image: { window: { width: 90 }, slices: { axial: { position_mm: -20 } } }, surface: { normals: 'face' } });
+    await newer(page, 1, revision);
+    await page.locator('#picture-1').focus();
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('ArrowUp');
+    await page.waitForFunction((old) => globalThis.beamroom.stats().headers[1].clip_from_lps_mm.some((value, at) => Math.abs(value - old[at]) > 1e-4), Object.values(matrix));
+    assert.notDeepEqual(await world.scene(room), before);
+    assert.ok(!plain.equals(await drawn(room, { size_px: [200, 150] })));
+
+    await drop(page, bytes);
+    await page.getByText('Scene and view are as in the picture').waitFor();
+    await page.waitForFunction((old) => globalThis.beamroom.stats().headers[1].clip_from_lps_mm.every((value, at) => Math.abs(value - old[at]) < 1e-5), Object.values(matrix));
+    await full(page, 1);
+    assert.deepEqual(await world.scene(room), before);
+    assert.ok(plain.equals(await drawn(room, { size_px: [200, 150] })));
+    assert.deepEqual(world.errors, []);
+    await page.context().close();
+  });
+
+  it('of another plan are said to be, and open that plan as it was in them', async () => {
+    const other = await world.newRoom('other');
+    await patch(other, { regions: { scalp: { visible: false } } });
+    const page = await world.newPage(`#/rooms/${other}`);
+    await full(page, 2);
+    await choose(page, 2);
+    const { name, bytes } = await saved(page);
+    assert.equal(name, 'other-axial.png');
+    const scene = await world.scene(other);
+
+    await page.goto(`${world.daemon.url}/#/rooms/${await world.newRoom()}`);
+    await full(page, 1);
+    await drop(page, bytes);
+    const dialog = page.getByRole('dialog', { name: 'Picture of another plan' });
+    await dialog.waitFor();
+    assert.match(await dialog.innerText(), /other/);
+    await shoot(page, 'snapshot-other-plan');
+    await dialog.getByRole('button', { name: /Open other/ }).click();
+    await page.getByText('Scene and view are as in the picture').waitFor();
+    await full(page, 2);
+    const room = (await page.evaluate(() => location.hash)).split('/').at(-1);
+    await page.waitForFunction(() => globalThis.beamroom.stats().headers[2].scene_revision > 1);
+    assert.deepEqual(await world.scene(room), scene);
+
+    // the same from the start page
+    await page.goto(`${world.daemon.url}/#/`);
+    await page.getByText('Drop a plan here').waitFor();
+    await drop(page, bytes);
+    await page.getByText('Scene and view are as in the picture').waitFor();
+    const again = (await page.evaluate(() => location.hash)).split('/').at(-1);
+    await page.waitForFunction(() => globalThis.beamroom.stats().headers[2]?.scene_revision > 1);
+    assert.notEqual(again, room);
+    assert.deepEqual(await world.scene(again), scene);
+    assert.deepEqual(world.errors, []);
+    await page.context().close();
+  });
+
+  it('that say nothing, or nonsense, change nothing and say why', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`);
+    await full(page, 1);
+    const before = await world.scene(room);
+    await drop(page, await drawn(room, { size_px: [64, 64] }));
+    await page.getByText(/does not say what it shows/).waitFor();
+    await drop(page, Buffer.from('no picture at all'), 'notes.txt');
+    await page.getByText(/Only a snapshot as PNG can be dropped here/).waitFor();
+    const { bytes } = await saved(page);
+    bytes[bytes.indexOf('iTXt') + 40] ^= 1;
+    await drop(page, bytes);
+    await page.getByText('The text in the picture is damaged.').waitFor();
+    assert.deepEqual(await world.scene(room), before);
+    assert.deepEqual(world.errors, []);
+    await page.context().close();
+  });
+
+  it('become a report to print, with captions, figures and the research line on every page', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`);
+    for (const view of [1, 2, 3]) {
+      await full(page, view);
+      await choose(page, view);
+      await menu(page, /Add it to the report/);
+      await page.getByText(`In the report to print: ${view} picture`).waitFor();
+    }
+    await menu(page, /Report to print/);
+    const dialog = page.getByRole('dialog', { name: 'Report to print' });
+    assert.deepEqual(await dialog.locator('img').evaluateAll((images) => images.map(({ alt }) => alt.split(' ')[2])), ['3-D', 'Axial', 'Sagittal']);
+    await dialog.getByLabel('Caption of Figure 2').fill('Tumour in the slice of its middle');
+    await dialog.getByRole('button', { name: 'Figure 2 earlier' }).click();
+    await dialog.getByRole('button', { name: 'Remove Figure 3' }).click();
+    assert.equal(await dialog.locator('figure').count(), 2);
+    await dialog.locator('.printout-bar button.primary:enabled').waitFor();
+    await page.waitForFunction(() => [...document.querySelectorAll('.numbers-table tbody tr')].length === 5 && !document.querySelector('.numbers-table').innerText.includes('…'));
+    await shoot(page, 'printout');
+
+    const pages = textOfPages(await page.pdf({ preferCSSPageSize: true, path: 'build/test-artifacts/printout.pdf' }));
+    assert.ok(pages.length >= 2 && pages.length <= 4, `${pages.length} pages`);
+    for (const text of pages) assert.match(text, /Phantom: modified Snyder head · printed \d{4}-\d\d-\d\d \d\d:\d\d UTC · revision 1For research and plan review\. Not a medical device/);
+    const whole = pages.join('\n');
+    assert.match(pages[0], /^Phantom: modified Snyder headPlan/);
+    assert.match(whole, /Figure 1\. Tumour in the slice of its middle/);
+    assert.match(whole, /Figure 2\./);
+    assert.match(whole, /Crosshair at L 24\.0, P 24\.0, S 33\.9 mm, CT [\d.]+ HU, in tumour/);
+    const { json: plan } = await call(`${world.daemon.url}/api/v1/plans/phantom`);
+    const { json: surface } = await call(`${world.daemon.url}/api/v1/plans/phantom/regions/tumour/surface?representation=surface&algorithm=smooth`);
+    const tumour = plan.regions.find(({ id }) => id === 'tumour');
+    assert.ok(whole.includes(`tumour${tumour.voxels}${tumour.volume_cm3.toFixed(2)}smooth${surface.triangles}${(surface.area_mm2 / 100).toFixed(1)}${(surface.volume_mm3 / 1000).toFixed(2)}`), whole);
+    assert.ok(!/Print or save|Remove|Latency/.test(whole), 'no controls on paper');
+
+    await page.keyboard.press('Escape');
+    await dialog.waitFor({ state: 'detached' });
+    await page.reload();
+    await full(page, 1);
+    await menu(page, /Report to print/);
+    assert.equal(await dialog.locator('figure').count(), 2);
+    assert.equal(await dialog.getByLabel('Caption of Figure 1').inputValue(), 'Tumour in the slice of its middle');
+    assert.deepEqual(world.errors, []);
+    await page.context().close();
+  });
+});
