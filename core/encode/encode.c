@@ -111,15 +111,19 @@ static bool check_size(const struct image *image, struct error *err)
 bool encode_png_with_text(const struct image *image, const char *keyword, const char *text, struct encoded *out,
                           struct error *err)
 {
-    char none[] = "", *copy = mem_copy_text(text); /* libspng wants them writable */
+    size_t length = strlen(text);
+    char none[] = "", *copy = mem_array(length + 1, 1, UINT64_MAX, err); /* libspng wants them writable */
+    *out = (struct encoded){ 0 };
+    if (!copy)
+        return false;
+    memcpy(copy, text, length);
     struct spng_text chunk = { .type = SPNG_ITXT,
-                               .length = strlen(text),
+                               .length = length,
                                .text = copy,
                                .compression_flag = 1,
                                .language_tag = none,
                                .translated_keyword = none };
     (void)snprintf(chunk.keyword, sizeof chunk.keyword, "%s", keyword);
-    *out = (struct encoded){ 0 };
     bool is_done = check_size(image, err) && encode_png(image, &chunk, out, err);
     free(copy);
     return is_done;

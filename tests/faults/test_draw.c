@@ -206,10 +206,12 @@ static void annotate(void *context, struct outcome *outcome)
     if (annotations_describe(&annotations, snapshot, 200, "2026-07-01 09:30 UTC", &outcome->err))
         annotated = annotate_image(image, &annotations, &outcome->err);
     annotations_finish(&annotations);
-    if (annotated) {
+    struct encoded png = { 0 };
+    if (annotated && encode_png_with_text(annotated, "beamroom", "{\"version\": 1}", &png, &outcome->err)) {
         outcome->is_done = true;
-        outcome_add(outcome, annotated->rgba, (size_t)annotated->width_px * (size_t)annotated->height_px * 4);
+        outcome_add(outcome, png.bytes, png.n_bytes);
     }
+    free(png.bytes);
     image_destroy(annotated);
     image_destroy(image);
     snapshot_unref(snapshot);
@@ -219,7 +221,9 @@ static void annotate(void *context, struct outcome *outcome)
 
 static void walk_annotations(void)
 {
-    const struct walk walk = { .name = "a picture is annotated", .run = annotate, .kinds = { [FAULT_MEMORY] = true } };
+    const struct walk walk = { .name = "a picture is annotated and compressed",
+                               .run = annotate,
+                               .kinds = { [FAULT_MEMORY] = true } };
     walk_run(&walk);
 }
 
