@@ -18,12 +18,15 @@ export function signed(value, digits) {
   return value > 0 && /[1-9]/.test(text) ? `+${text}` : text;
 }
 
-/** Three significant figures. */
+const raised = { '-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹' };
+
+/** Three significant figures: "0.0447", "10.0", "1.23 × 10¹⁰". Before the point all figures stay. */
 export function significant(value) {
   if (!Number.isFinite(value)) return '–';
   if (value === 0) return '0';
-  const size = Math.floor(Math.log10(Math.abs(value)));
-  if (size < -4 || size > 6) return value.toExponential(2).replace('-', minus).replace('e+', 'e');
+  const [digits, power] = value.toExponential(2).split('e'); // rounds first: 9.996 has the size of 10
+  const size = Number(power);
+  if (size < -4 || size > 6) return `${digits.replace('-', minus)} × 10${[...String(size)].map((sign) => raised[sign]).join('')}`;
   return number(value, Math.max(0, 2 - size));
 }
 
@@ -53,11 +56,12 @@ export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 
 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 
-/** "1/cm²" for a unit as files write it, "1/cm2". */
-export const unitText = (unit) => unit.replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
+/** "1/cm²" for a unit as files write it, "1/cm2"; "Gy(w)" for a weighted dose under its older names. */
+export const unitText = (unit) => unit.replace(/\bGy[- ]?Eq\b|\bGyw\b/gi, 'Gy(w)').replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
 
-/** "C 40  W 400 HU", the form of a window everywhere on the page. */
+/** "C 40  W 400 HU", the form of a window everywhere on the page; a narrow window has the digits that tell its greys apart. */
 export const windowText = ({ center, width }, unit, isInverted = false) => {
-  const digits = width < 10 ? 2 : 0;
-  return `C ${number(center, digits)}  W ${number(width, digits)}${unit ? ` ${unit}` : ''}${isInverted ? '  low white' : ''}`;
+  const digits = width < 10 ? Math.min(2 - Math.floor(Math.log10(width)), 20) : 0;
+  const [c, w] = width < 1e-4 ? [significant(center), significant(width)] : [number(center, digits), number(width, digits)];
+  return `C ${c}  W ${w}${unit ? ` ${unitText(unit)}` : ''}${isInverted ? '  low white' : ''}`;
 };

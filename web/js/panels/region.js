@@ -5,7 +5,7 @@ import { live } from '../../lib/directives/live.js';
 import { crosshairPatch, shownImage, soloPatch } from '../state/plan.js';
 import { isExportable, representations, shapeQuery, volumeDifference } from '../state/shapes.js';
 import { numberField, segment } from './fields.js';
-import { number, seconds, signed } from './format.js';
+import { number, seconds, signed, significant, volume } from './format.js';
 import { icon } from './icons.js';
 
 const files = [['stl', 'binary STL'], ['ply', 'binary PLY'], ['glb', 'GLB (glTF 2.0), in metres with the top up']];
@@ -25,7 +25,7 @@ export function regionBlock(world, region) {
   const isShared = plan.regions.every((other) => scene.regions[other.id]?.representation === style.representation);
   const share = (event) => room.patchScene({ regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { representation: style.representation }])) }, how(event));
   return html`<section class="block"><h3>Region ${region.name} <span class="dim">${parent ? `in ${parent.name}` : ''}</span></h3>
-    <dl><dt>Volume</dt><dd>${number(region.volume_cm3, 2)} cm³, ${number(region.voxels)} univels</dd>
+    <dl><dt>Volume</dt><dd>${volume(region.volume_cm3)}, ${number(region.voxels)} univels</dd>
       ${region.touches_edge ? html`<dt>Edge</dt><dd>cut by the edge of the scan</dd>` : nothing}
       <dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(style.opacity * 100)))} aria-label="Opacity" ?disabled=${isDisabled}
         @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(style.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd>
@@ -60,8 +60,8 @@ function figures({ shaped }, region, representation) {
     .filter(([name]) => result[name]).map(([name, word]) => `${number(result[name])} ${word}`);
   const difference = volumeDifference(result);
   return html`<dl class="figures"><dt>Made of</dt><dd>${counts.join(', ') || 'nothing'}</dd>
-    ${result.area_mm2 ? html`<dt>Area</dt><dd>${number(result.area_mm2 / 100, 1)} cm²</dd>` : nothing}
-    ${result.volume_mm3 ? html`<dt>Encloses</dt><dd>${number(result.volume_mm3 / 1000, 2)} cm³, ${signed(difference, 2)} % to univels</dd>` : nothing}
-    ${Number.isFinite(result.distance_max_mm) ? html`<dt title="Of its vertices, from the border of the univels">Off the univels</dt><dd>${number(result.distance_mean_mm, 2)} mm, at most ${number(result.distance_max_mm, 2)} mm</dd>` : nothing}
+    ${result.area_mm2 ? html`<dt>Area</dt><dd>${significant(result.area_mm2 / 100)} cm²</dd>` : nothing}
+    ${result.volume_mm3 ? html`<dt>Encloses</dt><dd>${volume(result.volume_mm3 / 1000)}, ${signed(difference, 2)} % to univels</dd>` : nothing}
+    ${Number.isFinite(result.distance_max_mm) ? html`<dt title="Of its vertices, from the border of the univels">Off the univels</dt><dd>${significant(result.distance_mean_mm)} mm, at most ${significant(result.distance_max_mm)} mm</dd>` : nothing}
     <dt>Made in</dt><dd>${seconds(result.ms)}</dd></dl>`;
 }
