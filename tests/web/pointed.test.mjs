@@ -149,6 +149,12 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     assert.equal(await page.locator('[data-view="1"] [data-letters]').getAttribute('data-letters'), 'R L S I', 'not turned');
   });
 
+  it('says without a pointer what lies at the crosshair of the pane with the focus', async () => {
+    await page.locator('#picture-2').focus();
+    await page.waitForFunction(() => /^Axial, S \S+ mm, (tumour|target|brain|cranium|scalp), CT \S+ HU$/.test(document.querySelector('#caption-2').textContent));
+    await page.waitForFunction(() => /^Sagittal, L \S+ mm$/.test(document.querySelector('#caption-3').textContent));
+  });
+
   it('a long press shows the values beside the finger, away from letters', async () => {
     await page.context().close();
     page = await world.newPage(`#/rooms/${room}`, tablet);

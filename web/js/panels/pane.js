@@ -15,7 +15,7 @@ import { icon } from './icons.js';
 import { mount, variables } from './mount.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { followMark } from './room_chip.js';
-import { readOut } from './read_out.js';
+import { readOut, spoken } from './read_out.js';
 
 export const names = { '3d': '3-D', axial: 'Axial', sagittal: 'Sagittal', coronal: 'Coronal' };
 const resizeMs = 120;
@@ -26,17 +26,19 @@ export class Pane {
   #ui;
   #view;
   #refused;
+  #probed;
   #size = signal([0, 0]);
   #resizeTimer = 0;
   #stops = [];
   #lastCaption = '';
 
-  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, decode, schedule, onPainted} */
-  constructor(host, { room, ui, api, refused, decode, schedule, onPainted }, view) {
+  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, decode, schedule, onPainted} */
+  constructor(host, { room, ui, api, refused, probed, decode, schedule, onPainted }, view) {
     this.#room = room;
     this.#ui = ui;
     this.#view = view;
     this.#refused = refused;
+    this.#probed = probed;
     this.host = host;
     this.actions = new PaneActions(room, ui, api, view.number);
     this.badge = computed(() => fidelity({
@@ -51,6 +53,7 @@ export class Pane {
       refusal: view.refusal.value,
     }));
     this.#stops.push(mount(host, () => this.#draw()));
+    this.#stops.push(mount(host.querySelector(`#caption-${view.number}`), () => html`${this.#caption()}`));
     const body = host.querySelector('.picture');
     this.painter = new Painter(host.querySelector('canvas'), { decode, schedule, onPainted });
     const pointer = new PointerReader(body, this.actions);
@@ -127,7 +130,7 @@ export class Pane {
         ${this.#legend()}
         ${this.#slider()}
       </div>
-      <p class="hidden" id=${`caption-${n}`} aria-live="polite">${this.#caption()}</p>`;
+      <p class="hidden" id=${`caption-${n}`} aria-live="polite"></p>`;
   }
 
   #where() {
@@ -237,12 +240,14 @@ export class Pane {
     this.actions.stepSlice(steps, event.timeStamp);
   }
 
+  /** "Axial, S −64.9 mm, brain, CT 38 HU": announced once picture and values are there, not thirty times a second. */
   #caption() {
-    // announced once the picture is still, not thirty times a second
-    if (this.#view.painted.value?.is_still) this.#lastCaption = `${names[this.#view.kind]}, ${this.#where()}`;
+    const { result, isOld } = this.#probed.value;
+    if (!this.#view.painted.value?.is_still || isOld) return this.#lastCaption;
+    const facts = this.#ui.active.value === this.#view.number && result ? spoken(result, this.#room.plan.value, this.#room.scene.value) : [];
+    this.#lastCaption = [names[this.#view.kind], this.#where(), ...facts].filter(Boolean).join(', ');
     return this.#lastCaption;
   }
-
 }
 
 /** "R1" for "Reviewer 1", "AL" for "Ada Lovelace". */

@@ -44,6 +44,13 @@ export function words({ regions: ids, images, point_lps_mm: point, onSurface }, 
   };
 }
 
+/** The same for a caption: values at the crosshair. */
+export function spoken(result, plan, scene) {
+  if (!plan || !scene) return [];
+  const { name, value } = words(result, plan, scene);
+  return [plan.regions.length ? name.replace(/^Outside/, 'outside') : '', value ? `${value.label} ${value.text} ${value.unit}`.trim() : ''];
+}
+
 /** What the card must not cover: letters, scale bar, axes figure, legend. */
 function takenIn(picture, { left, top }) {
   const marks = [...picture.querySelectorAll('.overlay text, .overlay .figure, .overlay .scale'), ...picture.parentElement.querySelectorAll('.legend')];
