@@ -17,7 +17,7 @@ enum draw_pass {
 enum draw_kind {
     DRAW_SHAPE,    /* triangles, lines or points */
     DRAW_IMAGE,    /* an image on a plane */
-    DRAW_LABELS,   /* a label layer on a plane */
+    DRAW_LABELS,   /* some labels of a label layer on a plane */
     DRAW_OUTLINE,  /* overlay: the outline of a region's surface or univels on a plane */
     DRAW_CHECK,    /* overlay: where univels and surface of a region differ on a plane */
     DRAW_GRID_CUT, /* overlay: where a plane cuts the grids of a dose */

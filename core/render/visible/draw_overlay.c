@@ -8,26 +8,6 @@
 static const uint32_t grid_rgb = 0xf4f6f8;
 static const double grid_width_px = 1.5;
 
-/* A region, and what its place in the order depends on. */
-struct ranked {
-    size_t region;
-    int order, depth;
-    uint64_t n_voxels;
-};
-
-/* On top, last: the higher order, the inner, the smaller. */
-static int compare_ranks(const void *left, const void *right)
-{
-    const struct ranked *a = left, *b = right;
-    if (a->order != b->order)
-        return a->order < b->order ? -1 : 1;
-    if (a->depth != b->depth)
-        return a->depth < b->depth ? -1 : 1;
-    if (a->n_voxels != b->n_voxels)
-        return a->n_voxels > b->n_voxels ? -1 : 1;
-    return a->region < b->region ? -1 : 1;
-}
-
 static bool add_region(struct draw_list *list, const struct draw_scope *scope, size_t region, struct error *err)
 {
     const struct snapshot *snapshot = scope->snapshot;
@@ -58,15 +38,14 @@ static bool add_regions(struct draw_list *list, const struct draw_scope *scope, 
 {
     const struct snapshot *snapshot = scope->snapshot;
     const struct region_set *set = &snapshot->plan->regions;
-    struct ranked *ranks = mem_array(set->n_regions, sizeof *ranks, UINT64_MAX, err);
+    struct visible_rank *ranks = mem_array(set->n_regions, sizeof *ranks, UINT64_MAX, err);
     size_t n = 0;
     bool is_good = ranks != NULL;
     for (size_t i = 0; is_good && i < set->n_regions; i++)
         if (visible_is_drawn(snapshot, i))
-            ranks[n++] =
-                (struct ranked){ i, (int)snapshot->styles[i].order, region_depth(set, i), set->regions[i].n_voxels };
+            ranks[n++] = visible_rank(snapshot, i);
     if (is_good)
-        qsort(ranks, n, sizeof *ranks, compare_ranks);
+        qsort(ranks, n, sizeof *ranks, visible_rank_compare);
     for (size_t i = 0; is_good && i < n; i++)
         is_good = add_region(list, scope, ranks[i].region, err);
     free(ranks);

@@ -2,6 +2,7 @@
 /* Images and label layers on planes as draws: slices in space, and what a slice pane shows. */
 #include "core/render/visible/draw.h"
 
-/* Appends the image's slices in space; on a slice pane the image, or without one the label layers, the lowest first.
+/* Appends the image's slices in space; on a slice pane the image, or without one the label layers: at each point
+ * the colour of the uppermost visible region that holds it (visible_rank), whatever layers the regions are on.
  * errors ERROR_MEMORY, ERROR_UNSUPPORTED a label layer of real numbers */
 NODISCARD bool draw_planes(struct draw_list *list, const struct draw_scope *scope, struct error *err);

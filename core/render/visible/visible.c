@@ -123,6 +123,25 @@ bool visible_is_drawn(const struct snapshot *snapshot, size_t region)
     return visible_is_shown(snapshot, region) && snapshot->plan->regions.regions[region].n_voxels > 0;
 }
 
+struct visible_rank visible_rank(const struct snapshot *snapshot, size_t region)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    return (struct visible_rank){ region, (int)snapshot->styles[region].order, region_depth(set, region),
+                                  set->regions[region].n_voxels };
+}
+
+int visible_rank_compare(const void *left, const void *right)
+{
+    const struct visible_rank *a = left, *b = right;
+    if (a->order != b->order)
+        return a->order < b->order ? -1 : 1;
+    if (a->depth != b->depth)
+        return a->depth < b->depth ? -1 : 1;
+    if (a->n_voxels != b->n_voxels)
+        return a->n_voxels > b->n_voxels ? -1 : 1;
+    return a->region < b->region ? -1 : a->region > b->region;
+}
+
 size_t visible_n_translucent(const struct snapshot *snapshot)
 {
     size_t n = 0;

@@ -12,6 +12,15 @@ bool visible_is_drawn(const struct snapshot *snapshot, size_t region);
 /* True if `outer`, an ancestor of `region`, is drawn as an opaque closed surface that encloses the shape of `region`,
  * so that this cannot be seen from outside. */
 bool visible_hides(const struct snapshot *snapshot, size_t outer, size_t region);
+/* The place of a region among those that overlap it on a slice. On top, greatest: the higher order, the inner in the
+ * hierarchy, the smaller, the later in the plan. */
+struct visible_rank {
+    size_t region;
+    int order, depth;
+    uint64_t n_voxels;
+};
+struct visible_rank visible_rank(const struct snapshot *snapshot, size_t region);
+int visible_rank_compare(const void *left, const void *right); /* for qsort; 0 only for one and the same region */
 /* True if a box lies wholly beyond one of the six sides of the view volume. */
 bool visible_is_out_of_sight(const struct mat4 *clip_from_lps_mm, const struct box3 *box);
 /* The number of translucent regions with any camera, at most. */
