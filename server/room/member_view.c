@@ -53,15 +53,13 @@ void view_add_input(struct member_view *view, uint32_t input)
     view->n_waiting++;
 }
 
-static void view_join(struct room *room, struct member_view *view, struct stream *stream, bool is_following,
-                      uint32_t input)
+static void view_join(struct room *room, struct member_view *view, struct stream *stream, bool is_following)
 {
     if (view->stream != stream)
         view_leave(room, view);
     view->stream = stream;
     view->is_following = is_following;
     view->was_open = true;
-    view_add_input(view, input);
 }
 
 static void read_size(const cJSON *document, int size_px[2])
@@ -124,10 +122,9 @@ static cJSON *document_to_share(const struct room *room, const struct member *me
     return plain;
 }
 
-/* Shows the shared stream of the document's kind, which is made from the document when there is none yet; the
- * presenter's has the presenter's size. Takes document, of document_to_share. */
-static void join_shared(struct room *room, struct member *member, struct member_view *view, cJSON *document,
-                        uint32_t input)
+/* Shows the shared stream of the document's kind, which is made from the document when there is none yet. Takes
+ * document, of document_to_share. */
+static void join_shared(struct room *room, struct member *member, struct member_view *view, cJSON *document)
 {
     struct stream *stream = room->shared[view_kind(document)];
     if (!stream) {
@@ -137,7 +134,7 @@ static void join_shared(struct room *room, struct member *member, struct member_
     } else {
         cJSON_Delete(document);
     }
-    view_join(room, view, stream, true, input);
+    view_join(room, view, stream, true);
 }
 
 /* A shared stream has the size of the presenter's view. */
@@ -195,15 +192,15 @@ bool member_view_open(struct room *room, struct member *member, const struct mes
     bool followed = member_follows(room, member);
     memcpy(view->size_px, size_px, sizeof size_px);
     if (open->follow) {
-        join_shared(room, member, view, document, 0);
+        join_shared(room, member, view, document);
         if (member_presents(room, member))
             share_size(room, member, view);
-        view_add_input(view, (uint32_t)open->input);
-        send_joined(room, member, (int)open->view - 1);
     } else {
-        view_join(room, view, stream_create(room, document, false), false, (uint32_t)open->input);
-        stream_send_picture(room, member, view); /* none yet; reports the input when there is one */
+        view_join(room, view, stream_create(room, document, false), false);
     }
+    view_add_input(view, (uint32_t)open->input);
+    if (open->follow)
+        send_joined(room, member, (int)open->view - 1);
     send_members_if(room, member, followed);
     return true;
 }
@@ -251,7 +248,7 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
     } else if (view_kind(document) == stream->kind) {
         set_shared_view(room, member, view, stream, document);
     } else { /* another kind has a shared view of its own */
-        join_shared(room, member, view, document, 0);
+        join_shared(room, member, view, document);
         share_size(room, member, view);
         view_add_input(view, (uint32_t)patch->input);
         send_joined(room, member, (int)patch->view - 1);
@@ -318,7 +315,7 @@ bool views_follow(struct room *room, struct member *member, uint32_t input, stru
         if (!view->stream)
             continue;
         if (documents[i])
-            join_shared(room, member, view, documents[i], 0);
+            join_shared(room, member, view, documents[i]);
         if (member_presents(room, member))
             share_size(room, member, view);
         view_add_input(view, input);
@@ -353,9 +350,9 @@ bool views_share(struct room *room, struct member *presenter, bool keep_override
         if (was_own && room->shared[kind] && !is_taken[kind]) {
             struct stream *stream = room->shared[kind];
             set_shared_view(room, presenter, view, stream, documents[i]);
-            view_join(room, view, stream, true, 0);
+            view_join(room, view, stream, true);
         } else if (was_own) {
-            join_shared(room, presenter, view, documents[i], 0);
+            join_shared(room, presenter, view, documents[i]);
         } else if (!is_taken[kind]) {
             share_size(room, presenter, view);
         }
@@ -444,7 +441,7 @@ static bool views_leave(struct room *room, struct member *member, const cJSON *v
         if (documents[i])
             read_size(documents[i], view->size_px);
         if (documents[i] && view->is_following)
-            view_join(room, view, stream_create(room, documents[i], false), false, 0);
+            view_join(room, view, stream_create(room, documents[i], false), false);
         else if (documents[i])
             (void)stream_set_view(room, view->stream, documents[i]);
         view_add_input(view, input);
