@@ -373,6 +373,8 @@ static void a_snapshot_is_described(void **state)
     snprintf(plan->images[0].name, sizeof plan->images[0].name, "Planning");
     snprintf(plan->images[0].modality, sizeof plan->images[0].modality, "CT");
     snprintf(plan->images[0].unit, sizeof plan->images[0].unit, "HU");
+    plan->n_doses = 1;
+    plan->doses[0] = (struct dose){ .id = "run-1", .name = "Run 1", .unit = "cGy", .per = "per fraction" };
     char date[ANNOTATE_DATE_SIZE], field[128];
     annotate_date(1782898200, date); /* 2026-07-01 09:30:00 UTC, by `date` */
     for (int pane = 0; pane < 2; pane++) {
@@ -383,6 +385,8 @@ static void a_snapshot_is_described(void **state)
         scene.image.slices.axial.position_mm = -4;
         scene.image.slices.axial.visible = false;
         scene.regions[1].value.opacity = 0.35;
+        scene.regions[0].value.representation = SCENE_REPRESENTATION_UNIVELS;
+        scene.dose.grid = pane;
         struct view view = view_default;
         view.kind = pane ? SCENE_KIND_AXIAL : SCENE_KIND_3D;
         struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
@@ -393,7 +397,10 @@ static void a_snapshot_is_described(void **state)
         assert_string_equal(row_text(&words, ANNOTATION_PANE),
                             pane ? "Axial|S \u22124.0 mm|Planning, CT|C 40  W 400 HU" : "3-D|perspective, no scale");
         /* the upper region does not reach the slice */
-        assert_string_equal(row_text(&words, ANNOTATION_REGIONS), pane ? "low" : "low|high 35 %");
+        assert_string_equal(row_text(&words, ANNOTATION_REGIONS), pane ? "low" : "low, univels|high 35 %");
+        assert_string_equal(row_text(&words, ANNOTATION_METHODS),
+                            pane ? "Outlines: along the univels' centres|Grid of the dose Run 1, cGy per fraction"
+                                 : "Surfaces: smooth");
         assert_string_equal(row_text(&words, ANNOTATION_ORIGIN),
                             "2026-07-01 09:30 UTC|revision 12|Beamroom " BEAMROOM_VERSION);
         assert_string_equal(row_text(&words, ANNOTATION_USE), "For research and plan review.|Not a medical device.");
