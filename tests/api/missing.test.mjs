@@ -41,6 +41,22 @@ describe('a region that would take more triangles than the limit', { timeout: 24
     await whole.arrayBuffer();
   });
 
+  test('is said to be missing in the caption of an annotated picture, not listed among the regions shown', async () => {
+    const annotated = async (regions) => {
+      const answer = await fetch(`${api}/plans/foam/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ scene: { regions }, view: { size_px: [400, 200] }, annotations: true }) });
+      const picture = readPng(await answer.arrayBuffer());
+      const caption = { ...picture, height: picture.height - 200, at: (x, y) => picture.at(x, y + 200) };
+      const n = (colour) => centreOf(caption, (rgb) => String(rgb) === colour).n;
+      return { height: picture.height, red: n('255,0,0'), green: n('0,255,0') };
+    };
+    const missing = await annotated(asUnivels);
+    const hidden = await annotated({ ...asUnivels, foam: { visible: false } });
+    assert.ok(missing.height - hidden.height >= 12, 'one more line of text');
+    assert.ok(missing.green > 20 && missing.green === hidden.green, `${missing.green} pixels of the chip of the block`);
+    assert.deepEqual([missing.red, hidden.red], [0, 0], 'no chip of the foam');
+  });
+
   test('is named by the command that draws it', async () => {
     const scene = join(folder, 'foam', 'scene.json');
     writeFileSync(scene, JSON.stringify({ regions: asUnivels }));
