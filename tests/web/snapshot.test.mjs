@@ -161,8 +161,13 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     assert.ok(whole.includes(`tumour${tumour.voxels}${tumour.volume_cm3.toFixed(2)}smooth${surface.triangles}${(surface.area_mm2 / 100).toFixed(1)}${(surface.volume_mm3 / 1000).toFixed(2)}`), whole);
     assert.ok(!/Print or save|Remove|Latency/.test(whole), 'no controls on paper');
 
+    for (let i = 0; i < 12; i++) { // the focus stays in the report
+      await page.keyboard.press('Tab');
+      assert.ok(await page.evaluate(() => document.activeElement === document.body || Boolean(document.activeElement.closest('.printout'))));
+    }
     await page.keyboard.press('Escape');
     await dialog.waitFor({ state: 'detached' });
+    assert.equal(await page.evaluate(() => document.activeElement.ariaLabel), 'Snapshot', 'the focus goes back to the camera');
     await page.reload();
     await full(page, 1);
     await menu(page, /Report to print/);

@@ -3,6 +3,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { live } from '../../lib/directives/live.js';
+import { effect } from '../../lib/signals-core.js';
 import { beamWords, crosshair, doseWords, reportSummary, shownImage } from '../state/plan.js';
 import { volumeDifference } from '../state/shapes.js';
 import { count, number, signed, significant, unitText } from './format.js';
@@ -27,13 +28,19 @@ export function printoutDialog(world) {
     queueMicrotask(() => printout.measure(room.planId.peek(), plan));
   }
   const close = () => { ui.popover.value = ''; };
-  return html`<section class="printout" role="dialog" tabindex="-1" aria-label="Report to print">
-    <header class="printout-bar"><b>Report to print</b><span class="note" role="status">${printout.isComplete.value ? '' : 'Measuring surfaces …'}</span><span class="grow"></span>
+  return html`<section class="printout" role="dialog" aria-modal="true" tabindex="-1" aria-label="Report to print">
+    <div class="printout-bar"><b>Report to print</b><span class="note" role="status">${printout.isComplete.value ? '' : 'Measuring surfaces …'}</span><span class="grow"></span>
       <button class="primary" ?disabled=${!plan || !printout.isComplete.value} @click=${() => globalThis.print()}>${icon('print')}<span>Print or save as PDF</span></button>
-      <button class="icon-button" aria-label="Close" @click=${close}>${icon('close')}</button></header>
+      <button class="icon-button" aria-label="Close" @click=${close}>${icon('close')}</button></div>
     ${printout.isKept.value ? nothing : html`<p class="note bar-note">These pictures are too large to be kept when the page is loaded again: print before that.</p>`}
     ${plan ? sheet(world, plan) : html`<p class="empty">The plan is being loaded.</p>`}</section>`;
 }
+
+/** While it is open, what it covers takes no focus. @returns {() => void} stops */
+export const coverPage = (host, ui) => effect(() => {
+  const isOpen = ui.popover.value === 'printout';
+  for (const part of host.querySelectorAll('.room > :not(.floating)')) part.inert = isOpen;
+});
 
 /** A table of layout: its foot stands on every printed page. */
 const sheet = (world, plan) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${warnings(plan)}</div>

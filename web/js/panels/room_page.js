@@ -17,7 +17,7 @@ import { help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { mount } from './mount.js';
 import { Pane } from './pane.js';
-import { printoutDialog } from './printout.js';
+import { coverPage, printoutDialog } from './printout.js';
 import { listenSnapshots, otherPlanDialog, resumeSnapshot } from './snapshots.js';
 import { status } from './status.js';
 import { toolStrip } from './tools.js';
@@ -65,7 +65,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), listenSnapshots(world), resumeSnapshot(world));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
