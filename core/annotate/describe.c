@@ -69,7 +69,8 @@ static void add_image(struct annotations *annotations, const struct snapshot *sn
     const struct scene_image_style *style = &snapshot->scene.image;
     char width[40], center[40];
     int digits = style->window.width < 10 ? 2 : 0;
-    const char *name = image->name[0] ? image->name : image->id;
+    bool is_only = snapshot->plan->n_images == 1 && image->modality[0];
+    const char *name = image->name[0] ? image->name : is_only ? image->modality : image->id;
     bool has_modality = image->modality[0] && !strstr(name, image->modality) && strcasecmp(name, image->modality) != 0;
     (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%s%s", name,
                    has_modality ? ", " : "", has_modality ? image->modality : "");
