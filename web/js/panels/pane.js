@@ -70,7 +70,9 @@ export class Pane {
   /** The card at the pointer: drawn apart from the pane, and gone with the picture that it is about. */
   #readOut(host) {
     const { pointed } = this.actions;
-    return [mount(host, () => readOut({ room: this.#room, pointed }, host)), effect(() => {
+    const onKey = ({ key }) => key === 'Escape' && pointed.hide();
+    addEventListener('keydown', onKey);
+    return [() => removeEventListener('keydown', onKey), mount(host, () => readOut({ room: this.#room, pointed }, host)), effect(() => {
       const header = this.#view.painted.value;
       if (header) pointed.picture(`${header.scene_revision} ${header.clip_from_lps_mm}`);
     }), effect(() => {

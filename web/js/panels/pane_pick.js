@@ -50,7 +50,8 @@ export class PanePick {
     if (u < 0 || v < 0 || u >= 1 || v >= 1) return null;
     if (this.#view.kind !== '3d') {
       const point = this.pointAt(x, y);
-      return point && this.#api.probe(this.#room.planId.value, point);
+      const result = point && await this.#api.probe(this.#room.planId.value, point);
+      return result && (result.regions.length || result.images.length) ? result : null;
     }
     const hit = await this.#hit(x, y);
     return hit && this.factsOf(hit);
