@@ -32,6 +32,31 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
   /** areForced: the browser paints in forced colours, which axe-core does not know: it measures the contrast of those in the style sheets. */
   const isClean = async (page, state, areForced = false) => assert.deepEqual((await axe(page)).filter((line) => !areForced || !line.startsWith('color-contrast:')), [], state);
 
+  /** Pairs of texts, fields and icons of which one lies over the other, as far as each can be seen. */
+  const overlaps = (page) => page.evaluate(() => {
+    const clipped = (element) => {
+      let { left, top, right, bottom } = element.getBoundingClientRect();
+      for (let outer = element.parentElement; outer; outer = outer.parentElement) {
+        if (getComputedStyle(outer).clipPath !== 'none') return null; // read out, not seen
+        if (getComputedStyle(outer).overflowY === 'visible') continue;
+        const box = outer.getBoundingClientRect();
+        [left, top, right, bottom] = [Math.max(left, box.left), Math.max(top, box.top), Math.min(right, box.right), Math.min(bottom, box.bottom)];
+      }
+      return getComputedStyle(element).clipPath === 'none' && right - left > 1 && bottom - top > 1 ? { left, top, right, bottom } : null;
+    };
+    const isSticky = (element) => element.closest('.start > .banner'); // lies over what is scrolled under it, by design
+    const leaves = [...document.querySelectorAll('.start *')].filter((element) => element.checkVisibility() && element.localName !== 'option' && !element.closest('svg svg, path, dialog') && element.type !== 'file'
+      && ((!element.children.length && element.textContent.trim()) || ['input', 'img', 'svg'].includes(element.localName)) && element.namespaceURI.endsWith(element.localName === 'svg' ? 'svg' : 'xhtml'));
+    const boxes = leaves.map((element) => ({ element, box: clipped(element) })).filter(({ box }) => box);
+    const found = [];
+    for (const [i, a] of boxes.entries()) for (const b of boxes.slice(i + 1)) {
+      if (isSticky(a.element) !== isSticky(b.element) || a.element.closest('.search') && b.element.closest('.search')) continue;
+      const [width, height] = [Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left), Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top)];
+      if (width > 1 && height > 1) found.push([a, b].map(({ element }) => (element.textContent.trim() || element.localName).slice(0, 40)).join(' / '));
+    }
+    return found;
+  });
+
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'beamroom-start-'));
     for (const name of ['letters', 'photos']) {
@@ -188,6 +213,20 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
         await check('no server');
         await page.context().close();
       });
+
+  for (const [width, height, options] of [[1600, 1000, {}], [1280, 720, {}], [1180, 820, { hasTouch: true, isMobile: true }], [390, 844, { hasTouch: true, isMobile: true }]])
+    it(`at ${width} x ${height}, no text lies over another or over a control, and every plan shows its parts and its state`, async () => {
+      const page = await newPage('', { viewport: { width, height }, ...options });
+      await page.locator('.thumb img').first().waitFor();
+      await shoot(page, `start-list-${width}`);
+      assert.deepEqual(await overlaps(page), []);
+      for (const part of ['.parts .tag', '.plan-state span', '.title code']) assert.ok(await page.locator(`[data-plan="phantom"] ${part}`).first().isVisible(), part);
+      if (options.hasTouch) for (const control of await page.locator('.start button:visible, .start summary:visible').all()) {
+        const box = await control.boundingBox();
+        assert.ok(box.height >= 24 && box.width >= 24, `${await control.textContent()}: ${box.width} x ${box.height}`);
+      }
+      await page.context().close();
+    });
 
   it('every control is reached by the keyboard in the order of the page, with a ring around it', async () => {
     const page = await newPage();
