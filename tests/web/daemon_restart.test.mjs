@@ -25,7 +25,9 @@ it('a page comes back by itself after a restart of the daemon, and says that its
   const card = page.locator('.ended');
   await card.waitFor();
   assert.match(await card.textContent(), /The room is no longer there/);
-  await card.locator('a').click();
-  await page.locator('text=phantom').first().waitFor();
+  await card.getByRole('link', { name: 'All plans' }).waitFor();
+  await card.getByRole('button', { name: /^Open Phantom.* in a new room$/ }).click(); // the server has its list of plans again
+  await page.waitForFunction(() => globalThis.beamroom.stats().badges[1] !== 'disconnected' && !document.querySelector('.ended'));
+  assert.match(page.url(), /#\/rooms\/[a-z0-9-]+\/phantom$/);
   assert.deepEqual(world.errors, []);
 });

@@ -70,6 +70,7 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     await one.locator('[data-plan="kopf-1"]').waitFor({ state: 'detached' });
     const note = two.locator('.ended[role="alert"]');
     await note.waitFor();
+    await note.locator('text=no longer on this server').waitFor();
     await shoot(two, 'drop-ended');
     await note.locator('a', { hasText: 'All plans' }).click();
     await two.locator('.plans').waitFor();

@@ -111,7 +111,8 @@ test('the own name is asked for once, kept, tidied, and does without a browser t
 test('after a room, its plan is offered with the rooms that somebody is in, or said to be gone', async () => {
   const entered = [];
   const api = { plans: async () => ({ plans }), rooms: async () => ({ rooms }), makeRoom: async (plan) => ({ id: `new-${plan}` }) };
-  const after = new AfterRoom({ api, enter: (...where) => entered.push(where) });
+  const make = (own = {}) => new AfterRoom({ api: { ...api, ...own }, clock, enter: (...where) => entered.push(where) });
+  const after = make();
   await after.look('');
   assert.deepEqual([after.plan.value, after.isPlanGone.value], [null, false], 'nothing is known');
   await after.look('head');
@@ -119,6 +120,14 @@ test('after a room, its plan is offered with the rooms that somebody is in, or s
   await after.reopen();
   after.join(rooms[0]);
   assert.deepEqual(entered, [['new-head', 'head'], ['r-1', 'head']]);
-  await after.look('broken');
-  assert.deepEqual([after.plan.value, after.isPlanGone.value], [null, true]);
+  const gone = make();
+  await gone.look('broken');
+  assert.deepEqual([gone.plan.value, gone.isPlanGone.value], [null, true]);
+  let n = 0;
+  const early = make({ plans: async () => ({ plans: ++n < 3 ? [] : plans }) });
+  await early.look('head');
+  assert.deepEqual([early.plan.value?.id, early.isPlanGone.value], ['head', false], 'a server that has just started lists its plans a little later');
+  const away = make({ plans: () => Promise.reject(new Error('The server does not answer.')) });
+  await away.look('head');
+  assert.deepEqual([away.error.value, away.isPlanGone.value], ['The server does not answer.', false]);
 });

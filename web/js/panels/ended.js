@@ -23,8 +23,14 @@ export function ended({ room, after }) {
 }
 
 /** Looks for ways on as soon as the room has ended. @param {string} plan as far as the address knows it @returns {() => void} stops */
-export const watchEnd = (host, room, after, plan) => effect(() => {
-  if (room.link.value.state !== 'ended') return;
-  host.querySelector('.room').classList.toggle('unknown', room.member.peek() === '');
-  void after.look(room.planId.peek() || plan);
-});
+export function watchEnd(host, room, after, plan) {
+  const stop = effect(() => {
+    if (room.link.value.state !== 'ended') return;
+    host.querySelector('.room').classList.toggle('unknown', room.member.peek() === '');
+    queueMicrotask(() => void after.look(room.planId.peek() || plan)); // outside of the effect: what it reads must not start it again
+  });
+  return () => {
+    stop();
+    after.stop();
+  };
+}

@@ -60,7 +60,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
-  const after = new AfterRoom({ api, enter });
+  const after = new AfterRoom({ api, clock, enter });
   const world = { after, room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));

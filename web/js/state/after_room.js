@@ -2,13 +2,19 @@
 import { signal } from '../../lib/signals-core.js';
 import { present } from './plans.js';
 
+const attempts = 5;
+const againMs = 1000;
+
 export class AfterRoom {
   #api;
+  #clock;
   #enter;
+  #isStopped = false;
 
-  /** @param {object} world {api, enter: (room: string, plan: string) => void} */
-  constructor({ api, enter }) {
+  /** @param {object} world {api, clock, enter: (room: string, plan: string) => void} */
+  constructor({ api, clock, enter }) {
     this.#api = api;
+    this.#clock = clock;
     this.#enter = enter;
     this.plan = signal(null); // of the list of plans; null: not known, or no longer on the server
     this.isPlanGone = signal(false);
@@ -17,14 +23,26 @@ export class AfterRoom {
     this.isBusy = signal(false);
   }
 
-  /** @param {string} planId '' when it is not known */
+  stop() {
+    this.#isStopped = true;
+  }
+
+  /** Looks a few times: a server that has just started again does not have its list of plans yet.
+   *  @param {string} planId '' when it is not known */
   async look(planId) {
-    if (!planId) return;
+    for (let attempt = 1; planId && !this.plan.value && attempt <= attempts && !this.#isStopped; attempt++) {
+      if (attempt > 1) await new Promise((resolve) => { this.#clock.setTimeout(resolve, againMs); });
+      await this.#lookOnce(planId);
+    }
+    this.isPlanGone.value = planId !== '' && !this.plan.value && !this.error.value;
+  }
+
+  async #lookOnce(planId) {
     try {
       const [{ plans }, { rooms }] = await Promise.all([this.#api.plans(), this.#api.rooms()]);
       this.plan.value = plans.find(({ id, state }) => id === planId && state !== 'unreadable') ?? null;
-      this.isPlanGone.value = !this.plan.value;
       this.rooms.value = rooms.filter((room) => room.plan === planId && present(room).length);
+      this.error.value = '';
     } catch (error) {
       this.error.value = error.message;
     }
