@@ -123,15 +123,15 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     const page = await newPage(`#/rooms/${await newRoom()}`);
     await full(page);
     const before = await look(page, 1);
-    await drag(page, 1, 225, 0); // 90 degrees at 0.4 degrees a pixel: the front turns to screen right, the eye to patient right
-    await turned(page, 'P A S I');
+    await drag(page, 1, 225, 0); // 90 degrees at 0.4 degrees a pixel: the front turns to screen right, the eye from 30 degrees left to 60 right
+    await turned(page, 'PR AL S I');
     await full(page);
     assert.ok(await page.evaluate(() => globalThis.beamroom.stats().input_to_paint_ms.length) > 0);
     assert.notEqual((await look(page, 1)).print, before.print);
     assert.equal((await header(page, 1)).scale_percent, 100);
     await page.locator('#picture-1').focus();
     await page.keyboard.press('r');
-    await turned(page, 'R L S I');
+    await turned(page, 'RA LP S I');
     await page.context().close();
   });
 
@@ -295,7 +295,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await full(page);
     assert.ok((await look(page, 1)).lit > 0.05);
     await drag(page, 1, 125, 0);
-    await turned(page, 'P A S I');
+    await turned(page, 'PR AL S I');
     await page.context().close();
   });
 

@@ -7,7 +7,7 @@ import { load } from './page.mjs';
 const { Replica } = await load('state/replica.js');
 const { RoomState } = await load('state/room.js');
 const { fidelity, worst } = await load('state/fidelity.js');
-const { isLowWhite, soloPatch } = await load('state/plan.js');
+const { crosshairPatch, isLowWhite, readPlan, shownImage, soloPatch } = await load('state/plan.js');
 
 test('an own change shows at once; the server\'s order wins', () => {
   const replica = new Replica({ opacity: 1, color: 'red' });
@@ -170,4 +170,36 @@ test('low values are white where the scene says so, else where the image does', 
   for (const isInverted of [false, true])
     for (const [low_values, expected] of [['own', isInverted], ['black', false], ['white', true]])
       assert.equal(isLowWhite({ isInverted }, { image: { low_values } }), expected);
+});
+
+// ---- the crosshair ------------------------------------------------------------------------------------------------------
+
+/** A plan with one image: rows map voxel indices to patient mm. */
+function imagePlan(rows, size, bounds) {
+  const plan = readPlan({ id: 'p', images: [{ id: 'ct', window: {}, grid: { size, lps_mm_from_ijk: rows, bounds_mm: bounds } }] });
+  return { plan, image: shownImage(plan, { image: { id: '' } }) };
+}
+const placed = (patch) => ['sagittal', 'coronal', 'axial'].map((name) => patch.image.slices[name].position_mm);
+
+test('the crosshair snaps to the centre of the image\'s voxel, also where axes are reversed and exchanged', () => {
+  // i runs to the right in steps of 0.5 mm, j to superior in 2.5, k to posterior in 3: centres at L 10 - 0.5 i, P -4 + 3 k, S 1 + 2.5 j
+  const { plan, image } = imagePlan([[-0.5, 0, 0, 10], [0, 0, 3, -4], [0, 2.5, 0, 1]], [41, 11, 5], { low: [-10.25, -5.5, -0.25], high: [10.25, 9.5, 27.25] });
+  assert.deepEqual(placed(crosshairPatch(plan, image, [7.2, 0.6, 9])), [7, 2, 8.5]);
+  assert.deepEqual(placed(crosshairPatch(plan, image, [7.26, 0.4, 9.8])), [7.5, -1, 11]);
+  assert.deepEqual(placed(crosshairPatch(plan, image, [99, -99, 99])), [10, -4, 26], 'outside: the outermost voxel');
+  assert.deepEqual(placed(crosshairPatch(plan, image, [7.23, 0.62, 9.08], { isFree: true })), [7.2, 0.6, 9.1]);
+});
+
+test('the crosshair snaps to voxels of an oblique image in all three coordinates', () => {
+  // turned by 30 degrees about S: i towards (cos 30, sin 30), 2 mm apart
+  const [c, s] = [Math.sqrt(3) / 2, 0.5];
+  const { plan, image } = imagePlan([[2 * c, -2 * s, 0, 0], [2 * s, 2 * c, 0, 0], [0, 0, 2, 0]], [10, 10, 10], { low: [-10, -1, -1], high: [18, 28, 19] });
+  const centre = [2 * c * 3 - 2 * s * 4, 2 * s * 3 + 2 * c * 4, 10]; // of voxel 3, 4, 5
+  const found = placed(crosshairPatch(plan, image, [centre[0] + 0.6, centre[1] - 0.5, centre[2] + 0.9]));
+  found.forEach((value, axis) => assert.ok(Math.abs(value - centre[axis]) < 1e-4, `${found}, expected ${centre}`));
+});
+
+test('without an image the crosshair is free within the plan', () => {
+  const plan = readPlan({ id: 'p', bounds_mm: { low: [0, 0, 0], high: [10, 10, 10] } });
+  assert.deepEqual(placed(crosshairPatch(plan, null, [3.14, 20, -1])), [3.1, 10, 0]);
 });

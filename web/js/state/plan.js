@@ -7,6 +7,22 @@ function spacingAlong(rows) {
   return axisNames.map((_, axis) => Math.max(...rows[axis].slice(0, 3).map(Math.abs)) || 1);
 }
 
+/** The inverse of three rows of 3 x 4: voxel indices from patient mm, as rows of the same form. Null if there is none. */
+function invert(rows) {
+  const [a, b, c] = [0, 1, 2].map((column) => rows.map((row) => row[column]));
+  const cross = ([x, y, z], [u, v, w]) => [y * w - z * v, z * u - x * w, x * v - y * u];
+  const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+  const determinant = dot(a, cross(b, c));
+  const origin = rows.map((row) => row[3]);
+  if (!(Math.abs(determinant) > 0)) return null;
+  return [cross(b, c), cross(c, a), cross(a, b)].map((normal) => {
+    const row = normal.map((value) => value / determinant);
+    return [...row, -dot(row, origin)];
+  });
+}
+
+const applied = (rows, [x, y, z]) => rows.map((row) => row[0] * x + row[1] * y + row[2] * z + row[3]);
+
 function readImage(image) {
   const { grid } = image;
   return {
@@ -20,6 +36,8 @@ function readImage(image) {
     size: grid.size,
     bounds: grid.bounds_mm,
     stepMm: spacingAlong(grid.lps_mm_from_ijk),
+    lpsFromIjk: grid.lps_mm_from_ijk,
+    ijkFromLps: invert(grid.lps_mm_from_ijk),
   };
 }
 
@@ -89,10 +107,22 @@ export function crosshair(scene) {
   return [sagittal.position_mm, coronal.position_mm, axial.position_mm];
 }
 
-/** The patch that moves the crosshair to a point, clamped to the plan. */
-export function crosshairPatch(plan, image, point) {
+/** The centre of the image's voxel at a point, of the nearest one outside: core/volume/volume.h, grid_nearest_centre_lps_mm. */
+function voxelCentre({ size, lpsFromIjk, ijkFromLps }, point) {
+  const ijk = applied(ijkFromLps, point).map((index, axis) => Math.min(Math.max(Math.floor(index + 0.5), 0), size[axis] - 1));
+  return applied(lpsFromIjk, ijk);
+}
+
+/**
+ * The patch that moves the crosshair to a point: to the centre of the shown image's voxel there, so that slices and outlines
+ * are those of voxels. With isFree, or without an image, to the point itself, clamped to the image or plan, to 0.1 mm.
+ */
+export function crosshairPatch(plan, image, point, { isFree = false } = {}) {
   const { low, high } = image?.bounds ?? plan.bounds;
-  const position = point.map((value, axis) => Math.round(Math.min(Math.max(value, low[axis]), high[axis]) * 10) / 10);
+  const rounded = (value, parts) => Math.round(value * parts) / parts || 0; // no -0
+  const position = image?.ijkFromLps && !isFree
+    ? voxelCentre(image, point).map((value) => rounded(value, 1e4))
+    : point.map((value, axis) => rounded(Math.min(Math.max(value, low[axis]), high[axis]), 10));
   const [sagittal, coronal, axial] = position.map((position_mm) => ({ position_mm }));
   return { image: { slices: { sagittal, coronal, axial } } };
 }
