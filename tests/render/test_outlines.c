@@ -256,6 +256,33 @@ static void a_moving_picture_outlines_univels_until_the_surface_is_built(void **
     shots_forget(plan);
 }
 
+/* Degree bins cannot show a region of two pieces; the pane outlines its univels, as marching squares do. */
+static double two_pieces(struct vec3 p)
+{
+    return fmin(vec3_length(vec3_sub(p, vec3(-9, 0, 0))), vec3_length(vec3_sub(p, vec3(9, 0, 0)))) < 5;
+}
+static void a_region_that_cannot_have_its_shape_is_outlined_all_the_same(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(41);
+    struct plan *plan = made_plan(&grid, two_pieces, ball, 1);
+    made_plan_add_image(plan, &grid, VOXEL_F32, two_pieces);
+    struct image *images[2];
+    for (int i = 0; i < 2; i++) {
+        struct scene scene =
+            outlined(plan, i ? SCENE_OUTLINE_METHOD_SURFACE : SCENE_OUTLINE_METHOD_MARCHING_SQUARES, origin);
+        shots_style(&scene, "ball")->representation = SCENE_REPRESENTATION_NURBS;
+        scene.nurbs.sampling = SCENE_NURBS_SAMPLING_DEGREE_BINS;
+        images[i] = take(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 8));
+    }
+    assert_memory_equal(images[0]->rgba, images[1]->rgba, (size_t)SHOTS_WIDTH * SHOTS_HEIGHT * 4);
+    int border = SHOTS_WIDTH / 2 + 36; /* 4.5 mm: between the univels at 4 and 5 mm */
+    assert_true(shots_pixel(images[1], border, SHOTS_HEIGHT / 2)[1] > 150);
+    image_destroy(images[0]);
+    image_destroy(images[1]);
+    shots_forget(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -263,6 +290,7 @@ int main(void)
         cmocka_unit_test(a_spheres_outline_is_within_half_a_univel_of_its_radius),
         cmocka_unit_test(univels_are_outlined_along_their_faces),
         cmocka_unit_test(a_dark_pixel_to_each_side_sets_a_line_off_from_bone),
+        cmocka_unit_test(a_region_that_cannot_have_its_shape_is_outlined_all_the_same),
         cmocka_unit_test(a_moving_picture_outlines_univels_until_the_surface_is_built),
     };
     return shots_run("outlines", tests, sizeof tests / sizeof tests[0]);

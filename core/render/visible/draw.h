@@ -56,7 +56,7 @@ struct draw_lines {
     double width_px;            /* on the full picture */
     enum outline_method method; /* DRAW_OUTLINE of univels */
     bool is_of_surface;         /* DRAW_OUTLINE: of the surface, not of univels */
-    bool may_be_univels;        /* of univels all the same, by method, as long as the surface is not built */
+    bool may_be_univels;        /* of univels, by method, as long as the surface is not built */
     struct shape_key key;       /* of the surface */
 };
 

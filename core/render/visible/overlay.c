@@ -219,21 +219,23 @@ static void paint_lines(const struct target *target, const struct cut_lines *lin
     paint_flush(target->paint, rgb, 1);
 }
 
-/* The lines of an outline, borrowed until trim. NULL on failure. */
+/* The lines of an outline, borrowed until trim: of the surface; of univels if these are wanted, if the surface is not
+ * built and must not be waited for, or if the region cannot have it. NULL on failure. */
 static const struct cut_lines *outline_lines(const struct target *target, const struct draw *draw, struct error *err)
 {
     struct derive *derived = target->scope->snapshot->derived;
     const struct shape_want want = { draw->subject, draw->lines.key, SURFACE_FULL };
-    bool is_of_surface =
-        draw->lines.is_of_surface && (!draw->lines.may_be_univels || derive_shape_is_ready(derived, &want));
-    struct entry wanted = { .plan = target->scope->snapshot->plan,
-                            .subject = draw->subject,
-                            .what = is_of_surface ? LINES_OF_SHAPE : LINES_OF_OUTLINE,
-                            .plane = draw->plane };
-    if (is_of_surface)
+    struct entry wanted = { .plan = target->scope->snapshot->plan, .subject = draw->subject, .plane = draw->plane };
+    if (draw->lines.is_of_surface && (!draw->lines.may_be_univels || derive_shape_is_ready(derived, &want))) {
+        wanted.what = LINES_OF_SHAPE;
         wanted.key = draw->lines.key;
-    else
-        wanted.method = draw->lines.method;
+        const struct entry *found = lines_of(target->overlay, derived, &wanted, err);
+        if (!found || !found->is_absent)
+            return found ? &found->lines : NULL;
+        wanted.key = (struct shape_key){ 0 };
+    }
+    wanted.what = LINES_OF_OUTLINE;
+    wanted.method = draw->lines.method;
     const struct entry *found = lines_of(target->overlay, derived, &wanted, err);
     return found ? &found->lines : NULL;
 }

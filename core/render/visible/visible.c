@@ -239,7 +239,9 @@ size_t visible_missing(const struct snapshot *snapshot, enum surface_detail deta
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
         struct shape_want want;
         struct error why = { 0 };
-        if (!find_want(snapshot, i, detail, &want) || !derive_shape_is_refused(snapshot->derived, &want, &why))
+        bool has_other = snapshot_is_pane(snapshot) && !visible_is_checked(snapshot, i); /* outlines of univels */
+        if (has_other || !find_want(snapshot, i, detail, &want) ||
+            !derive_shape_is_refused(snapshot->derived, &want, &why))
             continue;
         if (n < VISIBLE_MAX_MISSING)
             missing[n] = (struct visible_missing){ want.subject, why };
