@@ -1,6 +1,7 @@
 /* Draws and compresses the demo plan as a new room shows it: five surfaces, four of them translucent, and an axial
  * slice. The camera goes round it, with coarse surfaces at 100, 75, 60 and 50 % of 1024 x 768 as while moving, and with
- * full anti-aliased surfaces as in a still; then the axial pane. Our own rasteriser and the OpenGL of this machine draw
+ * full anti-aliased surfaces as in a still; then the axial pane, a new slice with each picture, with the outlines where
+ * it cuts the surfaces. Our own rasteriser and the OpenGL of this machine draw
  * each picture in turn; the picture is compressed as JPEG and as PNG. */
 #include <stdio.h>
 #include <stdlib.h>
