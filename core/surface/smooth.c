@@ -1,14 +1,17 @@
 /* Constrained smoothing of a marching cubes surface. surface.h says what surface_smooth promises.
  *
- *   1. marching cubes with the graph of its vertices: four links each (marching_cubes.h)
+ *   1. marching cubes with the graph of its vertices: four links each (marching_cubes.h). Where the slices are far
+ *      apart, the vertices start where shape-based interpolation puts them (smooth_slices.c), else at the middles of
+ *      their edges
  *   2. two low-pass filters on the graph remove the voxel steps: they give the position of each vertex without
  *      constraints. The strong filter also removes long, flat steps, but would shrink small structures
  *   3. each vertex moves along its own grid edge to where the edge meets the filtered surface: the strongly filtered
  *      one, or more of the gently filtered one where the strong one leaves the edges nearby
  *   4. each closed piece is moved along its normals until it encloses the volume of its univels (smooth_volume.c)
- *   5. no vertex leaves the part of its edge that max_shift allows
+ *   5. no vertex leaves the part of its edge that `most` allows
  *
- * A filter is a polynomial in A, the mean over a vertex' four links, as a sum of Chebyshev polynomials T_n(A) (G.
+ * A filter is a polynomial in A, the mean over a vertex' four links (weighted by their lengths where the slices are far
+ * apart, so that curvature from slice to slice is not smoothed away), as a sum of Chebyshev polynomials T_n(A) (G.
  * Taubin, T. Zhang, G. Golub, Optimal Surface Smoothing as Filter Design, ECCV 1996). A is symmetric with eigenvalues
  * in [-1, 1], so nothing grows. Stored are the displacements e_n from the start p, T_n(A) p = p + e_n, because small
  * numbers keep more digits: e_0 = 0, e_1 = A p - p, e_(n+1) = 2 (A e_n + e_1) - e_(n-1).
@@ -23,6 +26,7 @@
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
+#include "core/surface/marching_rows.h"
 #include "core/surface/smooth_job.h"
 
 enum {
@@ -34,7 +38,7 @@ enum {
 };
 
 /* Found on tilted ellipsoids with slice distances of 1 to 5.5 pixels, by comparison with the exact normals. */
-const struct smooth_options smooth_defaults = { 24, 0.035, 0.15, 0.5 - SURFACE_SMOOTH_MARGIN, 8 };
+const struct smooth_options smooth_defaults = { 24, 0.035, 0.15, 0.5 - SURFACE_SMOOTH_MARGIN, 8, 1.2 };
 
 /* The strong filter is fully trusted up to the first shift (in edge lengths), and not at all from the second on. */
 static const float trusted_shift = 0.5f, distrusted_shift = 0.8f;
@@ -69,9 +73,7 @@ enum { BLOCK = 6 };
 
 struct passes {
     const struct smooth_job *job;
-    const struct pass *pass, *end; /* the passes of the current block */
-    size_t *begin;                 /* [n_slices + 1] first vertex of each slice */
-    int32_t n_slices;
+    const struct pass *pass, *end;  /* the passes of the current block */
     int32_t tiles[MAX_THREADS + 1]; /* first slice of each thread's share */
     int n_tiles;
 };
@@ -84,7 +86,8 @@ static void run_tile(const struct passes *passes, int32_t from, int32_t end, int
         for (int32_t i = 0; i < n; i++) {
             int32_t slice = front - i;
             if (slice >= from + i * begins && slice < end + i * ends)
-                passes->pass[i].run(passes->job, &passes->pass[i], passes->begin[slice], passes->begin[slice + 1]);
+                passes->pass[i].run(passes->job, &passes->pass[i], passes->job->begin[slice],
+                                    passes->job->begin[slice + 1]);
         }
 }
 
@@ -120,37 +123,34 @@ static bool share_slices(struct passes *passes)
     for (int tile = 1; tile <= passes->n_tiles; tile++) {
         size_t wanted = passes->job->n * (size_t)tile / (size_t)passes->n_tiles;
         int32_t slice = passes->tiles[tile - 1];
-        while (slice < passes->n_slices && passes->begin[slice] < wanted)
+        while (slice < passes->job->n_slices && passes->job->begin[slice] < wanted)
             slice++;
-        passes->tiles[tile] = tile < passes->n_tiles ? slice : passes->n_slices;
+        passes->tiles[tile] = tile < passes->n_tiles ? slice : passes->job->n_slices;
         if (passes->n_tiles > 1 && passes->tiles[tile] - passes->tiles[tile - 1] < 2 * BLOCK)
             return false;
     }
     return true;
 }
 
-static bool find_slices(struct passes *passes, struct error *err)
+static bool find_slices(struct smooth_job *job, struct error *err)
 {
-    const struct smooth_job *job = passes->job;
     const struct marching_point *points = job->graph->points;
-    passes->n_slices = job->n ? points[job->n - 1].at2[2] / 2 + 1 : 0;
-    passes->begin = mem_array((size_t)passes->n_slices + 1, sizeof *passes->begin, UINT64_MAX, err);
-    if (!passes->begin)
+    job->n_slices = job->n ? points[job->n - 1].at2[2] / 2 + 1 : 0;
+    job->begin = mem_array((size_t)job->n_slices + 1, sizeof *job->begin, UINT64_MAX, err);
+    if (!job->begin)
         return false;
     size_t v = 0;
-    for (int32_t slice = 0; slice <= passes->n_slices; slice++) {
+    for (int32_t slice = 0; slice <= job->n_slices; slice++) {
         while (v < job->n && points[v].at2[2] / 2 < slice)
             v++;
-        passes->begin[slice] = v;
+        job->begin[slice] = v;
     }
     return true;
 }
 
-static bool run_passes(const struct smooth_job *job, const struct pass *all, size_t n, struct error *err)
+static void run_passes(const struct smooth_job *job, const struct pass *all, size_t n)
 {
     struct passes passes = { .job = job };
-    if (!find_slices(&passes, err))
-        return false;
     bool is_shared = share_slices(&passes);
     for (size_t at = 0, step = is_shared ? BLOCK : 1; at < n; at += step) {
         passes.pass = all + at;
@@ -159,8 +159,6 @@ static bool run_passes(const struct smooth_job *job, const struct pass *all, siz
         if (is_shared && passes.n_tiles > 1)
             parallel_run(passes.n_tiles - 1, run_between, &passes);
     }
-    free(passes.begin);
-    return true;
 }
 
 /* ---- the filters ------------------------------------------------------------------------------------------------ */
@@ -191,6 +189,49 @@ static void first_step(const struct smooth_job *job, const struct pass *pass, si
     }
 }
 
+/* How a link is weighted: within a slice, from slice to slice, or between a slice and the space beside it. */
+enum { WITHIN_SLICE = 0, ACROSS_SLICES = 1, TO_TERRACE = 2 };
+
+static inline unsigned class_of_link(const struct marching_point *a, const struct marching_point *b, int axis)
+{
+    bool is_across = a->at2[axis] != b->at2[axis], has_terrace = (a->axis == axis) | (b->axis == axis);
+    return (unsigned)is_across << (unsigned)has_terrace; /* a class as above */
+}
+
+/* The same from start positions between slices, with weighted links. */
+INLINED void first_step_along(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end, int axis)
+{
+    const struct marching_point *points = job->graph->points;
+    const float4 along = smooth_along(axis, 1);
+    for (size_t v = from; v < end; v++) {
+        const uint32_t *link = job->graph->links[v];
+        float4 start = smooth_middle(&points[v]) + along * job->start[v], starts[4];
+        unsigned classes = 0;
+        for (int i = 0; i < 4; i++) {
+            starts[i] = smooth_middle(&points[link[i]]) + along * job->start[link[i]];
+            classes |= class_of_link(&points[v], &points[link[i]], axis) << 2 * i;
+        }
+        job->classes[v] = (uint8_t)classes;
+        const float *weights = job->weights[classes];
+        float4 twice = weights[0] * (starts[0] - start) + weights[1] * (starts[1] - start) +
+                       weights[2] * (starts[2] - start) + weights[3] * (starts[3] - start);
+        float4 away = 0.5f * twice;
+        job->before[v] = (float4){ 0, 0, 0, 0 };
+        job->first[v] = twice;
+        job->now[v] = away;
+        job->strong[v] = pass->strong[0] * away;
+        job->gentle[v] = pass->gentle[0] * away;
+    }
+}
+
+static void first_step_between_slices(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+{
+    if (job->slice_axis == 2)
+        first_step_along(job, pass, from, end, 2);
+    else
+        first_step_along(job, pass, from, end, job->slice_axis);
+}
+
 static inline float4 add_terms(float4 sum, const float weights[MAX_TERMS], float4 next, float4 now, float4 before,
                                int n_terms)
 {
@@ -201,15 +242,22 @@ static inline float4 add_terms(float4 sum, const float weights[MAX_TERMS], float
     return sum + weights[0] * next;
 }
 
-static inline __attribute__((always_inline)) void next_steps(const struct smooth_job *job, const struct pass *pass,
-                                                             size_t from, size_t end, int n_terms, bool has_gentle)
+INLINED void next_steps(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end, int n_terms,
+                        bool has_gentle, bool is_weighted)
 {
     const float4 *now = pass->now, *first = job->first;
     float4 *to = pass->next, *strong = job->strong, *gentle = job->gentle;
     for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
-        float4 mean = (now[link[0]] + now[link[1]] + now[link[2]] + now[link[3]]) * 0.25f;
-        float4 before = to[v], next = 2 * (mean + first[v]) - before;
+        float4 twice;
+        if (is_weighted) {
+            const float *weights = job->weights[job->classes[v]];
+            twice = (weights[0] * now[link[0]] + weights[1] * now[link[1]]) +
+                    (weights[2] * now[link[2]] + weights[3] * now[link[3]]) + (weights[4] * now[v] + first[v]);
+        } else {
+            twice = 2 * ((now[link[0]] + now[link[1]] + now[link[2]] + now[link[3]]) * 0.25f + first[v]);
+        }
+        float4 before = to[v], next = twice - before;
         to[v] = next;
         if (n_terms > 0)
             strong[v] = add_terms(strong[v], pass->strong, next, now[v], before, n_terms);
@@ -218,18 +266,29 @@ static inline __attribute__((always_inline)) void next_steps(const struct smooth
     }
 }
 
-static void next_step(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+INLINED void next_step_of(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end,
+                          bool is_weighted)
 {
     if (pass->n_terms == 0)
-        next_steps(job, pass, from, end, 0, false);
+        next_steps(job, pass, from, end, 0, false, is_weighted);
     else if (pass->n_terms == 1)
-        next_steps(job, pass, from, end, 1, pass->has_gentle);
+        next_steps(job, pass, from, end, 1, pass->has_gentle, is_weighted);
     else if (pass->n_terms == 2)
-        next_steps(job, pass, from, end, 2, pass->has_gentle);
+        next_steps(job, pass, from, end, 2, pass->has_gentle, is_weighted);
     else if (pass->has_gentle)
-        next_steps(job, pass, from, end, 3, true);
+        next_steps(job, pass, from, end, 3, true, is_weighted);
     else
-        next_steps(job, pass, from, end, 3, false);
+        next_steps(job, pass, from, end, 3, false, is_weighted);
+}
+
+static void next_step(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+{
+    next_step_of(job, pass, from, end, false);
+}
+
+static void next_step_weighted(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+{
+    next_step_of(job, pass, from, end, true);
 }
 
 /* Weights of the Chebyshev polynomials for a step from 1 to 0 at the frequency `band` of 1 - A, times a Hamming window.
@@ -246,6 +305,25 @@ static void make_weights(double band, int n_steps, double weights[SMOOTH_MAX_STE
         weights[n] /= total;
 }
 
+/* The weight of a link falls with the distance it bridges; the weights of both directions are equal, so that A stays
+ * symmetric. A link to a terrace bridges half of the distance between slices or less. */
+static void make_link_weights(struct smooth_job *job)
+{
+    float pixel_mm = sqrtf(job->edge_mm[(job->slice_axis + 1) % 3] * job->edge_mm[(job->slice_axis + 2) % 3]);
+    float across = pixel_mm / job->edge_mm[job->slice_axis];
+    const float of_class[4] = {
+        [WITHIN_SLICE] = 0.5f, [ACROSS_SLICES] = 0.5f * across, [TO_TERRACE] = 0.5f * sqrtf(across)
+    };
+    for (unsigned classes = 0; classes < 256; classes++) {
+        float *weights = job->weights[classes], rest = 2;
+        for (int i = 0; i < 4; i++) {
+            weights[i] = of_class[classes >> 2 * i & 3];
+            rest -= weights[i];
+        }
+        weights[4] = rest;
+    }
+}
+
 /* Lists the passes of both filters; passes has room for SMOOTH_MAX_STEPS. */
 static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
 {
@@ -254,12 +332,15 @@ static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
     double strong[SMOOTH_MAX_STEPS + 1], gentle[SMOOTH_MAX_STEPS + 1];
     make_weights(options->strong_band, options->n_steps, strong);
     make_weights(options->gentle_band, n_gentle, gentle);
-    passes[0] = (struct pass){ .run = first_step, .strong = { (float)strong[1] }, .gentle = { (float)gentle[1] } };
+    passes[0] = (struct pass){ .run = job->start ? first_step_between_slices : first_step,
+                               .strong = { (float)strong[1] },
+                               .gentle = { (float)gentle[1] } };
+    void (*step)(const struct smooth_job *, const struct pass *, size_t, size_t) =
+        job->start ? next_step_weighted : next_step;
     for (int n = 2, added = 1; n <= options->n_steps; n++) {
         struct pass *pass = &passes[n - 1];
-        *pass = (struct pass){ .run = next_step,
-                               .now = n % 2 ? job->before : job->now,
-                               .next = n % 2 ? job->now : job->before };
+        *pass =
+            (struct pass){ .run = step, .now = n % 2 ? job->before : job->now, .next = n % 2 ? job->now : job->before };
         if (n - added < MAX_TERMS && n < options->n_steps)
             continue;
         pass->n_terms = n - added;
@@ -289,6 +370,12 @@ static float4 normal_of(const float4 ends[4])
     return smooth_turn(u * smooth_turn(w) - smooth_turn(u) * w);
 }
 
+/* Start of a vertex along its own edge, from the middle. */
+static inline float start_along_edge(const struct smooth_job *job, size_t v)
+{
+    return job->start && job->graph->points[v].axis == job->slice_axis ? job->start[v] : 0;
+}
+
 /* Shift to where the edge meets the plane through the displaced vertex. An edge nearly parallel to that plane could
  * meet it anywhere, so there the displacement along the edge counts. */
 static float shift_along_edge(float4 normal, float4 displacement, int axis)
@@ -303,7 +390,7 @@ static void place_gently(const struct smooth_job *job, const struct pass *pass, 
 {
     (void)pass;
     for (size_t v = from; v < end; v++)
-        job->first[v] = smooth_start(&job->graph->points[v]) + job->gentle[v];
+        job->first[v] = smooth_start(job, v) + job->gentle[v];
 }
 
 /* Trust in the strong filter at each vertex, 0 to 1. */
@@ -313,7 +400,8 @@ static void rate_trust(const struct smooth_job *job, const struct pass *pass, si
     for (size_t v = from; v < end; v++) {
         const uint32_t *link = job->graph->links[v];
         const float4 ends[4] = { at[link[0]], at[link[1]], at[link[2]], at[link[3]] };
-        float shift = fabsf(shift_along_edge(normal_of(ends), job->strong[v], job->graph->points[v].axis));
+        float shift = fabsf(start_along_edge(job, v) +
+                            shift_along_edge(normal_of(ends), job->strong[v], job->graph->points[v].axis));
         float trust = (distrusted_shift - shift) / (distrusted_shift - trusted_shift);
         pass->next_trust[v] = trust < 0 ? 0 : trust > 1 ? 1 : trust;
     }
@@ -349,7 +437,7 @@ static void blend_filters(const struct smooth_job *job, const struct pass *pass,
 {
     for (size_t v = from; v < end; v++) {
         float trust = pass->trust[v];
-        float4 start = smooth_start(&job->graph->points[v]), strong = job->strong[v];
+        float4 start = smooth_start(job, v), strong = job->strong[v];
         float4 displacement = trust * strong + (1 - trust) * job->gentle[v];
         job->gentle[v] = displacement;
         job->now[v] = start + displacement;
@@ -392,7 +480,7 @@ static void shift_to_edges(const struct smooth_job *job, const struct pass *pass
         const float4 *at = job->now;
         float4 normal =
             normal_of((float4[4]){ at[link[0]], at[link[1]], at[link[2]], at[link[3]] }) * (float)point->outward;
-        job->shift[v] = shift_along_edge(normal, job->gentle[v], point->axis);
+        job->shift[v] = start_along_edge(job, v) + shift_along_edge(normal, job->gentle[v], point->axis);
         if (job->has_normals) {
             at = job->first;
             float4 strong =
@@ -431,12 +519,11 @@ static void write_positions(void *context, int part, int n_parts)
 {
     struct smooth_job *job = context;
     const struct affine *map = &job->graph->lps_mm_from_at;
-    float most = (float)job->options.max_shift;
     size_t v, end;
     for (smooth_range(job, part, n_parts, &v, &end); v < end; v++) {
         const struct marching_point *point = &job->graph->points[v];
         double at[3] = { point->at2[0] * 0.5, point->at2[1] * 0.5, point->at2[2] * 0.5 };
-        at[point->axis] += (double)smooth_cut(job->shift[v], most);
+        at[point->axis] += (double)smooth_cut(job->shift[v], job->most[point->axis]);
         struct vec3 p = affine_point(map, vec3(at[0], at[1], at[2]));
         float *to = job->mesh->positions_lps_mm + 3 * v;
         to[0] = (float)p.x;
@@ -450,7 +537,9 @@ static bool smooth(struct smooth_job *job, struct error *err)
     enum { N_VECTORS = 5, N_FLOATS = 2 };
     if (job->has_normals && !(job->mesh->normals = mem_large_array(job->n, 3 * sizeof(float), UINT64_MAX, err)))
         return false;
-    float4 *vectors = mem_large_array(job->n, N_VECTORS * sizeof(float4) + N_FLOATS * sizeof(float), UINT64_MAX, err);
+    size_t more = job->slice_axis >= 0 ? sizeof *job->start + sizeof *job->classes : 0;
+    float4 *vectors =
+        mem_large_array(job->n, N_VECTORS * sizeof(float4) + N_FLOATS * sizeof(float) + more, UINT64_MAX, err);
     if (!vectors)
         return false;
     job->first = vectors;
@@ -460,16 +549,23 @@ static bool smooth(struct smooth_job *job, struct error *err)
     job->gentle = vectors + 4 * job->n;
     job->shift = (float *)(vectors + N_VECTORS * job->n);
     job->lean = job->shift + job->n;
-    struct pass passes[SMOOTH_MAX_STEPS + MAX_PASSES_TO_EDGES];
-    size_t n_passes = plan_filters(job, passes);
-    n_passes += plan_way_to_edges(job, passes + n_passes);
-    if (!run_passes(job, passes, n_passes, err)) {
-        free(vectors);
-        return false;
+    bool is_good = find_slices(job, err);
+    if (is_good && job->slice_axis >= 0) {
+        job->start = job->lean + job->n;
+        job->classes = (uint8_t *)(job->start + job->n);
+        make_link_weights(job);
+        is_good = smooth_interpolate_slices(job, err);
     }
-    bool is_good = job->options.n_volume_steps == 0 || smooth_keep_volume(job, err);
-    parallel_run(job->n_threads, write_positions, job);
-    mesh_measure_bounds(job->mesh);
+    if (is_good) {
+        struct pass passes[SMOOTH_MAX_STEPS + MAX_PASSES_TO_EDGES];
+        size_t n_passes = plan_filters(job, passes);
+        n_passes += plan_way_to_edges(job, passes + n_passes);
+        run_passes(job, passes, n_passes);
+        is_good = job->options.n_volume_steps == 0 || smooth_keep_volume(job, err);
+        parallel_run(job->n_threads, write_positions, job);
+        mesh_measure_bounds(job->mesh);
+    }
+    free(job->begin);
     free(vectors);
     return is_good;
 }
@@ -514,7 +610,15 @@ struct mesh *smooth_with(const struct smooth_options *smoothing, const struct ma
         .is_mirrored = affine_determinant(map) < 0,
         .has_normals = !options->without_normals,
         .univel_mm3 = fabs(affine_determinant(map)),
+        .mask_size = { mask->size[0], mask->size[1], mask->size[2] },
     };
+    job.slice_axis =
+        smooth_slice_axis((float[3]){ job.edge_mm[0], job.edge_mm[1], job.edge_mm[2] }, smoothing->slice_ratio);
+    float least = fminf(job.edge_mm[0], fminf(job.edge_mm[1], job.edge_mm[2]));
+    for (int axis = 0; axis < 3; axis++)
+        job.most[axis] = axis == job.slice_axis
+                             ? 0.5f - (0.5f - (float)smoothing->max_shift) * least / job.edge_mm[axis]
+                             : (float)smoothing->max_shift;
     reciprocals_of(map, job.lps_of_normal);
     if (!options->close_at_border)
         job.options.n_volume_steps = 0; /* an open surface encloses no volume */

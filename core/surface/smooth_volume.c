@@ -85,8 +85,8 @@ static void measure_wanted(struct volume_job *job)
 static inline void place(const struct volume_job *job, size_t v)
 {
     const struct marching_point *point = &job->smooth->graph->points[v];
-    float most = (float)job->smooth->options.max_shift;
-    job->at[v] = smooth_start(point) + smooth_along(point->axis, smooth_cut(job->smooth->shift[v], most));
+    job->at[v] = smooth_middle(point) +
+                 smooth_along(point->axis, smooth_cut(job->smooth->shift[v], job->smooth->most[point->axis]));
 }
 
 static void place_all(void *context, int part, int n_parts)

@@ -53,21 +53,28 @@ NODISCARD struct mesh *surface_marching_cubes_field(const struct volume *field, 
 NODISCARD struct mesh *surface_eight_cell(const struct mask *mask, const struct surface_options *options,
                                           struct error *err);
 
-/* Marching cubes, smoothed within bounds: every vertex stays on its grid edge, at least SURFACE_SMOOTH_MARGIN of that
- * edge away from either end. So each vertex moves along one grid axis by less than half a univel, and the centre of
- * every univel stays on its side: a mask made from the surface is the same mask again. Vertices and triangles are those
- * of marching cubes, so the mesh is a closed manifold like it: at an ambiguous face each of the two inside corners is
- * cut off alone.
+/* Marching cubes, smoothed within bounds: every vertex stays on its grid edge, at least SURFACE_SMOOTH_MARGIN of the
+ * univel's shortest edge away from either end. So each vertex moves along one grid axis by less than half a univel, and
+ * the centre of every univel stays on its side: a mask made from the surface is the same mask again. Vertices and
+ * triangles are those of marching cubes, so the mesh is a closed manifold like it: at an ambiguous face each of the two
+ * inside corners is cut off alone.
+ *
+ * If the slices, across whichever grid axis, are more than 1.2 times as far apart as the univels along either other
+ * axis, the surface between them is interpolated first (smooth_slices.c). What ends between two slices gets the top
+ * that its last contours suggest; what ends where the grid ends is cut off half a slice beyond. docs/surfaces.md has
+ * figures.
  *
  *   returns  as surface_marching_cubes, and with vertex normals unless without_normals. The normals are those of the
  *            surface without bounds, so that the light does not show where vertices are held back, except where such a
  *            normal would face another way. If closed, each piece encloses the volume of its univels to 0.1 %, or as
  *            near as the edges allow: pieces of one or two univels may be off by some percent.
  *   errors   as surface_marching_cubes
- *   memory   112 bytes per vertex while it works
+ *   memory   112 bytes per vertex while it works, 117 with interpolation
  *   source   the bound is that of S. F. F. Gibson, Constrained Elastic Surface Nets, MICCAI 1998, on the vertices of
  *            marching cubes instead of nets; the filter is of G. Taubin, T. Zhang, G. Golub, Optimal Surface Smoothing
- *            as Filter Design, ECCV 1996. */
+ *            as Filter Design, ECCV 1996; the interpolation is of S. P. Raya, J. K. Udupa, Shape-based interpolation of
+ *            multidimensional objects, IEEE Trans. Med. Imaging 9(1), 1990, cubic instead of linear, and only on the
+ *            edges that the surface crosses. */
 #define SURFACE_SMOOTH_MARGIN 0.05
 NODISCARD struct mesh *surface_smooth(const struct mask *mask, const struct surface_options *options,
                                       struct error *err);

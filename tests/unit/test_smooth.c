@@ -1,6 +1,7 @@
 /* The smooth surface: bounds, volume and smoothness, against exact normals and VTK's filter. */
 #include "core/surface/smooth.h"
 #include "tests/check.h"
+#include "tests/unit/ellipsoid.h"
 #include "tests/unit/made_mask.h"
 #include "tests/unit/oracle.h"
 
@@ -19,57 +20,13 @@ static struct vec3 vertex(const struct mesh *mesh, size_t v)
 
 /* ---- bodies whose normals are known ----------------------------------------------------------------------------- */
 
-struct body {
-    double spacing_mm[3], radius_mm[3], tilt_rad;
-};
-
-/* Tilted about x, then about y. */
-static struct vec3 to_body(const struct body *body, struct vec3 p)
-{
-    double c = cos(body->tilt_rad), s = sin(body->tilt_rad), y = c * p.y - s * p.z, z = s * p.y + c * p.z;
-    return vec3(c * p.x - s * z, y, s * p.x + c * z);
-}
-
-static struct vec3 from_body(const struct body *body, struct vec3 p)
-{
-    double c = cos(body->tilt_rad), s = sin(body->tilt_rad), x = c * p.x + s * p.z, z = -s * p.x + c * p.z;
-    return vec3(x, c * p.y + s * z, -s * p.y + c * z);
-}
-
-static struct mask *mask_of(const struct body *body)
-{
-    double reach = fmax(body->radius_mm[0], fmax(body->radius_mm[1], body->radius_mm[2])) + 6;
-    uint32_t size[3];
-    struct affine map = unit_map;
-    for (int axis = 0; axis < 3; axis++)
-        size[axis] = (uint32_t)(2 * reach / body->spacing_mm[axis]);
-    map.columns[0].x = body->spacing_mm[0];
-    map.columns[1].y = body->spacing_mm[1];
-    map.columns[2].z = body->spacing_mm[2];
-    /* the body's centre is at no special position between the univels */
-    map.origin =
-        vec3(-body->spacing_mm[0] * ((size[0] - 1) / 2.0 - 0.13), -body->spacing_mm[1] * ((size[1] - 1) / 2.0 + 0.21),
-             -body->spacing_mm[2] * ((size[2] - 1) / 2.0 - 0.17));
-    struct mask *mask = mask_make(size[0], size[1], size[2], &map);
-    for (uint32_t k = 0; k < size[2]; k++)
-        for (uint32_t j = 0; j < size[1]; j++)
-            for (uint32_t i = 0; i < size[0]; i++) {
-                struct vec3 p = to_body(body, affine_point(&map, vec3(i, j, k)));
-                if (pow(p.x / body->radius_mm[0], 2) + pow(p.y / body->radius_mm[1], 2) +
-                        pow(p.z / body->radius_mm[2], 2) <
-                    1)
-                    mask_put(mask, i, j, k);
-            }
-    return mask;
-}
-
 struct deviation {
     double normal_deg, distance_mm; /* root mean squares over the area */
     double shown_deg;               /* root mean square error of the vertex normals */
 };
 
 /* Deviation of the triangles' normals and centres from the ellipsoid's. */
-static struct deviation deviation_of(const struct mesh *mesh, const struct body *body)
+static struct deviation deviation_of(const struct mesh *mesh, const struct ellipsoid *body)
 {
     double area = 0, angles = 0, distances = 0;
     for (size_t t = 0; t < mesh->n_triangles; t++) {
@@ -79,11 +36,11 @@ static struct deviation deviation_of(const struct mesh *mesh, const struct body 
         double twice = vec3_length(cross);
         if (!(twice > 0))
             continue;
-        struct vec3 p = to_body(body, vec3_scale(vec3_add(a, vec3_add(b, c)), 1 / 3.0));
+        struct vec3 p = ellipsoid_to_body(body, vec3_scale(vec3_add(a, vec3_add(b, c)), 1 / 3.0));
         struct vec3 gradient =
             vec3(p.x / pow(body->radius_mm[0], 2), p.y / pow(body->radius_mm[1], 2), p.z / pow(body->radius_mm[2], 2));
         double distance = (vec3_dot(p, gradient) - 1) / (2 * vec3_length(gradient));
-        double cosine = vec3_dot(from_body(body, gradient), cross) / (vec3_length(gradient) * twice);
+        double cosine = vec3_dot(ellipsoid_from_body(body, gradient), cross) / (vec3_length(gradient) * twice);
         double angle = acos(fmax(-1, fmin(1, cosine))) * 180 / MATH_PI;
         area += twice;
         angles += twice * angle * angle;
@@ -91,21 +48,22 @@ static struct deviation deviation_of(const struct mesh *mesh, const struct body 
     }
     double shown = 0;
     for (size_t v = 0; mesh->normals && v < mesh->n_vertices; v++) {
-        struct vec3 p = to_body(body, vertex(mesh, v));
+        struct vec3 p = ellipsoid_to_body(body, vertex(mesh, v));
         struct vec3 gradient =
             vec3(p.x / pow(body->radius_mm[0], 2), p.y / pow(body->radius_mm[1], 2), p.z / pow(body->radius_mm[2], 2));
         struct vec3 n =
             vec3((double)mesh->normals[3 * v], (double)mesh->normals[3 * v + 1], (double)mesh->normals[3 * v + 2]);
         assert_close(vec3_length(n), 1, 1e-5);
         double angle =
-            acos(fmax(-1, fmin(1, vec3_dot(from_body(body, gradient), n) / vec3_length(gradient)))) * 180 / MATH_PI;
+            acos(fmax(-1, fmin(1, vec3_dot(ellipsoid_from_body(body, gradient), n) / vec3_length(gradient)))) * 180 /
+            MATH_PI;
         shown += angle * angle;
     }
     return (struct deviation){ sqrt(angles / area), sqrt(distances / area), sqrt(shown / (double)mesh->n_vertices) };
 }
 
 /* The same for VTK's discrete surface with its windowed sinc filter; false without VTK. */
-static bool deviation_of_vtk(const struct mask *mask, const struct body *body, struct deviation *deviation)
+static bool deviation_of_vtk(const struct mask *mask, const struct ellipsoid *body, struct deviation *deviation)
 {
     char path[] = "/tmp/beamroom-test-XXXXXX", words[16][32], out[256], *rest;
     char *arguments[16] = { oracle_python(), "tests/oracle/vtk_sinc.py", path };
@@ -150,7 +108,7 @@ static void no_stair_steps_however_thick_the_slices(void **state)
     /* most: limit on the root mean square deviation of normals, in degrees. Slice steps on a shallow slope can be told
      * from the slope only if they follow each other within some ten pixels; above the last slice nothing is known */
     static const struct {
-        struct body body;
+        struct ellipsoid body;
         double most_deg;
     } cases[] = {
         { { { 1, 1, 4 }, { 40, 40, 40 }, 0 }, 6 },     { { { 1, 1, 4 }, { 60, 40, 30 }, 0.35 }, 6.5 },
@@ -159,8 +117,8 @@ static void no_stair_steps_however_thick_the_slices(void **state)
     };
     bool has_vtk = true;
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        const struct body *body = &cases[c].body;
-        struct mask *mask = mask_of(body);
+        const struct ellipsoid *body = &cases[c].body;
+        struct mask *mask = ellipsoid_mask(body, 0);
         struct mesh *smooth = extract(mask, 2, true), *cubes = made_surface(SURFACE_MARCHING_CUBES, mask, 2, true);
         struct deviation ours = deviation_of(smooth, body), plain = deviation_of(cubes, body), vtk;
         if (!(ours.normal_deg < cases[c].most_deg))
@@ -188,6 +146,8 @@ static void no_stair_steps_however_thick_the_slices(void **state)
 /* The same triangles as marching cubes, and each vertex moved along one axis only, at most as far as allowed. */
 static void assert_within_bounds(const struct mask *mask, const struct mesh *smooth, const struct mesh *cubes)
 {
+    const struct vec3 *edges = mask->lps_mm_from_ijk.columns;
+    double least_mm = fmin(vec3_length(edges[0]), fmin(vec3_length(edges[1]), vec3_length(edges[2])));
     struct affine ijk_from_lps_mm;
     assert_true(affine_invert(&mask->lps_mm_from_ijk, &ijk_from_lps_mm));
     assert_int_equal(smooth->n_vertices, cubes->n_vertices);
@@ -200,7 +160,8 @@ static void assert_within_bounds(const struct mask *mask, const struct mesh *smo
         for (int axis = 0; axis < 3; axis++) {
             bool is_own =
                 fabs(place[axis] - floor(place[axis]) - 0.5) < 0.01; /* a half-integer: this edge runs along the axis */
-            assert_true(fabs(by[axis]) <= (is_own ? 0.5 - SURFACE_SMOOTH_MARGIN : 0) + 1e-4); /* positions are floats */
+            double margin = SURFACE_SMOOTH_MARGIN * least_mm / vec3_length(edges[axis]);
+            assert_true(fabs(by[axis]) <= (is_own ? 0.5 - margin : 0) + 1e-4); /* positions are floats */
         }
     }
 }
@@ -342,13 +303,13 @@ static void each_piece_keeps_the_volume_of_its_univels(void **state)
 {
     (void)state;
     /* bodies from some ten univels across down to four: the filters alone would shrink the small ones by half */
-    static const struct body bodies[] = {
+    static const struct ellipsoid bodies[] = {
         { { 1, 1, 4 }, { 60, 40, 30 }, 0.35 }, { { 1, 1, 4 }, { 20, 5, 12 }, 0.5 },
         { { 1, 1, 5.5 }, { 80, 80, 80 }, 0 },  { { 1, 1, 1 }, { 5, 5, 5 }, 0.4 },
         { { 1, 1, 4 }, { 8, 8, 8 }, 0.4 },     { { 1, 1, 1 }, { 2.2, 2.2, 2.2 }, 0.4 },
     };
     for (size_t b = 0; b < sizeof bodies / sizeof *bodies; b++) {
-        struct mask *mask = mask_of(&bodies[b]);
+        struct mask *mask = ellipsoid_mask(&bodies[b], 0);
         struct mesh *mesh = extract(mask, 2, true);
         double univels_mm3 = (double)mask_count(mask) * affine_determinant(&mask->lps_mm_from_ijk);
         assert_near(mesh_volume_mm3(mesh), univels_mm3, 0.0015);
