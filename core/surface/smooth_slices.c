@@ -15,7 +15,8 @@
  *      equation with 0 at the contour, scaled so that its slope at the contour follows that of the terrace beyond. This
  *      is exact for a paraboloid with elliptical contours. A cap that would reach the next slice is flattened
  *
- * A slab is the space between two slices. Terraces of different slabs have no link. */
+ * A slab is the space between two slices. Terraces of different slabs have no link. On sheared grids, distances are
+ * measured as if the axes were perpendicular. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
