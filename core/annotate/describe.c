@@ -33,11 +33,13 @@ static void add_words(struct annotations *annotations, enum annotation_row row, 
     (void)snprintf(add_item(annotations, row)->text, ANNOTATION_TEXT_SIZE, "%s", words);
 }
 
-/* A number as the page writes it, with a true minus. */
+/* A number as the page writes it: with a true minus, and rounded up where it lies exactly between two. */
 static void write_number(char text[40], double value, int digits)
 {
     char plain[36];
-    (void)snprintf(plain, sizeof plain, "%.*f", digits, fabs(value));
+    double size = fabs(value), scale = pow(10, digits), product = size * scale;
+    bool is_between = fma(size, scale, -product) == 0 && product - floor(product) == 0.5;
+    (void)snprintf(plain, sizeof plain, "%.*f", digits, is_between ? (floor(product) + 1) / scale : size);
     bool is_zero = strspn(plain, "0.") == strlen(plain);
     (void)snprintf(text, 40, "%s%s", value < 0 && !is_zero ? minus : "", plain);
 }
@@ -63,12 +65,22 @@ static void add_position(struct annotations *annotations, const char *before, co
                    number);
 }
 
+/* As many digits as tell the greys of a narrow window apart; the page has the same rule. */
+static int window_digits(double width)
+{
+    const int most = 20;
+    if (width >= 10)
+        return 0;
+    int digits = width > 0 ? 2 - (int)floor(log10(width)) : most;
+    return digits < most ? digits : most;
+}
+
 static void add_image(struct annotations *annotations, const struct snapshot *snapshot)
 {
     const struct plan_image *image = &snapshot->plan->images[snapshot->image];
     const struct scene_image_style *style = &snapshot->scene.image;
     char width[40], center[40];
-    int digits = style->window.width < 10 ? 2 : 0;
+    int digits = window_digits(style->window.width);
     bool is_only = snapshot->plan->n_images == 1 && image->modality[0];
     const char *name = image->name[0] ? image->name : is_only ? image->modality : image->id;
     bool has_modality = image->modality[0] && !strstr(name, image->modality) && strcasecmp(name, image->modality) != 0;
@@ -138,13 +150,16 @@ static void add_region(struct annotations *annotations, const struct snapshot *s
     const struct region *region = &snapshot->plan->regions.regions[index];
     enum region_representation kind = visible_shape_key(snapshot, index).representation;
     struct annotation_item *item = add_item(annotations, ANNOTATION_REGIONS);
-    char opacity[16] = "";
+    char opacity[48] = "";
     bool is_pane = snapshot_is_pane(snapshot);
     item->has_chip = true;
     for (int channel = 0; channel < 3; channel++)
         item->rgb[channel] = (uint8_t)(style->color_rgb >> (16 - 8 * channel));
-    if (!is_pane && style->opacity < 1)
-        (void)snprintf(opacity, sizeof opacity, " %.0f %%", 100 * style->opacity);
+    if (!is_pane && style->opacity < 1) {
+        char percent[40];
+        write_number(percent, 100 * style->opacity, 0);
+        (void)snprintf(opacity, sizeof opacity, " %s %%", percent);
+    }
     (void)snprintf(item->text, sizeof item->text, "%s%s%s%s", region->name[0] ? region->name : region->id, opacity,
                    is_pane || kind == REPRESENTATION_SURFACE ? "" : ", ",
                    is_pane || kind == REPRESENTATION_SURFACE ? "" : region_representation_word(kind));

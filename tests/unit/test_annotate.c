@@ -362,9 +362,8 @@ static const char *row_text(const struct annotations *annotations, enum annotati
     return text;
 }
 
-static void a_snapshot_is_described(void **state)
+static struct plan *made_plan_in_hu(void)
 {
-    (void)state;
     static const struct made_region two[] = { { "low", -1, 0x804020 }, { "high", -1, 0x204080 } };
     struct grid grid = made_cube_grid(20);
     struct plan *plan = made_plan(&grid, low_and_high, two, 2);
@@ -373,6 +372,13 @@ static void a_snapshot_is_described(void **state)
     snprintf(plan->images[0].name, sizeof plan->images[0].name, "Planning");
     snprintf(plan->images[0].modality, sizeof plan->images[0].modality, "CT");
     snprintf(plan->images[0].unit, sizeof plan->images[0].unit, "HU");
+    return plan;
+}
+
+static void a_snapshot_is_described(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
     plan->n_doses = 1;
     plan->doses[0] = (struct dose){ .id = "run-1", .name = "Run 1", .unit = "cGy", .per = "per fraction" };
     char date[ANNOTATE_DATE_SIZE], field[128];
@@ -414,6 +420,41 @@ static void a_snapshot_is_described(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static void a_window_stands_in_the_caption_as_on_the_page(void **state)
+{
+    (void)state;
+    /* the page rounds what lies exactly between two numbers up, and gives a narrow window three digits of its width */
+    static const struct {
+        struct scene_window window;
+        const char *words;
+    } cases[] = { { { 134.5, 269 }, "C 135  W 269 HU" },
+                  { { -134.5, 268.5 }, "C \u2212135  W 269 HU" },
+                  { { 1.45, 1000 }, "C 1  W 1000 HU" },
+                  { { 0.5, 2.125 }, "C 0.50  W 2.13 HU" },
+                  { { 0.0213, 0.045 }, "C 0.0213  W 0.0450 HU" } };
+    struct plan *plan = made_plan_in_hu();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct scene scene;
+        struct error err = { 0 };
+        char date[ANNOTATE_DATE_SIZE] = "", field[128];
+        scene_for_plan(plan, &scene);
+        scene.image.window = cases[i].window;
+        scene.image.slices.axial.position_mm = -4.25;
+        struct view view = view_default;
+        view.kind = SCENE_KIND_AXIAL;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, date, &err));
+        char expected[128];
+        snprintf(expected, sizeof expected, "Axial|S \u22124.3 mm|Planning, CT|%s", cases[i].words);
+        assert_string_equal(row_text(&words, ANNOTATION_PANE), expected);
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -427,6 +468,7 @@ int main(void)
         cmocka_unit_test(a_long_name_gives_way_in_the_middle),
         cmocka_unit_test(hostile_text_is_drawn_as_replacements),
         cmocka_unit_test(a_snapshot_is_described),
+        cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
