@@ -208,6 +208,32 @@ test('who leaves without a connection is on their own after it, with the then cu
   assert.equal(scene.image.slices.axial.position_mm, 0);
 });
 
+test('who comes back on their own and is alone presents what they see: the own views become the room\'s', () => {
+  const { room, connection, lose, back } = follower();
+  room.patchScene({ image: { slices: { axial: { position_mm: 9 } } } }, { view: 2 });
+  connection.receive(viewMessage(false));
+  lose();
+  back(members('m1', ['m2'], { m2: { connected: false } }));
+  assert.deepEqual(connection.sent.map(({ type, follow }) => [type, follow]), [['view.open', false], ['present', undefined]]);
+  assert.equal(room.scene.value.image.slices.axial.position_mm, 9, 'until the server has answered, too');
+  assert.equal(room.following.return(), false);
+  connection.receive({ type: 'scene', revision: 2, patch: { image: { slices: { axial: { position_mm: 9 } } } }, by: 'm1', input: connection.sent[1].input });
+  connection.receive(viewMessage(true));
+  assert.equal(room.following.isFollowing.value, true);
+  assert.equal(room.following.override.value, null);
+  assert.equal(room.scene.value.image.slices.axial.position_mm, 9);
+});
+
+test('who comes back on their own to a server that still loads the plan presents when it is loaded', () => {
+  const { room, connection, lose, back } = follower();
+  room.following.leave();
+  lose();
+  back(members('m1'), { plan: null, scene: null });
+  assert.deepEqual(sent(connection), ['view.open']);
+  connection.receive({ type: 'plan', plan: { id: 'p' }, scene, revision: 1, gl: '' });
+  assert.deepEqual(sent(connection), ['view.open', 'present']);
+});
+
 // ---- scale ------------------------------------------------------------------------------------------------------------------
 
 test('the own view shows a mm on as many px as the shared picture in the own pane', () => {

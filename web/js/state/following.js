@@ -56,7 +56,7 @@ export class Following {
 
   /** Follows again, with all panes. Returns whether anything changed. */
   return() {
-    if (this.isFollowing.value) return false;
+    if (this.isFollowing.value || this.isPresenting.value) return false;
     this.#follow();
     this.#act(true);
     const name = this.presenter.value?.name;
@@ -113,13 +113,22 @@ export class Following {
     const own = members.find(({ id }) => id === this.#room.member.value);
     if (!own) return false;
     if (own.presenting && !wasPresenting) {
-      this.#follow();
       const isAlone = !members.some(({ id, connected }) => id !== own.id && connected !== false);
       if (before || !isAlone) this.#room.notify('ok', isAlone ? 'You are alone here, and present now.' : 'You present: the others follow you.', 'following');
       return true;
     }
     if (before && !this.presenter.value) this.#room.notify('warn', 'Nobody presents any more. What you see stays.', 'following', { word: 'Take over', act: () => this.present() });
     return false;
+  }
+
+  /**
+   * The own views of a presenter become the room's. The server does that by itself with the views that are open when a member
+   * is left alone, but a member who comes back presents before their views are open.
+   */
+  shareOwn() {
+    if (!this.isPresenting.value || this.isFollowing.value) return;
+    if (this.#room.views.some((view) => view.isOpen.value)) this.#tell({ type: 'present' });
+    else this.#follow();
   }
 
   /** Takes the follow flag of a view message. Returns false if the message is older than this member's last act. */

@@ -18,6 +18,7 @@ export class RoomState {
   #scene = new Replica(null);
   #sharedScene = signal(null); // the room's scene with our pending changes
   #restored = false;
+  #isLoaded = false; // since the last welcome: the server has a scene
   #latency = new Latency();
 
   /**
@@ -195,6 +196,7 @@ export class RoomState {
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;
     this.gl.value = message.gl;
+    this.#isLoaded = false;
     this.#loaded(message);
     for (const view of this.views) {
       if (!this.following.isFollowing.value) view.restart(view.document.value); // the whole document goes with view.open
@@ -205,9 +207,16 @@ export class RoomState {
   #membersChanged(members) {
     if (this.following.membersChanged(members))
       for (const view of this.views) if (view.isOpen.value && String(view.document.value.size_px) !== String(view.ownSize)) this.#resize(view);
-    if (!this.#sending.isHeld) return;
-    if (!this.following.isPresenting.value) this.#dropKept();
-    this.#sending.release();
+    if (this.#sending.isHeld) {
+      if (!this.following.isPresenting.value) this.#dropKept();
+      this.#sending.release();
+    }
+    this.#shareOwn();
+  }
+
+  /** Not before the server can apply an override to its scene, and not while the list of members may be an old one. */
+  #shareOwn() {
+    if (this.#isLoaded && !this.#sending.isHeld) this.following.shareOwn();
   }
 
   /** Somebody else presents since, or nobody: changes that were kept for the room while the connection was lost are lost. */
@@ -224,12 +233,14 @@ export class RoomState {
     if (message.gl) this.gl.value = message.gl;
     if (message.plan) this.plan.value = readPlan(message.plan);
     if (message.scene) {
+      this.#isLoaded = true;
       this.#scene.replace(message.scene);
       for (const view of this.views) view.change();
       this.#showScene();
       this.renderer.value = { state: 'ready', phase: '', percent: 100, problem: null };
     }
     this.#setRevision(message.revision);
+    this.#shareOwn();
   }
 
   #rendererChanged({ state, phase, percent, problem }) {
