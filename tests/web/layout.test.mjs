@@ -5,6 +5,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { overlaps } from './overlap.mjs';
+import { sizes as roomSizes, states } from './room_states.mjs';
 
 const sizes = [[1600, 1000], [1280, 720], [1180, 820], [800, 500], [820, 1180]]; // 800 x 500: 1600 x 1000 at 200 %
 
@@ -38,16 +40,17 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
   for (const [width, height] of sizes) {
     it(`a room at ${width} x ${height}: the line on research use is whole, every pane has its letters`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { viewport: { width, height } });
-      for (const view of [1, 2, 3, 4]) await full(page, view);
+      const visible = await page.evaluate(() => [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)));
+      for (const view of visible) await full(page, view);
       assert.deepEqual(await cut(page, '.research', '.status'), []);
-      for (const view of [1, 2, 3, 4]) {
+      for (const view of visible) {
         await page.waitForFunction((n) => { // the picture has the size of its pane
           const { width_px, height_px } = globalThis.beamroom.stats().headers[n];
           const { width, height } = document.querySelector(`#picture-${n}`).getBoundingClientRect();
           return Math.abs(width_px - width) <= 1 && Math.abs(height_px - height) <= 1;
         }, view);
         const box = await page.locator(`#picture-${view}`).boundingBox();
-        assert.ok(box.height > height / 5, `pane ${view} is ${box.height} px high`);
+        assert.ok(box.height > height / 6, `pane ${view} is ${box.height} px high`);
       }
       await shoot(page, `layout-${width}x${height}`);
       await page.context().close();
@@ -81,21 +84,71 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('the comparison of methods shows its table in every window', async () => {
-    for (const [width, height] of sizes) {
-      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { viewport: { width, height } });
+  for (const [size, options] of Object.entries(roomSizes))
+    it(`${size}: in no state does text lie over text, a letter or a control, and panes are as wide as they have to be`, async () => {
+      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
       await full(page);
-      if (width < 1400) await page.locator('[aria-label="Show the plan\'s parts"]').click(); // folded in smaller windows
-      await page.locator('[data-region="tumour"] button.name').click();
-      if (width < 1200) {
-        await page.locator('[aria-label="Fold the plan\'s parts"]').click();
-        await page.locator('[aria-label="Show the inspector"]').click();
+      for (const [name, act] of states[size]) {
+        await act(page);
+        await settled(page);
+        assert.deepEqual(await overlaps(page), [], name);
+        for (const { view, width, layout } of await panes(page))
+          if (size === 'wide' || size === 'compact') assert.ok(width >= (layout === 'row' ? 190 : layout === '1+3' && view > 1 ? 250 : 420) - 0.5, `${name}: pane ${view} is ${width} px wide`);
+        await shoot(page, `layout-${size}-${name.replaceAll(' ', '-').toLowerCase()}`);
       }
+      await page.context().close();
+    });
+
+  const panes = (page) => page.evaluate(() => [...document.querySelectorAll('.pane:not([hidden])')].map((pane) =>
+    ({ view: Number(pane.dataset.view), width: pane.getBoundingClientRect().width, layout: document.querySelector('.room').dataset.layout })));
+
+  /** Until every picture is at rest. */
+  const settled = (page) => page.waitForFunction(() => [...document.querySelectorAll('.pane:not([hidden])')].every((pane) => globalThis.beamroom.stats().badges[pane.dataset.view] === 'full'));
+
+  it('panels never make one of four panes narrower than 420 px, at any width of a desk', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom()}`, roomSizes.wide);
+    await full(page);
+    for (const width of [1920, 1433, 1400, 1399, 1280, 1209, 1208, 1100]) {
+      await page.setViewportSize({ width, height: 800 });
+      for (const isOpen of [true, false]) {
+        const button = page.locator(isOpen ? '[aria-label="Show the inspector"]' : '[aria-label="Fold the inspector"]');
+        if (await button.isVisible()) await button.click();
+        for (const pane of await panes(page)) assert.ok(pane.width >= 419.5, `window ${width}, inspector ${isOpen ? 'open' : 'folded'}: pane ${pane.view} is ${pane.width} px wide`);
+      }
+    }
+    await page.context().close();
+  });
+
+  it('what was clicked is in sight in the inspector: its head stands at the top', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom()}`, roomSizes.compact);
+    await full(page);
+    await page.locator('[data-section="regions"]').click();
+    for (const id of ['scalp', 'tumour']) {
+      await page.locator(`[data-region="${id}"] button.name`).click();
+      const head = page.locator('#tab-panel h3').first();
+      assert.match(await head.textContent(), new RegExp(id));
+      assert.ok((await head.boundingBox()).y < 150, id);
+      await page.locator('#tab-panel').evaluate((panel) => { panel.scrollTop = panel.scrollHeight; }); // the next choice begins at the top again
+    }
+    await page.context().close();
+  });
+
+  it('the comparison of methods shows its table in every window', async () => {
+    for (const [size, options] of Object.entries(roomSizes)) {
+      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
+      await full(page);
+      if (size === 'compact') await page.locator('[data-section="regions"]').click();
+      if (size === 'tablet' || size === 'phone') {
+        await page.locator('.dock button', { hasText: 'Parts' }).click();
+        await page.getByRole('tab', { name: 'Regions' }).click();
+      }
+      await page.locator('[data-region="tumour"] button.name').click();
       await page.locator('button', { hasText: 'Compare methods' }).click();
       await page.locator('[aria-label="Methods compared"] tbody tr', { hasText: 'Univels' }).locator('td', { hasText: 'cm³' }).waitFor();
       const dialog = await page.locator('[aria-label="Methods compared"]').boundingBox();
-      assert.ok(dialog.x >= 0 && dialog.x + dialog.width <= width && dialog.y + dialog.height <= height, `${width} x ${height}: within the window`);
-      if (width === 1180) await shoot(page, 'layout-compare-1180');
+      const { width, height } = options.viewport;
+      assert.ok(dialog.x >= 0 && dialog.x + dialog.width <= width && dialog.y + dialog.height <= height, `${size}: within the window`);
+      if (size === 'tablet') await shoot(page, 'layout-compare-1180');
       await page.context().close();
     }
   });

@@ -226,12 +226,12 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('draws the surfaces by the algorithm chosen in the View tab', async () => {
+  it('draws the surfaces by the algorithm chosen below a region', async () => {
     const room = await newRoom();
     const page = await newPage(`#/rooms/${room}`);
     await full(page);
     const before = await look(page, 1);
-    await page.locator('[role="tab"]', { hasText: 'View' }).click();
+    await page.locator('[data-region="tumour"] button.name').click();
     await page.locator('[aria-label="Surface"] >> text=8-cell').click();
     await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].scene_revision > 1);
     await full(page);

@@ -65,7 +65,6 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await page.locator('button', { hasText: 'All regions like this' }).click();
     await page.locator('[aria-label="Download the surface"]').waitFor();
     assert.equal(await page.locator('.legend.missing').count(), 0, 'traces can show both');
-    await page.locator('[role="tab"]', { hasText: 'View' }).click();
     await choose(page, 'Control points', 'Degree bins');
     const legend = page.locator('[data-view="1"] .legend.missing');
     await legend.waitFor();
@@ -151,7 +150,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
   it('the colours of the check have a legend in every slice pane', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
     await full(page);
-    await page.locator('[role="tab"]', { hasText: 'View' }).click();
+    await page.locator('[data-region="ball"] button.name').click();
     const legends = page.locator('.legend[aria-label="Colours of the check"]');
     assert.equal(await legends.count(), 0);
     await page.locator('label', { hasText: 'Mark where surface and univels differ' }).click();

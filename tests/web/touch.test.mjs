@@ -145,13 +145,20 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
 
   it('every control is large enough for a finger', async () => {
     await open();
-    await page.locator('.tree .rail').tap();
-    await page.locator('[data-region="tumour"] button.name').tap();
-    const small = await page.evaluate(() => [...document.querySelectorAll('.room button, .room a.button')].filter((button) => button.checkVisibility())
+    const small = () => page.evaluate(() => [...document.querySelectorAll('.room button, .room a.button')].filter((button) => button.checkVisibility())
       .map((button) => ({ name: button.getAttribute('aria-label') ?? button.textContent.trim(), height: button.getBoundingClientRect().height }))
       .filter(({ height }) => height < 44 && height > 1));
-    assert.deepEqual(small.filter(({ name }) => !/^(Full|Live|Reduced|Stale|Link|Disconnected)/.test(name)), []);
+    const holds = async (where) => assert.deepEqual((await small()).filter(({ name }) => !/^(Full|Live|Reduced|Stale|Link|Disconnected)/.test(name)), [], where);
+    await holds('at first');
+    await page.locator('.dock button', { hasText: 'Parts' }).tap();
+    await page.locator('[role="tab"]', { hasText: 'Regions' }).tap();
+    await holds('the regions');
     await shoot(page, 'touch-tree');
+    await page.locator('[data-region="tumour"] button.name').tap();
+    for (const tab of ['Selection', 'Probe', 'Plan']) {
+      await page.locator('[role="tab"]', { hasText: tab }).tap();
+      await holds(tab);
+    }
     await page.context().close();
   });
 

@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { roving } from './tools.js';
+import { roving } from './roving.js';
 
 /** A field for a number, with its unit inside. */
 export function numberField(label, value, unit, isDisabled, change) {

@@ -29,9 +29,9 @@ export function figuresDialog({ room, ui, comparison }) {
   const rows = comparison.rows.value;
   const n = rows.filter((row) => row.result || row.error).length;
   return html`<section class="card compare" role="dialog" tabindex="-1" aria-label="Methods compared">
-    <header><h2>${region.name}: methods compared</h2><span class="grow"></span>
+    <div class="card-head"><h2>${region.name}: methods compared</h2><span class="grow"></span>
       <button ?disabled=${!rows.length || n < rows.length} @click=${() => save(rows, `${room.planId.value}-${region.id}-methods.csv`)}>CSV</button>
-      <button class="icon-button" aria-label="Close" @click=${() => { ui.popover.value = ''; }}>${icon('close')}</button></header>
+      <button class="icon-button" aria-label="Close" @click=${() => { ui.popover.value = ''; }}>${icon('close')}</button></div>
     <p class="note">${n < rows.length ? html`<span role="status">Working out ${n + 1} of ${rows.length} …</span>` : html`${number(region.volume_cm3, 2)} cm³ in ${number(region.voxels)} univels of its own.`}
       With all regions inside it. Drawn alone, 650 × 650 pixels, moving picture.</p>
     <div class="table"><table><thead><tr><th scope="col">Method</th>${columns.map(([name]) => html`<th scope="col">${name}</th>`)}</tr></thead>

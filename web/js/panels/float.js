@@ -35,12 +35,14 @@ const keys = [
   ['F', 'Return to the presenter, or look for yourself'],
   ['Ctrl + Z', 'Undo your last change of scene or camera'],
   ['Ctrl + Shift + Z, Ctrl + Y', 'Redo it'],
+  ['In the tree: Space, Enter', 'Show or hide, select'],
+  ['In the tree: Shift + ← →', 'Opacity of a region by 5 %'],
   ['?', 'This list'],
   ['Esc', 'Leave tool, popover, own view, message, full pane'],
 ];
 
 export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<section class="card help" role="dialog" tabindex="-1" aria-label="Keys and mouse">
-  <header><h2>Keys and mouse</h2><span class="grow"></span><button class="icon-button" aria-label="Close" @click=${() => ui.toggle('help')}>${icon('close')}</button></header>
+  <div class="card-head"><h2>Keys and mouse</h2><span class="grow"></span><button class="icon-button" aria-label="Close" @click=${() => ui.toggle('help')}>${icon('close')}</button></div>
   <p class="note">Keys act in the pane that has the focus.</p>
   <dl>${keys.map(([key, what]) => html`<dt>${key}</dt><dd>${what}</dd>`)}</dl>
   <p class="note"><a href="gen/reference.html" target="_blank">Reference: scene, messages, HTTP API, problems, codes of load reports</a></p></section>`);

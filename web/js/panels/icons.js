@@ -42,6 +42,13 @@ const paths = {
   circle: svg`<circle cx="8" cy="8" r="5.5"/>`,
   phase: svg`<circle cx="8" cy="8" r="5.5" stroke-opacity=".35"/><path d="M8 2.500A5.5 5.5 0 0 1 13.5 8"/>`,
   ready: svg`<circle cx="8" cy="8" r="5.8"/><circle cx="8" cy="8" r="2" fill="currentColor"/>`,
+  layers: svg`<path d="m8 2 6.5 3.500L8 9 1.5 5.500ZM2 8.500 8 12l6-3.500M2 11.500 8 15l6-3.500"/>`,
+  dose: svg`<circle cx="8" cy="8" r="6.2"/><circle cx="8" cy="8" r="3.6"/><circle cx="8" cy="8" r="1.1" fill="currentColor"/>`,
+  tracks: svg`<path d="m1.5 11 3.5-6 3 5 2.500-4.500 4 3.500"/>`,
+  curve: svg`<path d="M2 2v12h12M4 4c3 0 3 7.500 9.500 8"/>`,
+  pin: svg`<path d="M5.5 2h5M6.500 2v5L4 9.500h8L9.500 7V2M8 9.500V14"/>`,
+  cube: svg`<path d="M8 1.800 13.800 5v6.200L8 14.300 2.200 11.200V5ZM2.200 5 8 8.200 13.800 5M8 8.200v6.100"/>`,
+  row: svg`<rect x="2" y="2" width="12" height="12" rx="1"/><path d="M6.500 2v12M10.500 2v12"/>`,
   // badges of fidelity, each with its own shape
   full: svg`<rect x="2.5" y="2.5" width="11" height="11" rx="2" fill="currentColor"/>`,
   live: svg`<circle cx="8" cy="8" r="6"/><circle cx="8" cy="8" r="2.5" fill="currentColor"/>`,

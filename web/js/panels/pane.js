@@ -20,6 +20,7 @@ import { readOut, spoken } from './read_out.js';
 export const names = { '3d': '3-D', axial: 'Axial', sagittal: 'Sagittal', coronal: 'Coronal' };
 const resizeMs = 120;
 const maxSide = 4096;
+const lowPane = 300; // px; lower slice panes show legends only while they are active
 
 export class Pane {
   #room;
@@ -114,7 +115,7 @@ export class Pane {
     this.actions.box = this.#box;
     return html`
       <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
-        <h2>${names[kind]}</h2><span class="where">${this.#where()}</span><span class="grow"></span>
+        <h2>${names[kind]}</h2><span class="where">${this.#whereInHead()}</span><span class="grow"></span>
         ${followMark(this.#room)}${this.#badgeButton()}
         <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
           title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${names[kind]}`}>
@@ -145,6 +146,14 @@ export class Pane {
     }
     const { axis, letter } = planes[kind];
     return `${letter} ${millimetres(crosshair(scene)[axis])}`;
+  }
+
+  /** The same with the parts marked that a narrow pane leaves out. */
+  #whereInHead() {
+    const where = this.#where();
+    const at = this.#view.kind === '3d' ? where.indexOf(', ') + 2 : 0;
+    const to = where.endsWith(' mm') ? where.length - 3 : where.length;
+    return html`<span class="roomy">${where.slice(0, at)}</span>${where.slice(at, to)}<span class="roomy">${where.slice(to)}</span>`;
   }
 
   #badgeButton() {
@@ -201,6 +210,8 @@ export class Pane {
     const scene = this.#room.scene.value;
     const plan = this.#room.plan.value;
     if (!scene || !plan || !this.#view.painted.value) return nothing;
+    const isLow = this.#size.value[1] < lowPane;
+    if (isLow && this.#view.kind !== '3d' && this.#ui.active.value !== this.#view.number) return nothing;
     const check = this.#view.kind !== '3d' && scene.check.visible && plan.regions.length ? html`<ul class="legend" aria-label="Colours of the check">
         <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>` : nothing;
     const reasons = this.#view.kind === '3d' ? this.#refused.value : this.#view.missing.value.reasons;
@@ -212,9 +223,7 @@ export class Pane {
     const words = this.#view.kind !== '3d' ? 'Not checked' : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs') ? 'Not shown as NURBS' : 'Not drawn';
     const nUnnamed = Math.max(0, this.#view.missing.value.n - missing.length);
     const show = () => {
-      this.#ui.region.value = missing[0].id;
-      this.#ui.tab.value = 'probe';
-      this.#ui.isInspectorOpen.value = true;
+      this.#ui.choose('region', missing[0].id);
     };
     return html`${check}<div class="legend missing" role="status"><span class="warn">${icon('warning', 12)}</span><p>${words}: ${nameSome([...missing.map(({ name }) => name), ...Array(nUnnamed).fill('others')])}</p>
       <button title=${reasons[missing[0].id]} aria-label=${`Why ${missing[0].name} is not shown`} @click=${show}>Why?</button></div>`;

@@ -6,7 +6,7 @@ import { isOfServer } from '../state/plans.js';
 import { bytes, count, number } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
-import { roving } from './tools.js';
+import { roving } from './roving.js';
 import { uploadRows } from './upload.js';
 
 const filters = [['all', 'All'], ['ready', 'Ready'], ['warnings', 'With warnings']];

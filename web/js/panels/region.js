@@ -1,4 +1,4 @@
-// The region chosen in the tree: its figures, how it is shown, saving its shape as a file.
+// The selected region: its figures, how it is shown, saving its shape as a file.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
@@ -12,7 +12,7 @@ const files = [['stl', 'binary STL'], ['ply', 'binary PLY'], ['glb', 'GLB (glTF 
 
 export function regionBlock(world, region) {
   const { room, ui } = world;
-  if (!region) return html`<section class="block"><p class="empty">Choose a region in the tree for its figures.</p></section>`;
+  if (!region) return nothing;
   const plan = room.plan.value;
   const scene = room.scene.value;
   const style = scene.regions[region.id];
@@ -29,6 +29,7 @@ export function regionBlock(world, region) {
       ${region.touches_edge ? html`<dt>Edge</dt><dd>cut by the edge of the scan</dd>` : nothing}
       <dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(style.opacity * 100)))} aria-label="Opacity" ?disabled=${isDisabled}
         @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(style.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd>
+      <dt>Colour</dt><dd><input type="color" .value=${live(style.color)} aria-label="Colour" ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}></dd>
       <dt title="Higher lies on top where regions overlap">Order</dt><dd>${numberField('Order, higher lies on top', style.order, '', isDisabled, (value, event) => change({ order: Math.min(Math.max(Math.round(value), -1000), 1000) }, event))}</dd></dl>
     <div class="shown-as"><span class="dim">Shown as</span>${segment('Shown as', representations, style.representation, isDisabled || !region.voxels, (representation, event) => change({ representation }, event))}</div>
     ${region.voxels ? figures(world, region, style.representation) : nothing}

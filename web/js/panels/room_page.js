@@ -17,21 +17,25 @@ import { help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { mount } from './mount.js';
 import { Pane } from './pane.js';
+import { paneSwitch } from './pane_switch.js';
 import { coverPage, printoutDialog } from './printout.js';
 import { listenSnapshots, otherPlanDialog, resumeSnapshot } from './snapshots.js';
+import { sectionOfKind } from './sections.js';
 import { status } from './status.js';
 import { toolStrip } from './tools.js';
 import { tree } from './tree.js';
 
 const probeMs = 60;
 const tickMs = 250;
+const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
 const floating = (world) => html`${help(world)}${figuresDialog(world)}${ended(world)}${otherPlanDialog(world)}${printoutDialog(world)}`;
 
 const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>
   <header class="banner"></header><aside class="tree" aria-label="Plan"></aside>
-  <main><div class="strip"></div><div class="panes">${[1, 2, 3, 4].map((n) => html`<section class="pane" data-view=${n}></section>`)}</div><div class="toasts"></div></main>
+  <section class="strip" aria-label="Tools"></section>
+  <main><div class="switch"></div><div class="panes">${[1, 2, 3, 4].map((n) => html`<section class="pane" data-view=${n}></section>`)}</div><div class="toasts"></div></main>
   <aside class="inspector" aria-label="Inspector"></aside><footer class="status"></footer><div class="floating"></div></div>`;
 
 /**
@@ -62,9 +66,9 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
 
   const after = new AfterRoom({ api, clock, enter });
   const world = { after, room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
-  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
+  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
-  stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), probe(room, api, probed, clock), ...adapt(ui));
+  stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), adapt(ui));
   stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
@@ -79,16 +83,23 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   };
 }
 
+/** Gives the style sheets the arrangement. */
 function layOut(element, ui) {
-  const shown = ui.visible.value;
-  element.dataset.layout = shown.length === 1 ? 'single' : ui.layout.value;
-  element.classList.toggle('tree-open', ui.isTreeOpen.value);
-  element.classList.toggle('inspector-open', ui.isInspectorOpen.value);
+  const { size, tree: place, overlay, inspector: at, sheet, layout, visible } = ui.arrangement.value;
+  Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, layout });
   for (const pane of element.querySelectorAll('.pane')) {
     const n = Number(pane.dataset.view);
-    pane.hidden = !shown.includes(n);
+    pane.hidden = !visible.includes(n);
     pane.classList.toggle('active', ui.active.value === n);
   }
+}
+
+/** Scrolls the tree to what was selected, wherever it was clicked. */
+function reveal(host, ui) {
+  return effect(() => {
+    const { kind } = ui.selection.value;
+    if (sectionOfKind[kind]) queueMicrotask(() => host.querySelector('.tree .row.selected')?.scrollIntoView({ block: 'nearest' }));
+  });
 }
 
 function describeTitle(room) {
@@ -180,15 +191,22 @@ function compare(room, ui, comparison) {
   };
 }
 
-/** Folds panels that do not fit into the window, and unfolds them when they do. */
+/** Tells the state the size of the window and whether fingers use it; folds an inspector for which there is no room. */
 function adapt(ui) {
-  return [['(min-width: 1400px)', ui.isTreeOpen], ['(min-width: 1200px)', ui.isInspectorOpen]].map(([query, isOpen]) => {
-    const media = matchMedia(query);
-    const set = () => { isOpen.value = media.matches; };
-    set();
-    media.addEventListener('change', set);
-    return () => media.removeEventListener('change', set);
-  });
+  const coarse = matchMedia('(pointer: coarse)');
+  const set = () => {
+    const before = ui.window.peek();
+    const { clientWidth: width, clientHeight: height } = document.documentElement; // innerWidth is larger where a telephone shows more than the page
+    ui.window.value = { width, height, isCoarse: coarse.matches };
+    if ((before.width >= inspectorFrom) !== (width >= inspectorFrom)) ui.isInspectorOpen.value = width >= inspectorFrom;
+  };
+  set();
+  addEventListener('resize', set);
+  coarse.addEventListener('change', set);
+  return () => {
+    removeEventListener('resize', set);
+    coarse.removeEventListener('change', set);
+  };
 }
 
 /** Moves the focus into a dialog that opens, and back afterwards to the element that opened it. */

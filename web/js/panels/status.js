@@ -20,7 +20,7 @@ export function status({ room, ui, panes, probed }) {
     <span class="pairing pace" title=${`From an input to its picture, median of the last 20. Ping ${room.pingMs.value === null ? '–' : `${number(room.pingMs.value)} ms`}.`}>Latency <b id="latency">${latency === null ? '–' : `${number(latency)} ms`}</b></span>
     <span class="pairing pace"><b id="fps">${fps ? `${number(fps)} fps` : 'idle'}</b></span>
     <span class="dim wide" id="gl">${room.gl.value}</span>
-    ${point ? html`<i class="rule"></i><span class="pairing">Position <b>L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm</b></span><span class="place-name">${region?.name ?? ''}</span>` : nothing}
+    ${point && !ui.isTouch.value ? html`<i class="rule"></i><span class="pairing">Position <b>L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm</b></span><span class="place-name">${region?.name ?? ''}</span>` : nothing}
     <span class="grow"></span>
     <span class="radiological">Radiological: patient right on screen left</span><i class="rule"></i>
     <b class="research" title="Beamroom is not a medical device. It shows what a calculation gave, for research and plan review; nobody has certified it for decisions on patients.">Research use. Not for diagnosis or treatment decisions.</b>`;

@@ -1,10 +1,14 @@
-// The tool bar: tool of the left button, layout of the panes, reset, snapshot.
-import { html } from '../../lib/lit-html.js';
+// The tool strip above the panes or, for fingers, the dock below them: tool of the left button, layout of the panes, what acts on the active pane.
+import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
+import { crosshair } from '../state/plan.js';
+import { number } from './format.js';
 import { icon } from './icons.js';
-import { undoButtons } from './undo_buttons.js';
+import { roving } from './roving.js';
 import { roomChip } from './room_chip.js';
+import { sectionsOf } from './sections.js';
 import { snapshotMenu } from './snapshots.js';
+import { undoButtons } from './undo_buttons.js';
 
 const tools = [
   ['crosshair', 'Crosshair', 'Crosshair in slices, turn in 3-D'],
@@ -13,39 +17,68 @@ const tools = [
   ['zoom', 'Zoom', 'Zoom (right button, Z)'],
 ];
 const layouts = [
+  ['row', 'row', 'Three panes in a row'],
   ['2x2', 'grid', 'Four panes'],
   ['1+3', 'oneThree', 'One large, three small'],
   ['single', 'single', 'One pane'],
 ];
 
-/** Makes a row of buttons one tab stop, inside which the arrow keys move. */
-export function roving(event) {
-  const by = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: 1, ArrowUp: -1 }[event.key];
-  if (!by) return;
-  const buttons = [...event.currentTarget.querySelectorAll('button:not([disabled])')];
-  const next = buttons[(buttons.indexOf(event.target) + by + buttons.length) % buttons.length];
-  next?.focus();
-  if (event.currentTarget.getAttribute('role') !== 'toolbar') next?.click();
-  event.preventDefault();
-}
+
+const tool = (ui, [id, name, title]) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${title} aria-pressed=${ui.tool.value === id}
+  aria-label=${name} tabindex=${id === 'crosshair' ? 0 : -1} @click=${() => { ui.tool.value = id; }}>${icon(id)}<span class="word">${name}</span></button>`;
 
 export function toolStrip(world) {
+  return world.ui.isTouch.value ? dock(world) : strip(world);
+}
+
+function strip(world) {
+  const { ui } = world;
+  const { layout } = ui.arrangement.value;
+  const isPicture = ui.tab.value === 'selection' && ui.selection.value.kind === 'view' && ui.isInspectorOpen.value;
+  return html`<div class="tools" role="toolbar" aria-label="Tools" @keydown=${roving}>
+    ${tools.map((row) => tool(ui, row))}
+    <i class="rule"></i>
+    ${layouts.map(([id, picture, name]) => html`<button class=${classMap({ tool: true, plain: true, on: layout === id })} title=${name} aria-label=${name}
+      aria-pressed=${layout === id} tabindex="-1" @click=${() => ui.setLayout(id)}>${icon(picture)}</button>`)}
+    <i class="rule"></i>
+    <button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
+    <span class="grow"></span>
+    ${roomChip({ room: world.room, ui }, 'strip')}
+    ${stripEnd(world)}
+  </div>`;
+}
+
+/** The right end of the strip, of the banner on touch screens: what is the room's, and what acts on the active pane. */
+export function stripEnd(world) {
   const { room, ui, panes } = world;
   const active = panes()[ui.active.value - 1];
-  const setLayout = (layout) => {
-    ui.maximised.value = 0;
-    ui.layout.value = layout;
-  };
-  return html`<div class="tools" role="toolbar" aria-label="Tools" @keydown=${roving}>
-    ${tools.map(([id, name, title]) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${title} aria-pressed=${ui.tool.value === id}
-      aria-label=${name} tabindex=${ui.tool.value === id ? 0 : -1} @click=${() => { ui.tool.value = id; }}>${icon(id)}<span class="word">${name}</span></button>`)}
-    <i class="rule"></i>
-    ${layouts.map(([id, picture, name]) => html`<button class=${classMap({ tool: true, plain: true, on: !ui.maximised.value && ui.layout.value === id })} title=${name} aria-label=${name}
-      aria-pressed=${ui.layout.value === id} tabindex="-1" @click=${() => setLayout(id)}>${icon(picture)}</button>`)}
-    <span class="grow"></span>
-    ${roomChip({ room, ui }, 'strip')}
+  return html`
     ${undoButtons(world)}
     <button class="tool plain" tabindex="-1" title="Reset this view (R)" aria-label="Reset view" ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
-    ${snapshotMenu(world)}
+    ${snapshotMenu(world)}`;
+}
+
+/** Buttons 74 x 56; at the right the region and the position at the crosshair. */
+function dock(world) {
+  const { room, ui, probed } = world;
+  const { size, sheet } = ui.arrangement.value;
+  const scene = room.scene.value;
+  const plan = room.plan.value;
+  const region = plan?.regions.find(({ id }) => id === probed.value.result?.regions[0]);
+  const point = scene && crosshair(scene);
+  const isTab = (tab) => sheet === 'inspector' && ui.tab.value === tab;
+  const open = (tab) => () => {
+    if (isTab(tab)) ui.sheet.value = '';
+    else ui.showTab(tab);
+  };
+  const button = (picture, name, isOn, act) => html`<button class=${classMap({ tool: true, on: isOn })} tabindex="-1" aria-expanded=${isOn} @click=${act}>${icon(picture, 20)}<span class="word">${name}</span></button>`;
+  return html`<div class="tools dock" role="toolbar" aria-label="Tools" @keydown=${roving}>
+    ${tools.slice(0, size === 'phone' ? 2 : 4).map((row) => tool(ui, row))}
+    ${size === 'phone' ? nothing : html`<i class="rule"></i>`}
+    ${sectionsOf(plan).length ? button('tree', 'Parts', sheet === 'tree', () => ui.openSheet('tree')) : nothing}
+    ${button('target', 'Probe', isTab('probe'), open('probe'))}
+    ${button('panel', 'Selection', isTab('selection'), open('selection'))}
+    ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}
+      <span class="grow"></span><p class="read-out"><b>${region?.name ?? ''}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`}
   </div>`;
 }

@@ -27,6 +27,7 @@ function readImage(image) {
   const { grid } = image;
   return {
     id: image.id,
+    name: image.name ?? '',
     modality: image.modality || 'Image',
     unit: image.unit ?? '',
     low: image.low ?? 0,
@@ -72,6 +73,7 @@ export function readPlan(document) {
     beams: document.beams ?? [],
     curves: document.curves ?? [],
     nTracks: document.tracks?.segments ?? 0,
+    trackClasses: Object.entries(document.tracks?.classes ?? {}).filter(([, n]) => n > 0).map(([id, n]) => ({ id, n })),
     report: readReport(document.report),
     loadMs: document.load_ms ?? null,
     bounds: document.bounds_mm ?? { low: [-100, -100, -100], high: [100, 100, 100] },
@@ -152,6 +154,23 @@ export function soloPatch(regions, scene, id) {
   const isAlone = regions.every((region) => Boolean(scene.regions[region.id]?.visible) === (region.id === id));
   return { regions: Object.fromEntries(regions.map((region) => [region.id, { visible: isAlone || region.id === id }])) };
 }
+
+/** True for a region that its name calls a target. */
+export const isTarget = ({ name }) => /gtv|ctv|ptv|tumou?r|target|lesion/i.test(name);
+
+/** The patch that shows the regions that pass the test and hides the others. */
+export const showPatch = (regions, test) => ({ regions: Object.fromEntries(regions.map((region) => [region.id, { visible: test(region) }])) });
+
+/** "1 error, 2 warnings"; '' when there is neither. */
+export function troubles({ lines }) {
+  return ['error', 'warning'].flatMap((severity) => {
+    const n = lines.filter((line) => line.severity === severity).length;
+    return n ? [`${n} ${severity}${n > 1 ? 's' : ''}`] : [];
+  }).join(', ');
+}
+
+/** "Neutron high" for the class of tracks "neutron-high". */
+export const className = (id) => `${id[0].toUpperCase()}${id.slice(1).replaceAll('-', ' ')}`;
 
 /** "Gy per fraction, total" for a dose; unknown parts are left out. */
 export function doseWords(dose) {

@@ -1,5 +1,6 @@
 // State of this page alone: tool, layout, selection, unfolded panels. Nothing of it is stored or sent.
-import { computed, signal } from '../../lib/signals-core.js';
+import { batch, computed, signal } from '../../lib/signals-core.js';
+import { arrange } from './arrangement.js';
 
 const toastMs = 6000;
 
@@ -11,20 +12,31 @@ export class UiState {
   constructor(clock) {
     this.#clock = clock;
     this.tool = signal('crosshair'); // crosshair | window | pan | zoom
-    this.layout = signal('2x2'); // 2x2 | 1+3 | single
+    this.layout = signal(''); // 2x2 | 1+3 | row | single; '' as suits the window
     this.maximised = signal(0);
     this.active = signal(1);
-    this.region = signal('');
-    this.tab = signal('probe'); // probe | view | report
-    this.isTreeOpen = signal(true);
+    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | region | dose | beam | tracks | curve
+    this.region = computed(() => (this.selection.value.kind === 'region' ? this.selection.value.id : ''));
+    this.tab = signal('probe'); // probe | selection | plan
+    this.window = signal({ width: 1600, height: 1000, isCoarse: false });
+    this.isTreeOpen = signal(true); // in a wide window; otherwise the sections are behind the rail or in a sheet
     this.isInspectorOpen = signal(true);
+    this.section = signal(''); // open beside the rail
+    this.isPinned = signal(false); // that section pushes the panes aside
+    this.sheet = signal(''); // '' | tree | inspector
+    this.sheetSection = signal(''); // shown in the sheet; '' the first
+    this.folded = signal(new Set()); // sections of the tree that are folded
+    this.row = signal(''); // row of the tree that takes the focus
+    this.filter = signal(''); // part of the names that the tree lists
     this.popover = signal(''); // name of the open popover
     this.toasts = signal([]);
     this.now = signal(clock.now()); // updated a few times a second, for ages on badges
-    this.visible = computed(() => {
-      if (this.maximised.value) return [this.maximised.value];
-      return this.layout.value === 'single' ? [this.active.value] : [1, 2, 3, 4];
-    });
+    this.arrangement = computed(() => arrange(this.window.value, {
+      layout: this.layout.value, isTreeOpen: this.isTreeOpen.value, section: this.section.value, isPinned: this.isPinned.value, sheet: this.sheet.value,
+      isInspectorOpen: this.isInspectorOpen.value, active: this.active.value, maximised: this.maximised.value,
+    }));
+    this.isTouch = computed(() => ['tablet', 'phone'].includes(this.arrangement.value.size));
+    this.visible = computed(() => this.arrangement.value.visible);
   }
 
   /**
@@ -41,14 +53,48 @@ export class UiState {
     this.toasts.value = this.toasts.value.filter((toast) => toast.id !== id);
   }
 
-  /** Selects what was clicked in a picture. Opens no panel: the picture would move away under the pointer. isShown: turns to its tab. */
-  select(kind, id, isShown = true) {
-    if (kind === 'region') this.region.value = id;
-    if (isShown) this.tab.value = 'probe';
-  }
-
   toggle(name) {
     this.popover.value = this.popover.value === name ? '' : name;
+  }
+
+  /** Selects what was clicked and shows it in the inspector. */
+  choose(kind, id = '') {
+    batch(() => {
+      this.selection.value = { kind, id };
+      this.showTab('selection');
+    });
+  }
+
+  showTab(tab) {
+    batch(() => {
+      this.tab.value = tab;
+      if (this.isTouch.value) this.sheet.value = 'inspector';
+      else this.isInspectorOpen.value = true;
+    });
+  }
+
+  /** Opens a section beside the rail, or closes it when it is open. */
+  openSection(id) {
+    this.section.value = this.section.value === id ? '' : id;
+  }
+
+  openSheet(sheet) {
+    this.sheet.value = this.sheet.value === sheet ? '' : sheet;
+  }
+
+  setLayout(layout) {
+    batch(() => {
+      this.maximised.value = 0;
+      this.layout.value = layout;
+    });
+  }
+
+  /** Folds the tree or a section in it. */
+  fold(id, isFolded) {
+    const folded = new Set(this.folded.value);
+    if (isFolded) folded.add(id);
+    else folded.delete(id);
+    this.folded.value = folded;
   }
 
   maximise(number) {
@@ -56,12 +102,14 @@ export class UiState {
     this.maximised.value = this.maximised.value ? 0 : number;
   }
 
-  /** Closes one thing per call: tool, popover, what the page has to close (returns whether it had), toast or maximised pane. */
+  /** Closes one thing per call: tool, popover, what the page has to close (returns whether it had), toast, floating section, sheet or maximised pane. */
   escape(close = () => false) {
     if (this.tool.value !== 'crosshair') this.tool.value = 'crosshair';
     else if (this.popover.value) this.popover.value = '';
     else if (close()) return;
     else if (this.toasts.value.length) this.dismiss(this.toasts.value.at(-1).id);
+    else if (this.arrangement.value.overlay === 'floats') this.section.value = '';
+    else if (this.arrangement.value.sheet) this.sheet.value = '';
     else this.maximised.value = 0;
   }
 }

@@ -7,6 +7,11 @@ const gapPx = 22;
 const marginPx = 26;
 const letterPx = 14;
 const figurePx = 24;
+const figureFrom = 200; // px of width and height
+const windowFrom = 360; // px of width; the strip at the foot has no room for the window's text below
+const scaleFrom = 280;
+const letterHalf = 24; // px kept free on both sides of the letter in the middle of the strip
+const digitPx = 7; // widest character of a caption, on average
 
 /**
  * @param {object} what
@@ -24,9 +29,17 @@ export function overlay({ kind, header, box, pane: [width, height], point, pxPer
   return svg`
     ${mark && (kind === '3d' ? marker(mark, box) : cross(mark, box))}
     ${edgeText(edgeLetters(matrix), width, height)}
-    ${kind === '3d' ? figure(matrix, width, height) : nothing}
-    ${pxPerMm > 0 ? scaleBar(pxPerMm, height) : nothing}
-    ${kind !== '3d' && windowText ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${windowText}</text>` : nothing}`;
+    ${kind === '3d' && width >= figureFrom && height >= figureFrom ? figure(matrix, width, height) : nothing}
+    ${pxPerMm > 0 && width >= scaleFrom ? scaleBar(pxPerMm, width, height) : nothing}
+    ${kind !== '3d' && width >= windowFrom ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${fitting(windowText, width / 2 - letterHalf - 12)}</text>` : nothing}`;
+}
+
+/** The text, without what stands after the window's centre and width where there is no room for it; '' where there is none for those. */
+function fitting(text, roomPx) {
+  const fits = (words) => words.length * digitPx <= roomPx;
+  if (fits(text)) return text;
+  const short = text.split('  ').slice(0, 2).join('  ');
+  return fits(short) ? short : '';
 }
 
 const line = (x1, y1, x2, y2) => svg`<line x1=${x1} y1=${y1} x2=${x2} y2=${y2} />`;
@@ -71,8 +84,10 @@ function figure(matrix, width, height) {
       : nothing}</g>`)}</g>`;
 }
 
-function scaleBar(pxPerMm, height) {
-  const mm = barMm(pxPerMm);
+/** Left of the letter in the middle of the foot. */
+function scaleBar(pxPerMm, width, height) {
+  const roomPx = width / 2 - letterHalf - 20 - '500 mm'.length * digitPx;
+  const mm = barMm(pxPerMm, roomPx);
   const length = mm * pxPerMm;
   const y = height - 16;
   const path = `M12.5 ${y - 6}V${y}H${12.5 + length}V${y - 6}M${12.5 + length / 2} ${y - 3.5}V${y}`;

@@ -1,0 +1,58 @@
+// The main states of the room page at the sizes it is made for, for tests that hold in all of them.
+
+export const sizes = {
+  wide: { viewport: { width: 1600, height: 1000 } },
+  compact: { viewport: { width: 1280, height: 720 } },
+  tablet: { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true },
+  phone: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
+};
+
+const region = (page) => page.locator('[data-region]').last().locator('button.name').click();
+const tab = (name) => [`tab ${name}`, (page) => page.getByRole('tab', { name, exact: true }).click()];
+const popovers = [
+  ['invitation', (page) => page.locator('[aria-label="Invite"]').click()],
+  ['help', (page) => page.locator('[aria-label="Help"]').click()],
+  ['nothing open', (page) => page.keyboard.press('Escape')],
+];
+const maximised = [
+  ['maximised', (page) => page.locator('[aria-label="Maximise Axial"]').click()],
+  ['restored', (page) => page.locator('[aria-label="Restore Axial"]').click()],
+];
+const dock = (name) => [`sheet ${name}`, (page) => page.locator('.dock button', { hasText: name }).click()];
+const parts = ['Images', 'Regions', 'Doses', 'Beams', 'Tracks'];
+
+/** For each size, what leads from one state to the next: [name, act]. For a plan that has every part. @type {Record<string, [string, (page) => Promise<void>][]>} */
+export const states = {
+  wide: [
+    ['at first', async () => {}],
+    ['a region', region],
+    ...['dose', 'image', 'beam', 'tracks'].map((kind) => [`a ${kind}`, (page) => page.locator(`[data-key^="${kind}:"] button.name`).first().click()]),
+    ['the 3-D picture', (page) => page.locator('button[aria-label="3-D picture"]').click()],
+    tab('Probe'), tab('Plan'), ...popovers, ...maximised,
+    ...['Three panes in a row', 'One large, three small', 'Four panes'].map((name) => [name, (page) => page.locator(`[aria-label="${name}"]`).click()]),
+    ['tree folded', (page) => page.locator('[aria-label="Fold the plan\'s parts"]').click()],
+    ['inspector folded', (page) => page.locator('[aria-label="Fold the inspector"]').click()],
+  ],
+  compact: [
+    ['at first', async () => {}],
+    ...['images', 'regions', 'doses', 'beams', 'tracks'].map((id) => [`section ${id}`, (page) => page.locator(`[data-section="${id}"]`).click()]),
+    ['section pinned', async (page) => {
+      await page.locator('[data-section="regions"]').click();
+      await page.locator('[aria-label="Pin"]').click();
+    }],
+    ['a region', region], tab('Probe'), tab('Plan'), ...popovers, ...maximised,
+    ['section closed', (page) => page.locator('[aria-label="Close Regions"]').click()],
+    ['inspector folded', (page) => page.locator('[aria-label="Fold the inspector"]').click()],
+  ],
+  tablet: [
+    ['at first', async () => {}],
+    dock('Probe'), tab('Plan'), tab('Selection'), dock('Parts'),
+    ...parts.map((name) => tab(name)), tab('Regions'), ['a region', region], ...popovers,
+    ['sheet closed', (page) => page.locator('[aria-label="Close the sheet"]').click()], ...maximised,
+  ],
+  phone: [
+    ['at first', async () => {}],
+    ...['Axial', 'Sagittal', 'Coronal', '3-D'].map((name) => [`pane ${name}`, (page) => page.locator('[aria-label="Pane"] button', { hasText: name }).click()]),
+    dock('Probe'), tab('Plan'), tab('Selection'), dock('Parts'), ...parts.map((name) => tab(name)), tab('Regions'), ['a region', region], ...popovers,
+  ],
+};

@@ -1,0 +1,62 @@
+// Where panels and panes stand: the widths and the exceptions as the interface document states them.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { load } from './page.mjs';
+
+const { arrange, sizeOf } = await load('state/arrangement.js');
+const chosen = { layout: '', isTreeOpen: true, section: '', isPinned: false, isInspectorOpen: true, sheet: '', active: 1, maximised: 0 };
+const desk = (width, more = {}, height = 900) => arrange({ width, height, isCoarse: false }, { ...chosen, ...more });
+const touch = (width, height, more = {}) => arrange({ width, height, isCoarse: true }, { ...chosen, ...more });
+
+test('the size goes by width, and by fingers', () => {
+  assert.deepEqual([1400, 1399, 1100, 1099, 600, 599].map((width) => sizeOf({ width, isCoarse: false })), ['wide', 'compact', 'compact', 'tablet', 'tablet', 'phone']);
+  assert.equal(sizeOf({ width: 1600, isCoarse: true }), 'tablet');
+});
+
+test('from 1400 px on the tree stands at the left and the inspector at the right', () => {
+  const { tree, inspector, overlay, layout } = desk(1400, { section: 'regions' });
+  assert.deepEqual([tree, inspector, overlay, layout], ['tree', 'pushes', '', '2x2']);
+});
+
+test('below, a section beside the rail floats, and pushes when it is pinned', () => {
+  assert.deepEqual([desk(1280).tree, desk(1280).overlay], ['rail', '']);
+  assert.equal(desk(1280, { section: 'regions' }).overlay, 'floats');
+  const pinned = desk(1280, { section: 'regions', isPinned: true });
+  assert.deepEqual([pinned.overlay, pinned.layout], ['pushes', 'row'], '48 + 272 + 320 leave 640: two panes of 320 are too narrow, a row of three is not');
+  assert.equal(desk(1280, { section: 'regions', isPinned: true, isInspectorOpen: false }).layout, '2x2', '48 + 272 + 48 leave 912');
+});
+
+test('where even a row of three would be too narrow a pinned section floats', () => {
+  assert.equal(desk(1200, { section: 'regions', isPinned: true }).overlay, 'floats'); // 560: 1.28 + 1 + 1 parts of 171
+});
+
+test('the inspector floats where two panes beside it would be narrower than 420 px', () => {
+  assert.equal(desk(1209).inspector, 'pushes');
+  assert.equal(desk(1200).inspector, 'floats');
+  assert.equal(desk(1200, { layout: 'single' }).inspector, 'pushes');
+});
+
+test('a row of three always has the active pane', () => {
+  for (const active of [1, 2, 3, 4]) {
+    const { visible } = desk(1600, { layout: 'row', active });
+    assert.equal(visible.length, 3);
+    assert.ok(visible.includes(active));
+  }
+});
+
+test('on a tablet an open sheet turns one and three into one row of four', () => {
+  assert.deepEqual([touch(1180, 820).layout, touch(1180, 820).sheet], ['1+3', '']);
+  assert.equal(touch(1180, 820, { sheet: 'inspector' }).layout, 'row4');
+  assert.equal(touch(820, 1180, { sheet: 'inspector' }).layout, '1+3', 'upright there is height enough');
+});
+
+test('a telephone shows one pane, the active one', () => {
+  assert.deepEqual(touch(390, 844, { active: 3, layout: '2x2' }).visible, [3]);
+});
+
+test('a maximised pane stands alone at every size', () => {
+  for (const { visible, layout } of [desk(1600, { maximised: 2 }), desk(1280, { maximised: 2 }), touch(1180, 820, { maximised: 2, sheet: 'tree' })]) {
+    assert.deepEqual(visible, [2]);
+    assert.equal(layout, 'single');
+  }
+});

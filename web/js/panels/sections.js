@@ -1,0 +1,79 @@
+// The sections of the tree: a row of the table for each. A section without rows is not shown; to add one, add a row.
+import { html, nothing } from '../../lib/lit-html.js';
+import { beamWords, className, doseWords, frameWords, imagePatch, shownImage } from '../state/plan.js';
+import { count, number, windowText } from './format.js';
+import { icon } from './icons.js';
+import { regionRows } from './region_rows.js';
+import { eye, name, treeRow } from './tree_row.js';
+
+const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derived', none: '' };
+
+/** @type {{id: string, name: string, icon: string, has: (plan) => boolean, note: (world) => string, rows: (world) => unknown}[]} */
+const table = [
+  { id: 'images', name: 'Images', icon: 'image', has: (plan) => plan.images.length, note: () => '', rows: images },
+  { id: 'regions', name: 'Regions', icon: 'layers', has: (plan) => plan.regions.length, note: ({ room }) => hierarchyWords[room.plan.value.hierarchy] ?? '', rows: regionRows },
+  { id: 'doses', name: 'Doses', icon: 'dose', has: (plan) => plan.doses.length, note: (world) => (shownGrid(world) ? 'grid shown' : ''), rows: doses },
+  { id: 'beams', name: 'Beams', icon: 'target', has: (plan) => plan.beams.length + plan.curves.length, note: () => '', rows: beams },
+  { id: 'tracks', name: 'Tracks', icon: 'tracks', has: (plan) => plan.nTracks, note: ({ room }) => count(room.plan.value.nTracks, 'segment'), rows: tracks },
+];
+
+/** The sections of this plan. */
+export const sectionsOf = (plan) => (plan ? table.filter((section) => section.has(plan)) : []);
+
+/** The section in which a row for this selection is. */
+export const sectionOfKind = { image: 'images', region: 'regions', dose: 'doses', beam: 'beams', curve: 'beams', tracks: 'tracks' };
+
+function images(world) {
+  const { room, ui } = world;
+  const plan = room.plan.value;
+  const scene = room.scene.value;
+  const shown = shownImage(plan, scene);
+  return plan.images.map((image) => {
+    const isShown = image === shown;
+    const show = () => {
+      if (!isShown && room.canChange.value) room.patchScene(imagePatch(image), { view: ui.active.value });
+    };
+    const words = image.name || (plan.images.length > 1 ? `${image.modality} ${image.id}` : image.modality);
+    const tail = isShown && scene ? windowText(scene.image.window, '') : '';
+    return treeRow(world, { kind: 'image', id: image.id, words: [words, tail], title: `${image.size.join(' × ')} voxels`, isOn: isShown, toggle: show, choose: show }, html`
+      ${plan.images.length > 1 ? eye(isShown, `Show ${words}`, 'Show this image', !room.canChange.value, show) : icon('image')}${name(words)}
+      <span class="tail">${tail}</span>`);
+  });
+}
+
+const shownGrid = ({ room }) => {
+  const { dose } = room.scene.value ?? { dose: {} };
+  const { doses: all } = room.plan.value;
+  return dose.grid ? all.find(({ id }) => id === dose.id) ?? all[0] : null;
+};
+
+/** The doses, each with a button that shows its grid over the picture. */
+function doses(world) {
+  const { room, ui } = world;
+  const shown = shownGrid(world);
+  const mark = (dose) => (dose.frame_of_reference === 'differs' ? html`<span class="refused warn" role="img" aria-label=${frameWords(dose)} title=${frameWords(dose)}>${icon('warning')}</span>` : nothing);
+  return room.plan.value.doses.map((dose) => {
+    const isOn = dose === shown;
+    const words = dose.name || dose.id;
+    const toggle = (event) => room.patchScene({ dose: { id: dose.id, grid: !isOn } }, { view: ui.active.value, at: event.timeStamp });
+    return treeRow(world, { kind: 'dose', id: dose.id, words: [words, dose.unit], more: [doseWords(dose)], title: doseWords(dose), isOn, toggle }, html`
+      ${eye(isOn, `Show the grid of ${words}`, 'Show or hide the box of its grid', !room.canChange.value, toggle)}${name(words)} ${mark(dose)} <span class="tail">${dose.unit}</span>`);
+  });
+}
+
+function beams(world) {
+  const { beams: all, curves } = world.room.plan.value;
+  const row = (kind, picture) => (part) => {
+    const words = part.name || part.id;
+    const about = kind === 'beam' ? beamWords(part) : 'reference curve';
+    return treeRow(world, { kind, id: part.id, words: [words, about], title: about }, html`${icon(picture)}${name(words)} <span class="tail clipped">${about}</span>`);
+  };
+  return html`${all.map(row('beam', 'target'))}${curves.map(row('curve', 'curve'))}`;
+}
+
+function tracks(world) {
+  const { trackClasses } = world.room.plan.value;
+  const classes = trackClasses.length ? trackClasses : [{ id: 'tracks', n: world.room.plan.value.nTracks }];
+  return classes.map(({ id, n }) => treeRow(world, { kind: 'tracks', id, words: [className(id), number(n)], more: ['segments'], title: count(n, 'segment') }, html`
+    ${icon('tracks')}${name(className(id))} <span class="tail">${number(n)}</span>`));
+}

@@ -1,0 +1,63 @@
+// Where panels and panes stand in a window of this size. Pure: the same window and choices give the same arrangement.
+
+export const narrowestPane = 420; // px; panels never make a pane of two columns narrower
+const narrowestOfRow = 190; // px, of the two panes beside the active one
+const activeOfRow = 1.28; // width of the active pane of a row, in widths of the others
+const lowestColumn = 560; // px; panes lower than this stand in one row while a sheet is open
+const [railPx, sectionPx, inspectorPx] = [48, 272, 320];
+const touchHeights = 60 + 72 + 28; // banner, dock, status
+const sheetPx = 328;
+
+/** @returns {'wide'|'compact'|'tablet'|'phone'} */
+export function sizeOf({ width, isCoarse }) {
+  if (width < 600) return 'phone';
+  if (isCoarse || width < 1100) return 'tablet';
+  return width < 1400 ? 'compact' : 'wide';
+}
+
+/**
+ * @param {{width: number, height: number, isCoarse: boolean}} window
+ * @param {object} chosen layout '' (as suits the window), '2x2', '1+3', 'row' or 'single'; isTreeOpen; section: open in the overlay;
+ *   isPinned; isInspectorOpen; sheet '', 'tree' or 'inspector'; active, maximised: panes
+ * @returns {{size: string, tree: 'tree'|'rail'|'', overlay: ''|'floats'|'pushes', inspector: 'pushes'|'floats'|'folded'|'', sheet: string, layout: string, visible: number[]}}
+ */
+export function arrange(window, chosen) {
+  const size = sizeOf(window);
+  return size === 'tablet' || size === 'phone' ? onTouch(size, window, chosen) : onDesk(size, window, chosen);
+}
+
+function onTouch(size, { width, height }, chosen) {
+  const panels = { size, tree: '', overlay: '', inspector: '', sheet: chosen.sheet };
+  const layout = size === 'phone' ? 'single' : chosen.layout || (height < 640 ? '2x2' : '1+3');
+  const isLow = height - touchHeights - sheetPx < lowestColumn && width > height;
+  return { ...panels, ...panes(chosen.sheet && isLow && layout !== 'single' ? 'row4' : layout, chosen) };
+}
+
+function onDesk(size, { width }, chosen) {
+  const tree = size === 'wide' && chosen.isTreeOpen ? 'tree' : 'rail';
+  const left = tree === 'tree' ? sectionPx : railPx;
+  const section = tree === 'rail' && chosen.section ? sectionPx : 0;
+  const inspector = chosen.isInspectorOpen ? inspectorPx : railPx;
+  const layout = chosen.maximised ? 'single' : chosen.layout || '2x2';
+  // from 1400 px on both panels fit beside two columns, as they get a little narrower there (room.css)
+  const fits = (aside, columns) => size === 'wide' && !section || (width - left - aside) / columns >= narrowestPane;
+  const fitsRow = (aside) => (width - left - aside) / (2 + activeOfRow) >= narrowestOfRow;
+  const columns = layout === '2x2' || layout === '1+3' ? 2 : 1;
+  const place = (isPushing) => ({ overlay: section ? (isPushing ? 'pushes' : 'floats') : '' });
+  const isRowOrFits = (aside) => (layout === 'row' ? fitsRow(aside) : fits(aside, columns));
+  const pushes = { size, tree, sheet: '', inspector: chosen.isInspectorOpen ? 'pushes' : 'folded' };
+  const floats = { ...pushes, inspector: chosen.isInspectorOpen ? 'floats' : 'folded' };
+  if (section && chosen.isPinned) {
+    if (isRowOrFits(section + inspector)) return { ...pushes, ...place(true), ...panes(layout, chosen) };
+    if (columns === 2 && fitsRow(section + inspector)) return { ...pushes, ...place(true), ...panes('row', chosen) };
+  }
+  if (isRowOrFits(inspector)) return { ...pushes, ...place(false), ...panes(layout, chosen) };
+  return { ...floats, ...place(false), ...panes(layout, chosen) };
+}
+
+/** A row shows three panes: the coronal one stays away, or the sagittal one while the coronal is active. */
+function panes(layout, { active, maximised }) {
+  if (maximised || layout === 'single') return { layout: 'single', visible: [maximised || active] };
+  if (layout === 'row') return { layout, visible: active === 4 ? [1, 2, 4] : [1, 2, 3] };
+  return { layout, visible: [1, 2, 3, 4] };
+}
