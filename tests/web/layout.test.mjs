@@ -4,7 +4,8 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { writeLabels } from './labels.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes as roomSizes, states } from './room_states.mjs';
 
@@ -23,6 +24,8 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     mkdirSync(join(folder, 'beams'));
     writeFileSync(join(folder, 'beams/plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Beams alone',
       beams: [{ id: 'b1', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 120 }] }));
+    mkdirSync(join(folder, 'sides'));
+    writeLabels(join(folder, 'sides'), 'Sides', ['Optic_nerve_of_the_orbit_left', 'Optic_nerve_of_the_orbit_right']);
     world = await startWorld({ plans: [folder] });
   });
   after(async () => {
@@ -129,6 +132,45 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
       assert.match(await head.textContent(), new RegExp(id));
       assert.ok((await head.boundingBox()).y < 150, id);
       await page.locator('#tab-panel').evaluate((panel) => { panel.scrollTop = panel.scrollHeight; }); // the next choice begins at the top again
+    }
+    await page.context().close();
+  });
+
+  it('regions are found by a part of their names, hidden all at once, and left to the targets', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`, roomSizes.wide);
+    await full(page);
+    const shown = async () => Object.entries((await world.scene(room)).regions).filter(([, { visible }]) => visible).map(([id]) => id).sort();
+    const press = async (name) => {
+      const { scene_revision: revision } = await header(page, 1);
+      await page.getByRole('button', { name }).click();
+      await newer(page, 1, revision);
+      await full(page);
+      assert.equal((await header(page, 1)).scene_revision, revision + 1, `${name} is one change`);
+    };
+    const all = await shown();
+    await press('Hide all');
+    assert.deepEqual(await shown(), []);
+    await press('Show only targets');
+    assert.deepEqual(await shown(), ['target', 'tumour']);
+    await press('Hide all');
+    await press('Show all');
+    assert.deepEqual(await shown(), all);
+    await page.getByRole('searchbox', { name: 'Find a region' }).fill('RA');
+    assert.deepEqual(await page.locator('[data-region]').evaluateAll((rows) => rows.map((row) => row.dataset.region)), ['cranium', 'brain']);
+    await page.context().close();
+  });
+
+  it('a name that is cut loses its middle, never its end', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom('sides')}`, roomSizes.wide);
+    await full(page);
+    for (const side of ['left', 'right']) {
+      const row = page.locator('[data-region]', { hasText: side }).first();
+      const [start, end] = await row.locator('.clip span').evaluateAll((spans) => spans.map((span) => ({ text: span.textContent, isCut: span.scrollWidth > span.clientWidth + 1 })));
+      assert.ok(start.isCut, `${start.text} is cut`);
+      assert.deepEqual(end.isCut, false);
+      assert.ok(end.text.endsWith(side));
+      assert.equal(await row.locator('button.name').getAttribute('title'), `Optic_nerve_of_the_orbit_${side}`);
     }
     await page.context().close();
   });

@@ -1,6 +1,6 @@
 // Regions in the tree, in the picture's legend and in dialogs: what the page says about what is and is not drawn.
 import assert from 'node:assert/strict';
-import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
@@ -8,30 +8,7 @@ import { call } from '../api/daemon.mjs';
 import { writeFoamPlan } from '../api/foam_plan.mjs';
 import { Client } from '../api/ws_client.mjs';
 import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
-
-const side = 40; // univels of 1 mm
-
-/** A label map as NIfTI-1: 1 a ball, 2 two balls side by side on the same slices. */
-function labels() {
-  const bytes = Buffer.alloc(352 + side ** 3);
-  bytes.writeInt32LE(348, 0);
-  [3, side, side, side, 1, 1, 1, 1].forEach((value, at) => bytes.writeInt16LE(value, 40 + 2 * at));
-  bytes.writeInt16LE(2, 70); // unsigned bytes
-  bytes.writeInt16LE(8, 72);
-  [1, 1, 1, 1].forEach((value, at) => bytes.writeFloatLE(value, 76 + 4 * at));
-  bytes.writeFloatLE(352, 108);
-  bytes.writeInt8(2, 123); // mm
-  bytes.writeInt16LE(1, 254); // sform
-  [[1, 0, 0], [0, 1, 0], [0, 0, 1]].forEach((row, r) => row.forEach((value, c) => bytes.writeFloatLE(value, 280 + 16 * r + 4 * c)));
-  bytes.write('n+1\0', 344, 'latin1');
-  for (let k = 0; k < side; k++)
-    for (let j = 0; j < side; j++)
-      for (let i = 0; i < side; i++) {
-        const within = (x, y, z, radius) => Math.hypot(i - x, j - y, k - z) < radius;
-        bytes[352 + i + side * (j + side * k)] = within(20, 12, 20, 8) ? 1 : within(10, 30, 20, 6) || within(28, 30, 20, 6) ? 2 : 0;
-      }
-  return bytes;
-}
+import { writeLabels } from './labels.mjs';
 
 describe('regions on the page', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -40,9 +17,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'beamroom-regions-'));
     mkdirSync(join(folder, 'balls'));
-    writeFileSync(join(folder, 'balls/labels.nii'), labels());
-    writeFileSync(join(folder, 'balls/names.json'), JSON.stringify({ labels: [{ value: 1, name: 'ball' }, { value: 2, name: 'pair' }] }));
-    writeFileSync(join(folder, 'balls/plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Balls', regions: [{ path: 'labels.nii', names: 'names.json' }] }));
+    writeLabels(join(folder, 'balls'), 'Balls', ['ball', 'pair']);
     writeFoamPlan(folder);
     world = await startWorld({ plans: [folder] });
   });

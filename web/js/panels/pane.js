@@ -232,7 +232,8 @@ export class Pane {
   #slider() {
     const { kind } = this.#view;
     const { scene, plan } = this.#room;
-    if (kind === '3d' || !scene.value || !plan.value) return nothing;
+    if (kind === '3d') return nothing;
+    if (!scene.value || !plan.value) return html`<div class="slice-slider"></div>`; // its place, so that the picture keeps its size
     const { axis, letter } = planes[kind];
     const image = shownImage(plan.value, scene.value);
     const { low, high } = image?.bounds ?? plan.value.bounds;

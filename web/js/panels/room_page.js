@@ -61,6 +61,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
     const answered = room.frameShown(header, isDrawn);
     hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
   };
+  stops.push(adapt(ui), effect(() => layOut(host.querySelector('.room'), ui))); // before the panes measure themselves: views open at their sizes
   const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
@@ -68,7 +69,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const world = { after, room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
-  stops.push(effect(() => layOut(host.querySelector('.room'), ui)), effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), adapt(ui));
+  stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock));
   stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);

@@ -8,7 +8,7 @@ const endLength = 7; // characters of a name that stay when it is cut: often the
 
 /** A name that loses its middle when there is no room for it, never its end. */
 export function clipped(text) {
-  const at = text.length > 2 * endLength ? text.length - endLength : text.length;
+  const at = text.length > endLength + 1 ? text.length - endLength : text.length;
   return html`<span class="clip"><span>${text.slice(0, at)}</span><span>${text.slice(at)}</span></span>`;
 }
 

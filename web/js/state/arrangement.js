@@ -3,7 +3,8 @@
 export const narrowestPane = 420; // px; panels never make a pane of two columns narrower
 const narrowestOfRow = 190; // px, of the two panes beside the active one
 const activeOfRow = 1.28; // width of the active pane of a row, in widths of the others
-const lowestColumn = 560; // px; panes lower than this stand in one row while a sheet is open
+const lowestColumn = 560; // px; panes with less height stand in one row while a sheet is open
+const lowestThree = 420; // px; the same without a sheet
 const [railPx, sectionPx, inspectorPx] = [48, 272, 320];
 const touchHeights = 60 + 72 + 28; // banner, dock, status
 const sheetPx = 328;
@@ -28,9 +29,10 @@ export function arrange(window, chosen) {
 
 function onTouch(size, { width, height }, chosen) {
   const panels = { size, tree: '', overlay: '', inspector: '', sheet: chosen.sheet };
-  const layout = size === 'phone' ? 'single' : chosen.layout || (height < 640 ? '2x2' : '1+3');
-  const isLow = height - touchHeights - sheetPx < lowestColumn && width > height;
-  return { ...panels, ...panes(chosen.sheet && isLow && layout !== 'single' ? 'row4' : layout, chosen) };
+  const layout = size === 'phone' ? 'single' : chosen.layout || '1+3';
+  const left = height - touchHeights - (chosen.sheet ? sheetPx : 0);
+  const isLow = left < (chosen.sheet ? lowestColumn : lowestThree) && width > height;
+  return { ...panels, ...panes(isLow && layout !== 'single' ? 'row4' : layout, chosen) };
 }
 
 function onDesk(size, { width }, chosen) {

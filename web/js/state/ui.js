@@ -57,10 +57,18 @@ export class UiState {
     this.popover.value = this.popover.value === name ? '' : name;
   }
 
-  /** Selects what was clicked and shows it in the inspector. */
-  choose(kind, id = '') {
+  /** Selects what was clicked in a picture. Opens no panel: the picture would move away under the pointer. isShown: turns to its tab. */
+  select(kind, id = '', isShown = true) {
     batch(() => {
       this.selection.value = { kind, id };
+      if (isShown) this.tab.value = 'selection';
+    });
+  }
+
+  /** Selects what was clicked in a list and shows it in the inspector. */
+  choose(kind, id = '') {
+    batch(() => {
+      this.select(kind, id);
       this.showTab('selection');
     });
   }
