@@ -247,7 +247,9 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     const page = await newPage(`#/rooms/${room}`);
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
+    const { scene_revision: before } = await header(page, 1);
     await page.locator('button', { hasText: 'Solo' }).click();
+    await page.waitForFunction((old) => globalThis.beamroom.stats().headers[1].scene_revision > old, before); // or its picture counts as the first of the others
     await full(page);
     const prints = new Set();
     const figures = page.locator('dl.figures');
