@@ -69,7 +69,7 @@ describe('a burst of connections', () => {
     await openPlan(daemon.url, 'phantom');
     room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
     client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-    client.send({ type: 'hello', protocol: 1 });
+    client.send({ type: 'hello', protocol: 2 });
     await client.message('welcome');
     client.send({ type: 'view.open', view: 1, document: { size_px: [64, 64] } });
     await client.frame();

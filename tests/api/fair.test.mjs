@@ -22,7 +22,7 @@ after(async () => {
 async function join(room) {
   const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
   clients.push(client);
-  client.send({ type: 'hello', protocol: 1 });
+  client.send({ type: 'hello', protocol: 2 });
   await client.message('welcome');
   await client.message('renderer', (m) => m.state === 'ready');
   return client;

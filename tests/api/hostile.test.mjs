@@ -259,7 +259,7 @@ describe('a socket that misbehaves', () => {
   before(async () => {
     room = (await call(`${api}/rooms`, 'POST', { plan: 'good' })).json.id;
     neighbour = await Client.open(url, `/api/v1/rooms/${room}/ws`);
-    neighbour.send({ type: 'hello', protocol: 1 });
+    neighbour.send({ type: 'hello', protocol: 2 });
     await neighbour.message('welcome');
   });
   after(() => neighbour?.cut());
@@ -283,7 +283,7 @@ describe('a socket that misbehaves', () => {
   for (const [what, code, act, sendsOn] of cases)
     test(`${what} closes it with ${code}`, async () => {
       const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
-      client.send({ type: 'hello', protocol: 1 });
+      client.send({ type: 'hello', protocol: 2 });
       await client.message('welcome');
       act(client);
       await client.until(() => client.closeCode, 'the end');
@@ -293,7 +293,7 @@ describe('a socket that misbehaves', () => {
 
   test('a camera whose eye is its target is told to who set it, once', async () => {
     const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
-    client.send({ type: 'hello', protocol: 1 });
+    client.send({ type: 'hello', protocol: 2 });
     await client.message('welcome');
     client.send({ type: 'view.open', view: 1, document: { kind: '3d', size_px: [64, 64], camera: { position_mm: [1, 2, 3], target_mm: [1, 2, 3], up: [0, 0, 1] } } });
     const problem = await client.message('problem');

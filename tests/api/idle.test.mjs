@@ -23,7 +23,7 @@ async function withDaemon(args, run) {
   const enter = async (room) => {
     const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
     clients.push(client);
-    client.send({ type: 'hello', protocol: 1 });
+    client.send({ type: 'hello', protocol: 2 });
     client.welcome = await client.message('welcome');
     return client;
   };

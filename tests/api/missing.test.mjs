@@ -68,7 +68,7 @@ describe('a region that would take more triangles than the limit', { timeout: 24
     const room = (await call(`${api}/rooms`, 'POST', { plan: 'foam' })).json.id;
     const join_ = async () => {
       const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-      client.send({ type: 'hello', protocol: 1 });
+      client.send({ type: 'hello', protocol: 2 });
       await client.message('welcome');
       client.send({ type: 'view.open', view: 1, document: { size_px: [160, 120] }, follow: true, input: 1 });
       return client;

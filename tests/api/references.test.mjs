@@ -75,7 +75,7 @@ describe('a name the plan does not have', () => {
 
   test('is refused in a message, and pictures go on', async () => {
     const client = await Client.open(url, `/api/v1/rooms/${await newRoom()}/ws`);
-    client.send({ type: 'hello', protocol: 1 });
+    client.send({ type: 'hello', protocol: 2 });
     const { revision } = await client.message('welcome');
     client.send({ type: 'view.open', view: 1, document: { size_px: [64, 48] } });
     await client.frame((f) => f.isStill);

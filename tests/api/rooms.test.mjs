@@ -22,7 +22,7 @@ test('every room that the daemon allows has a scene of its own and is drawn, the
   assert.equal((await call(`${api}/rooms/${last}/scene`, 'PATCH', { regions: { brain: { opacity: 0.2 } } }, { 'If-Match': '*' })).status, 200);
   for (const room of [last, rooms[0], rooms[256]]) {
     const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-    client.send({ type: 'hello', protocol: 1 });
+    client.send({ type: 'hello', protocol: 2 });
     client.send({ type: 'view.open', view: 1, document: { size_px: [64, 48] } });
     const frame = await client.frame((f) => f.isStill, 0, 20000);
     assert.equal(frame.revision, room === last ? 2 : 1);

@@ -19,7 +19,7 @@ test('members and who has not said hello yet are told to come back in 2 s, with 
     const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
     clients.push(client);
     if (!says) continue;
-    client.send({ type: 'hello', protocol: 1 });
+    client.send({ type: 'hello', protocol: 2 });
     await client.message('welcome');
   }
   const ended = new Promise((done) => daemon.child.on('exit', done));

@@ -87,7 +87,7 @@ describe('an archive', () => {
       assert.equal(png.width, 80);
       const room = (await call(`${api}/rooms`, 'POST', { plan: job.plan })).json;
       const client = await Client.open(daemon.url, `/api/v1/rooms/${room.id}/ws`);
-      client.send({ type: 'hello', protocol: 1 });
+      client.send({ type: 'hello', protocol: 2 });
       await client.message('welcome');
 
       assert.equal((await call(`${api}/plans/${job.plan}`, 'DELETE')).status, 204);

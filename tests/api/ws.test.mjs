@@ -32,7 +32,7 @@ async function connectTo(room, headers) {
 async function join(room, hello = {}) {
   const client = await connectTo(room);
   assert.equal(client.status, 101);
-  client.send({ type: 'hello', protocol: 1, ...hello });
+  client.send({ type: 'hello', protocol: 2, ...hello });
   client.welcome = await client.message('welcome');
   if (!client.welcome.plan) await client.message('plan', () => true, 0, 60000);
   await client.message('renderer', (m) => m.state === 'ready', 0, 60000);
@@ -91,10 +91,10 @@ describe('the handshake', () => {
     await client.message('bye');
     await client.until(() => client.closeCode);
   });
-  test('another protocol version is told to go', async () => {
+  test('a page of an earlier protocol version is told to reload', async () => {
     const client = await connectTo(await newRoom());
-    client.send({ type: 'hello', protocol: 2 });
-    assert.match((await client.message('bye')).reason, /protocol/);
+    client.send({ type: 'hello', protocol: 1 });
+    assert.match((await client.message('bye')).reason, /reload/);
   });
 });
 

@@ -77,7 +77,7 @@ static void join(void *context, struct outcome *outcome)
     faults_pause();
     struct room_world *world = world_make();
     faults_go_on();
-    static const char hello[] = "{\"type\":\"hello\",\"protocol\":1}",
+    static const char hello[] = "{\"type\":\"hello\",\"protocol\":2}",
                       open[] =
                           "{\"type\":\"view.open\",\"view\":1,\"document\":{\"size_px\":[800,600]},\"follow\":true}",
                       patch[] = "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"scalp\":{\"opacity\":0.25}}}}";

@@ -149,7 +149,7 @@ void fake_say(struct fake_room *fake, struct fake_page *page, const char *format
 
 void fake_hello(struct fake_room *fake, struct fake_page *page)
 {
-    fake_say(fake, page, "{\"type\":\"hello\",\"protocol\":1}");
+    fake_say(fake, page, "{\"type\":\"hello\",\"protocol\":2}");
 }
 
 void fake_join(struct fake_room *fake, struct fake_page *page, bool follow)

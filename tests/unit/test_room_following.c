@@ -330,7 +330,7 @@ static void enter(int who)
 {
     struct person *person = &people[who];
     forget_page(person);
-    fake_say(&fake, &person->page, "{\"type\":\"hello\",\"protocol\":1,\"member\":\"%s\",\"secret\":\"%s\"}",
+    fake_say(&fake, &person->page, "{\"type\":\"hello\",\"protocol\":2,\"member\":\"%s\",\"secret\":\"%s\"}",
              person->id, person->secret);
     cJSON *welcome = fake_heard(&person->page, "welcome");
     if (meeting.seats[who].is_member != (strcmp(person->id, json_text(welcome, "member")) == 0))

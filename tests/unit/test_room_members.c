@@ -3,7 +3,7 @@
 
 static void come_back(struct fake_page *page, const char *id, const char *secret)
 {
-    fake_say(&fake, page, "{\"type\":\"hello\",\"protocol\":1,\"member\":\"%s\",\"secret\":\"%s\"}", id, secret);
+    fake_say(&fake, page, "{\"type\":\"hello\",\"protocol\":2,\"member\":\"%s\",\"secret\":\"%s\"}", id, secret);
 }
 
 static int width_of(const struct fake_request *request)
@@ -40,7 +40,7 @@ static void who_gives_no_name_is_numbered(void **state)
     assert_string_equal(heard(&ann, "welcome", "name"), "Reviewer 1");
     fake_hello(&fake, &ben);
     assert_string_equal(heard(&ben, "welcome", "name"), "Reviewer 2");
-    fake_say(&fake, &cem, "{\"type\":\"hello\",\"protocol\":1,\"name\":\"Cem\"}");
+    fake_say(&fake, &cem, "{\"type\":\"hello\",\"protocol\":2,\"name\":\"Cem\"}");
     assert_string_equal(heard(&cem, "welcome", "name"), "Cem");
 }
 
@@ -56,7 +56,7 @@ static void nothing_but_hello_may_come_first(void **state)
 static void another_protocol_is_told_to_go(void **state)
 {
     (void)state;
-    fake_say(&fake, &ann, "{\"type\":\"hello\",\"protocol\":2}");
+    fake_say(&fake, &ann, "{\"type\":\"hello\",\"protocol\":1}");
     assert_int_equal(fake_n_heard(&ann, "bye"), 1);
     assert_true(ann.is_closed);
 }

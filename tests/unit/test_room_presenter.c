@@ -305,7 +305,7 @@ static void a_presenter_who_is_back_within_30_s_presents_and_nothing_has_moved(v
     fake_pass(&fake, 29999);
     assert_string_equal(role(&ben, 0), "presents");
     size_t n_drawn = fake.n_requests, n_views = fake_n_heard(&ben, "view");
-    fake_say(&fake, &dee, "{\"type\":\"hello\",\"protocol\":1,\"member\":\"%s\",\"secret\":\"%s\"}", id, secret);
+    fake_say(&fake, &dee, "{\"type\":\"hello\",\"protocol\":2,\"member\":\"%s\",\"secret\":\"%s\"}", id, secret);
     fake_say(&fake, &dee,
              "{\"type\":\"view.open\",\"view\":1,\"document\":{\"size_px\":[800,600],\"camera\":{\"height_mm\":5}},"
              "\"follow\":true}");

@@ -83,7 +83,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     const room = await world.newRoom('balls');
     const other = await Client.open(world.daemon.url, `/api/v1/rooms/${room}/ws`); // the first one presents
     const look = (position_mm) => other.send({ type: 'view.patch', view: 1, patch: { camera: { position_mm, target_mm: [0, 0, 0], up: [0, 0, 1] } } });
-    other.send({ type: 'hello', protocol: 1 });
+    other.send({ type: 'hello', protocol: 2 });
     other.send({ type: 'view.open', view: 1, document: { size_px: [64, 64] }, follow: true });
     await other.message('members');
     const page = await world.newPage(`#/rooms/${room}`);

@@ -19,7 +19,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
 
   const enter = async (room, name) => {
     const guest = await Client.open(world.daemon.url, `/api/v1/rooms/${room}/ws`);
-    guest.send({ type: 'hello', protocol: 1, name });
+    guest.send({ type: 'hello', protocol: 2, name });
     await guest.message('welcome');
     guests.push(guest);
     return guest;
