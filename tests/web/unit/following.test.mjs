@@ -164,6 +164,75 @@ test('who is left alone is told so, and not that somebody who is gone called', (
   assert.deepEqual(told.map(([, text]) => text), ['You are alone here, and present now.']);
 });
 
+// ---- what crosses on the way ----------------------------------------------------------------------------------------------
+
+const notPresenter = (to, input, more = {}) => ({ type: 'problem', to, view: 0, input, problem: { type: '/problems/not-presenter', status: 403, detail: 'only the presenter, m2, may do that' }, ...more });
+
+test('a change that was on its way when the presenter called everybody back is dropped without a word', () => {
+  const { room, connection, flush, told } = follower();
+  room.following.leave();
+  connection.receive(viewMessage(false));
+  room.patchView(2, { camera: { ...camera, height_mm: 200 } });
+  room.patchScene({ regions: { brain: { visible: false } } });
+  flush();
+  const [{ type, input }] = connection.sent.slice(-1);
+  assert.equal(type, 'view.patch');
+  connection.receive(viewMessage(true)); // "Show everyone"
+  connection.receive(members('m2', ['m1']));
+  told.length = 0;
+  connection.receive(notPresenter('view.patch', input, { view: 2 }));
+  assert.deepEqual(told, []);
+  assert.deepEqual(room.view(2).document.value, { ...shared });
+  assert.equal(room.scene.value.regions.brain.visible, true);
+});
+
+test('a change of the room that was on its way when somebody else took over is taken back without a word', () => {
+  const { room, connection, flush, told } = roomWorld(members('m1', ['m2']));
+  room.patchScene({ regions: { brain: { opacity: 0.5 } } });
+  flush();
+  const { input } = connection.sent.at(-1);
+  connection.receive(members('m2', ['m1']));
+  told.length = 0;
+  connection.receive(notPresenter('scene.patch', input));
+  assert.deepEqual(told, []);
+  assert.equal(room.scene.value.regions.brain.opacity, 1);
+});
+
+test('what only a presenter may do is still refused aloud while this member presents', () => {
+  const { room, connection, flush, told } = roomWorld(members('m1', ['m2']));
+  room.patchScene({ regions: { brain: { opacity: 0.5 } } });
+  flush();
+  told.length = 0;
+  connection.receive(notPresenter('scene.patch', connection.sent.at(-1).input));
+  assert.deepEqual(told.map(([kind]) => kind), ['err']);
+});
+
+test('who leaves in the moment in which they are left alone presents what the page shows, without a word', () => {
+  const { room, connection, flush, told } = follower();
+  room.patchScene({ image: { slices: { axial: { position_mm: 7 } } } }, { view: 2 });
+  flush();
+  const { input } = connection.sent.find(({ type }) => type === 'follow');
+  connection.receive(viewMessage(true));
+  connection.receive(members('m1', ['m2'], { m2: { connected: false } }));
+  told.length = 0;
+  connection.sent.length = 0;
+  connection.receive(notPresenter('follow', input)); // the presenter cannot leave
+  assert.deepEqual(told, []);
+  assert.deepEqual([room.following.isFollowing.value, room.following.override.value], [true, null]);
+  // the server has taken the patch that followed for one of the shared view
+  const [{ type, view, patch }] = connection.sent;
+  assert.deepEqual([type, view, patch.override, patch.camera], ['view.patch', 2, null, room.view(2).document.value.camera]);
+});
+
+test('of two who take over at once the later one is told who presents', () => {
+  const { room, connection, told } = follower();
+  connection.receive(members(null, ['m1', 'm3']));
+  room.following.present();
+  connection.receive(members('m3', ['m1']));
+  connection.receive(notPresenter('present', connection.sent.at(-1).input));
+  assert.deepEqual(told.at(-1).slice(0, 2), ['ok', 'Dr B has taken over.']);
+});
+
 // ---- a lost connection --------------------------------------------------------------------------------------------------
 
 test('what the presenter changed without a connection, and what was on its way, is sent after it as one newest change', () => {

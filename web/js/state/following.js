@@ -148,9 +148,24 @@ export class Following {
   }
 
   /** The server refused to let this member leave or return. */
-  refused(follow) {
+  refused() {
     for (const view of this.#room.views) view.awaited = [];
-    if (!follow) this.#follow();
+    if (this.isFollowing.value) return;
+    this.#follow();
+    if (!this.isPresenting.value) return;
+    // what was sent as changes of own views has changed the shared ones: they become what this page shows
+    for (const view of this.#room.views)
+      if (view.isOpen.value) this.#tell({ type: 'view.patch', view: view.number, patch: { camera: view.document.value.camera ?? null, override: null } });
+  }
+
+  /**
+   * Whether a message that only a presenter, or only somebody else, may send was right when it was sent: who presents and who
+   * follows had changed on the server meanwhile, and this page has heard of that by now. Nobody did anything wrong then.
+   */
+  isOvertaken(type) {
+    if (type === 'follow') return this.isPresenting.value;
+    if (type === 'present') return this.presenter.value !== null && !this.isPresenting.value;
+    return ['view.patch', 'scene.patch'].includes(type) && this.isFollowing.value && !this.isPresenting.value;
   }
 
   #follow() {

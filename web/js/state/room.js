@@ -263,8 +263,12 @@ export class RoomState {
   #refused({ to, view, input, problem }) {
     this.#scene.refuse(input);
     if (this.view(view)) this.view(view).refuse(input);
-    if (to === 'follow') this.following.refused(this.following.isFollowing.value);
+    if (to === 'follow') this.following.refused();
     if (this.scene.value) this.#showScene();
+    if (problem?.type === '/problems/not-presenter' && this.following.isOvertaken(to)) {
+      if (to === 'present') this.notify('ok', `${this.following.presenter.value.name} has taken over.`, 'following');
+      return;
+    }
     if (to === '' && this.view(view)) this.view(view).refuseToDraw(problem?.detail || 'The server gave no reason.');
     this.notify('err', problem?.detail || `The server refused ${to || 'a message'}.`);
   }
