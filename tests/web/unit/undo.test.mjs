@@ -1,6 +1,7 @@
 // Undo and redo: steps, gestures, what somebody else has changed, and the words of the buttons; over a room that is a fake.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { members, roomWorld } from './fake_room.mjs';
 import { load } from './page.mjs';
 
 const { Undo, maxSteps, joinMs, listenUndo } = await load('state/undo.js');
@@ -13,6 +14,7 @@ function world() {
   const views = [{ kind: '3d', document: { value: { kind: '3d', size_px: [10, 10] } } }, { kind: 'axial', document: { value: { kind: 'axial' } } }];
   const room = {
     canChange: { value: true },
+    following: { isPresenting: { value: true } },
     plan: { value: { images: [{ id: 'ct', unit: 'HU' }], regions: [{ id: 'r1', name: 'brain' }, { id: 'r2', name: 'tumor' }] } },
     scene: { value: { regions: { r1: { opacity: 1, visible: true }, r2: { opacity: 1, visible: true } }, image: { window: { center: 40, width: 400 }, slices: { axial: { position_mm: 0 }, coronal: { position_mm: 0 }, sagittal: { position_mm: 0 } } } } },
     view: (number) => views[number - 1],
@@ -168,6 +170,55 @@ test('the oldest of more than 100 steps is forgotten', () => {
   }
   for (let step = 0; step < maxSteps + 20; step++) undo.undo();
   assert.equal(room.scene.value.image.window.center, 45);
+});
+
+test('what was changed on one\'s own is no step any more after the return, the steps of the room stay', () => {
+  const { room, connection, told, flush, advance } = roomWorld(members('m1', ['m2']));
+  const undo = new Undo(room, { clock: { now: () => 0 }, notify: (...words) => told.push(words) });
+  room.showView(2, [400, 400]);
+  const opacity = (value) => { room.patchScene({ regions: { brain: { opacity: value } } }); flush(); };
+  opacity(0.5); // as the presenter
+  connection.receive({ type: 'scene', revision: 2, patch: { regions: { brain: { opacity: 0.5 } } }, by: 'm1', input: connection.sent.at(-1).input });
+  connection.receive(members('m2', ['m1']));
+  const isOwn = () => !room.following.isFollowing.value;
+  undo.undo();
+  assert.deepEqual([undo.next.value, isOwn()], [null, false], 'a step of the room is the presenter\'s');
+  opacity(0.4);
+  advance(joinMs + 1);
+  room.patchView(2, { camera: { height_mm: 200 } });
+  undo.undo();
+  assert.notEqual(undo.next.value, null);
+  assert.notEqual(undo.nextAgain.value, null);
+  undo.undo();
+  assert.equal(room.scene.value.regions.brain.opacity, 0.5, 'the own change of the same field is a step of its own');
+  undo.undo();
+  assert.equal(room.scene.value.regions.brain.opacity, 0.5);
+  undo.redo();
+  room.following.return();
+  told.length = 0;
+  undo.undo();
+  undo.redo();
+  assert.deepEqual([undo.next.value, undo.nextAgain.value, isOwn(), told], [null, null, false, []]);
+  connection.receive(members('m1', ['m2']));
+  assert.notEqual(undo.next.value, null);
+  undo.undo();
+  assert.equal(room.scene.value.regions.brain.opacity, 1);
+});
+
+test('what was changed on one\'s own is no step any more after the presenter has called everybody back', () => {
+  const { room, connection, told, flush } = roomWorld(members('m2', ['m1']));
+  const undo = new Undo(room, { clock: { now: () => 0 }, notify: (...words) => told.push(words) });
+  room.showView(2, [400, 400]);
+  room.patchScene({ regions: { brain: { opacity: 0.4 } } });
+  flush();
+  const view = (follow) => connection.receive({ type: 'view', view: 2, document: { kind: 'axial', size_px: [400, 400] }, follow, by: 'm2' });
+  view(false);
+  assert.notEqual(undo.next.value, null);
+  connection.receive({ type: 'scene', revision: 2, patch: { regions: { brain: { opacity: 0.7 } } }, by: 'm2' });
+  view(true);
+  told.length = 0;
+  undo.undo();
+  assert.deepEqual([undo.next.value, room.following.isFollowing.value, told], [null, true, []]);
 });
 
 test('keys undo and redo, but not while a text field has the focus', () => {

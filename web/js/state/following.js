@@ -58,6 +58,7 @@ export class Following {
   return() {
     if (this.isFollowing.value || this.isPresenting.value) return false;
     this.#follow();
+    this.#room.returned();
     this.#act(true);
     const name = this.presenter.value?.name;
     this.#room.notify('ok', name ? `Following ${name}.` : 'Back in the shared view.', 'following');
@@ -142,7 +143,10 @@ export class Following {
     else {
       this.#follow();
       // a presenter who is away did not call: the list of members that says who presents now is still to come
-      if (this.presenter.value && this.presenter.value.connected !== false && !this.isPresenting.value) this.#room.notify('ok', `${this.presenter.value.name} shows everybody the same view. You follow again.`, 'following');
+      if (this.presenter.value && this.presenter.value.connected !== false && !this.isPresenting.value) {
+        this.#room.returned();
+        this.#room.notify('ok', `${this.presenter.value.name} shows everybody the same view. You follow again.`, 'following');
+      }
     }
     return true;
   }
@@ -152,7 +156,7 @@ export class Following {
     for (const view of this.#room.views) view.awaited = [];
     if (this.isFollowing.value) return;
     this.#follow();
-    if (!this.isPresenting.value) return;
+    if (!this.isPresenting.value) return void this.#room.returned();
     // what was sent as changes of own views has changed the shared ones: they become what this page shows
     for (const view of this.#room.views)
       if (view.isOpen.value) this.#tell({ type: 'view.patch', view: view.number, patch: { camera: view.document.value.camera ?? null, override: null } });

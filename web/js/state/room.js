@@ -36,6 +36,8 @@ export class RoomState {
     this.notify = notify;
     /** @type {(of: 'scene'|number, patch: object, document: object) => void} told each change of this person before it is applied */
     this.recorder = () => {};
+    /** @type {() => void} told when this member follows again after having been on their own */
+    this.returned = () => {};
 
     // connecting | open | lost | ended; when an answer is overdue, quietSince: time of the last sign of the server; dueSince: of the answer
     this.link = signal({ state: 'connecting', retryAt: 0, quietSince: 0, dueSince: 0, reason: '' });

@@ -1,5 +1,5 @@
 // Undo and redo of what this person changed: the scene, and the cameras of the views.
-import { batch, signal } from '../../lib/signals-core.js';
+import { batch, effect, signal } from '../../lib/signals-core.js';
 import { isObject } from '../wire/merge.js';
 
 /** Steps that are kept; the oldest is forgotten first. */
@@ -21,7 +21,7 @@ export class Undo {
   #room;
   #clock;
   #notify;
-  #done = []; // steps {changes: Map<string, Change>, gesture, at}, oldest first
+  #done = []; // steps {changes: Map<string, Change>, gesture, at, isOwn}, oldest first; isOwn: made on one's own, for nobody else
   #undone = [];
   #gesture = 0; // the press that is held down; 0: none
   #nextGesture = 1;
@@ -38,6 +38,8 @@ export class Undo {
     this.next = signal(null); // the changes that undo would take back, Change[]; null: none
     this.nextAgain = signal(null); // the same of redo
     room.recorder = (of, patch, document) => this.#record(of, patch, document);
+    room.returned = () => this.#dropOwn();
+    effect(() => this.#tell());
   }
 
   /** All changes until release() are one step: a drag, or one movement of a slider. */
@@ -73,17 +75,18 @@ export class Undo {
       const known = step.changes.get(key);
       step.changes.set(key, known ? { ...known, after: change.after } : change);
     }
-    this.#undone = [];
+    this.#undone = this.#undone.filter((undone) => !this.#reaches(undone));
     this.#tell();
   }
 
   /** The step that these changes belong to: the last one, or a new one. */
   #stepFor(changes, now) {
     const last = this.#done.at(-1);
-    const isSamePress = last && this.#gesture !== 0 && last.gesture === this.#gesture;
-    const isSameFields = last && !this.#undone.length && now - last.at <= joinMs && changes.length === last.changes.size && changes.every((change) => last.changes.has(keyOf(change)));
+    const isOwn = this.#isOnOwn;
+    const isSamePress = last?.isOwn === isOwn && this.#gesture !== 0 && last.gesture === this.#gesture;
+    const isSameFields = last?.isOwn === isOwn && !this.#reaches(this.#undone.at(-1)) && now - last.at <= joinMs && changes.length === last.changes.size && changes.every((change) => last.changes.has(keyOf(change)));
     if (isSamePress || isSameFields) return last;
-    const step = { changes: new Map(), gesture: this.#gesture, at: now };
+    const step = { changes: new Map(), gesture: this.#gesture, at: now, isOwn };
     this.#done = [...this.#done, step].slice(-maxSteps);
     return step;
   }
@@ -93,13 +96,13 @@ export class Undo {
     if (!this.#room.canChange.value) return;
     let step = null;
     let open = [];
-    while (!open.length && from.length) { // a step that was refused, or already is as wanted, is passed over
+    while (!open.length && this.#reaches(from.at(-1))) { // a step that was refused, or already is as wanted, is passed over
       step = from.pop();
       open = [...step.changes.values()].filter((change) => !isSame(this.#now(change), change[wanted]));
     }
     const mine = open.filter((change) => isSame(this.#now(change), change[left]));
     this.#restore(mine, wanted);
-    if (mine.length) to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity });
+    if (mine.length) to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity, isOwn: step.isOwn });
     if (mine.length < open.length)
       this.#notify('warn', mine.length ? `Only in part ${word}: the rest was changed by somebody else since.` : `Not ${word}: it was changed by somebody else since.`, 'undo');
     this.#tell();
@@ -125,8 +128,25 @@ export class Undo {
     return at(of === 'scene' ? this.#room.scene.value : this.#room.view(of).document.value, path);
   }
 
+  get #isOnOwn() {
+    return !this.#room.following.isPresenting.value;
+  }
+
+  /** The room's steps are the presenter's: to take one back, anybody else would have to leave. */
+  #reaches(step) {
+    const isOnOwn = this.#isOnOwn; // read also without a step: next and nextAgain are told anew when it changes
+    return step !== undefined && (step.isOwn || !isOnOwn);
+  }
+
+  /** After returning to the presenter's views: what was changed on one's own is gone already. */
+  #dropOwn() {
+    this.#done = this.#done.filter(({ isOwn }) => !isOwn);
+    this.#undone = this.#undone.filter(({ isOwn }) => !isOwn);
+    this.#tell();
+  }
+
   #tell() {
-    const changes = (step) => (step ? [...step.changes.values()] : null);
+    const changes = (step) => (this.#reaches(step) ? [...step.changes.values()] : null);
     batch(() => {
       this.next.value = changes(this.#done.at(-1));
       this.nextAgain.value = changes(this.#undone.at(-1));
