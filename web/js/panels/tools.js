@@ -79,6 +79,6 @@ function dock(world) {
     ${button('target', 'Probe', isTab('probe'), open('probe'))}
     ${button('panel', 'Selection', isTab('selection'), open('selection'))}
     ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}
-      <span class="grow"></span><p class="read-out"><b>${region?.name ?? ''}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`}
+      <span class="grow"></span><p class="at-crosshair"><b>${region?.name ?? ''}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`}
   </div>`;
 }
