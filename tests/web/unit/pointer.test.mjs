@@ -5,7 +5,7 @@ import { load } from './page.mjs';
 
 const { PointerReader } = await load('view/pointer.js');
 const { Pointed, restMs } = await load('state/pointed.js');
-const { overlap, placeBeside } = await load('view/place.js');
+const { cardOf, overlap, placeBeside } = await load('view/place.js');
 
 class FakeElement extends EventTarget {
   getBoundingClientRect() { return { left: 0, top: 0, width: 400, height: 300 }; }
@@ -218,4 +218,15 @@ test('a card lies beside its point, inside the pane, on no letter', () => {
 test('where nothing is free a card covers as little as it can', () => {
   const { x, y } = placeBeside({ x: 50, y: 40 }, size, [180, 90], [{ x: 0, y: 0, width: 180, height: 90 }], 16);
   assert.ok(x >= 0 && y >= 0);
+});
+
+test('a card is no wider than its pane, where the position takes two lines', () => {
+  const words = { name: 'tumor', value: { label: 'MR', text: '138', unit: '' }, lines: ['in brain, scalp', 'L \u2212124.9  P 138.4  S \u221264.9 mm'] };
+  const wide = cardOf(words, 320, false);
+  assert.deepEqual(wide.lines, words.lines);
+  const narrow = cardOf(words, 150, false);
+  assert.ok(narrow.width <= 150 - 12, `${narrow.width} px, with 6 px at each side`);
+  assert.deepEqual(narrow.lines, ['in brain, scalp', 'L \u2212124.9  P 138.4', 'S \u221264.9 mm']);
+  assert.equal(narrow.height - wide.height, 16, 'one line of 16 px more');
+  assert.ok(cardOf(words, 150, true).height > narrow.height, 'the value is larger for a finger');
 });

@@ -1,15 +1,13 @@
 // The card at the pointer: region, image value and position, beside the place that the mouse rests on or a finger held.
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { shownImage } from '../state/plan.js';
-import { placeBeside } from '../view/place.js';
+import { cardOf, placeBeside } from '../view/place.js';
 import { imageValue, position, volume } from './format.js';
 import { variables } from './mount.js';
 
-const width = 196;
 const mouseGap = 16;
 const touchGap = 40; // a finger covers what is nearer
 const rings = [24, 31];
-const heights = { padding: 18, name: 18, line: 16, large: 26 };
 
 /** @param {object} world {room, pointed} @param {HTMLElement} host inside the picture */
 export function readOut({ room, pointed }, host) {
@@ -17,9 +15,8 @@ export function readOut({ room, pointed }, host) {
   const plan = room.plan.peek();
   const scene = room.scene.peek();
   if (!shown || !plan || !scene) return nothing;
-  const { name, color, lines, value } = words(shown.facts, plan, scene);
-  const height = heights.padding + heights.name + lines.length * heights.line + (value ? (shown.isHeld ? heights.large : heights.line) : 0);
   const picture = host.parentElement.getBoundingClientRect();
+  const { name, color, lines, value, width, height } = cardOf(words(shown.facts, plan, scene), picture.width, shown.isHeld);
   const { x, y } = placeBeside(shown, [width, height], [picture.width, picture.height], takenIn(host.parentElement, picture), shown.isHeld ? touchGap : mouseGap);
   return html`${shown.isHeld ? html`<svg class="rings">${[0, 1].map((layer) => rings.map((r) => svg`<circle class=${layer ? 'ink' : 'under'} cx=${shown.x} cy=${shown.y} r=${r} />`))}</svg>` : nothing}
     <div class="read-out" role=${shown.isHeld ? 'status' : nothing} aria-hidden=${shown.isHeld ? nothing : 'true'} ?data-held=${shown.isHeld}

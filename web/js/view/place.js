@@ -1,8 +1,10 @@
-// Where a card goes beside a point so that it covers no letter and stays inside its pane. Pure; CSS px.
+// How large the card at the pointer is, and where it goes beside a point so that it covers no letter and stays inside its pane. Pure; CSS px.
 
 /** @typedef {{x: number, y: number, width: number, height: number}} Box */
 
 const marginPx = 6;
+const widest = 196;
+const heights = { padding: 18, name: 18, line: 16, large: 26 }; // as in css/pane.css
 
 /** The area that two boxes share. */
 export const overlap = (a, b) => Math.max(0, Math.min(a.x + a.width, b.x + b.width) - Math.max(a.x, b.x)) * Math.max(0, Math.min(a.y + a.height, b.y + b.height) - Math.max(a.y, b.y));
@@ -29,4 +31,12 @@ export function placeBeside(point, [width, height], pane, taken, gap) {
     }
   }
   return { x: best.x, y: best.y };
+}
+
+/** The words with the size of their card in a pane of this width; in a narrow one the position takes two lines. */
+export function cardOf(shown, paneWidth, isHeld) {
+  const width = Math.min(widest, paneWidth - 2 * marginPx);
+  const lines = width < widest ? shown.lines.flatMap((line) => line.split(/  (?=S )/)) : shown.lines;
+  const height = heights.padding + heights.name + lines.length * heights.line + (shown.value ? (isHeld ? heights.large : heights.line) : 0);
+  return { ...shown, lines, width, height };
 }
