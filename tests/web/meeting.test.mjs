@@ -57,6 +57,15 @@ const paneSize = async (page, view) => page.evaluate((n) => {
   return [Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio)];
 }, view);
 
+/** The words and scale bars of the panes that lie under a toast. */
+const underToast = (page) => page.evaluate(() => {
+  const toast = document.querySelector('.toast').getBoundingClientRect();
+  return [...document.querySelectorAll('.overlay text, .overlay .scale')].filter((element) => {
+    const box = element.getBoundingClientRect();
+    return box.width && box.left < toast.right && box.right > toast.left && box.top < toast.bottom && box.bottom > toast.top;
+  }).map((element) => element.textContent.trim());
+});
+
 /** Px of the screen per mm, as a picture is shown in its pane. */
 async function scaleOf(page, view) {
   const { width_px, height_px, scale_percent, pixels_per_mm } = await header(page, view);
@@ -105,6 +114,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
       await says(two, /^On my own Return F$/);
       await until('the own crosshair has moved', async (own) => own !== await place(one, 3), () => place(two, 3));
       await two.locator('.toast', { hasText: 'On your own' }).waitFor();
+      assert.deepEqual(await underToast(two), []);
       for (const view of [1, 2, 3, 4]) {
         const size = await paneSize(two, view);
         await until(`own size of view ${view}`, ({ width_px, height_px, scale_percent }) => scale_percent === 100 && Math.abs(width_px - size[0]) <= 1 && Math.abs(height_px - size[1]) <= 1, () => header(two, view));
