@@ -12,6 +12,7 @@ const sizes = {
   '1600x1000': { viewport: { width: 1600, height: 1000 } },
   '1280x720': { viewport: { width: 1280, height: 720 } },
   '1180x820': { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true },
+  '390x844': { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
 };
 const kinds = ['3-D', 'Axial', 'Sagittal', 'Coronal'];
 const head = realData && existsSync(join(realData, 'sera-head')) ? join(realData, 'sera-head') : '';
