@@ -27,10 +27,9 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/surface/marching_rows.h"
-#include "core/surface/smooth_job.h"
+#include "core/surface/smooth_pass.h"
 
 enum {
-    MAX_THREADS = 64,
     VERTICES_A_THREAD = 8192,
     CAUTIOUS_ROUNDS = 1,
     EVEN_ROUNDS = 2,
@@ -46,121 +45,6 @@ static const float trusted_shift = 0.5f, distrusted_shift = 0.8f;
 /* Cosines of the angles between the normals of the two filtered surfaces: 26 and 60 degrees. */
 static const float agreeing = 0.9f, disagreeing = 0.5f;
 
-/* ---- passes over the vertices ----------------------------------------------------------------------------------- */
-
-/* Terms of the recurrence that one pass adds to the sums while they are in the cache: the sums are loaded and stored
- * less often. */
-enum { MAX_TERMS = 3 };
-
-/* One pass: computes something for every vertex from the result of the pass before, at the vertex and at its links. */
-struct pass {
-    void (*run)(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end);
-    /* for a step of the recurrence */
-    const float4 *now; /* e_(n-1) */
-    float4 *next;      /* holds e_(n-2), receives e_n */
-    int n_terms;       /* number of terms, the last one e_n, that are added to the sums of the filters */
-    bool has_gentle;
-    float strong[MAX_TERMS], gentle[MAX_TERMS]; /* weights of e_n, e_(n-1), e_(n-2) */
-    /* for a pass that spreads trust */
-    const float *trust;
-    float *next_trust;
-};
-
-/* Vertices are in slice sequence and linked within three neighbouring slices. So a pass can follow the one before it
- * slice by slice while both find their data in the cache: BLOCK passes go through the slices together. When a pass
- * overwrites a slice, the passes before it have finished reading it. */
-enum { BLOCK = 6 };
-
-struct passes {
-    const struct smooth_job *job;
-    const struct pass *pass, *end;  /* the passes of the current block */
-    int32_t tiles[MAX_THREADS + 1]; /* first slice of each thread's share */
-    int n_tiles;
-};
-
-/* Runs the passes over slices from..end; each further pass begins and ends `begins` and `ends` slices later. */
-static void run_tile(const struct passes *passes, int32_t from, int32_t end, int begins, int ends)
-{
-    int32_t n = (int32_t)(passes->end - passes->pass);
-    for (int32_t front = from - n; front < end + 2 * n; front++)
-        for (int32_t i = 0; i < n; i++) {
-            int32_t slice = front - i;
-            if (slice >= from + i * begins && slice < end + i * ends)
-                passes->pass[i].run(passes->job, &passes->pass[i], passes->job->begin[slice],
-                                    passes->job->begin[slice + 1]);
-        }
-}
-
-/* First a thread goes as far as it can without the slices of others: each pass covers one slice less at either end. */
-static void run_own_slices(void *context, int part, int n_parts)
-{
-    const struct passes *passes = context;
-    run_tile(passes, passes->tiles[part], passes->tiles[part + 1], part > 0, part + 1 < n_parts ? -1 : 0);
-}
-
-/* Then the gaps between two threads' slices are filled: each pass covers one slice more at either end. */
-static void run_between(void *context, int part, int n_parts)
-{
-    const struct passes *passes = context;
-    (void)n_parts;
-    run_tile(passes, passes->tiles[part + 1], passes->tiles[part + 1], -1, 1);
-}
-
-static void run_share(void *context, int part, int n_parts)
-{
-    const struct passes *passes = context;
-    size_t from, end;
-    smooth_range(passes->job, part, n_parts, &from, &end);
-    passes->pass->run(passes->job, passes->pass, from, end);
-}
-
-/* Divides the slices into shares with about equally many vertices; false if shares would be too thin for run_own_slices
- * and run_between. */
-static bool share_slices(struct passes *passes)
-{
-    passes->n_tiles = passes->job->n_threads;
-    passes->tiles[0] = 0;
-    for (int tile = 1; tile <= passes->n_tiles; tile++) {
-        size_t wanted = passes->job->n * (size_t)tile / (size_t)passes->n_tiles;
-        int32_t slice = passes->tiles[tile - 1];
-        while (slice < passes->job->n_slices && passes->job->begin[slice] < wanted)
-            slice++;
-        passes->tiles[tile] = tile < passes->n_tiles ? slice : passes->job->n_slices;
-        if (passes->n_tiles > 1 && passes->tiles[tile] - passes->tiles[tile - 1] < 2 * BLOCK)
-            return false;
-    }
-    return true;
-}
-
-static bool find_slices(struct smooth_job *job, struct error *err)
-{
-    const struct marching_point *points = job->graph->points;
-    job->n_slices = job->n ? points[job->n - 1].at2[2] / 2 + 1 : 0;
-    job->begin = mem_array((size_t)job->n_slices + 1, sizeof *job->begin, UINT64_MAX, err);
-    if (!job->begin)
-        return false;
-    size_t v = 0;
-    for (int32_t slice = 0; slice <= job->n_slices; slice++) {
-        while (v < job->n && points[v].at2[2] / 2 < slice)
-            v++;
-        job->begin[slice] = v;
-    }
-    return true;
-}
-
-static void run_passes(const struct smooth_job *job, const struct pass *all, size_t n)
-{
-    struct passes passes = { .job = job };
-    bool is_shared = share_slices(&passes);
-    for (size_t at = 0, step = is_shared ? BLOCK : 1; at < n; at += step) {
-        passes.pass = all + at;
-        passes.end = all + (at + step < n ? at + step : n);
-        parallel_run(is_shared ? passes.n_tiles : job->n_threads, is_shared ? run_own_slices : run_share, &passes);
-        if (is_shared && passes.n_tiles > 1)
-            parallel_run(passes.n_tiles - 1, run_between, &passes);
-    }
-}
-
 /* ---- the filters ------------------------------------------------------------------------------------------------ */
 
 typedef uint16_t short4 __attribute__((vector_size(8))); /* at2 of a marching_point, and one unused lane */
@@ -172,7 +56,7 @@ static inline short4 load_point(const struct marching_point *point)
     return at2;
 }
 
-static void first_step(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void first_step(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     typedef int16_t signed4 __attribute__((vector_size(8)));
     const struct marching_point *points = job->graph->points;
@@ -199,7 +83,8 @@ static inline unsigned class_of_link(const struct marching_point *a, const struc
 }
 
 /* The same from start positions between slices, with weighted links. */
-INLINED void first_step_along(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end, int axis)
+INLINED void first_step_along(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end,
+                              int axis)
 {
     const struct marching_point *points = job->graph->points;
     const float4 along = smooth_along(axis, 1);
@@ -224,7 +109,8 @@ INLINED void first_step_along(const struct smooth_job *job, const struct pass *p
     }
 }
 
-static void first_step_between_slices(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void first_step_between_slices(const struct smooth_job *job, const struct smooth_pass *pass, size_t from,
+                                      size_t end)
 {
     if (job->slice_axis == 2)
         first_step_along(job, pass, from, end, 2);
@@ -232,8 +118,8 @@ static void first_step_between_slices(const struct smooth_job *job, const struct
         first_step_along(job, pass, from, end, job->slice_axis);
 }
 
-static inline float4 add_terms(float4 sum, const float weights[MAX_TERMS], float4 next, float4 now, float4 before,
-                               int n_terms)
+static inline float4 add_terms(float4 sum, const float weights[SMOOTH_MAX_TERMS], float4 next, float4 now,
+                               float4 before, int n_terms)
 {
     if (n_terms > 2)
         sum += weights[2] * before;
@@ -242,8 +128,8 @@ static inline float4 add_terms(float4 sum, const float weights[MAX_TERMS], float
     return sum + weights[0] * next;
 }
 
-INLINED void next_steps(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end, int n_terms,
-                        bool has_gentle, bool is_weighted)
+INLINED void next_steps(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end,
+                        int n_terms, bool has_gentle, bool is_weighted)
 {
     const float4 *now = pass->now, *first = job->first;
     float4 *to = pass->next, *strong = job->strong, *gentle = job->gentle;
@@ -266,7 +152,7 @@ INLINED void next_steps(const struct smooth_job *job, const struct pass *pass, s
     }
 }
 
-INLINED void next_step_of(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end,
+INLINED void next_step_of(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end,
                           bool is_weighted)
 {
     if (pass->n_terms == 0)
@@ -281,12 +167,12 @@ INLINED void next_step_of(const struct smooth_job *job, const struct pass *pass,
         next_steps(job, pass, from, end, 3, false, is_weighted);
 }
 
-static void next_step(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void next_step(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     next_step_of(job, pass, from, end, false);
 }
 
-static void next_step_weighted(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void next_step_weighted(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     next_step_of(job, pass, from, end, true);
 }
@@ -325,23 +211,24 @@ static void make_link_weights(struct smooth_job *job)
 }
 
 /* Lists the passes of both filters; passes has room for SMOOTH_MAX_STEPS. */
-static size_t plan_filters(const struct smooth_job *job, struct pass *passes)
+static size_t plan_filters(const struct smooth_job *job, struct smooth_pass *passes)
 {
     const struct smooth_options *options = &job->options;
     int n_gentle = options->n_steps / 2 > 0 ? options->n_steps / 2 : 1; /* enough for the wider band */
     double strong[SMOOTH_MAX_STEPS + 1], gentle[SMOOTH_MAX_STEPS + 1];
     make_weights(options->strong_band, options->n_steps, strong);
     make_weights(options->gentle_band, n_gentle, gentle);
-    passes[0] = (struct pass){ .run = job->start ? first_step_between_slices : first_step,
-                               .strong = { (float)strong[1] },
-                               .gentle = { (float)gentle[1] } };
-    void (*step)(const struct smooth_job *, const struct pass *, size_t, size_t) =
+    passes[0] = (struct smooth_pass){ .run = job->start ? first_step_between_slices : first_step,
+                                      .strong = { (float)strong[1] },
+                                      .gentle = { (float)gentle[1] } };
+    void (*step)(const struct smooth_job *, const struct smooth_pass *, size_t, size_t) =
         job->start ? next_step_weighted : next_step;
     for (int n = 2, added = 1; n <= options->n_steps; n++) {
-        struct pass *pass = &passes[n - 1];
-        *pass =
-            (struct pass){ .run = step, .now = n % 2 ? job->before : job->now, .next = n % 2 ? job->now : job->before };
-        if (n - added < MAX_TERMS && n < options->n_steps)
+        struct smooth_pass *pass = &passes[n - 1];
+        *pass = (struct smooth_pass){ .run = step,
+                                      .now = n % 2 ? job->before : job->now,
+                                      .next = n % 2 ? job->now : job->before };
+        if (n - added < SMOOTH_MAX_TERMS && n < options->n_steps)
             continue;
         pass->n_terms = n - added;
         pass->has_gentle = added < n_gentle;
@@ -386,7 +273,7 @@ static float shift_along_edge(float4 normal, float4 displacement, int axis)
     return (along * dot(normal, displacement) + flat * displacement[axis]) / (along * along + flat);
 }
 
-static void place_gently(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void place_gently(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     (void)pass;
     for (size_t v = from; v < end; v++)
@@ -394,7 +281,7 @@ static void place_gently(const struct smooth_job *job, const struct pass *pass, 
 }
 
 /* Trust in the strong filter at each vertex, 0 to 1. */
-static void rate_trust(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void rate_trust(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     const float4 *at = job->first;
     for (size_t v = from; v < end; v++) {
@@ -408,7 +295,7 @@ static void rate_trust(const struct smooth_job *job, const struct pass *pass, si
 }
 
 /* Lowers the trust of a vertex to the lowest of its links. */
-static void lower_trust(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void lower_trust(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     const float *trust = pass->trust;
     for (size_t v = from; v < end; v++) {
@@ -421,7 +308,7 @@ static void lower_trust(const struct smooth_job *job, const struct pass *pass, s
 }
 
 /* Averages trust, so that a step of trust does not become a step of the surface. */
-static void average_trust(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void average_trust(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     const float *trust = pass->trust;
     for (size_t v = from; v < end; v++) {
@@ -433,7 +320,7 @@ static void average_trust(const struct smooth_job *job, const struct pass *pass,
 
 /* Blends the two filters into the displacement of each vertex, by its trust. Keeps the strongly filtered positions for
  * the normals. */
-static void blend_filters(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void blend_filters(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     for (size_t v = from; v < end; v++) {
         float trust = pass->trust[v];
@@ -471,7 +358,7 @@ static void write_normal(const struct smooth_job *job, size_t v, float4 own, flo
     memcpy(job->mesh->normals + 3 * v, &shown, 3 * sizeof(float));
 }
 
-static void shift_to_edges(const struct smooth_job *job, const struct pass *pass, size_t from, size_t end)
+static void shift_to_edges(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end)
 {
     (void)pass;
     for (size_t v = from; v < end; v++) {
@@ -494,22 +381,22 @@ static void shift_to_edges(const struct smooth_job *job, const struct pass *pass
 }
 
 /* Lists the passes; passes has room for MAX_PASSES_TO_EDGES. */
-static size_t plan_way_to_edges(const struct smooth_job *job, struct pass *passes)
+static size_t plan_way_to_edges(const struct smooth_job *job, struct smooth_pass *passes)
 {
     size_t n = 0;
     float *trust = job->shift, *next_trust = job->lean; /* free until the last pass */
-    passes[n++] = (struct pass){ .run = place_gently };
-    passes[n++] = (struct pass){ .run = rate_trust, .next_trust = trust };
+    passes[n++] = (struct smooth_pass){ .run = place_gently };
+    passes[n++] = (struct smooth_pass){ .run = rate_trust, .next_trust = trust };
     for (int round = 0; round < CAUTIOUS_ROUNDS + EVEN_ROUNDS; round++) {
-        passes[n++] = (struct pass){ .run = round < CAUTIOUS_ROUNDS ? lower_trust : average_trust,
-                                     .trust = trust,
-                                     .next_trust = next_trust };
+        passes[n++] = (struct smooth_pass){ .run = round < CAUTIOUS_ROUNDS ? lower_trust : average_trust,
+                                            .trust = trust,
+                                            .next_trust = next_trust };
         float *written = next_trust;
         next_trust = trust;
         trust = written;
     }
-    passes[n++] = (struct pass){ .run = blend_filters, .trust = trust };
-    passes[n++] = (struct pass){ .run = shift_to_edges };
+    passes[n++] = (struct smooth_pass){ .run = blend_filters, .trust = trust };
+    passes[n++] = (struct smooth_pass){ .run = shift_to_edges };
     return n;
 }
 
@@ -549,7 +436,7 @@ static bool smooth(struct smooth_job *job, struct error *err)
     job->gentle = vectors + 4 * job->n;
     job->shift = (float *)(vectors + N_VECTORS * job->n);
     job->lean = job->shift + job->n;
-    bool is_good = find_slices(job, err);
+    bool is_good = smooth_find_slices(job, err);
     if (is_good && job->slice_axis >= 0) {
         job->start = job->lean + job->n;
         job->classes = (uint8_t *)(job->start + job->n);
@@ -557,10 +444,10 @@ static bool smooth(struct smooth_job *job, struct error *err)
         is_good = smooth_interpolate_slices(job, err);
     }
     if (is_good) {
-        struct pass passes[SMOOTH_MAX_STEPS + MAX_PASSES_TO_EDGES];
+        struct smooth_pass passes[SMOOTH_MAX_STEPS + MAX_PASSES_TO_EDGES];
         size_t n_passes = plan_filters(job, passes);
         n_passes += plan_way_to_edges(job, passes + n_passes);
-        run_passes(job, passes, n_passes);
+        smooth_run_passes(job, passes, n_passes);
         is_good = job->options.n_volume_steps == 0 || smooth_keep_volume(job, err);
         parallel_run(job->n_threads, write_positions, job);
         mesh_measure_bounds(job->mesh);
@@ -587,7 +474,7 @@ static int threads_for(size_t n_vertices, int n_threads)
     size_t n = n_threads > 0 ? (size_t)n_threads : (size_t)parallel_cores();
     size_t worth = n_vertices / VERTICES_A_THREAD + 1; /* with fewer vertices a thread does not pay for its start */
     n = n < worth ? n : worth;
-    return n < MAX_THREADS ? (int)n : MAX_THREADS;
+    return n < SMOOTH_MAX_THREADS ? (int)n : SMOOTH_MAX_THREADS;
 }
 
 struct mesh *smooth_with(const struct smooth_options *smoothing, const struct mask *mask,

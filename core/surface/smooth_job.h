@@ -1,5 +1,5 @@
 #pragma once
-/* Inside surface_smooth: the state shared by smooth.c and smooth_volume.c. */
+/* Inside surface_smooth: the state shared by its files. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
@@ -9,6 +9,8 @@
 
 /* x, y, z in grid coordinates and one more float, on any processor with 16-byte vectors. */
 typedef float float4 __attribute__((vector_size(16)));
+
+enum { SMOOTH_MAX_THREADS = 64 };
 
 struct smooth_job {
     struct smooth_options options;
