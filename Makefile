@@ -255,6 +255,7 @@ install: all
 	[ -e $(DESTDIR)$(SYSCONFDIR)/beamroom/beamroomd.conf ] || \
 	    install -m 644 $(B)/beamroomd.conf $(DESTDIR)$(SYSCONFDIR)/beamroom/beamroomd.conf
 	install -D -m 644 deploy/nginx.conf $(DESTDIR)$(PREFIX)/share/doc/beamroom/nginx.conf
+	install -D -m 644 /usr/share/doc/fonts-dejavu-core/copyright $(DESTDIR)$(PREFIX)/share/doc/beamroom/dejavu-font.copyright
 
 .PHONY: clean
 clean:

@@ -21,6 +21,7 @@ done
 check "the page" test -s "$root/usr/share/beamroom/web/index.html"
 check "the pinned libraries" test -s "$root/usr/share/beamroom/web/lib/lit-html.js"
 check "their licences" grep -q 'BSD 3-Clause' "$root/usr/share/beamroom/web/licences.txt"
+check "the licence of the font in the renderer" grep -q 'Bitstream' "$root/usr/share/doc/beamroom/dejavu-font.copyright"
 check "the compressed page" sh -c "ls '$root'/usr/share/beamroom/web/page/main-*.js.gz '$root'/usr/share/beamroom/web/page/main-*.js.br"
 check "the unit names the installed program" grep -q '^ExecStart=/usr/bin/beamroomd ' "$root/usr/lib/systemd/system/beamroomd.service"
 check "nothing is left to fill in" sh -c "! grep -rE '@[A-Z]+@' '$root/usr/lib' '$root/etc'"
