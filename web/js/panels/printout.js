@@ -95,8 +95,8 @@ function figures({ printout }) {
   if (!rows.length) return nothing;
   const cells = ({ result, error }) => (result ? html`<td>${result.triangles ? number(result.triangles) : '–'}</td><td>${result.area_mm2 ? number(result.area_mm2 / 100, 1) : '–'}</td><td>${result.volume_mm3 ? number(result.volume_mm3 / 1000, 2) : '–'}</td>
     <td>${result.volume_mm3 ? `${signed(volumeDifference(result), 2)}` : '–'}</td><td>${Number.isFinite(result.distance_max_mm) ? number(result.distance_max_mm, 2) : '–'}</td>` : html`<td colspan="5">${error || '…'}</td>`);
-  return html`<h2>Regions</h2><table class="numbers-table"><thead><tr><th scope="col">Region</th><th scope="col">Univels</th><th scope="col">Volume, cm³</th><th scope="col">Surface</th><th scope="col">Triangles</th><th scope="col">Area, cm²</th><th scope="col">Encloses, cm³</th><th scope="col">to univels, %</th><th scope="col">Off at most, mm</th></tr></thead>
-    <tbody>${rows.map((row) => html`<tr><th scope="row">${row.region.name}</th><td>${number(row.region.voxels)}</td><td>${number(row.region.volume_cm3, 2)}</td><td>${row.method}</td>${cells(row)}</tr>`)}</tbody></table>
+  return html`<h2>Regions</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label="Figures of the regions"><table class="numbers-table"><thead><tr><th scope="col">Region</th><th scope="col">Univels</th><th scope="col">Volume, cm³</th><th scope="col">Surface</th><th scope="col">Triangles</th><th scope="col">Area, cm²</th><th scope="col">Encloses, cm³</th><th scope="col">to univels, %</th><th scope="col">Off at most, mm</th></tr></thead>
+    <tbody>${rows.map((row) => html`<tr><th scope="row">${row.region.name}</th><td>${number(row.region.voxels)}</td><td>${number(row.region.volume_cm3, 2)}</td><td>${row.method}</td>${cells(row)}</tr>`)}</tbody></table></div>
     <p class="values">Univels and volume are the region's own; surfaces enclose all regions inside it as well. Off: distance from the univels' border.</p>`;
 }
 
