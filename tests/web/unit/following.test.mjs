@@ -1,9 +1,10 @@
 // Presenting, following and leaving, with a connection and a clock that are fakes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { members, roomWorld, scene } from './fake_room.mjs';
+import { FakeConnection, members, roomWorld, scene, welcome } from './fake_room.mjs';
 import { load } from './page.mjs';
 
+const { RoomState } = await load('state/room.js');
 const { widen, widening } = await load('view/own_camera.js');
 
 const camera = { position_mm: [0, 0, -1000], target_mm: [0, 0, 0], up: [0, -1, 0], projection: 'parallel', fov_deg: 30, height_mm: 300 };
@@ -30,6 +31,18 @@ test('a member alone presents: changes go to the room', () => {
   flush();
   assert.deepEqual(sent(connection), ['view.patch', 'scene.patch']);
   assert.deepEqual(connection.sent[0].patch, { camera });
+});
+
+test('before the list of members has come nothing can be changed, as nobody knows whose change it would be', () => {
+  const connection = new FakeConnection();
+  const room = new RoomState('r', { connection, clock: { now: () => 0 }, schedule: (callback) => callback(), notify: () => {} });
+  connection.receive(welcome());
+  const { canChange } = room;
+  assert.equal(canChange.value, false);
+  room.patchScene({ image: { slices: { axial: { position_mm: 7 } } } });
+  assert.equal(room.following.isFollowing.value, true, 'nobody leaves a room of which they may be the presenter');
+  connection.receive(members('m1'));
+  assert.equal(canChange.value, true);
 });
 
 test('a follower who moves the crosshair leaves: with their own size, scale and slices, and the room hears of no change', () => {

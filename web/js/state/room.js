@@ -54,7 +54,8 @@ export class RoomState {
     this.pingMs = signal(null);
     this.views = kinds.map((kind, index) => new ViewState(index + 1, kind));
     // Changes made while the connection is lost are kept, and sent when it is back.
-    this.canChange = computed(() => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null);
+    // Before the list of members has come, nobody knows whether a change is the room's or this member's own.
+    this.canChange = computed(() => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null && this.members.value.length > 0);
     this.#sending = new Sending({ connection, clock, schedule, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
     this.following = new Following(this, (message) => this.#sending.act(message));
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
