@@ -1,7 +1,7 @@
 // Annotated pictures that come back: PNG files, also hostile ones, and what they say.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { crc32 as crcOf, deflateSync } from 'node:zlib';
+import { deflateSync } from 'node:zlib';
 import { load } from './page.mjs';
 
 const { crc32, isPng, textOfPng } = await load('net/png.js');
@@ -20,10 +20,9 @@ const png = (...chunks) => Buffer.concat([signature, header, ...chunks]);
 const end = chunk('IEND');
 const read = (bytes) => textOfPng(new Uint8Array(bytes), 'beamroom');
 
-test('checksums are those of zlib and of the specification', () => {
+test('checksums are those of the specification', () => {
   assert.equal(crc32(Buffer.from('123456789')), 0xcbf43926); // the check value of CRC-32/ISO-HDLC
   assert.equal(crc32(Buffer.from('IEND')), 0xae426082); // of every PNG's last chunk
-  if (crcOf) assert.equal(crc32(Buffer.from('beamroom')), crcOf('beamroom'));
 });
 
 test('the text of a picture is found among other chunks, compressed or not', async () => {
