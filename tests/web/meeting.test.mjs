@@ -9,6 +9,7 @@ const sizes = [
   ['1600x1000', { viewport: { width: 1600, height: 1000 } }],
   ['1280x720', { viewport: { width: 1280, height: 720 } }],
   ['1180x820-touch', { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true }],
+  ['390x844-touch', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
 ];
 
 /** Until this holds; fails with the last value after 30 s. */
@@ -24,9 +25,19 @@ async function until(what, holds, of = async () => undefined) {
 const chip = (page) => page.locator('.room-chip:visible');
 const says = (page, words) => until(`the chip says ${words}`, (text) => words.test(text), async () => (await chip(page).textContent()).replace(/\s+/g, ' ').trim());
 const act = (page) => chip(page).locator('.chip-act');
-const allFull = (...pages) => Promise.all(pages.flatMap((page) => [1, 2, 3, 4].map((view) => full(page, view))));
+/** The panes that are shown: all four, on a phone one. */
+const shown = (page) => page.evaluate(() => [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)));
+const allFull = (...pages) => Promise.all(pages.map(async (page) => Promise.all((await shown(page)).map((view) => full(page, view)))));
+/** Shows this pane, on a phone in place of the one that is shown. */
+async function toPane(page, view) {
+  if ((await shown(page)).includes(view)) return;
+  await page.locator('[aria-label="Pane"] button').nth(view - 1).tap();
+  await page.locator(`#picture-${view}`).waitFor();
+  await full(page, view);
+}
 const matrix = async (page, view) => Object.values((await header(page, view)).clip_from_lps_mm).map((value) => value.toFixed(4)).join(' ');
 const seen = (page) => page.evaluate(() => JSON.stringify([1, 2, 3, 4].map((n) => {
+  if (!globalThis.beamroom.stats().headers[n]) return null; // a pane that a phone has not shown yet
   const { sequence, scene_revision, clip_from_lps_mm, width_px, height_px } = globalThis.beamroom.stats().headers[n];
   return [sequence, scene_revision, width_px, height_px, Object.values(clip_from_lps_mm)];
 })));
@@ -35,6 +46,7 @@ const shows = (page, view, expected) => until(`view ${view} shows the same`, asy
 const place = (page, view) => page.locator(`[data-view="${view}"] .where`).textContent();
 
 async function drag(page, view, dx, dy) {
+  await toPane(page, view);
   const box = await page.locator(`#picture-${view}`).boundingBox();
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
   const isTouch = await page.evaluate(() => matchMedia('(pointer: coarse)').matches);
@@ -57,14 +69,30 @@ const paneSize = async (page, view) => page.evaluate((n) => {
   return [Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio)];
 }, view);
 
+/** Until the pictures have the sizes of their panes, as those of a member on their own have. */
+async function ownSizes(page) {
+  for (const view of await shown(page)) {
+    const size = await paneSize(page, view);
+    await until(`own size of view ${view}`, ({ width_px, height_px, scale_percent }) => scale_percent === 100 && Math.abs(width_px - size[0]) <= 1 && Math.abs(height_px - size[1]) <= 1, () => header(page, view));
+  }
+}
+
 /** The words and scale bars of the panes that lie under a toast. */
-const underToast = (page) => page.evaluate(() => {
-  const toast = document.querySelector('.toast').getBoundingClientRect();
+const underToast = (page) => page.evaluate(() => [...document.querySelectorAll('.toast')].flatMap((toast) => {
+  const over = toast.getBoundingClientRect();
   return [...document.querySelectorAll('.overlay text, .overlay .scale')].filter((element) => {
     const box = element.getBoundingClientRect();
-    return box.width && box.left < toast.right && box.right > toast.left && box.top < toast.bottom && box.bottom > toast.top;
+    return box.width && box.left < over.right && box.right > over.left && box.top < over.bottom && box.bottom > over.top;
   }).map((element) => element.textContent.trim());
-});
+}));
+
+/** Buttons and fields that are smaller than 44 px for a finger, cut by the window, or under another one. */
+const smallTargets = (page) => page.evaluate(() => [...document.querySelectorAll('.banner button, .banner input, .switch button, .toast button')].filter((element) => element.checkVisibility()).flatMap((element) => {
+  const box = element.getBoundingClientRect();
+  const top = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
+  const isCut = box.left < 0 || box.right > innerWidth;
+  return box.width < 44 || box.height < 44 || isCut || !element.contains(top) ? [`${element.getAttribute('aria-label') ?? element.textContent.trim()}: ${box.width} x ${box.height} at ${box.left}`] : [];
+}));
 
 /** Px of the screen per mm, as a picture is shown in its pane. */
 async function scaleOf(page, view) {
@@ -109,35 +137,43 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
       assert.equal(await place(two, 2), await place(one, 2));
       await allFull(one, two, three);
 
+      await toPane(two, 2);
       const [pictures, scene, scale] = [[await seen(one), await seen(three)], await world.scene(room), await scaleOf(two, 2)];
       await drag(two, 2, 30, 20);
       await says(two, /^On my own Return F$/);
       await until('the own crosshair has moved', async (own) => own !== await place(one, 3), () => place(two, 3));
       await two.locator('.toast', { hasText: 'On your own' }).waitFor();
       assert.deepEqual(await underToast(two), []);
-      for (const view of [1, 2, 3, 4]) {
-        const size = await paneSize(two, view);
-        await until(`own size of view ${view}`, ({ width_px, height_px, scale_percent }) => scale_percent === 100 && Math.abs(width_px - size[0]) <= 1 && Math.abs(height_px - size[1]) <= 1, () => header(two, view));
-      }
+      await ownSizes(two);
       await allFull(two);
       await until('the scale is kept', (now) => Math.abs(now / scale - 1) < 0.01, () => scaleOf(two, 2)); // sizes are whole px
       assert.deepEqual([await seen(one), await seen(three)], pictures, 'nobody else\'s picture has changed');
       assert.deepEqual(await world.scene(room), scene, 'nor the room\'s scene');
       await says(one, /^Presenting · 1 follows$/);
+      if (options.hasTouch) assert.deepEqual(await smallTargets(two), []);
       await shoot(two, `meeting-own-${name}`);
 
+      await toPane(two, 1);
+      await ownSizes(two);
       const own = await matrix(two, 1);
       await drag(one, 1, -60, 30);
       await shows(three, 1, () => matrix(one, 1));
       await until('the presenter\'s picture is new', (now) => now !== own, () => matrix(one, 1));
       assert.equal(await matrix(two, 1), own, 'an own view stays');
-      await two.keyboard.press('Escape');
+      if (options.hasTouch) await act(two).tap();
+      else await two.keyboard.press('Escape');
       await says(two, /^Following Reviewer 1$/);
       await shows(two, 1, () => matrix(one, 1));
       await until('the crosshair is the room\'s again', async (now) => now === await place(one, 3), () => place(two, 3));
 
-      await three.locator('#picture-1').focus();
-      await three.keyboard.press('f');
+      if (options.hasTouch) {
+        await chip(three).locator('.chip-main').tap();
+        await shoot(three, `meeting-members-${name}`);
+        await three.locator('.room-members button', { hasText: 'Look for yourself' }).tap();
+      } else {
+        await three.locator('#picture-1').focus();
+        await three.keyboard.press('f');
+      }
       await says(three, /^On my own/);
       await drag(one, 1, 0, 40);
       await one.locator('.room-chip:visible .chip-main').click();
@@ -150,6 +186,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
       await one.locator('.toast', { hasText: 'You are presenting' }).waitFor();
       await says(one, /^Presenting · 2 follow$/);
       await allFull(two);
+      assert.deepEqual(await underToast(two), []);
       await shoot(two, `meeting-following-${name}`);
       await stop();
     });
