@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { sleep } from '../api/daemon.mjs';
+import { axe } from './axe.mjs';
 import { full, header, missing, shoot, startWorld } from './browser.mjs';
 import { startProxy } from './proxy.mjs';
 
@@ -87,12 +88,12 @@ const underToast = (page) => page.evaluate(() => [...document.querySelectorAll('
 }));
 
 /** Buttons and fields that are smaller than 44 px for a finger, cut by the window, or under another one. */
-const smallTargets = (page) => page.evaluate(() => [...document.querySelectorAll('.banner button, .banner input, .switch button, .toast button')].filter((element) => element.checkVisibility()).flatMap((element) => {
+const smallTargets = (page, places = ['.banner', '.switch', '.toast']) => page.evaluate((within) => [...document.querySelectorAll(within.flatMap((place) => [`${place} button`, `${place} input`]).join())].filter((element) => element.checkVisibility()).flatMap((element) => {
   const box = element.getBoundingClientRect();
   const top = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
   const isCut = box.left < 0 || box.right > innerWidth;
   return box.width < 44 || box.height < 44 || isCut || !element.contains(top) ? [`${element.getAttribute('aria-label') ?? element.textContent.trim()}: ${box.width} x ${box.height} at ${box.left}`] : [];
-}));
+}), places);
 
 /** Px of the screen per mm, as a picture is shown in its pane. */
 async function scaleOf(page, view) {
@@ -188,6 +189,69 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
       await allFull(two);
       assert.deepEqual(await underToast(two), []);
       await shoot(two, `meeting-following-${name}`);
+      await stop();
+    });
+
+  for (const [name, options] of sizes.filter(([size]) => /1280|touch/.test(size)))
+    it(`who came by the link gives a name, and changes it, at ${name}`, async () => {
+      const { one, two, stop } = await meet(options);
+      /** All words of chip and badges from now on. */
+      const record = (page) => page.evaluate(() => {
+        globalThis.seenWords = [];
+        new MutationObserver(() => globalThis.seenWords.push(...[...document.querySelectorAll('.room-chip, .badge')].map((element) => element.textContent))).observe(document.body, { subtree: true, childList: true, characterData: true, attributes: true });
+      });
+      const press = (locator) => (options.hasTouch ? locator.tap() : locator.click());
+      const field = two.locator('#room-name');
+      const save = () => press(two.locator('.room-members form button'));
+      const listed = (page, words) => page.locator('.room-members li', { hasText: words }).waitFor();
+      assert.equal(await one.locator('.toast', { hasText: 'You are Reviewer' }).count(), 0, 'nobody was there');
+      await press(two.locator('.toast', { hasText: 'You are Reviewer 2 here.' }).locator('.toast-act'));
+      await until('the focus is in the field', (id) => id === 'room-name', () => two.evaluate(() => document.activeElement.id));
+      assert.deepEqual(await axe(two), []);
+      if (options.hasTouch) assert.deepEqual(await smallTargets(two, ['.room-members']), []);
+      await shoot(two, `meeting-name-${name}`);
+      assert.equal(await field.getAttribute('maxlength'), '40');
+      await two.keyboard.press('Escape');
+      await field.waitFor({ state: 'detached' });
+
+      await drag(two, 1, 60, 0); // on their own now, which a new name does not end
+      await says(two, /^On my own/);
+      await ownSizes(two);
+      await until('the own view is at rest', async (now) => (await sleep(300), now === await matrix(two, 1)), () => matrix(two, 1));
+      const own = await matrix(two, 1);
+      await Promise.all([one, two].map(record));
+      await press(chip(two).locator('.chip-main'));
+      await field.fill('Dr <i>Chen</i>');
+      await save();
+      await chip(one).locator('.chip-main').click();
+      await listed(one, 'Dr <i>Chen</i>');
+      await two.locator('.toast', { hasText: 'The others see you as Dr <i>Chen</i>.' }).waitFor();
+      await until('the focus is in the chip', Boolean, () => two.evaluate(() => document.activeElement.classList.contains('chip-main')));
+      await says(two, /^On my own/);
+      await allFull(two);
+      assert.equal(await matrix(two, 1), own);
+      assert.equal(await two.evaluate(() => localStorage.getItem('beamroom name')), 'Dr <i>Chen</i>');
+
+      const shared = await matrix(one, 1);
+      await one.locator('#room-name').fill('Dr Alvarez');
+      await one.keyboard.press('Enter');
+      await act(two).click();
+      await says(two, /^Following Dr Alvarez$/);
+      await says(one, /^Presenting · 2 follow$/);
+      await allFull(one, two);
+      assert.equal(await matrix(one, 1), shared);
+      for (const page of [one, two]) {
+        const words = await page.evaluate(() => globalThis.seenWords);
+        assert.ok(words.some((text) => /Full/.test(text)) && words.some((text) => /Presenting|On my own/.test(text)));
+        assert.deepEqual(words.filter((text) => /Disconnected|Link|away|No presenter/.test(text)), []);
+      }
+
+      await two.reload();
+      await says(two, /^Following Dr Alvarez$/);
+      await press(chip(two).locator('.chip-main'));
+      await listed(two, 'Dr <i>Chen</i> (you)');
+      assert.equal(await field.inputValue(), 'Dr <i>Chen</i>');
+      assert.equal(await two.locator('.toast', { hasText: 'You are' }).count(), 0);
       await stop();
     });
 

@@ -53,9 +53,9 @@ function fakeConnection(more = {}) {
   const clock = { now: () => 0, setTimeout: (callback, ms) => { waits.push(ms); timer = callback; }, clearTimeout() {} };
   const connection = new Connection('ws://x', { clock, makeSocket: () => { const socket = new Socket(); sockets.push(socket); return socket; }, ...more });
   const told = [];
-  for (const type of ['up', 'lost', 'ended']) connection.addEventListener(type, ({ detail }) => told.push({ type, ...detail }));
+  for (const type of ['up', 'lost', 'renewing', 'ended']) connection.addEventListener(type, ({ detail }) => told.push({ type, ...detail }));
   connection.open();
-  return { connection, told, waits, last: () => sockets.at(-1), n: () => sockets.length, wait: () => timer() };
+  return { connection, told, waits, sockets, last: () => sockets.at(-1), n: () => sockets.length, wait: () => timer() };
 }
 
 for (const [retryMs, expected] of [[0, 500], [300, 500], [500, 500], [2000, 2000], [2500, 2500], [5000, 5000], [30000, 30000], [600000, 600000]])
@@ -233,4 +233,38 @@ test('a page that slept is not a lost connection', () => {
   sockets[0].tell({ type: 'pong', time_ms: 1 });
   advance(10000);
   assert.deepEqual(told, []);
+});
+
+test('another name comes back as the same member on a new socket; the old one stays until the welcome, and nothing is lost to the eye', () => {
+  const { connection, told, sockets } = fakeConnection();
+  sockets[0].open();
+  sockets[0].welcome();
+  connection.rename('Dr Chen');
+  assert.equal(sockets.length, 2);
+  assert.equal(sockets[0].isClosed, undefined, 'the member is not away meanwhile');
+  sockets[0].tell({ type: 'bye', reason: 'replaced', retry_ms: null });
+  sockets[0].lose();
+  sockets[1].open();
+  const [hello] = sockets[1].sent;
+  assert.deepEqual([hello.name, hello.member, hello.secret], ['Dr Chen', 'm-1', 'abc']);
+  assert.equal(connection.send({ type: 'view.close', view: 1 }), false);
+  sockets[1].welcome();
+  assert.equal(sockets[0].isClosed, true);
+  assert.equal(connection.send({ type: 'view.close', view: 1 }), true);
+  assert.deepEqual(told.map(({ type }) => type), ['up', 'renewing', 'up']);
+});
+
+test('a link that is dead shows 2 s after another name was given; the name goes with the next hello', () => {
+  const { connection, told, waits, last, wait } = fakeConnection();
+  last().open();
+  last().welcome();
+  waits.length = 0;
+  connection.rename('Dr Chen');
+  assert.deepEqual(waits, [2000]);
+  wait();
+  assert.deepEqual(told.map(({ type }) => type), ['up', 'renewing', 'lost']);
+  connection.rename('Dr Chang'); // without a connection
+  last().open();
+  assert.equal(last().sent[0].name, 'Dr Chang');
+  assert.deepEqual(told.map(({ type }) => type), ['up', 'renewing', 'lost']);
 });

@@ -6,6 +6,13 @@ const { RoomState } = await load('state/room.js');
 export class FakeConnection extends EventTarget {
   sent = [];
   isOpen = true;
+  names = [];
+
+  rename(name) {
+    this.names.push(name);
+    this.isOpen = false;
+    this.tell('renewing');
+  }
 
   send(message) {
     if (this.isOpen) this.sent.push(message);

@@ -52,6 +52,19 @@ test('a picture that shows an input settles it', () => {
 
 // ---- a room over a fake connection -------------------------------------------------------------------------------------
 
+test('a change that was on its way when another name was given is sent again, and the link counts as open meanwhile', () => {
+  const { room, connection, flush, back } = roomWorld();
+  const patch = { regions: { brain: { opacity: 0.4 } } };
+  room.patchScene(patch);
+  flush();
+  room.rename('Dr Chen');
+  assert.deepEqual(connection.names, ['Dr Chen']);
+  assert.equal(room.link.value.state, 'open');
+  assert.equal(room.scene.value.regions.brain.opacity, 0.4);
+  back();
+  assert.deepEqual(connection.sent.filter(({ type }) => type === 'scene.patch').map((message) => message.patch), [patch]);
+});
+
 test('many changes before a paint become one message with a growing input', () => {
   const { room, connection, flush } = roomWorld();
   room.showView(1, [800, 600]);

@@ -24,7 +24,8 @@ class ConnectionEvent extends Event {
 
 /**
  * Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason}; "quiet"
- * {since: time of the last sign of the server, dueSince} when an answer is overdue, and "heard" when one came after all.
+ * {since: time of the last sign of the server, dueSince} when an answer is overdue, and "heard" when one came after all;
+ * "renewing" when a new socket takes the place of one that works.
  */
 export class Connection extends EventTarget {
   #url;
@@ -32,6 +33,7 @@ export class Connection extends EventTarget {
   #clock;
   #identity = { name: '', member: '', secret: '' };
   #socket = null;
+  #replaced = null; // socket that is kept until the new one has its welcome, so that the member is never away
   #isWelcome = false;
   #isGone;
   #failures = 0;
@@ -69,7 +71,7 @@ export class Connection extends EventTarget {
     return this.#isWelcome;
   }
 
-  open() {
+  open(waitMs = welcomeMs) {
     if (this.#socket || this.#isEnded) return;
     this.#clock.clearTimeout(this.#retryTimer);
     const socket = this.#makeSocket(this.#url);
@@ -77,7 +79,7 @@ export class Connection extends EventTarget {
     this.#socket = socket;
     let wasOpen = false;
     // closing a socket whose packets get lost takes minutes: it is left to itself
-    this.#welcomeTimer = this.#clock.setTimeout(() => this.#abandon(socket, wasOpen), welcomeMs);
+    this.#welcomeTimer = this.#clock.setTimeout(() => this.#abandon(socket, wasOpen), waitMs);
     socket.addEventListener('open', () => {
       if (socket !== this.#socket) return;
       wasOpen = true;
@@ -97,6 +99,21 @@ export class Connection extends EventTarget {
     if (!this.#write(readMessage(message, 'client'))) return false;
     if (changes.has(message.type) && this.#dueSince === null && this.#clock.now() - this.#pingedAt > hurryMs) this.#ping();
     return true;
+  }
+
+  /** Takes another name: comes back at once, as the same member. */
+  rename(name) {
+    this.#identity.name = name;
+    if (this.#isEnded) return;
+    if (!this.#isWelcome) return void this.retryNow(); // an attempt under way may have told the old name
+    this.#replaced = this.#socket;
+    this.#socket = null;
+    this.#isWelcome = false;
+    this.#isQuiet = false;
+    this.#dueSince = null;
+    this.#stopTimers();
+    this.#tell('renewing');
+    this.open(quietMs);
   }
 
   /** Connects at once instead of at the end of the wait. */
@@ -119,6 +136,12 @@ export class Connection extends EventTarget {
     this.#socket = null;
     this.#isWelcome = false;
     socket?.close();
+    this.#dropReplaced();
+  }
+
+  #dropReplaced() {
+    this.#replaced?.close();
+    this.#replaced = null;
   }
 
   #write(message) {
@@ -147,6 +170,7 @@ export class Connection extends EventTarget {
     if (message.type === 'welcome') {
       this.#isWelcome = true;
       this.#failures = 0;
+      this.#dropReplaced();
       this.#identity = { name: message.name, member: message.member, secret: message.secret };
       this.#tell('up');
       this.#clock.clearTimeout(this.#welcomeTimer);
@@ -207,6 +231,7 @@ export class Connection extends EventTarget {
     this.#isQuiet = false;
     this.#dueSince = null;
     this.#stopTimers();
+    this.#dropReplaced();
     if (this.#isEnded) return;
     const retryMs = Math.max(this.#serverWaitMs, backoffMs[Math.min(this.#failures, backoffMs.length - 1)]);
     this.#failures += 1;

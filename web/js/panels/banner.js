@@ -48,7 +48,7 @@ export function banner(world) {
       <span class="dim">${others.length ? `${others.length} more in this room` : 'alone in this room'}</span></span></div>` : nothing}
     <div class="members" role="group" aria-label="Members">${others.slice(0, 6).map((member, index) => html`<span class=${`avatar tint-${index % 4}`} title=${member.name}>${initials(member.name)}</span>`)}
       ${others.length > 6 ? html`<span class="dim">+${others.length - 6}</span>` : nothing}</div>
-    ${roomChip({ room, ui }, 'banner')}
+    ${roomChip(world, 'banner')}
     ${isTouch ? html`<div class="strip-end" role="toolbar" aria-label="This picture" @keydown=${roving}>${stripEnd(world)}</div>` : nothing}
     <span class="anchor"><button class="invite-button" @click=${() => ui.toggle('invite')} aria-label="Invite" aria-expanded=${ui.popover.value === 'invite'}>${icon('invite')}<span>Invite</span></button>
       ${ui.popover.value === 'invite' ? html`<div class="popover invite"><label for="invite-link">Link to this room <code>${room.id}</code></label>

@@ -1,5 +1,7 @@
 // The room chip: who presents, whether this member follows or is on their own, and what can be done about it.
 import { html, nothing } from '../../lib/lit-html.js';
+import { effect, untracked } from '../../lib/signals-core.js';
+import { maxName } from '../state/own_name.js';
 import { icon } from './icons.js';
 import { initials } from './pane.js';
 
@@ -30,7 +32,48 @@ const actions = ({ following }) => [
   following.isFollowing.value && !following.isPresenting.value && { word: 'Look for yourself', about: 'Your panes alone, from what they show now', do: () => following.leave() },
 ].filter(Boolean);
 
-function popover({ room, ui }) {
+const places = ['strip', 'banner'];
+const topic = 'following'; // one message about who one is here and whom one follows: two would lie over the letters of a pane
+const chipOf = (place) => `room-${place}`;
+
+/** The own name, which can be given or changed at any time. */
+function nameForm({ room, ui, ownName }) {
+  const save = (event) => {
+    event.preventDefault();
+    const before = ownName.value.value;
+    const name = new FormData(event.target).get('name');
+    if (!name.trim()) return;
+    const main = event.target.closest('.room-chip').querySelector('.chip-main');
+    ownName.set(name);
+    ui.popover.value = '';
+    main.focus();
+    if (ownName.value.value === before && room.identity.name === before) return;
+    room.rename(ownName.value.value);
+    ui.notify('ok', `The others see you as ${ownName.value.value}.`, topic);
+  };
+  return html`<form class="own-name" @submit=${save}><label for="room-name">Your name</label>
+    <input id="room-name" name="name" required maxlength=${maxName} autocomplete="name" placeholder=${room.identity.name} .value=${ownName.value.value}><button>Save</button></form>`;
+}
+
+/** Opens the chip's popover with the focus in the field of the own name. */
+function askName(ui) {
+  ui.popover.value = chipOf(places[Number(ui.isTouch.value)]);
+  queueMicrotask(() => document.querySelector('#room-name')?.focus()); // after it is drawn
+}
+
+/** Tells a person without a name, who finds others in the room, under which name they are there: once, and without asking anything of them. */
+export function offerName({ room, ui, ownName }) {
+  let isDone = !ownName.isAsked.peek();
+  return effect(() => {
+    const members = room.members.value;
+    if (isDone || !members.length) return;
+    isDone = true;
+    if (members.some(({ id, connected }) => id !== room.member.value && connected !== false))
+      untracked(() => ui.notify('ok', `You are ${room.identity.name} here.`, topic, { word: 'Give your name', act: () => askName(ui) }));
+  });
+}
+
+function popover({ room, ui, ownName }) {
   const members = room.members.value;
   const act = (what) => {
     ui.popover.value = '';
@@ -39,13 +82,14 @@ function popover({ room, ui }) {
   return html`<div class="popover room-members" role="dialog" aria-label="Members of this room">
     <ul>${members.map((member) => html`<li><span class="avatar small" aria-hidden="true">${initials(member.name)}</span>
       <span class="clipped">${member.name}${member.id === room.member.value ? ' (you)' : ''}</span><span class="dim">${doing(member)}</span></li>`)}</ul>
-    <div class="room-actions">${actions(room).map((action) => html`<button title=${action.about} @click=${() => act(action.do)}>${action.word}</button>`)}</div></div>`;
+    <div class="room-actions">${actions(room).map((action) => html`<button title=${action.about} @click=${() => act(action.do)}>${action.word}</button>`)}</div>
+    ${nameForm({ room, ui, ownName })}</div>`;
 }
 
-/** @param {object} world {room, ui} @param {'strip'|'banner'} place each has its own chip, one of which the style sheet hides */
-export function roomChip({ room, ui }, place) {
+/** @param {object} world {room, ui, ownName} @param {'strip'|'banner'} place each has its own chip, one of which the style sheet hides */
+export function roomChip({ room, ui, ownName }, place) {
   if (!room.members.value.length) return nothing;
-  const name = `room-${place}`;
+  const name = chipOf(place);
   const isOpen = ui.popover.value === name;
   const { text, more, act } = words(room);
   const keep = (event) => event.stopPropagation(); // the arrow keys of the tool bar stay out of the chip
@@ -53,7 +97,7 @@ export function roomChip({ room, ui }, place) {
     <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title="Who is in this room" @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
       <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
     ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
-    ${isOpen ? popover({ room, ui }) : nothing}</span>`;
+    ${isOpen ? popover({ room, ui, ownName }) : nothing}</span>`;
 }
 
 /** In the header of each pane: whether it shows the shared view or an own one. Nothing for a member who is alone. */

@@ -20,6 +20,7 @@ import { Pane } from './pane.js';
 import { paneSwitch } from './pane_switch.js';
 import { coverPage, printoutDialog } from './printout.js';
 import { listenSnapshots, otherPlanDialog, resumeSnapshot } from './snapshots.js';
+import { offerName } from './room_chip.js';
 import { sectionOfKind } from './sections.js';
 import { status } from './status.js';
 import { toolStrip } from './tools.js';
@@ -40,10 +41,11 @@ const frame = () => html`<div class="room">
 
 /**
  * @param {HTMLElement} host @param {string} id of the room
- * @param {object} world {api, connect, clock, schedule, decode, hooks, enter, plan: the room's, as far as the address knows it}
+ * @param {object} world {api, connect, clock, schedule, decode, hooks, enter, ownName, isBack: this tab was in the room before,
+ *   plan: the room's, as far as the address knows it}
  * @returns {() => void} leaves the room
  */
-export function roomPage(host, id, { api, connect, clock, schedule, decode, hooks, enter, plan = '' }) {
+export function roomPage(host, id, { api, connect, clock, schedule, decode, hooks, enter, ownName, isBack = false, plan = '' }) {
   const stops = [mount(host, frame)];
   const part = (name) => host.querySelector(name);
   const ui = new UiState(clock);
@@ -66,9 +68,10 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
 
   const after = new AfterRoom({ api, clock, enter });
-  const world = { after, room, ui, api, undo, probed, shaped, refused, comparison, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
+  const world = { after, room, ui, api, ownName, undo, probed, shaped, refused, comparison, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
+  if (!isBack) stops.push(offerName(world));
   stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock));
   stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
 

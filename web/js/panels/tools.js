@@ -43,7 +43,7 @@ function strip(world) {
     <i class="rule"></i>
     <button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
     <span class="grow"></span>
-    ${roomChip({ room: world.room, ui }, 'strip')}
+    ${roomChip(world, 'strip')}
     ${stripEnd(world)}
   </div>`;
 }

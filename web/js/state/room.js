@@ -66,6 +66,7 @@ export class RoomState {
 
     connection.addEventListener('message', (event) => this.#take(event.detail));
     connection.addEventListener('lost', (event) => this.#lose(event.detail.retryMs));
+    connection.addEventListener('renewing', () => this.#keepChanges());
     connection.addEventListener('quiet', (event) => this.#setLink('open', { quietSince: event.detail.since, dueSince: event.detail.dueSince }));
     connection.addEventListener('heard', () => this.#setLink('open'));
     connection.addEventListener('ended', (event) => this.#setLink('ended', { reason: event.detail.reason }));
@@ -151,6 +152,11 @@ export class RoomState {
   /** Takes times from an input to the painted picture, for the status bar. */
   measured(timesMs) {
     this.#latency.add(timesMs);
+  }
+
+  /** Takes another name, which the others see at once. */
+  rename(name) {
+    this.#connection.rename(name);
   }
 
   /** Tries to connect at once. */
@@ -280,10 +286,15 @@ export class RoomState {
     batch(() => {
       this.#setLink('lost', { retryAt: this.#clock.now() + retryMs });
       this.pingMs.value = null;
-      this.#scene.recall();
-      for (const view of this.views) view.recall();
-      this.#sending.hold();
+      this.#keepChanges();
     });
+  }
+
+  /** What the server has not answered is sent again after the next welcome. */
+  #keepChanges() {
+    this.#scene.recall();
+    for (const view of this.views) view.recall();
+    this.#sending.hold();
   }
 
   #tooLarge() {
