@@ -3,7 +3,7 @@
 #   make            the programs and the page               make run     install what is missing, build, demo plan, serve
 #   make test       every kind of test (tests/README.md)    make test-deep  the long ones: sanitizers, clang, fuzzing
 #   make install PREFIX=/usr/local DESTDIR=
-#   make test-unit test-render test-faults test-api test-web test-install  one suite
+#   make test-unit test-render test-faults test-api test-web test-install test-long  one suite
 #   make bench  lint  fuzz  cover  clean
 # Variables: CC=gcc|clang  SAN=address,undefined|thread  WERROR=1  V=1  FUZZ_SECONDS=60
 #   run: PLANS="folder ..." further folders of plans, ARGS="--listen 127.0.0.1:9000 ..." further flags of beamroomd
@@ -196,7 +196,7 @@ ONE_THREAD := sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pix
     dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_real
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
 PARALLEL := $(shell nproc)
-.PHONY: test-unit test-render test-faults test-api test-web test-install test test-deep lint
+.PHONY: test-unit test-render test-faults test-api test-web test-long test-install test test-deep lint
 test-unit: $(UNIT_RUN)
 	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
 test-render: $(render_BIN)
@@ -204,10 +204,15 @@ test-render: $(render_BIN)
 # FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones
 test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
+# Long ones: what waits for a minute, and the meeting and the planner's hour at every size of window
+SLOW_NODE := tests/api/slow.test.mjs
+LONG_NODE := $(SLOW_NODE) tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs
 test-api: all demo
-	$(Q)tests/run_node.sh api $(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))
+	$(Q)tests/run_node.sh api $(filter-out $(SLOW_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs)))
 test-web: all demo
 	$(Q)tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs))
+test-long: all demo
+	$(Q)LONG_TESTS=1 tests/run_node.sh long $(LONG_NODE)
 test-install: all demo
 	$(Q)tests/install.sh
 lint: $(GEN_STAMP) $(call obj,$(CORE_SRC) $(WIRE_SRC) $(SERVER_SRC) $(DAEMON_SRC) $(RENDERER_SRC) $(CLI_SRC))

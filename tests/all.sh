@@ -52,6 +52,7 @@ deep)
     suite render-address-undefined "$jobs" SAN=address,undefined test-render
     suite render-thread "$jobs" SAN=thread test-render
     suite faults "$jobs" SAN=address,undefined FAULTS=whole test-faults
+    suite long test-long
     suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-3}"
     ;;
 *)

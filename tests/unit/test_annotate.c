@@ -405,7 +405,7 @@ static void a_snapshot_is_described(void **state)
         /* the upper region does not reach the slice */
         assert_string_equal(row_text(&words, ANNOTATION_REGIONS), pane ? "low" : "low, univels|high 35 %");
         assert_string_equal(row_text(&words, ANNOTATION_METHODS),
-                            pane ? "Outlines: along the univels' centres|Grid of the dose Run 1, cGy per fraction"
+                            pane ? "Outlines: of the surfaces|Grid of the dose Run 1, cGy per fraction"
                                  : "Surfaces: smooth");
         assert_string_equal(row_text(&words, ANNOTATION_ORIGIN),
                             "2026-07-01 09:30 UTC|revision 12|Beamroom " BEAMROOM_VERSION);
