@@ -63,6 +63,6 @@ function figures({ shaped }, region, representation) {
   return html`<dl class="figures"><dt>Made of</dt><dd>${counts.join(', ') || 'nothing'}</dd>
     ${result.area_mm2 ? html`<dt>Area</dt><dd>${significant(result.area_mm2 / 100)} cm²</dd>` : nothing}
     ${result.volume_mm3 ? html`<dt>Encloses</dt><dd>${volume(result.volume_mm3 / 1000)}, ${signed(difference, 2)} % to univels</dd>` : nothing}
-    ${Number.isFinite(result.distance_max_mm) ? html`<dt title="Of its vertices, from the border of the univels">Off the univels</dt><dd>${significant(result.distance_mean_mm)} mm, at most ${significant(result.distance_max_mm)} mm</dd>` : nothing}
+    ${Number.isFinite(result.distance_max_mm) ? html`<dt title="Of its vertices, from the border of the univels">Off the univels</dt><dd>${number(result.distance_mean_mm, 2)} mm, at most ${number(result.distance_max_mm, 2)} mm</dd>` : nothing}
     <dt>Made in</dt><dd>${seconds(result.ms)}</dd></dl>`;
 }
