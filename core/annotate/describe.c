@@ -51,7 +51,8 @@ static const char *kind_words(enum scene_kind kind)
     static const char *const words[] = { [SCENE_KIND_3D] = "3-D",
                                          [SCENE_KIND_AXIAL] = "Axial",
                                          [SCENE_KIND_CORONAL] = "Coronal",
-                                         [SCENE_KIND_SAGITTAL] = "Sagittal" };
+                                         [SCENE_KIND_SAGITTAL] = "Sagittal",
+                                         [SCENE_KIND_OBLIQUE] = "Oblique" };
     return words[kind];
 }
 

@@ -1,6 +1,8 @@
 /* Planes in the patient: those of a scene, and their geometry. */
 #include "core/scene/plane.h"
 
+#include <string.h>
+
 struct plane plane_of_kind(enum scene_kind kind, double position_mm)
 {
     double p = position_mm;
@@ -8,17 +10,53 @@ struct plane plane_of_kind(enum scene_kind kind, double position_mm)
     case SCENE_KIND_AXIAL: return (struct plane){ vec3(0, 0, p), vec3(1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1) };
     case SCENE_KIND_SAGITTAL: return (struct plane){ vec3(p, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(1, 0, 0) };
     case SCENE_KIND_CORONAL:
+    case SCENE_KIND_OBLIQUE:
     case SCENE_KIND_3D: break;
     }
     return (struct plane){ vec3(0, p, 0), vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0) };
 }
 
+/* The kind of slice whose normal is nearest to a direction; of equally near ones the first of axial, coronal,
+ * sagittal. */
+static enum scene_kind nearest_kind(struct vec3 direction)
+{
+    double x = fabs(direction.x), y = fabs(direction.y), z = fabs(direction.z);
+    return z >= x && z >= y ? SCENE_KIND_AXIAL : y >= x ? SCENE_KIND_CORONAL : SCENE_KIND_SAGITTAL;
+}
+
+struct plane plane_of_normal(struct vec3 origin_lps_mm, struct vec3 normal)
+{
+    normal = vec3_normalize(normal);
+    enum scene_kind kind = nearest_kind(normal);
+    struct plane nearest = plane_of_kind(kind, 0);
+    double cosine = vec3_dot(normal, nearest.normal);
+    if (cosine < 0)
+        normal = vec3_scale(normal, -1);
+    if (fabs(cosine) >= 1) {
+        nearest.origin_lps_mm = vec3_scale(nearest.normal, vec3_dot(origin_lps_mm, nearest.normal));
+        return nearest;
+    }
+    struct vec3 up = vec3_normalize(vec3_sub(nearest.up, vec3_scale(normal, vec3_dot(nearest.up, normal))));
+    double side = vec3_dot(vec3_cross(nearest.right, nearest.up), nearest.normal); /* 1 or -1 */
+    struct vec3 right = vec3_scale(vec3_cross(up, normal), side);
+    return (struct plane){ origin_lps_mm, right, up, normal };
+}
+
 struct plane plane_of_view(const struct scene *scene, const struct view *view)
 {
     const struct scene_slices *slices = &scene->image.slices;
-    return plane_of_kind(view->kind, view->kind == SCENE_KIND_AXIAL     ? slices->axial.position_mm
-                                     : view->kind == SCENE_KIND_CORONAL ? slices->coronal.position_mm
-                                                                        : slices->sagittal.position_mm);
+    switch (view->kind) {
+    case SCENE_KIND_CORONAL: return plane_of_kind(SCENE_KIND_CORONAL, slices->coronal.position_mm);
+    case SCENE_KIND_SAGITTAL: return plane_of_kind(SCENE_KIND_SAGITTAL, slices->sagittal.position_mm);
+    case SCENE_KIND_OBLIQUE:
+        for (size_t i = 0; i < scene->image.n_obliques; i++)
+            if (strcmp(scene->image.obliques[i].id, view->plane) == 0)
+                return plane_of_normal(scene->image.obliques[i].value.origin_mm, scene->image.obliques[i].value.normal);
+        break;
+    case SCENE_KIND_AXIAL:
+    case SCENE_KIND_3D: break;
+    }
+    return plane_of_kind(SCENE_KIND_AXIAL, slices->axial.position_mm);
 }
 
 size_t planes_of_slices(const struct scene *scene, struct plane slices[PLANE_MAX_SLICES])
@@ -26,13 +64,18 @@ size_t planes_of_slices(const struct scene *scene, struct plane slices[PLANE_MAX
     const struct {
         enum scene_kind kind;
         const struct scene_slice *slice;
-    } all[PLANE_MAX_SLICES] = { { SCENE_KIND_AXIAL, &scene->image.slices.axial },
-                                { SCENE_KIND_CORONAL, &scene->image.slices.coronal },
-                                { SCENE_KIND_SAGITTAL, &scene->image.slices.sagittal } };
+    } all[] = { { SCENE_KIND_AXIAL, &scene->image.slices.axial },
+                { SCENE_KIND_CORONAL, &scene->image.slices.coronal },
+                { SCENE_KIND_SAGITTAL, &scene->image.slices.sagittal } };
     size_t n = 0;
-    for (int i = 0; i < PLANE_MAX_SLICES; i++)
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         if (all[i].slice->visible)
             slices[n++] = plane_of_kind(all[i].kind, all[i].slice->position_mm);
+    for (size_t i = 0; i < scene->image.n_obliques && n < PLANE_MAX_SLICES; i++) {
+        const struct scene_oblique *oblique = &scene->image.obliques[i].value;
+        if (oblique->visible)
+            slices[n++] = plane_of_normal(oblique->origin_mm, oblique->normal);
+    }
     return n;
 }
 

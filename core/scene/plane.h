@@ -18,10 +18,16 @@ struct plane {
  * from the feet (right: patient left, up: anterior), coronal from the front (right: patient left, up: superior),
  * sagittal from the patient's left (right: posterior, up: superior). SCENE_KIND_3D gives the coronal plane. */
 struct plane plane_of_kind(enum scene_kind kind, double position_mm);
-/* The plane that a view's slice pane shows. The view's kind is not SCENE_KIND_3D. */
+/* A plane of any direction, with the axes of the nearest of those three, turned about an axis in both: up is that
+ * plane's up as far as it lies in the plane. The normal points to the same side as the nearest plane's; of a normal
+ * square to the patient the result is exactly the plane_of_kind. normal: any length but 0, finite. */
+struct plane plane_of_normal(struct vec3 origin_lps_mm, struct vec3 normal);
+/* The plane that a view's slice pane shows. The view's kind is not SCENE_KIND_3D. An oblique view of a plane that the
+ * scene does not have shows the axial slice. */
 struct plane plane_of_view(const struct scene *scene, const struct view *view);
-/* The image slices that a scene shows in space, in the order in which they are drawn; returns how many. */
-enum { PLANE_MAX_SLICES = 3 };
+/* The image slices that a scene shows in space, in the order in which they are drawn: the three orthogonal ones, then
+ * the obliques; returns how many. */
+enum { PLANE_MAX_SLICES = 3 + 8 };
 size_t planes_of_slices(const struct scene *scene, struct plane slices[PLANE_MAX_SLICES]);
 
 /* Field by field. */

@@ -11,14 +11,20 @@
 #include "core/region/target.h"
 #include "core/volume/window.h"
 
+/* Index of the plan's image; -1: it has none of that id. */
+static int image_index(const struct plan *plan, const char *id)
+{
+    for (size_t i = 0; i < plan->n_images; i++)
+        if (strcmp(plan->images[i].id, id) == 0)
+            return (int)i;
+    return -1;
+}
+
 int scene_image_index(const struct plan *plan, const struct scene *scene)
 {
     if (scene->image.id[0] == 0)
         return plan->n_images ? 0 : -1;
-    for (size_t i = 0; i < plan->n_images; i++)
-        if (strcmp(plan->images[i].id, scene->image.id) == 0)
-            return (int)i;
-    return -1;
+    return image_index(plan, scene->image.id);
 }
 
 bool snapshot_is_low_white(const struct snapshot *snapshot)
@@ -66,6 +72,7 @@ static bool find_references(struct snapshot *snapshot, char field[128], struct e
     const struct plan *plan = snapshot->plan;
     const struct scene *scene = &snapshot->scene;
     snapshot->image = scene_image_index(plan, scene);
+    snapshot->blend = scene->image.blend.id[0] ? image_index(plan, scene->image.blend.id) : -1;
     snapshot->dose = dose_index(plan, scene);
     if (snapshot->image < 0 && scene->image.id[0]) {
         snprintf(field, 128, "/image/id");
@@ -74,6 +81,10 @@ static bool find_references(struct snapshot *snapshot, char field[128], struct e
     if (snapshot->dose < 0 && scene->dose.id[0]) {
         snprintf(field, 128, "/dose/id");
         return error_set(err, ERROR_NOT_FOUND, "the plan has no dose '%s'", scene->dose.id);
+    }
+    if (scene->image.blend.id[0] && snapshot->blend < 0) {
+        snprintf(field, 128, "/image/blend/id");
+        return error_set(err, ERROR_NOT_FOUND, "the plan has no image '%s'", scene->image.blend.id);
     }
     if (scene->check.region[0] && !region_find(&plan->regions, scene->check.region)) {
         snprintf(field, 128, "/check/region");
@@ -102,6 +113,8 @@ struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, st
         goto fail;
     snapshot->pane = plane_of_view(&snapshot->scene, &snapshot->view);
     snapshot->n_slices = planes_of_slices(&snapshot->scene, snapshot->slices);
+    if (!snapshot_is_pane(snapshot))
+        snapshot->n_clips = clip_planes(snapshot->plan, &snapshot->scene, snapshot->clips);
     if (!camera_check(snapshot->plan, &snapshot->view, &snapshot->pane, field, err))
         goto fail;
     return snapshot;

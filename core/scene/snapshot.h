@@ -5,6 +5,7 @@
 #include "core/math/vec.h"
 #include "core/plan/plan.h"
 #include "core/scene/camera.h"
+#include "core/scene/clip.h"
 #include "core/scene/plane.h"
 #include "scene.h" /* generated from proto/scene.json */
 
@@ -16,10 +17,13 @@ struct snapshot {
     uint32_t scene_revision;
     struct scene_region_style *styles;     /* owned; [n_regions] of the plan */
     int image;                             /* index of the image shown; -1: the plan has none */
+    int blend;                             /* index of the image that is blended over it; -1: none */
     int dose;                              /* index of the dose shown; -1: the plan has none */
     struct plane pane;                     /* the plane of a slice pane; else unused */
     struct plane slices[PLANE_MAX_SLICES]; /* image slices shown in space, in the order of drawing */
     size_t n_slices;
+    struct clip_plane clips[CLIP_MAX]; /* enabled clip planes; a slice pane has none */
+    size_t n_clips;
     _Atomic int references;
 };
 

@@ -5,7 +5,7 @@
 #include "server/room/room.h"
 
 enum {
-    N_KINDS = SCENE_KIND_SAGITTAL + 1,
+    N_KINDS = SCENE_KIND_OBLIQUE + 1,
     MAX_WAITING_INPUTS =
         32, /* inputs of one view that no sent picture shows yet; beyond these, inputs are reported together */
     SECRET_BYTES = 16,

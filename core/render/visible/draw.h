@@ -2,15 +2,16 @@
 /* The draw list of a picture: what is drawn, how, and in which order. Made from a snapshot by draw_list.h; the back
  * ends execute the draws one after the other and decide no order themselves. Knows no pixels and no GL. */
 #include "core/derive/subject.h"
+#include "core/render/visible/cut.h"
 #include "core/render/visible/draw_cache.h"
 #include "core/render/visible/visible.h"
 #include "core/scene/camera.h"
 
-/* In the order of drawing. A volume comes between planes and translucent shapes, lines (of tracks) after those. */
+/* In the order of drawing. Lines (of tracks) come after translucent shapes. */
 enum draw_pass {
     DRAW_OPAQUE,      /* opaque shapes, the nearest first */
-    DRAW_PLANES,      /* images and labels on planes */
-    DRAW_TRANSLUCENT, /* translucent shapes: by the scene's order, then the farthest first */
+    DRAW_PLANES,      /* images and labels on planes, caps */
+    DRAW_TRANSLUCENT, /* a volume; translucent shapes: by the scene's order, then the farthest first */
     DRAW_OVERLAY      /* lines painted over the finished picture by overlay.h, not by a back end */
 };
 
@@ -18,6 +19,8 @@ enum draw_kind {
     DRAW_SHAPE,    /* triangles, lines or points */
     DRAW_IMAGE,    /* an image on a plane */
     DRAW_LABELS,   /* some labels of a label layer on a plane */
+    DRAW_CAP,      /* what a clip plane cuts through, closed with the image */
+    DRAW_VOLUME,   /* an image as a volume */
     DRAW_OUTLINE,  /* overlay: the outline of a region's surface or univels on a plane */
     DRAW_CHECK,    /* overlay: where univels and surface of a region differ on a plane */
     DRAW_GRID_CUT, /* overlay: where a plane cuts the grids of a dose */
@@ -32,10 +35,11 @@ enum draw_depth {
     DRAW_DEPTH_LAYER
 };
 
-/* The half-spaces that a draw is cut off by: what lies above any of the planes is not drawn. No scene has one yet. */
+/* The half-spaces that a draw is cut off by: what lies more than CLIP_SLACK_MM above any of the planes is not drawn. */
 struct clip_set {
-    const struct plane *planes; /* owned by the list */
+    const struct clip_plane *planes; /* the snapshot's */
     size_t n_planes;
+    uint32_t left_out; /* bit i is set: planes[i] does not cut this draw */
 };
 
 struct draw_shape {
@@ -50,6 +54,44 @@ struct draw_image {
     double cull;       /* as grey; -infinity: drawn everywhere */
     bool is_low_white; /* grey 0 is white, 1 is black */
     bool is_linear;    /* interpolated between voxels */
+};
+
+/* A region in a cap: closed outlines in the clip plane, by the even-odd rule. */
+struct draw_cap_region {
+    size_t region;
+    const struct cut_lines *lines; /* owned by the list or its cache; where the plane cuts the very shape drawn */
+    uint32_t color_rgb;
+};
+
+/* Closes a cut: every sample of the plane that is inside one of the regions is opaque and shows the image, dark where
+ * there is none, as far as no other clip plane cuts it. */
+struct draw_cap {
+    const struct draw_cap_region *regions; /* the lowest rank first: of several at a point the last one counts */
+    size_t n_regions;
+    bool has_image,
+        has_volume;     /* has_volume: also where the volume is seen: the image's value is volume_from or more */
+    double volume_from; /* in the image's unit */
+    struct draw_image image;
+    double tint;       /* part of the region's colour in the mixed one; 0: none */
+    double outline_px; /* width of the regions' outlines on the full picture; 0: none */
+};
+/* The colour of a cap where there is no image. */
+#define DRAW_CAP_DARK 0x14120fu
+
+/* An image as a volume. The ray is sampled in the image's grid; what nearer opaque draws hide is left out, and its
+ * samples are mixed with translucent layers in their order of depth. */
+enum { DRAW_VOLUME_TABLE = 1024 };
+struct draw_volume {
+    enum scene_volume_method method;
+    /* Of the method ray: colour 0..1 and absorption per mm (natural: light exp(-a d) passes d mm), not premultiplied,
+     * at DRAW_VOLUME_TABLE values from low to low + width, both included; constant beyond. The list's. */
+    const float (*table)[4];
+    double low, width;
+    double cull;             /* in the image's unit; smaller values are not drawn; -infinity: all are */
+    struct draw_image image; /* window and colours of the methods slices, mip and average */
+    int n_slices;            /* of the method slices */
+    bool is_linear, is_shaded;
+    bool is_still; /* full quality */
 };
 
 struct draw_lines {
@@ -73,6 +115,8 @@ struct draw {
         struct draw_shape shape;
         struct draw_image image;
         const uint8_t *palette; /* DRAW_LABELS: [VISIBLE_N_LABELS][4], label to RGBA, alpha 0: not drawn; the list's */
+        struct draw_cap cap;
+        struct draw_volume volume;
         struct draw_lines lines;
     };
 };

@@ -354,7 +354,9 @@ static bool paint_draw(const struct target *target, const struct draw *draw, str
     case DRAW_GRID_BOX: return paint_dose_grid(target, draw, err);
     case DRAW_SHAPE:
     case DRAW_IMAGE:
-    case DRAW_LABELS: break; /* a back end's */
+    case DRAW_LABELS:
+    case DRAW_CAP:
+    case DRAW_VOLUME: break; /* a back end's */
     }
     return true;
 }

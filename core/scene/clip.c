@@ -1,0 +1,72 @@
+/* The clip planes of a scene. */
+#include "core/scene/clip.h"
+
+#include <string.h>
+
+/* The plane with its normal towards what is cut off. */
+static struct plane facing(struct plane plane, struct vec3 cut_off)
+{
+    if (vec3_dot(plane.normal, cut_off) < 0)
+        plane.normal = vec3_sub(vec3(0, 0, 0), plane.normal);
+    return plane;
+}
+
+static const struct beam *find_beam(const struct plan *plan, const char *id)
+{
+    for (size_t i = 0; i < plan->n_beams; i++)
+        if (id[0] == 0 || strcmp(plan->beams[i].id, id) == 0)
+            return &plan->beams[i];
+    return NULL;
+}
+
+static bool beam_plane(const struct plan *plan, const struct scene_clip_beam *clip, struct plane *plane)
+{
+    const struct beam *beam = find_beam(plan, clip->id);
+    if (!beam)
+        return false;
+    struct vec3 along = vec3_normalize(vec3_sub(beam->target_lps_mm, beam->entry_lps_mm));
+    *plane = facing(plane_of_normal(vec3_add(beam->entry_lps_mm, vec3_scale(along, clip->along_mm)), along),
+                    vec3_scale(along, -1));
+    return true;
+}
+
+size_t clip_planes(const struct plan *plan, const struct scene *scene, struct clip_plane planes[CLIP_MAX])
+{
+    const struct scene_clip_style *clip = &scene->clip;
+    const struct {
+        enum clip_name name;
+        enum scene_kind kind;
+        const struct scene_clip_axis *axis;
+    } axes[] = { { CLIP_AXIAL_LOW, SCENE_KIND_AXIAL, &clip->axial_low },
+                 { CLIP_AXIAL_HIGH, SCENE_KIND_AXIAL, &clip->axial_high },
+                 { CLIP_CORONAL_LOW, SCENE_KIND_CORONAL, &clip->coronal_low },
+                 { CLIP_CORONAL_HIGH, SCENE_KIND_CORONAL, &clip->coronal_high },
+                 { CLIP_SAGITTAL_LOW, SCENE_KIND_SAGITTAL, &clip->sagittal_low },
+                 { CLIP_SAGITTAL_HIGH, SCENE_KIND_SAGITTAL, &clip->sagittal_high } };
+    size_t n = 0;
+    for (size_t i = 0; i < sizeof axes / sizeof axes[0]; i++) {
+        if (!axes[i].axis->enabled)
+            continue;
+        struct plane plane = plane_of_kind(axes[i].kind, axes[i].axis->position_mm);
+        bool is_low = axes[i].name % 2 == 0; /* cuts off what lies below its position */
+        planes[n++] = (struct clip_plane){ axes[i].name, facing(plane, vec3_scale(plane.normal, is_low ? -1 : 1)),
+                                           axes[i].axis->cap };
+    }
+    struct plane plane;
+    if (clip->beam.enabled && beam_plane(plan, &clip->beam, &plane))
+        planes[n++] = (struct clip_plane){ CLIP_BEAM, plane, clip->beam.cap };
+    if (clip->free.enabled)
+        planes[n++] =
+            (struct clip_plane){ CLIP_FREE,
+                                 facing(plane_of_normal(clip->free.origin_mm, clip->free.normal), clip->free.normal),
+                                 clip->free.cap };
+    return n;
+}
+
+bool clip_cuts(const struct clip_plane *planes, size_t n, struct vec3 point_lps_mm)
+{
+    for (size_t i = 0; i < n; i++)
+        if (plane_height_mm(&planes[i].plane, point_lps_mm) > CLIP_SLACK_MM)
+            return true;
+    return false;
+}
