@@ -46,17 +46,40 @@ static bool is_target_word(const char *text, size_t n)
     return is_classified(text, n);
 }
 
+/* A structure made around a target or without it, to shape the dose. */
+static bool is_helper_word(const char *text, size_t n)
+{
+    static const char *const words[] = { "ring", "shell", "not", "minus", "without", "outside" };
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (is_same_word(text, n, words[i]))
+            return true;
+    return false;
+}
+
+/* True for the volume that a name takes away from what stands before it: the PTV of "Lungs-PTV". */
+static bool is_taken_away(const char *name, const char *word)
+{
+    return word - name >= 2 && word[-1] == '-' && word[-2] != ' ' && lower(word[1]) == 't' && lower(word[2]) == 'v';
+}
+
 bool region_name_is_target(const char *name)
 {
+    bool is_target = false;
     for (const char *at = name; *at;) {
         size_t n = 0;
         while (is_letter(at[n]))
             n++;
-        if (is_target_word(at, n))
-            return true;
+        if (is_helper_word(at, n))
+            return false;
+        is_target |= is_target_word(at, n) && !is_taken_away(name, at);
         at += n > 0 ? n : 1;
     }
-    return false;
+    return is_target;
+}
+
+bool region_is_target(const struct region *region)
+{
+    return region->is_target || region_name_is_target(region->name);
 }
 
 static bool is_inside(const struct region_set *set, size_t index, size_t outer)
@@ -80,7 +103,7 @@ int region_first_target(const struct region_set *set)
 {
     for (size_t i = 0; i < set->n_regions; i++) {
         const struct region *region = &set->regions[i];
-        if ((region->is_target || region_name_is_target(region->name)) && count_voxels(set, i) > 0)
+        if (region_is_target(region) && count_voxels(set, i) > 0)
             return (int)i;
     }
     return -1;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/region/target.h"
 #include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 #include "server/wire/document.h"
@@ -115,6 +116,7 @@ static cJSON *region_object(const struct region_set *set, size_t index)
     json_add(object, "id", cJSON_CreateString(region->id));
     json_add(object, "name", cJSON_CreateString(region->name));
     json_add(object, "color", cJSON_CreateString(color));
+    json_add(object, "is_target", cJSON_CreateBool(region_is_target(region)));
     json_add(object, "color_from_file", cJSON_CreateBool(region->has_file_color));
     json_add(object, "parent",
              region->parent >= 0 ? cJSON_CreateString(set->regions[region->parent].id) : cJSON_CreateNull());

@@ -6,10 +6,10 @@
  *   id, name, note, is_phantom,
  *   load_ms,
  *   bounds_mm: box | null,
- *   home: {"3d": camera, axial, coronal, sagittal},  of views without a camera; each as the camera of a view
+ *   home: {"3d": camera, axial, coronal, sagittal, oblique},  of views without a camera; each as the camera of a view
  *   images: [ {id, name, modality, unit, grid, low, high, window: {center, width}, is_inverted} ],
  *   regions: [ {
- *     id, name, color: "#rrggbb", color_from_file, parent: id | null, depth,
+ *     id, name, is_target, color: "#rrggbb", color_from_file, parent: id | null, depth,
  *     grid, label, voxels, volume_cm3, center_mm: point | null, bounds_mm: box | null,  null: it has no voxels
  *     touches_edge,
  *     tissue: {boron_ratio, cbe_boron, rbe_nitrogen, rbe_fast, rbe_gamma}  null: not in the plan

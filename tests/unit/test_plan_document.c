@@ -73,7 +73,7 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
     assert_json_point(item(axial, "up"), 0, -1, 0);
     assert_true(cJSON_GetArrayItem(item(axial, "position_mm"), 2)->valuedouble < 25.5);
     assert_string_equal(item(item(item(document, "home"), "3d"), "projection")->valuestring, "perspective");
-    assert_int_equal(cJSON_GetArraySize(item(document, "home")), 4);
+    assert_int_equal(cJSON_GetArraySize(item(document, "home")), 5); /* every kind of view */
 
     const cJSON *image = cJSON_GetArrayItem(item(document, "images"), 0), *grid = item(image, "grid");
     assert_close(item(image, "low")->valuedouble, -1000, 0);

@@ -6,10 +6,13 @@
 static void words_of_a_name_say_that_it_is_a_target(void **state)
 {
     (void)state;
-    static const char *const targets[] = { "GTV",     "ctv",         "PTV1", "PTV_60Gy", "my tumour", "Tumor-bed",
-                                           "LESIONS", "Target (MR)", "GTVp", "PTVsb1",   "CTVn_left", "zz GTV" };
-    static const char *const others[] = { "",     "brain",    "targeted", "nontumour", "GTVish",  "gtvp",
-                                          "CTVx", "lesional", "TV",       "s",         "Patient", "PT V" };
+    static const char *const targets[] = { "GTV",       "ctv",     "PTV1",         "PTV_60Gy", "my tumour",
+                                           "Tumor-bed", "LESIONS", "Target (MR)",  "GTVp",     "PTVsb1",
+                                           "CTVn_left", "zz GTV",  "brain-tumour", "PTV-GTV",  "boost - PTV" };
+    static const char *const others[] = { "",        "brain",   "targeted",        "nontumour", "GTVish",
+                                          "gtvp",    "CTVx",    "lesional",        "TV",        "s",
+                                          "Patient", "PT V",    "Lungs-PTV",       "Body-ctv",  "Ring_PTV",
+                                          "NotPTV",  "not PTV", "shell around GTV" };
     for (size_t i = 0; i < sizeof targets / sizeof targets[0]; i++)
         if (!region_name_is_target(targets[i]))
             fail_msg("\"%s\" is a target", targets[i]);

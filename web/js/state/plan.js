@@ -155,8 +155,8 @@ export function soloPatch(regions, scene, id) {
   return { regions: Object.fromEntries(regions.map((region) => [region.id, { visible: isAlone || region.id === id }])) };
 }
 
-/** True for a region that is a target by its type or its name. */
-export const isTarget = ({ name, is_target: isKnown = false }) => isKnown || /gtv|ctv|ptv|tumou?r|target|lesion/i.test(name);
+/** True for a region that the daemon takes for a target, by its type or its name. */
+export const isTarget = ({ is_target: is = false }) => is;
 
 /** The patch that shows the regions that pass the test and hides the others. */
 export const showPatch = (regions, test) => ({ regions: Object.fromEntries(regions.map((region) => [region.id, { visible: test(region) }])) });
