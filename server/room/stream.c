@@ -461,6 +461,7 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
                    request.n_outstanding, now_us);
     /* the viewer moved on while the still was drawn: it would only delay the moving picture that is coming */
     bool is_overtaken = request.is_still && newer_is_coming(stream, request.version);
+    is_overtaken |= request.version < stream->refused_version; /* viewers take a picture as the end of a refusal */
     if (is_newer(stream, &request) && !is_overtaken) {
         room_picture_drop(stream->latest);
         stream->latest = picture;

@@ -98,6 +98,25 @@ static void a_refusal_that_comes_late_does_not_hide_the_one_of_a_newer_view(void
     assert_int_equal(fake_n_heard(&ben, "problem"), 1);
 }
 
+static void a_picture_of_before_the_refusal_is_not_shown_after_it(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    struct fake_request *older = fake_oldest(&fake);
+    fake_turn(&fake, &ann, 8, 21);
+    fake_pass(&fake, 100);
+    assert_ptr_not_equal(fake_newest(&fake), older);
+    fake_refuse(&fake, fake_newest(&fake));
+    assert_int_equal(fake_n_heard(&ann, "problem"), 1);
+    size_t n_frames = ann.n_frames;
+    fake_draw(&fake, fake_oldest(&fake)); /* it would take away the reason why there is no picture */
+    assert_int_equal(ann.n_frames, n_frames);
+    fake_turn(&fake, &ann, 9, 22);
+    fake_pass(&fake, 100);
+    fake_draw(&fake, fake_newest(&fake));
+    assert_int_equal(ann.n_frames, n_frames + 1);
+}
+
 static void a_limit_that_says_when_to_come_again_is_no_last_word(void **state)
 {
     (void)state;
@@ -172,6 +191,7 @@ int main(void)
         ROOM_TEST(a_picture_that_cannot_be_is_told_once_and_not_requested_again),
         ROOM_TEST(a_picture_beyond_a_limit_is_told_once_and_requested_again_only_after_a_change),
         ROOM_TEST(a_refusal_that_comes_late_does_not_hide_the_one_of_a_newer_view),
+        ROOM_TEST(a_picture_of_before_the_refusal_is_not_shown_after_it),
         ROOM_TEST(a_limit_that_says_when_to_come_again_is_no_last_word),
         ROOM_TEST(what_a_picture_leaves_out_is_told_before_it_and_when_it_changes),
         ROOM_TEST(a_new_renderer_is_told_the_scene_and_draws_everything_anew),

@@ -73,7 +73,7 @@ test('a record is read with its defaults, and what is wrong with one is said', a
   await refused({ ...record, version: 2 }, /another version/);
   await refused({ ...record, scene: { ...scene, script: 1 } }, /not valid: \/script/);
   await refused({ ...record, scene: { ...scene, regions: JSON.parse('{"__proto__": {"visible": true}}') } }, /not valid/);
-  await refused({ ...record, view: { ...view, kind: 'oblique' } }, /not valid: \/kind/);
+  await refused({ ...record, view: { ...view, kind: 'beneath' } }, /not valid: \/kind/);
   await assert.rejects(recordOfFile(new Blob([png(end)])), /does not say what it shows/);
   assert.equal(readRecord(JSON.stringify({ ...record, plan: { id: 'head-1', name: 'x'.repeat(5000) } })).plan.name.length, 200);
   assert.equal(readRecord(JSON.stringify({ ...record, date: 'yesterday', revision: -1 })).date, '');

@@ -130,6 +130,27 @@ test('the time an input waits ends with the picture that shows it', () => {
   assert.equal(connection.sent.at(-1).type, 'frame.shown');
 });
 
+test('a picture that came before the refusal does not end it, whatever has changed meanwhile; one that comes later does', () => {
+  const { room, connection } = roomWorld();
+  room.showView(1, [800, 600]);
+  const frame = (sequence) => ({ view: 1, sequence, input_id: 0, scene_revision: 1 });
+  const refuse = () => connection.receive({ type: 'problem', to: '', view: 1, problem: { detail: 'no eye' } });
+  room.frameCame(frame(1)); // is being decoded
+  refuse();
+  room.showView(1, [801, 600]);
+  room.frameShown(frame(1));
+  assert.equal(room.view(1).refusal.value, 'no eye');
+  room.frameCame(frame(2));
+  room.frameShown(frame(2));
+  assert.equal(room.view(1).refusal.value, '');
+  refuse();
+  connection.tell('lost', { retryMs: 500 }); // pictures are counted anew on the next connection
+  connection.receive(welcome());
+  room.frameCame(frame(1));
+  room.frameShown(frame(1));
+  assert.equal(room.view(1).refusal.value, '');
+});
+
 // ---- badges ---------------------------------------------------------------------------------------------------------------
 
 const facts = {

@@ -26,7 +26,7 @@ for (const [name, { from, message, error }] of fixtures('bad'))
 
 test('a document gets every default of proto/scene.json', () => {
   const scene = readDocument('scene', { regions: { brain: { opacity: 0.5 } } });
-  assert.deepEqual(scene.regions.brain, { visible: true, representation: 'surface', order: 0, color: '#c8c8c8', opacity: 0.5 });
+  assert.deepEqual(scene.regions.brain, { visible: true, representation: 'surface', order: 0, color: '#c8c8c8', opacity: 0.5, clipped: true });
   assert.deepEqual(scene.image.window, { center: 40, width: 400 });
   assert.equal(readDocument('view', {}).camera.fov_deg, 30);
   assert.equal(readDocument('view', {}).camera.position_mm, null);
@@ -39,7 +39,7 @@ for (const [what, kind, document, code, pointer] of [
   ['a size of half pixels', 'view', { size_px: [100.5, 100] }, 'type', '/size_px/0'],
   ['a size beyond 4096', 'view', { size_px: [100, 4097] }, 'range', '/size_px/1'],
   ['a point of two numbers', 'view', { camera: { target_mm: [1, 2] } }, 'type', '/camera/target_mm'],
-  ['an unknown kind', 'view', { kind: 'oblique' }, 'enum', '/kind'],
+  ['an unknown kind', 'view', { kind: 'beneath' }, 'enum', '/kind'],
   ['an unknown field', 'view', { camera: { roll: 1 } }, 'unknown-field', '/camera/roll'],
 ])
   test(`a document with ${what} is refused`, () => {

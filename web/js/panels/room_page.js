@@ -65,7 +65,10 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   };
   stops.push(adapt(ui), effect(() => layOut(host.querySelector('.room'), ui))); // before the panes measure themselves: views open at their sizes
   const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, decode, schedule, onPainted }, view));
-  connection.addEventListener('frame', ({ detail }) => panes[detail.header.view - 1]?.painter.offer(detail));
+  connection.addEventListener('frame', ({ detail }) => {
+    room.frameCame(detail.header);
+    panes[detail.header.view - 1]?.painter.offer(detail);
+  });
 
   const after = new AfterRoom({ api, clock, enter });
   const world = { after, room, ui, api, ownName, undo, probed, shaped, refused, comparison, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };

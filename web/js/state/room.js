@@ -137,6 +137,11 @@ export class RoomState {
     this.#connection.send({ type: 'view.close', view: number });
   }
 
+  /** Notes a picture that has come, before it is decoded. */
+  frameCame(header) {
+    this.views[header.view - 1]?.receive(header);
+  }
+
   /** Acknowledges a picture that was painted or could not be, so that the server continues. Returns the answered inputs. */
   frameShown(header, isDrawn = true) {
     this.#connection.send({ type: 'frame.shown', view: header.view, sequence: header.sequence });
@@ -178,7 +183,6 @@ export class RoomState {
       renderer: () => this.#rendererChanged(message),
       scene: () => {
         this.#scene.accept(message.patch, message.input);
-        for (const view of this.views) view.change();
         this.#setRevision(message.revision);
         this.#showScene();
       },
@@ -244,7 +248,6 @@ export class RoomState {
     if (message.scene) {
       this.#isLoaded = true;
       this.#scene.replace(message.scene);
-      for (const view of this.views) view.change();
       this.#showScene();
       this.renderer.value = { state: 'ready', phase: '', percent: 100, problem: null };
     }

@@ -7,7 +7,8 @@ const fpsWindowMs = 1000;
 export class ViewState {
   #replica = new Replica();
   #paintedAt = [];
-  #hasChanged = false; // since the last refusal; messages may overtake frames
+  #received = 0; // sequence of the newest picture received; 0: none
+  #refusedAt = 0; // #received when the refusal came: a later picture ends it
   #unanswered = []; // {input, at, sentAt}; at: time of the input event, 0: not an input in this pane
 
   /** @param {number} number in messages and frames @param {'3d'|'axial'|'coronal'|'sagittal'} kind */
@@ -27,7 +28,6 @@ export class ViewState {
   }
 
   queue(patch) {
-    this.change();
     this.#replica.queue(patch);
     this.document.value = this.#replica.value;
   }
@@ -53,7 +53,6 @@ export class ViewState {
   }
 
   replace(document) {
-    this.change();
     this.#replica.replace(document);
     this.document.value = this.#replica.value;
   }
@@ -63,6 +62,7 @@ export class ViewState {
     this.#unanswered = [];
     this.staleSince.value = 0;
     this.awaited = [];
+    this.#received = this.#refusedAt = 0;
     return this.#replica.recall();
   }
 
@@ -76,6 +76,7 @@ export class ViewState {
   restart(document) {
     this.#replica.reset(document);
     this.#unanswered = [];
+    this.#refusedAt = 0;
     batch(() => {
       this.document.value = document;
       this.staleSince.value = 0;
@@ -84,15 +85,15 @@ export class ViewState {
     });
   }
 
-  /** Notes that the view cannot be drawn as it is now. Frames that still arrive show an older state. */
-  refuseToDraw(reason) {
-    this.#hasChanged = false;
-    this.refusal.value = reason;
+  /** Notes that a picture was received; it may be painted after messages that came later. */
+  receive({ sequence }) {
+    this.#received = sequence;
   }
 
-  /** Notes that view or scene has changed, so that it may be drawn again. */
-  change() {
-    this.#hasChanged = true;
+  /** Notes that the view cannot be drawn as it is now. The server sends no older picture after that. */
+  refuseToDraw(reason) {
+    this.#refusedAt = this.#received;
+    this.refusal.value = reason;
   }
 
   /** Notes that a picture is on the screen. Returns the answered inputs. */
@@ -104,7 +105,7 @@ export class ViewState {
     batch(() => {
       this.document.value = this.#replica.value;
       this.painted.value = header;
-      if (this.#hasChanged) this.refusal.value = '';
+      if (header.sequence > this.#refusedAt) this.refusal.value = '';
       this.fps.value = this.#paintedAt.length;
     });
     return answered;
