@@ -9,6 +9,7 @@
 #define ANY_SET(v) (LANES_OR(v) != 0)
 #define ALL_SET(v) (LANES_AND(v) == -1)
 #include "core/render/soft/kernels.inc"
+#include "core/render/soft/plane_kernels.inc"
 
 /* A sample is stored as one 32-bit word, whose bytes must be those of the image. */
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,

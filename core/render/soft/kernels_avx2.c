@@ -9,6 +9,7 @@
 #define ANY_SET(v) (!_mm256_testz_si256((__m256i)(v), (__m256i)(v)))
 #define ALL_SET(v) (_mm256_movemask_epi8((__m256i)(v)) == -1)
 #include "core/render/soft/kernels.inc"
+#include "core/render/soft/plane_kernels.inc"
 
 extern const struct soft_kernels soft_kernels_avx2;
 const struct soft_kernels soft_kernels_avx2 = {
