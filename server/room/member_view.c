@@ -122,11 +122,11 @@ static cJSON *document_to_share(const struct room *room, const struct member *me
     return plain;
 }
 
-/* Shows the shared stream of the document's kind, which is made from the document when there is none yet. Takes
+/* Shows the shared stream of views like the document, which is made from the document when there is none yet. Takes
  * document, of document_to_share. */
 static void join_shared(struct room *room, struct member *member, struct member_view *view, cJSON *document)
 {
-    struct stream *stream = room->shared[view_kind(document)];
+    struct stream *stream = stream_shared(room, document);
     if (!stream) {
         stream = stream_create(room, document, true);
         if (member_presents(room, member))
@@ -245,9 +245,9 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
     write_size(document, view->size_px);
     if (!view->is_following) {
         (void)stream_set_view(room, stream, document);
-    } else if (view_kind(document) == stream->kind) {
+    } else if (views_are_alike(document, stream->view)) {
         set_shared_view(room, member, view, stream, document);
-    } else { /* another kind has a shared view of its own */
+    } else { /* another kind or plane has a shared view of its own */
         join_shared(room, member, view, document);
         share_size(room, member, view);
         view_add_input(view, (uint32_t)patch->input);
@@ -324,11 +324,20 @@ bool views_follow(struct room *room, struct member *member, uint32_t input, stru
     return true;
 }
 
+/* True if an earlier view of the member is alike. */
+static bool is_taken(const struct member *member, int index)
+{
+    for (int i = 0; i < index; i++)
+        if (member->views[i].stream &&
+            views_are_alike(member->views[i].stream->view, member->views[index].stream->view))
+            return true;
+    return false;
+}
+
 bool views_share(struct room *room, struct member *presenter, bool keep_override, uint32_t input,
                  struct problem *problem)
 {
     cJSON *documents[ROOM_MAX_VIEWS] = { NULL };
-    bool is_taken[N_KINDS] = { false }; /* kinds that an earlier view has given its document */
     for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
         const struct member_view *view = &presenter->views[i];
         if (!is_members_own(view))
@@ -345,18 +354,16 @@ bool views_share(struct room *room, struct member *presenter, bool keep_override
         struct member_view *view = &presenter->views[i];
         if (!view->stream)
             continue;
-        int kind = view->stream->kind;
-        bool was_own = is_members_own(view);
-        if (was_own && room->shared[kind] && !is_taken[kind]) {
-            struct stream *stream = room->shared[kind];
+        bool was_own = is_members_own(view), is_first = !is_taken(presenter, i);
+        struct stream *stream = stream_shared(room, view->stream->view);
+        if (was_own && stream && is_first) {
             set_shared_view(room, presenter, view, stream, documents[i]);
             view_join(room, view, stream, true);
         } else if (was_own) {
             join_shared(room, presenter, view, documents[i]);
-        } else if (!is_taken[kind]) {
+        } else if (is_first) {
             share_size(room, presenter, view);
         }
-        is_taken[kind] = true;
         view_add_input(view, input);
         if (was_own)
             send_joined(room, presenter, i);

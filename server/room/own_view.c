@@ -1,4 +1,4 @@
-/* Copies a shared view for a member who leaves: size, scale, slice positions. */
+/* Copies a shared view for a member who leaves: size, scale, slice positions, oblique plane. */
 #include "server/room/own_view.h"
 
 #include <math.h>
@@ -68,12 +68,36 @@ static bool set_slices(cJSON *view, const cJSON *scene)
     return slices != NULL;
 }
 
+/* Keeps the plane of an oblique view where it is; a plane that the scene does not have stays the axial slice. */
+static bool set_oblique(cJSON *view, const cJSON *scene)
+{
+    static const char *const fields[] = { "origin_mm", "normal" };
+    const char *kind = json_text(view, "kind"), *id = json_text(view, "plane");
+    const cJSON *image = cJSON_GetObjectItemCaseSensitive(scene, "image"),
+                *planes = cJSON_GetObjectItemCaseSensitive(image, "obliques"),
+                *shown = id ? cJSON_GetObjectItemCaseSensitive(planes, id) : NULL;
+    if (!kind || strcmp(kind, "oblique") != 0 || !shown)
+        return true;
+    cJSON *override = object_in(view, "override"), *own_image = override ? object_in(override, "image") : NULL,
+          *own_planes = own_image ? object_in(own_image, "obliques") : NULL,
+          *plane = own_planes ? object_in(own_planes, id) : NULL;
+    for (size_t i = 0; plane && i < sizeof fields / sizeof fields[0]; i++) {
+        cJSON *copy = cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(shown, fields[i]), true);
+        cJSON_DeleteItemFromObjectCaseSensitive(plane, fields[i]);
+        if (!copy || !cJSON_AddItemToObject(plane, fields[i], copy)) {
+            cJSON_Delete(copy);
+            return false;
+        }
+    }
+    return plane != NULL;
+}
+
 cJSON *own_view(const cJSON *shared, const cJSON *scene, const int size_px[2], struct problem *problem)
 {
     cJSON *view = cJSON_Duplicate(shared, true);
     if (view)
         set_size(view, size_px);
-    if (view && (!scene || set_slices(view, scene)))
+    if (view && (!scene || (set_slices(view, scene) && set_oblique(view, scene))))
         return view;
     cJSON_Delete(view);
     (void)json_no_memory(problem, "a view");

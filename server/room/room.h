@@ -17,8 +17,8 @@ enum {
 
 struct room;
 
-/* A request for one picture. A stream is served by one render: a member's own view, or the shared view of one kind for
- * all who follow it. The room never has more than two requests of a stream outstanding. */
+/* A request for one picture. A stream is served by one render: a member's own view, or the shared view of one kind, and
+ * of one plane if oblique, for all who follow it. The room never has more than two requests of a stream outstanding. */
 struct room_render {
     uint64_t request;   /* never the same twice; comes back with the picture */
     const cJSON *view;  /* complete view document */

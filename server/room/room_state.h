@@ -5,7 +5,6 @@
 #include "server/room/room.h"
 
 enum {
-    N_KINDS = SCENE_KIND_OBLIQUE + 1,
     MAX_WAITING_INPUTS =
         32, /* inputs of one view that no sent picture shows yet; beyond these, inputs are reported together */
     SECRET_BYTES = 16,
@@ -96,7 +95,6 @@ struct room {
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
     uint32_t n_named;         /* members ever made, for ids */
     struct stream *streams;
-    struct stream *shared[N_KINDS];
     uint64_t n_requests;
     struct room_counters counters;
 };

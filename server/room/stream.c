@@ -24,6 +24,22 @@ int view_kind(const cJSON *view)
     return SCENE_KIND_3D;
 }
 
+bool views_are_alike(const cJSON *a, const cJSON *b)
+{
+    const char *plane_a = json_text(a, "plane"), *plane_b = json_text(b, "plane");
+    if (view_kind(a) != view_kind(b))
+        return false;
+    return view_kind(a) != SCENE_KIND_OBLIQUE || strcmp(plane_a ? plane_a : "", plane_b ? plane_b : "") == 0;
+}
+
+struct stream *stream_shared(const struct room *room, const cJSON *view)
+{
+    for (struct stream *stream = room->streams; stream; stream = stream->next)
+        if (stream->is_shared && views_are_alike(stream->view, view))
+            return stream;
+    return NULL;
+}
+
 static bool has_override(const cJSON *view)
 {
     const cJSON *override = cJSON_GetObjectItemCaseSensitive(view, "override");
@@ -50,17 +66,35 @@ static void stream_changed(struct room *room, struct stream *stream)
     stream->changed_us = room->now_us;
 }
 
+static bool has_viewer(const struct room *room, const struct stream *stream)
+{
+    for (int m = 0; m < room->n_members; m++)
+        for (int v = 0; v < ROOM_MAX_VIEWS; v++)
+            if (room->members[m]->views[v].stream == stream)
+                return true;
+    return false;
+}
+
+static void destroy_unseen_obliques(struct room *room)
+{
+    for (struct stream *stream = room->streams, *next; stream; stream = next) {
+        next = stream->next;
+        if (stream->is_shared && stream->kind == SCENE_KIND_OBLIQUE && !has_viewer(room, stream))
+            stream_destroy(room, stream);
+    }
+}
+
 struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
 {
     struct stream *stream = mem_new(sizeof *stream);
+    if (is_shared)
+        destroy_unseen_obliques(room);
     stream->view = view;
     stream->kind = view_kind(view);
     stream->is_shared = is_shared;
     stream->scene_is_stale = true;
     stream->next = room->streams;
     room->streams = stream;
-    if (is_shared)
-        room->shared[stream->kind] = stream;
     start_pace(room, stream);
     stream_changed(room, stream);
     return stream;
@@ -80,11 +114,7 @@ static bool forget_requests(struct room *room, struct stream *stream)
 
 void stream_left(struct room *room, struct stream *stream)
 {
-    for (int m = 0; m < room->n_members; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++)
-            if (room->members[m]->views[v].stream == stream)
-                return;
-    if (!forget_requests(room, stream))
+    if (has_viewer(room, stream) || !forget_requests(room, stream))
         return;
     stream->requested_version = stream->latest_version; /* the next viewer needs them requested again */
     stream->still_requested_version = stream->latest_is_still ? stream->latest_version : 0;
@@ -97,8 +127,6 @@ void stream_destroy(struct room *room, struct stream *stream)
     while (*at != stream)
         at = &(*at)->next;
     *at = stream->next;
-    if (stream->is_shared)
-        room->shared[stream->kind] = NULL;
     room_picture_drop(stream->latest);
     cJSON_Delete(stream->view);
     cJSON_Delete(stream->scene);
@@ -111,11 +139,11 @@ bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
         cJSON_Delete(view);
         return false;
     }
+    assert(!stream->is_shared || views_are_alike(stream->view, view));
     cJSON_Delete(stream->view);
     stream->view = view;
     stream->scene_is_stale = true;
-    if (stream->kind != view_kind(view)) { /* own views only: a shared stream keeps its kind */
-        assert(!stream->is_shared);
+    if (stream->kind != view_kind(view)) {
         stream->kind = view_kind(view);
         start_pace(room, stream);
     }

@@ -1,12 +1,13 @@
 #pragma once
-/* Streams: one per own view of a member, one per kind for all who follow. When a picture of a stream is requested, how
- * good, and to whom it is sent. Internal to server/room.
+/* Streams: one per own view of a member, one per kind for all who follow; of oblique views one per plane. When a
+ * picture of a stream is requested, how good, and to whom it is sent. Internal to server/room.
  *   - Nothing is requested while no viewer could be sent it; what is requested shows the newest state.
  *   - A picture older than the newest one is never sent.
  *   - Moving pictures are followed by a still. */
 #include "server/room/room_state.h"
 
-/* Takes view, a complete and checked document. */
+/* Takes view, a complete and checked document. The shared stream of an oblique plane ends once it has no viewer and the
+ * next one is made: planes have any names, and there would be no bound on such streams. */
 struct stream *stream_create(struct room *room, cJSON *view, bool is_shared);
 void stream_destroy(struct room *room, struct stream *stream);
 /* A view of a shared stream was closed: without any other viewer its requests are forgotten. */
@@ -33,3 +34,7 @@ void streams_remove_bad_overrides(struct room *room);
 const cJSON *stream_scene(struct room *room, struct stream *stream);
 /* enum scene_kind of a view document. */
 int view_kind(const cJSON *view);
+/* True if two view documents are of one kind, and oblique ones of one plane: then one shared stream serves both. */
+bool views_are_alike(const cJSON *a, const cJSON *b);
+/* The shared stream for such views; NULL: there is none yet. */
+struct stream *stream_shared(const struct room *room, const cJSON *view);

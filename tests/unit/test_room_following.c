@@ -386,7 +386,7 @@ static void open_pane(int who, int p)
 {
     char text[300];
     struct pane *pane = &meeting.seats[who].panes[p];
-    int kind = any(N_KINDS);
+    int kind = any(N_PANE_KINDS);
     bool follow = any(4) != 0;
     struct shown document = any_document(kind, text);
     *pane = own_pane(kind, document);
@@ -444,7 +444,7 @@ static void leave(int who, int p)
     struct pane *panes = meeting.seats[who].panes;
     char text[300], views[400] = "";
     bool has_document = panes[p].is_open && any(2);
-    int kind = has_document ? any(N_KINDS) : 0;
+    int kind = has_document ? any(N_PANE_KINDS) : 0;
     struct shown document = { 0 };
     if (has_document) {
         document = any_document(kind, text);
