@@ -61,9 +61,12 @@ static struct box3 home_box(const struct plan *plan)
     return box_diagonal(&regions) < 0.5 * box_diagonal(&image) ? image : regions;
 }
 
-static double pane_height_mm(const struct box3 *box, const struct plane *plane)
+/* An oblique pane is as high as the highest of the three others, so that turning its plane changes no scale. */
+static double pane_height_mm(const struct box3 *box, enum scene_kind kind, const struct plane *plane)
 {
     struct vec3 size = vec3_sub(box->high, box->low);
+    if (kind == SCENE_KIND_OBLIQUE)
+        return fmax(home_margin * fmax(fmax(size.x, size.y), size.z), 0.1);
     return fmax(home_margin * fmax(box_extent(size, plane->right), box_extent(size, plane->up)), 0.1);
 }
 
@@ -107,7 +110,7 @@ void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_cam
         camera->position_mm = vec3_sub(camera->target_mm, vec3_scale(plane_forward(&plane), 1000));
         camera->projection = SCENE_PROJECTION_PARALLEL;
         camera->has_height_mm = true;
-        camera->height_mm = pane_height_mm(&box, &plane);
+        camera->height_mm = pane_height_mm(&box, kind, &plane);
     }
 }
 
@@ -125,7 +128,7 @@ static double resolve_pane(const struct plan *plan, const struct view *view, con
     camera->is_parallel = true;
     camera->target_lps_mm = plane_nearest(plane, given->has_target_mm ? given->target_mm : box_centre(&box));
     camera->eye_lps_mm = vec3_sub(camera->target_lps_mm, vec3_scale(camera->forward, 1000));
-    return given->has_height_mm ? given->height_mm : pane_height_mm(&box, plane);
+    return given->has_height_mm ? given->height_mm : pane_height_mm(&box, view->kind, plane);
 }
 
 static double resolve_space(const struct plan *plan, const struct view *view, struct camera *camera)

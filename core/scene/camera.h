@@ -6,7 +6,8 @@
 
 /* The camera that shows the whole plan. 3-D: all regions from the front, 30 degrees towards the patient's left and 12
  * degrees from above, superior up; the image instead if the regions' box is less than half as long. Slice panes: the
- * whole first image, without one all regions. */
+ * whole first image, without one all regions; of an oblique pane only target and height count, and the height is that
+ * of the highest of the three others. */
 void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera);
 
 /* A view's camera, resolved: unit axes in patient space and the projection. */

@@ -219,6 +219,32 @@ static void panes_lie_on_their_slice_as_radiology_has_them(void **state)
     plan_and_derived_destroy(plan);
 }
 
+/* However it is turned: without a height of its own, as the highest of the three others. The plan's box is its only
+ * grid's. */
+static void turning_an_oblique_plane_changes_no_scale(void **state)
+{
+    (void)state;
+    struct plan *plan = box_plan();
+    struct vec3 size = vec3_sub(plan->bounds_lps_mm.high, plan->bounds_lps_mm.low);
+    double largest_mm = fmax(fmax(size.x, size.y), size.z);
+    static const struct vec3 normals[] = { { 0, 0, 1 }, { 0, 1, 1 }, { 1, -2, 0.5 }, { 1, 0, 0 } };
+    for (size_t i = 0; i < sizeof normals / sizeof normals[0]; i++) {
+        struct plane plane = plane_of_normal(vec3(3, 4, 5), normals[i]);
+        struct view view = view_default;
+        struct camera camera;
+        view.kind = SCENE_KIND_OBLIQUE;
+        camera_of_view(plan, &view, &plane, &camera);
+        assert_close(camera.pixels_per_mm, 768 / (1.08 * largest_mm), 1e-9);
+        assert_close(plane_height_mm(&plane, camera.target_lps_mm), 0, 1e-9);
+        expect_vec3(camera.right, plane.right.x, plane.right.y, plane.right.z);
+        expect_vec3(camera.up, plane.up.x, plane.up.y, plane.up.z);
+        struct scene_camera home;
+        camera_home(plan, SCENE_KIND_OBLIQUE, &home);
+        assert_close(home.height_mm, 1.08 * largest_mm, 1e-9);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 static void expect_refused(struct plan *plan, struct scene scene, struct view view, enum error_code code,
                            const char *place)
 {
@@ -324,6 +350,7 @@ int main(void)
         cmocka_unit_test(clip_space_goes_to_the_patient_and_back),
         cmocka_unit_test(perspective_spans_the_smaller_side_with_its_opening_angle),
         cmocka_unit_test(panes_lie_on_their_slice_as_radiology_has_them),
+        cmocka_unit_test(turning_an_oblique_plane_changes_no_scale),
         cmocka_unit_test(what_cannot_be_drawn_is_refused_with_its_place),
         cmocka_unit_test(looking_straight_down_without_an_up_still_has_one),
         cmocka_unit_test(a_new_room_sees_through_to_the_innermost_region),

@@ -86,6 +86,85 @@ static void an_upright_plane_does_not_depend_on_which_way_up_it_was(void **state
     expect_vec3(a.right, -0.6, 0.8, 0);
 }
 
+/* A direction by two angles, of any length. */
+static struct vec3 direction(double turn, double rise, double length)
+{
+    return vec3_scale(vec3(cos(rise) * cos(turn), cos(rise) * sin(turn), sin(rise)), length);
+}
+
+static enum scene_kind nearest_kind(struct vec3 n)
+{
+    double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+    return z >= x && z >= y ? SCENE_KIND_AXIAL : y >= x ? SCENE_KIND_CORONAL : SCENE_KIND_SAGITTAL;
+}
+
+/* Every 5 degrees around and 4 up and down. The picture's axes are square to each other and to the normal, turn the
+ * same way round as the nearest slice's, and its up leans no way to the side: it is the slice's up as far as that lies
+ * in the plane. */
+static void a_plane_of_any_direction_is_turned_like_the_nearest_slice(void **state)
+{
+    (void)state;
+    for (int turn = 0; turn < 360; turn += 5)
+        for (int rise = -88; rise <= 88; rise += 4) {
+            struct vec3 n = direction(turn * MATH_PI / 180, rise * MATH_PI / 180, 3.7), unit = vec3_normalize(n);
+            struct plane plane = plane_of_normal(vec3(1, 2, 3), n), near = plane_of_kind(nearest_kind(n), 0);
+            assert_close(fabs(vec3_dot(plane.normal, unit)), 1, 1e-12);
+            assert_true(vec3_dot(plane.normal, near.normal) > 0.57); /* the nearest of three axes: 1 / sqrt 3 */
+            assert_close(vec3_dot(plane.right, plane.up), 0, 1e-12);
+            assert_close(vec3_dot(plane.right, plane.normal), 0, 1e-12);
+            assert_close(vec3_dot(plane.up, plane.normal), 0, 1e-12);
+            assert_close(vec3_length(plane.right), 1, 1e-12);
+            assert_close(vec3_length(plane.up), 1, 1e-12);
+            struct vec3 cross = vec3_cross(near.right, near.up), own = vec3_cross(plane.right, plane.up);
+            assert_true(vec3_dot(cross, near.normal) * vec3_dot(own, plane.normal) > 0);
+            assert_close(vec3_dot(near.up, plane.right), 0, 1e-12);
+            assert_true(vec3_dot(near.up, plane.up) > 0);
+            assert_true(vec3_dot(near.right, plane.right) > 0);
+            assert_close(plane_height_mm(&plane, vec3(1, 2, 3)), 0, 1e-9);
+        }
+}
+
+static void a_plane_square_to_the_patient_is_that_slice_to_the_bit(void **state)
+{
+    (void)state;
+    static const enum scene_kind kinds[3] = { SCENE_KIND_SAGITTAL, SCENE_KIND_CORONAL, SCENE_KIND_AXIAL };
+    static const struct vec3 axes[3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    static const double positions[3] = { 17.3, -4.1, 0.7 };
+    for (int axis = 0; axis < 3; axis++)
+        for (int way = -1; way <= 1; way += 2) {
+            struct plane plane = plane_of_normal(vec3(17.3, -4.1, 0.7), vec3_scale(axes[axis], way * 2.5)),
+                         slice = plane_of_kind(kinds[axis], positions[axis]);
+            assert_true(plane_equal(&plane, &slice));
+        }
+}
+
+static void an_oblique_view_shows_the_plane_that_it_names(void **state)
+{
+    (void)state;
+    struct scene_oblique_entry obliques[2] = { { .id = "a", .value = scene_oblique_default },
+                                               { .id = "b", .value = scene_oblique_default } };
+    struct scene scene = scene_default;
+    struct view view = view_default;
+    obliques[1].value.origin_mm = vec3(1, 2, 3);
+    obliques[1].value.normal = vec3(0, 1, 1);
+    obliques[1].value.visible = true;
+    scene.image.obliques = obliques;
+    scene.image.n_obliques = 2;
+    scene.image.slices.axial.position_mm = 9;
+    view.kind = SCENE_KIND_OBLIQUE;
+    (void)snprintf(view.plane, sizeof view.plane, "b");
+    struct plane pane = plane_of_view(&scene, &view), expected = plane_of_normal(vec3(1, 2, 3), vec3(0, 1, 1)),
+                 slices[PLANE_MAX_SLICES], axial = plane_of_kind(SCENE_KIND_AXIAL, 9);
+    assert_true(plane_equal(&pane, &expected));
+    scene.image.slices.axial.visible = true;
+    scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = false;
+    assert_int_equal(planes_of_slices(&scene, slices), 2); /* "a" is not visible in space */
+    assert_true(plane_equal(&slices[0], &axial) && plane_equal(&slices[1], &expected));
+    (void)snprintf(view.plane, sizeof view.plane, "gone");
+    pane = plane_of_view(&scene, &view);
+    assert_true(plane_equal(&pane, &axial));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -94,6 +173,9 @@ int main(void)
         cmocka_unit_test(only_slices_that_are_visible_have_planes),
         cmocka_unit_test(a_box_reaches_as_far_as_its_corners),
         cmocka_unit_test(an_upright_plane_does_not_depend_on_which_way_up_it_was),
+        cmocka_unit_test(a_plane_of_any_direction_is_turned_like_the_nearest_slice),
+        cmocka_unit_test(a_plane_square_to_the_patient_is_that_slice_to_the_bit),
+        cmocka_unit_test(an_oblique_view_shows_the_plane_that_it_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
