@@ -10,6 +10,7 @@
 #include "core/base/mem.h"
 #include "core/region/target.h"
 #include "core/volume/window.h"
+#include "volume_presets.h" /* generated from proto/volume_presets.json */
 
 /* Index of the plan's image; -1: it has none of that id. */
 static int image_index(const struct plan *plan, const char *id)
@@ -166,6 +167,24 @@ static struct vec3 first_crosshair_lps_mm(const struct plan *plan)
     return grid ? grid_nearest_centre_lps_mm(grid, at) : at;
 }
 
+/* The first transfer function that fits the image, in the image's own values. */
+static void first_transfer_function(const struct plan_image *image, struct scene_volume_style *style)
+{
+    const struct volume_preset *preset = volume_presets;
+    while (preset->is_hu != (strcmp(image->unit, "HU") == 0))
+        preset++;
+    double low = image->window_center - image->window_width / 2;
+    style->points = mem_new(preset->n_points * sizeof *style->points);
+    style->n_points = preset->n_points;
+    for (size_t i = 0; i < preset->n_points; i++) {
+        style->points[i] = preset->points[i];
+        if (!preset->is_hu)
+            style->points[i].value =
+                fmin(fmax(low + preset->points[i].value * image->window_width, -WINDOW_CENTER_FARTHEST),
+                     WINDOW_CENTER_FARTHEST);
+    }
+}
+
 void scene_for_plan(const struct plan *plan, struct scene *scene)
 {
     const struct region_set *set = &plan->regions;
@@ -193,6 +212,7 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
         scene->image.slices.coronal.visible = scene->image.slices.sagittal.visible = set->n_regions == 0;
         scene->image.window.center = plan->images[0].window_center;
         scene->image.window.width = plan->images[0].window_width;
+        first_transfer_function(&plan->images[0], &scene->image.volume);
         const struct scene_window *window = &scene->image.window;
         if (strcmp(plan->images[0].unit, "HU") == 0)
             scene->image.cull_below = -500;

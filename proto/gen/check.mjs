@@ -37,7 +37,7 @@ function checkDefault(field, enums, where) {
   if (field.type === 'direction') need(value.some((number) => number !== 0), where, 'the default has no length');
 }
 
-function checkField(field, { enums, references, known, isMessage }, where) {
+function checkField(field, { enums, references, objects, known, isMessage }, where) {
   need(/^[a-z][a-z0-9_]*$/.test(field.name ?? ''), where, 'a name is a-z, 0-9 and _');
   need(types.includes(field.type), where, `unknown type ${field.type}`);
   need(field.type !== 'json' || isMessage, where, 'only a message has JSON that is not described');
@@ -48,6 +48,9 @@ function checkField(field, { enums, references, known, isMessage }, where) {
   if (field.type === 'enum') need(enums[field.enum], where, `unknown enum ${field.enum}`);
   if (['object', 'list', 'map'].includes(field.type)) need(known.has(field.object), where, `${field.object} is not an object that is described above`);
   if (['list', 'map'].includes(field.type)) need(Number.isInteger(field.max_items) && field.max_items > 0, where, 'needs max_items');
+  if (field.ascending !== undefined)
+    need(field.type === 'list' && objects?.[field.object]?.fields.some((inner) => inner.name === field.ascending && inner.type === 'number'), where,
+      `ascending names a number of the list's object, not ${field.ascending}`);
   if (field.nullable) {
     need([...simpleTypes, 'object', 'plane'].includes(field.type), where, `a ${field.type} cannot be null`);
     need(field.default === undefined, where, 'is null by default, so it has no other default');
@@ -83,11 +86,11 @@ export function checkedDocuments({ enums = {}, objects = {}, references = {}, ..
   const hasPlanes = groups.some(({ fields }) => fields.some(({ type }) => type === 'plane'));
   need(!hasPlanes || !objects.plane, 'plane', 'is the object of the fields of type "plane"');
   for (const [name, object] of Object.entries(objects)) {
-    checkFields(object.fields, { enums, references, known }, name);
+    checkFields(object.fields, { enums, references, objects, known }, name);
     known.add(name);
   }
   for (const [name, document] of Object.entries(description.documents)) {
-    checkFields(document.fields, { enums, references, known }, name);
+    checkFields(document.fields, { enums, references, objects, known }, name);
     // a view is checked without a plan, but for its override, which is a patch on the scene
     need(document.of_plan || !namesSomething(document, objects), name, 'names something of the plan: only a document "of_plan" may');
   }

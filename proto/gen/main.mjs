@@ -6,6 +6,7 @@
 //   packets_gen.h packets_gen.c  structs, field tables and limits of the packets between daemon and renderer
 //   openapi.json openapi.c  the HTTP API, as a file and for the daemon to serve
 //   wire.js              the field tables for the page
+//   volume_presets.h volume_presets.c volume_presets.js  transfer functions to begin with
 //   reference.html       all of it for people
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -16,6 +17,7 @@ import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
 import { openapi, openapiSource } from './openapi.mjs';
 import { checkPackets, packetsHeader, packetsSource, questionRoutes } from './packets.mjs';
+import { checkedPresets, presetsHeader, presetsScript, presetsSource } from './presets.mjs';
 import { problemHeader, problemSource } from './problem_c.mjs';
 import { readShaders, shadersHeader, shadersSource } from './shaders_c.mjs';
 import { referencePage } from './reference.mjs';
@@ -31,6 +33,7 @@ const packets = read('packets.json');
 checkPackets(packets, scene);
 const http = read('http.json');
 const api = openapi({ ...http, routes: [...http.routes, ...questionRoutes(packets)] }, scene, '1');
+const presets = checkedPresets(read('volume_presets.json'), scene);
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
 const write = (name, text) => writeFileSync(join(out, name), text);
@@ -45,6 +48,9 @@ write('problem_gen.h', problemHeader(problems));
 write('problem_gen.c', problemSource(problems));
 write('gl_shaders.h', shadersHeader(shaders));
 write('gl_shaders.c', shadersSource(shaders));
+write('volume_presets.h', presetsHeader());
+write('volume_presets.c', presetsSource(presets));
+write('volume_presets.js', presetsScript(presets));
 write('wire.js', wireScript(scene, messages));
 write('reference.html', referencePage(scene, messages, packets, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))));
 write('openapi.json', JSON.stringify(api, null, 1));

@@ -9,7 +9,7 @@ function typeWords(field, enums) {
   switch (field.type) {
     case 'enum': return enums[field.enum].values.map(([word]) => `<code>${escape(word)}</code>`).join(' or ');
     case 'object': return `<a href="#object-${field.object}">${field.object}</a>`;
-    case 'list': return `list of <a href="#object-${field.object}">${field.object}</a>, at most ${field.max_items}; a patch replaces it whole`;
+    case 'list': return `list of <a href="#object-${field.object}">${field.object}</a>, at most ${field.max_items}${field.ascending ? `, in ascending order of ${field.ascending}` : ''}; a patch replaces it whole`;
     case 'map': return `map from ${field.names ? `the id of ${aThing(field.names)} of the plan` : 'id'} to <a href="#object-${field.object}">${field.object}</a>, at most ${field.max_items}`;
     case 'id': return field.names ? `id of ${aThing(field.names)} of the plan` : 'id';
     case 'vec3': return `three numbers${field.unit ? ` (${field.unit})` : ''}, patient LPS`;

@@ -45,6 +45,7 @@ function fieldRow(f, structName, prefix) {
   if (f.names) parts.push(`.names = &${prefix}_${f.names}_reference`);
   if (f.type === 'list')
     parts.push(`.max_items = ${f.max_items}`, `.count_offset = offsetof(struct ${structName}, n_${f.name})`, `.entry_size = sizeof(struct ${prefix}_${f.object})`);
+  if (f.ascending) parts.push(`.ascending = "${f.ascending}"`);
   if (f.type === 'map')
     parts.push(`.max_items = ${f.max_items}`, `.count_offset = offsetof(struct ${structName}, n_${f.name})`,
       `.entry_size = sizeof(struct ${prefix}_${f.object}_entry)`, `.value_offset = offsetof(struct ${prefix}_${f.object}_entry, value)`);

@@ -50,10 +50,11 @@ struct field {
     const struct field_object *object;   /* object, and the elements of a list or map */
     const struct field_reference *names; /* id, and the keys of a map: what of the plan they name; NULL: nothing */
     size_t max_items;                    /* list, map */
-    size_t count_offset;                 /* list, map: of a size_t */
-    size_t entry_size, value_offset;     /* list, map: of one entry; of the object in it. A map's entry begins with its
-                                            id, char[64] */
-    size_t text_bytes;                   /* of a text: its size with the final zero */
+    const char *ascending; /* list: the number of its object that no entry has less of than the one before; or NULL */
+    size_t count_offset;   /* list, map: of a size_t */
+    size_t entry_size, value_offset; /* list, map: of one entry; of the object in it. A map's entry begins with its
+                                        id, char[64] */
+    size_t text_bytes;               /* of a text: its size with the final zero */
 };
 
 struct field_object {
@@ -65,8 +66,9 @@ struct field_object {
 };
 
 /* Fills out (object->size bytes); fields that are absent or null get their defaults. Refuses unknown and duplicate
- * fields, wrong types, values out of range, over-long text, ids outside [a-z0-9-]{1,63}, more entries than max_items.
- * On failure out owns nothing. skip, if given, names one member that is not a field ("type" of a message). */
+ * fields, wrong types, values out of range, over-long text, ids outside [a-z0-9-]{1,63}, more entries than max_items,
+ * lists that are not in their order. On failure out owns nothing. skip, if given, names one member that is not a field
+ * ("type" of a message). */
 NODISCARD bool fields_read(const struct field_object *object, const cJSON *json, const char *skip, void *out,
                            struct problem *problem);
 /* The whole document, every field, as a new object. NULL: no memory. */

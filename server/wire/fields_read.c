@@ -186,6 +186,25 @@ static char *new_entries(const struct field *field, const cJSON *json, const str
     return entries;
 }
 
+/* Refuses a list whose entries are not in the order that the field asks for. */
+static bool check_order(const struct field *field, const char *entries, size_t n, const struct json_pointer *where,
+                        struct problem *problem)
+{
+    size_t number = 0;
+    while (strcmp(field->object->fields[number].name, field->ascending) != 0)
+        number++;
+    size_t offset = field->object->fields[number].offset;
+    for (size_t i = 1; i < n; i++) {
+        double before, value;
+        memcpy(&before, entries + (i - 1) * field->entry_size + offset, sizeof before);
+        memcpy(&value, entries + i * field->entry_size + offset, sizeof value);
+        if (value < before)
+            return refuse(where, "order", problem, "is not in ascending order of %s: %g stands after %g",
+                          field->ascending, value, before);
+    }
+    return true;
+}
+
 static bool read_list(const struct field *field, const cJSON *json, const struct json_pointer *where, char *base,
                       struct problem *problem)
 {
@@ -203,7 +222,7 @@ static bool read_list(const struct field *field, const cJSON *json, const struct
         }
     }
     set_entries(field, base, entries, n);
-    return true;
+    return !field->ascending || check_order(field, entries, n, where, problem);
 }
 
 /* True if a member before this one has its name. */

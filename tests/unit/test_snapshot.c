@@ -79,6 +79,32 @@ static void a_new_room_leaves_out_air_and_not_what_is_white(void **state)
     plan_and_derived_destroy(plan);
 }
 
+/* Presets in HU are taken as they are, those in parts of the window are laid over it. */
+static void a_new_room_has_a_transfer_function_that_fits_the_first_image_and_shows_no_volume(void **state)
+{
+    (void)state;
+    struct plan *plan = make_plan();
+    plan->images[0].window_center = 100;
+    plan->images[0].window_width = 200;
+    for (int is_hu = 0; is_hu < 2; is_hu++) {
+        struct scene scene;
+        snprintf(plan->images[0].unit, sizeof plan->images[0].unit, "%s", is_hu ? "HU" : "");
+        scene_for_plan(plan, &scene);
+        const struct scene_volume_style *style = &scene.image.volume;
+        assert_false(style->visible);
+        assert_true(style->n_points >= 2);
+        assert_close(style->points[0].opacity, 0, 0); /* what is below is not drawn */
+        for (size_t i = 1; i < style->n_points; i++)
+            assert_true(style->points[i].value > style->points[i - 1].value);
+        if (is_hu)
+            assert_true(style->points[0].value > 60); /* bone: above soft tissue */
+        else
+            assert_close(style->points[style->n_points - 1].value, 200, 1e-9); /* the window's upper end */
+        scene_finish(&scene);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 static double blob(struct vec3 p)
 {
     return vec3_length(vec3_sub(p, vec3(3.2, -4.7, 6.1))) < 3 ? 2 : 1;
@@ -179,6 +205,7 @@ int main(void)
         cmocka_unit_test(a_new_room_begins_at_a_voxel_in_the_first_target_or_in_the_images_middle),
         cmocka_unit_test(a_plan_without_regions_shows_its_three_slices_in_space),
         cmocka_unit_test(a_new_room_leaves_out_air_and_not_what_is_white),
+        cmocka_unit_test(a_new_room_has_a_transfer_function_that_fits_the_first_image_and_shows_no_volume),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -93,7 +93,10 @@ const readers = {
   list: (value, field, pointer, tables) => {
     need(Array.isArray(value), value, 'a list', pointer);
     checkCount(value.length, field, pointer);
-    return value.map((item, index) => readInner(item, field, `${pointer}/${index}`, tables));
+    const items = value.map((item, index) => readInner(item, field, `${pointer}/${index}`, tables));
+    const key = field.ascending;
+    if (key && items.some((item, index) => index > 0 && item[key] < items[index - 1][key])) throw new WireError('order', pointer, `not in ascending order of ${key}`);
+    return items;
   },
   map: (value, field, pointer, tables) => {
     need(isObject(value), value, 'an object', pointer);
