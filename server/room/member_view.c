@@ -247,7 +247,7 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
         (void)stream_set_view(room, stream, document);
     } else if (views_are_alike(document, stream->view)) {
         set_shared_view(room, member, view, stream, document);
-    } else { /* another kind or plane has a shared view of its own */
+    } else { /* another kind, number or plane has a shared view of its own */
         join_shared(room, member, view, document);
         share_size(room, member, view);
         view_add_input(view, (uint32_t)patch->input);

@@ -17,9 +17,9 @@ bool member_frame_shown(struct room *room, struct member *member, const struct m
 /* All open views of the member show the shared views, in place of its own ones; the member is sent each view. Returns
  * false when there was no memory: all is as it was. */
 NODISCARD bool views_follow(struct room *room, struct member *member, uint32_t input, struct problem *problem);
-/* The open views of the presenter become the shared views of their kinds, with their documents and in the presenter's
- * sizes; of two of one kind (and plane), the first. keep_override false: their overrides are dropped. Sends each view
- * that was the presenter's own. Returns false when there was no memory: all is as it was. */
+/* The open views of the presenter become the shared views of their kinds and numbers, with their documents and in the
+ * presenter's sizes; of two of one kind and number (and plane), the first. keep_override false: their overrides are
+ * dropped. Sends each view that was the presenter's own. Returns false when there was no memory: all is as it was. */
 NODISCARD bool views_share(struct room *room, struct member *presenter, bool keep_override, uint32_t input,
                            struct problem *problem);
 /* Closes all views of a connection that has ended: a page that comes back opens its own again. */

@@ -27,7 +27,7 @@ int view_kind(const cJSON *view)
 bool views_are_alike(const cJSON *a, const cJSON *b)
 {
     const char *plane_a = json_text(a, "plane"), *plane_b = json_text(b, "plane");
-    if (view_kind(a) != view_kind(b))
+    if (view_kind(a) != view_kind(b) || json_number(a, "number", 1) != json_number(b, "number", 1))
         return false;
     return view_kind(a) != SCENE_KIND_OBLIQUE || strcmp(plane_a ? plane_a : "", plane_b ? plane_b : "") == 0;
 }

@@ -1,6 +1,6 @@
 #pragma once
-/* Streams: one per own view of a member, one per kind for all who follow; of oblique views one per plane. When a
- * picture of a stream is requested, how good, and to whom it is sent. Internal to server/room.
+/* Streams: one per own view of a member, one per kind and number for all who follow; of oblique views one per plane.
+ * When a picture of a stream is requested, how good, and to whom it is sent. Internal to server/room.
  *   - Nothing is requested while no viewer could be sent it; what is requested shows the newest state.
  *   - A picture older than the newest one is never sent.
  *   - Moving pictures are followed by a still. */
@@ -34,7 +34,8 @@ void streams_remove_bad_overrides(struct room *room);
 const cJSON *stream_scene(struct room *room, struct stream *stream);
 /* enum scene_kind of a view document. */
 int view_kind(const cJSON *view);
-/* True if two view documents are of one kind, and oblique ones of one plane: then one shared stream serves both. */
+/* True if two view documents are of one kind and number, and oblique ones of one plane: then one shared stream serves
+ * both. */
 bool views_are_alike(const cJSON *a, const cJSON *b);
 /* The shared stream for such views; NULL: there is none yet. */
 struct stream *stream_shared(const struct room *room, const cJSON *view);

@@ -37,7 +37,8 @@ static int smaller(const int size_px[2])
 static struct shown copy_for(const struct meeting *meeting, const struct pane *pane)
 {
     struct shown own = meeting->shared[pane->kind].shown;
-    if (pane->kind != SCENE_KIND_3D || own.is_parallel) /* as many pixels to a millimetre as before */
+    if ((pane->kind != SCENE_KIND_3D && pane->kind != SECOND_3D) ||
+        own.is_parallel) /* as many pixels to a millimetre as before */
         own.height_mm = fmin(fmax(own.height_mm * smaller(pane->own_px) / smaller(own.size_px), 0.1), 10000);
     if (isnan(meeting->shared[pane->kind].shown.height_mm))
         own.height_mm = NAN;

@@ -6,7 +6,8 @@
 
 #include "server/wire/document.h"
 
-enum { N_PEOPLE = 5, N_PANES = 4, N_SLICES = 3, N_PANE_KINDS = SCENE_KIND_SAGITTAL + 1 };
+/* Kinds of panes: 3-D, the slices across the patient's axes, and the second 3-D view. */
+enum { N_PEOPLE = 5, N_PANES = 4, N_SLICES = 3, SECOND_3D = SCENE_KIND_SAGITTAL + 1, N_PANE_KINDS };
 
 struct shown {
     int size_px[2];

@@ -11,7 +11,11 @@
 #include "tests/unit/room_fake.h"
 
 enum { N_SEEDS = 150, N_STEPS = 120 };
-static const char *const kind_words[] = { "3d", "axial", "coronal", "sagittal" };
+static const char *const kind_words[N_PANE_KINDS] = { "3d", "axial", "coronal", "sagittal", "3d" };
+static int number_of(int kind)
+{
+    return kind == SECOND_3D ? 2 : 1;
+}
 static const char *const slice_words[N_SLICES] = { "axial", "coronal", "sagittal" };
 
 static struct person {
@@ -86,6 +90,8 @@ static void check_pane(int who, int p)
         differs("%d's pane %d shows the %s view", who, p, view->is_following ? "shared" : "own");
     if (strcmp(json_text(document, "kind"), kind_words[pane->kind]) != 0)
         differs("%d's pane %d is %s, not %s", who, p, json_text(document, "kind"), kind_words[pane->kind]);
+    if (json_number(document, "number", NAN) != number_of(pane->kind))
+        differs("%d's pane %d has number %g", who, p, json_number(document, "number", NAN));
     for (int i = 0; i < 2; i++)
         if (cJSON_GetArrayItem(size, i)->valueint != expected->size_px[i])
             differs("side %d of %d's pane %d is %d px, not %d", i, who, p, cJSON_GetArrayItem(size, i)->valueint,
@@ -365,11 +371,12 @@ static struct shown any_document(int kind, char text[300])
     shown.target_x_mm = any(100);
     shown.height_mm = 50 + any(100);
     shown.is_parallel = any(2);
-    int n = snprintf(text, 300,
-                     "{\"kind\":\"%s\",\"size_px\":[%d,%d],\"camera\":{\"target_mm\":[%g,0,0],\"height_mm\":%g,"
-                     "\"projection\":\"%s\"}",
-                     kind_words[kind], size_px[0], size_px[1], shown.target_x_mm, shown.height_mm,
-                     shown.is_parallel ? "parallel" : "perspective");
+    int n = snprintf(
+        text, 300,
+        "{\"kind\":\"%s\",\"number\":%d,\"size_px\":[%d,%d],\"camera\":{\"target_mm\":[%g,0,0],\"height_mm\":%g,"
+        "\"projection\":\"%s\"}",
+        kind_words[kind], number_of(kind), size_px[0], size_px[1], shown.target_x_mm, shown.height_mm,
+        shown.is_parallel ? "parallel" : "perspective");
     if (any(3) == 0) {
         shown.slices_mm[1] = any(50);
         shown.opacity = any(4) / 4.0;

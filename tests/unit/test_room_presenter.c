@@ -467,6 +467,37 @@ static void a_follower_who_shows_a_new_kind_chooses_nothing_but_its_size(void **
     cJSON_Delete(view);
 }
 
+static void open_of(struct fake_page *page, int view, const char *document)
+{
+    fake_say(&fake, page,
+             "{\"type\":\"view.open\",\"view\":%d,\"document\":{\"size_px\":[300,300],%s},\"follow\":true}", view,
+             document);
+}
+
+static double told_x_mm(const struct fake_page *page)
+{
+    cJSON *view = told_view(page);
+    const cJSON *target = cJSON_GetObjectItem(cJSON_GetObjectItem(view, "camera"), "target_mm");
+    double x = cJSON_IsArray(target) ? cJSON_GetArrayItem(target, 0)->valuedouble : -1;
+    cJSON_Delete(view);
+    return x;
+}
+
+static void a_second_view_of_a_kind_has_its_own_number_and_is_followed_by_it(void **state)
+{
+    (void)state;
+    fake_hello(&fake, &ann);
+    open_of(&ann, 1, "\"kind\":\"3d\",\"camera\":{\"target_mm\":[11,0,0]}");
+    open_of(&ann, 6, "\"kind\":\"3d\",\"number\":2,\"camera\":{\"target_mm\":[22,0,0]}");
+    fake_hello(&fake, &ben);
+    open_of(&ben, 3, "\"kind\":\"3d\",\"number\":2");
+    assert_close(told_x_mm(&ben), 22, 0);
+    open_of(&ben, 1, "\"kind\":\"3d\"");
+    assert_close(told_x_mm(&ben), 11, 0);
+    patch_view(&ann, "\"number\":2"); /* another number is another shared view */
+    assert_close(told_x_mm(&ann), 22, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -487,6 +518,7 @@ int main(void)
         ROOM_TEST(who_takes_over_shows_the_own_views_to_all),
         ROOM_TEST(the_presenter_calls_everybody_back),
         ROOM_TEST(a_follower_who_shows_a_new_kind_chooses_nothing_but_its_size),
+        ROOM_TEST(a_second_view_of_a_kind_has_its_own_number_and_is_followed_by_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
