@@ -190,6 +190,8 @@ static bool draw_alike(const struct gl_frame *frame, const struct draw *draws, s
 {
     if (draws->kind == DRAW_SHAPE)
         return gl_draw_shapes(frame, draws, n, err);
+    if (draws->kind != DRAW_IMAGE && draws->kind != DRAW_LABELS)
+        return true;
     for (size_t i = 0; i < n; i++)
         if (!(draws->kind == DRAW_IMAGE ? gl_draw_image : gl_draw_labels)(frame, &draws[i], err))
             return false;

@@ -58,7 +58,13 @@ static struct soft_corner between(const struct soft_corner *a, const struct soft
 static void clip(struct soft_polygon *polygon)
 {
     for (int plane = 0; plane < SOFT_CLIP_PLANES; plane++) {
-        struct soft_polygon kept = { 0 };
+        bool is_whole = true;
+        for (int i = 0; i < polygon->n; i++)
+            is_whole &= inside(&polygon->corners[i], plane) >= 0;
+        if (is_whole)
+            continue;
+        struct soft_polygon kept;
+        kept.n = 0;
         for (int i = 0; i < polygon->n; i++) {
             const struct soft_corner *a = &polygon->corners[i], *b = &polygon->corners[(i + 1) % polygon->n];
             double fa = inside(a, plane), fb = inside(b, plane);
@@ -74,10 +80,13 @@ static void clip(struct soft_polygon *polygon)
 
 static struct soft_vertex to_vertex(const struct soft_corner *corner)
 {
+    struct soft_vertex vertex;
     if (corner->own && corner->own->x != SOFT_CLIPPED)
-        return *corner->own;
-    struct soft_vertex vertex = { (int32_t)lround(corner->x / corner->w), (int32_t)lround(corner->y / corner->w),
-                                  (float)(corner->z / corner->w), 0 };
+        vertex = *corner->own;
+    else
+        vertex = (struct soft_vertex){ (int32_t)lround(corner->x / corner->w), (int32_t)lround(corner->y / corner->w),
+                                       (float)(corner->z / corner->w), 0 };
+    vertex.shade = 0;
     for (int c = 0; c < 4; c++)
         vertex.shade |= (uint32_t)(corner->shade[c] + 0.5) << 8 * c;
     return vertex;

@@ -16,6 +16,8 @@ struct soft_item {
     struct visible_cue cue; /* lines */
     double size;            /* look.size_px in sub-samples */
     struct soft_vertex *vertices;
+    struct soft_cuts cuts;
+    uint8_t *above; /* by vertex, bits of cuts; NULL: nothing is cut off */
     size_t first_chunk, n_chunks;
 };
 
@@ -70,14 +72,21 @@ static inline bool soft_can_be_seen(const struct soft_vertex *a, const struct so
 struct soft_corner {
     double x, y, z, w;             /* x, y: sub-samples times w; z: depth times w */
     double shade[4];               /* red, green, blue, alpha, 0..255 */
-    const struct soft_vertex *own; /* the same corner rounded, as the triangles around it use it; or NULL */
+    const struct soft_vertex *own; /* the same corner rounded, as the triangles around it use it; or NULL. Its shade is
+                                      not used */
 };
-enum { SOFT_CLIP_PLANES = 5, SOFT_MAX_CORNERS = 4 + SOFT_CLIP_PLANES };
+enum { SOFT_CLIP_PLANES = 5, SOFT_MAX_CORNERS = 4 + SOFT_CLIP_PLANES + SOFT_MAX_CUTS };
 struct soft_polygon {
     int n;
     struct soft_corner corners[SOFT_MAX_CORNERS];
 };
 void soft_project(const struct soft_lighting *lighting, double x, double y, double z, struct soft_corner *corner);
+/* Cuts the part above the item's planes off a polygon of mesh vertices, and projects what is left. Neighbours at an
+ * edge get the same corners, which are those of cut_mesh. shades: of the corners, 0..255; vertices: at most 4. */
+void soft_cut_polygon(const struct soft_item *item, const uint32_t *vertices, int n, const uint32_t *shades,
+                      struct soft_polygon *polygon);
+/* Cuts the part above the item's planes off a segment between mesh vertices. False: nothing is left. */
+bool soft_cut_segment(const struct soft_item *item, const uint32_t vertices[2], struct vec3 ends_lps_mm[2]);
 NODISCARD bool soft_keep_triangle(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width,
                                   int height);
 /* From low, left and above, to high; with the depth and colour of low. */

@@ -2,8 +2,12 @@
 #include "core/render/soft/frame.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/cut.h"
+
+_Static_assert((int)SOFT_MAX_CUTS >= (int)CLIP_MAX, "all clip planes can cut a draw");
 
 static void put(float out[3], struct vec3 v)
 {
@@ -36,6 +40,20 @@ static struct soft_lighting make_lighting(const struct soft_frame *frame, const 
     return l;
 }
 
+/* A capped plane cuts off what lies in it, which the cap covers; another one does not. */
+static struct soft_cuts make_cuts(const struct clip_set *clip)
+{
+    struct soft_cuts cuts = { .n = 0 };
+    for (size_t i = 0; i < clip->n_planes; i++) {
+        if (!clip_set_has(clip, i))
+            continue;
+        struct cut_plane cut = cut_plane(&clip->planes[i].plane);
+        memcpy(cuts.normal[cuts.n], cut.normal, sizeof cut.normal);
+        cuts.position[cuts.n++] = clip->planes[i].is_capped ? cut.position : nextafterf(cut.position, INFINITY);
+    }
+    return cuts;
+}
+
 static struct soft_item make_item(const struct soft_frame *frame, const struct draw *draw)
 {
     double samples_per_px = (double)frame->width / frame->scope->snapshot->view.size_px[0];
@@ -44,6 +62,7 @@ static struct soft_item make_item(const struct soft_frame *frame, const struct d
         .lighting = make_lighting(frame, draw),
         .look = draw->shape.look,
         .cue = draw->shape.cue,
+        .cuts = make_cuts(&draw->clip),
         .size =
             fmax(1, draw->shape.look.size_px * samples_per_px) * SOFT_SUB, /* at least a sample in a small picture */
     };
@@ -57,7 +76,8 @@ static struct soft_plane make_image(const struct soft_frame *frame, const struct
     const struct volume *volume = frame->scope->snapshot->plan->images[draw->subject.index].volume;
     const struct draw_image *image = &draw->image;
     struct soft_plane plane;
-    soft_plane_init(&plane, volume, &draw->plane, &frame->scope->camera->clip_from_lps_mm, frame->width, frame->height);
+    soft_plane_init(&plane, volume, &draw->plane, &draw->clip, &frame->scope->camera->clip_from_lps_mm, frame->width,
+                    frame->height);
     plane.texture.type = types[volume->type];
     plane.texture.grey_scale = (float)(volume->slope / image->width);
     plane.texture.grey_offset = (float)((volume->offset - image->low) / image->width);
@@ -74,7 +94,8 @@ static struct soft_plane make_labels(const struct soft_frame *frame, const struc
 {
     const struct volume *volume = frame->scope->snapshot->plan->regions.layers[draw->subject.index];
     struct soft_plane plane;
-    soft_plane_init(&plane, volume, &draw->plane, &frame->scope->camera->clip_from_lps_mm, frame->width, frame->height);
+    soft_plane_init(&plane, volume, &draw->plane, &draw->clip, &frame->scope->camera->clip_from_lps_mm, frame->width,
+                    frame->height);
     plane.texture.type = volume->type == VOXEL_U8 ? SOFT_U8 : SOFT_U16; /* labels are never negative */
     plane.texture.palette = (const uint32_t *)(const void *)draw->palette;
     return plane;
@@ -91,11 +112,17 @@ bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
         const struct draw *draw = &list->draws[i];
         size_t n_layers = draw_list_n_layers(list, i);
         frame->n_layers = n_layers > frame->n_layers ? n_layers : frame->n_layers;
-        if (draw->kind == DRAW_SHAPE)
-            frame->items[frame->n_items++] = make_item(frame, draw);
-        else
-            frame->planes[frame->n_planes++] =
-                draw->kind == DRAW_IMAGE ? make_image(frame, draw) : make_labels(frame, draw);
+        switch (draw->kind) {
+        case DRAW_SHAPE: frame->items[frame->n_items++] = make_item(frame, draw); break;
+        case DRAW_IMAGE: frame->planes[frame->n_planes++] = make_image(frame, draw); break;
+        case DRAW_LABELS: frame->planes[frame->n_planes++] = make_labels(frame, draw); break;
+        case DRAW_CAP:
+        case DRAW_VOLUME:
+        case DRAW_OUTLINE:
+        case DRAW_CHECK:
+        case DRAW_GRID_CUT:
+        case DRAW_GRID_BOX: break;
+        }
     }
     return true;
 }

@@ -15,8 +15,9 @@
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "the software rasteriser packs samples for little-endian machines");
 
-const struct soft_kernels soft_kernels_portable = { "portable",       shade_portable,  raster_portable,
-                                                    compose_portable, sample_portable, halve_portable };
+const struct soft_kernels soft_kernels_portable = { "portable",      shade_portable,   classify_portable,
+                                                    raster_portable, compose_portable, sample_portable,
+                                                    halve_portable };
 
 uint32_t soft_light(const struct soft_lighting *lighting, const float normal_lps[3], const float towards_lps[3])
 {

@@ -37,6 +37,14 @@ struct soft_points {
     const int16_t *nx, *ny, *nz; /* 32767 is 1 */
 };
 
+/* Planes that cut a shape off, as cut.h cuts its mesh: what is at the position along the normal or beyond is cut off.
+ */
+enum { SOFT_MAX_CUTS = 8 };
+struct soft_cuts {
+    float normal[SOFT_MAX_CUTS][3], position[SOFT_MAX_CUTS];
+    int n;
+};
+
 /* Rows of samples. stride: from row to row, at least SOFT_PADDING more than width. */
 struct soft_band {
     int first_row, n_rows, width, stride;
@@ -89,6 +97,9 @@ struct soft_kernels {
     const char *name;
     void (*shade)(const struct soft_lighting *lighting, const struct soft_points *points, size_t first, size_t n,
                   struct soft_vertex *out);
+    /* Fills above, after `shade`: bit c of a vertex is set where cut c cuts it off. Such a vertex becomes invalid. */
+    void (*classify)(const struct soft_cuts *cuts, const struct soft_points *points, size_t first, size_t n,
+                     uint8_t *above, struct soft_vertex *vertices);
     /* Widens range to the columns that were drawn to. */
     void (*raster)(const struct soft_band *band, const struct soft_triangles *triangles, int range[2]);
     /* Blends the layers' samples that are nearer than the band's depth over its colours, and clears the layers.

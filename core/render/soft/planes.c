@@ -41,38 +41,62 @@ static void clip_coordinates(const struct mat4 *matrix, struct vec3 p, double la
 /* A point of the plane is origin + u right + v up. Its position in the picture times w is linear in (u, v, 1). The
  * inverse map gives u / w, v / w and 1 / w linear in the position, and so is every quantity over w that is linear on
  * the plane. */
-void soft_plane_init(struct soft_plane *plane, const struct volume *volume, const struct plane *plane_lps,
-                     const struct mat4 *clip_from_lps_mm, int width, int height)
+static void over_w(const double linear[3], const struct mat3 *inverse, double at[3])
 {
-    const struct grid *grid = &volume->grid;
-    double clip[3][4];
-    clip_coordinates(clip_from_lps_mm, plane_lps->right, 0, clip[0]);
-    clip_coordinates(clip_from_lps_mm, plane_lps->up, 0, clip[1]);
-    clip_coordinates(clip_from_lps_mm, plane_lps->origin_lps_mm, 1, clip[2]);
-    struct vec3 index[3] = { affine_vector(&grid->ijk_from_lps_mm, plane_lps->right),
-                             affine_vector(&grid->ijk_from_lps_mm, plane_lps->up),
-                             affine_point(&grid->ijk_from_lps_mm, plane_lps->origin_lps_mm) };
+    for (int c = 0; c < 3; c++) {
+        at[c] = 0;
+        for (int k = 0; k < 3; k++)
+            at[c] += linear[k] * inverse->m[k][c];
+    }
+}
+
+static void init_cuts(struct soft_plane *plane, const struct plane *lps, const struct clip_set *clip,
+                      const struct mat3 *inverse)
+{
+    for (size_t i = 0; i < clip->n_planes; i++) {
+        const struct plane *cut = &clip->planes[i].plane;
+        const double below[3] = { -vec3_dot(lps->right, cut->normal), -vec3_dot(lps->up, cut->normal),
+                                  CLIP_SLACK_MM - plane_height_mm(cut, lps->origin_lps_mm) };
+        if (clip_set_has(clip, i))
+            over_w(below, inverse, plane->cuts[plane->n_cuts++]);
+    }
+}
+
+void soft_plane_init(struct soft_plane *plane, const struct volume *volume, const struct plane *plane_lps,
+                     const struct clip_set *clip, const struct mat4 *clip_from_lps_mm, int width, int height)
+{
+    double corner[3][4];
+    clip_coordinates(clip_from_lps_mm, plane_lps->right, 0, corner[0]);
+    clip_coordinates(clip_from_lps_mm, plane_lps->up, 0, corner[1]);
+    clip_coordinates(clip_from_lps_mm, plane_lps->origin_lps_mm, 1, corner[2]);
+    struct vec3 index[3] = { { 0, 0, 0 } };
+    if (volume) {
+        const struct affine *ijk = &volume->grid.ijk_from_lps_mm;
+        index[0] = affine_vector(ijk, plane_lps->right);
+        index[1] = affine_vector(ijk, plane_lps->up);
+        index[2] = affine_point(ijk, plane_lps->origin_lps_mm);
+    }
     struct mat3 place, inverse;
     double linear[5][3];
     for (int c = 0; c < 3; c++) {
-        place.m[0][c] = 0.5 * width * (clip[c][3] + clip[c][0]);
-        place.m[1][c] = 0.5 * height * (clip[c][3] - clip[c][1]);
-        place.m[2][c] = clip[c][3];
+        place.m[0][c] = 0.5 * width * (corner[c][3] + corner[c][0]);
+        place.m[1][c] = 0.5 * height * (corner[c][3] - corner[c][1]);
+        place.m[2][c] = corner[c][3];
         linear[0][c] = index[c].x;
         linear[1][c] = index[c].y;
         linear[2][c] = index[c].z;
         linear[3][c] = c == 2;
-        linear[4][c] = clip[c][2];
+        linear[4][c] = corner[c][2];
     }
     *plane = (struct soft_plane){ 0 };
     plane->is_empty = !invert(&place, &inverse);
     for (int i = 0; !plane->is_empty && i < 5; i++)
-        for (int c = 0; c < 3; c++)
-            for (int k = 0; k < 3; k++)
-                plane->at[i][c] += linear[i][k] * inverse.m[k][c];
-    for (int axis = 0; axis < 3; axis++)
-        plane->texture.size[axis] = grid->size[axis];
-    plane->texture.voxels = volume->voxels;
+        over_w(linear[i], &inverse, plane->at[i]);
+    if (!plane->is_empty)
+        init_cuts(plane, plane_lps, clip, &inverse);
+    for (int axis = 0; volume && axis < 3; axis++)
+        plane->texture.size[axis] = volume->grid.size[axis];
+    plane->texture.voxels = volume ? volume->voxels : NULL;
 }
 
 /* Narrows *first..*last to the x with value + step * x >= 0. */
@@ -86,27 +110,48 @@ static void narrow(double value, double step, double *first, double *last)
         *last = -1;
 }
 
+/* At the middle of sample 0 of row y. */
+static double at_row(const double at[3], int y)
+{
+    return at[2] + at[0] * 0.5 + at[1] * (y + 0.5);
+}
+
+struct soft_row soft_plane_row(const struct soft_plane *plane, int y, int width, double *first, double *last)
+{
+    struct soft_row row;
+    for (int i = 0; i < 5; i++) {
+        row.step[i] = plane->at[i][0];
+        row.at[i] = at_row(plane->at[i], y);
+    }
+    *first = 0;
+    *last = width - 1;
+    narrow(row.at[3] - 1e-12, row.step[3], first, last); /* in front of the eye */
+    for (int cut = 0; cut < plane->n_cuts; cut++)
+        narrow(at_row(plane->cuts[cut], y), plane->cuts[cut][0], first, last);
+    if (plane->texture.has_depth) {
+        narrow(row.at[4] + 1, row.step[4], first, last);
+        narrow(1 - row.at[4], -row.step[4], first, last);
+    }
+    return row;
+}
+
+void soft_plane_narrow(const struct soft_plane *plane, const struct soft_row *row, double *first, double *last)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        double high = plane->texture.size[axis] - 0.5;
+        narrow(row->at[axis] + 0.5 * row->at[3], row->step[axis] + 0.5 * row->step[3], first, last);
+        narrow(high * row->at[3] - row->at[axis], high * row->step[3] - row->step[axis], first, last);
+    }
+}
+
 void soft_plane_draw(const struct soft_plane *plane, const struct soft_kernels *kernels, const struct soft_band *band)
 {
     if (plane->is_empty)
         return;
     for (int y = 0; y < band->n_rows; y++) {
-        struct soft_row row;
-        for (int i = 0; i < 5; i++) { /* at the middle of sample 0 */
-            row.step[i] = plane->at[i][0];
-            row.at[i] = plane->at[i][2] + plane->at[i][0] * 0.5 + plane->at[i][1] * (band->first_row + y + 0.5);
-        }
-        double first = 0, last = band->width - 1;
-        narrow(row.at[3] - 1e-12, row.step[3], &first, &last); /* in front of the eye */
-        for (int axis = 0; axis < 3; axis++) {
-            double high = plane->texture.size[axis] - 0.5;
-            narrow(row.at[axis] + 0.5 * row.at[3], row.step[axis] + 0.5 * row.step[3], &first, &last);
-            narrow(high * row.at[3] - row.at[axis], high * row.step[3] - row.step[axis], &first, &last);
-        }
-        if (plane->texture.has_depth) {
-            narrow(row.at[4] + 1, row.step[4], &first, &last);
-            narrow(1 - row.at[4], -row.step[4], &first, &last);
-        }
+        double first, last;
+        struct soft_row row = soft_plane_row(plane, band->first_row + y, band->width, &first, &last);
+        soft_plane_narrow(plane, &row, &first, &last);
         int from = (int)ceil(fmin(first, band->width)), to = (int)floor(fmax(last, -1));
         size_t at = (size_t)y * (size_t)band->stride;
         if (from <= to)

@@ -1,16 +1,25 @@
 #pragma once
-/* Draws slices through grids: planes, cut off at the grid's outer faces. */
+/* Draws slices through grids: planes, cut off at the grid's outer faces and at clip planes. */
 #include "core/render/soft/kernels.h"
+#include "core/render/visible/draw.h"
 #include "core/scene/snapshot.h"
 
 struct soft_plane {
     struct soft_texture texture;
     double at[5]
              [3]; /* the five quantities of soft_row: change with a sample right, down; value at the picture's corner */
+    double cuts[SOFT_MAX_CUTS][3]; /* depth below each clip plane that cuts it, times 1 / w: as at. Drawn where >= 0 */
+    int n_cuts;
     bool is_empty; /* seen edge-on */
 };
 
-/* For a picture of width x height samples. Fills texture's voxels and size; the caller fills its type and colours. */
+/* For a picture of width x height samples. Fills texture's voxels and size; the caller fills its type and colours.
+ * volume NULL: a plane without a grid. */
 void soft_plane_init(struct soft_plane *plane, const struct volume *volume, const struct plane *plane_lps,
-                     const struct mat4 *clip_from_lps_mm, int width, int height);
+                     const struct clip_set *clip, const struct mat4 *clip_from_lps_mm, int width, int height);
+/* A row of samples of the picture, and the first and last of them that the picture's sides, the eye, the clip planes
+ * and with has_depth near and far plane leave. */
+struct soft_row soft_plane_row(const struct soft_plane *plane, int y, int width, double *first, double *last);
+/* Narrows them to the samples within the grid's outer faces. */
+void soft_plane_narrow(const struct soft_plane *plane, const struct soft_row *row, double *first, double *last);
 void soft_plane_draw(const struct soft_plane *plane, const struct soft_kernels *kernels, const struct soft_band *band);

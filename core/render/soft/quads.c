@@ -81,11 +81,15 @@ bool soft_keep_lines(struct soft_chunk *chunk, int width, int height)
     for (size_t s = chunk->first; s < chunk->first + chunk->n; s++) {
         struct soft_corner ends[2];
         float cue = 0;
+        const uint32_t *v = &item->shape->indices[2 * s];
+        struct vec3 p[2];
+        for (int i = 0; i < 2; i++)
+            p[i] = vec3((double)points->x[v[i]], (double)points->y[v[i]], (double)points->z[v[i]]);
+        if (item->above && item->above[v[0]] | item->above[v[1]] && !soft_cut_segment(item, v, p))
+            continue;
         for (int i = 0; i < 2; i++) {
-            uint32_t v = item->shape->indices[2 * s + (size_t)i];
-            double x = (double)points->x[v], y = (double)points->y[v], z = (double)points->z[v];
-            soft_project(&item->lighting, x, y, z, &ends[i]);
-            cue += cue_at(&item->cue, x, y, z) / 2;
+            soft_project(&item->lighting, p[i].x, p[i].y, p[i].z, &ends[i]);
+            cue += cue_at(&item->cue, p[i].x, p[i].y, p[i].z) / 2;
         }
         if (!keep_line(chunk, ends[0], ends[1], pack(item->lighting.color, cue, item->lighting.opacity), width, height))
             return false;
@@ -145,6 +149,8 @@ bool soft_keep_points(struct soft_chunk *chunk, int width, int height)
     const struct soft_points *points = &item->shape->points;
     for (size_t p = chunk->first; p < chunk->first + chunk->n; p++) {
         struct soft_corner middle;
+        if (item->above && item->above[p])
+            continue;
         soft_project(&item->lighting, (double)points->x[p], (double)points->y[p], (double)points->z[p], &middle);
         if (!(middle.z + middle.w >= 0) || !(middle.w > 0))
             continue;

@@ -34,6 +34,8 @@ struct soft_sorted {
     uint64_t used;                  /* value of n_uses at the last use */
     struct soft_vertex *vertices;
     size_t n_vertices;
+    uint8_t *above; /* of the items that are cut */
+    size_t n_above;
     struct soft_chunk *chunks;
     size_t n_chunks;
 };
@@ -85,6 +87,7 @@ static void drop_buffers(struct soft_renderer *renderer)
         for (size_t c = 0; c < sorted->n_chunks; c++)
             soft_chunk_finish(&sorted->chunks[c]);
         free(sorted->chunks);
+        free(sorted->above);
         free(sorted->vertices);
         *sorted = (struct soft_sorted){ 0 };
     }
@@ -175,11 +178,12 @@ static struct soft_sorted *take_sorted(struct soft_frame *frame, bool *is_lost)
 static bool make_room(struct soft_frame *frame, struct error *err)
 {
     struct soft_sorted *sorted = frame->sorted;
-    size_t n_vertices = 0;
+    size_t n_vertices = 0, n_above = 0;
     frame->n_chunks = frame->n_blocks = 0;
     for (size_t i = 0; i < frame->n_items; i++) {
         struct soft_item *item = &frame->items[i];
         n_vertices += item->shape->n_vertices;
+        n_above += item->cuts.n > 0 ? item->shape->n_vertices : 0;
         item->first_chunk = frame->n_chunks;
         item->n_chunks = (item->shape->n_primitives + SOFT_CHUNK_PRIMITIVES - 1) / SOFT_CHUNK_PRIMITIVES;
         frame->n_chunks += item->n_chunks;
@@ -192,6 +196,13 @@ static bool make_room(struct soft_frame *frame, struct error *err)
         if (!sorted->vertices)
             return false;
     }
+    if (sorted->n_above < n_above) {
+        free(sorted->above);
+        sorted->above = mem_large_array(n_above, 1, UINT64_MAX, err);
+        sorted->n_above = sorted->above ? n_above : 0;
+        if (!sorted->above)
+            return false;
+    }
     if (sorted->n_chunks < frame->n_chunks) {
         struct soft_chunk *grown = realloc(sorted->chunks, frame->n_chunks * sizeof *grown);
         if (!grown)
@@ -201,10 +212,13 @@ static bool make_room(struct soft_frame *frame, struct error *err)
         sorted->n_chunks = frame->n_chunks;
     }
     struct soft_vertex *vertices = sorted->vertices;
+    uint8_t *above = sorted->above;
     for (size_t i = 0; i < frame->n_items; i++) {
         struct soft_item *item = &frame->items[i];
         item->vertices = vertices;
         vertices += item->shape->n_vertices;
+        item->above = item->cuts.n > 0 ? above : NULL;
+        above += item->cuts.n > 0 ? item->shape->n_vertices : 0;
         for (size_t c = 0; c < item->n_chunks; c++) {
             struct soft_chunk *chunk = &sorted->chunks[item->first_chunk + c];
             chunk->item = item;
@@ -237,9 +251,12 @@ static void shade_vertices(void *context, int part, int n_parts)
             piece -= n_blocks;
             item++;
         }
+        const struct soft_kernels *kernels = frame->renderer->kernels;
         size_t first = piece * VERTEX_BLOCK, n = item->shape->n_vertices - first;
-        frame->renderer->kernels->shade(&item->lighting, &item->shape->points, first,
-                                        n < VERTEX_BLOCK ? n : VERTEX_BLOCK, item->vertices + first);
+        n = n < VERTEX_BLOCK ? n : VERTEX_BLOCK;
+        kernels->shade(&item->lighting, &item->shape->points, first, n, item->vertices + first);
+        if (item->above)
+            kernels->classify(&item->cuts, &item->shape->points, first, n, item->above, item->vertices);
     }
 }
 
@@ -328,10 +345,17 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
             continue;
         }
         n = 1;
-        if (list->draws[i].kind == DRAW_SHAPE)
-            draw_item(frame, item++, band, index, (int[2]){ 0, 0 });
-        else
-            soft_plane_draw(plane++, frame->renderer->kernels, band);
+        switch (list->draws[i].kind) {
+        case DRAW_SHAPE: draw_item(frame, item++, band, index, (int[2]){ 0, 0 }); break;
+        case DRAW_IMAGE:
+        case DRAW_LABELS: soft_plane_draw(plane++, frame->renderer->kernels, band); break;
+        case DRAW_CAP:
+        case DRAW_VOLUME:
+        case DRAW_OUTLINE:
+        case DRAW_CHECK:
+        case DRAW_GRID_CUT:
+        case DRAW_GRID_BOX: break;
+        }
     }
 }
 

@@ -48,6 +48,20 @@ static bool keep_clipped(struct soft_chunk *chunk, const uint32_t *corners, cons
     return soft_keep_polygon(chunk, &polygon, item->look.rounding > 0 ? NULL : shade, width, height);
 }
 
+/* Keeps what the clip planes leave of a triangle. */
+static bool keep_cut(struct soft_chunk *chunk, const uint32_t *corners, const uint32_t *flat, int width, int height)
+{
+    const struct soft_item *item = chunk->item;
+    uint32_t shades[3];
+    for (int i = 0; i < 3; i++) {
+        uint32_t own = item->vertices[corners[i]].shade;
+        shades[i] = flat ? round_off(item, *flat, own) : own;
+    }
+    struct soft_polygon polygon;
+    soft_cut_polygon(item, corners, 3, shades, &polygon);
+    return soft_keep_polygon(chunk, &polygon, NULL, width, height);
+}
+
 static bool is_in_picture(const struct soft_vertex *a, const struct soft_vertex *b, const struct soft_vertex *c)
 {
     return (a->x != SOFT_CLIPPED) & (b->x != SOFT_CLIPPED) & (c->x != SOFT_CLIPPED);
@@ -61,9 +75,18 @@ static bool keep_special(struct soft_chunk *chunk, const uint32_t *corners, int 
     const struct soft_vertex *vertices = item->vertices;
     struct soft_vertex triangle[3] = { vertices[corners[0]], vertices[corners[1]], vertices[corners[2]] };
     if (!is_in_picture(&triangle[0], &triangle[1], &triangle[2])) {
+        bool is_cut = false;
+        if (item->above) {
+            const uint8_t *above = item->above;
+            if (above[corners[0]] & above[corners[1]] & above[corners[2]])
+                return true;
+            is_cut = above[corners[0]] | above[corners[1]] | above[corners[2]];
+        }
+        bool (*keep)(struct soft_chunk *, const uint32_t *, const uint32_t *, int, int) =
+            is_cut ? keep_cut : keep_clipped;
         uint32_t shade = is_flat ? flat_shade(item, corners) : 0, behind[3] = { corners[0], corners[2], corners[1] };
-        return keep_clipped(chunk, corners, is_flat ? &shade : NULL, width, height) &&
-               (!item->look.is_two_sided || keep_clipped(chunk, behind, is_flat ? &shade : NULL, width, height));
+        return keep(chunk, corners, is_flat ? &shade : NULL, width, height) &&
+               (!item->look.is_two_sided || keep(chunk, behind, is_flat ? &shade : NULL, width, height));
     }
     struct soft_kept kept;
     bool is_seen = soft_can_be_seen(&triangle[0], &triangle[1], &triangle[2], width, height, &kept);

@@ -279,12 +279,9 @@ struct corner {
     double position_mm;
 };
 
-/* Where an edge meets the plane. Both triangles at an edge get the same point, as it is computed from below to above.
- */
 static struct vec3 meet(const struct corner *below, const struct corner *above, double position_mm)
 {
-    double t = (position_mm - below->position_mm) / (above->position_mm - below->position_mm);
-    return vec3_add(below->lps_mm, vec3_scale(vec3_sub(above->lps_mm, below->lps_mm), t));
+    return cut_between(below->lps_mm, above->lps_mm, cut_share(below->position_mm, above->position_mm, position_mm));
 }
 
 /* Adds the segment where the plane cuts a convex polygon of n corners, if it does. */
@@ -302,11 +299,6 @@ static bool cut_polygon(const struct corner *corners, int n, double position_mm,
     return n_found < 2 || add(lines, found[0], found[1], err);
 }
 
-static inline float position_of(const float *p, const float normal[3])
-{
-    return normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
-}
-
 /* The axis of a normal along an axis of the patient; -1: it is oblique. */
 static int axis_of(const float normal[3])
 {
@@ -316,38 +308,81 @@ static int axis_of(const float normal[3])
     return -1;
 }
 
+struct cut_plane cut_plane(const struct plane *plane)
+{
+    return (struct cut_plane){ { (float)plane->normal.x, (float)plane->normal.y, (float)plane->normal.z },
+                               (float)plane_position_mm(plane) };
+}
+
 int cut_axis(const struct plane *plane)
 {
-    return axis_of((const float[3]){ (float)plane->normal.x, (float)plane->normal.y, (float)plane->normal.z });
+    return axis_of(cut_plane(plane).normal);
+}
+
+/* Adds the segment of one triangle. at: of its corners along the normal. */
+static bool cut_triangle(const float *const p[3], const float at[3], float position, struct cut_lines *lines,
+                         struct error *err)
+{
+    bool above[3] = { at[0] >= position, at[1] >= position, at[2] >= position };
+    if (above[0] == above[1] && above[1] == above[2])
+        return true;
+    struct corner corners[3];
+    for (int c = 0; c < 3; c++)
+        corners[c] = (struct corner){ vec3((double)p[c][0], (double)p[c][1], (double)p[c][2]), (double)at[c] };
+    return cut_polygon(corners, 3, (double)position, lines, err);
+}
+
+/* Of a plane across a patient axis one coordinate decides, and slabs leave out most triangles. */
+static bool cut_across(const struct mesh *mesh, const struct mesh_slabs *slabs, const struct cut_plane *plane, int axis,
+                       struct cut_lines *lines, struct error *err)
+{
+    const float sign = plane->normal[axis];
+    size_t first = 0, end = mesh->n_triangles;
+    if (slabs) /* along the axis itself, also if the normal is its opposite */
+        mesh_slabs_find(slabs, sign * plane->position, &first, &end);
+    for (size_t i = first; i < end; i++) {
+        const uint32_t *corners = &mesh->indices[3 * (slabs ? slabs->triangles[i] : i)];
+        const float *p[3];
+        float at[3];
+        for (int c = 0; c < 3; c++) {
+            p[c] = &mesh->positions_lps_mm[3 * (size_t)corners[c]];
+            at[c] = sign * p[c][axis];
+        }
+        if (!cut_triangle(p, at, plane->position, lines, err))
+            return false;
+    }
+    return true;
+}
+
+/* Each vertex belongs to six triangles: their positions along the normal are computed once. */
+static bool cut_obliquely(const struct mesh *mesh, const struct cut_plane *plane, struct cut_lines *lines,
+                          struct error *err)
+{
+    const float *positions = mesh->positions_lps_mm;
+    float *at = mem_array(mesh->n_vertices, sizeof *at, UINT64_MAX, err);
+    bool is_good = at != NULL;
+    for (size_t v = 0; is_good && v < mesh->n_vertices; v++)
+        at[v] = cut_position(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2], plane->normal);
+    const float position = plane->position;
+    for (size_t t = 0; is_good && t < mesh->n_triangles; t++) {
+        const uint32_t *corners = &mesh->indices[3 * t];
+        const float a = at[corners[0]], b = at[corners[1]], c = at[corners[2]];
+        if (((a >= position) + (b >= position) + (c >= position)) % 3 == 0)
+            continue;
+        const float *p[3] = { positions + 3 * (size_t)corners[0], positions + 3 * (size_t)corners[1],
+                              positions + 3 * (size_t)corners[2] };
+        is_good = cut_triangle(p, (const float[3]){ a, b, c }, position, lines, err);
+    }
+    free(at);
+    return is_good;
 }
 
 bool cut_mesh(const struct mesh *mesh, const struct mesh_slabs *slabs, const struct plane *plane,
               struct cut_lines *lines, struct error *err)
 {
-    const float normal[3] = { (float)plane->normal.x, (float)plane->normal.y, (float)plane->normal.z };
-    const float position = (float)plane_position_mm(plane);
-    const int axis = axis_of(normal); /* one coordinate then decides, and most triangles are left at once */
-    size_t first = 0, end = mesh->n_triangles;
-    if (slabs) /* along the axis itself, also if the normal is its opposite */
-        mesh_slabs_find(slabs, normal[axis] * position, &first, &end);
-    for (size_t i = first; i < end; i++) {
-        size_t t = slabs ? slabs->triangles[i] : i;
-        const float *p[3];
-        float at[3];
-        for (size_t c = 0; c < 3; c++) {
-            p[c] = &mesh->positions_lps_mm[3 * (size_t)mesh->indices[3 * t + c]];
-            at[c] = axis >= 0 ? normal[axis] * p[c][axis] : position_of(p[c], normal);
-        }
-        bool above[3] = { at[0] >= position, at[1] >= position, at[2] >= position };
-        if (above[0] == above[1] && above[1] == above[2])
-            continue;
-        struct corner corners[3];
-        for (int c = 0; c < 3; c++)
-            corners[c] = (struct corner){ vec3((double)p[c][0], (double)p[c][1], (double)p[c][2]), (double)at[c] };
-        if (!cut_polygon(corners, 3, (double)position, lines, err))
-            return false;
-    }
-    return true;
+    const struct cut_plane cut = cut_plane(plane);
+    const int axis = axis_of(cut.normal);
+    return axis >= 0 ? cut_across(mesh, slabs, &cut, axis, lines, err) : cut_obliquely(mesh, &cut, lines, err);
 }
 
 void cut_grid_corners(const struct grid *grid, struct vec3 corners_lps_mm[8])

@@ -36,6 +36,25 @@ NODISCARD bool cut_outlines(const struct mask *slice, enum outline_method method
                             struct error *err);
 /* Adds the sides of pixels between inside and outside. errors ERROR_MEMORY */
 NODISCARD bool cut_borders(const struct mask *slice, struct cut_lines *lines, struct error *err);
+/* How far along the edge from a point below a plane to one above it the plane lies, 0 .. 1, from their positions along
+ * its normal. Whoever cuts an edge does it from below to above with this share, so that all get the same point. */
+static inline double cut_share(double below_mm, double above_mm, double position_mm)
+{
+    return (position_mm - below_mm) / (above_mm - below_mm);
+}
+static inline struct vec3 cut_between(struct vec3 below, struct vec3 above, double share)
+{
+    return vec3_add(below, vec3_scale(vec3_sub(above, below), share));
+}
+/* A plane in single precision, as meshes are cut: a vertex is above it where cut_position(p, normal) >= position. */
+struct cut_plane {
+    float normal[3], position;
+};
+struct cut_plane cut_plane(const struct plane *plane);
+static inline float cut_position(float x, float y, float z, const float normal[3])
+{
+    return normal[0] * x + normal[1] * y + normal[2] * z;
+}
 /* The patient axis that a plane is square to: 0 L, 1 P, 2 S; -1: the plane is oblique. */
 int cut_axis(const struct plane *plane);
 /* Adds the segments where the plane cuts the mesh's triangles: closed outlines if the mesh is closed. A vertex on the

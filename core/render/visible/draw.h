@@ -41,6 +41,10 @@ struct clip_set {
     size_t n_planes;
     uint32_t left_out; /* bit i is set: planes[i] does not cut this draw */
 };
+static inline bool clip_set_has(const struct clip_set *set, size_t i)
+{
+    return !(set->left_out >> i & 1);
+}
 
 struct draw_shape {
     const struct drawable *drawable; /* made by the back end; its bounds are not empty */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/draw_clip.h"
 
 enum { PALETTE_BYTES = 4 * VISIBLE_N_LABELS };
 
@@ -15,12 +16,16 @@ static bool add_image(struct draw_list *list, const struct snapshot *snapshot, c
     const struct scene_image_style *style = &snapshot->scene.image;
     bool is_in_space = !snapshot_is_pane(snapshot);
     double low = style->window.center - style->window.width / 2, width = style->window.width;
+    struct clip_set clip = draw_clip_set(snapshot, style->clipped);
+    if (draw_clip_cuts(&clip) && !draw_clip_slice(&clip, plane, &snapshot->plan->images[snapshot->image].volume->grid))
+        return true;
     return draw_list_add(list,
                          &(struct draw){
                              .pass = DRAW_PLANES,
                              .kind = DRAW_IMAGE,
                              .depth = is_in_space ? DRAW_DEPTH_TESTED : DRAW_DEPTH_NONE,
                              .subject = { SUBJECT_IMAGE, (size_t)snapshot->image, 0 },
+                             .clip = clip,
                              .plane = *plane,
                              .opacity = 1,
                              .image = { .low = low,

@@ -5,12 +5,14 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/draw_clip.h"
 
 /* A region whose shape can be seen, and what its place in the order depends on. */
 struct ranked {
     size_t region;
     struct shape_key key;
     const struct drawable *drawable;
+    struct clip_set clip;
     double distance_mm; /* from the eye to the nearest point of its box */
     int order;          /* the style's */
     int depth;          /* in the hierarchy */
@@ -57,8 +59,23 @@ static bool is_wholly_ahead(const struct camera *camera, const struct box3 *box)
     return vec3_dot(vec3_sub(nearest_corner(camera, box), camera->eye_lps_mm), camera->forward) > camera->near_mm;
 }
 
-/* A region that an opaque one hides cannot be seen, unless the eye is within the outer one's box or the near plane cuts
- * it open. False on failure. */
+/* The clip planes that cut a region's box. False: they cut all of it off. */
+static bool clip_of(const struct draw_scope *scope, size_t region, const struct box3 *box, struct clip_set *clip)
+{
+    *clip = draw_clip_set(scope->snapshot, scope->snapshot->styles[region].clipped);
+    return draw_clip_box(clip, box);
+}
+
+/* True if a box can be seen from outside only, and is not cut open. */
+static bool is_closed_box(const struct draw_scope *scope, size_t region, const struct box3 *box)
+{
+    struct clip_set clip;
+    return !box3_is_empty(box) && is_wholly_ahead(scope->camera, box) && clip_of(scope, region, box, &clip) &&
+           !draw_clip_cuts(&clip);
+}
+
+/* A region that an opaque one hides cannot be seen, unless the eye is within the outer one's box, or the near plane or
+ * a clip plane cuts it open. False on failure. */
 static bool find_hidden(const struct draw_scope *scope, size_t region, bool *is_hidden, struct error *err)
 {
     const struct region *regions = scope->snapshot->plan->regions.regions;
@@ -69,8 +86,7 @@ static bool find_hidden(const struct draw_scope *scope, size_t region, bool *is_
         const struct drawable *drawable = drawable_of(scope, (size_t)outer, err);
         if (!drawable)
             return false;
-        *is_hidden =
-            !box3_is_empty(&drawable->bounds_lps_mm) && is_wholly_ahead(scope->camera, &drawable->bounds_lps_mm);
+        *is_hidden = is_closed_box(scope, (size_t)outer, &drawable->bounds_lps_mm);
     }
     return true;
 }
@@ -108,10 +124,13 @@ static bool rank_regions(const struct draw_scope *scope, bool is_opaque, struct 
         if (!drawable)
             return false;
         const struct box3 *box = &drawable->bounds_lps_mm;
-        if (!box3_is_empty(box) && !visible_is_out_of_sight(&scope->camera->clip_from_lps_mm, box))
+        struct clip_set clip;
+        if (!box3_is_empty(box) && !visible_is_out_of_sight(&scope->camera->clip_from_lps_mm, box) &&
+            clip_of(scope, i, box, &clip))
             ranks[(*n)++] = (struct ranked){ i,
                                              visible_shape_key(snapshot, i),
                                              drawable,
+                                             clip,
                                              nearest_mm(scope->camera, box),
                                              (int)snapshot->styles[i].order,
                                              region_depth(set, i),
@@ -124,15 +143,18 @@ static bool rank_regions(const struct draw_scope *scope, bool is_opaque, struct 
 static struct draw draw_of(const struct draw_scope *scope, const struct ranked *rank, bool is_opaque)
 {
     const struct scene_region_style *style = &scope->snapshot->styles[rank->region];
+    struct visible_look look = visible_look(scope->snapshot, rank->region, &rank->key);
+    look.is_two_sided |= draw_clip_opens(&rank->clip);
     return (struct draw){
         .pass = is_opaque ? DRAW_OPAQUE : DRAW_TRANSLUCENT,
         .kind = DRAW_SHAPE,
         .depth = is_opaque ? DRAW_DEPTH_TESTED : DRAW_DEPTH_LAYER,
         .subject = subject_region(rank->region),
+        .clip = rank->clip,
         .color_rgb = style->color_rgb,
         .opacity = style->opacity,
         .shape = { .drawable = rank->drawable,
-                   .look = visible_look(scope->snapshot, rank->region, &rank->key),
+                   .look = look,
                    .cue = visible_depth_cue(scope->camera, &rank->drawable->bounds_lps_mm) },
     };
 }

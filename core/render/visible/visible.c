@@ -170,9 +170,11 @@ bool visible_hides(const struct snapshot *snapshot, size_t outer, size_t region)
 static bool may_be_seen(const struct snapshot *snapshot, size_t region)
 {
     const struct region *regions = snapshot->plan->regions.regions;
-    for (int outer = regions[region].parent; outer >= 0; outer = regions[outer].parent)
-        if (visible_hides(snapshot, (size_t)outer, region))
+    for (int outer = regions[region].parent; outer >= 0; outer = regions[outer].parent) {
+        bool may_be_cut = snapshot->n_clips > 0 && snapshot->styles[outer].clipped;
+        if (!may_be_cut && visible_hides(snapshot, (size_t)outer, region))
             return false;
+    }
     return true;
 }
 
