@@ -82,21 +82,54 @@ struct draw_cap {
 /* The colour of a cap where there is no image. */
 #define DRAW_CAP_DARK 0x14120fu
 
-/* An image as a volume. The ray is sampled in the image's grid; what nearer opaque draws hide is left out, and its
- * samples are mixed with translucent layers in their order of depth. */
+/* An image as a volume.
+ *
+ * A ray of a sample of the picture goes from its entry to its end, in mm from the eye (parallel: from the eye's plane).
+ * Entry: into the grid's outer faces, past the near plane and the draw's clip planes. End: out of them, or at the
+ * nearer opaque draw. A translucent layer divides it there. Values are taken in the image's grid, beyond the outermost
+ * voxel centres as at them; what is not finite or less than cull is not there.
+ *
+ * ray      from its entry, and again from each layer, the ray has intervals of length h, the last one shorter.
+ *          h = min(step_voxels / (indices that the ray passes per mm, along the axis where these are most),
+ *          step_limit_mm). An interval of length d has the value v at its part draw_volume_jitter and passes
+ *          exp(-absorption(v) d) of the light. Lit by the light of surfaces (two-sided, opaque) with the gradient g, by
+ *          central differences one voxel to either side, as the normal: of the light l counts
+ *          f + (l - f) g^2 / (g^2 + gradient^2), f = DRAW_VOLUME_FLAT, gloss likewise from 0.
+ * slices   n_slices planes at right angles to the line of sight, at the middles of n_slices equal parts of the extent
+ * of the grid's outer faces along it. The nearest one that is there is opaque, in the colours of `image`. mip intervals
+ * as ray; the largest value there, in the colours c of `image`: c + (1 - max c) of what is behind it. It counts as in
+ * front of all layers. average  the same of the mean of the values, weighted with the lengths of their intervals. */
 enum { DRAW_VOLUME_TABLE = 1024 };
+#define DRAW_VOLUME_FLAT 0.8
 struct draw_volume {
     enum scene_volume_method method;
     /* Of the method ray: colour 0..1 and absorption per mm (natural: light exp(-a d) passes d mm), not premultiplied,
-     * at DRAW_VOLUME_TABLE values from low to low + width, both included; constant beyond. The list's. */
+     * at DRAW_VOLUME_TABLE values from low to low + width, both included; constant beyond. Of a value the nearest entry
+     * counts. The list's; NULL with other methods. */
     const float (*table)[4];
     double low, width;
     double cull;             /* in the image's unit; smaller values are not drawn; -infinity: all are */
-    struct draw_image image; /* window and colours of the methods slices, mip and average */
+    struct draw_image image; /* window and colours of the methods slices, mip and average, and of cut faces */
     int n_slices;            /* of the method slices */
     bool is_linear, is_shaded;
-    bool is_still; /* full quality */
+    bool is_still;        /* full quality */
+    double step_voxels;   /* above; of each sample of the picture: several samples of a pixel share its steps */
+    double step_limit_mm; /* above */
+    double gradient;      /* above, in the image's unit per mm; > 0 */
 };
+
+/* At which part of an interval its value is taken, 0..1: so that neighbouring rays do not change value at the same
+ * depth and no rings show. x, y: the sample's column and row in the picture; samples: of the list. A low-discrepancy
+ * sequence over the pixels (M. Roberts, R2); the samples of a pixel are spread evenly. */
+#define DRAW_VOLUME_JITTER_X 3242174889u
+#define DRAW_VOLUME_JITTER_Y 2447445414u
+static inline float draw_volume_jitter(uint32_t x, uint32_t y, int samples)
+{
+    uint32_t shift = samples > 1;
+    uint32_t hash = (x >> shift) * DRAW_VOLUME_JITTER_X + (y >> shift) * DRAW_VOLUME_JITTER_Y;
+    float pixel = (float)(hash >> 8) * 0x1p-24f;
+    return samples > 1 ? 0.25f * ((float)(((x ^ y) & 1) + 2 * (x & 1)) + pixel) : pixel;
+}
 
 struct draw_lines {
     double width_px;            /* on the full picture */
@@ -131,12 +164,13 @@ struct draw_list {
     size_t n_in_image; /* those before DRAW_OVERLAY, for the back end */
     int samples;       /* along a side of a pixel */
     /* True: the layers of each sample are composed in their own order of depth, where a layer counts as nearer by
-     * VISIBLE_RANK_DEPTH for each layer before it. False: in the order of the list. */
+     * VISIBLE_RANK_DEPTH for each layer before it. False: in the order of the list. With a volume always true. */
     bool is_order_exact;
     size_t n_layers_planned; /* translucent draws there are at most, wherever the camera is */
     size_t n_triangles;
     bool is_coarse;            /* some shape is of reduced detail */
     uint8_t *palettes;         /* of DRAW_LABELS */
+    float (*transfer)[4];      /* of DRAW_VOLUME */
     struct draw_cache_use use; /* keeps the drawables until the list is destroyed */
 };
 

@@ -51,5 +51,6 @@ void draw_list_destroy(struct draw_list *list)
     draw_cache_end(&list->use);
     free(list->draws);
     free(list->palettes);
+    free(list->transfer);
     free(list);
 }
