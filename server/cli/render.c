@@ -16,6 +16,7 @@
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/open_plan.h"
+#include "server/cli/render_show.h"
 #include "server/cli/text.h"
 #include "server/wire/document.h"
 #include "server/wire/plan_document.h"
@@ -24,7 +25,9 @@
 enum { DOCUMENT_MAX_BYTES = 1 << 20, DEFAULT_QUALITY = 92 };
 
 struct render_arguments {
-    const char *folder, *out, *scene_path, *view_path;
+    const char *folder, *out;
+    const char *scene, *view; /* a file's name, or JSON, which begins with "{" */
+    struct render_show show;
     enum encode_codec codec;
     enum render_back_end back_end;
     int size_px[2]; /* 0: that of the view */
@@ -38,8 +41,15 @@ static void print_help(void)
         "usage: beamroom render DIR -o OUT.png|OUT.jpg [OPTION]...\n"
         "Draws one picture of the plan in the folder DIR, the same that the daemon shows for the same scene and view.\n\n"
         "  -o, --output OUT  the picture; its ending says whether PNG or JPEG\n"
-        "  --scene FILE      JSON: what differs from the scene a new room starts with (a merge patch, RFC 7396)\n"
-        "  --view FILE       JSON: what differs from the view a new room starts with, 1024x768; camera, kind, size, override\n"
+        "  --scene JSON      what differs from the scene a new room starts with (a merge patch, RFC 7396): JSON in { }, or the\n"
+        "                    name of a file of it\n"
+        "  --view JSON       what differs from the view a new room starts with, 1024x768: camera, kind, size, override\n"
+        "  --show REGIONS    ids with commas between: these regions alone, opaque; none: no region\n"
+        "  --slices SLICES   axial, coronal, sagittal, with commas between and perhaps =MM behind: these slices alone; none\n"
+        "  --volume METHOD   the image as a volume: ray, slices, mip or average; METHOD=VALUE: without what is below VALUE\n"
+        "  --clip PLANE=MM   cuts off what lies beyond: axial-low, axial-high, coronal-low, coronal-high, sagittal-low or\n"
+        "                    sagittal-high, each at a position along S, P or L; given again: one more plane\n"
+        "  --no-caps         leaves cuts of --clip open, so that they show what is hollow\n"
         "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
         "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
         "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
@@ -53,11 +63,18 @@ static void print_help(void)
 
 /* ---- what to draw ----------------------------------------------------------------------------------------------- */
 
+static bool is_json(const char *argument)
+{
+    return argument[0] == '{';
+}
+
 /* err becomes "FILE: /the/field is 3, expected 0 to 1". A detail that starts with the name of the field gets the whole
  * pointer in its place. */
 static bool refuse_problem(const char *path, const struct problem *problem, struct error *err)
 {
     const char *detail = problem->detail;
+    if (is_json(path))
+        path = "the JSON given";
     bool has_place = detail[0] == '/';
     if (has_place)
         detail += strcspn(detail, " ");
@@ -66,10 +83,17 @@ static bool refuse_problem(const char *path, const struct problem *problem, stru
     return error_set(err, ERROR_FORMAT, "%s: %s%s", path, has_place ? problem->pointer : "", detail);
 }
 
-/* A JSON document from a file, at most DOCUMENT_MAX_BYTES. NULL with err. */
+/* A JSON document from an argument that is one, or from the file it names, at most DOCUMENT_MAX_BYTES. NULL with err.
+ */
 static cJSON *read_document(const char *path, struct error *err)
 {
     cJSON *json = NULL;
+    if (is_json(path)) {
+        struct problem problem = { 0 };
+        if (!(json = json_read(path, strlen(path), &problem)))
+            refuse_problem(path, &problem, err);
+        return json;
+    }
     char *bytes = malloc(DOCUMENT_MAX_BYTES + 1);
     FILE *in = bytes ? fopen(path, "rb") : NULL;
     if (!in) {
@@ -89,18 +113,27 @@ static cJSON *read_document(const char *path, struct error *err)
     return json;
 }
 
-/* The scene that a new room of the plan starts with, patched by the file. NULL with err. */
-static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const char *path, struct error *err)
+/* The scene that a new room of the plan starts with, patched by --scene, then by the short options. NULL with err. */
+static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const struct render_arguments *arguments,
+                         struct error *err)
 {
     struct problem problem = { 0 };
-    cJSON *patch = path ? read_document(path, err) : cJSON_CreateObject();
+    cJSON *patch = arguments->scene ? read_document(arguments->scene, err) : cJSON_CreateObject();
     if (!patch)
         return NULL;
     cJSON *scene = scene_document_patch(document, defaults, defaults, patch, &problem);
     cJSON_Delete(patch);
-    if (!scene)
-        refuse_problem(path ? path : "scene", &problem, err);
-    return scene;
+    if (!scene) {
+        refuse_problem(arguments->scene ? arguments->scene : "scene", &problem, err);
+        return NULL;
+    }
+    cJSON *shown = NULL;
+    patch = render_show_patch(&arguments->show, scene, err);
+    if (patch && !(shown = scene_document_patch(document, defaults, scene, patch, &problem)))
+        refuse_problem("--show, --slices, --volume or --clip", &problem, err);
+    cJSON_Delete(patch);
+    cJSON_Delete(scene);
+    return shown;
 }
 
 static cJSON *make_view(const char *path, const int size_px[2], struct error *err)
@@ -143,11 +176,11 @@ static struct snapshot *make_snapshot(struct derive *derived, const struct rende
     cJSON *document = plan_document(plan), *defaults = scene_write(&scene);
     cJSON *scene_json = NULL, *shown_json = NULL, *view_json = NULL;
     scene_finish(&scene);
-    if (!(scene_json = make_scene(document, defaults, arguments->scene_path, err)) ||
-        !(view_json = make_view(arguments->view_path, arguments->size_px, err)))
+    if (!(scene_json = make_scene(document, defaults, arguments, err)) ||
+        !(view_json = make_view(arguments->view, arguments->size_px, err)))
         goto done;
     if (!(shown_json = scene_document_for_view(document, defaults, scene_json, view_json, &problem))) {
-        refuse_problem(arguments->view_path ? arguments->view_path : "view", &problem, err);
+        refuse_problem(arguments->view ? arguments->view : "view", &problem, err);
         goto done;
     }
     if (!scene_read(shown_json, &scene, &problem)) {
@@ -299,22 +332,32 @@ static bool codec_from_path(const char *path, enum encode_codec *codec)
 /* False when there is nothing to draw; *code is then the exit code. */
 static bool parse_arguments(int argc, char **argv, struct render_arguments *arguments, int *code)
 {
-    static const struct option long_options[] = { { "output", required_argument, NULL, 'o' },
-                                                  { "scene", required_argument, NULL, 's' },
-                                                  { "view", required_argument, NULL, 'v' },
-                                                  { "size", required_argument, NULL, 'z' },
-                                                  { "gl", required_argument, NULL, 'g' },
-                                                  { "quality", required_argument, NULL, 'q' },
-                                                  { "annotations", no_argument, NULL, 'a' },
-                                                  { "help", no_argument, NULL, 'h' },
-                                                  { NULL, 0, NULL, 0 } };
+    static const struct option long_options[] = {
+        { "output", required_argument, NULL, 'o' },  { "scene", required_argument, NULL, 's' },
+        { "view", required_argument, NULL, 'v' },    { "size", required_argument, NULL, 'z' },
+        { "show", required_argument, NULL, 'r' },    { "slices", required_argument, NULL, 'l' },
+        { "volume", required_argument, NULL, 'u' },  { "clip", required_argument, NULL, 'c' },
+        { "no-caps", no_argument, NULL, 'n' },       { "gl", required_argument, NULL, 'g' },
+        { "quality", required_argument, NULL, 'q' }, { "annotations", no_argument, NULL, 'a' },
+        { "help", no_argument, NULL, 'h' },          { NULL, 0, NULL, 0 }
+    };
     *code = EXIT_USAGE;
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
         switch (option) {
         case 'o': arguments->out = optarg; break;
-        case 's': arguments->scene_path = optarg; break;
-        case 'v': arguments->view_path = optarg; break;
+        case 's': arguments->scene = optarg; break;
+        case 'v': arguments->view = optarg; break;
+        case 'r': arguments->show.regions = optarg; break;
+        case 'l': arguments->show.slices = optarg; break;
+        case 'u': arguments->show.volume = optarg; break;
+        case 'c':
+            if (arguments->show.n_clips == RENDER_SHOW_MAX_CLIPS)
+                return command_usage_error("render", "--clip is given more than %d times", RENDER_SHOW_MAX_CLIPS),
+                       false;
+            arguments->show.clips[arguments->show.n_clips++] = optarg;
+            break;
+        case 'n': arguments->show.is_uncapped = true; break;
         case 'z':
             if (!parse_size(optarg, arguments->size_px))
                 return command_usage_error("render", "--size '%s' is not of the form 1024x768, each 16 to 4096",
@@ -341,6 +384,12 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
             return command_usage_error("render", "'%s' is not an option or lacks its value", argv[optind - 1]), false;
         }
     }
+    struct error err = { 0 };
+    cJSON *nothing = cJSON_CreateObject(), *patch = render_show_patch(&arguments->show, nothing, &err);
+    cJSON_Delete(nothing);
+    cJSON_Delete(patch);
+    if (!patch)
+        return command_usage_error("render", "%s", err.text), false;
     if (argc - optind != 1)
         return command_usage_error("render", "one folder is needed, %d are given", argc - optind), false;
     if (!arguments->out)

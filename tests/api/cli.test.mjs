@@ -59,6 +59,10 @@ describe('beamroom', () => {
       [['render', plan, '-o', 'x.png', '--size', '5000x10'], /--size '5000x10'/],
       [['render', plan, '-o', 'x.jpg', '--quality', '101'], /--quality '101'/],
       [['render', plan, '-o', 'x.jpg', '--gl', 'metal'], /--gl 'metal'/],
+      [['render', plan, '-o', 'x.jpg', '--show', ''], /--show ''/],
+      [['render', plan, '-o', 'x.jpg', '--slices', 'axial=top'], /--slices 'axial=top'/],
+      [['render', plan, '-o', 'x.jpg', '--volume', 'slices='], /--volume is ray/],
+      [['render', plan, '-o', 'x.jpg', '--clip', 'axial=3'], /--clip 'axial=3'/],
     ]) {
       const { status, stdout, stderr } = beamroom(...args);
       assert.equal(status, 2, `${args}: ${stderr}`);
@@ -260,6 +264,16 @@ describe('beamroom render', () => {
     ]) {
       writeFileSync(patch, text);
       const { status, stderr } = beamroom('render', plan, '-o', out, option, patch);
+      assert.equal(status, 1, stderr);
+      assert.match(stderr, sentence);
+    }
+    for (const [option, value, sentence] of [
+      ['--scene', '{"image": 3}', /the JSON given: \/image is not an object/],
+      ['--view', '{', /the JSON given: /],
+      ['--show', 'brian', /\/regions\/brian: the plan has no region/],
+      ['--clip', 'axial-high=1e9', /\/clip\/axial_high\/position_mm is 1e\+09, expected/],
+    ]) {
+      const { status, stderr } = beamroom('render', plan, '-o', out, option, value);
       assert.equal(status, 1, stderr);
       assert.match(stderr, sentence);
     }

@@ -1,0 +1,161 @@
+/* From the short options of `beamroom render` to a merge patch on a scene. */
+#include "server/cli/render_show.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORD_SIZE = 80 };
+
+static cJSON *member(cJSON *object, const char *name)
+{
+    cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
+    return found ? found : cJSON_AddObjectToObject(object, name);
+}
+
+/* Takes the next word before the separator off the text. False: there is none, or it is longer than any that is known.
+ */
+static bool next_word(const char **text, char separator, char word[WORD_SIZE])
+{
+    size_t n = strcspn(*text, (const char[]){ separator, 0 });
+    if (n == 0 || n >= WORD_SIZE)
+        return false;
+    memcpy(word, *text, n);
+    word[n] = 0;
+    *text += n;
+    if (**text == separator)
+        (*text)++;
+    return true;
+}
+
+static bool parse_number(const char *text, double *value)
+{
+    char *end;
+    errno = 0;
+    *value = strtod(text, &end);
+    return end != text && *end == 0 && errno == 0 && isfinite(*value);
+}
+
+/* Cuts "NAME=NUMBER" in two; without "=" has_value is false. False: what follows "=" is no number. */
+static bool split_value(char *word, bool *has_value, double *value)
+{
+    char *equals = strchr(word, '=');
+    *has_value = equals != NULL;
+    if (!equals)
+        return true;
+    *equals = 0;
+    return parse_number(equals + 1, value);
+}
+
+static bool is_one_of(const char *word, const char *const *words, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(word, words[i]) == 0)
+            return true;
+    return false;
+}
+
+static bool add_regions(const char *text, const cJSON *scene, cJSON *patch, struct error *err)
+{
+    cJSON *regions = member(patch, "regions");
+    const cJSON *known;
+    cJSON_ArrayForEach(known, cJSON_GetObjectItemCaseSensitive(scene, "regions"))
+        cJSON_AddFalseToObject(member(regions, known->string), "visible");
+    if (strcmp(text, "none") == 0)
+        return true;
+    for (const char *at = text; *at || at == text;) {
+        char id[WORD_SIZE];
+        if (!next_word(&at, ',', id))
+            return error_set(err, ERROR_RANGE, "--show '%s' is not none or ids of regions with commas between", text);
+        cJSON *region = member(regions, id);
+        cJSON_DeleteItemFromObjectCaseSensitive(region, "visible");
+        cJSON_DeleteItemFromObjectCaseSensitive(region, "opacity");
+        cJSON_AddTrueToObject(region, "visible");
+        cJSON_AddNumberToObject(region, "opacity", 1);
+    }
+    return true;
+}
+
+static bool add_slices(const char *text, cJSON *patch, struct error *err)
+{
+    static const char *const kinds[] = { "axial", "coronal", "sagittal" };
+    cJSON *slices = member(member(patch, "image"), "slices");
+    for (size_t i = 0; i < 3; i++)
+        cJSON_AddFalseToObject(member(slices, kinds[i]), "visible");
+    if (strcmp(text, "none") == 0)
+        return true;
+    for (const char *at = text; *at || at == text;) {
+        char word[WORD_SIZE];
+        bool has_position;
+        double position_mm;
+        if (!next_word(&at, ',', word) || !split_value(word, &has_position, &position_mm) || !is_one_of(word, kinds, 3))
+            return error_set(err, ERROR_RANGE,
+                             "--slices '%s' is not none or some of axial, coronal, sagittal with commas between, each "
+                             "perhaps with =MM",
+                             text);
+        cJSON *slice = member(slices, word);
+        cJSON_ReplaceItemInObjectCaseSensitive(slice, "visible", cJSON_CreateTrue());
+        if (has_position)
+            cJSON_AddNumberToObject(slice, "position_mm", position_mm);
+    }
+    return true;
+}
+
+static bool add_volume(const char *text, const cJSON *scene, cJSON *patch, struct error *err)
+{
+    static const char *const methods[] = { "ray", "slices", "mip", "average" };
+    char word[WORD_SIZE];
+    bool has_cull;
+    double cull;
+    if (!next_word(&text, 0, word) || !split_value(word, &has_cull, &cull) || !is_one_of(word, methods, 4))
+        return error_set(err, ERROR_RANGE, "--volume is ray, slices, mip or average, perhaps with =VALUE");
+    cJSON *image = member(patch, "image"), *volume = member(image, "volume");
+    cJSON_AddTrueToObject(volume, "visible");
+    cJSON_AddStringToObject(volume, "method", word);
+    if (has_cull)
+        cJSON_AddNumberToObject(volume, "cull_below", cull);
+    else if (strcmp(word, "slices") == 0) /* opaque wherever it is not culled: as slices, so that air hides nothing */
+        cJSON_AddItemToObject(volume, "cull_below",
+                              cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(
+                                                  cJSON_GetObjectItemCaseSensitive(scene, "image"), "cull_below"),
+                                              true));
+    return true;
+}
+
+static bool add_clip(const char *text, bool is_capped, cJSON *patch, struct error *err)
+{
+    static const char *const planes[] = { "axial-low",    "axial-high",   "coronal-low",
+                                          "coronal-high", "sagittal-low", "sagittal-high" };
+    char word[WORD_SIZE];
+    bool has_position;
+    double position_mm;
+    const char *at = text;
+    if (!next_word(&at, 0, word) || !split_value(word, &has_position, &position_mm) || !has_position ||
+        !is_one_of(word, planes, sizeof planes / sizeof planes[0]))
+        return error_set(err, ERROR_RANGE,
+                         "--clip '%s' is not axial-low=MM, axial-high=MM or the same with coronal or sagittal", text);
+    *strchr(word, '-') = '_';
+    cJSON *plane = member(member(patch, "clip"), word);
+    cJSON_DeleteItemFromObjectCaseSensitive(plane, "position_mm"); /* named twice: the last one counts */
+    cJSON_AddNumberToObject(plane, "position_mm", position_mm);
+    if (!cJSON_GetObjectItemCaseSensitive(plane, "enabled")) {
+        cJSON_AddTrueToObject(plane, "enabled");
+        cJSON_AddBoolToObject(plane, "cap", is_capped);
+    }
+    return true;
+}
+
+cJSON *render_show_patch(const struct render_show *show, const cJSON *scene, struct error *err)
+{
+    cJSON *patch = cJSON_CreateObject();
+    bool is_good = (!show->regions || add_regions(show->regions, scene, patch, err)) &&
+                   (!show->slices || add_slices(show->slices, patch, err)) &&
+                   (!show->volume || add_volume(show->volume, scene, patch, err));
+    for (int i = 0; is_good && i < show->n_clips; i++)
+        is_good = add_clip(show->clips[i], !show->is_uncapped, patch, err);
+    if (is_good)
+        return patch;
+    cJSON_Delete(patch);
+    return NULL;
+}

@@ -1,0 +1,67 @@
+// The pictures that docs/figures.md makes by one command each, from the demo plan: pixels counted against its geometry, from the
+// front or from above, in parallel projection.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { centreOf, readPng } from './png.mjs';
+
+const bin = join(process.env.BEAMROOM_BIN ?? 'build/release', 'beamroom');
+const pixelsPerMm = 300 / 240;
+const from = (position_mm, up) => JSON.stringify({ camera: { position_mm, target_mm: [0, 0, 0], up, projection: 'parallel', height_mm: 240 } });
+const front = from([0, -500, 0], [0, 0, 1]);
+const above = from([0, 0, 500], [0, -1, 0]);
+
+// mm along L, P, S: core/phantom/head.c, after Goorley, Kiger and Zamenhof 2002
+const ellipse = (a, b) => Math.PI * a * b;
+const scalp = { front: ellipse(73, 88), above: ellipse(73, 103) };
+const cranium = { front: ellipse(68, 83) };
+// the marker, a sphere of 5 mm around L 76: what of it is beyond the scalp's edge at L 73, which is almost straight there
+const marker = ellipse(5, 5);
+const markerBeyondScalp = 25 * (Math.PI - Math.acos(3 / 5)) + 3 * 4;
+
+const isDrawn = ([r, g, b]) => Math.max(r, g, b) > 40; // the background is 15, 17, 20
+const isGrey = ([r, g, b]) => isDrawn([r, g, b]) && Math.max(r, g, b) - Math.min(r, g, b) <= 4;
+const isDifferent = (one, other) => (rgb, x, y) => other.at(x, y).some((channel, i) => Math.abs(channel - one.at(x, y)[i]) > 8);
+
+let folder;
+let plan;
+before(() => {
+  folder = mkdtempSync(join(tmpdir(), 'beamroom-figures-'));
+  plan = join(folder, 'head');
+  assert.equal(spawnSync(bin, ['phantom', plan, '--size', '128x128x96']).status, 0);
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+/** The picture of `beamroom render` with these options. */
+function picture(view, ...options) {
+  const out = join(folder, 'figure.png');
+  const { status, stderr } = spawnSync(bin, ['render', plan, '-o', out, '--size', '400x300', '--view', view, ...options], { encoding: 'utf8' });
+  assert.equal(status, 0, stderr);
+  return readPng(readFileSync(out));
+}
+
+/** mm2 of the picture whose pixels suit. */
+const area = (shown, suits) => centreOf(shown, suits).n / pixelsPerMm ** 2;
+
+/** Within 2 %: voxels of 2 mm are rounded at the edge of an ellipse of 70 mm and more. */
+function assertArea(shown, suits, expected) {
+  const found = area(shown, suits);
+  assert.ok(Math.abs(found - expected) < 0.02 * expected, `${found.toFixed(0)} mm2 instead of ${expected.toFixed(0)}`);
+}
+
+describe('the figures of the thesis, by one command each', () => {
+  it('15: the surface of a region', () => {
+    const shown = picture(front, '--show', 'scalp', '--slices', 'none');
+    assertArea(shown, isDrawn, scalp.front);
+    assert.equal(centreOf(shown, isGrey).n, 0);
+  });
+
+  it('16: a slice, without the air around the head', () => {
+    const shown = picture(above, '--show', 'none', '--slices', 'axial=0');
+    assertArea(shown, isGrey, scalp.above + markerBeyondScalp);
+    assertArea(shown, isDrawn, scalp.above + markerBeyondScalp);
+  });
+});
