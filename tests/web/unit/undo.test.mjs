@@ -154,6 +154,24 @@ test('a change that the server refused is passed over, the size of a pane is no 
   assert.deepEqual(told, []);
 });
 
+test('what a step has made is taken away whole, and comes back whole, also when the same press changed it again', () => {
+  const { room, undo, wait } = world();
+  undo.press();
+  room.patchScene({ image: { looks: { mr: { window: { center: 1, width: 2 }, color_map: 'grey' } } } });
+  room.patchScene({ image: { looks: { mr: { color_map: 'rainbow' } } } });
+  undo.release();
+  const made = { mr: { window: { center: 1, width: 2 }, color_map: 'rainbow' } };
+  assert.deepEqual(room.scene.value.image.looks, made);
+  undo.undo();
+  assert.deepEqual(room.scene.value.image.looks ?? {}, {});
+  undo.redo();
+  assert.deepEqual(room.scene.value.image.looks, made);
+  wait();
+  room.patchScene({ image: { looks: { mr: null } } });
+  undo.undo();
+  assert.deepEqual(room.scene.value.image.looks, made);
+});
+
 test('numbers that came back from the server with other last digits are the same', () => {
   const { room, undo, told, opacity, other } = world();
   opacity(0.1 + 0.2);

@@ -1,6 +1,6 @@
 // Undo and redo of what this person changed: the scene, and the cameras of the views.
 import { batch, effect, signal } from '../../lib/signals-core.js';
-import { isObject } from '../wire/merge.js';
+import { isObject, mergePatch } from '../wire/merge.js';
 
 /** Steps that are kept; the oldest is forgotten first. */
 export const maxSteps = 100;
@@ -8,7 +8,7 @@ export const maxSteps = 100;
 export const joinMs = 400;
 
 // Fields that only make sense together: one of them is never restored without the others.
-const units = ['camera', 'image.window'];
+const isUnit = (path) => /^(camera|image\.window|image\.looks\.[^.]+)$/.test(path.join('.'));
 const ignored = ['size_px']; // follows the pane, not the person
 
 /**
@@ -62,7 +62,7 @@ export class Undo {
   /** Notes a change before it is applied. */
   #record(of, patch, document) {
     if (this.#isRestoring) return;
-    const changes = leaves(patch).filter(([path]) => !ignored.includes(path[0])).map(([path, value]) => {
+    const changes = leaves(patch, document).filter(([path]) => !ignored.includes(path[0])).map(([path, value]) => {
       const before = at(document, path);
       return { of, path, before, after: after(before, value) };
     }).filter(({ before, after: value }) => !isSame(before, value));
@@ -72,6 +72,11 @@ export class Undo {
     step.at = now;
     for (const change of changes) {
       const key = keyOf(change);
+      const outer = [...step.changes.values()].find((other) => isWithin(change, other));
+      if (outer) {
+        outer.after = mergePatch(outer.after, put({}, change.path.slice(outer.path.length), change.after ?? null));
+        continue;
+      }
       const known = step.changes.get(key);
       step.changes.set(key, known ? { ...known, after: change.after } : change);
     }
@@ -177,10 +182,13 @@ export function listenUndo(target, undo) {
 
 const keyOf = ({ of, path }) => JSON.stringify([of, ...path]);
 
-/** The fields that a patch sets, a unit as one field: [path, value][]. */
-function leaves(patch, path = []) {
-  if (path.length && (!isObject(patch) || units.includes(path.join('.')))) return [[path, patch]];
-  return Object.entries(patch).flatMap(([name, value]) => leaves(value, [...path, name]));
+/** True for a field inside one that the same step has made. */
+const isWithin = (change, other) => change.of === other.of && change.path.length > other.path.length && other.path.every((name, index) => name === change.path[index]);
+
+/** The fields that a patch sets, a unit as one field, and so what the document does not have yet: undo takes that away whole. [path, value][]. */
+function leaves(patch, document, path = []) {
+  if (path.length && (!isObject(patch) || isUnit(path) || at(document, path) === undefined)) return [[path, patch]];
+  return Object.entries(patch).flatMap(([name, value]) => leaves(value, document, [...path, name]));
 }
 
 /** The value of a field once a patch has set it; null takes it away. */
