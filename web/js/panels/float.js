@@ -29,7 +29,7 @@ const keys = [
   ['+ −', 'Zoom'],
   ['Numpad 1 3 7 (Shift: opposite)', 'From anterior, left, superior'],
   ['R, Space', 'Reset the view'],
-  ['1 to 5', 'Window presets'],
+  ['1 to 5', 'Window presets; of an image that is no CT percentiles'],
   ['W', 'Window and level by left drag'],
   ['Z', 'Zoom by left drag'],
   ['F', 'Return to the presenter, or look for yourself'],
@@ -37,6 +37,9 @@ const keys = [
   ['Ctrl + Shift + Z, Ctrl + Y', 'Redo it'],
   ['In the tree: Space, Enter', 'Show or hide, select'],
   ['In the tree: Shift + ← →', 'Opacity of a region by 5 %'],
+  ['In a transfer function: arrow keys', 'Move the chosen point (Shift: a tenth of the way)'],
+  ['There: Page up, Page down', 'Choose the point before, after'],
+  ['There: Insert, Delete, double click', 'Add a point, remove it, add one there'],
   ['?', 'This list'],
   ['Esc', 'Leave tool, popover, own view, message, full pane'],
 ];

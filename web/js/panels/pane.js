@@ -33,15 +33,15 @@ export class Pane {
   #stops = [];
   #lastCaption = '';
 
-  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, decode, schedule, onPainted} */
-  constructor(host, { room, ui, api, refused, probed, decode, schedule, onPainted }, view) {
+  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, decode, schedule, onPainted} */
+  constructor(host, { room, ui, api, refused, probed, histograms, decode, schedule, onPainted }, view) {
     this.#room = room;
     this.#ui = ui;
     this.#view = view;
     this.#refused = refused;
     this.#probed = probed;
     this.host = host;
-    this.actions = new PaneActions(room, ui, api, view.number);
+    this.actions = new PaneActions(room, ui, api, view.number, histograms);
     this.badge = computed(() => fidelity({
       link: room.link.value,
       renderer: room.renderer.value.state,

@@ -1,9 +1,10 @@
 // Turns pointer and keyboard input on a pane into changes of camera, crosshair, slice and window.
 import * as cameras from '../view/camera.js';
-import { crosshair, crosshairPatch, shownImage, windowPresets } from '../state/plan.js';
+import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
 import { Pointed } from '../state/pointed.js';
 import { homeCamera } from '../view/home.js';
 import { PanePick } from './pane_pick.js';
+import { PaneWindow } from './pane_window.js';
 
 const degreesPerPixel = 0.4;
 const keyDegrees = 5;
@@ -23,11 +24,12 @@ export class PaneActions {
   #nextPick = null;
 
   /** @param {import('../state/room.js').RoomState} room @param {import('../state/ui.js').UiState} ui */
-  constructor(room, ui, api, number) {
+  constructor(room, ui, api, number, histograms) {
     this.#room = room;
     this.#ui = ui;
     this.#number = number;
     this.box = { x: 0, y: 0, width: 1, height: 1 }; // position and size of the picture in the pane, CSS px
+    this.window = new PaneWindow(room, histograms, number);
     this.#pick = new PanePick(room, api, this.view, () => this.box);
     this.pointed = new Pointed((x, y) => this.#pick.factsAt(x, y));
   }
@@ -61,7 +63,7 @@ export class PaneActions {
     if (tool === 'pan') this.pan(dx, dy, at);
     else if (tool === 'zoom') this.zoom(Math.exp(-dy * dragZoomPerPixel), null, at);
     else if (this.is3d) this.orbit(-dx * degreesPerPixel, dy * degreesPerPixel, at);
-    else if (tool === 'window') this.dragWindow(dx, dy, at);
+    else if (tool === 'window') this.window.drag(dx, dy, at);
     else this.#crosshairAt(x, y, at, alt);
   };
 
@@ -232,19 +234,6 @@ export class PaneActions {
     this.#moveCrosshair(point, at);
   }
 
-  // ---- window and level -------------------------------------------------------------------------------------------------
-
-  dragWindow(dx, dy, at) {
-    const { window } = this.#room.scene.value.image;
-    const step = Math.max(window.width, 1) / 250;
-    this.setWindow({ center: window.center - dy * step, width: Math.max(window.width + dx * step, 1) }, at);
-  }
-
-  setWindow({ center, width }, at) {
-    const round = (value) => Math.round(value * 10) / 10;
-    this.#room.patchScene({ image: { window: { center: round(center), width: round(width) } } }, { view: this.#number, at });
-  }
-
   // ---- keys of the focused pane -------------------------------------------------------------------------------------------
 
   /** @param {KeyboardEvent} event @returns {boolean} whether the key was used */
@@ -264,10 +253,9 @@ export class PaneActions {
   }
 
   #keyAction({ key, code, shiftKey }, at) {
-    const preset = windowPresets(shownImage(this.#room.plan.value, this.#room.scene.value)).find((other) => other.key === key);
     const look = /^Numpad[137]$/.test(code) && this.is3d ? looks[code.at(-1)][shiftKey ? 1 : 0] : null;
     if (look) return () => this.lookFrom(look, at);
-    if (preset && code.startsWith('Digit')) return () => this.setWindow(preset, at);
+    if (/^[1-5]$/.test(key) && code.startsWith('Digit') && this.window.image) return () => this.window.setPreset(key, at);
     const arrows = this.is3d
       ? { ArrowLeft: () => this.orbit(keyDegrees, 0, at), ArrowRight: () => this.orbit(-keyDegrees, 0, at),
           ArrowUp: () => this.orbit(0, -keyDegrees, at), ArrowDown: () => this.orbit(0, keyDegrees, at) }

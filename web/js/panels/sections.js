@@ -1,10 +1,13 @@
 // The sections of the tree: a row of the table for each. A section without rows is not shown; to add one, add a row.
 import { html, nothing } from '../../lib/lit-html.js';
-import { beamWords, className, doseWords, frameWords, imagePatch, shownImage } from '../state/plan.js';
+import { blendedImage } from '../state/image_look.js';
+import { beamWords, className, doseWords, frameWords, shownImage } from '../state/plan.js';
 import { count, number, windowText } from './format.js';
 import { icon } from './icons.js';
+import { imageName, showImage } from './image.js';
 import { regionRows } from './region_rows.js';
 import { eye, name, treeRow } from './tree_row.js';
+import { volumeRow } from './volume.js';
 
 const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derived', none: '' };
 
@@ -21,24 +24,24 @@ const table = [
 export const sectionsOf = (plan) => (plan ? table.filter((section) => section.has(plan)) : []);
 
 /** The section in which a row for this selection is. */
-export const sectionOfKind = { image: 'images', region: 'regions', dose: 'doses', beam: 'beams', curve: 'beams', tracks: 'tracks' };
+export const sectionOfKind = { image: 'images', volume: 'images', region: 'regions', dose: 'doses', beam: 'beams', curve: 'beams', tracks: 'tracks' };
 
 function images(world) {
-  const { room, ui } = world;
+  const { room } = world;
   const plan = room.plan.value;
   const scene = room.scene.value;
   const shown = shownImage(plan, scene);
-  return plan.images.map((image) => {
+  const blended = blendedImage(plan, scene);
+  const rows = plan.images.map((image) => {
     const isShown = image === shown;
-    const show = () => {
-      if (!isShown && room.canChange.value) room.patchScene(imagePatch(image), { view: ui.active.value });
-    };
-    const words = image.name || (plan.images.length > 1 ? `${image.modality} ${image.id}` : image.modality);
-    const tail = isShown && scene ? windowText(scene.image.window, '') : '';
+    const show = (event) => showImage(world, image, event);
+    const words = imageName(plan, image);
+    const tail = isShown && scene ? windowText(scene.image.window, '') : image === blended ? `${number(scene.image.blend.opacity * 100)} % over it` : '';
     return treeRow(world, { kind: 'image', id: image.id, words: [words, tail], title: `${image.size.join(' × ')} voxels`, isOn: isShown, toggle: show, choose: show }, html`
       ${plan.images.length > 1 ? eye(isShown, `Show ${words}`, 'Show this image', !room.canChange.value, show) : icon('image')}${name(words)}
       <span class="tail">${tail}</span>`);
   });
+  return html`${rows}${volumeRow(world)}`;
 }
 
 const shownGrid = ({ room }) => {

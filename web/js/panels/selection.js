@@ -4,11 +4,13 @@ import { className, doseWords, frameWords } from '../state/plan.js';
 import { drawingBlocks } from './drawing.js';
 import { count, number, significant, unitText } from './format.js';
 import { icon } from './icons.js';
-import { imageBlock, pictureBlock } from './picture.js';
+import { imageBlock } from './image.js';
+import { pictureBlock } from './picture.js';
 import { componentName } from './probe.js';
 import { regionBlock } from './region.js';
+import { volumeBlock } from './volume.js';
 
-const kinds = { view: pictureBlock, image: imageBlock, region: regionPart, dose, beam, curve, tracks };
+const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose, beam, curve, tracks };
 
 export function selection(world) {
   const { room, ui } = world;

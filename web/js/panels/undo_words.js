@@ -3,7 +3,9 @@ import { shownImage } from '../state/plan.js';
 import { number, significant, windowText } from './format.js';
 
 const paneNames = { '3d': '3-D', axial: 'axial', sagittal: 'sagittal', coronal: 'coronal' };
-const words = { 'image.id': 'image', 'image.window': 'window', 'image.low_values': 'greys of low values', 'image.interpolation': 'values between voxels' };
+const words = { 'image.id': 'image', 'image.window': 'window', 'image.low_values': 'greys of low values', 'image.interpolation': 'values between voxels', 'image.color_map': 'colours', 'image.looks': 'window of another image' };
+const volumeWords = { visible: 'visibility of the volume', points: 'transfer function', cull_below: 'threshold of the volume', steps: 'slices of the volume' };
+const blendWords = { id: 'second image', opacity: 'opacity of the second image' };
 const regionWords = { visible: 'visibility', color: 'colour', representation: 'form' };
 const units = { _mm: 'mm', _px: 'px', _deg: '°' };
 
@@ -12,6 +14,7 @@ const unique = (list) => [...new Set(list)];
 
 /** "opacity of brain", "window", "camera of 3-D", "crosshair", "visibility of 4 regions". @param {import('../state/undo.js').Change[]} changes */
 export function stepName(changes, room) {
+  if (changes.some(({ path }) => path.join('.') === 'image.id')) return 'image shown'; // its window and colours went with it
   const views = changes.filter(({ of }) => of !== 'scene');
   const [regions, rest] = [true, false].map((isRegion) => changes.filter(({ of, path }) => of === 'scene' && (path[0] === 'regions') === isRegion));
   const names = [];
@@ -30,6 +33,8 @@ export function stepName(changes, room) {
 function fieldName({ path }) {
   const [group, name, ...inner] = path;
   if (group === 'image' && name === 'slices') return inner.at(-1) === 'position_mm' ? 'crosshair' : 'slices in 3-D';
+  if (group === 'image' && name === 'volume') return volumeWords[inner[0]] ?? 'volume';
+  if (group === 'image' && name === 'blend') return blendWords[inner[0]] ?? 'second image';
   const known = words[`${group}.${name}`];
   if (known) return known;
   const ending = unitOf(name ?? '');

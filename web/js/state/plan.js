@@ -132,23 +132,6 @@ export function crosshairPatch(plan, image, point, { isFree = false } = {}) {
 /** True if low values of the image are white: as the scene says, else as the image itself does. */
 export const isLowWhite = (image, scene) => (scene.image.low_values === 'own' ? image.isInverted : scene.image.low_values === 'white');
 
-/** The patch that shows another image with its own window and its own meaning of low values. */
-export const imagePatch = ({ id, window }) => ({ image: { id, window, low_values: 'own' } });
-
-/** Window presets by key; 5 is the image's full range. Presets in HU only for an image in HU. */
-export function windowPresets(image) {
-  if (!image) return [];
-  const full = { key: '5', name: 'Full range', center: (image.low + image.high) / 2, width: Math.max(image.high - image.low, 0.001) };
-  if (image.unit !== 'HU') return [{ key: '1', name: 'Plan', ...image.window }, full];
-  return [
-    { key: '1', name: 'Soft tissue', center: 40, width: 400 },
-    { key: '2', name: 'Lung', center: -600, width: 1500 },
-    { key: '3', name: 'Brain', center: 40, width: 80 },
-    { key: '4', name: 'Bone', center: 480, width: 2500 },
-    full,
-  ];
-}
-
 /** The patch that hides all regions but one or, when only that one is shown, shows all again. */
 export function soloPatch(regions, scene, id) {
   const isAlone = regions.every((region) => Boolean(scene.regions[region.id]?.visible) === (region.id === id));

@@ -15,7 +15,7 @@ export class UiState {
     this.layout = signal(''); // 2x2 | 1+3 | row | single; '' as suits the window
     this.maximised = signal(0);
     this.active = signal(1);
-    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | region | dose | beam | tracks | curve
+    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | tracks | curve
     this.region = computed(() => (this.selection.value.kind === 'region' ? this.selection.value.id : ''));
     this.tab = signal('probe'); // probe | selection | plan
     this.window = signal({ width: 1600, height: 1000, isCoarse: false });
@@ -28,6 +28,7 @@ export class UiState {
     this.folded = signal(new Set()); // sections of the tree that are folded
     this.row = signal(''); // row of the tree that takes the focus
     this.filter = signal(''); // part of the names that the tree lists
+    this.transferPoint = signal(0); // chosen point of the transfer function
     this.popover = signal(''); // name of the open popover
     this.toasts = signal([]);
     this.now = signal(clock.now()); // updated a few times a second, for ages on badges

@@ -1,0 +1,269 @@
+// Images on the page: window presets, numbers, drag, each image's own look, colours, a second image; the volume and its transfer function by mouse, keys and fingers.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { until } from '../api/daemon.mjs';
+import { axe } from './axe.mjs';
+import { full, missing, shoot, startWorld } from './browser.mjs';
+import { overlaps } from './overlap.mjs';
+import { sizes } from './room_states.mjs';
+import { histogram, windows, writeThreeImages } from './three_images.mjs';
+
+describe('images on the page', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  let folder;
+  let plan;
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'beamroom-images-'));
+    plan = writeThreeImages(folder);
+    world = await startWorld({ plans: [folder] });
+  });
+  after(async () => {
+    await world?.stop();
+    if (folder) rmSync(folder, { recursive: true, force: true });
+  });
+
+  const open = async (options = sizes.wide) => {
+    const room = await world.newRoom(plan);
+    const page = await world.newPage('', options);
+    await page.route(/\/histogram$/, (route) => route.fulfill({ json: histogram }));
+    await page.goto(`${world.daemon.url}/#/rooms/${room}`);
+    await full(page, options === sizes.phone ? 1 : 2);
+    const image = async () => (await world.scene(room)).image;
+    const comes = async (expected, words) => {
+      const pick = (found) => Object.fromEntries(Object.keys(expected).map((name) => [name, found[name]]));
+      const found = await until(image, (now) => JSON.stringify(pick(now)) === JSON.stringify(expected), 20000);
+      assert.deepEqual(pick(found), expected, words);
+    };
+    return { room, page, image, comes };
+  };
+  const row = (page, key) => page.locator(`[data-key="${key}"] button.name`).click();
+  const preset = (page, name) => page.getByRole('group', { name: 'Window presets', exact: true }).getByRole('button', { name }).click();
+  const enter = async (page, label, value) => {
+    await page.getByLabel(label, { exact: true }).fill(String(value));
+    await page.getByLabel(label, { exact: true }).press('Enter');
+  };
+
+  it('presets by modality, keys, numbers and a drag set the window on the server, and the threshold of slices in 3-D', async () => {
+    const { page, comes } = await open();
+    await row(page, 'image:ct');
+    await preset(page, 'Bone 4');
+    await comes({ window: { center: 480, width: 2500 } });
+    await preset(page, 'Head');
+    await comes({ window: { center: 45, width: 125 } });
+    await page.locator('#picture-2').focus();
+    await page.keyboard.press('2');
+    await comes({ window: { center: -600, width: 1500 } });
+    await enter(page, 'Window centre', 50);
+    await enter(page, 'Window width', 500);
+    await comes({ window: { center: 50, width: 500 } });
+    await enter(page, 'Window low', 0);
+    await comes({ window: { center: 150, width: 300 } }, 'the upper end of 300 stays');
+    await enter(page, 'Window high', 250);
+    await comes({ window: { center: 125, width: 250 } });
+    await page.locator('#picture-2').focus();
+    await page.keyboard.press('w');
+    const box = await page.locator('#picture-2').boundingBox();
+    await page.mouse.move(box.x + 100, box.y + 100);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 150, box.y + 100); // in one step: 50 px widen by 50 / 250 of the width
+    await page.mouse.up();
+    await comes({ window: { center: 125, width: 300 } });
+    await row(page, 'image:mr');
+    await preset(page, '1–99 %');
+    await comes({ window: { center: (histogram.percentiles[99] + histogram.percentiles[1]) / 2, width: histogram.percentiles[99] - histogram.percentiles[1] } });
+    await page.locator('#picture-2').focus();
+    await page.keyboard.press('1');
+    await comes({ window: { center: 105, width: 2190 } }, 'between 0.1 and 99.9 %');
+    await row(page, 'image:ct');
+    await page.getByLabel('Leave out below').uncheck();
+    await comes({ cull_below: -1e12 });
+    await page.getByLabel('Leave out below').check();
+    await comes({ cull_below: -500 });
+    await enter(page, 'Leave out values below', -200);
+    await comes({ cull_below: -200 });
+    await page.context().close();
+  });
+
+  it('each image keeps its own window and colours; choosing one is one step to undo', async () => {
+    const { page, comes, image } = await open();
+    await row(page, 'image:ct');
+    await preset(page, 'Lung 2');
+    await row(page, 'image:pet');
+    await comes({ id: 'pet', window: windows.pet, color_map: 'grey' });
+    await page.getByRole('radiogroup', { name: 'Colours', exact: true }).getByRole('radio', { name: 'Hot iron' }).click();
+    await comes({ color_map: 'hot-iron' });
+    await row(page, 'image:ct');
+    await comes({ id: 'ct', window: { center: -600, width: 1500 }, color_map: 'grey' });
+    assert.equal(await page.getByRole('radiogroup', { name: 'Colours', exact: true }).count(), 0, 'a CT is grey');
+    const before = await image();
+    await row(page, 'image:pet');
+    await comes({ id: 'pet', window: windows.pet, color_map: 'hot-iron' });
+    await page.getByRole('button', { name: /^Undo/ }).click();
+    await until(image, ({ id }) => id === 'ct', 20000);
+    assert.deepEqual(await image(), before);
+    await page.context().close();
+  });
+
+  it('a second image is blended with its own window, colours and opacity', async () => {
+    const { page, comes, image } = await open();
+    await row(page, 'image:ct');
+    await page.getByLabel('Second image', { exact: true }).selectOption({ label: 'PET pet' });
+    await comes({ id: '', blend: { id: 'pet', opacity: 0.5 } });
+    await enter(page, 'Opacity of the second image in per cent', 30);
+    await comes({ blend: { id: 'pet', opacity: 0.3 } });
+    await page.getByRole('radiogroup', { name: 'Second image colours' }).getByRole('radio', { name: 'Hot iron' }).click();
+    await enter(page, 'Second image window high', 2000);
+    await comes({ window: windows.ct, looks: { pet: { window: { center: 1000, width: 2000 }, color_map: 'hot-iron' } } });
+    await full(page, 2);
+    await shoot(page, 'image-blend');
+    await row(page, 'image:pet');
+    await comes({ id: 'pet', window: { center: 1000, width: 2000 }, color_map: 'hot-iron', blend: { id: '', opacity: 0.3 } }, 'as it was blended, and not over itself');
+    assert.equal((await image()).looks.ct.window.center, 40);
+    await page.context().close();
+  });
+
+  // ---- the volume ------------------------------------------------------------------------------------------------------------
+
+  const points = [[0, 0], [300, 0.25], [800, 0.64]].map(([value, opacity]) => ({ value, color: '#808080', opacity }));
+  const volumeOf = async (image) => (await image()).volume;
+  /** The volume's Selection with three points that the test knows. */
+  const openVolume = async (options, toRow = (page) => row(page, 'volume:')) => {
+    const opened = await open(options);
+    const { page, room, image } = opened;
+    await toRow(page);
+    const { call } = await import('../api/daemon.mjs');
+    await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { image: { volume: { points } } }, { 'If-Match': '*' });
+    await page.locator('.image-plot [role="option"]').nth(2).waitFor();
+    await page.waitForFunction(() => document.querySelector('.image-plot [role="option"]').getAttribute('aria-label').startsWith('Point 1: 0 HU'));
+    const plot = page.locator('.image-plot');
+    await plot.scrollIntoViewIfNeeded();
+    const box = await plot.boundingBox();
+    const centre = async (index) => {
+      const dot = await plot.locator('.dot').nth(index).boundingBox();
+      return [dot.x + dot.width / 2, dot.y + dot.height / 2];
+    };
+    /** What lies at a place of the plot: the axis from two points, of which the values are known. */
+    const [[x0], [x2]] = [await centre(0), await centre(2)];
+    const valueAt = (x) => ((x - x0) / (x2 - x0)) * 800;
+    const opacityAt = (y) => ((box.y + box.height - y) / box.height) ** 2;
+    const changed = async (test, words) => {
+      const found = await until(() => volumeOf(image), test, 20000);
+      assert.ok(test(found), `${words}: ${JSON.stringify(found.points)}`);
+      return found;
+    };
+    return { ...opened, plot, box, centre, valueAt, opacityAt, changed };
+  };
+  const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
+
+  it('a point follows the mouse while it is dragged, and the drag is one step to undo; a double click adds one; presets and switches are set', async () => {
+    const { page, centre, valueAt, opacityAt, changed, box, image } = await openVolume();
+    const [x, y] = await centre(1);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 10, y - 10);
+    await changed((volume) => volume.points[1].value > 300, 'while it is dragged');
+    await page.mouse.move(x + 30, y - 20, { steps: 5 });
+    await page.mouse.up();
+    await changed(({ points: [, { value, opacity }] }) => near(value, valueAt(x + 30), 1) && near(opacity, opacityAt(y - 20), 0.02), `to ${valueAt(x + 30)}, ${opacityAt(y - 20)}`);
+    await page.getByRole('button', { name: /^Undo: transfer function/ }).click();
+    await changed(({ points: list }) => JSON.stringify(list) === JSON.stringify(points), 'back in one step');
+    const at = [box.x + box.width * 0.3, box.y + box.height * 0.2];
+    const { length } = (await volumeOf(image)).points;
+    await page.mouse.dblclick(...at);
+    await changed(({ points: list }) => list.length === length + 1 && list.some(({ value, opacity }) => near(value, valueAt(at[0]), 10) && near(opacity, 0.64, 0.02)), `added at ${valueAt(at[0])}`);
+    await shoot(page, 'image-volume');
+    // the rest of the volume
+    const panel = page.locator('#tab-panel');
+    await panel.getByLabel('Visible').check();
+    await panel.getByRole('button', { name: 'Skin' }).click();
+    const skin = await until(() => volumeOf(image), ({ points: list }) => list[0].value === -500, 20000);
+    assert.deepEqual([skin.visible, skin.points.length], [true, 4]);
+    await panel.getByLabel('Shaded').uncheck();
+    await panel.getByLabel('Cut by clip planes').uncheck();
+    await panel.getByLabel('Leave out below').check();
+    await panel.getByRole('radio', { name: 'Nearest' }).click();
+    await panel.getByRole('radio', { name: 'Slices' }).click();
+    await enter(page, 'Number of slices', 64);
+    const { points: _, ...rest } = await until(() => volumeOf(image), ({ steps }) => steps === 64, 20000);
+    assert.deepEqual(rest, { visible: true, method: 'slices', shaded: false, interpolation: 'nearest', cull_below: -500, steps: 64, clipped: false });
+    await page.context().close();
+  });
+
+  it('every point is chosen, moved, added, removed and coloured by keys, and in a table', async () => {
+    const { page, plot, changed } = await openVolume();
+    await plot.focus();
+    await page.keyboard.press('Home');
+    await page.keyboard.press('PageDown');
+    assert.equal(await plot.getAttribute('aria-activedescendant'), 'transfer-1');
+    assert.match(await page.locator('.image-chosen').textContent(), /Point 2: 300 HU, 25 % stopped by 1 mm/);
+    await page.keyboard.press('ArrowUp'); // the square root of 0.25 is 0.5, a hundredth more 0.51
+    const { points: [, { value: before }] } = await changed(({ points: [, { opacity }] }) => near(opacity, 0.51 ** 2, 1e-4), 'up');
+    await page.keyboard.press('ArrowRight');
+    const { points: [, { value: coarse }] } = await changed(({ points: [, { value }] }) => value > before, 'right');
+    await page.keyboard.press('Shift+ArrowRight');
+    await changed(({ points: [, { value }] }) => near(value - coarse, (coarse - before) / 10, 0.01), 'with Shift a tenth of the way');
+    await page.keyboard.press('Insert');
+    await changed(({ points: list }) => list.length === 4, 'added');
+    await page.keyboard.press('Delete');
+    await changed(({ points: list }) => list.length === 3, 'removed');
+    await page.getByText('3 points as a table').click();
+    await enter(page, 'Value of point 3', 900);
+    await enter(page, 'Opacity of point 3 in per cent', 90);
+    await page.getByLabel('Colour of point 3').fill('#ff0000');
+    await changed(({ points: list }) => JSON.stringify(list[2]) === JSON.stringify({ value: 900, color: '#ff0000', opacity: 0.9 }), 'in the table');
+    await page.context().close();
+  });
+
+  const toVolume = async (page) => {
+    await page.locator('.dock button', { hasText: 'Parts' }).tap();
+    await page.getByRole('tab', { name: 'Images', exact: true }).tap();
+    await page.locator('[data-key="volume:"] button.name').tap();
+  };
+
+  it('a finger drags a point, also when it comes down 20 px beside it', async () => {
+    const { page, centre, valueAt, changed } = await openVolume(sizes.tablet, toVolume);
+    const devtools = await page.context().newCDPSession(page);
+    const touch = (type, places) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
+    const [x, y] = await centre(1);
+    await touch('touchStart', [[x + 20, y]]);
+    for (const part of [0.25, 0.5, 0.75, 1]) await touch('touchMove', [[x + 20 + 40 * part, y]]);
+    await touch('touchEnd', []);
+    await changed(({ points: [, { value }] }) => near(value, valueAt(x + 60), 2), `to ${valueAt(x + 60)}`);
+    await page.context().close();
+  });
+
+  for (const [size, options] of Object.entries(sizes))
+    it(`${size}: axe-core finds nothing and no text lies over another, in the Selection of image and volume`, async () => {
+      const { page } = await open(options);
+      const isTouch = Boolean(options.hasTouch);
+      const choose = async (key) => {
+        if (isTouch) {
+          await page.locator('.dock button', { hasText: 'Parts' }).tap();
+          await page.getByRole('tab', { name: 'Images', exact: true }).tap();
+        } else if (size === 'compact' && !await page.locator('.section-pane').count()) await page.locator('[data-section="images"]').click();
+        await page.locator(`[data-key="${key}"] button.name`).click();
+      };
+      const settled = () => page.waitForFunction(() => [...document.querySelectorAll('.pane:not([hidden])')].every((pane) => globalThis.beamroom.stats().badges[pane.dataset.view] === 'full'));
+      const check = async (state) => {
+        await settled();
+        assert.deepEqual(await overlaps(page), [], state);
+        assert.deepEqual(await axe(page), [], state);
+        if (isTouch) assert.deepEqual(await page.locator('#tab-panel :is(button, select, .field input, input[type="color"])').evaluateAll((all) => all.filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 43.5).map((one) => one.getAttribute('aria-label') ?? one.textContent)), [], `${state}: for fingers`);
+        await shoot(page, `image-${size}-${state}`);
+      };
+      await choose('image:pet');
+      await page.getByLabel('Second image', { exact: true }).selectOption({ label: 'MR mr' });
+      await page.getByLabel('Opacity of the second image', { exact: true }).waitFor();
+      await check('pet');
+      await choose('volume:');
+      await page.locator('.image-points summary').click();
+      await check('volume');
+      await page.context().close();
+    });
+
+  it('has had no error', () => assert.deepEqual(world.errors, []));
+});
