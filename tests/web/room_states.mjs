@@ -18,6 +18,26 @@ const maximised = [
   ['maximised', (page) => page.locator('[aria-label="Maximise Axial"]').click()],
   ['restored', (page) => page.locator('[aria-label="Restore Axial"]').click()],
 ];
+const popover = (page, selector) => page.locator(selector).click();
+const views = [
+  ['camera of 3-D', (page) => popover(page, '[data-view="1"] .view-all')],
+  ['what a pane shows', (page) => popover(page, '[data-view="2"] .view-kind button')],
+  ['oblique in a pane', (page) => page.getByRole('menuitemradio', { name: 'Oblique' }).click()],
+  ['what an oblique pane shows', (page) => popover(page, '[data-view="5"] .view-kind button')],
+  ['axial again', (page) => page.getByRole('menuitemradio', { name: 'Axial' }).click()],
+];
+const layouts = [
+  ['menu of the panes', (page) => popover(page, 'button[aria-label="Panes"]')],
+  ['two panes', (page) => page.getByRole('radio', { name: 'Two panes' }).click()],
+  ['oblique beside 3-D', async (page) => {
+    await popover(page, 'button[aria-label="Panes"]');
+    await page.getByRole('radio', { name: '3-D and oblique' }).click();
+  }],
+  ['four panes again', async (page) => {
+    await popover(page, 'button[aria-label="Panes"]');
+    await page.getByRole('radio', { name: 'Four panes' }).click();
+  }],
+];
 const dock = (name) => [`sheet ${name}`, (page) => page.locator('.dock button', { hasText: name }).click()];
 const parts = ['Images', 'Regions', 'Doses', 'Beams', 'Tracks'];
 
@@ -30,6 +50,7 @@ export const states = {
     ['the 3-D picture', (page) => page.locator('button[aria-label="3-D picture"]').click()],
     tab('Probe'), tab('Plan'), ...popovers, ...maximised,
     ...['Three panes in a row', 'One large, three small', 'Four panes'].map((name) => [name, (page) => page.locator(`[aria-label="${name}"]`).click()]),
+    ...views, ...layouts,
     ['tree folded', (page) => page.locator('[aria-label="Fold the plan\'s parts"]').click()],
     ['inspector folded', (page) => page.locator('[aria-label="Fold the inspector"]').click()],
   ],
@@ -42,16 +63,18 @@ export const states = {
     }],
     ['a region', region], tab('Probe'), tab('Plan'), ...popovers, ...maximised,
     ['section closed', (page) => page.locator('[aria-label="Close Regions"]').click()],
+    ...views, ...layouts,
     ['inspector folded', (page) => page.locator('[aria-label="Fold the inspector"]').click()],
   ],
   tablet: [
     ['at first', async () => {}],
     dock('Probe'), tab('Plan'), tab('Selection'), dock('Parts'),
     ...parts.map((name) => tab(name)), tab('Regions'), ['a region', region], ...popovers,
-    ['sheet closed', (page) => page.locator('[aria-label="Close the sheet"]').click()], ...maximised,
+    ['sheet closed', (page) => page.locator('[aria-label="Close the sheet"]').click()], ...maximised, ...views, ...layouts,
   ],
   phone: [
     ['at first', async () => {}],
+    ...views.slice(0, 1), ['nothing open', (page) => page.keyboard.press('Escape')],
     ...['Axial', 'Sagittal', 'Coronal', '3-D'].map((name) => [`pane ${name}`, (page) => page.locator('[aria-label="Pane"] button', { hasText: name }).click()]),
     dock('Probe'), tab('Plan'), tab('Selection'), dock('Parts'), ...parts.map((name) => tab(name)), tab('Regions'), ['a region', region], ...popovers,
   ],

@@ -1,5 +1,5 @@
 // Measurements for tests and benchmarks: window.beamroom. It changes nothing.
-//   beamroom.stats()   {input_to_paint_ms: [...], frames, fps: {view: n}, headers: {view: FrameHeader}, badges: {view: word}}
+//   beamroom.stats()   {input_to_paint_ms: [...], frames, frames_of: {view: n}, fps: {view: n}, headers: {view: FrameHeader}, badges: {view: word}}
 //   beamroom.clear()   forgets the measured times
 
 const capacity = 5000;
@@ -8,6 +8,7 @@ export class Hooks {
   #clock;
   #times = [];
   #frames = 0;
+  #framesOf = new Map(); // by view
   #room = null;
   #panes = [];
 
@@ -21,11 +22,13 @@ export class Hooks {
     this.#panes = panes;
     this.#times = [];
     this.#frames = 0;
+    this.#framesOf.clear();
   }
 
   /** Records that a picture was drawn that answers these inputs, and tells the times in ms when the browser has painted it. */
   painted(header, answered, measured = () => {}) {
     this.#frames += 1;
+    this.#framesOf.set(header.view, (this.#framesOf.get(header.view) ?? 0) + 1);
     if (!answered.length) return;
     const { port1, port2 } = new MessageChannel();
     port1.onmessage = () => {
@@ -44,6 +47,7 @@ export class Hooks {
     return {
       input_to_paint_ms: [...this.#times],
       frames: this.#frames,
+      frames_of: by((view) => this.#framesOf.get(view.number) ?? 0),
       fps: by((view) => view.fps.value),
       headers: by((view) => view.painted.value),
       badges: by((_, index) => this.#panes[index].badge.value?.state ?? ''),

@@ -66,7 +66,7 @@ function route() {
   leave();
   const host = document.querySelector('#page');
   leave = place === 'rooms' && isId(id)
-    ? roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, ownName, isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' })
+    ? roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' })
     : startPage(host, { api, clock, enter, send, ownName, thumbnails });
 }
 

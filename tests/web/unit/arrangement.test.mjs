@@ -4,6 +4,7 @@ import { test } from 'node:test';
 import { load } from './page.mjs';
 
 const { arrange, sizeOf } = await load('state/arrangement.js');
+const { Layout, layoutId, layouts, placed } = await load('state/layout.js');
 const chosen = { layout: '', isTreeOpen: true, section: '', isPinned: false, isInspectorOpen: true, sheet: '', active: 1, maximised: 0 };
 const desk = (width, more = {}, height = 900) => arrange({ width, height, isCoarse: false }, { ...chosen, ...more });
 const touch = (width, height, more = {}) => arrange({ width, height, isCoarse: true }, { ...chosen, ...more });
@@ -59,4 +60,64 @@ test('a maximised pane stands alone at every size', () => {
     assert.deepEqual(visible, [2]);
     assert.equal(layout, 'single');
   }
+});
+
+test('two panes stand side by side, upright one above the other, and show what was put into them', () => {
+  for (const { layout, visible } of [desk(1600, { layout: '2x1' }), desk(1280, { layout: '2x1' }), touch(1180, 820, { layout: '2x1', sheet: 'tree' })])
+    assert.deepEqual([layout, visible], ['2x1', [1, 2]]);
+  assert.equal(touch(820, 1180, { layout: '2x1' }).layout, '1x2');
+  assert.deepEqual(desk(1600, { layout: '2x1', two: [1, 6] }).visible, [1, 6]);
+  assert.equal(desk(1200, { layout: '2x1' }).inspector, 'floats', 'two columns of 420 px, as of four panes');
+  assert.equal(desk(1280, { layout: '2x1', section: 'regions', isPinned: true }).overlay, 'floats', 'two panes make no row of three');
+  assert.deepEqual(touch(390, 844, { layout: '2x1' }).visible, [1]);
+});
+
+test('panes show the views that were put into them, and a row leaves out the last', () => {
+  const four = [6, 2, 5, 4];
+  assert.deepEqual(desk(1600, { four }).visible, four);
+  assert.deepEqual(desk(1600, { four, layout: 'row', active: 6 }).visible, [6, 2, 5]);
+  assert.deepEqual(desk(1600, { four, layout: 'row', active: 4 }).visible, [6, 2, 4]);
+});
+
+test('a view that stands in another pane already changes places', () => {
+  assert.deepEqual(placed([1, 2, 3, 4], 2, 5), [1, 5, 3, 4]);
+  assert.deepEqual(placed([1, 2, 3, 4], 1, 4), [4, 2, 3, 1]);
+  assert.deepEqual(placed([1, 2, 3, 4], 3, 3), [1, 2, 3, 4]);
+});
+
+function storage(kept = {}) {
+  return { kept, getItem: (key) => kept[key] ?? null, setItem: (key, value) => { kept[key] = value; } };
+}
+
+test('the browser keeps layout, panes and links', () => {
+  const kept = storage();
+  const before = new Layout(kept);
+  before.choose('oblique');
+  before.place('2x2', 2, 6);
+  before.isZoomLinked.value = true;
+  const after = new Layout(kept);
+  assert.deepEqual([after.layout.value, after.two.value, after.four.value, after.isZoomLinked.value, after.areCamerasLinked.value], ['2x1', [1, 5], [1, 6, 3, 4], true, false]);
+});
+
+test('what a browser keeps and no page has written is the standard', () => {
+  for (const text of ['', 'null', '[]', '{"layout":"3x3","two":[1,1],"four":[1,2,3]}', '{"two":[0,1],"four":[1,2,3,99],"isZoomLinked":1}', '{"four":"1234"}']) {
+    const layout = new Layout(storage({ 'beamroom panes': text }));
+    assert.deepEqual([layout.layout.value, layout.two.value, layout.four.value, layout.isZoomLinked.value], ['', [1, 2], [1, 2, 3, 4], false], text);
+  }
+  const refuses = { getItem() { throw new Error('no'); }, setItem() { throw new Error('no'); } };
+  assert.equal(new Layout(refuses).layout.value, '');
+});
+
+test('two panes keep what was put into them; 3-D and oblique is a pair of its own', () => {
+  const layout = new Layout(null);
+  layout.place('2x1', 2, 6);
+  layout.choose('2x2');
+  layout.choose('2x1');
+  assert.deepEqual(layout.two.value, [1, 6]);
+  assert.equal(layoutId('2x1', layout.two.value), '2x1');
+  layout.choose('oblique');
+  assert.equal(layoutId('1x2', layout.two.value), 'oblique');
+  layout.choose('2x1');
+  assert.deepEqual(layout.two.value, [1, 2]);
+  assert.deepEqual(layouts.map(({ id }) => layoutId(id === 'oblique' ? '2x1' : id, id === 'oblique' ? [1, 5] : [1, 2])), layouts.map(({ id }) => id));
 });

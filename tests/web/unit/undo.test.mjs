@@ -11,7 +11,7 @@ const { mergePatch } = await load('wire/merge.js');
 function world() {
   let now = 1000;
   const told = [];
-  const views = [{ kind: '3d', document: { value: { kind: '3d', size_px: [10, 10] } } }, { kind: 'axial', document: { value: { kind: 'axial' } } }];
+  const views = [{ name: '3-D', document: { value: { kind: '3d', size_px: [10, 10] } } }, { name: 'Axial', document: { value: { kind: 'axial' } } }];
   const room = {
     canChange: { value: true },
     following: { isPresenting: { value: true } },

@@ -5,7 +5,9 @@ import { test } from 'node:test';
 import { load } from './page.mjs';
 
 const cameras = await load('view/camera.js');
-const { axesFigure, edgeLetters, letters } = await load('view/letters.js');
+const { planeOfKind, planeOfNormal } = await load('state/obliques.js');
+const { axisEnds, cubeSides } = await load('view/orientation.js');
+const { edgeLetters, letters } = await load('view/letters.js');
 const { barMm, fromPicture, toPicture } = await load('view/vec.js');
 const { homeCamera } = await load('view/home.js');
 const { Painter } = await load('view/painter.js');
@@ -24,27 +26,15 @@ test('the picture from the front has patient left at its right and superior up',
   near(forward, [0, 1, 0]);
 });
 
-test('the home picture is a three-quarter view that holds the whole plan and touches its corners', () => {
-  // the box, angles and margin of tests/unit/test_camera.c: 100 x 80 x 60 mm around (10, 20, 30)
-  const bounds = { low: [-40, -20, 0], high: [60, 60, 60] };
-  const home = homeCamera({ bounds, images: [], home: {} }, '3d');
-  const c30 = Math.sqrt(3) / 2, c12 = Math.cos(Math.PI / 15), s12 = Math.sin(Math.PI / 15);
-  const { right, up, forward } = cameras.axes(home);
-  near(home.target_mm, [10, 20, 30]);
-  near(right, [c30, 0.5, 0]);
-  near(up, [-s12 / 2, s12 * c30, c12]);
-  near(forward, [-c12 / 2, c12 * c30, -s12]);
-  const along = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
-  const shares = [0, 1, 2, 3, 4, 5, 6, 7].map((at) => {
-    const corner = [0, 1, 2].map((axis) => bounds[at >> axis & 1 ? 'high' : 'low'][axis] - home.position_mm[axis]);
-    return Math.max(Math.abs(along(corner, right)), Math.abs(along(corner, up))) / along(corner, forward) / Math.tan(Math.PI / 12);
-  });
-  near([Math.max(...shares)], [1 / 1.08]);
-});
-
-test('a small lesion in a large image is framed by the image', () => {
-  const plan = { bounds: { low: [0, 0, 0], high: [10, 10, 10] }, images: [{ bounds: { low: [-95, -94, -93], high: [105, 106, 107] } }], home: {} };
-  near(homeCamera(plan, '3d').target_mm, [5, 6, 7]);
+test('the home camera is the server\'s; that of oblique views, which it may not give, is as high as the highest of the slices', () => {
+  const slice = (height_mm) => ({ position_mm: [0, 0, -1000], target_mm: [1, 2, 3], up: [0, -1, 0], projection: 'parallel', fov_deg: 30, height_mm });
+  const given = { position_mm: [1, 2, 3], target_mm: [4, 5, 6], up: [0, 0, 1], projection: 'perspective', fov_deg: 30 };
+  const plan = { home: { '3d': given, axial: slice(200), coronal: slice(300), sagittal: slice(250) } };
+  assert.deepEqual(homeCamera(plan, '3d'), { ...given, height_mm: null });
+  assert.deepEqual(homeCamera(plan, 'axial'), slice(200));
+  const { target_mm, height_mm } = homeCamera(plan, 'oblique');
+  assert.deepEqual([target_mm, height_mm], [[1, 2, 3], 300]);
+  assert.equal(homeCamera({ home: { ...plan.home, oblique: slice(7) } }, 'oblique').height_mm, 7);
 });
 
 test('a quarter turn about the long axis looks from the patient\'s left', () => {
@@ -76,7 +66,7 @@ test('zooming by two halves the distance, and the height where there is one', ()
 
 test('a slice zoomed about a point keeps that point', () => {
   const camera = { ...front, projection: 'parallel', height_mm: 200 };
-  const zoomed = cameras.zoomSlice(camera, 'axial', 2, [100, -50], [400, 400]);
+  const zoomed = cameras.zoomSlice(camera, planeOfKind('axial', 0), 2, [100, -50], [400, 400]);
   // before: 0.5 mm a pixel, the point lies 50 mm left, 25 mm anterior; after: 0.25 mm a pixel
   near(zoomed.target_mm, [25, -12.5, 0]);
 });
@@ -103,7 +93,7 @@ test('letters are those that the pictures of reports have', () => {
   const fixture = JSON.parse(readFileSync(new URL('../../data/edge_letters.json', import.meta.url), 'utf8'));
   const list = ({ left, right, top, bottom }) => [left, right, top, bottom];
   for (const { kind, letters: expected } of fixture.planes)
-    assert.deepEqual(list(edgeLetters(parallel(cameras.planes[kind].right, cameras.planes[kind].up, [0, 0, 0]))), expected, kind);
+    assert.deepEqual(list(edgeLetters(parallel(planeOfKind(kind, 0).right, planeOfKind(kind, 0).up, [0, 0, 0]))), expected, kind);
   for (const { about, camera: [position_mm, target_mm, up], letters: expected } of fixture.cameras) {
     const axes = cameras.axes({ ...front, position_mm, target_mm, up });
     assert.deepEqual(list(edgeLetters(parallel(axes.right, axes.up, axes.forward))), expected, about);
@@ -118,10 +108,62 @@ test('oblique directions get a second letter from a cosine of 0.30 on', () => {
   assert.equal(letters(at(-150)), 'RA');
 });
 
-test('the axes figure tells what points away', () => {
-  const ends = Object.fromEntries(axesFigure(parallel([1, 0, 0], [0, 0, 1], [0, 1, 0])).map((end) => [end.letter, end]));
-  near([ends.L.x, ends.L.y, ends.S.x, ends.S.y], [1, 0, 0, -1]);
-  assert.ok(ends.P.isAway && !ends.A.isAway && !ends.L.isAway);
+test('the cube shows the sides that face the eye, each in its place', () => {
+  const sides = (matrix) => Object.fromEntries(cubeSides(matrix).map((side) => [side.letter, side]));
+  const front = sides(parallel([1, 0, 0], [0, 0, 1], [0, 1, 0]));
+  assert.deepEqual(Object.keys(front), ['A']);
+  near(front.A.middle, [0, 0]);
+  assert.deepEqual(front.A.corners.map((corner) => corner.map((part) => Math.round(part * 10) / 10 || 0)).sort().join(' '), '-0.5,-0.5 -0.5,0.5 0.5,-0.5 0.5,0.5');
+  // from 60 degrees to the patient's left and 30 above: the cosines of the sides are those of the direction to the eye
+  const [c60, s60, c30, s30] = [0.5, Math.sqrt(3) / 2, Math.sqrt(3) / 2, 0.5];
+  const back = [c30 * s60, -c30 * c60, s30];
+  const turned = sides(parallel([c60, s60, 0], [-s30 * s60, s30 * c60, c30], back.map((part) => -part)));
+  assert.deepEqual(Object.keys(turned), ['A', 'S', 'L'], 'the side that faces the eye most is drawn last');
+  near([turned.L.facing, turned.A.facing, turned.S.facing], [0.75, c30 / 2, 0.5], 1e-6);
+  near(turned.S.middle, [0, -c30 / 2], 1e-6);
+});
+
+test('a side of the cube lies where its letter stands at the edge of the picture', () => {
+  const matrix = parallel([0, -1, 0], [0, 0, 1], [1, 0, 0]); // from the right: anterior at the picture's right
+  assert.equal(edgeLetters(matrix).right, 'A');
+  const ends = Object.fromEntries(axisEnds(matrix, { low: [-10, -20, -30], high: [10, 20, 30] }).map((end) => [end.letter, end]));
+  // 0.6 of 40 and 60 mm of 200 mm
+  near([ends.A.x, ends.A.y, ends.S.x, ends.S.y], [0.5 + 24 / 200, 0.5, 0.5, 0.5 - 36 / 200], 1e-6);
+});
+
+test('rolling turns the picture about its middle and nothing else', () => {
+  const rolled = cameras.roll(front, 90);
+  near(rolled.up, [1, 0, 0]);
+  assert.deepEqual([rolled.position_mm, rolled.target_mm], [front.position_mm, front.target_mm]);
+});
+
+const box = { low: [10, 20, 30], high: [50, 60, 130] }; // its middle is 30, 40, 80
+
+test('fitting shows the whole box from the same side, in perspective and parallel', () => {
+  const fitted = cameras.fit(front, box);
+  near(fitted.target_mm, [30, 40, 80]);
+  near(cameras.axes(fitted).forward, [0, 1, 0]);
+  // the near corners, 20 mm before the middle, are 50 mm above and below it: at tan 15 / 1.08
+  assert.ok(Math.abs(cameras.distance(fitted) - (50 * 1.08 / Math.tan(Math.PI / 12) + 20)) < 1e-9);
+  assert.ok(Math.abs(cameras.fit({ ...front, projection: 'parallel', height_mm: 9 }, box).height_mm - 108) < 1e-9);
+});
+
+test('fitting a slice takes the sides of the box that lie in it', () => {
+  const slice = { ...front, projection: 'parallel', height_mm: 9 };
+  near([cameras.fitSlice(slice, planeOfKind('axial', 0), box).height_mm, cameras.fitSlice(slice, planeOfKind('sagittal', 0), box).height_mm], [43.2, 108]);
+  near(cameras.fitSlice(slice, planeOfKind('axial', 0), box).target_mm, [30, 40, 80]);
+  // 45 degrees between axial and coronal: half of 40 and 100 mm along the picture's up
+  near([cameras.fitSlice(slice, planeOfNormal([0, 0, 0], [0, -1, 1]), box).height_mm], [1.08 * (40 + 100) * Math.SQRT1_2], 1e-9);
+});
+
+test('a linked slice has as many mm per pixel, and the crosshair at the same place', () => {
+  const axial = { ...front, target_mm: [10, 0, 0], height_mm: 200 };
+  const crosshair = [30, 20, 50]; // 20 mm right of the axial picture's middle, 20 mm below it
+  const other = cameras.linkedSlice(axial, planeOfKind('axial', 50), [400, 500], { ...front, height_mm: 90 }, planeOfKind('sagittal', 30), [200, 300], crosshair);
+  assert.equal(other.height_mm, 100); // half a mm per pixel, 200 pixels
+  near(other.target_mm, [30, 0, 70]); // right in a sagittal slice is posterior, up is superior
+  const far = cameras.linkedSlice({ ...axial, target_mm: [-400, 0, 0] }, planeOfKind('axial', 50), [400, 500], front, planeOfKind('coronal', 20), [200, 200], crosshair);
+  near(far.target_mm, [30 - 45, 20, 50 + 20], 1e-9); // inside the picture still
 });
 
 test('points go into a picture and back', () => {

@@ -4,20 +4,23 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
 import { fidelity } from '../state/fidelity.js';
+import { heightOver, positionOf, reachOf, stepAcross } from '../state/obliques.js';
 import { crosshair, isLowWhite, shownImage } from '../state/plan.js';
 import { nameSome } from '../state/refusals.js';
-import { describe, planes } from '../view/camera.js';
+import { describe } from '../view/camera.js';
+import { letters } from '../view/letters.js';
 import { overlay } from '../view/overlay.js';
 import { Painter } from '../view/painter.js';
 import { PointerReader } from '../view/pointer.js';
 import { millimetres, number, windowText } from './format.js';
 import { icon } from './icons.js';
 import { mount, variables } from './mount.js';
+import { orientation } from './orientation.js';
 import { PaneActions, fitBox } from './pane_actions.js';
+import { paneKind } from './pane_kind.js';
 import { followMark } from './room_chip.js';
 import { readOut, spoken } from './read_out.js';
 
-export const names = { '3d': '3-D', axial: 'Axial', sagittal: 'Sagittal', coronal: 'Coronal' };
 const resizeMs = 120;
 const maxSide = 4096;
 const lowPane = 300; // px; lower slice panes show legends only while they are active
@@ -110,20 +113,20 @@ export class Pane {
   }
 
   #draw() {
-    const { kind, number: n } = this.#view;
+    const { name, number: n } = this.#view;
     const isMaximised = this.#ui.maximised.value === n;
     this.actions.box = this.#box;
     return html`
       <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
-        <h2>${names[kind]}</h2><span class="where">${this.#whereInHead()}</span><span class="grow"></span>
+        ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${this.#whereInHead()}</span><span class="grow"></span>
         ${followMark(this.#room)}${this.#badgeButton()}
         <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
-          title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${names[kind]}`}>
+          title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${name}`}>
           ${icon(isMaximised ? 'restore' : 'maximise')}</button>
       </header>
       <div class="pane-body">
         <div class=${classMap({ picture: true, stale: this.badge.value?.state === 'stale', lost: this.badge.value?.state === 'disconnected' })}
-          tabindex="0" role="group" aria-label=${`${names[kind]} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
+          tabindex="0" role="group" aria-label=${`${name} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
           @focus=${() => { this.#ui.active.value = n; }}>
           <canvas width="16" height="16"></canvas>
           <svg class="overlay" aria-hidden="true">${this.#overlay()}</svg>
@@ -131,6 +134,7 @@ export class Pane {
           ${this.#cover()}
         </div>
         ${this.#legend()}
+        ${orientation({ room: this.#room, ui: this.#ui }, this.actions, this.#size.value)}
         ${this.#slider()}
       </div>
       <p class="hidden" id=${`caption-${n}`} aria-live="polite"></p>`;
@@ -144,8 +148,8 @@ export class Pane {
       const camera = this.#view.document.value && this.actions.camera;
       return describe(camera);
     }
-    const { axis, letter } = planes[kind];
-    return `${letter} ${millimetres(crosshair(scene)[axis])}`;
+    const { plane } = this.actions;
+    return `${letters(plane.normal)} ${millimetres(positionOf(plane))}`;
   }
 
   /** The same with the parts marked that a narrow pane leaves out. */
@@ -177,6 +181,8 @@ export class Pane {
     const image = shownImage(plan, scene);
     return overlay({
       kind: view.kind, header, box, pane,
+      isOffPlane: view.kind === 'oblique' && Math.abs(heightOver(this.actions.plane, crosshair(scene))) > stepAcross(this.actions.plane.normal, image?.stepMm ?? [1, 1, 1]) / 2,
+      axes: scene.axes?.visible ? plan?.bounds : null,
       point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
       windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? 'No image: regions' : '',
@@ -234,12 +240,13 @@ export class Pane {
     const { scene, plan } = this.#room;
     if (kind === '3d') return nothing;
     if (!scene.value || !plan.value) return html`<div class="slice-slider"></div>`; // its place, so that the picture keeps its size
-    const { axis, letter } = planes[kind];
+    const { plane } = this.actions;
+    const letter = letters(plane.normal);
     const image = shownImage(plan.value, scene.value);
-    const { low, high } = image?.bounds ?? plan.value.bounds;
-    const position = crosshair(scene.value)[axis];
-    return html`<label class="slice-slider" title="Slice (wheel, arrow keys)"><input type="range" aria-label=${`${names[kind]} slice, ${letter} in mm`}
-      min=${low[axis]} max=${high[axis]} step="0.1" .value=${live(String(position))} ?disabled=${!this.#room.canChange.value}
+    const { low, high } = reachOf(plane.normal, image?.bounds ?? plan.value.bounds);
+    const position = positionOf(plane);
+    return html`<label class="slice-slider" title="Slice (wheel, arrow keys)"><input type="range" aria-label=${`${this.#view.name} slice, ${letter} in mm`}
+      min=${low} max=${high} step="0.1" .value=${live(String(position))} ?disabled=${!this.#room.canChange.value}
       aria-valuetext=${`${letter} ${millimetres(position)}`}
       @input=${(event) => this.actions.setSlice(event.target.valueAsNumber, event.timeStamp)}
       @keydown=${(event) => this.#sliderKey(event)}></label>`;
@@ -257,7 +264,7 @@ export class Pane {
     const { result, isOld } = this.#probed.value;
     if (!this.#view.painted.value?.is_still || isOld) return this.#lastCaption;
     const facts = this.#ui.active.value === this.#view.number && result ? spoken(result, this.#room.plan.value, this.#room.scene.value) : [];
-    this.#lastCaption = [names[this.#view.kind], this.#where(), ...facts].filter(Boolean).join(', ');
+    this.#lastCaption = [this.#view.name, this.#where(), ...facts].filter(Boolean).join(', ');
     return this.#lastCaption;
   }
 }

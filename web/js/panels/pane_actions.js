@@ -1,15 +1,15 @@
 // Turns pointer and keyboard input on a pane into changes of camera, crosshair, slice and window.
-import * as cameras from '../view/camera.js';
+import { layouts } from '../state/layout.js';
+import { originAt, planeOfView, positionOf, stepAcross } from '../state/obliques.js';
 import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
 import { Pointed } from '../state/pointed.js';
-import { homeCamera } from '../view/home.js';
+import { PaneCamera } from './pane_camera.js';
 import { PanePick } from './pane_pick.js';
 import { PaneWindow } from './pane_window.js';
 
 const degreesPerPixel = 0.4;
 const keyDegrees = 5;
 const keyZoom = 1.15;
-const keyPanPx = 24;
 const wheelZoom = 1.12;
 const dragZoomPerPixel = 0.006;
 
@@ -30,6 +30,7 @@ export class PaneActions {
     this.#number = number;
     this.box = { x: 0, y: 0, width: 1, height: 1 }; // position and size of the picture in the pane, CSS px
     this.window = new PaneWindow(room, histograms, number);
+    this.cameras = new PaneCamera(room, ui, number, () => this.box);
     this.#pick = new PanePick(room, api, this.view, () => this.box);
     this.pointed = new Pointed((x, y) => this.#pick.factsAt(x, y));
   }
@@ -43,12 +44,12 @@ export class PaneActions {
   }
 
   get camera() {
-    const home = homeCamera(this.#room.plan.value, this.view.kind);
-    return cameras.completeCamera(this.view.document.value.camera, home);
+    return this.cameras.value;
   }
 
-  get #size() {
-    return [this.box.width, this.box.height];
+  /** The plane of a slice pane. */
+  get plane() {
+    return planeOfView(this.#room.scene.value, this.view.document.value);
   }
 
   // ---- pointer ------------------------------------------------------------------------------------------------------
@@ -60,9 +61,10 @@ export class PaneActions {
 
   move = (mode, { x, y, dx, dy, alt, at }) => {
     const tool = mode === 'primary' ? this.#ui.tool.value : mode;
-    if (tool === 'pan') this.pan(dx, dy, at);
-    else if (tool === 'zoom') this.zoom(Math.exp(-dy * dragZoomPerPixel), null, at);
-    else if (this.is3d) this.orbit(-dx * degreesPerPixel, dy * degreesPerPixel, at);
+    if (tool === 'pan') this.cameras.pan(dx, dy, at);
+    else if (this.is3d && (tool === 'roll' || (alt && mode === 'primary'))) this.cameras.rollBy(x, y, dx, dy, at);
+    else if (tool === 'zoom' || tool === 'roll') this.cameras.zoom(Math.exp(-dy * dragZoomPerPixel), null, at);
+    else if (this.is3d) this.cameras.orbit(-dx * degreesPerPixel, dy * degreesPerPixel, at);
     else if (tool === 'window') this.window.drag(dx, dy, at);
     else this.#crosshairAt(x, y, at, alt);
   };
@@ -111,57 +113,27 @@ export class PaneActions {
   };
 
   wheel = ({ x, y, steps, ctrl, at }) => {
-    if (this.is3d || ctrl) this.zoom(wheelZoom ** -steps, [x, y], at);
+    if (this.is3d || ctrl) this.cameras.zoom(wheelZoom ** -steps, [x, y], at);
     else this.stepSlice(-steps, at);
   };
 
   pinch = ({ x, y, dx, dy, factor, at }) => {
     this.pointed.hide();
-    const panned = this.#panned(this.camera, dx, dy);
-    this.#set(this.#zoomed(panned, factor, [x, y]), at);
+    this.cameras.pinch({ x, y, dx, dy, factor }, at);
   };
 
-  // ---- camera -------------------------------------------------------------------------------------------------------
-
-  orbit(yawDeg, pitchDeg, at) {
-    this.#set(cameras.orbit(this.camera, yawDeg, pitchDeg), at);
-  }
-
-  pan(dx, dy, at) {
-    this.#set(this.#panned(this.camera, dx, dy), at);
-  }
-
-  zoom(factor, point, at) {
-    this.#set(this.#zoomed(this.camera, factor, point), at);
-  }
+  // ---- camera: pane_camera.js ------------------------------------------------------------------------------------------
 
   reset(at) {
-    this.#room.following.leave(); // before: the home camera is none that was seen in the shared view
-    this.#set(homeCamera(this.#room.plan.value, this.view.kind), at);
+    this.cameras.reset(at);
   }
 
   lookFrom(name, at) {
-    this.#set(cameras.lookFrom(this.camera, name), at);
+    this.cameras.lookFrom(name, at);
   }
 
-  setProjection(projection) {
-    this.#set(cameras.project(this.camera, projection));
-  }
-
-  #panned(camera, dx, dy) {
-    return this.is3d ? cameras.pan(camera, dx, dy, this.#size) : cameras.panSlice(camera, this.view.kind, dx, dy, this.#size);
-  }
-
-  #zoomed(camera, factor, point) {
-    if (this.is3d) return cameras.zoom(camera, factor);
-    const { x, y, width, height } = this.box;
-    const fromMiddle = point ? [point[0] - x - width / 2, point[1] - y - height / 2] : [0, 0];
-    return cameras.zoomSlice(camera, this.view.kind, factor, fromMiddle, this.#size);
-  }
-
-  #set(camera, at) {
-    if (!this.#room.plan.value || JSON.stringify(camera) === JSON.stringify(this.camera)) return;
-    this.#room.patchView(this.#number, { camera }, { at });
+  setProjection(projection, at) {
+    this.cameras.setProjection(projection, at);
   }
 
   // ---- crosshair and slices -------------------------------------------------------------------------------------------
@@ -169,7 +141,7 @@ export class PaneActions {
   /** isFree: anywhere, not only on the middles of voxels. */
   #crosshairAt(x, y, at, isFree = false) {
     const point = this.#pick.pointAt(x, y);
-    if (point) this.#moveCrosshair(point, at, isFree);
+    if (point) this.#moveCrosshair(point, at, isFree || this.view.kind === 'oblique'); // the voxels' middles do not lie on that plane
   }
 
   #moveCrosshair(point, at, isFree = false) {
@@ -216,21 +188,21 @@ export class PaneActions {
     }
   }
 
-  get #axis() {
-    return cameras.planes[this.view.kind].axis;
-  }
-
   /** Moves by whole slices of the image; the camera stays. */
   stepSlice(steps, at) {
     const { plan, scene } = this.#room;
     if (!scene.value) return;
-    const step = shownImage(plan.value, scene.value)?.stepMm[this.#axis] ?? 1;
-    this.setSlice(crosshair(scene.value)[this.#axis] + steps * step, at);
+    const stepMm = shownImage(plan.value, scene.value)?.stepMm ?? [1, 1, 1];
+    this.setSlice(positionOf(this.plane) + steps * stepAcross(this.plane.normal, stepMm), at);
   }
 
+  /** An oblique plane moves along its normal and leaves the crosshair where it is. */
   setSlice(positionMm, at) {
+    const { plane } = this.view.document.value;
+    const oblique = this.view.kind === 'oblique' && this.#room.scene.value.image.obliques?.[plane];
+    if (oblique) return void this.#room.patchScene({ image: { obliques: { [plane]: { origin_mm: originAt(this.plane, positionMm) } } } }, { view: this.#number, at });
     const point = crosshair(this.#room.scene.value);
-    point[this.#axis] = positionMm;
+    point[this.plane.normal.indexOf(1)] = positionMm;
     this.#moveCrosshair(point, at);
   }
 
@@ -249,22 +221,25 @@ export class PaneActions {
 
   #panKey(key, at) {
     const [dx, dy] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[key] ?? [];
-    return dx === undefined ? null : () => this.pan(dx * keyPanPx, dy * keyPanPx, at);
+    return dx === undefined ? null : () => this.cameras.panStep(dx, dy, at);
   }
 
   #keyAction({ key, code, shiftKey }, at) {
+    const layout = shiftKey && layouts[/^Digit([1-6])$/.exec(code)?.[1] - 1];
+    if (layout) return () => this.#ui.setLayout(layout.id);
     const look = /^Numpad[137]$/.test(code) && this.is3d ? looks[code.at(-1)][shiftKey ? 1 : 0] : null;
-    if (look) return () => this.lookFrom(look, at);
+    if (look) return () => this.cameras.lookFrom(look, at);
     if (/^[1-5]$/.test(key) && code.startsWith('Digit') && this.window.image) return () => this.window.setPreset(key, at);
     const arrows = this.is3d
-      ? { ArrowLeft: () => this.orbit(keyDegrees, 0, at), ArrowRight: () => this.orbit(-keyDegrees, 0, at),
-          ArrowUp: () => this.orbit(0, -keyDegrees, at), ArrowDown: () => this.orbit(0, keyDegrees, at) }
+      ? { ArrowLeft: () => this.cameras.orbit(keyDegrees, 0, at), ArrowRight: () => this.cameras.orbit(-keyDegrees, 0, at),
+          ArrowUp: () => this.cameras.orbit(0, -keyDegrees, at), ArrowDown: () => this.cameras.orbit(0, keyDegrees, at),
+          ',': () => this.cameras.roll(keyDegrees, at), '.': () => this.cameras.roll(-keyDegrees, at) }
       : { ArrowUp: () => this.stepSlice(1, at), ArrowRight: () => this.stepSlice(1, at),
           ArrowDown: () => this.stepSlice(-1, at), ArrowLeft: () => this.stepSlice(-1, at),
           PageUp: () => this.stepSlice(10, at), PageDown: () => this.stepSlice(-10, at) };
     const common = {
-      '+': () => this.zoom(keyZoom, null, at), '=': () => this.zoom(keyZoom, null, at), '-': () => this.zoom(1 / keyZoom, null, at),
-      r: () => this.reset(at), ' ': () => this.reset(at),
+      '+': () => this.cameras.zoom(keyZoom, null, at), '=': () => this.cameras.zoom(keyZoom, null, at), '-': () => this.cameras.zoom(1 / keyZoom, null, at),
+      r: () => this.reset(at), ' ': () => this.reset(at), g: () => this.cameras.fit(at),
       f: () => this.#room.following.toggle(),
       w: () => this.#toggleTool('window'), z: () => this.#toggleTool('zoom'),
       Enter: () => this.#ui.maximise(this.#number),

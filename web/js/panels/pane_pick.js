@@ -1,5 +1,6 @@
 // What lies under a place in a pane's picture: asks the server for the hit that is seen, or for the values at the point.
 import { crosshair } from '../state/plan.js';
+import { planeOfView } from '../state/obliques.js';
 import { fromPicture } from '../view/vec.js';
 
 export class PanePick {
@@ -26,7 +27,12 @@ export class PanePick {
   pointAt(x, y) {
     const header = this.#view.painted.value;
     const scene = this.#room.scene.value;
-    return header && scene ? fromPicture(header.clip_from_lps_mm, this.#fraction(x, y), crosshair(scene)) : null;
+    return header && scene ? fromPicture(header.clip_from_lps_mm, this.#fraction(x, y), this.#onPlane(scene)) : null;
+  }
+
+  /** The crosshair lies in the three slices; in an oblique pane it may be beside the plane. */
+  #onPlane(scene) {
+    return this.#view.kind === 'oblique' ? planeOfView(scene, this.#view.document.value).origin : crosshair(scene);
   }
 
   /** The hit that a person sees at a place; null: none, or a newer question has been asked. */

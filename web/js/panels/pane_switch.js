@@ -1,14 +1,13 @@
-// On a telephone: which of the four panes is shown and, as its banner has no room for them, undo and redo.
+// On a telephone: which of the four panes is shown (their names in the headers change what is in them) and, as its banner has no room for them, undo and redo.
 import { html, nothing } from '../../lib/lit-html.js';
 import { segment } from './fields.js';
-import { names } from './pane.js';
 import { roving } from './roving.js';
 import { undoButtons } from './undo_buttons.js';
 
 export function paneSwitch(world) {
   const { room, ui } = world;
   if (ui.arrangement.value.size !== 'phone') return nothing;
-  const panes = segment('Pane', room.views.map(({ kind, number }) => [number, names[kind]]), ui.visible.value[0], false, (number) => {
+  const panes = segment('Pane', ui.panes.four.value.map((number) => [number, room.view(number).name]), ui.visible.value[0], false, (number) => {
     ui.maximised.value = 0;
     ui.active.value = number;
   });

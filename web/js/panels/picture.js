@@ -5,6 +5,7 @@ import { cullsNothing, usualCull } from '../state/image_look.js';
 import { shownImage } from '../state/plan.js';
 import { numberField, segment } from './fields.js';
 import { icon } from './icons.js';
+import { active3d } from './pane_layouts.js';
 
 const sides = [['sagittal', 'Sagittal'], ['coronal', 'Coronal'], ['axial', 'Axial']];
 
@@ -24,15 +25,16 @@ function cullRow(scene, image, isDisabled, change) {
 }
 
 /** Camera and translucency of the 3-D picture. */
-export function pictureBlock({ room, panes }, isDisabled, change) {
+export function pictureBlock(world, isDisabled, change) {
+  const { room } = world;
   const scene = room.scene.value;
   const image = shownImage(room.plan.value, scene);
-  const { camera } = panes()[0].actions;
+  const { cameras } = active3d(world).actions;
   return html`<section class="block"><h3>${icon('cube')} 3-D picture</h3>
-      <dl>${room.view(1).document.value ? html`<dt>Projection</dt><dd>${segment('Projection', [['perspective', 'Perspective'], ['parallel', 'Parallel']], camera.projection, isDisabled, (id) => panes()[0].actions.setProjection(id))}</dd>` : nothing}
+      <dl>${room.view(1).document.value ? html`<dt>Projection</dt><dd>${segment('Projection', [['perspective', 'Perspective'], ['parallel', 'Parallel']], cameras.value.projection, isDisabled, (id, event) => cameras.setProjection(id, event.timeStamp))}</dd>` : nothing}
         <dt>Translucency</dt><dd>${segment('Translucency', [['rim', 'Rim'], ['plain', 'Plain']], scene.surface.translucency, isDisabled, (translucency, event) => change({ surface: { translucency } }, event))}</dd>
         <dt>Overlaps</dt><dd>${segment('What lies before what', [['exact', 'Exact', 'Each pixel in its own order, also where regions cross'], ['hierarchy', 'By hierarchy', 'Whole regions, inner before outer, as Sera3d does']], scene.surface.translucent_order, isDisabled, (translucent_order, event) => change({ surface: { translucent_order } }, event))}</dd></dl>
       <div class="buttons looks" role="group" aria-label="Look from">${['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'].map((name) => html`<button ?disabled=${isDisabled} title=${`Look from ${name}`}
-        @click=${(event) => panes()[0].actions.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`)}</div></section>
+        @click=${(event) => cameras.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`)}</div></section>
     ${image ? slicesBlock(scene, image, isDisabled, change) : nothing}`;
 }

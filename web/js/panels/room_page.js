@@ -1,4 +1,4 @@
-// The room page: four panes with the panels around them, connected to the room's state.
+// The room page: panes with the panels around them, connected to the room's state.
 import { html } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
 import { AfterRoom } from '../state/after_room.js';
@@ -7,6 +7,7 @@ import { Histograms } from '../state/histograms.js';
 import { crosshair } from '../state/plan.js';
 import { Refusals, inQuestion } from '../state/refusals.js';
 import { shapeQuery } from '../state/shapes.js';
+import { views } from '../state/layout.js';
 import { RoomState } from '../state/room.js';
 import { Printout } from '../state/printout.js';
 import { UiState } from '../state/ui.js';
@@ -18,6 +19,7 @@ import { help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { mount } from './mount.js';
 import { Pane } from './pane.js';
+import { giveOblique } from './pane_kind.js';
 import { paneSwitch } from './pane_switch.js';
 import { coverPage, printoutDialog } from './printout.js';
 import { listenSnapshots, otherPlanDialog, resumeSnapshot } from './snapshots.js';
@@ -37,19 +39,19 @@ const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>
   <header class="banner"></header><aside class="tree" aria-label="Plan"></aside>
   <section class="strip" aria-label="Tools"></section>
-  <main><div class="switch"></div><div class="panes">${[1, 2, 3, 4].map((n) => html`<section class="pane" data-view=${n}></section>`)}</div><div class="toasts"></div></main>
+  <main><div class="switch"></div><div class="panes">${views.map(({ kind }, index) => html`<section class="pane" data-view=${index + 1} data-kind=${kind}></section>`)}</div><div class="toasts"></div></main>
   <aside class="inspector" aria-label="Inspector"></aside><footer class="status"></footer><div class="floating"></div></div>`;
 
 /**
  * @param {HTMLElement} host @param {string} id of the room
- * @param {object} world {api, connect, clock, schedule, decode, hooks, enter, ownName, isBack: this tab was in the room before,
+ * @param {object} world {api, connect, clock, schedule, decode, hooks, enter, ownName, storage: of the browser, isBack: this tab was in the room before,
  *   plan: the room's, as far as the address knows it}
  * @returns {() => void} leaves the room
  */
-export function roomPage(host, id, { api, connect, clock, schedule, decode, hooks, enter, ownName, isBack = false, plan = '' }) {
+export function roomPage(host, id, { api, connect, clock, schedule, decode, hooks, enter, ownName, storage = null, isBack = false, plan = '' }) {
   const stops = [mount(host, frame)];
   const part = (name) => host.querySelector(name);
-  const ui = new UiState(clock);
+  const ui = new UiState(clock, storage);
   const connection = connect(id);
   const room = new RoomState(id, { connection, clock, schedule, notify: ui.notify });
   const undo = new Undo(room, { clock, notify: ui.notify });
@@ -78,7 +80,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
     stops.push(mount(part(name), () => draw(world)));
   if (!isBack) stops.push(offerName(world));
   stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
@@ -96,7 +98,11 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
 function layOut(element, ui) {
   const { size, tree: place, overlay, inspector: at, sheet, layout, visible } = ui.arrangement.value;
   Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, layout });
-  for (const pane of element.querySelectorAll('.pane')) {
+  const panes = [...element.querySelectorAll('.pane')];
+  const cells = [...ui.panes[layout === '2x1' || layout === '1x2' ? 'two' : 'four'].value];
+  const order = [...cells, ...views.map((_, index) => index + 1).filter((n) => !cells.includes(n))].map((n) => panes.find((pane) => Number(pane.dataset.view) === n));
+  if (order.some((pane, index) => pane !== panes[index])) panes[0].parentElement.append(...order); // Tab goes through them as they stand
+  for (const pane of panes) {
     const n = Number(pane.dataset.view);
     pane.hidden = !visible.includes(n);
     pane.classList.toggle('active', ui.active.value === n);

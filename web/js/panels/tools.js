@@ -4,6 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { crosshair } from '../state/plan.js';
 import { number } from './format.js';
 import { icon } from './icons.js';
+import { layoutButtons, panesMenu } from './pane_layouts.js';
 import { roving } from './roving.js';
 import { roomChip } from './room_chip.js';
 import { sectionsOf } from './sections.js';
@@ -16,13 +17,6 @@ const tools = [
   ['pan', 'Pan', 'Move the picture (middle button, Shift)'],
   ['zoom', 'Zoom', 'Zoom (right button, Z)'],
 ];
-const layouts = [
-  ['row', 'row', 'Three panes in a row'],
-  ['2x2', 'grid', 'Four panes'],
-  ['1+3', 'oneThree', 'One large, three small'],
-  ['single', 'single', 'One pane'],
-];
-
 
 const tool = (ui, [id, name, title]) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${title} aria-pressed=${ui.tool.value === id}
   aria-label=${name} tabindex=${id === 'crosshair' ? 0 : -1} @click=${() => { ui.tool.value = id; }}>${icon(id)}<span class="word">${name}</span></button>`;
@@ -33,13 +27,11 @@ export function toolStrip(world) {
 
 function strip(world) {
   const { ui } = world;
-  const { layout } = ui.arrangement.value;
   const isPicture = ui.tab.value === 'selection' && ui.selection.value.kind === 'view' && ui.isInspectorOpen.value;
   return html`<div class="tools" role="toolbar" aria-label="Tools" @keydown=${roving}>
     ${tools.map((row) => tool(ui, row))}
     <i class="rule"></i>
-    ${layouts.map(([id, picture, name]) => html`<button class=${classMap({ tool: true, plain: true, on: layout === id })} title=${name} aria-label=${name}
-      aria-pressed=${layout === id} tabindex="-1" @click=${() => ui.setLayout(id)}>${icon(picture)}</button>`)}
+    ${layoutButtons(world)}${panesMenu(world)}
     <i class="rule"></i>
     <button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
     <span class="grow"></span>
@@ -78,7 +70,7 @@ function dock(world) {
     ${sectionsOf(plan).length ? button('tree', 'Parts', sheet === 'tree', () => ui.openSheet('tree')) : nothing}
     ${button('target', 'Probe', isTab('probe'), open('probe'))}
     ${button('panel', 'Selection', isTab('selection'), open('selection'))}
-    ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}
+    ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}
       <span class="grow"></span><p class="at-crosshair"><b>${region?.name ?? ''}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`}
   </div>`;
 }

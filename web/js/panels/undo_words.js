@@ -2,7 +2,6 @@
 import { shownImage } from '../state/plan.js';
 import { number, significant, windowText } from './format.js';
 
-const paneNames = { '3d': '3-D', axial: 'axial', sagittal: 'sagittal', coronal: 'coronal' };
 const words = { 'image.id': 'image', 'image.window': 'window', 'image.low_values': 'greys of low values', 'image.interpolation': 'values between voxels', 'image.color_map': 'colours', 'image.looks': 'window of another image' };
 const volumeWords = { visible: 'visibility of the volume', points: 'transfer function', cull_below: 'threshold of the volume', steps: 'slices of the volume' };
 const blendWords = { id: 'second image', opacity: 'opacity of the second image' };
@@ -25,13 +24,15 @@ export function stepName(changes, room) {
     names.push(`${fields.length > 2 ? 'style' : fields.join(' and ')} of ${who}`);
   }
   names.push(...unique(rest.map(fieldName)));
-  const kinds = unique(views.map(({ of }) => paneNames[room.view(of).kind]));
-  if (kinds.length) names.push(`camera of ${kinds.join(', ')}`);
+  const panes = unique(views.map(({ of }) => room.view(of).name)).map((name) => (name.startsWith('3-D') ? name : name.toLowerCase()));
+  if (panes.length) names.push(`${views.every(({ path }) => path[0] === 'plane') ? 'plane' : 'camera'} of ${panes.join(', ')}`);
   return names.length > 2 ? `${names[0]} and ${names.length - 1} more` : names.join(' and ');
 }
 
 function fieldName({ path }) {
   const [group, name, ...inner] = path;
+  if (group === 'image' && name === 'obliques') return 'oblique plane';
+  if (group === 'axes') return 'patient axes';
   if (group === 'image' && name === 'slices') return inner.at(-1) === 'position_mm' ? 'crosshair' : 'slices in 3-D';
   if (group === 'image' && name === 'volume') return volumeWords[inner[0]] ?? 'volume';
   if (group === 'image' && name === 'blend') return blendWords[inner[0]] ?? 'second image';

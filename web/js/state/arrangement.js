@@ -5,6 +5,7 @@ const narrowestOfRow = 190; // px, of the two panes beside the active one
 const activeOfRow = 1.28; // width of the active pane of a row, in widths of the others
 const lowestColumn = 560; // px; panes with less height stand in one row while a sheet is open
 const lowestThree = 420; // px; the same without a sheet
+const standardCells = { two: [1, 2], four: [1, 2, 3, 4] };
 const [railPx, sectionPx, inspectorPx] = [48, 272, 320];
 const touchHeights = 60 + 72 + 28; // banner, dock, status
 const sheetPx = 328;
@@ -18,9 +19,11 @@ export function sizeOf({ width, isCoarse }) {
 
 /**
  * @param {{width: number, height: number, isCoarse: boolean}} window
- * @param {object} chosen layout '' (as suits the window), '2x2', '1+3', 'row' or 'single'; isTreeOpen; section: open in the overlay;
- *   isPinned; isInspectorOpen; sheet '', 'tree' or 'inspector'; active, maximised: panes
+ * @param {object} chosen layout '' (as suits the window), '2x2', '1+3', 'row', '2x1' or 'single'; two, four: the views in the panes of
+ *   layouts of two, and of three and four; isTreeOpen; section: open in the overlay;
+ *   isPinned; isInspectorOpen; sheet '', 'tree' or 'inspector'; active, maximised: views
  * @returns {{size: string, tree: 'tree'|'rail'|'', overlay: ''|'floats'|'pushes', inspector: 'pushes'|'floats'|'folded'|'', sheet: string, layout: string, visible: number[]}}
+ *   layout '1x2': two panes one above the other; 'row4': four in a row; visible: views, in the order of their panes
  */
 export function arrange(window, chosen) {
   const size = sizeOf(window);
@@ -31,6 +34,7 @@ function onTouch(size, { width, height }, chosen) {
   const panels = { size, tree: '', overlay: '', inspector: '', sheet: chosen.sheet };
   const layout = size === 'phone' ? 'single' : chosen.layout || '1+3';
   const left = height - touchHeights - (chosen.sheet ? sheetPx : 0);
+  if (layout === '2x1') return { ...panels, ...panes(width > height ? '2x1' : '1x2', chosen) };
   const isLow = left < (chosen.sheet ? lowestColumn : lowestThree) && width > height;
   return { ...panels, ...panes(isLow && layout !== 'single' ? 'row4' : layout, chosen) };
 }
@@ -44,22 +48,23 @@ function onDesk(size, { width }, chosen) {
   // from 1400 px on both panels fit beside two columns, as they get a little narrower there (room.css)
   const fits = (aside, columns) => size === 'wide' && !section || (width - left - aside) / columns >= narrowestPane;
   const fitsRow = (aside) => (width - left - aside) / (2 + activeOfRow) >= narrowestOfRow;
-  const columns = layout === '2x2' || layout === '1+3' ? 2 : 1;
+  const columns = ['2x2', '1+3', '2x1'].includes(layout) ? 2 : 1;
   const place = (isPushing) => ({ overlay: section ? (isPushing ? 'pushes' : 'floats') : '' });
   const isRowOrFits = (aside) => (layout === 'row' ? fitsRow(aside) : fits(aside, columns));
   const pushes = { size, tree, sheet: '', inspector: chosen.isInspectorOpen ? 'pushes' : 'folded' };
   const floats = { ...pushes, inspector: chosen.isInspectorOpen ? 'floats' : 'folded' };
   if (section && chosen.isPinned) {
     if (isRowOrFits(section + inspector)) return { ...pushes, ...place(true), ...panes(layout, chosen) };
-    if (columns === 2 && fitsRow(section + inspector)) return { ...pushes, ...place(true), ...panes('row', chosen) };
+    if (columns === 2 && layout !== '2x1' && fitsRow(section + inspector)) return { ...pushes, ...place(true), ...panes('row', chosen) };
   }
   if (isRowOrFits(inspector)) return { ...pushes, ...place(false), ...panes(layout, chosen) };
   return { ...floats, ...place(false), ...panes(layout, chosen) };
 }
 
-/** A row shows three panes: the coronal one stays away, or the sagittal one while the coronal is active. */
-function panes(layout, { active, maximised }) {
+/** A row shows three of the four panes: the last one stays away, or the third one while the last is active. */
+function panes(layout, { active, maximised, two = standardCells.two, four = standardCells.four }) {
   if (maximised || layout === 'single') return { layout: 'single', visible: [maximised || active] };
-  if (layout === 'row') return { layout, visible: active === 4 ? [1, 2, 4] : [1, 2, 3] };
-  return { layout, visible: [1, 2, 3, 4] };
+  if (layout === '2x1' || layout === '1x2') return { layout, visible: two };
+  if (layout === 'row') return { layout, visible: [four[0], four[1], active === four[3] ? four[3] : four[2]] };
+  return { layout, visible: four };
 }

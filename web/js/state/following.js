@@ -45,8 +45,10 @@ export class Following {
     const { scene, plan, views, notify } = this.#room;
     if (!this.isFollowing.value || this.isPresenting.value || !scene.value || !plan.value) return false;
     const slices = Object.fromEntries(Object.entries(scene.value.image.slices).map(([axis, { position_mm }]) => [axis, { position_mm }]));
+    const planes = Object.entries(scene.value.image.obliques ?? {}).map(([id, { origin_mm, normal }]) => [id, { origin_mm, normal }]);
+    const image = planes.length ? { slices, obliques: Object.fromEntries(planes) } : { slices };
     batch(() => {
-      for (const view of views) view.restart(this.#ownDocument(view, plan.value, { image: { slices } }));
+      for (const view of views) view.restart(this.#ownDocument(view, plan.value, { image }));
       this.isFollowing.value = false;
     });
     this.#act(false);
@@ -192,6 +194,7 @@ export class Following {
     const shared = wholeCamera({ ...view.document.value, kind: view.kind }, plan);
     const size_px = view.ownSize ?? view.document.value.size_px ?? usualSize;
     view.widening = widening(shared, view.kind, view.document.value.size_px ?? size_px, view.painted.value, size_px);
-    return { kind: view.kind, size_px, camera: widen(shared, view.kind, view.widening), override };
+    const { number, plane } = view.document.value;
+    return { kind: view.kind, ...(number > 1 && { number }), ...(view.kind === 'oblique' && plane && { plane }), size_px, camera: widen(shared, view.kind, view.widening), override };
   }
 }

@@ -3,13 +3,12 @@ import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
 import { mergePatch } from '../wire/merge.js';
 import { Following } from './following.js';
+import { views as allViews } from './layout.js';
 import { Latency } from './latency.js';
 import { readPlan } from './plan.js';
 import { Replica } from './replica.js';
 import { Sending } from './sending.js';
 import { ViewState } from './view.js';
-
-const kinds = ['3d', 'axial', 'sagittal', 'coronal'];
 
 export class RoomState {
   #connection;
@@ -38,6 +37,8 @@ export class RoomState {
     this.recorder = () => {};
     /** @type {() => void} told when this member follows again after having been on their own */
     this.returned = () => {};
+    /** @type {(name: string, run: () => void) => void} runs changes of several views that are one act of this person */
+    this.together = (name, run) => run();
 
     // connecting | open | lost | ended; when an answer is overdue, quietSince: time of the last sign of the server; dueSince: of the answer
     this.link = signal({ state: 'connecting', retryAt: 0, quietSince: 0, dueSince: 0, reason: '' });
@@ -52,7 +53,7 @@ export class RoomState {
     this.gl = signal('');
     this.latencyMs = this.#latency.medianMs; // input to paint
     this.pingMs = signal(null);
-    this.views = kinds.map((kind, index) => new ViewState(index + 1, kind));
+    this.views = allViews.map(({ kind, ...more }, index) => new ViewState(index + 1, kind, more));
     // Changes made while the connection is lost are kept, and sent when it is back.
     // Before the list of members has come, nobody knows whether a change is the room's or this member's own.
     this.canChange = computed(() => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null && this.members.value.length > 0);
@@ -100,11 +101,24 @@ export class RoomState {
 
   /** Changes a view: the presenter's are the room's; any other member leaves the presenter and changes their own. */
   patchView(number, patch, { at = this.#clock.now() } = {}) {
+    if (this.canChange.value) this.#patchViews([[number, patch]], at, this.following.leave());
+  }
+
+  /** Changes several views by one act. @param {[number, object][]} changes view and patch; the first is the one acted in */
+  patchViews(changes, { at = this.#clock.now() } = {}) {
+    if (changes.length < 2) return void (changes.length && this.patchView(...changes[0], { at }));
     if (!this.canChange.value) return;
-    const change = this.following.leave() ? this.following.adapted(number, patch) : patch;
-    this.recorder(number, change, this.view(number).document.value);
-    this.view(number).queue(change);
-    this.#sending.plan({ view: number, at });
+    const isLeaving = this.following.leave();
+    this.together(changes.map(([number]) => number).join(), () => batch(() => this.#patchViews(changes, at, isLeaving)));
+  }
+
+  #patchViews(changes, at, isLeaving) {
+    changes.forEach(([number, patch], index) => {
+      const change = isLeaving ? this.following.adapted(number, patch) : patch;
+      this.recorder(number, change, this.view(number).document.value);
+      this.view(number).queue(change);
+      this.#sending.plan({ view: number, at: index ? 0 : at });
+    });
   }
 
   /** Opens a view of this size, or changes the size of an open one. */

@@ -1,6 +1,7 @@
-// State of this page alone: tool, layout, selection, unfolded panels. Nothing of it is stored or sent.
+// State of this page alone: tool, layout, selection, unfolded panels. Nothing of it is sent; the browser keeps the layout.
 import { batch, computed, signal } from '../../lib/signals-core.js';
 import { arrange } from './arrangement.js';
+import { Layout } from './layout.js';
 
 const toastMs = 6000;
 
@@ -8,13 +9,13 @@ export class UiState {
   #clock;
   #nextToast = 1;
 
-  /** @param {{now: () => number, setTimeout: Function}} clock */
-  constructor(clock) {
+  /** @param {{now: () => number, setTimeout: Function}} clock @param {object|null} storage of the browser */
+  constructor(clock, storage = null) {
     this.#clock = clock;
+    this.panes = new Layout(storage);
     this.tool = signal('crosshair'); // crosshair | window | pan | zoom
-    this.layout = signal(''); // 2x2 | 1+3 | row | single; '' as suits the window
-    this.maximised = signal(0);
-    this.active = signal(1);
+    this.maximised = signal(0); // a view; 0: none
+    this.active = signal(1); // a view
     this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | tracks | curve
     this.region = computed(() => (this.selection.value.kind === 'region' ? this.selection.value.id : ''));
     this.tab = signal('probe'); // probe | selection | plan
@@ -33,7 +34,7 @@ export class UiState {
     this.toasts = signal([]);
     this.now = signal(clock.now()); // updated a few times a second, for ages on badges
     this.arrangement = computed(() => arrange(this.window.value, {
-      layout: this.layout.value, isTreeOpen: this.isTreeOpen.value, section: this.section.value, isPinned: this.isPinned.value, sheet: this.sheet.value,
+      layout: this.panes.layout.value, two: this.panes.two.value, four: this.panes.four.value, isTreeOpen: this.isTreeOpen.value, section: this.section.value, isPinned: this.isPinned.value, sheet: this.sheet.value,
       isInspectorOpen: this.isInspectorOpen.value, active: this.active.value, maximised: this.maximised.value,
     }));
     this.isTouch = computed(() => ['tablet', 'phone'].includes(this.arrangement.value.size));
@@ -91,10 +92,21 @@ export class UiState {
     this.sheet.value = this.sheet.value === sheet ? '' : sheet;
   }
 
-  setLayout(layout) {
+  /** @param {string} id of `layouts` in layout.js */
+  setLayout(id) {
     batch(() => {
       this.maximised.value = 0;
-      this.layout.value = layout;
+      this.panes.choose(id);
+    });
+    if (!this.visible.value.includes(this.active.value)) this.active.value = this.visible.value[0];
+  }
+
+  /** The pane of one view shows another one from now on. */
+  showInPlaceOf(from, to) {
+    batch(() => {
+      this.panes.place(this.arrangement.value.size === 'phone' ? 'single' : this.panes.layout.value, from, to);
+      if (this.maximised.value) this.maximised.value = to;
+      this.active.value = to;
     });
   }
 

@@ -26,6 +26,7 @@ export class Undo {
   #gesture = 0; // the press that is held down; 0: none
   #nextGesture = 1;
   #isRestoring = false;
+  #together = { name: '', at: -Infinity, gesture: 0 }; // the last act on several views
 
   /**
    * @param {import('./room.js').RoomState} room
@@ -38,6 +39,7 @@ export class Undo {
     this.next = signal(null); // the changes that undo would take back, Change[]; null: none
     this.nextAgain = signal(null); // the same of redo
     room.recorder = (of, patch, document) => this.#record(of, patch, document);
+    room.together = (name, run) => this.#runTogether(name, run);
     room.returned = () => this.#dropOwn();
     effect(() => this.#tell());
   }
@@ -48,6 +50,17 @@ export class Undo {
   }
 
   release() {
+    this.#gesture = 0;
+  }
+
+  /** What run changes is one step, and one with the same act just before it: wheel and keys held down. */
+  #runTogether(name, run) {
+    if (this.#gesture) return void run();
+    const now = this.#clock.now();
+    const { name: lastName, at: lastAt, gesture } = this.#together;
+    this.#gesture = name === lastName && now - lastAt <= joinMs ? gesture : this.#nextGesture++;
+    this.#together = { name, at: now, gesture: this.#gesture };
+    run();
     this.#gesture = 0;
   }
 

@@ -11,11 +11,12 @@ export class ViewState {
   #refusedAt = 0; // #received when the refusal came: a later picture ends it
   #unanswered = []; // {input, at, sentAt}; at: time of the input event, 0: not an input in this pane
 
-  /** @param {number} number in messages and frames @param {'3d'|'axial'|'coronal'|'sagittal'} kind */
-  constructor(number, kind) {
+  /** @param {number} number in messages and frames @param {string} kind of scene.json @param {object} more the document's number; name for people */
+  constructor(number, kind, { number: ofKind = 1, name = kind } = {}) {
     this.number = number;
     this.kind = kind;
-    this.document = signal({ kind });
+    this.name = name;
+    this.document = signal(ofKind > 1 ? { kind, number: ofKind } : { kind });
     this.isOpen = signal(false);
     this.ownSize = null; // [width, height] in px, as last measured in the page; the shared document has the presenter's
     this.widening = 1; // by how much the extent of the own view was more than that of the shared one when the member left

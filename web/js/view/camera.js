@@ -9,13 +9,6 @@ const maxHeightMm = 10000;
 const degrees = Math.PI / 180;
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
-/** For each slice pane: right and up of the picture in LPS, and the axis across the slice. */
-export const planes = {
-  axial: { right: [1, 0, 0], up: [0, -1, 0], axis: 2, letter: 'S' },
-  coronal: { right: [1, 0, 0], up: [0, 0, 1], axis: 1, letter: 'P' },
-  sagittal: { right: [0, 1, 0], up: [0, 0, 1], axis: 0, letter: 'L' },
-};
-
 /** Directions to look from, with the up direction of each. */
 export const presets = {
   anterior: { from: [0, -1, 0], up: superior },
@@ -104,19 +97,59 @@ export function project(camera, projection) {
 
 // ---- slice panes: always parallel, only target and height count --------------------------------------------------------
 
-export function panSlice(camera, kind, dxPx, dyPx, sizePx) {
-  const { right, up } = planes[kind];
+/** @param {import('../state/obliques.js').Plane} plane of the pane */
+export function panSlice(camera, { right, up }, dxPx, dyPx, sizePx) {
   return shift(camera, right, up, dxPx, dyPx, sliceHeight(camera) / Math.min(...sizePx));
 }
 
 export const sliceHeight = (camera) => camera.height_mm || heightAtTarget(camera);
 
 /** Zooms so that the point at x, y px from the picture's middle (y down) stays where it is. */
-export function zoomSlice(camera, kind, factor, [x, y], sizePx) {
+export function zoomSlice(camera, { right, up }, factor, [x, y], sizePx) {
   const height_mm = clamp(sliceHeight(camera) / factor, minHeightMm, maxHeightMm);
   const gainedMm = (sliceHeight(camera) - height_mm) / Math.min(...sizePx);
-  const { right, up } = planes[kind];
   return { ...shift(camera, right, up, -x, -y, gainedMm), height_mm };
+}
+
+// ---- framing, and moving several panes together -----------------------------------------------------------------------
+
+const margin = 1.08; // extent of the picture over that of the box
+const corners = ({ low, high }) => [0, 1, 2, 3, 4, 5, 6, 7].map((at) => low.map((value, axis) => (at >> axis & 1 ? high[axis] : value)));
+const middleOf = ({ low, high }) => scale(add(low, high), 0.5);
+
+/** Looks at a box from the same side, as near as shows all of it. @param {{low: number[], high: number[]}} box */
+export function fit(camera, box) {
+  const { right, up, forward } = axes(camera);
+  const target_mm = middleOf(box);
+  const slope = Math.tan((camera.fov_deg * degrees) / 2) / margin;
+  const offsets = corners(box).map((corner) => subtract(corner, target_mm));
+  const across = (offset) => Math.max(Math.abs(dot(offset, right)), Math.abs(dot(offset, up)));
+  const away = clamp(Math.max(...offsets.map((offset) => across(offset) / slope - dot(offset, forward))), minDistanceMm, maxDistanceMm);
+  const height_mm = camera.projection === 'parallel' ? clamp(2 * margin * Math.max(...offsets.map(across)), minHeightMm, maxHeightMm) : null;
+  return { ...camera, target_mm, position_mm: subtract(target_mm, scale(forward, away)), height_mm };
+}
+
+/** The same of a slice pane. */
+export function fitSlice(camera, { right, up }, box) {
+  const target_mm = middleOf(box);
+  const across = corners(box).map((corner) => subtract(corner, target_mm)).map((offset) => Math.max(Math.abs(dot(offset, right)), Math.abs(dot(offset, up))));
+  return { ...camera, position_mm: add(camera.position_mm, subtract(target_mm, camera.target_mm)), target_mm, height_mm: clamp(2 * margin * Math.max(...across), minHeightMm, maxHeightMm) };
+}
+
+const keptInside = 0.45; // of the picture's smaller side: as far from the middle as the crosshair may come
+
+/**
+ * The camera of another slice pane that is to go with this one: as many mm per pixel, and the crosshair as far right of and above the
+ * middle, in mm, as far as it stays in the picture.
+ * @param {object} camera @param {object} plane @param {number[]} sizePx of the pane that leads @param {object} other its camera
+ * @param {object} otherPlane @param {number[]} otherPx @param {number[]} crosshair
+ */
+export function linkedSlice(camera, plane, sizePx, other, otherPlane, otherPx, crosshair) {
+  const height_mm = clamp((sliceHeight(camera) * Math.min(...otherPx)) / Math.min(...sizePx), minHeightMm, maxHeightMm);
+  const offset = subtract(crosshair, camera.target_mm);
+  const [right, up] = [plane.right, plane.up].map((axis) => clamp(dot(offset, axis), -keptInside * height_mm, keptInside * height_mm));
+  const target_mm = subtract(crosshair, add(scale(otherPlane.right, right), scale(otherPlane.up, up)));
+  return { ...other, position_mm: add(other.position_mm, subtract(target_mm, other.target_mm)), target_mm, height_mm };
 }
 
 /** "perspective, 56° from anterior": the angle of the eye about the patient's long axis. */

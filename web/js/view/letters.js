@@ -17,12 +17,3 @@ export function edgeLetters(matrix) {
   const { right, up } = pictureAxes(matrix);
   return { left: letters(scale(right, -1)), right: letters(right), top: letters(up), bottom: letters(scale(up, -1)) };
 }
-
-/** End points of the patient's axes, for the figure in the corner: x right, y down, length at most 1. */
-export function axesFigure(matrix) {
-  const { right, up, forward } = pictureAxes(matrix);
-  return names.flatMap(([positive, negative], axis) => [
-    { letter: positive, x: right[axis], y: -up[axis], isAway: forward[axis] > 0.01 },
-    { letter: negative, x: -right[axis], y: up[axis], isAway: forward[axis] < -0.01 },
-  ]);
-}

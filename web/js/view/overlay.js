@@ -1,13 +1,12 @@
-// Draws over a picture, by the matrix that came with it: letters, crosshair, axes figure, scale bar, window.
+// Draws over a picture, by the matrix that came with it: letters, crosshair, ends of the patient's axes, scale bar, window.
 import { nothing, svg } from '../../lib/lit-html.js';
-import { axesFigure, edgeLetters } from './letters.js';
+import { edgeLetters } from './letters.js';
+import { axisEnds } from './orientation.js';
 import { barMm, toPicture } from './vec.js';
 
 const gapPx = 22;
 const marginPx = 26;
 const letterPx = 14;
-const figurePx = 24;
-const figureFrom = 200; // px of width and height
 const windowFrom = 360; // px of width; the strip at the foot has no room for the window's text below
 const scaleFrom = 280;
 const letterHalf = 24; // px kept free on both sides of the letter in the middle of the strip
@@ -19,17 +18,19 @@ const digitPx = 7; // widest character of a caption, on average
  * @param {{x: number, y: number, width: number, height: number}} what.box position and size of the picture, CSS px
  * @param {number[]} what.pane size of the pane, CSS px
  * @param {number[]|null} what.point the crosshair, LPS mm
+ * @param {boolean} [what.isOffPlane] the crosshair lies beside the plane of the pane
+ * @param {{low: number[], high: number[]}|null} [what.axes] the plan's box, where its axes are drawn
  * @param {number} what.pxPerMm CSS px; 0 in perspective
  * @param {string} what.windowText
  */
-export function overlay({ kind, header, box, pane: [width, height], point, pxPerMm, windowText }) {
+export function overlay({ kind, header, box, pane: [width, height], point, isOffPlane = false, axes = null, pxPerMm, windowText }) {
   const matrix = header.clip_from_lps_mm;
   const at = point && toPicture(matrix, point);
   const mark = at && { x: box.x + at[0] * box.width, y: box.y + at[1] * box.height };
   return svg`
-    ${mark && (kind === '3d' ? marker(mark, box) : cross(mark, box))}
+    ${mark && (kind === '3d' ? marker(mark, box) : cross(mark, box, isOffPlane))}
     ${edgeText(edgeLetters(matrix), width, height)}
-    ${kind === '3d' && width >= figureFrom && height >= figureFrom ? figure(matrix, width, height) : nothing}
+    ${kind === '3d' && axes ? axesText(matrix, axes, box) : nothing}
     ${pxPerMm > 0 && width >= scaleFrom ? scaleBar(pxPerMm, width, height) : nothing}
     ${kind !== '3d' && width >= windowFrom ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${fitting(windowText, width / 2 - letterHalf - 12)}</text>` : nothing}`;
 }
@@ -44,7 +45,7 @@ function fitting(text, roomPx) {
 
 const line = (x1, y1, x2, y2) => svg`<line x1=${x1} y1=${y1} x2=${x2} y2=${y2} />`;
 
-function cross({ x, y }, box) {
+function cross({ x, y }, box, isOffPlane) {
   const left = box.x + marginPx;
   const right = box.x + box.width - marginPx;
   const top = box.y + marginPx;
@@ -52,7 +53,7 @@ function cross({ x, y }, box) {
   const isIn = (value, low, high) => value > low - marginPx && value < high + marginPx;
   if (!isIn(x, left, right) || !isIn(y, top, bottom)) return nothing;
   const half = gapPx / 2;
-  return svg`<g class="crosshair">
+  return svg`<g class=${isOffPlane ? 'crosshair off' : 'crosshair'}>
     ${x - half > left ? line(left, y, x - half, y) : nothing} ${x + half < right ? line(x + half, y, right, y) : nothing}
     ${y - half > top ? line(x, top, x, y - half) : nothing} ${y + half < bottom ? line(x, y + half, x, bottom) : nothing}</g>`;
 }
@@ -71,17 +72,10 @@ function edgeText(letters, width, height) {
     ${text(width / 2, letterPx + 5, 'middle', letters.top)}${text(width / 2, height - letterPx + 4, 'middle', letters.bottom)}</g>`;
 }
 
-function figure(matrix, width, height) {
-  const x = width - 46;
-  const y = height - 50;
-  const ends = axesFigure(matrix);
-  // a letter that points away is left out where a nearer one is
-  const isFree = (end) => !end.isAway || ends.every((other) => other.isAway || Math.hypot(end.x - other.x, end.y - other.y) * figurePx > 11);
-  return svg`<g class="figure">${ends.map((end) => svg`<g class=${end.isAway ? 'away' : 'near'}>
-    <line x1=${x} y1=${y} x2=${x + end.x * figurePx} y2=${y + end.y * figurePx} />
-    ${Math.hypot(end.x, end.y) > 0.2 && isFree(end)
-      ? svg`<text class="halo" text-anchor="middle" x=${x + end.x * (figurePx + 9)} y=${y + end.y * (figurePx + 9) + 4}>${end.letter}</text>`
-      : nothing}</g>`)}</g>`;
+/** At the ends of the patient's axes, where the box of the plan is not empty. */
+function axesText(matrix, bounds, box) {
+  return svg`<g class="axes">${axisEnds(matrix, bounds).map(({ letter, x, y }) => svg`<text class="halo letter" text-anchor="middle"
+    x=${box.x + x * box.width} y=${box.y + y * box.height + 5}>${letter}</text>`)}</g>`;
 }
 
 /** Left of the letter in the middle of the foot. */

@@ -8,7 +8,7 @@ const longMs = 500;
 
 /**
  * @typedef {object} PointerHandlers each gets CSS pixels relative to the element, and at: time of the input event
- * @property {(mode: 'primary'|'pan'|'zoom', at: {x: number, y: number}) => void} start
+ * @property {(mode: 'primary'|'pan'|'zoom'|'roll', at: {x: number, y: number}) => void} start
  * @property {(mode: string, move: {x: number, y: number, dx: number, dy: number, alt: boolean, at: number}) => void} move
  * @property {(mode: string) => void} end
  * @property {(tap: {x: number, y: number, shift: boolean, alt: boolean, at: number}) => void} tap
@@ -79,7 +79,7 @@ export class PointerReader {
     if (!this.#isSecond) this.#settle();
     this.#start = { ...point, shift: event.shiftKey, at: event.timeStamp };
     const isRight = event.button === 2 || (event.button === 0 && event.ctrlKey);
-    this.#mode = isRight ? 'zoom' : event.button === 1 || event.shiftKey ? 'pan' : 'primary';
+    this.#mode = event.button === 0 && event.ctrlKey && event.shiftKey ? 'roll' : isRight ? 'zoom' : event.button === 1 || event.shiftKey ? 'pan' : 'primary';
     this.#isStartDue = true;
     if (event.pointerType === 'touch') this.#longTimer = setTimeout(() => this.#long(event.timeStamp), longMs);
     else this.#begin(point);
