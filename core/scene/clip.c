@@ -1,6 +1,7 @@
 /* The clip planes of a scene. */
 #include "core/scene/clip.h"
 
+#include <math.h>
 #include <string.h>
 
 /* The plane with its normal towards what is cut off. */
@@ -69,4 +70,27 @@ bool clip_cuts(const struct clip_plane *planes, size_t n, struct vec3 point_lps_
         if (plane_height_mm(&planes[i].plane, point_lps_mm) > CLIP_SLACK_MM)
             return true;
     return false;
+}
+
+struct clip_range clip_ray(const struct clip_plane *planes, size_t n, struct vec3 origin_lps_mm, struct vec3 direction)
+{
+    struct clip_range range = { 0, INFINITY, -1, -1 };
+    for (size_t i = 0; i < n; i++) {
+        const struct plane *plane = &planes[i].plane;
+        double rise = vec3_dot(direction, plane->normal), height_mm = plane_height_mm(plane, origin_lps_mm);
+        if (fabs(rise) < 1e-12) {
+            if (height_mm > CLIP_SLACK_MM)
+                return (struct clip_range){ 0, 0, -1, -1 };
+            continue;
+        }
+        double at_mm = -height_mm / rise;
+        if (rise < 0 && at_mm > range.from_mm) {
+            range.from_mm = at_mm;
+            range.from = (int)i;
+        } else if (rise > 0 && at_mm < range.to_mm) {
+            range.to_mm = fmax(at_mm, 0);
+            range.to = (int)i;
+        }
+    }
+    return range;
 }

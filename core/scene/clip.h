@@ -30,3 +30,11 @@ size_t clip_planes(const struct plan *plan, const struct scene *scene, struct cl
 #define CLIP_SLACK_MM 1e-6
 /* True if one of the planes cuts the point off. */
 bool clip_cuts(const struct clip_plane *planes, size_t n, struct vec3 point_lps_mm);
+
+/* The part of a ray that no plane cuts off; distances along its direction. */
+struct clip_range {
+    double from_mm, to_mm; /* >= 0; to_mm may be infinite; nothing is left if from_mm >= to_mm */
+    int from, to;          /* index of the plane where the part starts, ends; -1: no plane does it */
+};
+/* direction: of unit length. The ray starts at its origin. */
+struct clip_range clip_ray(const struct clip_plane *planes, size_t n, struct vec3 origin_lps_mm, struct vec3 direction);

@@ -58,13 +58,20 @@ static size_t add_hit(struct pick_hit hits[PICK_MAX_HITS], size_t n, struct pick
     return n < PICK_MAX_HITS ? n + 1 : n;
 }
 
-/* The first entries of a ray into the regions of one label layer. */
+/* Where a part of a ray enters and leaves the regions; distances along the ray, infinity: never. */
+struct crossings {
+    bool starts_inside[REGION_MAX], ends_inside[REGION_MAX];
+    double entered_mm[REGION_MAX]; /* the first time */
+    double left_mm[REGION_MAX];    /* a region that the part starts inside, the first time */
+};
+
+/* A part of a ray through one label layer. */
 struct layer_walk {
     const struct snapshot *snapshot;
     const struct volume *layer;
     size_t layer_index;
-    bool *was_inside; /* [n_regions] the ray starts inside the region and has not left it yet */
-    double *t_mm;     /* [n_regions] along the ray; infinity: not entered */
+    double from_mm, to_mm;
+    struct crossings *crossings;
 };
 
 static int region_of_label(const struct layer_walk *walk, uint16_t label)
@@ -76,36 +83,45 @@ static int region_of_label(const struct layer_walk *walk, uint16_t label)
     return -1;
 }
 
+/* True if the part starts inside the region and has not left it yet. */
+static bool is_still_inside(const struct crossings *crossings, int region)
+{
+    return crossings->starts_inside[region] && !isfinite(crossings->left_mm[region]);
+}
+
 /* A region's surface also encloses its descendants, so a voxel counts for its region and all ancestors on the layer. */
 static void enter_voxel(const struct layer_walk *walk, uint16_t label, double t)
 {
     const struct region *regions = walk->snapshot->plan->regions.regions;
     for (int r = region_of_label(walk, label); r >= 0; r = regions[r].parent)
-        if (regions[r].layer == walk->layer_index && !walk->was_inside[r] && t < walk->t_mm[r])
-            walk->t_mm[r] = t;
+        if (regions[r].layer == walk->layer_index && !is_still_inside(walk->crossings, r) &&
+            t < walk->crossings->entered_mm[r])
+            walk->crossings->entered_mm[r] = t;
 }
 
 /* A region that the ray started inside can be entered once the ray has left it: after a voxel that is not its own. */
-static void leave_voxel(const struct layer_walk *walk, uint16_t label)
+static void leave_voxel(const struct layer_walk *walk, uint16_t label, double t)
 {
     const struct region_set *set = &walk->snapshot->plan->regions;
     int self = region_of_label(walk, label);
     for (size_t i = 0; i < set->n_regions; i++) {
-        if (!walk->was_inside[i] || set->regions[i].layer != walk->layer_index)
+        if (set->regions[i].layer != walk->layer_index || !is_still_inside(walk->crossings, (int)i))
             continue;
         int r = self;
         while (r >= 0 && r != (int)i)
             r = set->regions[r].parent;
-        walk->was_inside[i] = r >= 0;
+        if (r < 0)
+            walk->crossings->left_mm[i] = t;
     }
 }
 
-static void start_inside(const struct layer_walk *walk, uint16_t label)
+/* Sets the flag of the label's region and all its ancestors on the layer. */
+static void mark_inside(const struct layer_walk *walk, uint16_t label, bool is_inside[REGION_MAX])
 {
     const struct region *regions = walk->snapshot->plan->regions.regions;
     for (int r = region_of_label(walk, label); r >= 0; r = regions[r].parent)
         if (regions[r].layer == walk->layer_index)
-            walk->was_inside[r] = true;
+            is_inside[r] = true;
 }
 
 /* The part of the ray inside the grid's outer faces, t0 to t1 in mm; false if there is none. */
@@ -130,6 +146,9 @@ static bool clip_to_grid(const struct vec3 *origin_ijk, const struct vec3 *step_
     return *t0 < *t1 && isfinite(*t1);
 }
 
+/* A plane along the faces of voxels lies in those that the ray goes on into. */
+#define NUDGE_MM 1e-7
+
 /* Source: J. Amanatides, A. Woo, A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987. Works in index
  * space, so it is exact for any orientation and spacing of the grid. */
 static void walk_layer(const struct layer_walk *walk, const struct ray *ray)
@@ -138,8 +157,13 @@ static void walk_layer(const struct layer_walk *walk, const struct ray *ray)
     struct vec3 origin = affine_point(&grid->ijk_from_lps_mm, ray->origin_lps_mm);
     struct vec3 step = affine_vector(&grid->ijk_from_lps_mm, ray->direction);
     double t0, t1;
-    if (!clip_to_grid(&origin, &step, grid->size, &t0, &t1))
+    if (!clip_to_grid(&origin, &step, grid->size, &t0, &t1) || walk->to_mm <= t0 || walk->from_mm >= t1)
         return;
+    bool starts_inside = t0 <= walk->from_mm, ends_inside = walk->to_mm < t1;
+    if (starts_inside)
+        t0 = walk->from_mm > 0 ? fmin(walk->from_mm + NUDGE_MM, t1) : 0;
+    if (ends_inside)
+        t1 = walk->to_mm - NUDGE_MM;
 
     const double o[3] = { origin.x, origin.y, origin.z }, d[3] = { step.x, step.y, step.z };
     int64_t at[3], way[3];
@@ -152,61 +176,124 @@ static void walk_layer(const struct layer_walk *walk, const struct ray *ray)
         next[a] = fabs(d[a]) < 1e-12 ? INFINITY : ((double)at[a] + 0.5 * (double)way[a] - o[a]) / d[a];
     }
     uint16_t label = volume_label(walk->layer, (uint32_t)at[0], (uint32_t)at[1], (uint32_t)at[2]);
-    if (t0 > 0)
-        enter_voxel(walk, label, t0);
+    if (starts_inside)
+        mark_inside(walk, label, walk->crossings->starts_inside);
     else
-        start_inside(walk, label);
+        enter_voxel(walk, label, t0);
     for (;;) {
         int a = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
         double t = next[a];
         if (t >= t1)
-            return;
+            break;
         at[a] += way[a];
-        if (at[a] < 0 || at[a] >= grid->size[a])
-            return;
+        if (at[a] < 0 || at[a] >= grid->size[a]) {
+            ends_inside = false;
+            break;
+        }
         next[a] = ((double)at[a] + 0.5 * (double)way[a] - o[a]) / d[a];
         uint16_t here = volume_label(walk->layer, (uint32_t)at[0], (uint32_t)at[1], (uint32_t)at[2]);
         if (here == label)
             continue;
         label = here;
-        leave_voxel(walk, label);
+        leave_voxel(walk, label, t);
         enter_voxel(walk, label, t);
     }
+    if (ends_inside)
+        mark_inside(walk, label, walk->crossings->ends_inside);
+    else
+        leave_voxel(walk, 0, t1);
 }
 
-static bool layer_is_shown(const struct snapshot *snapshot, size_t layer)
+/* True if the region is shown and clip planes cut it, as is_cut says. */
+static bool is_walked(const struct snapshot *snapshot, size_t region, bool is_cut)
+{
+    return is_shown(snapshot, region) && (snapshot->n_clips > 0 && snapshot->styles[region].clipped) == is_cut;
+}
+
+static bool layer_is_walked(const struct snapshot *snapshot, size_t layer, bool is_cut)
 {
     const struct region_set *set = &snapshot->plan->regions;
     for (size_t i = 0; i < set->n_regions; i++)
-        if (set->regions[i].layer == layer && is_shown(snapshot, i))
+        if (set->regions[i].layer == layer && is_walked(snapshot, i, is_cut))
             return true;
     return false;
 }
 
-static size_t pick_regions(const struct snapshot *snapshot, const struct ray *ray, struct pick_hit hits[PICK_MAX_HITS])
+static void cross_regions(const struct snapshot *snapshot, const struct ray *ray, const struct clip_range *range,
+                          bool is_cut, struct crossings *crossings)
 {
     const struct region_set *set = &snapshot->plan->regions;
-    bool was_inside[REGION_MAX] = { false };
-    double t_mm[REGION_MAX];
-    for (size_t i = 0; i < set->n_regions; i++)
-        t_mm[i] = INFINITY;
-    for (size_t layer = 0; layer < set->n_layers; layer++)
-        if (layer_is_shown(snapshot, layer))
-            walk_layer(&(struct layer_walk){ snapshot, set->layers[layer], layer, was_inside, t_mm }, ray);
-
-    size_t n = 0;
-    for (int depth = 0, more = 1; more;
-         depth++) { /* outer regions first: add_hit keeps that order for equal distances */
-        more = 0;
-        for (size_t i = 0; i < set->n_regions; i++) {
-            int region_level = region_depth(set, i);
-            more |= region_level > depth;
-            if (region_level == depth && isfinite(t_mm[i]) && is_shown(snapshot, i))
-                n = add_hit(hits, n,
-                            (struct pick_hit){ ray_point(ray, t_mm[i]), subject_region(i), t_mm[i],
-                                               region_alpha(snapshot, i) });
-        }
+    for (size_t i = 0; i < set->n_regions; i++) {
+        crossings->starts_inside[i] = crossings->ends_inside[i] = false;
+        crossings->entered_mm[i] = crossings->left_mm[i] = INFINITY;
     }
+    for (size_t layer = 0; layer < set->n_layers; layer++)
+        if (range->from_mm < range->to_mm && layer_is_walked(snapshot, layer, is_cut))
+            walk_layer(&(struct layer_walk){ snapshot, set->layers[layer], layer, range->from_mm, range->to_mm,
+                                             crossings },
+                       ray);
+}
+
+/* True if caps close the region where a plane cuts it. */
+static bool has_caps(const struct snapshot *snapshot, size_t region)
+{
+    switch (snapshot->styles[region].representation) {
+    case SCENE_REPRESENTATION_SURFACE:
+    case SCENE_REPRESENTATION_UNIVELS:
+    case SCENE_REPRESENTATION_SOLID:
+    case SCENE_REPRESENTATION_NURBS: return true;
+    case SCENE_REPRESENTATION_OUTLINE:
+    case SCENE_REPRESENTATION_POINTS:
+    case SCENE_REPRESENTATION_FAN: break;
+    }
+    return false;
+}
+
+static bool is_capped(const struct snapshot *snapshot, int clip, size_t region)
+{
+    return clip >= 0 && snapshot->clips[clip].is_capped && has_caps(snapshot, region);
+}
+
+/* The hits of one region: the cap that the ray comes to first, or else the region's wall; the cap that it leaves by. */
+static size_t add_region(const struct snapshot *snapshot, const struct ray *ray, const struct clip_range *range,
+                         const struct crossings *crossings, size_t region, bool is_caps,
+                         struct pick_hit hits[PICK_MAX_HITS], size_t n)
+{
+    bool is_opened = range->from >= 0 && crossings->starts_inside[region],
+         is_first_cap = is_opened && is_capped(snapshot, range->from, region),
+         is_last_cap = crossings->ends_inside[region] && is_capped(snapshot, range->to, region);
+    double cap_mm = is_first_cap  ? range->from_mm
+                    : is_last_cap ? range->to_mm
+                                  : INFINITY,
+           wall_mm = is_first_cap ? INFINITY
+                     : is_opened  ? crossings->left_mm[region]
+                                  : crossings->entered_mm[region],
+           t = is_caps ? cap_mm : wall_mm;
+    if (!isfinite(t))
+        return n;
+    return add_hit(hits, n,
+                   (struct pick_hit){ ray_point(ray, t), subject_region(region), t,
+                                      is_caps ? 1 : region_alpha(snapshot, region), is_caps });
+}
+
+/* Adds the hits of the regions that clip planes cut, or of those that they do not cut. add_hit keeps the order of equal
+ * distances: outer regions first, on caps inner ones. */
+static size_t pick_regions(const struct snapshot *snapshot, const struct ray *ray, bool is_cut,
+                           struct pick_hit hits[PICK_MAX_HITS], size_t n)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    struct clip_range range =
+        clip_ray(snapshot->clips, is_cut ? snapshot->n_clips : 0, ray->origin_lps_mm, ray->direction);
+    struct crossings crossings;
+    cross_regions(snapshot, ray, &range, is_cut, &crossings);
+    int deepest = 0;
+    for (size_t i = 0; i < set->n_regions; i++)
+        deepest = region_depth(set, i) > deepest ? region_depth(set, i) : deepest;
+    for (int is_caps = 0; is_caps <= is_cut; is_caps++)
+        for (int step = 0; step <= deepest; step++)
+            for (size_t i = 0; i < set->n_regions; i++)
+                if (is_walked(snapshot, i, is_cut) && region_depth(set, i) == (is_caps ? deepest - step : step))
+                    n = add_region(snapshot, ray, &range, &crossings, i, is_caps, hits, n);
     return n;
 }
 
@@ -245,8 +332,9 @@ static size_t pick_slices(const struct snapshot *snapshot, const struct ray *ray
             continue;
         double t = (plane_position_mm(plane) - vec3_dot(ray->origin_lps_mm, plane->normal)) / across;
         struct vec3 point = ray_point(ray, t);
-        if (t >= 0 && slice_is_drawn_at(snapshot, volume, point))
-            n = add_hit(hits, n, (struct pick_hit){ point, image_subject(snapshot), t, 1 });
+        bool is_cut = snapshot->scene.image.clipped && clip_cuts(snapshot->clips, snapshot->n_clips, point);
+        if (t >= 0 && !is_cut && slice_is_drawn_at(snapshot, volume, point))
+            n = add_hit(hits, n, (struct pick_hit){ point, image_subject(snapshot), t, 1, false });
     }
     return n;
 }
@@ -285,11 +373,11 @@ static size_t pick_pane(const struct snapshot *snapshot, const struct camera *ca
     for (int depth = deepest; depth >= 0; depth--)
         for (size_t i = 0; i < set->n_regions && n < PICK_MAX_HITS; i++)
             if (holds[i] && is_shown(snapshot, i) && region_depth(set, i) == depth)
-                hits[n++] = (struct pick_hit){ point, subject_region(i), 0, 1 };
+                hits[n++] = (struct pick_hit){ point, subject_region(i), 0, 1, false };
     uint32_t ijk[3];
     if (n < PICK_MAX_HITS && snapshot->image >= 0 &&
         volume_voxel_at(snapshot->plan->images[snapshot->image].volume, point, ijk))
-        hits[n++] = (struct pick_hit){ point, image_subject(snapshot), 0, 1 };
+        hits[n++] = (struct pick_hit){ point, image_subject(snapshot), 0, 1, false };
     return n;
 }
 
@@ -300,7 +388,9 @@ size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, stru
     if (snapshot_is_pane(snapshot))
         return pick_pane(snapshot, &camera, px, py, hits);
     struct ray ray = pixel_ray(&camera, &snapshot->view, px, py);
-    size_t n = pick_regions(snapshot, &ray, hits);
+    size_t n = pick_regions(snapshot, &ray, false, hits, 0);
+    if (snapshot->n_clips > 0)
+        n = pick_regions(snapshot, &ray, true, hits, n);
     n = pick_slices(snapshot, &ray, hits, n);
     /* the ray starts on the near plane; distances count from the eye */
     for (size_t i = 0; i < n; i++)

@@ -146,7 +146,7 @@ cJSON *answer_probe(struct question *question, struct derive *derived, struct pr
     return json;
 }
 
-/* {hits: [{point_lps_mm, region: id | null, distance_mm, alpha, seen}]}, front to back; one is seen */
+/* {hits: [{point_lps_mm, region: id | null, distance_mm, alpha, cap, seen}]}, front to back; one is seen */
 cJSON *answer_pick(struct question *question, struct derive *derived, struct problem *problem)
 {
     const struct snapshot *snapshot = question->snapshot;
@@ -172,6 +172,7 @@ cJSON *answer_pick(struct question *question, struct derive *derived, struct pro
             cJSON_AddNullToObject(hit, "region");
         add_number(hit, "distance_mm", hits[i].distance_mm);
         add_number(hit, "alpha", hits[i].alpha);
+        cJSON_AddBoolToObject(hit, "cap", hits[i].is_on_cap);
         cJSON_AddBoolToObject(hit, "seen", i == seen);
         cJSON_AddItemToArray(list, hit);
     }
