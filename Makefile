@@ -87,6 +87,9 @@ GEN_SRC := $(GEN)/wire_gen.c $(GEN)/packets_gen.c $(GEN)/problem_gen.c $(GEN)/op
 # flags of the processor, which nobody reads.
 EXTRA_core_render_soft_kernels := -O3 -fno-trapping-math
 EXTRA_core_render_soft_kernels_avx2 := -O3 -fno-trapping-math
+# Functions of vectors are static there, so their convention of calls does not matter.
+EXTRA_core_render_soft_volume_kernels := -O3 -fno-trapping-math -Wno-psabi
+EXTRA_core_render_soft_volume_kernels_avx2 := -O3 -fno-trapping-math
 # So are those over the cells of a picture.
 EXTRA_core_formats_dicom_dicom_unpack := -O3
 # FreeType's headers; the font that is compiled in is core/annotate/font.c's.

@@ -3,7 +3,7 @@
  * immutable, reference-counted result, which is built once, by the first caller, and kept within one budget of memory
  * over all kinds of result. Knows no kind by name: a kind is one file of its own, which exports its functions and calls
  * derive_get with its `struct derive_kind`. Kinds now: region_shape.h, coarse_reduction.h,
- * shape_slabs.h. */
+ * shape_slabs.h, volume_bricks.h. */
 #include "core/base/once_cache.h"
 #include "core/derive/subject.h"
 

@@ -2,6 +2,7 @@
 #include "core/render/soft/frame.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/mem.h"
@@ -101,6 +102,12 @@ static struct soft_plane make_labels(const struct soft_frame *frame, const struc
     return plane;
 }
 
+static bool make_volume(struct soft_frame *frame, const struct draw *draw, struct error *err)
+{
+    frame->volume = mem_new(sizeof *frame->volume);
+    return soft_volume_init(frame->volume, draw, frame->scope, frame->width, frame->height, frame->list->samples, err);
+}
+
 bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
 {
     const struct draw_list *list = frame->list;
@@ -110,14 +117,17 @@ bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
         return false;
     for (size_t i = 0; i < list->n_in_image; i++) {
         const struct draw *draw = &list->draws[i];
-        size_t n_layers = draw_list_n_layers(list, i);
+        size_t n_layers = draw_list_n_layers(list, i); /* one more than there are, with a volume */
         frame->n_layers = n_layers > frame->n_layers ? n_layers : frame->n_layers;
         switch (draw->kind) {
         case DRAW_SHAPE: frame->items[frame->n_items++] = make_item(frame, draw); break;
         case DRAW_IMAGE: frame->planes[frame->n_planes++] = make_image(frame, draw); break;
         case DRAW_LABELS: frame->planes[frame->n_planes++] = make_labels(frame, draw); break;
-        case DRAW_CAP:
         case DRAW_VOLUME:
+            if (!make_volume(frame, draw, err))
+                return false;
+            break;
+        case DRAW_CAP:
         case DRAW_OUTLINE:
         case DRAW_CHECK:
         case DRAW_GRID_CUT:
@@ -125,4 +135,13 @@ bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
         }
     }
     return true;
+}
+
+void soft_frame_finish(struct soft_frame *frame)
+{
+    if (frame->volume)
+        soft_volume_finish(frame->volume);
+    free(frame->volume);
+    free(frame->items);
+    free(frame->planes);
 }

@@ -4,6 +4,7 @@
 
 #include "core/render/soft/bins.h"
 #include "core/render/soft/planes.h"
+#include "core/render/soft/volume.h"
 #include "core/render/visible/back_end.h"
 #include "core/render/visible/draw.h"
 
@@ -20,6 +21,7 @@ struct soft_frame {
     int width, height, n_bands; /* width and height in samples */
     struct soft_item *items;    /* the list's shapes, in its order */
     struct soft_plane *planes;  /* the list's images and label layers, in its order */
+    struct soft_volume *volume; /* the list's, or NULL */
     size_t n_items, n_planes, n_chunks, n_blocks;
     size_t n_layers;               /* composed at a time, at most */
     int layer_rows;                /* rows of a layer that are drawn at a time */
@@ -28,5 +30,7 @@ struct soft_frame {
     atomic_bool is_out_of_memory;
 };
 
-/* Fills items, planes and n_layers from the list. errors ERROR_MEMORY */
+/* Fills items, planes, volume and n_layers from the list. errors ERROR_MEMORY */
 NODISCARD bool soft_frame_prepare(struct soft_frame *frame, struct error *err);
+/* Frees them. */
+void soft_frame_finish(struct soft_frame *frame);

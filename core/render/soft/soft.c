@@ -284,9 +284,11 @@ static void draw_item(const struct soft_frame *frame, const struct soft_item *it
     }
 }
 
-/* Draws the nearest sheet of each item into a layer of its own, a few rows at a time, and composes the layers. */
+/* Draws the nearest sheet of each item into a layer of its own, a few rows at a time, and composes the layers, with the
+ * volume's rays if there is one. */
 static void draw_layers(const struct soft_frame *frame, const struct soft_item *items, size_t n,
-                        const struct scratch *scratch, const struct soft_band *band, int index)
+                        const struct soft_volume *volume, const struct scratch *scratch, const struct soft_band *band,
+                        int index)
 {
     struct soft_layer layers[SOFT_MAX_LAYERS];
     size_t n_layer = (size_t)band->stride * (size_t)frame->layer_rows;
@@ -303,7 +305,11 @@ static void draw_layers(const struct soft_frame *frame, const struct soft_item *
         }
         part.depth = band->depth + (size_t)row * (size_t)band->stride;
         part.color = band->color + (size_t)row * (size_t)band->stride;
-        frame->renderer->kernels->compose(&part, layers, (int)n, is_exact ? (float)(2 * VISIBLE_RANK_DEPTH) : 0);
+        float rank_depth = is_exact ? (float)(2 * VISIBLE_RANK_DEPTH) : 0;
+        if (volume)
+            soft_volume_kernels_of(frame->renderer->kernels)->compose(volume, &part, layers, (int)n, rank_depth);
+        else
+            frame->renderer->kernels->compose(&part, layers, (int)n, rank_depth);
     }
 }
 
@@ -340,8 +346,9 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
     for (size_t i = 0, n; i < list->n_in_image; i += n) {
         n = draw_list_n_layers(list, i);
         if (n > 0) {
-            draw_layers(frame, item, n, scratch, band, index);
-            item += n;
+            size_t n_volumes = list->draws[i].kind == DRAW_VOLUME;
+            draw_layers(frame, item, n - n_volumes, n_volumes ? frame->volume : NULL, scratch, band, index);
+            item += n - n_volumes;
             continue;
         }
         n = 1;
@@ -481,8 +488,7 @@ struct image *soft_picture_end(struct soft_frame *frame)
         image_destroy(image);
         image = NULL;
     }
-    free(frame->items);
-    free(frame->planes);
+    soft_frame_finish(frame);
     free(frame);
     return image;
 }

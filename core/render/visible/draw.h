@@ -89,16 +89,19 @@ struct draw_cap {
  * nearer opaque draw. A translucent layer divides it there. Values are taken in the image's grid, beyond the outermost
  * voxel centres as at them; what is not finite or less than cull is not there.
  *
- * ray      from its entry, and again from each layer, the ray has intervals of length h, the last one shorter.
- *          h = min(step_voxels / (indices that the ray passes per mm, along the axis where these are most),
- *          step_limit_mm). An interval of length d has the value v at its part draw_volume_jitter and passes
- *          exp(-absorption(v) d) of the light. Lit by the light of surfaces (two-sided, opaque) with the gradient g, by
- *          central differences one voxel to either side, as the normal: of the light l counts
- *          f + (l - f) g^2 / (g^2 + gradient^2), f = DRAW_VOLUME_FLAT, gloss likewise from 0.
- * slices   n_slices planes at right angles to the line of sight, at the middles of n_slices equal parts of the extent
- * of the grid's outer faces along it. The nearest one that is there is opaque, in the colours of `image`. mip intervals
- * as ray; the largest value there, in the colours c of `image`: c + (1 - max c) of what is behind it. It counts as in
- * front of all layers. average  the same of the mean of the values, weighted with the lengths of their intervals. */
+ * Method ray: from its entry, and again from each layer, the ray has intervals of length h, the last one shorter; h =
+ * min(step_voxels / (indices that the ray passes per mm, along the axis where these are most), step_limit_mm). An
+ * interval of length d has the value v at its part draw_volume_jitter and passes exp(-absorption(v) d) of the light.
+ * Its colour is the table's; with is_shaded it is lit by the light of surfaces (two-sided, opaque) with the gradient g,
+ * by central differences one voxel to either side, as the normal: of that light l counts f + (l - f) g^2 / (g^2 +
+ * gradient^2) with f = DRAW_VOLUME_FLAT, its gloss likewise from 0. Where the ray enters through a capped clip plane
+ * and the value there absorbs, it shows the colour of `image` there, opaque.
+ *
+ * Method slices: n_slices planes at right angles to the line of sight, at the middles of n_slices equal parts of the
+ * extent of the grid's outer faces along it. The nearest one that is there is opaque, in the colours of `image`.
+ *
+ * Methods mip and average: intervals as above; the largest value, or the mean of the values weighted with the lengths,
+ * in the colours c of `image`: c + (1 - max c) of what is behind. It counts as in front of all layers. */
 enum { DRAW_VOLUME_TABLE = 1024 };
 #define DRAW_VOLUME_FLAT 0.8
 struct draw_volume {

@@ -7,6 +7,7 @@
 #include "core/render/visible/draw_overlay.h"
 #include "core/render/visible/draw_planes.h"
 #include "core/render/visible/draw_regions.h"
+#include "core/render/visible/draw_volume.h"
 
 static bool draw_opaque_regions(struct draw_list *list, const struct draw_scope *scope, struct error *err)
 {
@@ -23,6 +24,7 @@ typedef bool fill(struct draw_list *list, const struct draw_scope *scope, struct
 static fill *const fills[] = {
     draw_opaque_regions,
     draw_planes,
+    draw_volume,
     draw_translucent_regions,
     draw_overlay,
 };

@@ -7,8 +7,9 @@
 
 /* An opacity of 1 would be an absorption without end. */
 static const double most_opacity = 0.999;
-/* Voxels along a ray from sample to sample. Of a still, the four samples of a pixel divide a voxel. */
-static const double moving_step = 1, still_step = 2;
+/* Voxels along a ray from sample to sample. The four samples of a pixel of a still take their values in turn,
+ * so it has four to a voxel. */
+static const double moving_step = 1, still_step = 1;
 /* As part of the values between which the transfer function changes, per mm. Noise is less, a surface is more. */
 static const double least_gradient = 0.03;
 
@@ -46,6 +47,8 @@ static void table_range(const struct scene_volume_style *style, const struct vol
     *width = high - *low;
     if (!(*width > 0)) /* a single value; or all of the image lies beyond the points */
         *width = fmax(1e-6 * fabs(*low), 1e-9);
+    *low -= 0.002 * *width; /* two entries more at either end, for a step at an outer point */
+    *width *= 1.004;
 }
 
 static bool has_opacity(const struct scene_volume_style *style)

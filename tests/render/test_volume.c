@@ -1,0 +1,551 @@
+/* An image as a volume: what a ray absorbs and shows, against closed forms; where it is divided by layers, ended by
+ * opaque draws and cut by clip planes. */
+#include "tests/render/shots.h"
+
+static const struct vec3 origin = { 0, 0, 0 };
+static const struct vec3 up = { 0, 0, 1 };
+static const struct vec3 from_front = { 0, -1, 0 };
+enum { MIDDLE_X = SHOTS_WIDTH / 2, MIDDLE_Y = SHOTS_HEIGHT / 2 };
+
+static double no_label(struct vec3 p)
+{
+    (void)p;
+    return 0;
+}
+static double one(struct vec3 p)
+{
+    (void)p;
+    return 1;
+}
+
+static struct plan *image_plan(const struct grid *grid, enum voxel_type type, double (*value)(struct vec3 p))
+{
+    struct plan *plan = made_plan(grid, no_label, NULL, 0);
+    made_plan_add_image(plan, grid, type, value);
+    return plan;
+}
+
+/* A scene of the volume alone, not lit, with these points of the transfer function. */
+static struct scene volume_scene(const struct plan *plan, const struct scene_transfer_point *points, size_t n)
+{
+    struct scene scene = shots_scene(plan);
+    struct scene_volume_style *style = &scene.image.volume;
+    scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = false;
+    free(style->points);
+    style->points = mem_new((n ? n : 1) * sizeof *points);
+    if (n)
+        memcpy(style->points, points, n * sizeof *points);
+    style->n_points = n;
+    style->visible = true;
+    style->shaded = false;
+    return scene;
+}
+
+/* Everything has the same colour and absorption. */
+static struct scene even_scene(const struct plan *plan, uint32_t rgb, double opacity_of_1_mm)
+{
+    return volume_scene(plan, &(struct scene_transfer_point){ 0, rgb, opacity_of_1_mm }, 1);
+}
+
+/* The colour of `over` with this part of what is behind it, per channel 0..255. */
+static double mixed(double over, double passing, double behind)
+{
+    return (1 - passing) * over + passing * behind;
+}
+
+/* Volumes are drawn by our own rasteriser. */
+static void need_volumes(void)
+{
+    if (renderer_facts(shots_renderer)->back_end != RENDER_SOFT)
+        skip();
+}
+
+static struct image *moving(struct plan *plan, struct scene scene, struct view view)
+{
+    need_volumes();
+    return shots_plain(plan, scene, view);
+}
+static struct image *still(struct plan *plan, struct scene scene, struct view view)
+{
+    need_volumes();
+    struct render_options options = { view.size_px[0], view.size_px[1], SURFACE_FULL, true };
+    return shots_take(plan, scene, view, &options, NULL);
+}
+
+/* ---- absorption ----------------------------------------------------------------------------------------------------- */
+
+/* A small generator, so that the test is the same everywhere; 0..1. */
+static double chance(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (double)(*state >> 8) / (1 << 24);
+}
+
+static struct vec3 any_direction(uint32_t *state)
+{
+    for (;;) {
+        struct vec3 v = vec3(2 * chance(state) - 1, 2 * chance(state) - 1, 2 * chance(state) - 1);
+        if (vec3_length(v) > 0.2 && vec3_length(v) < 1 && vec3_length(vec3_cross(vec3_normalize(v), up)) > 0.1)
+            return vec3_normalize(v);
+    }
+}
+
+/* Length of a line within the outer faces of a grid, mm. */
+static double chord_mm(const struct grid *grid, struct vec3 at, struct vec3 direction)
+{
+    struct vec3 from = affine_point(&grid->ijk_from_lps_mm, at), d = affine_vector(&grid->ijk_from_lps_mm, direction);
+    const double o[3] = { from.x, from.y, from.z }, step[3] = { d.x, d.y, d.z };
+    double first = -INFINITY, last = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double a = (-0.5 - o[axis]) / step[axis], b = (grid->size[axis] - 0.5 - o[axis]) / step[axis];
+        first = fmax(first, fmin(a, b));
+        last = fmin(last, fmax(a, b));
+    }
+    return fmax(0, last - first);
+}
+
+/* Boxes of anisotropic voxels, and sheared ones, from any direction: 1 - exp(-mu L). */
+static void a_box_of_constant_density_has_the_closed_form_opacity(void **state)
+{
+    (void)state;
+    static const struct {
+        struct vec3 i, j, k;
+        uint32_t size[3];
+    } grids[] = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 30, 30, 30 } },
+                  { { 0.5, 0, 0 }, { 0, 0.7, 0 }, { 0, 0, 4 }, { 60, 40, 9 } },
+                  { { 0.9, 0.3, 0 }, { -0.2, 1.1, 0.1 }, { 0.8, 0.1, 2.5 }, { 31, 25, 12 } },
+                  { { 0, -1, 0 }, { 0, 0, -1.5 }, { 2, 0, 0 }, { 25, 20, 17 } } };
+    uint32_t seed = 7;
+    for (size_t g = 0; g < sizeof grids / sizeof grids[0]; g++) {
+        struct grid grid = made_grid(grids[g].size[0], grids[g].size[1], grids[g].size[2],
+                                     made_affine(grids[g].i, grids[g].j, grids[g].k, grids[g].size, origin));
+        struct plan *plan = image_plan(&grid, g % 2 ? VOXEL_U8 : VOXEL_I16, one);
+        for (int way = 0; way < 3; way++) {
+            struct vec3 from = any_direction(&seed), forward = vec3_scale(from, -1);
+            struct vec3 right = vec3_normalize(vec3_cross(forward, up)), upward = vec3_cross(right, forward);
+            struct image *image = moving(plan, even_scene(plan, 0xffffff, 0.03), shots_view_from(origin, from, up, 5));
+            for (int n = 0; n < 40; n++) {
+                int x = (int)(chance(&seed) * SHOTS_WIDTH), y = (int)(chance(&seed) * SHOTS_HEIGHT);
+                struct vec3 at =
+                    vec3_add(vec3_scale(right, (x + 0.5 - MIDDLE_X) / 5), vec3_scale(upward, (MIDDLE_Y - y - 0.5) / 5));
+                double passing = pow(1 - 0.03, chord_mm(&grid, at, forward));
+                for (int c = 0; c < 3; c++)
+                    assert_close(shots_pixel(image, x, y)[c], mixed(255, passing, shots_background[c]), 1.01);
+            }
+            image_destroy(image);
+        }
+        shots_forget(plan);
+    }
+}
+
+/* How far inside a ball of radius 20 about (1, 2, 3). */
+static double depth_in_ball(struct vec3 p)
+{
+    return 20 - vec3_length(vec3_sub(p, vec3(1, 2, 3)));
+}
+
+/* 1 - exp(-mu 2 sqrt(r^2 - b^2)). Both ends of a ray in the ball are found to within half an interval of a voxel of
+ * 1 mm, evenly spread: at a single pixel up to 2 % of the light, in the mean nothing of first order. */
+static void a_ball_of_constant_density_has_the_closed_form_opacity(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(56);
+    struct plan *plan = image_plan(&grid, VOXEL_F32, depth_in_ball);
+    const struct scene_transfer_point ball[] = { { 0, 0xffffff, 0 }, { 0, 0xffffff, 0.02 } };
+    for (int is_still = 0; is_still < 2; is_still++) {
+        struct view view = shots_view_from(vec3(1, 2, 3), vec3(0.4, -1, 0.3), up, 5);
+        struct image *image = (is_still ? still : moving)(plan, volume_scene(plan, ball, 2), view);
+        double sum = 0;
+        int n = 0;
+        for (int y = 5; y < SHOTS_HEIGHT; y += 7)
+            for (int x = 5; x < SHOTS_WIDTH; x += 7) {
+                double b = hypot(x + 0.5 - MIDDLE_X, y + 0.5 - MIDDLE_Y) / 5;
+                double expected = mixed(255, pow(1 - 0.02, 2 * sqrt(fmax(0, 400 - b * b))), shots_background[0]);
+                double value = shots_pixel(image, x, y)[0];
+                if (b > 19.5 && b < 20.5) /* the outline goes through the pixel */
+                    continue;
+                assert_close(value, expected, is_still ? 3 : 6);
+                if (b < 19.5) {
+                    sum += value - expected;
+                    n++;
+                }
+            }
+        assert_close(sum / n, 0, 0.3);
+        image_destroy(image);
+    }
+    shots_forget(plan);
+}
+
+static void a_perspective_ray_absorbs_by_its_own_length(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_U16, one);
+    struct view view = shots_view_from(origin, from_front, up, 4);
+    view.camera.projection = SCENE_PROJECTION_PERSPECTIVE;
+    view.camera.position_mm = vec3(0, -60, 0);
+    view.camera.fov_deg = 60;
+    struct image *image = moving(plan, even_scene(plan, 0xffffff, 0.02), view);
+    double per_px = 2 * tan(30 * MATH_PI / 180) / SHOTS_HEIGHT;
+    for (int n = 0; n < 30; n++) {
+        int x = MIDDLE_X - 100 + 7 * n, y = 60 + 6 * n;
+        struct vec3 direction = vec3_normalize(vec3((x + 0.5 - MIDDLE_X) * per_px, 1, (MIDDLE_Y - y - 0.5) * per_px));
+        double passing = pow(1 - 0.02, chord_mm(&grid, vec3(0, -60, 0), direction));
+        assert_close(shots_pixel(image, x, y)[1], mixed(255, passing, shots_background[1]), 1.01);
+    }
+    image_destroy(image);
+    shots_forget(plan);
+}
+
+static void without_points_nothing_is_drawn(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(20);
+    struct plan *plan = image_plan(&grid, VOXEL_U8, one);
+    struct view view = shots_view_from(origin, from_front, up, 4);
+    struct image *image = moving(plan, volume_scene(plan, NULL, 0), view);
+    for (int c = 0; c < 3; c++)
+        assert_int_equal(shots_pixel(image, MIDDLE_X, MIDDLE_Y)[c], shots_background[c]);
+    image_destroy(image);
+    shots_forget(plan);
+}
+
+static double nan_on_the_left(struct vec3 p)
+{
+    return p.x > 0 ? NAN : 1;
+}
+/* Of a ray along L, 20 mm of 40 are left. */
+static void what_is_not_a_number_absorbs_nothing(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_F32, nan_on_the_left);
+    struct scene scene = even_scene(plan, 0xffffff, 0.05);
+    scene.image.volume.interpolation = SCENE_INTERPOLATION_NEAREST;
+    struct image *image = moving(plan, scene, shots_view_from(origin, vec3(1, 0, 0), up, 4));
+    double sum = 0;
+    for (int i = 0; i < 64; i++)
+        sum += shots_pixel(image, MIDDLE_X + i % 8, MIDDLE_Y + i / 8)[0] / 64.0;
+    assert_close(sum, mixed(255, pow(0.95, 20), shots_background[0]), 1);
+    image_destroy(image);
+    shots_forget(plan);
+}
+
+static double along_p(struct vec3 p)
+{
+    return 100 + 2 * p.y;
+}
+static void values_below_the_limit_absorb_nothing(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_F32, along_p);
+    struct scene scene = even_scene(plan, 0xffffff, 0.05);
+    scene.image.volume.cull_below = 110; /* y >= 5: 15 mm of 40 */
+    struct image *image = moving(plan, scene, shots_view_from(origin, from_front, up, 4));
+    double sum = 0;
+    for (int i = 0; i < 64; i++)
+        sum += shots_pixel(image, MIDDLE_X + i % 8, MIDDLE_Y + i / 8)[0] / 64.0;
+    assert_close(sum, mixed(255, pow(0.95, 15), shots_background[0]), 1);
+    image_destroy(image);
+    shots_forget(plan);
+}
+
+/* ---- among other draws ------------------------------------------------------------------------------------------------ */
+
+/* Two plates: red at y -5 to 5, blue before it on the left of the picture and behind it on the right. */
+static double plates(struct vec3 p)
+{
+    if (fabs(p.z) > 25 || fabs(p.x) > 30)
+        return 0;
+    if (p.y > -5 && p.y < 5)
+        return 1;
+    return (p.x < 0 && p.y > -20 && p.y < -12) || (p.x > 0 && p.y > 12 && p.y < 20) ? 2 : 0;
+}
+static const struct made_region red_and_blue[] = { { "red", -1, 0xff2020 }, { "blue", -1, 0x2020ff } };
+
+static struct plan *plates_plan(void)
+{
+    struct grid grid = made_cube_grid(70);
+    struct plan *plan = made_plan(&grid, plates, red_and_blue, 2);
+    made_plan_add_image(plan, &grid, VOXEL_U8, one);
+    return plan;
+}
+
+/* At each sample: 15 mm of the volume, a layer, 15 or 17 mm, the other layer, the rest of 70 mm. */
+static void translucent_layers_lie_in_a_volume_at_their_depth(void **state)
+{
+    (void)state;
+    struct plan *plan = plates_plan();
+    struct view view = shots_view_from(origin, from_front, up, 4);
+    struct scene scene = even_scene(plan, 0xffffff, 0.02);
+    scene.surface.translucency = SCENE_TRANSLUCENCY_PLAIN;
+    shots_style(&scene, "red")->opacity = 0.5;
+    shots_style(&scene, "blue")->opacity = 0.7;
+    struct image *image = moving(plan, scene, view);
+    const double opacity[2] = { 0.5, 0.7 };
+    const double front_mm[2][2] = { { 30, 15 }, { 30, 47 } }; /* by side, red and blue: from the volume's face */
+    for (int side = 0; side < 2; side++) {
+        int far = front_mm[side][1] > front_mm[side][0] ? 1 : 0, near = 1 - far;
+        for (int c = 0; c < 3; c++) {
+            double layer[2];
+            for (int i = 0; i < 2; i++)
+                layer[i] = 255 * shots_facing_light((red_and_blue[i].rgb >> (16 - 8 * c) & 255) / 255.0, false);
+            double color = mixed(255, pow(0.98, 70 - front_mm[side][far]), shots_background[c]);
+            color = mixed(layer[far], 1 - opacity[far], color);
+            color = mixed(255, pow(0.98, front_mm[side][far] - front_mm[side][near]), color);
+            color = mixed(layer[near], 1 - opacity[near], color);
+            color = mixed(255, pow(0.98, front_mm[side][near]), color);
+            assert_close(shots_pixel(image, side ? 260 : 140, MIDDLE_Y)[c], color, 2);
+        }
+    }
+    image_destroy(image);
+    shots_forget(plan);
+}
+
+static void a_volume_ends_at_opaque_surfaces_and_slices(void **state)
+{
+    (void)state;
+    struct plan *plan = plates_plan();
+    struct view view = shots_view_from(origin, from_front, up, 4);
+    struct scene bare = even_scene(plan, 0xffffff, 0.02), with = even_scene(plan, 0xffffff, 0.02);
+    bare.image.volume.visible = false;
+    struct image *surfaces = moving(plan, bare, view), *both = moving(plan, with, view);
+    for (int side = 0; side < 2; side++)
+        for (int c = 0; c < 3; c++)
+            assert_close(shots_pixel(both, side ? 260 : 140, MIDDLE_Y)[c],
+                         mixed(255, pow(0.98, side ? 30 : 15), shots_pixel(surfaces, side ? 260 : 140, MIDDLE_Y)[c]),
+                         2);
+    image_destroy(surfaces);
+    image_destroy(both);
+    struct scene slice = even_scene(plan, 0x000000, 0.02);
+    shots_style(&slice, "red")->visible = shots_style(&slice, "blue")->visible = false;
+    slice.image.slices.coronal.visible = true;
+    slice.image.slices.coronal.position_mm = 0;
+    slice.image.window.center = 0.5; /* 1 is white */
+    slice.image.window.width = 1;
+    struct image *half = moving(plan, slice, view);
+    assert_close(shots_pixel(half, MIDDLE_X, MIDDLE_Y)[0], 255 * pow(0.98, 35), 1.5);
+    image_destroy(half);
+    shots_forget(plan);
+}
+
+static void clip_planes_cut_a_volume_unless_it_is_exempt(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_I16, one);
+    struct view view = shots_view_from(origin, from_front, up, 4);
+    for (int way = 0; way < 4; way++) {
+        struct scene scene = even_scene(plan, 0xffffff, 0.05);
+        scene.clip.coronal_high.enabled = way != 2; /* behind: nothing to close */
+        scene.clip.coronal_high.position_mm = 3;
+        scene.clip.free.enabled = way >= 1;
+        scene.clip.free.normal = vec3(0, -2, 0); /* cuts off what is before y = -9 */
+        scene.clip.free.origin_mm = vec3(5, -9, 7);
+        scene.clip.free.cap = false;
+        scene.image.volume.clipped = way < 3;
+        const double left_mm[4] = { 23, 12, 29, 40 };
+        struct image *image = moving(plan, scene, view);
+        assert_close(shots_pixel(image, MIDDLE_X, MIDDLE_Y)[0],
+                     mixed(255, pow(0.95, left_mm[way]), shots_background[0]), 1.01);
+        image_destroy(image);
+    }
+    shots_forget(plan);
+}
+
+/* 2 L + P: on the plane y = -5 the value at x is 2 x - 5. */
+static double across(struct vec3 p)
+{
+    return 2 * p.x + p.y;
+}
+static void a_capped_cut_through_a_volume_shows_the_image_where_the_volume_is_seen(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_F32, across);
+    struct view view = shots_view_from(origin, from_front, up, 4);
+    const struct scene_transfer_point seen[] = { { 0, 0xffffff, 0 }, { 0, 0xffffff, 0.5 } };
+    struct scene scene = volume_scene(plan, seen, 2);
+    scene.clip.coronal_low.enabled = true;
+    scene.clip.coronal_low.position_mm = -5;
+    scene.image.window.center = 20;
+    scene.image.window.width = 50;
+    struct image *image = moving(plan, scene, view);
+    for (int x = MIDDLE_X + 12; x < MIDDLE_X + 70; x += 5) { /* right of the picture is the patient's left, +x */
+        double value = 2 * (x + 0.5 - MIDDLE_X) / 4 - 5;
+        assert_true(value > 0);
+        assert_close(shots_pixel(image, x, MIDDLE_Y)[1], fmax(255 * (value + 5) / 50, shots_background[1]), 1.5);
+    }
+    assert_int_equal(shots_pixel(image, MIDDLE_X - 70, MIDDLE_Y)[1], shots_background[1]); /* less than 0 all along */
+    image_destroy(image);
+    shots_forget(plan);
+}
+
+/* ---- other methods ------------------------------------------------------------------------------------------------- */
+
+/* Light that is added to the background. */
+static double added(double grey, int c)
+{
+    return 255 * (grey + (1 - grey) * shots_background[c] / 255.0);
+}
+
+static struct scene projected(const struct plan *plan, enum scene_volume_method method)
+{
+    struct scene scene = volume_scene(plan, NULL, 0);
+    scene.image.volume.method = method;
+    scene.image.window.center = 100;
+    scene.image.window.width = 100;
+    return scene;
+}
+
+/* 100 + 2 y with y from -19.5 to 19.5: at most 139, in the mean 100. */
+static void the_largest_value_and_the_mean_are_those_of_the_field(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    for (int type = VOXEL_U8; type <= VOXEL_F32; type++) {
+        struct plan *plan = image_plan(&grid, (enum voxel_type)type, along_p);
+        struct view view = shots_view_from(origin, from_front, up, 4);
+        struct image *most = moving(plan, projected(plan, SCENE_VOLUME_METHOD_MIP), view),
+                     *mean = moving(plan, projected(plan, SCENE_VOLUME_METHOD_AVERAGE), view);
+        for (int i = 0; i < 30; i++) {
+            int x = MIDDLE_X - 60 + 4 * i, y = MIDDLE_Y - 58 + 3 * i;
+            assert_close(shots_pixel(most, x, y)[0], added((139 - 50) / 100.0, 0), 3);
+            assert_close(shots_pixel(mean, x, y)[0], added(0.5, 0),
+                         3); /* taken up to half an interval off, all to one side: 1 */
+        }
+        image_destroy(most);
+        image_destroy(mean);
+        shots_forget(plan);
+    }
+}
+
+/* The mean counts values from 110 on: y from 5 to 20, 110 to 139 and half a voxel of 139. */
+static void the_mean_leaves_out_what_is_below_the_limit(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_F32, along_p);
+    struct scene scene = projected(plan, SCENE_VOLUME_METHOD_AVERAGE);
+    scene.image.volume.cull_below = 110;
+    struct image *image = still(plan, scene, shots_view_from(origin, from_front, up, 4));
+    double expected = (14.5 * (110 + 139) / 2 + 0.5 * 139) / 15;
+    assert_close(shots_pixel(image, MIDDLE_X, MIDDLE_Y)[0], added((expected - 50) / 100, 0), 2);
+    image_destroy(image);
+    shots_forget(plan);
+}
+
+/* 40 planes 1 mm apart at y = -19.5, -18.5, ...; the first with 100 + 2 y >= 110 is at y = 5.5: 111. Of the nearest
+ * voxel the value is the same, as planes and voxels coincide. */
+static void the_first_of_the_slices_that_is_not_culled_is_seen(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_I16, along_p);
+    for (int is_nearest = 0; is_nearest < 2; is_nearest++) {
+        struct scene scene = projected(plan, SCENE_VOLUME_METHOD_SLICES);
+        scene.image.volume.cull_below = 109.5;
+        scene.image.volume.steps = 40;
+        scene.image.volume.interpolation = is_nearest ? SCENE_INTERPOLATION_NEAREST : SCENE_INTERPOLATION_LINEAR;
+        struct image *image = moving(plan, scene, shots_view_from(origin, from_front, up, 4));
+        assert_close(shots_pixel(image, MIDDLE_X + 9, MIDDLE_Y - 5)[2], 255 * 0.61, 1.01);
+        assert_int_equal(shots_pixel(image, 5, 5)[2], shots_background[2]);
+        image_destroy(image);
+    }
+    shots_forget(plan);
+}
+
+/* ---- light ---------------------------------------------------------------------------------------------------------- */
+
+/* A surface that faces the viewer is lit as a triangle there would be; so is the same seen from behind. */
+static void a_surface_in_a_volume_is_lit_as_a_surface(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_F32, along_p);
+    const struct scene_transfer_point wall[] = {
+        { 99, 0x808080, 0 }, { 99, 0x808080, 1 }, { 101, 0x808080, 1 }, { 101, 0x808080, 0 }
+    };
+    for (int side = -1; side <= 1; side += 2) {
+        struct scene scene = volume_scene(plan, wall, 4);
+        scene.image.volume.shaded = true;
+        struct image *image = still(plan, scene, shots_view_from(origin, vec3(0, side, 0), up, 4));
+        double expected = 255 * shots_facing_light(128 / 255.0, true);
+        assert_close(shots_pixel(image, MIDDLE_X, MIDDLE_Y)[0], mixed(expected, 0.001, shots_background[0]), 3);
+        image_destroy(image);
+    }
+    shots_forget(plan);
+}
+
+/* ---- our own rasteriser ---------------------------------------------------------------------------------------------- */
+
+static double waves(struct vec3 p)
+{
+    return 300 * sin(p.x * 0.31) * cos(p.y * 0.23) * sin(p.z * 0.27 + 1);
+}
+
+static void threads_and_processors_do_not_change_a_picture(void **state)
+{
+    (void)state;
+    need_volumes();
+    const uint32_t size[3] = { 45, 37, 51 };
+    struct grid grid =
+        made_grid(45, 37, 51, made_affine(vec3(1, 0.1, 0), vec3(0, 1.2, 0.2), vec3(0.1, 0, 0.8), size, origin));
+    static const struct {
+        int n_threads;
+        bool is_portable;
+    } ways[] = { { 1, false }, { 2, false }, { 7, false }, { 1, true }, { 7, true } };
+    const struct scene_transfer_point points[] = {
+        { -250, 0x80ff40, 0.4 }, { -150, 0x0000ff, 0 }, { 100, 0xff8040, 0 }, { 200, 0xffffff, 0.3 }
+    };
+    for (int picture = 0; picture < 12; picture++) {
+        struct plan *plan = made_plan(&grid, plates, red_and_blue, 2);
+        made_plan_add_image(plan, &grid, (enum voxel_type)(picture % 4), waves);
+        struct image *first = NULL;
+        for (size_t way = 0; way < sizeof ways / sizeof ways[0]; way++) {
+            struct scene scene = volume_scene(plan, points, 4);
+            scene.image.volume.method = (enum scene_volume_method)(picture / 4 == 2 ? 1 + picture % 4 % 3 : 0);
+            scene.image.volume.shaded = picture / 4 == 1;
+            scene.image.volume.interpolation = picture % 3 ? SCENE_INTERPOLATION_LINEAR : SCENE_INTERPOLATION_NEAREST;
+            shots_style(&scene, "red")->opacity = 0.5;
+            scene.clip.axial_high.enabled = true;
+            scene.clip.axial_high.position_mm = 12;
+            struct view view = shots_view_from(origin, vec3(0.5, -1, 0.7), up, 4);
+            if (picture % 2)
+                view.camera.projection = SCENE_PROJECTION_PERSPECTIVE;
+            renderer_tune(shots_renderer, ways[way].n_threads, ways[way].is_portable);
+            struct image *image = (picture % 2 ? still : moving)(plan, scene, view);
+            if (first) {
+                assert_memory_equal(image->rgba, first->rgba, (size_t)4 * SHOTS_WIDTH * SHOTS_HEIGHT);
+                image_destroy(image);
+            } else
+                first = image;
+        }
+        image_destroy(first);
+        shots_forget(plan);
+    }
+    renderer_tune(shots_renderer, 2, false);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_box_of_constant_density_has_the_closed_form_opacity),
+        cmocka_unit_test(a_ball_of_constant_density_has_the_closed_form_opacity),
+        cmocka_unit_test(a_perspective_ray_absorbs_by_its_own_length),
+        cmocka_unit_test(without_points_nothing_is_drawn),
+        cmocka_unit_test(what_is_not_a_number_absorbs_nothing),
+        cmocka_unit_test(values_below_the_limit_absorb_nothing),
+        cmocka_unit_test(translucent_layers_lie_in_a_volume_at_their_depth),
+        cmocka_unit_test(a_volume_ends_at_opaque_surfaces_and_slices),
+        cmocka_unit_test(clip_planes_cut_a_volume_unless_it_is_exempt),
+        cmocka_unit_test(a_capped_cut_through_a_volume_shows_the_image_where_the_volume_is_seen),
+        cmocka_unit_test(the_largest_value_and_the_mean_are_those_of_the_field),
+        cmocka_unit_test(the_mean_leaves_out_what_is_below_the_limit),
+        cmocka_unit_test(the_first_of_the_slices_that_is_not_culled_is_seen),
+        cmocka_unit_test(a_surface_in_a_volume_is_lit_as_a_surface),
+        cmocka_unit_test(threads_and_processors_do_not_change_a_picture),
+    };
+    return shots_run("volume", tests, sizeof tests / sizeof tests[0]);
+}
