@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/scene/camera.h"
+#include "core/scene/pick_volume.h"
 
 /* p(t) = origin + t direction, direction of unit length, t in millimetres >= 0 */
 struct ray {
@@ -392,6 +393,11 @@ size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, stru
     if (snapshot->n_clips > 0)
         n = pick_regions(snapshot, &ray, true, hits, n);
     n = pick_slices(snapshot, &ray, hits, n);
+    struct pick_volume_hit volume;
+    if (pick_volume(snapshot, ray.origin_lps_mm, ray.direction, &volume))
+        n = add_hit(hits, n,
+                    (struct pick_hit){ ray_point(&ray, volume.t_mm), image_subject(snapshot), volume.t_mm,
+                                       volume.alpha });
     /* the ray starts on the near plane; distances count from the eye */
     for (size_t i = 0; i < n; i++)
         hits[i].distance_mm = vec3_length(vec3_sub(hits[i].point_lps_mm, camera.eye_lps_mm));

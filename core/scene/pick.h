@@ -6,7 +6,7 @@
 /* One thing under a pixel of the full-size view. */
 struct pick_hit {
     struct vec3 point_lps_mm;
-    struct subject subject; /* a region, or the image of a slice */
+    struct subject subject; /* a region, or the image of a slice or of the volume (pick_volume.h) */
     double distance_mm;
     /* How much of what lies behind it the hit covers, 0 to 1: as the picture blends surfaces away from their
      * silhouettes. Outlines and points leave most of the picture free and cover a tenth of their opacity; slices and
