@@ -35,6 +35,19 @@ bool snapshot_is_low_white(const struct snapshot *snapshot)
                                           : wanted == SCENE_LOW_VALUES_WHITE;
 }
 
+struct scene_image_look snapshot_look_of(const struct snapshot *snapshot, size_t image)
+{
+    const struct scene_image_style *style = &snapshot->scene.image;
+    const struct plan_image *own = &snapshot->plan->images[image];
+    for (size_t i = 0; i < style->n_looks; i++)
+        if (strcmp(style->looks[i].id, own->id) == 0)
+            return style->looks[i].value;
+    struct scene_image_look look = scene_image_look_default;
+    look.window.center = own->window_center;
+    look.window.width = own->window_width;
+    return look;
+}
+
 /* Index of the dose that the scene shows; -1 if the plan has no dose, or none of that id. */
 static int dose_index(const struct plan *plan, const struct scene *scene)
 {

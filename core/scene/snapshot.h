@@ -48,6 +48,9 @@ void scene_for_plan(const struct plan *plan, struct scene *scene);
 int scene_image_index(const struct plan *plan, const struct scene *scene);
 /* True if low values of the image shown are white: as the scene says, else as the image asks. Only if image >= 0. */
 bool snapshot_is_low_white(const struct snapshot *snapshot);
+/* Window and colours of an image that is not the one shown: as the scene's looks say, else its own first window, grey.
+ */
+struct scene_image_look snapshot_look_of(const struct snapshot *snapshot, size_t image);
 /* The snapshot's camera, resolved. */
 static inline void camera_resolve(const struct snapshot *snapshot, struct camera *camera)
 {

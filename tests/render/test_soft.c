@@ -51,7 +51,7 @@ static struct plan *make_head(enum voxel_type type)
 struct shot {
     const char *name;
     enum scene_kind kind;
-    bool is_still, is_flat, is_nearest, is_plain, has_slices, is_inside, is_parallel;
+    bool is_still, is_flat, is_nearest, is_colored, is_plain, has_slices, is_inside, is_parallel;
     enum scene_representation representation;
 };
 
@@ -71,6 +71,11 @@ static struct image *take(struct renderer *renderer, struct plan *plan, const st
     scene.surface.translucency = shot->is_plain ? SCENE_TRANSLUCENCY_PLAIN : SCENE_TRANSLUCENCY_RIM;
     scene.image.interpolation = shot->is_nearest ? SCENE_INTERPOLATION_NEAREST : SCENE_INTERPOLATION_LINEAR;
     scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = shot->has_slices;
+    if (shot->is_colored) {
+        scene.image.color_map = SCENE_COLOR_MAP_HOT_IRON;
+        (void)snprintf(scene.image.blend.id, sizeof scene.image.blend.id, "%s", plan->images[0].id);
+        scene.image.blend.opacity = 0.4;
+    }
     scene.outline.on_slices = false; /* painted over the finished picture, by render.c */
     view.kind = shot->kind;
     view.size_px[0] = width;
@@ -120,6 +125,8 @@ static const struct shot shots[] = {
       .representation = SCENE_REPRESENTATION_OUTLINE },
     { .name = "fans", .kind = SCENE_KIND_3D, .is_parallel = true, .representation = SCENE_REPRESENTATION_FAN },
     { .name = "axial pane", .kind = SCENE_KIND_AXIAL },
+    { .name = "axial pane, blended", .kind = SCENE_KIND_AXIAL, .is_colored = true },
+    { .name = "slices, blended", .kind = SCENE_KIND_3D, .has_slices = true, .is_nearest = true, .is_colored = true },
     { .name = "coronal pane, nearest", .kind = SCENE_KIND_CORONAL, .is_nearest = true },
     { .name = "sagittal pane, still", .kind = SCENE_KIND_SAGITTAL, .is_still = true },
 };

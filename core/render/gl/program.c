@@ -60,16 +60,17 @@ static const char *line_constants(char text[80])
     return text;
 }
 
-static const char *image_constants(char text[80])
+static const char *image_constants(char text[120], bool is_linear, bool has_colors)
 {
     const uint8_t *rgb = visible_background;
-    (void)snprintf(text, 80, "#define DARKEST_GREY (vec3(%d, %d, %d) / 255.0)\n", rgb[0], rgb[1], rgb[2]);
+    (void)snprintf(text, 120, "#define DARKEST_GREY (vec3(%d, %d, %d) / 255.0)\n#define LINEAR %d\n#define COLORS %d\n",
+                   rgb[0], rgb[1], rgb[2], is_linear, has_colors);
     return text;
 }
 
 bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struct error *err)
 {
-    char constants[80], darkest[80];
+    char constants[80], images[4][120];
     const struct {
         struct gl_program *program;
         const char *name, *constants, *vertex, *fragment;
@@ -79,7 +80,14 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
         { &programs->lines, "lines", line_constants(constants), gl_shader_lines_vert, gl_shader_shade_frag },
         { &programs->points, "points", "", gl_shader_points_vert, gl_shader_shade_frag },
         { &programs->compose, "compose", "", gl_shader_whole_vert, gl_shader_compose_frag },
-        { &programs->image, "image", image_constants(darkest), gl_shader_slice_vert, gl_shader_image_frag },
+        { &programs->image[0], "image", image_constants(images[0], false, false), gl_shader_slice_vert,
+          gl_shader_image_frag },
+        { &programs->image[1], "image, linear", image_constants(images[1], true, false), gl_shader_slice_vert,
+          gl_shader_image_frag },
+        { &programs->colors[0], "colors", image_constants(images[2], false, true), gl_shader_slice_vert,
+          gl_shader_image_frag },
+        { &programs->colors[1], "colors, linear", image_constants(images[3], true, true), gl_shader_slice_vert,
+          gl_shader_image_frag },
         { &programs->labels, "labels", "", gl_shader_slice_vert, gl_shader_labels_frag },
         { &programs->test, "test", "", gl_shader_whole_vert, gl_shader_test_frag },
     };
@@ -94,9 +102,10 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
 
 void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
 {
-    const GLuint names[] = { programs->smooth.name, programs->faceted.name, programs->compose.name,
-                             programs->lines.name,  programs->points.name,  programs->image.name,
-                             programs->labels.name, programs->test.name };
+    const GLuint names[] = { programs->smooth.name,   programs->faceted.name,   programs->compose.name,
+                             programs->lines.name,    programs->points.name,    programs->image[0].name,
+                             programs->image[1].name, programs->colors[0].name, programs->colors[1].name,
+                             programs->labels.name,   programs->test.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])
             gl->DeleteProgram(names[i]);

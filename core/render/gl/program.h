@@ -18,10 +18,11 @@ struct gl_programs {
     struct gl_program faceted; /* surface shaded by triangle normals */
     struct gl_program lines;
     struct gl_program points;
-    struct gl_program compose; /* the translucent layers, by a triangle over the whole picture */
-    struct gl_program image;   /* slice of an image: window and level */
-    struct gl_program labels;  /* slice of a label layer: one colour a label */
-    struct gl_program test;    /* a texture's colour, by a triangle over the whole picture */
+    struct gl_program compose;   /* the translucent layers, by a triangle over the whole picture */
+    struct gl_program image[2];  /* slice of an image, window and level: the nearest voxel, linear */
+    struct gl_program colors[2]; /* the same in colours, or with a second image over it */
+    struct gl_program labels;    /* slice of a label layer: one colour a label */
+    struct gl_program test;      /* a texture's colour, by a triangle over the whole picture */
 };
 
 /* errors ERROR_GL with the compiler's message */

@@ -1,5 +1,6 @@
 /* Draws images and label layers on planes by OpenGL, as the polygon where the plane cuts the grid. */
 #include "core/render/gl/draw.h"
+#include "core/render/visible/color_map.h"
 
 /* The clipping starts from a rectangle, and each of the grid's six faces adds at most one corner. */
 enum { MAX_CORNERS = 10 };
@@ -67,11 +68,77 @@ static void draw_polygon(const struct gl_frame *frame, const struct grid *grid, 
     gl->DrawArrays(GL_TRIANGLE_FAN, 0, polygon->n);
 }
 
+/* From 0..1 over one grid's outer faces to the same of another grid. */
+static void place_matrix(const struct grid *to, const struct grid *from, float out[16])
+{
+    struct affine lps = from->lps_mm_from_ijk, ijk = to->ijk_from_lps_mm;
+    const struct vec3 corner = affine_point(&ijk, affine_point(&lps, vec3(-0.5, -0.5, -0.5)));
+    const struct vec3 columns[4] = { affine_vector(&ijk, vec3_scale(lps.columns[0], from->size[0])),
+                                     affine_vector(&ijk, vec3_scale(lps.columns[1], from->size[1])),
+                                     affine_vector(&ijk, vec3_scale(lps.columns[2], from->size[2])),
+                                     vec3_add(corner, vec3(0.5, 0.5, 0.5)) };
+    for (int c = 0; c < 4; c++) {
+        out[4 * c] = (float)(columns[c].x / to->size[0]);
+        out[4 * c + 1] = (float)(columns[c].y / to->size[1]);
+        out[4 * c + 2] = (float)(columns[c].z / to->size[2]);
+        out[4 * c + 3] = c == 3;
+    }
+}
+
+static void set_grey(const struct gl *gl, GLint scale, GLint ends, const struct gl_grid *texels, double low,
+                     double width, bool is_low_white)
+{
+    gl->Uniform2f(scale, (float)(texels->value_per_unit / width), (float)((texels->value_at_zero - low) / width));
+    gl->Uniform2f(ends, is_low_white ? 1 : 0, is_low_white ? 0 : 1);
+}
+
+static void fill_colors(const uint32_t *colors, uint8_t row[4 * COLOR_MAP_LEVELS])
+{
+    for (int level = 0; level < COLOR_MAP_LEVELS; level++)
+        for (int c = 0; c < 4; c++)
+            row[4 * level + c] = (uint8_t)(colors ? colors[level] >> 8 * c : (uint32_t)level);
+}
+
+/* Sets the uniforms of the program `colors` that `image` does not have. Texture units: 1 colours, 2 second image. */
+static bool set_colors(const struct gl_frame *frame, const struct draw *draw, const struct grid *grid,
+                       struct error *err)
+{
+    const struct gl *gl = frame->gl;
+    const struct gl_program *program = &frame->programs->colors[draw->image.is_linear];
+    const struct draw_blend *blend = &draw->image.blend;
+    uint8_t colors[2][4 * COLOR_MAP_LEVELS];
+    fill_colors(draw->image.colors, colors[0]);
+    fill_colors(blend->colors, colors[1]);
+    gl->Uniform1i(program->palette, 1);
+    gl->Uniform1i(program->second, 2);
+    gl->Uniform1f(program->part, (float)blend->part);
+    gl->ActiveTexture(GL_TEXTURE1);
+    gl->BindTexture(GL_TEXTURE_2D, frame->palette);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, COLOR_MAP_LEVELS, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, colors);
+    if (!(blend->part > 0))
+        return true;
+    const struct gl_grid *texels =
+        (const struct gl_grid *)draw_cache_grid(frame->cache, frame->plan,
+                                                (struct subject){ SUBJECT_IMAGE, blend->image, 0 }, err);
+    if (!texels)
+        return false;
+    float matrix[16];
+    place_matrix(&frame->plan->images[blend->image].volume->grid, grid, matrix);
+    gl->UniformMatrix4fv(program->second_from_at, 1, GL_FALSE, matrix);
+    set_grey(gl, program->second_grey, program->second_ends, texels, blend->low, blend->width, blend->is_low_white);
+    gl->ActiveTexture(GL_TEXTURE2);
+    gl->BindTexture(GL_TEXTURE_3D, texels->texture);
+    return true;
+}
+
 bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err)
 {
     const struct gl *gl = frame->gl;
     const struct draw_image *image = &draw->image;
-    const struct gl_program *program = &frame->programs->image;
+    const bool has_colors = image->colors || image->blend.part > 0;
+    const struct gl_program *program =
+        has_colors ? &frame->programs->colors[image->is_linear] : &frame->programs->image[image->is_linear];
     const struct grid *grid = &frame->plan->images[draw->subject.index].volume->grid;
     struct polygon polygon = slice_polygon(grid, &draw->plane);
     if (polygon.n < 3)
@@ -80,18 +147,15 @@ bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct
         (const struct gl_grid *)draw_cache_grid(frame->cache, frame->plan, draw->subject, err);
     if (!texels)
         return false;
-    GLint filter = image->is_linear ? GL_LINEAR : GL_NEAREST;
     gl->UseProgram(program->name);
     gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
-    gl->Uniform2f(program->grey, (float)(texels->value_per_unit / image->width),
-                  (float)((texels->value_at_zero - image->low) / image->width));
-    gl->Uniform2f(program->ends, image->is_low_white ? 1 : 0, image->is_low_white ? 0 : 1);
+    set_grey(gl, program->grey, program->ends, texels, image->low, image->width, image->is_low_white);
     gl->Uniform1f(program->cull, (float)image->cull);
     gl->Uniform1i(program->source, 0);
+    if (has_colors && !set_colors(frame, draw, grid, err))
+        return false;
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_3D, texels->texture);
-    gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
-    gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
     draw_polygon(frame, grid, &polygon);
     gl->BindTexture(GL_TEXTURE_3D, 0);
     return gl_check(gl, "drawing a slice", err);

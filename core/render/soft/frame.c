@@ -69,25 +69,41 @@ static struct soft_item make_item(const struct soft_frame *frame, const struct d
     };
 }
 
-static struct soft_plane make_image(const struct soft_frame *frame, const struct draw *draw)
+/* The plane through one of the plan's images, with the window low..low + width; everything drawn, in grey. */
+static struct soft_plane make_grey(const struct soft_frame *frame, const struct draw *draw, size_t image, double low,
+                                   double width, bool is_low_white)
 {
     static const enum soft_voxel types[] = {
         [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32
     };
-    const struct volume *volume = frame->scope->snapshot->plan->images[draw->subject.index].volume;
-    const struct draw_image *image = &draw->image;
+    const struct volume *volume = frame->scope->snapshot->plan->images[image].volume;
     struct soft_plane plane;
     soft_plane_init(&plane, volume, &draw->plane, &draw->clip, &frame->scope->camera->clip_from_lps_mm, frame->width,
                     frame->height);
     plane.texture.type = types[volume->type];
-    plane.texture.grey_scale = (float)(volume->slope / image->width);
-    plane.texture.grey_offset = (float)((volume->offset - image->low) / image->width);
+    plane.texture.grey_scale = (float)(volume->slope / width);
+    plane.texture.grey_offset = (float)((volume->offset - low) / width);
+    plane.texture.flip = is_low_white ? 255 : 0;
+    plane.texture.is_linear = draw->image.is_linear;
+    return plane;
+}
+
+static struct soft_plane make_image(const struct soft_frame *frame, const struct draw *draw)
+{
+    const struct draw_image *image = &draw->image;
+    const struct draw_blend *blend = &image->blend;
+    struct soft_plane plane =
+        make_grey(frame, draw, draw->subject.index, image->low, image->width, image->is_low_white);
     plane.texture.cull = (float)image->cull;
-    plane.texture.flip = image->is_low_white ? 255 : 0;
+    plane.texture.colors = image->colors;
     for (int c = 0; c < 3; c++)
         plane.texture.darkest[c] = visible_background[c];
-    plane.texture.is_linear = image->is_linear;
     plane.texture.has_depth = draw->depth == DRAW_DEPTH_TESTED;
+    if (blend->part > 0) {
+        struct soft_plane second = make_grey(frame, draw, blend->image, blend->low, blend->width, blend->is_low_white);
+        second.texture.colors = blend->colors;
+        soft_plane_blend(&plane, &second, blend->part);
+    }
     return plane;
 }
 

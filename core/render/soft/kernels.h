@@ -78,6 +78,8 @@ struct soft_triangles {
  * at the first sample, and the step from sample to sample. */
 struct soft_row {
     double at[5], step[5];
+    const struct soft_blend *blend;    /* NULL: none */
+    double blend_at[3], blend_step[3]; /* the same as the first three, in the grid of blend */
 };
 
 enum soft_voxel { SOFT_U8, SOFT_U16, SOFT_I16, SOFT_F32 };
@@ -90,7 +92,14 @@ struct soft_texture {
     uint32_t flip;           /* 255: grey 0 is white, 1 is black; else 0 */
     uint32_t darkest[3];     /* red, green and blue of a grey are at least this */
     const uint32_t *palette; /* by label; NULL: grey */
+    const uint32_t *colors;  /* by level 0..255, as draw_image has them; NULL: grey */
     bool is_linear, has_depth;
+};
+
+/* A second image over a plane's: where it lies inside its grid and is finite, it makes `part` of the colour. */
+struct soft_blend {
+    struct soft_texture texture; /* no palette, no cull, no depth */
+    float part;
 };
 
 struct soft_kernels {

@@ -2,6 +2,7 @@
 #include "core/render/soft/planes.h"
 
 #include <math.h>
+#include <string.h>
 
 /* m[row][column] */
 struct mat3 {
@@ -99,6 +100,13 @@ void soft_plane_init(struct soft_plane *plane, const struct volume *volume, cons
     plane->texture.voxels = volume ? volume->voxels : NULL;
 }
 
+void soft_plane_blend(struct soft_plane *plane, const struct soft_plane *second, double part)
+{
+    plane->has_blend = true;
+    plane->blend = (struct soft_blend){ second->texture, (float)part };
+    memcpy(plane->blend_at, second->at, sizeof plane->blend_at);
+}
+
 /* Narrows *first..*last to the x with value + step * x >= 0. */
 static void narrow(double value, double step, double *first, double *last)
 {
@@ -152,6 +160,12 @@ void soft_plane_draw(const struct soft_plane *plane, const struct soft_kernels *
         double first, last;
         struct soft_row row = soft_plane_row(plane, band->first_row + y, band->width, &first, &last);
         soft_plane_narrow(plane, &row, &first, &last);
+        row.blend = plane->has_blend ? &plane->blend : NULL;
+        for (int i = 0; i < 3 && plane->has_blend; i++) {
+            row.blend_step[i] = plane->blend_at[i][0];
+            row.blend_at[i] = plane->blend_at[i][2] + plane->blend_at[i][0] * 0.5 +
+                              plane->blend_at[i][1] * (band->first_row + y + 0.5);
+        }
         int from = (int)ceil(fmin(first, band->width)), to = (int)floor(fmax(last, -1));
         size_t at = (size_t)y * (size_t)band->stride;
         if (from <= to)

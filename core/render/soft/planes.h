@@ -11,6 +11,9 @@ struct soft_plane {
     double cuts[SOFT_MAX_CUTS][3]; /* depth below each clip plane that cuts it, times 1 / w: as at. Drawn where >= 0 */
     int n_cuts;
     bool is_empty; /* seen edge-on */
+    bool has_blend;
+    struct soft_blend blend;
+    double blend_at[3][3]; /* as at, in the grid of blend */
 };
 
 /* For a picture of width x height samples. Fills texture's voxels and size; the caller fills its type and colours.
@@ -22,4 +25,6 @@ void soft_plane_init(struct soft_plane *plane, const struct volume *volume, cons
 struct soft_row soft_plane_row(const struct soft_plane *plane, int y, int width, double *first, double *last);
 /* Narrows them to the samples within the grid's outer faces. */
 void soft_plane_narrow(const struct soft_plane *plane, const struct soft_row *row, double *first, double *last);
+/* Lays a second image over it; second: a plane of the same picture, its texture filled. */
+void soft_plane_blend(struct soft_plane *plane, const struct soft_plane *second, double part);
 void soft_plane_draw(const struct soft_plane *plane, const struct soft_kernels *kernels, const struct soft_band *band);

@@ -52,12 +52,24 @@ struct draw_shape {
     struct visible_cue cue; /* of lines */
 };
 
+/* A second image over an image, on its own grid: where it has a finite value the colour is (1 - part) of the first's
+ * and part of its own. The first image decides where anything is drawn. */
+struct draw_blend {
+    double part;            /* 0: none */
+    size_t image;           /* index in the plan */
+    double low, width;      /* as in draw_image */
+    bool is_low_white;      /* as in draw_image */
+    const uint32_t *colors; /* as in draw_image */
+};
+
 /* Grey = (value - low) / width; drawn where it is cull or more. */
 struct draw_image {
-    double low, width; /* in the image's unit */
-    double cull;       /* as grey; -infinity: drawn everywhere */
-    bool is_low_white; /* grey 0 is white, 1 is black */
-    bool is_linear;    /* interpolated between voxels */
+    double low, width;      /* in the image's unit */
+    double cull;            /* as grey; -infinity: drawn everywhere */
+    bool is_low_white;      /* grey 0 is white, 1 is black */
+    bool is_linear;         /* interpolated between voxels */
+    const uint32_t *colors; /* by level 0..255 of what is_low_white leaves (color_map.h); NULL: grey */
+    struct draw_blend blend;
 };
 
 /* A region in a cap: closed outlines in the clip plane, by the even-odd rule. */

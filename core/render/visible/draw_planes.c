@@ -6,17 +6,50 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/color_map.h"
 #include "core/render/visible/draw_clip.h"
 
 enum { PALETTE_BYTES = 4 * VISIBLE_N_LABELS };
 
+static void set_window(const struct scene_window *window, double *low, double *width)
+{
+    *low = window->center - window->width / 2;
+    *width = window->width;
+}
+
+static struct draw_blend blend_shown(const struct snapshot *snapshot)
+{
+    struct draw_blend blend = { 0 };
+    if (snapshot->blend < 0)
+        return blend;
+    blend.image = (size_t)snapshot->blend;
+    blend.part = snapshot->scene.image.blend.opacity;
+    struct scene_image_look look = snapshot_look_of(snapshot, blend.image);
+    set_window(&look.window, &blend.low, &blend.width);
+    blend.is_low_white = snapshot->plan->images[blend.image].is_inverted;
+    blend.colors = color_map_table(look.color_map);
+    return blend;
+}
+
+struct draw_image draw_image_shown(const struct snapshot *snapshot, bool is_culled)
+{
+    const struct scene_image_style *style = &snapshot->scene.image;
+    struct draw_image image = { .cull = -INFINITY,
+                                .is_low_white = snapshot_is_low_white(snapshot),
+                                .is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST,
+                                .colors = color_map_table(style->color_map),
+                                .blend = blend_shown(snapshot) };
+    set_window(&style->window, &image.low, &image.width);
+    if (is_culled)
+        image.cull = (style->cull_below - image.low) / image.width;
+    return image;
+}
+
 static bool add_image(struct draw_list *list, const struct snapshot *snapshot, const struct plane *plane,
                       struct error *err)
 {
-    const struct scene_image_style *style = &snapshot->scene.image;
     bool is_in_space = !snapshot_is_pane(snapshot);
-    double low = style->window.center - style->window.width / 2, width = style->window.width;
-    struct clip_set clip = draw_clip_set(snapshot, style->clipped);
+    struct clip_set clip = draw_clip_set(snapshot, snapshot->scene.image.clipped);
     if (draw_clip_cuts(&clip) && !draw_clip_slice(&clip, plane, &snapshot->plan->images[snapshot->image].volume->grid))
         return true;
     return draw_list_add(list,
@@ -28,11 +61,7 @@ static bool add_image(struct draw_list *list, const struct snapshot *snapshot, c
                              .clip = clip,
                              .plane = *plane,
                              .opacity = 1,
-                             .image = { .low = low,
-                                        .width = width,
-                                        .cull = is_in_space ? (style->cull_below - low) / width : -INFINITY,
-                                        .is_low_white = snapshot_is_low_white(snapshot),
-                                        .is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST },
+                             .image = draw_image_shown(snapshot, is_in_space),
                          },
                          err);
 }
