@@ -101,9 +101,8 @@ static double linear_value(const struct volume *volume, const double ijk[3])
     return sum;
 }
 
-/* Weights of a graphics card have 8 bits: an error of 1 / 256 of 255 along each of three axes, and half a level of
- * rounding. */
-static const double linear_tolerance = 3.5;
+/* Half a level of rounding, and single precision. */
+static const double linear_tolerance = 0.6;
 
 static void expect_image(const struct image *image, const struct volume *volume, const struct plane *plane)
 {
