@@ -58,6 +58,8 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
     await tree.focus();
     assert.equal(await current(), 'row-section:images');
     await page.keyboard.press('End');
+    assert.equal(await current(), 'row-section:clip');
+    await page.keyboard.press('ArrowUp');
     assert.match(await current(), /^row-tracks:/);
     await page.keyboard.press('ArrowLeft');
     assert.equal(await current(), 'row-section:tracks');

@@ -36,6 +36,8 @@ const keys = [
   ['Shift + 1 to 6', 'Layouts of the panes'],
   ['W', 'Window and level by left drag'],
   ['Z', 'Zoom by left drag'],
+  ['C', 'All clip planes off, and on again'],
+  ['K', 'Caps of the clip planes on or off'],
   ['F', 'Return to the presenter, or look for yourself'],
   ['Ctrl + Z', 'Undo your last change of scene or camera'],
   ['Ctrl + Shift + Z, Ctrl + Y', 'Redo it'],

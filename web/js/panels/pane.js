@@ -18,6 +18,7 @@ import { mount, variables } from './mount.js';
 import { orientation } from './orientation.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { paneKind } from './pane_kind.js';
+import { PaneLines } from './pane_lines.js';
 import { followMark } from './room_chip.js';
 import { readOut, spoken } from './read_out.js';
 
@@ -45,6 +46,7 @@ export class Pane {
     this.#probed = probed;
     this.host = host;
     this.actions = new PaneActions(room, ui, api, view.number, histograms);
+    this.lines = new PaneLines(room, ui, view, () => ({ box: this.#box, pane: this.#size.value }));
     this.badge = computed(() => fidelity({
       link: room.link.value,
       renderer: room.renderer.value.state,
@@ -116,6 +118,7 @@ export class Pane {
     const { name, number: n } = this.#view;
     const isMaximised = this.#ui.maximised.value === n;
     this.actions.box = this.#box;
+    const { lines, handles } = this.lines.draw();
     return html`
       <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
         ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${this.#whereInHead()}</span><span class="grow"></span>
@@ -129,7 +132,7 @@ export class Pane {
           tabindex="0" role="group" aria-label=${`${name} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
           @focus=${() => { this.#ui.active.value = n; }}>
           <canvas width="16" height="16"></canvas>
-          <svg class="overlay" aria-hidden="true">${this.#overlay()}</svg>
+          ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}</svg>${handles}
           <div class="pointed"></div>
           ${this.#cover()}
         </div>

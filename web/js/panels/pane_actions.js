@@ -3,6 +3,7 @@ import { layouts } from '../state/layout.js';
 import { originAt, planeOfView, positionOf, stepAcross } from '../state/obliques.js';
 import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
 import { Pointed } from '../state/pointed.js';
+import { toggleCaps, toggleClips } from './clip_rows.js';
 import { PaneCamera } from './pane_camera.js';
 import { PanePick } from './pane_pick.js';
 import { PaneWindow } from './pane_window.js';
@@ -241,6 +242,7 @@ export class PaneActions {
       '+': () => this.cameras.zoom(keyZoom, null, at), '=': () => this.cameras.zoom(keyZoom, null, at), '-': () => this.cameras.zoom(1 / keyZoom, null, at),
       r: () => this.reset(at), ' ': () => this.reset(at), g: () => this.cameras.fit(at),
       f: () => this.#room.following.toggle(),
+      c: () => toggleClips(this.#room, this.#ui, at), k: () => toggleCaps(this.#room, this.#ui, at),
       w: () => this.#toggleTool('window'), z: () => this.#toggleTool('zoom'),
       Enter: () => this.#ui.maximise(this.#number),
     };

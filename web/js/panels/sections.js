@@ -2,9 +2,11 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { blendedImage } from '../state/image_look.js';
 import { beamWords, className, doseWords, frameWords, shownImage } from '../state/plan.js';
+import { clipNote, clipRows, hasClips } from './clip_rows.js';
 import { count, number, windowText } from './format.js';
 import { icon } from './icons.js';
 import { imageName, showImage } from './image.js';
+import { obliqueNote, obliqueRows } from './oblique_rows.js';
 import { regionRows } from './region_rows.js';
 import { eye, name, treeRow } from './tree_row.js';
 import { volumeRow } from './volume.js';
@@ -14,17 +16,19 @@ const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derive
 /** @type {{id: string, name: string, icon: string, has: (plan) => boolean, note: (world) => string, rows: (world) => unknown}[]} */
 const table = [
   { id: 'images', name: 'Images', icon: 'image', has: (plan) => plan.images.length, note: () => '', rows: images },
+  { id: 'planes', name: 'Planes', icon: 'plane', has: hasClips, note: obliqueNote, rows: obliqueRows },
   { id: 'regions', name: 'Regions', icon: 'layers', has: (plan) => plan.regions.length, note: ({ room }) => hierarchyWords[room.plan.value.hierarchy] ?? '', rows: regionRows },
   { id: 'doses', name: 'Doses', icon: 'dose', has: (plan) => plan.doses.length, note: (world) => (shownGrid(world) ? 'grid shown' : ''), rows: doses },
   { id: 'beams', name: 'Beams', icon: 'target', has: (plan) => plan.beams.length + plan.curves.length, note: () => '', rows: beams },
   { id: 'tracks', name: 'Tracks', icon: 'tracks', has: (plan) => plan.nTracks, note: ({ room }) => count(room.plan.value.nTracks, 'segment'), rows: tracks },
+  { id: 'clip', name: 'Clip', icon: 'clip', has: hasClips, note: clipNote, rows: clipRows },
 ];
 
 /** The sections of this plan. */
 export const sectionsOf = (plan) => (plan ? table.filter((section) => section.has(plan)) : []);
 
 /** The section in which a row for this selection is. */
-export const sectionOfKind = { image: 'images', volume: 'images', region: 'regions', dose: 'doses', beam: 'beams', curve: 'beams', tracks: 'tracks' };
+export const sectionOfKind = { image: 'images', volume: 'images', region: 'regions', dose: 'doses', beam: 'beams', curve: 'beams', tracks: 'tracks', clip: 'clip', oblique: 'planes' };
 
 function images(world) {
   const { room } = world;

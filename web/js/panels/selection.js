@@ -1,16 +1,18 @@
 // The inspector's Selection: what was clicked last, wherever it was. A row of the table for each kind.
 import { html, nothing } from '../../lib/lit-html.js';
 import { className, doseWords, frameWords } from '../state/plan.js';
+import { clipBlock } from './clip_plane.js';
 import { drawingBlocks } from './drawing.js';
 import { count, number, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 import { imageBlock } from './image.js';
 import { pictureBlock } from './picture.js';
 import { componentName } from './probe.js';
+import { obliqueBlock } from './oblique_plane.js';
 import { regionBlock } from './region.js';
 import { volumeBlock } from './volume.js';
 
-const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose, beam, curve, tracks };
+const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose, beam, curve, tracks, clip: clipBlock, oblique: obliqueBlock };
 
 export function selection(world) {
   const { room, ui } = world;

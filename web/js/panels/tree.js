@@ -4,7 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from './icons.js';
 import { regionTools } from './region_rows.js';
 import { roving } from './roving.js';
-import { sectionsOf } from './sections.js';
+import { sectionOfKind, sectionsOf } from './sections.js';
 import { treeKeys } from './tree_keys.js';
 
 const loading = html`<p class="empty">The plan is being loaded.</p>`;
@@ -22,12 +22,18 @@ function whole(world) {
   const plan = room.plan.value;
   return html`<header class="panel-head"><h2>Plan</h2><span class="grow"></span>
       <button class="icon-button" title="Fold" aria-label="Fold the plan's parts" @click=${() => { ui.isTreeOpen.value = false; }}>${icon('chevronLeft')}</button></header>
-    ${plan ? html`${regionTools(world)}<div class="scroll">${list(world, 'Parts of the plan', sectionsOf(plan).map((section) => folding(world, section)))}</div>` : loading}`;
+    ${plan ? html`${regionTools(world)}<div class="scroll">${list(world, 'Parts of the plan', sectionsOf(plan).map((section) => folding(world, section)), sectionsOf(plan).filter(({ id }) => !ui.folded.value.has(id)), true)}</div>` : loading}`;
 }
 
-/** An element that takes the focus for all of its rows; the row that keys act on is its active descendant. */
-const list = ({ ui }, label, rows) => html`<ul class="rows" role="tree" aria-label=${label} tabindex="0" aria-activedescendant=${ui.row.value ? `row-${ui.row.value}` : nothing}
-  @keydown=${(event) => treeKeys(event, ui)} @focus=${(event) => begin(event, ui)}>${rows}</ul>`;
+/** True if one of the sections has the row that keys act on: with a rail another section may have been opened since. */
+function hasRow({ ui }, sections, hasHeads) {
+  const [kind] = ui.row.value.split(':');
+  return kind === 'section' ? hasHeads : sections.some(({ id }) => sectionOfKind[kind] === id);
+}
+
+/** An element that takes the focus for all of its rows, those of the sections; the row that keys act on is its active descendant. */
+const list = (world, label, rows, sections, hasHeads = false) => html`<ul class="rows" role="tree" aria-label=${label} tabindex="0" aria-activedescendant=${world.ui.row.value && hasRow(world, sections, hasHeads) ? `row-${world.ui.row.value}` : nothing}
+  @keydown=${(event) => treeKeys(event, world.ui)} @focus=${(event) => begin(event, world.ui)}>${rows}</ul>`;
 
 /** The row that keys act on when the tree gets the focus: the last one, else the first. */
 function begin({ currentTarget }, ui) {
@@ -60,7 +66,7 @@ function rail(world) {
     ${open ? html`<div class=${`section-pane ${overlay}`}><header class="panel-head"><h2>${open.name}</h2><span class="note">${open.note(world)}</span><span class="grow"></span>
         <button class=${classMap({ 'icon-button': true, on: ui.isPinned.value })} aria-pressed=${ui.isPinned.value} title="Keep beside the pictures" aria-label="Pin" @click=${() => { ui.isPinned.value = !ui.isPinned.value; }}>${icon('pin')}</button>
         <button class="icon-button" title="Close" aria-label=${`Close ${open.name}`} @click=${() => { ui.section.value = ''; }}>${icon('close')}</button></header>
-      ${open.id === 'regions' ? regionTools(world) : nothing}<div class="scroll">${list(world, open.name, open.rows(world))}</div></div>` : nothing}`;
+      ${open.id === 'regions' ? regionTools(world) : nothing}<div class="scroll">${list(world, open.name, open.rows(world), [open])}</div></div>` : nothing}`;
 }
 
 function inSheet(world) {
@@ -71,5 +77,5 @@ function inSheet(world) {
       aria-controls=${id === shown.id ? 'part-panel' : nothing} tabindex=${id === shown.id ? 0 : -1} @click=${() => { ui.sheetSection.value = id; }}>${name}</button>`)}</div><span class="grow"></span>
       <button class="icon-button" aria-label="Close the sheet" @click=${() => { ui.sheet.value = ''; }}>${icon('chevronDown')}</button></div>
     ${shown ? html`<div class="sheet-panel" role="tabpanel" id="part-panel" aria-labelledby=${`part-${shown.id}`}>${shown.id === 'regions' ? regionTools(world) : nothing}
-      <div class="scroll">${list(world, shown.name, shown.rows(world))}</div></div>` : loading}`;
+      <div class="scroll">${list(world, shown.name, shown.rows(world), [shown])}</div></div>` : loading}`;
 }

@@ -2,10 +2,10 @@
 import { shownImage } from '../state/plan.js';
 import { number, significant, windowText } from './format.js';
 
-const words = { 'image.id': 'image', 'image.window': 'window', 'image.low_values': 'greys of low values', 'image.interpolation': 'values between voxels', 'image.color_map': 'colours', 'image.looks': 'window of another image' };
+const words = { 'image.id': 'image', 'image.window': 'window', 'image.low_values': 'greys of low values', 'image.interpolation': 'values between voxels', 'image.color_map': 'colours', 'image.looks': 'window of another image', 'image.clipped': 'clipping of slices', 'clip.cap': 'what caps show' };
 const volumeWords = { visible: 'visibility of the volume', points: 'transfer function', cull_below: 'threshold of the volume', steps: 'slices of the volume' };
 const blendWords = { id: 'second image', opacity: 'opacity of the second image' };
-const regionWords = { visible: 'visibility', color: 'colour', representation: 'form' };
+const regionWords = { visible: 'visibility', clipped: 'clipping', color: 'colour', representation: 'form' };
 const units = { _mm: 'mm', _px: 'px', _deg: '°' };
 
 const unitOf = (name) => Object.keys(units).find((ending) => name.endsWith(ending));
@@ -33,6 +33,8 @@ function fieldName({ path }) {
   const [group, name, ...inner] = path;
   if (group === 'image' && name === 'obliques') return 'oblique plane';
   if (group === 'axes') return 'patient axes';
+  if (group === 'clip' && name !== 'cap') return `clip ${name.replace('_', ' ')}`;
+  if (group === 'image' && name === 'volume' && inner[0] === 'clipped') return 'clipping of the volume';
   if (group === 'image' && name === 'slices') return inner.at(-1) === 'position_mm' ? 'crosshair' : 'slices in 3-D';
   if (group === 'image' && name === 'volume') return volumeWords[inner[0]] ?? 'volume';
   if (group === 'image' && name === 'blend') return blendWords[inner[0]] ?? 'second image';

@@ -16,7 +16,7 @@ export class UiState {
     this.tool = signal('crosshair'); // crosshair | window | pan | zoom
     this.maximised = signal(0); // a view; 0: none
     this.active = signal(1); // a view
-    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | tracks | curve
+    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | tracks | curve | clip | oblique
     this.region = computed(() => (this.selection.value.kind === 'region' ? this.selection.value.id : ''));
     this.tab = signal('probe'); // probe | selection | plan
     this.window = signal({ width: 1600, height: 1000, isCoarse: false });
@@ -26,7 +26,9 @@ export class UiState {
     this.isPinned = signal(false); // that section pushes the panes aside
     this.sheet = signal(''); // '' | tree | inspector
     this.sheetSection = signal(''); // shown in the sheet; '' the first
-    this.folded = signal(new Set()); // sections of the tree that are folded
+    this.folded = signal(new Set(['planes', 'clip'])); // sections of the tree that are folded
+    this.picking = signal(null); // while a plane is made in the panes: {kind: 'points' or 'line', id of the plane, points, from, to, view}
+    this.clips = []; // clip planes that key C has turned off
     this.row = signal(''); // row of the tree that takes the focus
     this.filter = signal(''); // part of the names that the tree lists
     this.transferPoint = signal(0); // chosen point of the transfer function
@@ -123,9 +125,10 @@ export class UiState {
     this.maximised.value = this.maximised.value ? 0 : number;
   }
 
-  /** Closes one thing per call: tool, popover, what the page has to close (returns whether it had), toast, floating section, sheet or maximised pane. */
+  /** Closes one thing per call: the making of a plane, tool, popover, what the page has to close (returns whether it had), toast, floating section, sheet or maximised pane. */
   escape(close = () => false) {
-    if (this.tool.value !== 'crosshair') this.tool.value = 'crosshair';
+    if (this.picking.value) this.picking.value = null;
+    else if (this.tool.value !== 'crosshair') this.tool.value = 'crosshair';
     else if (this.popover.value) this.popover.value = '';
     else if (close()) return;
     else if (this.toasts.value.length) this.dismiss(this.toasts.value.at(-1).id);
