@@ -4,6 +4,8 @@ import { test } from 'node:test';
 import { load } from './page.mjs';
 
 const clip = await load('state/clip.js');
+const { Undo } = await load('state/undo.js');
+const { stepName } = await load('panels/undo_words.js');
 const { mergePatch } = await load('wire/merge.js');
 
 const plan = { images: [], bounds: { low: [-100, -80, -60], high: [100, 80, 60.04] }, beams: [{ id: 'b1', entry_mm: [0, -100, 0], target_mm: [0, 0, 0] }] };
@@ -88,4 +90,25 @@ test('caps are turned off when all planes that cut have one, else on', () => {
 test('all planes go through the crosshair in one patch', () => {
   const scene = sceneOf({ axial_high: { enabled: true }, sagittal_low: { enabled: true }, free: { enabled: true } });
   assert.deepEqual(clip.allThroughCrosshair(plan, scene), { clip: { axial_high: { position_mm: 33 }, sagittal_low: { position_mm: 11 }, free: { origin_mm: [11, 22, 33] } } });
+});
+
+test('a plane that was made is undone whole, and made again; the steps have names', () => {
+  const room = { canChange: { value: true }, following: { isPresenting: { value: true } }, plan: { value: { images: [], regions: [{ id: 'r', name: 'brain' }] } }, view: () => null, scene: { value: { ...sceneOf(), image: { obliques: {} } } },
+    patchScene(patch) {
+      room.recorder('scene', patch, room.scene.value);
+      room.scene.value = mergePatch(room.scene.value, patch);
+    } };
+  const undo = new Undo(room, { clock: { now: () => 0 }, notify: (...words) => assert.fail(words.join()) });
+  const made = { visible: true, name: '', origin_mm: [1, 2, 3], normal: [0, 0, 1] };
+  room.patchScene({ image: { obliques: { 'plane-1': made } } });
+  undo.undo();
+  assert.deepEqual(room.scene.value.image.obliques, {});
+  undo.redo();
+  assert.deepEqual(room.scene.value.image.obliques, { 'plane-1': made });
+  room.patchScene({ image: { obliques: { 'plane-1': null } } });
+  undo.undo();
+  assert.deepEqual(room.scene.value.image.obliques, { 'plane-1': made });
+  const name = (...path) => stepName([{ of: 'scene', path }], room);
+  assert.deepEqual([name('clip', 'axial_high', 'position_mm'), name('clip', 'free', 'normal'), name('clip', 'cap', 'regions'), name('image', 'obliques', 'plane-1'), name('image', 'clipped'), name('image', 'volume', 'clipped'), name('regions', 'r', 'clipped')],
+    ['clip axial high', 'clip free', 'what caps show', 'oblique plane', 'clipping of slices', 'clipping of the volume', 'clipping of brain']);
 });
