@@ -20,8 +20,11 @@ export function checkPackets(packets, scene) {
   const frame = packets.packets.find((packet) => packet.name === 'frame'), size = scene.documents.view.fields.find((field) => field.name === 'size_px');
   for (const name of ['width_px', 'height_px'])
     if (frame.fields.find((field) => field.name === name).max !== size.max) throw new Error(`packets.json: the max of ${name} is not that of a view's size_px`);
-  for (const question of packets.questions)
-    if (question.path && question.handler !== 'own' && question.path.replace('{plan}', '').includes('{')) throw new Error(`packets.json: ${question.name} has an id in its path beside the plan's, which only a handler of its own can read`);
+  for (const question of packets.questions) {
+    const ids = [...(question.path ?? '').matchAll(/\{(\w+)\}/g)].map((match) => match[1]);
+    if (question.path && question.handler !== 'own' && (ids.length > 2 || (ids[1] ?? null) !== (question.fields.find((field) => field.in === 'path')?.name ?? null)))
+      throw new Error(`packets.json: the path of ${question.name} may have the plan's id and one field's that says "in": "path"; more only a handler of its own can read`);
+  }
   const names = allPackets(packets).map((packet) => packet.name);
   if (new Set(names).size !== names.length) throw new Error('packets.json: two packets have one name');
 }
@@ -85,14 +88,20 @@ function table(packet) {
     `static const struct field_object ${name}_object = { "${packet.name}", ${plain.length ? `${name}_fields` : 'NULL'}, ${plain.length}, sizeof(struct ${name}), &${name}_default };\n\n`;
 }
 
-/** HTTP parameters of a question: those of one field each, but for vec3, which takes three. */
+/** HTTP parameters of a question: one each, but for a vec3 whose coordinates are parameters of their own. */
 const parametersOf = (question) => question.fields.filter((field) => field.in !== 'path')
   .map((field) => ({ field, names: field.query ? Object.keys(field.query) : [field.name] }));
+
+/** The field that the second id of the path gives. */
+const pathField = (question) => {
+  const field = question.fields.find((field) => field.in === 'path');
+  return field ? `"${field.name}"` : 'NULL';
+};
 
 function questionTable(question) {
   const name = `packet_${lower(question.name)}`, rows = parametersOf(question).map(({ field, names }) => `    { "${field.name}", { ${names.map((n) => `"${n}"`).join(', ')} } },`);
   return (rows.length ? `static const struct packet_parameter ${name}_parameters[] = {\n${rows.join('\n')}\n};\n` : '') +
-    `static const struct packet_question ${name}_question = { ${question.path ? `"${question.path}"` : 'NULL'}, ${question.handler === 'own'}, ${Boolean(question.slow)}, ${rows.length ? `${name}_parameters` : 'NULL'}, ${rows.length} };\n\n`;
+    `static const struct packet_question ${name}_question = { ${question.path ? `"${question.path}"` : 'NULL'}, ${pathField(question)}, ${question.handler === 'own'}, ${Boolean(question.slow)}, ${rows.length ? `${name}_parameters` : 'NULL'}, ${rows.length} };\n\n`;
 }
 
 export function packetsSource(packets) {

@@ -59,10 +59,37 @@ static bool read_point(const struct call *call, const struct field *field, const
     return true;
 }
 
+/* "x,y,z" */
+static bool read_joined_point(const struct call *call, const struct field *field, const char *name, cJSON *fields,
+                              struct problem *problem)
+{
+    const char *text = call_query(call, name);
+    char pointer[64];
+    double point[3];
+    (void)snprintf(pointer, sizeof pointer, "/%s", name);
+    if (!text)
+        return !field->is_required ||
+               problem_set(problem, PROBLEM_VALIDATION, pointer, "required", "the parameter %s is missing", name);
+    const char *at = text;
+    for (int i = 0; i < 3; i++) {
+        char *end;
+        point[i] = strtod(at, &end);
+        bool is_number = end != at && *end == (i < 2 ? ',' : 0) && point[i] >= field->min && point[i] <= field->max;
+        if (!is_number || strspn(at, "+-.0123456789eE") != (size_t)(end - at))
+            return problem_set(problem, PROBLEM_VALIDATION, pointer, "type",
+                               "%s is not a point: x,y,z in mm, each %.17g to %.17g", name, field->min, field->max);
+        at = end + 1;
+    }
+    cJSON_AddItemToObject(fields, field->name, cJSON_CreateDoubleArray(point, 3));
+    return true;
+}
+
 static bool read_parameter(const struct call *call, const struct packet_description *description,
                            const struct packet_parameter *parameter, cJSON *fields, struct problem *problem)
 {
     const struct field *field = find_field(description, parameter->field);
+    if (field->type == FIELD_VEC3 && !parameter->names[1])
+        return read_joined_point(call, field, parameter->names[0], fields, problem);
     if (field->type == FIELD_VEC3)
         return read_point(call, field, parameter->names, fields, problem);
     if (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER)
@@ -171,7 +198,10 @@ void api_question(struct api *api, struct call *call)
     struct packet packet;
     if (!api_find_plan(api, call, &plan))
         return;
-    if (!api_question_read(call, type, cJSON_CreateObject(), &packet, &problem)) {
+    cJSON *fields = cJSON_CreateObject();
+    if (packet_descriptions[type].question->path_field)
+        cJSON_AddStringToObject(fields, packet_descriptions[type].question->path_field, call->ids[1]);
+    if (!api_question_read(call, type, fields, &packet, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }

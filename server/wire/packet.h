@@ -27,14 +27,16 @@ struct packet_part {
 };
 
 /* An argument of a question and the HTTP parameters it is read from: one, or three for a vec3. */
+/* A vec3 has three names, or one: then it is written "x,y,z". */
 struct packet_parameter {
     const char *field, *names[3];
 };
 
 struct packet_question {
-    const char *path;     /* of the HTTP GET; NULL: no HTTP call */
-    bool has_own_handler; /* its HTTP call has code of its own in server/http */
-    bool is_slow;         /* may take longer than some milliseconds */
+    const char *path;       /* of the HTTP GET; NULL: no HTTP call */
+    const char *path_field; /* the field that the path's second id gives; NULL: none */
+    bool has_own_handler;   /* its HTTP call has code of its own in server/http */
+    bool is_slow;           /* may take longer than some milliseconds */
     const struct packet_parameter *parameters;
     size_t n_parameters;
 };

@@ -279,6 +279,42 @@ describe('a plan', () => {
     assert.equal(none.headers.get('content-disposition'), null);
   });
 
+  test('tells how often values of an image are', async () => {
+    const { images } = (await call(plan)).json;
+    const image = `${plan}/images/${images[0].id}`, n = images[0].grid.size.reduce((product, side) => product * side);
+    const whole = (await call(`${image}/histogram`)).json;
+    assert.deepEqual([whole.image, whole.unit, whole.counts.length, whole.n + whole.n_left_out], [images[0].id, 'HU', 256, n]);
+    assert.equal(whole.counts.reduce((sum, count) => sum + count), whole.n);
+    const percents = ['0.1', '1', '50', '99', '99.9'];
+    assert.deepEqual(Object.keys(whole.percentiles).sort(), percents);
+    const ascending = [whole.low, ...percents.map((percent) => whole.percentiles[percent]), whole.high];
+    assert.deepEqual(ascending, ascending.toSorted((a, b) => a - b));
+    const halves = (await call(`${image}/histogram?bins=128`)).json.counts;
+    assert.deepEqual(halves, halves.map((_, bin) => whole.counts[2 * bin] + whole.counts[2 * bin + 1]));
+    assertProblem(await call(`${image}/histogram?bins=0`), 422, 'validation', '/bins');
+    assertProblem(await call(`${image}/histogram?bins=2.5`), 422, 'validation', '/bins');
+    assertProblem(await call(`${plan}/images/none/histogram`), 404, 'not-found', '/image');
+  });
+
+  test('tells the mean of an image within an ellipse', async () => {
+    const { regions, images } = (await call(plan)).json;
+    const [x, y, z] = regions.find((r) => r.name === 'tumour').center_mm, ct = `${plan}/images/${images[0].id}`;
+    const disc = (r) => `center=${x},${y},${z}&a=${x + r},${y},${z}&b=${x},${y + r},${z}`;
+    const small = (await call(`${ct}/ellipse?${disc(4)}`)).json;
+    assert.ok(Math.abs(small.area_mm2 - 16 * Math.PI) < 1e-9 && small.n_left_out === 0);
+    assert.ok(Math.abs(small.n * small.step_mm ** 2 / small.area_mm2 - 1) < 0.2, `${small.n} samples`);
+    assert.ok(small.min <= small.mean && small.mean <= small.max && small.sd >= 0 && small.sd <= (small.max - small.min) / 2);
+    const { value } = (await call(`${plan}/probe?x=${x}&y=${y}&z=${z}`)).json.images[0];
+    assert.ok(Math.abs(small.mean - value) < 60, `${small.mean} around ${value} HU`);
+    const outside = (await call(`${ct}/ellipse?center=5000,0,0&a=5010,0,0&b=5000,10,0`)).json;
+    assert.deepEqual([outside.n, outside.mean, outside.sd, outside.min, outside.max], [0, null, null, null, null]);
+    assertProblem(await call(`${ct}/ellipse?center=1,2,3&a=2,2,3&b=5,2,3`), 422, 'validation', '/b');
+    assertProblem(await call(`${ct}/ellipse?center=1,2,3&a=2,2,3`), 422, 'validation', '/b');
+    for (const bad of ['1,2', '1,2,3,4', '1,2,nan', '0x1,2,3', '1,2,1e9', ' 1,2,3', '1;2;3'])
+      assertProblem(await call(`${ct}/ellipse?center=${encodeURIComponent(bad)}&a=2,2,3&b=5,9,3`), 422, 'validation', '/center');
+    assertProblem(await call(`${plan}/images/none/ellipse?${disc(4)}`), 404, 'not-found', '/image');
+  });
+
   test('tells what lies at a point and under a pixel', async () => {
     const { regions, home } = (await call(plan)).json;
     const [x, y, z] = regions.find((r) => r.name === 'tumour').center_mm;
