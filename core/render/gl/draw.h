@@ -15,10 +15,12 @@ struct gl_frame {
     GLuint no_vertices;            /* vertex array of programs that read no vertices */
     GLuint polygon_array, polygon; /* vertex array and buffer of slices */
     GLuint palette;                /* texture, label to colour */
+    GLuint transfer;               /* texture, value to colour and absorption */
     const struct plan *plan;
     const struct draw_list *list;
     const struct camera *camera;
     int view_width_px;       /* of the full picture: widths of lines and sizes of points are in its pixels */
+    int first_row, n_rows;   /* of the band's samples in the picture, and of the whole picture */
     float clip_from_lps[16]; /* from patient points to the clip space of the band, upside down */
 };
 
@@ -26,6 +28,9 @@ struct gl_frame {
 NODISCARD bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);
 NODISCARD bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 NODISCARD bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struct error *err);
-/* Shapes whose depth rule is DRAW_DEPTH_LAYER. More than GL_LAYERS_MAX are composed in groups of GL_LAYERS_MAX. Leaves
- * the target's framebuffer bound. errors also ERROR_MEMORY */
+/* Sets the program that composes layers with a volume, which is in use, and binds the textures of the volume. */
+NODISCARD bool gl_set_volume(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+void gl_unset_volume(const struct gl_frame *frame);
+/* Shapes whose depth rule is DRAW_DEPTH_LAYER, and perhaps a volume among them. More than GL_LAYERS_MAX are composed in
+ * groups of GL_LAYERS_MAX. Leaves the target's framebuffer bound. errors also ERROR_MEMORY */
 NODISCARD bool gl_draw_layers(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);

@@ -4,7 +4,12 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "core/render/visible/visible.h"
+#include "core/render/visible/draw.h"
+
+/* A ray ends where less of the light than this passes: half a grey level. */
+static const double least_left = 1.0 / 512;
+/* A sample of a volume that adds less is not worth its gradient. */
+static const double least_lit = 1.0 / 128;
 
 /* Compiles a shader. constants: lines of "#define NAME value" that the source uses, or "". Returns 0 on failure. */
 static GLuint compile(const struct gl *gl, GLenum kind, const char *name, const char *constants, const char *source,
@@ -68,9 +73,23 @@ static const char *image_constants(char text[120], bool is_linear, bool has_colo
     return text;
 }
 
+static const char *volume_constants(char text[480])
+{
+    const uint8_t *rgb = visible_background;
+    (void)snprintf(text, 480,
+                   "#define DARKEST_GREY (vec3(%d, %d, %d) / 255.0)\n#define FLAT %.9f\n#define TABLE %d.0\n"
+                   "#define JITTER_X %uu\n#define JITTER_Y %uu\n#define LEAST_LEFT %.9f\n#define LEAST_LIT %.9f\n"
+                   "#define METHOD_RAY %d\n#define METHOD_SLICES %d\n#define METHOD_MIP %d\n"
+                   "#define METHOD_AVERAGE %d\n",
+                   rgb[0], rgb[1], rgb[2], DRAW_VOLUME_FLAT, DRAW_VOLUME_TABLE, DRAW_VOLUME_JITTER_X,
+                   DRAW_VOLUME_JITTER_Y, least_left, least_lit, SCENE_VOLUME_METHOD_RAY, SCENE_VOLUME_METHOD_SLICES,
+                   SCENE_VOLUME_METHOD_MIP, SCENE_VOLUME_METHOD_AVERAGE);
+    return text;
+}
+
 bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struct error *err)
 {
-    char constants[80], images[4][120];
+    char constants[80], images[4][120], of_volume[480];
     const struct {
         struct gl_program *program;
         const char *name, *constants, *vertex, *fragment;
@@ -80,6 +99,7 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
         { &programs->lines, "lines", line_constants(constants), gl_shader_lines_vert, gl_shader_shade_frag },
         { &programs->points, "points", "", gl_shader_points_vert, gl_shader_shade_frag },
         { &programs->compose, "compose", "", gl_shader_whole_vert, gl_shader_compose_frag },
+        { &programs->volume, "volume", volume_constants(of_volume), gl_shader_whole_vert, gl_shader_volume_frag },
         { &programs->image[0], "image", image_constants(images[0], false, false), gl_shader_slice_vert,
           gl_shader_image_frag },
         { &programs->image[1], "image, linear", image_constants(images[1], true, false), gl_shader_slice_vert,
@@ -105,7 +125,7 @@ void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
     const GLuint names[] = { programs->smooth.name,   programs->faceted.name,   programs->compose.name,
                              programs->lines.name,    programs->points.name,    programs->image[0].name,
                              programs->image[1].name, programs->colors[0].name, programs->colors[1].name,
-                             programs->labels.name,   programs->test.name };
+                             programs->labels.name,   programs->test.name,      programs->volume.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])
             gl->DeleteProgram(names[i]);

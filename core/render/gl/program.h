@@ -19,6 +19,7 @@ struct gl_programs {
     struct gl_program lines;
     struct gl_program points;
     struct gl_program compose;   /* the translucent layers, by a triangle over the whole picture */
+    struct gl_program volume;    /* a volume with the translucent layers, by a triangle over the whole picture */
     struct gl_program image[2];  /* slice of an image, window and level: the nearest voxel, linear */
     struct gl_program colors[2]; /* the same in colours, or with a second image over it */
     struct gl_program labels;    /* slice of a label layer: one colour a label */

@@ -22,7 +22,7 @@ struct gl_renderer {
     struct gl_programs programs;
     struct gl_target target;
     struct gl_layers layers;
-    GLuint no_vertices, polygon_array, polygon, palette;
+    GLuint no_vertices, polygon_array, polygon, palette, transfer;
     uint8_t *samples; /* of a band of a still, as read back */
     size_t n_samples_bytes;
 };
@@ -57,6 +57,19 @@ static void learn_facts(struct gl_renderer *renderer)
     facts->max_samples = samples;
 }
 
+/* A texture whose texels are read one by one. */
+static GLuint make_table(const struct gl *gl)
+{
+    GLuint name = 0;
+    gl->GenTextures(1, &name);
+    gl->BindTexture(GL_TEXTURE_2D, name);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    return name;
+}
+
 static void make_polygon(struct gl_renderer *renderer)
 {
     const struct gl *gl = &renderer->gl;
@@ -71,12 +84,8 @@ static void make_polygon(struct gl_renderer *renderer)
     gl->EnableVertexAttribArray(1);
     gl->BindVertexArray(0);
 
-    gl->GenTextures(1, &renderer->palette);
-    gl->BindTexture(GL_TEXTURE_2D, renderer->palette);
-    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-    gl->BindTexture(GL_TEXTURE_2D, 0);
+    renderer->palette = make_table(gl);
+    renderer->transfer = make_table(gl);
 }
 
 /* Tests the driver's compiler and rasteriser: a triangle must come back in the right colour. */
@@ -144,6 +153,7 @@ void gl_renderer_destroy(struct gl_renderer *renderer)
         gl->DeleteVertexArrays(1, &renderer->polygon_array);
         gl->DeleteBuffers(1, &renderer->polygon);
         gl->DeleteTextures(1, &renderer->palette);
+        gl->DeleteTextures(1, &renderer->transfer);
         gl_context_close(&renderer->context);
     }
     free(renderer->samples);
@@ -269,6 +279,8 @@ static bool draw_band(struct gl_renderer *renderer, struct gl_frame *frame, stru
     int samples = frame->list->samples;
     if (!gl_target_resize(&renderer->gl, &renderer->target, image->width_px * samples, n * samples, err))
         return false;
+    frame->first_row = first * samples;
+    frame->n_rows = image->height_px * samples;
     band_matrix(frame->camera, first, n, image->height_px, frame->clip_from_lps);
     if (!draw_all(frame, err))
         return false;
@@ -303,6 +315,7 @@ struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct d
                                         .polygon_array = renderer->polygon_array,
                                         .polygon = renderer->polygon,
                                         .palette = renderer->palette,
+                                        .transfer = renderer->transfer,
                                         .plan = scope->snapshot->plan,
                                         .list = list,
                                         .camera = scope->camera,

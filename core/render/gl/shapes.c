@@ -104,16 +104,18 @@ bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size
     return gl_check(frame->gl, "drawing opaque shapes", err);
 }
 
-/* Composes the first n layers over the picture. */
-static void compose(const struct gl_frame *frame, int n)
+/* Composes the first n layers over the picture, with a volume unless it is NULL. */
+static bool compose(const struct gl_frame *frame, int n, const struct draw *volume, struct error *err)
 {
     const struct gl *gl = frame->gl;
-    const struct gl_program *program = &frame->programs->compose;
+    const struct gl_program *program = volume ? &frame->programs->volume : &frame->programs->compose;
+    gl->UseProgram(program->name);
+    if (volume && !gl_set_volume(frame, volume, err))
+        return false;
     gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->over);
     gl->Disable(GL_DEPTH_TEST);
     gl->Enable(GL_BLEND);
     gl->BlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
-    gl->UseProgram(program->name);
     gl->Uniform1i(program->source, 0);
     gl->Uniform1i(program->depths, 1);
     gl->Uniform1i(program->before, 2);
@@ -133,27 +135,33 @@ static void compose(const struct gl_frame *frame, int n)
     gl->ActiveTexture(GL_TEXTURE2);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->ActiveTexture(GL_TEXTURE0);
+    if (volume)
+        gl_unset_volume(frame);
     gl->Disable(GL_BLEND);
     gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->framebuffer);
+    return true;
 }
 
 bool gl_draw_layers(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err)
 {
     const struct draw **seen = mem_array(n, sizeof *seen, UINT64_MAX, err);
+    const struct draw *volume = NULL;
     size_t n_seen = 0;
     for (size_t i = 0; seen && i < n; i++)
-        if (is_in_sight(frame, &draws[i]))
+        if (draws[i].kind == DRAW_VOLUME)
+            volume = &draws[i];
+        else if (is_in_sight(frame, &draws[i]))
             seen[n_seen++] = &draws[i];
     bool is_good = seen && (n_seen == 0 || gl_layers_resize(frame->gl, frame->layers, frame->target,
                                                             n_seen < GL_LAYERS_MAX ? (int)n_seen : GL_LAYERS_MAX, err));
-    for (size_t first = 0; is_good && first < n_seen; first += GL_LAYERS_MAX) {
+    for (size_t first = 0; is_good && (first < n_seen || (first == 0 && volume)); first += GL_LAYERS_MAX) {
         int n_here = n_seen - first < GL_LAYERS_MAX ? (int)(n_seen - first) : GL_LAYERS_MAX;
         frame->gl->Enable(GL_DEPTH_TEST);
         for (int i = 0; i < n_here; i++) {
             gl_layers_bind(frame->gl, frame->layers, i);
             draw_shape(frame, seen[first + (size_t)i]);
         }
-        compose(frame, n_here);
+        is_good = compose(frame, n_here, first == 0 ? volume : NULL, err);
     }
     free(seen);
     return is_good && gl_check(frame->gl, "drawing translucent shapes", err);
