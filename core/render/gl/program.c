@@ -96,6 +96,8 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
     } all[] = {
         { &programs->smooth, "smooth", "", gl_shader_smooth_vert, gl_shader_shade_frag },
         { &programs->faceted, "faceted", "", gl_shader_faceted_vert, gl_shader_faceted_frag },
+        { &programs->smooth_clipped, "smooth", "#define CLIPPED\n", gl_shader_smooth_vert, gl_shader_shade_frag },
+        { &programs->faceted_clipped, "faceted", "#define CLIPPED\n", gl_shader_faceted_vert, gl_shader_faceted_frag },
         { &programs->lines, "lines", line_constants(constants), gl_shader_lines_vert, gl_shader_shade_frag },
         { &programs->points, "points", "", gl_shader_points_vert, gl_shader_shade_frag },
         { &programs->compose, "compose", "", gl_shader_whole_vert, gl_shader_compose_frag },
@@ -122,10 +124,11 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
 
 void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
 {
-    const GLuint names[] = { programs->smooth.name,   programs->faceted.name,   programs->compose.name,
-                             programs->lines.name,    programs->points.name,    programs->image[0].name,
-                             programs->image[1].name, programs->colors[0].name, programs->colors[1].name,
-                             programs->labels.name,   programs->test.name,      programs->volume.name };
+    const GLuint names[] = { programs->smooth.name,         programs->faceted.name,        programs->compose.name,
+                             programs->lines.name,          programs->points.name,         programs->image[0].name,
+                             programs->image[1].name,       programs->colors[0].name,      programs->colors[1].name,
+                             programs->labels.name,         programs->test.name,           programs->volume.name,
+                             programs->smooth_clipped.name, programs->faceted_clipped.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])
             gl->DeleteProgram(names[i]);

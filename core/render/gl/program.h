@@ -14,8 +14,9 @@ struct gl_program {
 };
 
 struct gl_programs {
-    struct gl_program smooth;  /* surface shaded by vertex normals */
-    struct gl_program faceted; /* surface shaded by triangle normals */
+    struct gl_program smooth;                          /* surface shaded by vertex normals */
+    struct gl_program faceted;                         /* surface shaded by triangle normals */
+    struct gl_program smooth_clipped, faceted_clipped; /* the same, cut by clip planes */
     struct gl_program lines;
     struct gl_program points;
     struct gl_program compose;   /* the translucent layers, by a triangle over the whole picture */

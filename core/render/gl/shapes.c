@@ -4,11 +4,36 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/draw_clip.h"
 #include "core/render/visible/visible.h"
 
 static const struct gl_shape *shape_of(const struct draw *draw)
 {
     return (const struct gl_shape *)draw->shape.drawable;
+}
+
+/* A capped plane cuts off what lies in it, which the cap covers; another one does not. Wider than single precision
+ * rounds heights, narrower than can be seen. */
+static const double in_plane_mm = 1e-4;
+
+/* Sets the program's clip planes to those that cut the draw; returns how many. */
+static int set_clips(const struct gl_frame *frame, const struct gl_program *program, const struct clip_set *clip)
+{
+    float planes[CLIP_MAX][4];
+    int n = 0;
+    for (size_t i = 0; i < clip->n_planes; i++) {
+        if (!clip_set_has(clip, i))
+            continue;
+        const struct plane *plane = &clip->planes[i].plane;
+        planes[n][0] = -(float)plane->normal.x;
+        planes[n][1] = -(float)plane->normal.y;
+        planes[n][2] = -(float)plane->normal.z;
+        planes[n++][3] = (float)(plane_position_mm(plane) + (clip->planes[i].is_capped ? 0 : in_plane_mm));
+    }
+    frame->gl->Uniform1i(program->n_clips, n);
+    if (n > 0)
+        frame->gl->Uniform4fv(program->clips, n, &planes[0][0]);
+    return n;
 }
 
 static const struct gl_program *use_program(const struct gl_frame *frame, const struct draw *draw)
@@ -17,11 +42,12 @@ static const struct gl_program *use_program(const struct gl_frame *frame, const 
     const struct gl_shape *shape = shape_of(draw);
     const struct camera *camera = frame->camera;
     const struct gl_programs *programs = frame->programs;
-    bool is_flat = draw->shape.look.is_flat || shape->is_faceted;
+    bool is_flat = draw->shape.look.is_flat || shape->is_faceted, has_clips = draw_clip_cuts(&draw->clip);
     const struct gl_program *program = shape->kind == SHAPE_LINES    ? &programs->lines
                                        : shape->kind == SHAPE_POINTS ? &programs->points
-                                       : is_flat                     ? &programs->faceted
-                                                                     : &programs->smooth;
+                                       : is_flat   ? has_clips ? &programs->faceted_clipped : &programs->faceted
+                                       : has_clips ? &programs->smooth_clipped
+                                                   : &programs->smooth;
     const struct vec3 *r = &camera->right, *u = &camera->up, *f = &camera->forward, *e = &camera->eye_lps_mm;
     const float eye_from_lps[9] = { (float)r->x,  (float)u->x, (float)-f->x, (float)r->y, (float)u->y,
                                     (float)-f->y, (float)r->z, (float)u->z,  (float)-f->z };
@@ -42,16 +68,20 @@ static const struct gl_program *use_program(const struct gl_frame *frame, const 
     return program;
 }
 
-static void draw_triangles(const struct gl_frame *frame, const struct draw *draw)
+static void draw_triangles(const struct gl_frame *frame, const struct draw *draw, int n_clips)
 {
     const struct gl *gl = frame->gl;
     const struct gl_shape *shape = shape_of(draw);
+    for (int i = 0; i < n_clips; i++)
+        gl->Enable(GL_CLIP_DISTANCE0 + (GLenum)i);
     gl->FrontFace(GL_CW); /* counter-clockwise in patient space, but the picture is drawn upside down */
     gl->CullFace(GL_BACK);
     if (!draw->shape.look.is_two_sided)
         gl->Enable(GL_CULL_FACE);
     gl->DrawElements(GL_TRIANGLES, shape->n, GL_UNSIGNED_INT, NULL);
     gl->Disable(GL_CULL_FACE);
+    for (int i = 0; i < n_clips; i++)
+        gl->Disable(GL_CLIP_DISTANCE0 + (GLenum)i);
 }
 
 static void draw_rectangles(const struct gl_frame *frame, const struct draw *draw, const struct gl_program *program)
@@ -80,9 +110,10 @@ static void draw_rectangles(const struct gl_frame *frame, const struct draw *dra
 static void draw_shape(const struct gl_frame *frame, const struct draw *draw)
 {
     const struct gl_program *program = use_program(frame, draw);
+    int n_clips = set_clips(frame, program, &draw->clip);
     frame->gl->BindVertexArray(shape_of(draw)->vertex_array);
     if (shape_of(draw)->kind == SHAPE_TRIANGLES)
-        draw_triangles(frame, draw);
+        draw_triangles(frame, draw, n_clips);
     else
         draw_rectangles(frame, draw, program);
 }

@@ -2,8 +2,9 @@
 #include "core/render/gl/draw.h"
 #include "core/render/visible/color_map.h"
 
-/* The clipping starts from a rectangle, and each of the grid's six faces adds at most one corner. */
-enum { MAX_CORNERS = 10 };
+/* The clipping starts from a rectangle, and each of the grid's six faces and of the clip planes adds at most one
+ * corner. */
+enum { MAX_CORNERS = 10 + CLIP_MAX };
 
 struct polygon {
     int n;
@@ -18,13 +19,15 @@ static double inside_face(const struct grid *grid, int face, struct vec3 p_lps_m
     return face % 2 ? grid->size[face / 2] - 0.5 - at : at + 0.5;
 }
 
-/* Clips the polygon at one face. Source: I. E. Sutherland, G. W. Hodgman, Reentrant Polygon Clipping, CACM 1974. */
-static void clip_face(const struct grid *grid, int face, struct polygon *polygon)
+/* Keeps the part of the polygon where inside >= 0, given at its corners. Source: I. E. Sutherland, G. W. Hodgman,
+ * Reentrant Polygon Clipping, CACM 1974. */
+static void clip(const double inside[MAX_CORNERS], struct polygon *polygon)
 {
     struct polygon kept = { 0 };
     for (int i = 0; i < polygon->n; i++) {
-        struct vec3 a = polygon->lps_mm[i], b = polygon->lps_mm[(i + 1) % polygon->n];
-        double fa = inside_face(grid, face, a), fb = inside_face(grid, face, b);
+        int next = (i + 1) % polygon->n;
+        struct vec3 a = polygon->lps_mm[i], b = polygon->lps_mm[next];
+        double fa = inside[i], fb = inside[next];
         if (fa >= 0 && kept.n < MAX_CORNERS)
             kept.lps_mm[kept.n++] = a;
         if ((fa >= 0) != (fb >= 0) && kept.n < MAX_CORNERS)
@@ -33,9 +36,12 @@ static void clip_face(const struct grid *grid, int face, struct polygon *polygon
     *polygon = kept;
 }
 
-/* The polygon in which a plane cuts a grid's outer faces; n < 3: the plane misses the grid. */
-static struct polygon slice_polygon(const struct grid *grid, const struct plane *plane)
+/* The polygon in which a draw's plane cuts a grid's outer faces, as far as no clip plane cuts it off; n < 3: nothing is
+ * left. */
+static struct polygon slice_polygon(const struct grid *grid, const struct draw *draw)
 {
+    const struct plane *plane = &draw->plane;
+    double inside[MAX_CORNERS];
     struct box3 box = grid_bounds_lps_mm(grid);
     struct plane upright = plane_upright(plane);
     struct plane_reach reach = plane_reach(&upright, &box);
@@ -44,8 +50,18 @@ static struct polygon slice_polygon(const struct grid *grid, const struct plane 
                                  plane_point(&upright, reach.high_right_mm, reach.low_up_mm),
                                  plane_point(&upright, reach.high_right_mm, reach.high_up_mm),
                                  plane_point(&upright, reach.low_right_mm, reach.high_up_mm) } };
-    for (int face = 0; face < 6; face++)
-        clip_face(grid, face, &polygon);
+    for (int face = 0; face < 6; face++) {
+        for (int i = 0; i < polygon.n; i++)
+            inside[i] = inside_face(grid, face, polygon.lps_mm[i]);
+        clip(inside, &polygon);
+    }
+    for (size_t c = 0; c < draw->clip.n_planes; c++) {
+        if (!clip_set_has(&draw->clip, c))
+            continue;
+        for (int i = 0; i < polygon.n; i++)
+            inside[i] = CLIP_SLACK_MM - plane_height_mm(&draw->clip.planes[c].plane, polygon.lps_mm[i]);
+        clip(inside, &polygon);
+    }
     return polygon;
 }
 
@@ -140,7 +156,7 @@ bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct
     const struct gl_program *program =
         has_colors ? &frame->programs->colors[image->is_linear] : &frame->programs->image[image->is_linear];
     const struct grid *grid = &frame->plan->images[draw->subject.index].volume->grid;
-    struct polygon polygon = slice_polygon(grid, &draw->plane);
+    struct polygon polygon = slice_polygon(grid, draw);
     if (polygon.n < 3)
         return true;
     const struct gl_grid *texels =
@@ -166,7 +182,7 @@ bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struc
     const struct gl *gl = frame->gl;
     const struct gl_program *program = &frame->programs->labels;
     const struct grid *grid = &frame->plan->regions.layers[draw->subject.index]->grid;
-    struct polygon polygon = slice_polygon(grid, &draw->plane);
+    struct polygon polygon = slice_polygon(grid, draw);
     if (polygon.n < 3)
         return true;
     const struct gl_grid *labels =

@@ -1,5 +1,6 @@
 // Lines: an instance is a segment, laid out as a rectangle square to the picture, as core/render/soft/quads.c does.
 // half_view: half the size of the picture, half_size: half the width of a line, in samples. DARKEST, LINE_DEPTH: program.c.
+#include "clips.glsl"
 layout(location = 0) in vec3 first;
 layout(location = 1) in vec3 second;
 uniform mat4 clip_from_lps;
@@ -11,10 +12,18 @@ uniform vec4 cue; // darker away from the viewer: visible_depth_cue
 out vec4 shade;
 float cue_at(vec3 p) { return clamp(dot(cue.xyz, p) + cue.w, DARKEST, 1.0); }
 void main() {
-    vec4 a = clip_from_lps * vec4(first, 1.0), b = clip_from_lps * vec4(second, 1.0), uncut = a;
-    float fa = a.z + a.w, fb = b.z + b.w;
+    vec3 p = first, q = second;
     shade = vec4(color.rgb * (cue_at(first) + cue_at(second)) * 0.5, opacity);
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside the view: not drawn
+    for (int i = 0; i < n_clips; i++) {
+        float kp = kept(i, p), kq = kept(i, q);
+        if (kp < 0.0 && kq < 0.0) return;
+        vec3 met = mix(p, q, kp / (kp - kq));
+        if (kp < 0.0) p = met;
+        if (kq < 0.0) q = met;
+    }
+    vec4 a = clip_from_lps * vec4(p, 1.0), b = clip_from_lps * vec4(q, 1.0), uncut = a;
+    float fa = a.z + a.w, fb = b.z + b.w;
     if (fa < 0.0 && fb < 0.0) return;
     if (fa < 0.0) a = mix(a, b, fa / (fa - fb));
     if (fb < 0.0) b = mix(uncut, b, fa / (fa - fb));

@@ -2,6 +2,10 @@
 // software rasteriser a fragment costs as much as a vertex.
 // viewer: in perspective the eye and 1, in parallel projection the direction towards the viewer and 0.
 #include "light.glsl"
+#ifdef CLIPPED // a program of its own: what no plane cuts is not slowed down
+#include "clips.glsl"
+out float gl_ClipDistance[8];
+#endif
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 uniform mat4 clip_from_lps;
@@ -14,4 +18,7 @@ void main() {
     float cosine = dot(normal, towards), side = is_two_sided != 0 && cosine < 0.0 ? -1.0 : 1.0; // the side that is seen
     shade = light(eye_from_lps * (side * normal), clamp(side * cosine, 0.0, 1.0));
     gl_Position = clip_from_lps * vec4(position, 1.0);
+#ifdef CLIPPED
+    for (int i = 0; i < 8; i++) gl_ClipDistance[i] = i < n_clips ? kept(i, position) : 1.0;
+#endif
 }
