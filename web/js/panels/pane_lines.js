@@ -153,6 +153,7 @@ export class PaneLines {
     event.preventDefault();
     event.currentTarget.setPointerCapture(event.pointerId);
     event.currentTarget.focus({ preventScroll: true });
+    this.#ui.select(line.kind, line.id);
     const scene = this.#room.scene.value;
     const point = this.#point(event, scene);
     this.#held = { line, isTurn, point, grab: heightOver(line.plane, point), slice: this.#slice(scene), pivot: this.#pivot(line, scene) };
