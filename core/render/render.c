@@ -12,6 +12,7 @@
 #include "core/base/mem.h"
 #include "core/render/gl/renderer.h"
 #include "core/render/soft/soft.h"
+#include "core/render/visible/cap_cache.h"
 #include "core/render/visible/draw_list.h"
 #include "core/render/visible/overlay.h"
 
@@ -21,6 +22,7 @@ struct renderer {
     struct gl_renderer *gl;
     struct soft_renderer *soft;
     struct draw_cache *cache; /* what the back end made of shapes and grids */
+    struct cap_cache *caps;
     struct overlay *overlay;
 };
 
@@ -105,6 +107,7 @@ struct renderer *renderer_create(enum render_back_end back_end, struct error *er
     }
     struct drawable_maker maker = renderer->gl ? gl_renderer_maker(renderer->gl) : soft_renderer_maker();
     renderer->cache = draw_cache_create(&maker);
+    renderer->caps = cap_cache_create();
     renderer->overlay = overlay_create();
     return renderer;
 }
@@ -117,6 +120,7 @@ void renderer_destroy(struct renderer *renderer)
     draw_cache_destroy(renderer->cache); /* before the back end, which frees its drawables */
     gl_renderer_destroy(renderer->gl);
     soft_renderer_destroy(renderer->soft);
+    cap_cache_destroy(renderer->caps);
     overlay_destroy(renderer->overlay);
     free(renderer);
 }
@@ -136,6 +140,7 @@ const struct render_facts *renderer_facts(const struct renderer *renderer)
 void renderer_forget(struct renderer *renderer, const struct plan *plan)
 {
     assert_thread(renderer);
+    cap_cache_forget(renderer->caps, plan);
     overlay_forget(renderer->overlay, plan);
     draw_cache_forget(renderer->cache, plan);
     if (renderer->soft)
@@ -164,8 +169,8 @@ struct render_picture *render_begin(struct renderer *renderer, const struct snap
     struct render_picture *picture = mem_new(sizeof *picture);
     picture->renderer = renderer;
     picture->options = *options;
-    picture->scope =
-        (struct draw_scope){ snapshot, &picture->camera, options->detail, renderer->cache, options->is_still };
+    picture->scope = (struct draw_scope){ snapshot,        &picture->camera,  options->detail,
+                                          renderer->cache, options->is_still, renderer->caps };
     camera_resolve(snapshot, &picture->camera);
     return picture;
 }

@@ -4,10 +4,10 @@
 struct renderer *shots_renderer;
 const uint8_t shots_background[3] = { 0x08, 0x09, 0x0b };
 
-int shots_run(const char *name, const struct CMUnitTest *tests, size_t n_tests)
+static int run_from(int first, const char *name, const struct CMUnitTest *tests, size_t n_tests)
 {
     int n_failed = 0;
-    for (int back_end = SHOTS_SANITIZED ? RENDER_SOFT : RENDER_EGL_DEVICE; back_end < RENDER_N_BACK_ENDS; back_end++) {
+    for (int back_end = first; back_end < RENDER_N_BACK_ENDS; back_end++) {
         struct error err = { 0 };
         shots_renderer = renderer_create((enum render_back_end)back_end, &err);
         if (!shots_renderer) {
@@ -22,6 +22,16 @@ int shots_run(const char *name, const struct CMUnitTest *tests, size_t n_tests)
         shots_renderer = NULL;
     }
     return n_failed ? 1 : 0;
+}
+
+int shots_run(const char *name, const struct CMUnitTest *tests, size_t n_tests)
+{
+    return run_from(SHOTS_SANITIZED ? RENDER_SOFT : RENDER_EGL_DEVICE, name, tests, n_tests);
+}
+
+int shots_run_soft(const char *name, const struct CMUnitTest *tests, size_t n_tests)
+{
+    return run_from(RENDER_SOFT, name, tests, n_tests);
 }
 
 struct scene shots_scene(const struct plan *plan)

@@ -86,7 +86,7 @@ static struct picture picture_of(struct plan *plan, struct scene scene, enum sce
     picture.snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
     camera_resolve(picture.snapshot, &picture.camera);
-    const struct draw_scope scope = { picture.snapshot, &picture.camera, SURFACE_FULL, cache, true };
+    const struct draw_scope scope = { picture.snapshot, &picture.camera, SURFACE_FULL, cache, true, NULL };
     picture.list = draw_list_create(&scope, &options, &err);
     assert_string_equal(err.text, "");
     return picture;
@@ -253,7 +253,7 @@ static void a_list_fails_when_a_shape_cannot_be_made(void **state)
     struct camera camera;
     struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     camera_resolve(snapshot, &camera);
-    const struct draw_scope scope = { snapshot, &camera, SURFACE_FULL, cache, true };
+    const struct draw_scope scope = { snapshot, &camera, SURFACE_FULL, cache, true, NULL };
     const struct render_options options = { 64, 48, SURFACE_FULL, false };
     counting.n_left = 1;
     assert_null(draw_list_create(&scope, &options, &err));

@@ -17,7 +17,8 @@ static void put(float out[3], struct vec3 v)
     out[2] = (float)v.z;
 }
 
-static struct soft_lighting make_lighting(const struct soft_frame *frame, const struct draw *draw)
+/* From the camera: without colour. */
+static struct soft_lighting make_projection(const struct soft_frame *frame)
 {
     const struct camera *camera = frame->scope->camera;
     struct soft_lighting l = { 0 };
@@ -33,6 +34,12 @@ static struct soft_lighting make_lighting(const struct soft_frame *frame, const 
     put(l.right, camera->right);
     put(l.up, camera->up);
     put(l.towards, vec3_scale(camera->forward, -1));
+    return l;
+}
+
+static struct soft_lighting make_lighting(const struct soft_frame *frame, const struct draw *draw)
+{
+    struct soft_lighting l = make_projection(frame);
     for (int c = 0; c < 3; c++)
         l.color[c] = (float)(draw->color_rgb >> (16 - 8 * c) & 255) / 255.0f;
     l.opacity = (float)draw->opacity;
@@ -71,7 +78,7 @@ static struct soft_item make_item(const struct soft_frame *frame, const struct d
 
 /* The plane through one of the plan's images, with the window low..low + width; everything drawn, in grey. */
 static struct soft_plane make_grey(const struct soft_frame *frame, const struct draw *draw, size_t image, double low,
-                                   double width, bool is_low_white)
+                                   double width, bool is_low_white, bool is_linear)
 {
     static const enum soft_voxel types[] = {
         [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32
@@ -84,23 +91,25 @@ static struct soft_plane make_grey(const struct soft_frame *frame, const struct 
     plane.texture.grey_scale = (float)(volume->slope / width);
     plane.texture.grey_offset = (float)((volume->offset - low) / width);
     plane.texture.flip = is_low_white ? 255 : 0;
-    plane.texture.is_linear = draw->image.is_linear;
+    plane.texture.is_linear = is_linear;
     return plane;
 }
 
-static struct soft_plane make_image(const struct soft_frame *frame, const struct draw *draw)
+/* The plane of a draw, of an image or a cap, with the image on it. */
+static struct soft_plane make_image(const struct soft_frame *frame, const struct draw *draw,
+                                    const struct draw_image *image)
 {
-    const struct draw_image *image = &draw->image;
     const struct draw_blend *blend = &image->blend;
     struct soft_plane plane =
-        make_grey(frame, draw, draw->subject.index, image->low, image->width, image->is_low_white);
+        make_grey(frame, draw, draw->subject.index, image->low, image->width, image->is_low_white, image->is_linear);
     plane.texture.cull = (float)image->cull;
     plane.texture.colors = image->colors;
     for (int c = 0; c < 3; c++)
         plane.texture.darkest[c] = visible_background[c];
     plane.texture.has_depth = draw->depth == DRAW_DEPTH_TESTED;
     if (blend->part > 0) {
-        struct soft_plane second = make_grey(frame, draw, blend->image, blend->low, blend->width, blend->is_low_white);
+        struct soft_plane second =
+            make_grey(frame, draw, blend->image, blend->low, blend->width, blend->is_low_white, image->is_linear);
         second.texture.colors = blend->colors;
         soft_plane_blend(&plane, &second, blend->part);
     }
@@ -124,12 +133,99 @@ static bool make_volume(struct soft_frame *frame, const struct draw *draw, struc
     return soft_volume_init(frame->volume, draw, frame->scope, frame->width, frame->height, frame->list->samples, err);
 }
 
+/* ---- caps ------------------------------------------------------------------------------------------------------- */
+
+/* The lines of an outline as a shape. */
+static bool make_outline(struct soft_shape *shape, const struct cut_lines *lines, struct error *err)
+{
+    size_t n = 2 * lines->n;
+    *shape = (struct soft_shape){ .kind = SHAPE_LINES, .n_vertices = n, .n_primitives = lines->n };
+    shape->positions = mem_array(n, 3 * sizeof *shape->positions, UINT64_MAX, err);
+    shape->normals = shape->positions ? mem_array(n, 3 * sizeof *shape->normals, UINT64_MAX, err) : NULL;
+    uint32_t *indices = shape->normals ? mem_array(n, sizeof *indices, UINT64_MAX, err) : NULL;
+    if (!indices)
+        return false;
+    shape->indices = indices;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t axis = 0; axis < 3; axis++)
+            shape->positions[axis * n + i] = (float)lines->ends_lps_mm[i / 2][i % 2][axis];
+        indices[i] = (uint32_t)i;
+    }
+    const float *p = shape->positions;
+    const int16_t *m = shape->normals;
+    shape->points = (struct soft_points){ p, p + n, p + 2 * n, m, m + n, m + 2 * n };
+    return true;
+}
+
+static void free_outline(struct soft_shape *shape)
+{
+    free(shape->positions);
+    free(shape->normals);
+    free((void *)shape->indices);
+}
+
+static bool add_outlines(struct soft_frame *frame, const struct draw *draw, struct error *err)
+{
+    for (size_t i = 0; draw->cap.outline_px > 0 && i < draw->cap.n_regions; i++) {
+        const struct draw_cap_region *region = &draw->cap.regions[i];
+        const struct draw line = {
+            .clip = draw->clip,
+            .color_rgb = region->color_rgb,
+            .opacity = 1,
+            .shape = { .look = { .size_px = draw->cap.outline_px }, .cue = { .w = 1 } },
+        };
+        struct soft_shape *shape = &frame->outlines[frame->n_outlines++];
+        if (!make_outline(shape, region->lines, err))
+            return false;
+        struct soft_item *item = &frame->items[frame->n_items++];
+        *item = make_item(frame, &line);
+        item->shape = shape;
+    }
+    return true;
+}
+
+static bool add_cap(struct soft_frame *frame, const struct draw *draw, struct error *err)
+{
+    const struct plan *plan = frame->scope->snapshot->plan;
+    const struct draw_cap *style = &draw->cap;
+    const struct volume *volume =
+        style->has_image || style->has_volume ? plan->images[draw->subject.index].volume : NULL;
+    struct soft_cap *cap = &frame->caps[frame->n_caps++];
+    if (!volume)
+        soft_plane_init(&cap->plane, NULL, &draw->plane, &draw->clip, &frame->scope->camera->clip_from_lps_mm,
+                        frame->width, frame->height);
+    else {
+        cap->plane = make_image(frame, draw, &style->image);
+        cap->cull = (float)((style->volume_from - style->image.low) / style->image.width);
+    }
+    cap->plane.texture.has_depth = true;
+    cap->dark = DRAW_CAP_DARK >> 16 | (DRAW_CAP_DARK & 0xff00) | (DRAW_CAP_DARK & 255) << 16 | 0xff000000u;
+    struct soft_lighting projection = make_projection(frame);
+    return soft_cap_init(cap, draw, &projection, frame->height, frame->n_bands, err) && add_outlines(frame, draw, err);
+}
+
+/* ---- all -------------------------------------------------------------------------------------------------------- */
+
+static bool make_arrays(struct soft_frame *frame, struct error *err)
+{
+    const struct draw_list *list = frame->list;
+    size_t n = list->n_in_image, n_caps = 0, n_outlines = 0;
+    for (size_t i = 0; i < n; i++)
+        if (list->draws[i].kind == DRAW_CAP) {
+            n_caps++;
+            n_outlines += list->draws[i].cap.n_regions;
+        }
+    frame->items = mem_array(n + n_outlines, sizeof *frame->items, UINT64_MAX, err);
+    frame->planes = frame->items ? mem_array(n, sizeof *frame->planes, UINT64_MAX, err) : NULL;
+    frame->caps = frame->planes ? mem_array(n_caps, sizeof *frame->caps, UINT64_MAX, err) : NULL;
+    frame->outlines = frame->caps ? mem_array(n_outlines, sizeof *frame->outlines, UINT64_MAX, err) : NULL;
+    return frame->outlines != NULL;
+}
+
 bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
 {
     const struct draw_list *list = frame->list;
-    frame->items = mem_array(list->n_in_image, sizeof *frame->items, UINT64_MAX, err);
-    frame->planes = frame->items ? mem_array(list->n_in_image, sizeof *frame->planes, UINT64_MAX, err) : NULL;
-    if (!frame->planes)
+    if (!make_arrays(frame, err))
         return false;
     for (size_t i = 0; i < list->n_in_image; i++) {
         const struct draw *draw = &list->draws[i];
@@ -137,13 +233,16 @@ bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
         frame->n_layers = n_layers > frame->n_layers ? n_layers : frame->n_layers;
         switch (draw->kind) {
         case DRAW_SHAPE: frame->items[frame->n_items++] = make_item(frame, draw); break;
-        case DRAW_IMAGE: frame->planes[frame->n_planes++] = make_image(frame, draw); break;
+        case DRAW_IMAGE: frame->planes[frame->n_planes++] = make_image(frame, draw, &draw->image); break;
         case DRAW_LABELS: frame->planes[frame->n_planes++] = make_labels(frame, draw); break;
+        case DRAW_CAP:
+            if (!add_cap(frame, draw, err))
+                return false;
+            break;
         case DRAW_VOLUME:
             if (!make_volume(frame, draw, err))
                 return false;
             break;
-        case DRAW_CAP:
         case DRAW_OUTLINE:
         case DRAW_CHECK:
         case DRAW_GRID_CUT:
@@ -155,9 +254,15 @@ bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
 
 void soft_frame_finish(struct soft_frame *frame)
 {
+    for (size_t i = 0; i < frame->n_caps; i++)
+        soft_cap_finish(&frame->caps[i]);
+    for (size_t i = 0; i < frame->n_outlines; i++)
+        free_outline(&frame->outlines[i]);
     if (frame->volume)
         soft_volume_finish(frame->volume);
     free(frame->volume);
     free(frame->items);
     free(frame->planes);
+    free(frame->caps);
+    free(frame->outlines);
 }

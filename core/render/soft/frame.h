@@ -3,6 +3,7 @@
 #include <stdatomic.h>
 
 #include "core/render/soft/bins.h"
+#include "core/render/soft/caps.h"
 #include "core/render/soft/planes.h"
 #include "core/render/soft/volume.h"
 #include "core/render/visible/back_end.h"
@@ -18,10 +19,13 @@ struct soft_frame {
     const struct draw_list *list;
     const struct draw_scope *scope;
     struct render_options options;
-    int width, height, n_bands; /* width and height in samples */
-    struct soft_item *items;    /* the list's shapes, in its order */
-    struct soft_plane *planes;  /* the list's images and label layers, in its order */
-    struct soft_volume *volume; /* the list's, or NULL */
+    int width, height, n_bands;  /* width and height in samples */
+    struct soft_item *items;     /* the list's shapes and the outlines in its caps, in its order */
+    struct soft_plane *planes;   /* the list's images and label layers, in its order */
+    struct soft_volume *volume;  /* the list's, or NULL */
+    struct soft_cap *caps;       /* the list's caps, in its order */
+    struct soft_shape *outlines; /* of the regions of caps, in their order; each is an item too */
+    size_t n_caps, n_outlines;
     size_t n_items, n_planes, n_chunks, n_blocks;
     size_t n_layers;               /* composed at a time, at most */
     int layer_rows;                /* rows of a layer that are drawn at a time */
@@ -30,7 +34,7 @@ struct soft_frame {
     atomic_bool is_out_of_memory;
 };
 
-/* Fills items, planes, volume and n_layers from the list. errors ERROR_MEMORY */
+/* Fills items, planes, caps, volume and n_layers from the list. errors ERROR_MEMORY */
 NODISCARD bool soft_frame_prepare(struct soft_frame *frame, struct error *err);
-/* Frees them. */
+/* Frees what was filled, also by a preparation that failed. */
 void soft_frame_finish(struct soft_frame *frame);

@@ -11,13 +11,15 @@
 #include "core/render/soft/kernels.inc"
 #include "core/render/soft/plane_kernels.inc"
 
+#include "core/render/soft/cap_kernels.inc"
+
 /* A sample is stored as one 32-bit word, whose bytes must be those of the image. */
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "the software rasteriser packs samples for little-endian machines");
 
 const struct soft_kernels soft_kernels_portable = { "portable",      shade_portable,   classify_portable,
                                                     raster_portable, compose_portable, sample_portable,
-                                                    halve_portable };
+                                                    cover_portable,  halve_portable };
 
 uint32_t soft_light(const struct soft_lighting *lighting, const float normal_lps[3], const float towards_lps[3])
 {

@@ -102,6 +102,18 @@ struct soft_blend {
     float part;
 };
 
+/* How the samples of a cap are drawn. */
+struct soft_cover {
+    const struct soft_texture *texture; /* NULL: dark everywhere */
+    int image_first, image_end;         /* the samples of the row that the texture's grid holds */
+    const uint32_t *tints;              /* by sample of the row, mixed with the texture; NULL: none */
+    uint32_t tint;                      /* parts of 256 of them */
+    uint32_t dark;                      /* the colour where the texture has none */
+    float nearer;                       /* than the row's depth */
+    bool is_culled;                     /* drawn only where the texture is */
+    bool is_dark;                       /* then dark, not as the texture is */
+};
+
 struct soft_kernels {
     const char *name;
     void (*shade)(const struct soft_lighting *lighting, const struct soft_points *points, size_t first, size_t n,
@@ -118,6 +130,9 @@ struct soft_kernels {
     /* Draws samples first .. first + n - 1 of a row of a plane. */
     void (*sample)(const struct soft_texture *texture, const struct soft_row *row, int first, int n, float *depth,
                    uint32_t *color);
+    /* Draws samples first .. first + n - 1 of a row of a cap where they are nearer than the depth. */
+    void (*cover)(const struct soft_cover *cover, const struct soft_row *row, int first, int n, float *depth,
+                  uint32_t *color);
     /* Means of 2 x 2 samples of two rows: n pixels. */
     void (*halve)(const uint32_t *upper, const uint32_t *lower, int n, uint32_t *out);
 };

@@ -11,7 +11,9 @@
 #include "core/render/soft/kernels.inc"
 #include "core/render/soft/plane_kernels.inc"
 
+#include "core/render/soft/cap_kernels.inc"
+
 extern const struct soft_kernels soft_kernels_avx2;
 const struct soft_kernels soft_kernels_avx2 = { "AVX2",       shade_avx2,  classify_avx2, raster_avx2,
-                                                compose_avx2, sample_avx2, halve_avx2 };
+                                                compose_avx2, sample_avx2, cover_avx2,    halve_avx2 };
 #endif

@@ -131,6 +131,11 @@ struct soft_row soft_plane_row(const struct soft_plane *plane, int y, int width,
         row.step[i] = plane->at[i][0];
         row.at[i] = at_row(plane->at[i], y);
     }
+    row.blend = plane->has_blend ? &plane->blend : NULL;
+    for (int i = 0; i < 3 && plane->has_blend; i++) {
+        row.blend_step[i] = plane->blend_at[i][0];
+        row.blend_at[i] = at_row(plane->blend_at[i], y);
+    }
     *first = 0;
     *last = width - 1;
     narrow(row.at[3] - 1e-12, row.step[3], first, last); /* in front of the eye */
@@ -160,12 +165,6 @@ void soft_plane_draw(const struct soft_plane *plane, const struct soft_kernels *
         double first, last;
         struct soft_row row = soft_plane_row(plane, band->first_row + y, band->width, &first, &last);
         soft_plane_narrow(plane, &row, &first, &last);
-        row.blend = plane->has_blend ? &plane->blend : NULL;
-        for (int i = 0; i < 3 && plane->has_blend; i++) {
-            row.blend_step[i] = plane->blend_at[i][0];
-            row.blend_at[i] = plane->blend_at[i][2] + plane->blend_at[i][0] * 0.5 +
-                              plane->blend_at[i][1] * (band->first_row + y + 0.5);
-        }
         int from = (int)ceil(fmin(first, band->width)), to = (int)floor(fmax(last, -1));
         size_t at = (size_t)y * (size_t)band->stride;
         if (from <= to)

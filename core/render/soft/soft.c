@@ -26,6 +26,7 @@ struct scratch {
     size_t n_band;
     uint32_t *layers;
     size_t n_layers; /* samples of all layers; layers is [2][n_layers] */
+    struct soft_cap_scratch caps;
 };
 
 /* A picture's triangles, projected and sorted into bands. */
@@ -94,6 +95,7 @@ static void drop_buffers(struct soft_renderer *renderer)
     for (int i = 0; i < MAX_THREADS; i++) {
         free(renderer->scratch[i].band);
         free(renderer->scratch[i].layers);
+        soft_cap_scratch_finish(&renderer->scratch[i].caps);
         renderer->scratch[i] = (struct scratch){ 0 };
     }
 }
@@ -135,6 +137,8 @@ static bool make_scratch(struct soft_frame *frame, struct scratch *scratch, stru
         if (!scratch->band)
             return false;
     }
+    if (frame->n_caps > 0 && !soft_cap_scratch_resize(&scratch->caps, frame->width, err))
+        return false;
     if (frame->n_layers == 0)
         return true;
     size_t rows = LAYER_BYTES / (row * frame->n_layers * 2 * sizeof(uint32_t));
@@ -343,6 +347,8 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
     const struct draw_list *list = frame->list;
     const struct soft_item *item = frame->items;
     const struct soft_plane *plane = frame->planes;
+    const struct soft_cap *cap = frame->caps;
+    const struct soft_kernels *kernels = frame->renderer->kernels;
     for (size_t i = 0, n; i < list->n_in_image; i += n) {
         n = draw_list_n_layers(list, i);
         if (n > 0) {
@@ -355,8 +361,12 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
         switch (list->draws[i].kind) {
         case DRAW_SHAPE: draw_item(frame, item++, band, index, (int[2]){ 0, 0 }); break;
         case DRAW_IMAGE:
-        case DRAW_LABELS: soft_plane_draw(plane++, frame->renderer->kernels, band); break;
+        case DRAW_LABELS: soft_plane_draw(plane++, kernels, band); break;
         case DRAW_CAP:
+            soft_cap_draw(cap++, kernels, band, index, &scratch->caps);
+            for (size_t r = 0; list->draws[i].cap.outline_px > 0 && r < list->draws[i].cap.n_regions; r++)
+                draw_item(frame, item++, band, index, (int[2]){ 0, 0 });
+            break;
         case DRAW_VOLUME:
         case DRAW_OUTLINE:
         case DRAW_CHECK:

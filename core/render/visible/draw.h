@@ -75,7 +75,7 @@ struct draw_image {
 /* A region in a cap: closed outlines in the clip plane, by the even-odd rule. */
 struct draw_cap_region {
     size_t region;
-    const struct cut_lines *lines; /* owned by the list or its cache; where the plane cuts the very shape drawn */
+    const struct cut_lines *lines; /* cap_cache's, in use by the list; where the plane cuts the very shape drawn */
     uint32_t color_rgb;
 };
 
@@ -183,9 +183,11 @@ struct draw_list {
     bool is_order_exact;
     size_t n_layers_planned; /* translucent draws there are at most, wherever the camera is */
     size_t n_triangles;
-    bool is_coarse;            /* some shape is of reduced detail */
-    uint8_t *palettes;         /* of DRAW_LABELS */
-    float (*transfer)[4];      /* of DRAW_VOLUME */
+    bool is_coarse;                      /* some shape is of reduced detail */
+    uint8_t *palettes;                   /* of DRAW_LABELS */
+    float (*transfer)[4];                /* of DRAW_VOLUME */
+    struct draw_cap_region *cap_regions; /* of DRAW_CAP */
+    size_t n_cap_regions;
     struct draw_cache_use use; /* keeps the drawables until the list is destroyed */
 };
 
@@ -195,7 +197,8 @@ struct draw_scope {
     const struct camera *camera; /* the snapshot's, resolved */
     enum surface_detail detail;
     struct draw_cache *cache;
-    bool is_still; /* false: the next picture comes soon */
+    bool is_still;          /* false: the next picture comes soon */
+    struct cap_cache *caps; /* NULL: no caps are drawn */
 };
 
 /* Appends a draw. errors ERROR_MEMORY */

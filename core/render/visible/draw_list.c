@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/draw_caps.h"
 #include "core/render/visible/draw_overlay.h"
 #include "core/render/visible/draw_planes.h"
 #include "core/render/visible/draw_regions.h"
@@ -22,11 +23,8 @@ static bool draw_translucent_regions(struct draw_list *list, const struct draw_s
 /* The functions that fill the list, in the order of drawing. */
 typedef bool fill(struct draw_list *list, const struct draw_scope *scope, struct error *err);
 static fill *const fills[] = {
-    draw_opaque_regions,
-    draw_planes,
-    draw_volume,
-    draw_translucent_regions,
-    draw_overlay,
+    draw_opaque_regions, /* before what they hide */
+    draw_planes,         draw_caps, draw_volume, draw_translucent_regions, draw_overlay,
 };
 
 struct draw_list *draw_list_create(const struct draw_scope *scope, const struct render_options *options,
@@ -51,6 +49,7 @@ void draw_list_destroy(struct draw_list *list)
     if (!list)
         return;
     draw_cache_end(&list->use);
+    draw_caps_release(list);
     free(list->draws);
     free(list->palettes);
     free(list->transfer);

@@ -84,6 +84,9 @@ struct visible_cue visible_depth_cue(const struct camera *camera, const struct b
 /* Lines are drawn this much nearer (depth 0 near .. 1 far), so that they are visible on a slice they lie in. */
 #define VISIBLE_LINE_DEPTH 2e-4
 
+/* Caps are drawn this much nearer, so that they cover what lies in their plane. */
+#define VISIBLE_CAP_DEPTH 1e-6
+
 /* In exact order a translucent surface counts as this much nearer for each one before it in the draw list (depth 0 near
  * .. 1 far), so that coinciding surfaces have the same order in every sample. */
 #define VISIBLE_RANK_DEPTH 5e-7
