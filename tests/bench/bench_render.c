@@ -1,8 +1,8 @@
 /* Draws and compresses the demo plan as a new room shows it: five surfaces, four of them translucent, and an axial
  * slice. The camera goes round it, with coarse surfaces at 100, 75, 60 and 50 % of 1024 x 768 as while moving, and with
  * full anti-aliased surfaces as in a still; then the axial pane, a new slice with each picture, with the outlines where
- * it cuts the surfaces. Our own rasteriser and the OpenGL of this machine draw
- * each picture in turn; the picture is compressed as JPEG and as PNG. */
+ * it cuts the surfaces; then cuts with caps, as in a room that cuts the head open. Our own rasteriser and the OpenGL of
+ * this machine draw each picture in turn; the picture is compressed as JPEG and as PNG. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -36,15 +36,42 @@ static void stop(const struct error *err)
     exit(1);
 }
 
+/* What cuts the head in a picture, with caps. */
+enum cut { CUT_NONE, CUT_SLICE, CUT_THREE, CUT_DRAGGED };
+
+/* CUT_SLICE: an axial plane with the slice in it. CUT_THREE: axial, coronal and sagittal plane through the brain, all
+ * five regions opaque. CUT_DRAGGED: an oblique plane too, another one in each picture. */
+static void set_cut(struct scene *scene, enum cut cut, int step)
+{
+    if (cut == CUT_NONE)
+        return;
+    scene->clip.axial_high.enabled = true;
+    scene->clip.axial_high.position_mm = scene->image.slices.axial.position_mm;
+    if (cut == CUT_SLICE)
+        return;
+    scene->clip.axial_high.position_mm = 20;
+    scene->clip.coronal_low.enabled = scene->clip.sagittal_low.enabled = true;
+    scene->clip.coronal_low.position_mm = -10;
+    scene->clip.sagittal_low.position_mm = -20;
+    for (size_t i = 0; i < scene->n_regions; i++)
+        scene->regions[i].value.opacity = 1;
+    if (cut == CUT_DRAGGED) {
+        scene->clip.free.enabled = true;
+        scene->clip.free.normal = vec3(1, -1, 2);
+        scene->clip.free.origin_mm = vec3(0, 0, 20 + step);
+    }
+}
+
 /* One picture; step moves the camera round the plan (or the slice through it). */
 static struct image *draw(struct renderer *renderer, enum scene_kind kind, int step, double scale,
-                          enum surface_detail detail, bool is_still, struct render_timing *timing)
+                          enum surface_detail detail, bool is_still, enum cut cut, struct render_timing *timing)
 {
     struct scene scene;
     struct view view = view_default;
     struct error err = { 0 };
     char field[128];
     scene_for_plan(plan, &scene);
+    set_cut(&scene, cut, step);
     view.kind = kind;
     camera_home(plan, kind, &view.camera);
     if (kind == SCENE_KIND_3D) {
@@ -66,24 +93,24 @@ static struct image *draw(struct renderer *renderer, enum scene_kind kind, int s
 
 /* Until the picture is in memory: drawing and reading back. */
 static double draw_ms(struct renderer *renderer, enum scene_kind kind, int step, double scale,
-                      enum surface_detail detail, bool is_still, struct render_timing *timing)
+                      enum surface_detail detail, bool is_still, enum cut cut, struct render_timing *timing)
 {
-    image_destroy(draw(renderer, kind, step, scale, detail, is_still, timing));
+    image_destroy(draw(renderer, kind, step, scale, detail, is_still, cut, timing));
     return (double)(timing->draw_us + timing->read_us) / 1e3;
 }
 
-static void bench_drawing(const char *name, enum scene_kind kind, double scale, enum surface_detail detail,
-                          bool is_still)
+static void bench_cut(const char *name, enum scene_kind kind, double scale, enum surface_detail detail, bool is_still,
+                      enum cut cut)
 {
     double ours_ms[REPEATS], peer_ms[REPEATS] = { 0 };
     struct render_timing timing;
-    (void)draw_ms(soft, kind, -1, scale, detail, is_still, &timing); /* makes the surfaces, uploads */
+    (void)draw_ms(soft, kind, -1, scale, detail, is_still, cut, &timing); /* makes the surfaces, uploads */
     if (gl)
-        (void)draw_ms(gl, kind, -1, scale, detail, is_still, &timing);
+        (void)draw_ms(gl, kind, -1, scale, detail, is_still, cut, &timing);
     for (int i = 0; i < REPEATS; i++) {
         if (gl)
-            peer_ms[i] = draw_ms(gl, kind, i, scale, detail, is_still, &timing);
-        ours_ms[i] = draw_ms(soft, kind, i, scale, detail, is_still, &timing);
+            peer_ms[i] = draw_ms(gl, kind, i, scale, detail, is_still, cut, &timing);
+        ours_ms[i] = draw_ms(soft, kind, i, scale, detail, is_still, cut, &timing);
     }
     double ours = median(ours_ms), peer = median(peer_ms);
     printf("{\"name\":\"draw, %s\",\"value\":%.2f,\"unit\":\"ms\",", name, ours);
@@ -94,11 +121,17 @@ static void bench_drawing(const char *name, enum scene_kind kind, double scale, 
            timing.n_triangles, is_still ? ", anti-aliased" : "", renderer_facts(soft)->renderer, REPEATS);
 }
 
+static void bench_drawing(const char *name, enum scene_kind kind, double scale, enum surface_detail detail,
+                          bool is_still)
+{
+    bench_cut(name, kind, scale, detail, is_still, CUT_NONE);
+}
+
 static void bench_encoding(const char *name, struct encode_options options)
 {
     struct encoder *encoder = encoder_create();
     struct render_timing timing;
-    struct image *image = draw(soft, SCENE_KIND_3D, 3, 1, SURFACE_FULL, true, &timing);
+    struct image *image = draw(soft, SCENE_KIND_3D, 3, 1, SURFACE_FULL, true, CUT_NONE, &timing);
     double ms[REPEATS];
     size_t n_bytes = 0;
     for (int i = 0; i < REPEATS; i++) {
@@ -149,6 +182,10 @@ int main(void)
     bench_drawing("moving at 50 %", SCENE_KIND_3D, 0.5, SURFACE_COARSE, false);
     bench_drawing("still", SCENE_KIND_3D, 1, SURFACE_FULL, true);
     bench_drawing("axial pane", SCENE_KIND_AXIAL, 1, SURFACE_COARSE, false);
+    bench_cut("moving, slice and cap", SCENE_KIND_3D, 1, SURFACE_COARSE, false, CUT_SLICE);
+    bench_cut("moving, 3 caps of 5 opaque regions", SCENE_KIND_3D, 1, SURFACE_COARSE, false, CUT_THREE);
+    bench_cut("dragging an oblique plane, 4 caps", SCENE_KIND_3D, 1, SURFACE_COARSE, false, CUT_DRAGGED);
+    bench_cut("still, 3 caps of 5 opaque regions", SCENE_KIND_3D, 1, SURFACE_FULL, true, CUT_THREE);
     bench_encoding("JPEG quality 80 4:2:0", (struct encode_options){ ENCODE_JPEG, 80, false });
     bench_encoding("JPEG quality 92 4:4:4", (struct encode_options){ ENCODE_JPEG, 92, true });
     bench_encoding("PNG", (struct encode_options){ ENCODE_PNG, 0, false });
