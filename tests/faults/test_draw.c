@@ -96,6 +96,7 @@ struct picture_case {
     enum scene_kind kind;
     enum scene_representation representation;
     bool is_checked;
+    bool is_cut; /* with caps, outlined */
 };
 
 /* A picture that leaves a region out says which (visible_missing). */
@@ -117,6 +118,11 @@ static void draw(void *context, struct outcome *outcome)
     for (size_t i = 0; i < scene.n_regions; i++) {
         scene.regions[i].value.representation = wanted->representation;
         scene.regions[i].value.opacity = i == 0 ? 0.5 : 1;
+    }
+    if (wanted->is_cut) {
+        scene.clip.axial_high.enabled = scene.clip.free.enabled = true;
+        scene.clip.free.normal = vec3(1, -1, 1);
+        scene.clip.cap.regions = scene.clip.cap.outlines = true;
     }
     struct view view = view_default;
     view.kind = wanted->kind;
@@ -166,7 +172,7 @@ done:
 static void walk_pictures(void)
 {
     for (int r = 0; r <= SCENE_REPRESENTATION_FAN; r++) {
-        struct picture_case wanted = { RENDER_SOFT, SCENE_KIND_3D, (enum scene_representation)r, false };
+        struct picture_case wanted = { RENDER_SOFT, SCENE_KIND_3D, (enum scene_representation)r, false, false };
         char name[128];
         snprintf(name, sizeof name, "regions as %s are drawn and compressed",
                  region_representation_word((enum region_representation)r));
@@ -177,13 +183,20 @@ static void walk_pictures(void)
                                    .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
         walk_run(&walk);
     }
-    struct picture_case slice = { RENDER_SOFT, SCENE_KIND_AXIAL, SCENE_REPRESENTATION_SURFACE, false };
+    struct picture_case slice = { RENDER_SOFT, SCENE_KIND_AXIAL, SCENE_REPRESENTATION_SURFACE, false, false };
     const struct walk walk = { .name = "a slice is drawn and compressed",
                                .run = draw,
                                .context = &slice,
                                .is_library_leaky = true,
                                .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
     walk_run(&walk);
+    struct picture_case cut = { RENDER_SOFT, SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, false, true };
+    const struct walk cut_walk = { .name = "regions that are cut and capped are drawn and compressed",
+                                   .run = draw,
+                                   .context = &cut,
+                                   .is_library_leaky = true,
+                                   .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
+    walk_run(&cut_walk);
 }
 
 /* A caption of a snapshot of which a picture was drawn. */

@@ -1,5 +1,6 @@
 /* Caps: each pixel shows what a ray through analytic solids and half-spaces meets, the image where that is a cut; and
  * no pixel between a cap and the surface around it shows the background. */
+#include "tests/made_ragged.h"
 #include "tests/render/cut_scene.h"
 
 /* As in test_clip.c: boxes of univels are exact; balls are as round as the surface of their voxels, which 0.35 mm (1.6
@@ -452,6 +453,59 @@ static void no_pixel_between_cap_and_surface_is_left_out(void **state)
     }
 }
 
+/* A region with thin spikes and plates, a cavity, a tunnel, univels that touch at edges and corners, and another region
+ * inside. */
+static void ragged_regions_are_closed_too(void **state)
+{
+    (void)state;
+    static const enum scene_algorithm algorithms[] = { SCENE_ALGORITHM_SMOOTH, SCENE_ALGORITHM_MARCHING_CUBES,
+                                                       SCENE_ALGORITHM_EIGHT_CELL };
+    struct cut_scene cut = { .plan = ragged_plan() };
+    struct box3 box = cut.plan->bounds_lps_mm;
+    struct vec3 middle = vec3_scale(vec3_add(box.low, box.high), 0.5);
+    cut.scene = shots_scene(cut.plan);
+    for (int i = 0; i < 32; i++) {
+        for (size_t r = 0; r < cut.scene.n_regions; r++)
+            cut.scene.regions[r].value.representation =
+                i % 4 == 3 ? SCENE_REPRESENTATION_UNIVELS : SCENE_REPRESENTATION_SURFACE;
+        cut.scene.surface.algorithm = algorithms[i % 4 % 3];
+        struct vec3 normal = cut_random_direction();
+        cut_free(&cut.scene, normal, 0, true);
+        cut.scene.clip.free.origin_mm = vec3_add(middle, vec3_scale(normal, 24 * cut_random() - 12));
+        struct view view = cut_view(cut_random_direction(), i % 2);
+        view.camera.target_mm = vec3_add(view.camera.target_mm, middle);
+        view.camera.position_mm = vec3_add(view.camera.position_mm, middle);
+        expect_no_crack(&cut, view, SURFACE_FULL);
+    }
+    cut_scene_destroy(&cut);
+}
+
+static void threads_and_processors_do_not_change_a_capped_picture(void **state)
+{
+    (void)state;
+    struct cut_scene cut = cut_scene_create(shells, 5, SCENE_REPRESENTATION_SURFACE, SCENE_ALGORITHM_SMOOTH);
+    take_rough_image(&cut);
+    cut.scene.clip.cap.regions = cut.scene.clip.cap.outlines = true;
+    cut.scene.clip.coronal_low = (struct scene_clip_axis){ true, -3, true };
+    cut_free(&cut.scene, vec3(0.5, -1, 1), 4, true);
+    struct image *first = NULL;
+    for (int way = 0; way < 4; way++) {
+        struct scene scene;
+        scene_copy(&scene, &cut.scene);
+        renderer_tune(shots_renderer, way % 2 ? 3 : 1, way / 2);
+        struct image *image = shots_plain(cut.plan, scene, cut_view(vec3(-0.2, -1, 1), false));
+        if (first)
+            assert_memory_equal(first->rgba, image->rgba, (size_t)SHOTS_WIDTH * SHOTS_HEIGHT * 4);
+        if (first)
+            image_destroy(image);
+        else
+            first = image;
+    }
+    renderer_tune(shots_renderer, 2, false);
+    image_destroy(first);
+    cut_scene_destroy(&cut);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -471,6 +525,8 @@ int main(void)
         cmocka_unit_test(a_cap_outlines_its_regions),
         cmocka_unit_test(bodies_have_caps_and_lines_have_none),
         cmocka_unit_test(no_pixel_between_cap_and_surface_is_left_out),
+        cmocka_unit_test(ragged_regions_are_closed_too),
+        cmocka_unit_test(threads_and_processors_do_not_change_a_capped_picture),
     };
     return shots_run_soft("caps", tests, sizeof tests / sizeof tests[0]);
 }
