@@ -7,11 +7,11 @@
 #include <strings.h>
 #include <time.h>
 
+#include "core/annotate/words.h"
 #include "core/base/mem.h"
 #include "core/render/visible/visible.h"
 
-enum { MAX_OTHER_ITEMS = 32 }; /* beside regions */
-static const char minus[] = "\u2212";
+enum { MAX_OTHER_ITEMS = 64 }; /* beside regions */
 
 void annotate_date(int64_t unix_s, char date[ANNOTATE_DATE_SIZE])
 {
@@ -33,17 +33,6 @@ static void add_words(struct annotations *annotations, enum annotation_row row, 
     (void)snprintf(add_item(annotations, row)->text, ANNOTATION_TEXT_SIZE, "%s", words);
 }
 
-/* A number as the page writes it: with a true minus, and rounded up where it lies exactly between two. */
-static void write_number(char text[40], double value, int digits)
-{
-    char plain[36];
-    double size = fabs(value), scale = pow(10, digits), product = size * scale;
-    bool is_between = fma(size, scale, -product) == 0 && product - floor(product) == 0.5;
-    (void)snprintf(plain, sizeof plain, "%.*f", digits, is_between ? (floor(product) + 1) / scale : size);
-    bool is_zero = strspn(plain, "0.") == strlen(plain);
-    (void)snprintf(text, 40, "%s%s", value < 0 && !is_zero ? minus : "", plain);
-}
-
 /* ---- the pane --------------------------------------------------------------------------------------------------- */
 
 static const char *kind_words(enum scene_kind kind)
@@ -56,45 +45,32 @@ static const char *kind_words(enum scene_kind kind)
     return words[kind];
 }
 
-/* "S 34.0 mm": where a plane square to the patient cuts its axis. */
-static void add_position(struct annotations *annotations, const char *before, const struct plane *plane)
+static void add_plane(struct annotations *annotations, const char *before, const struct scene *scene,
+                      const struct plane *plane)
 {
-    char number[40];
-    const char *letter = plane->normal.z > 0.5 ? "S" : plane->normal.y > 0.5 ? "P" : "L";
-    write_number(number, plane_position_mm(plane), 1);
-    (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%s %s mm", before, letter,
-                   number);
-}
-
-/* As many digits as tell the greys of a narrow window apart; the page has the same rule. */
-static int window_digits(double width)
-{
-    const int most = 20;
-    if (width >= 10)
-        return 0;
-    int digits = width > 0 ? 2 - (int)floor(log10(width)) : most;
-    return digits < most ? digits : most;
+    const char *name = words_plane_name(scene, plane);
+    char place[WORDS_SIZE];
+    words_plane(place, scene, plane);
+    if (*name)
+        (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%.240s", before, name);
+    (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%.240s", *name ? "" : before,
+                   place);
 }
 
 static void add_image(struct annotations *annotations, const struct snapshot *snapshot)
 {
-    const struct plan_image *image = &snapshot->plan->images[snapshot->image];
     const struct scene_image_style *style = &snapshot->scene.image;
-    char width[40], center[40];
-    int digits = window_digits(style->window.width);
-    bool is_only = snapshot->plan->n_images == 1 && image->modality[0];
-    const char *name = image->name[0] ? image->name : is_only ? image->modality : image->id;
-    bool has_modality = image->modality[0] && !strstr(name, image->modality) && strcasecmp(name, image->modality) != 0;
-    (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%s%s", name,
-                   has_modality ? ", " : "", has_modality ? image->modality : "");
-    write_number(center, style->window.center, digits);
-    write_number(width, style->window.width, digits);
-    (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "C %s  W %s%s%s", center, width,
-                   image->unit[0] ? " " : "", image->unit);
+    words_image(add_item(annotations, ANNOTATION_PANE)->text, snapshot->plan, (size_t)snapshot->image);
+    words_window(add_item(annotations, ANNOTATION_PANE)->text, &style->window,
+                 snapshot->plan->images[snapshot->image].unit);
+    if (style->color_map != SCENE_COLOR_MAP_GREY)
+        add_words(annotations, ANNOTATION_PANE, words_color_map(style->color_map));
     if (snapshot_is_low_white(snapshot))
         add_words(annotations, ANNOTATION_PANE, "low values white");
     if (style->interpolation == SCENE_INTERPOLATION_NEAREST)
         add_words(annotations, ANNOTATION_PANE, "nearest voxel");
+    if (snapshot->blend >= 0 && style->blend.opacity > 0)
+        words_blend(add_item(annotations, ANNOTATION_PANE)->text, snapshot);
 }
 
 static void add_pane(struct annotations *annotations, const struct snapshot *snapshot, const struct camera *camera)
@@ -102,11 +78,11 @@ static void add_pane(struct annotations *annotations, const struct snapshot *sna
     bool is_pane = snapshot_is_pane(snapshot);
     add_words(annotations, ANNOTATION_PANE, kind_words(snapshot->view.kind));
     if (is_pane)
-        add_position(annotations, "", &snapshot->pane);
+        add_plane(annotations, "", &snapshot->scene, &snapshot->pane);
     else
         add_words(annotations, ANNOTATION_PANE, camera->is_parallel ? "parallel projection" : "perspective, no scale");
     for (size_t i = 0; !is_pane && snapshot->image >= 0 && i < snapshot->n_slices; i++)
-        add_position(annotations, "slice ", &snapshot->slices[i]);
+        add_plane(annotations, "slice ", &snapshot->scene, &snapshot->slices[i]);
     if (snapshot->image >= 0 && (is_pane || snapshot->n_slices > 0))
         add_image(annotations, snapshot);
 }
@@ -158,7 +134,7 @@ static void add_region(struct annotations *annotations, const struct snapshot *s
         item->rgb[channel] = (uint8_t)(style->color_rgb >> (16 - 8 * channel));
     if (!is_pane && style->opacity < 1) {
         char percent[40];
-        write_number(percent, 100 * style->opacity, 0);
+        words_number(percent, 100 * style->opacity, 0);
         (void)snprintf(opacity, sizeof opacity, " %s %%", percent);
     }
     (void)snprintf(item->text, sizeof item->text, "%s%s%s%s", region->name[0] ? region->name : region->id, opacity,

@@ -455,6 +455,66 @@ static void a_window_stands_in_the_caption_as_on_the_page(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static void an_oblique_pane_and_a_blended_image_are_described(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    struct grid grid = plan->images[0].volume->grid;
+    struct scene scene;
+    struct error err = { 0 };
+    char date[ANNOTATE_DATE_SIZE] = "", field[128];
+    made_plan_add_image(plan, &grid, VOXEL_I16, height);
+    (void)snprintf(plan->images[1].name, sizeof plan->images[1].name, "Uptake");
+    (void)snprintf(plan->images[1].modality, sizeof plan->images[1].modality, "PT");
+    (void)snprintf(plan->images[1].unit, sizeof plan->images[1].unit, "SUV");
+    plan->images[1].window_center = 5;
+    plan->images[1].window_width = 10;
+    for (int is_named = 0; is_named < 2; is_named++)
+        for (int is_pane = 0; is_pane < 2; is_pane++) {
+            scene_for_plan(plan, &scene);
+            scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = false;
+            scene.image.window = (struct scene_window){ 40, 400 };
+            scene.image.slices.axial.position_mm = 3;
+            scene.image.obliques = mem_new(sizeof *scene.image.obliques);
+            scene.image.n_obliques = 1;
+            scene.image.obliques[0] = (struct scene_oblique_entry){ .id = "a", .value = scene_oblique_default };
+            struct scene_oblique *oblique = &scene.image.obliques[0].value;
+            (void)snprintf(oblique->name, sizeof oblique->name, "%s", is_named ? "Along the beam" : "");
+            oblique->visible = true;
+            oblique->origin_mm = vec3(1, -2.25, 3);
+            oblique->normal = vec3(0, 3, -4); /* turned to the side of the nearest slice's normal, that of axial */
+            (void)snprintf(scene.image.blend.id, sizeof scene.image.blend.id, "%s", plan->images[1].id);
+            scene.image.blend.opacity = 0.4;
+            scene.image.color_map = SCENE_COLOR_MAP_RAINBOW;
+            scene.image.looks = mem_new(sizeof *scene.image.looks);
+            scene.image.n_looks = is_named ? 1 : 0;
+            scene.image.looks[0].value = (struct scene_image_look){ { 3, 6 }, SCENE_COLOR_MAP_HOT_IRON };
+            (void)snprintf(scene.image.looks[0].id, sizeof scene.image.looks[0].id, "%s", plan->images[1].id);
+            struct view view = view_default;
+            view.kind = is_pane ? SCENE_KIND_OBLIQUE : SCENE_KIND_3D;
+            (void)snprintf(view.plane, sizeof view.plane, "a");
+            struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
+            assert_non_null(snapshot);
+            struct annotations words;
+            char expected[512];
+            assert_true(annotations_describe(&words, snapshot, 512, date, &err));
+            snprintf(expected, sizeof expected,
+                     "%s%s|through L 1.0  P \u22122.3  S 3.0 mm, normal L 0.00  P \u22120.60  S 0.80|"
+                     "Planning, CT|C 40  W 400 HU|in rainbow colours|40 %% Uptake, PT over it: %s",
+                     is_pane ? "Oblique|" : "3-D|perspective, no scale|slice S 3.0 mm|slice ",
+                     is_named ? "Along the beam" : "a", is_named ? "C 3.00  W 6.00 SUV, in hot iron" : "C 5  W 10 SUV");
+            assert_string_equal(row_text(&words, ANNOTATION_PANE), expected);
+            assert_string_equal(words.letters.left, is_pane ? "R" : words.letters.left);
+            if (is_pane) { /* up: anterior as far as it lies in the plane, (0, -0.8, -0.6) */
+                assert_string_equal(words.letters.top, "AI");
+                assert_string_equal(words.letters.bottom, "PS");
+            }
+            annotations_finish(&words);
+            snapshot_unref(snapshot);
+        }
+    plan_and_derived_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -469,6 +529,7 @@ int main(void)
         cmocka_unit_test(hostile_text_is_drawn_as_replacements),
         cmocka_unit_test(a_snapshot_is_described),
         cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),
+        cmocka_unit_test(an_oblique_pane_and_a_blended_image_are_described),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,115 @@
+/* Writes the words of a caption for numbers, planes and images. */
+#include "core/annotate/words.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+static const char minus[] = "\u2212";
+
+void words_number(char text[40], double value, int digits)
+{
+    char plain[36];
+    double size = fabs(value), scale = pow(10, digits), product = size * scale;
+    bool is_between = fma(size, scale, -product) == 0 && product - floor(product) == 0.5;
+    (void)snprintf(plain, sizeof plain, "%.*f", digits, is_between ? (floor(product) + 1) / scale : size);
+    bool is_zero = strspn(plain, "0.") == strlen(plain);
+    (void)snprintf(text, 40, "%s%s", value < 0 && !is_zero ? minus : "", plain);
+}
+
+/* ---- planes ----------------------------------------------------------------------------------------------------- */
+
+/* "L 1.0  P 2.0  S 3.0" */
+static void write_vector(char text[120], struct vec3 v, int digits)
+{
+    char x[40], y[40], z[40];
+    words_number(x, v.x, digits);
+    words_number(y, v.y, digits);
+    words_number(z, v.z, digits);
+    (void)snprintf(text, 120, "L %.36s  P %.36s  S %.36s", x, y, z);
+}
+
+static const struct scene_oblique_entry *find_oblique(const struct scene *scene, const struct plane *plane)
+{
+    for (size_t i = 0; i < scene->image.n_obliques; i++) {
+        const struct scene_oblique *oblique = &scene->image.obliques[i].value;
+        struct plane of_it = plane_of_normal(oblique->origin_mm, oblique->normal);
+        if (plane_equal(&of_it, plane))
+            return &scene->image.obliques[i];
+    }
+    return NULL;
+}
+
+void words_plane(char text[WORDS_SIZE], const struct scene *scene, const struct plane *plane)
+{
+    const double cosines[3] = { plane->normal.x, plane->normal.y, plane->normal.z };
+    const struct scene_oblique_entry *oblique = find_oblique(scene, plane);
+    for (int axis = 0; axis < 3; axis++)
+        if (cosines[axis] > 1 - 1e-12) {
+            char number[40];
+            words_number(number, plane_position_mm(plane), 1);
+            (void)snprintf(text, WORDS_SIZE, "%c %s mm", "LPS"[axis], number);
+            return;
+        }
+    char origin[120], normal[120];
+    write_vector(origin, oblique ? oblique->value.origin_mm : plane->origin_lps_mm, 1);
+    write_vector(normal, plane->normal, 2);
+    (void)snprintf(text, WORDS_SIZE, "through %.100s mm, normal %.100s", origin, normal);
+}
+
+const char *words_plane_name(const struct scene *scene, const struct plane *plane)
+{
+    const struct scene_oblique_entry *oblique = find_oblique(scene, plane);
+    return !oblique ? "" : oblique->value.name[0] ? oblique->value.name : oblique->id;
+}
+
+/* ---- images ----------------------------------------------------------------------------------------------------- */
+
+void words_image(char text[WORDS_SIZE], const struct plan *plan, size_t index)
+{
+    const struct plan_image *image = &plan->images[index];
+    bool is_only = plan->n_images == 1 && image->modality[0];
+    const char *name = image->name[0] ? image->name : is_only ? image->modality : image->id;
+    bool has_modality = image->modality[0] && !strstr(name, image->modality) && strcasecmp(name, image->modality) != 0;
+    (void)snprintf(text, WORDS_SIZE, "%s%s%s", name, has_modality ? ", " : "", has_modality ? image->modality : "");
+}
+
+/* As many digits as tell the greys of a narrow window apart; the page has the same rule. */
+static int window_digits(double width)
+{
+    const int most = 20;
+    if (width >= 10)
+        return 0;
+    int digits = width > 0 ? 2 - (int)floor(log10(width)) : most;
+    return digits < most ? digits : most;
+}
+
+void words_window(char text[WORDS_SIZE], const struct scene_window *window, const char *unit)
+{
+    char width[40], center[40];
+    int digits = window_digits(window->width);
+    words_number(center, window->center, digits);
+    words_number(width, window->width, digits);
+    (void)snprintf(text, WORDS_SIZE, "C %s  W %s%s%s", center, width, *unit ? " " : "", unit);
+}
+
+const char *words_color_map(enum scene_color_map map)
+{
+    static const char *const words[] = { [SCENE_COLOR_MAP_GREY] = "",
+                                         [SCENE_COLOR_MAP_HOT_IRON] = "in hot iron",
+                                         [SCENE_COLOR_MAP_RAINBOW] = "in rainbow colours" };
+    return words[map];
+}
+
+void words_blend(char text[WORDS_SIZE], const struct snapshot *snapshot)
+{
+    size_t index = (size_t)snapshot->blend;
+    struct scene_image_look look = snapshot_look_of(snapshot, index);
+    const char *colors = words_color_map(look.color_map);
+    char name[WORDS_SIZE], window[WORDS_SIZE], percent[40];
+    words_image(name, snapshot->plan, index);
+    words_window(window, &look.window, snapshot->plan->images[index].unit);
+    words_number(percent, 100 * snapshot->scene.image.blend.opacity, 0);
+    (void)snprintf(text, WORDS_SIZE, "%.20s %% %.100s over it: %.90s%s%s", percent, name, window, *colors ? ", " : "",
+                   colors);
+}
