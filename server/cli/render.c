@@ -47,6 +47,8 @@ static void print_help(void)
         "  --show REGIONS    ids with commas between: these regions alone, opaque; none: no region\n"
         "  --slices SLICES   axial, coronal, sagittal, with commas between and perhaps =MM behind: these slices alone; none\n"
         "  --volume METHOD   the image as a volume: ray, slices, mip or average; METHOD=VALUE: without what is below VALUE\n"
+        "  --plane N[@P]     an oblique plane with the direction N through the point P, else through where the slices meet,\n"
+        "                    each X,Y,Z towards L, P and S: its own picture, or a slice in one whose kind --view says\n"
         "  --clip PLANE=MM   cuts off what lies beyond: axial-low, axial-high, coronal-low, coronal-high, sagittal-low or\n"
         "                    sagittal-high, each at a position along S, P or L; given again: one more plane\n"
         "  --no-caps         leaves cuts of --clip open, so that they show what is hollow\n"
@@ -130,18 +132,24 @@ static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const str
     cJSON *shown = NULL;
     patch = render_show_patch(&arguments->show, scene, err);
     if (patch && !(shown = scene_document_patch(document, defaults, scene, patch, &problem)))
-        refuse_problem("--show, --slices, --volume or --clip", &problem, err);
+        refuse_problem("--show, --slices, --volume, --plane or --clip", &problem, err);
     cJSON_Delete(patch);
     cJSON_Delete(scene);
     return shown;
 }
 
-static cJSON *make_view(const char *path, const int size_px[2], struct error *err)
+static cJSON *make_view(const struct render_arguments *arguments, struct error *err)
 {
     struct problem problem = { 0 };
+    const char *path = arguments->view;
+    const int *size_px = arguments->size_px;
     cJSON *patch = path ? read_document(path, err) : cJSON_CreateObject();
     if (!patch)
         return NULL;
+    if (arguments->show.plane && cJSON_IsObject(patch) && !cJSON_GetObjectItemCaseSensitive(patch, "kind")) {
+        cJSON_AddStringToObject(patch, "kind", "oblique");
+        cJSON_AddStringToObject(patch, "plane", RENDER_SHOW_PLANE);
+    }
     cJSON *view = view_document_patch(NULL, patch, &problem);
     cJSON_Delete(patch);
     if (!view) {
@@ -176,8 +184,7 @@ static struct snapshot *make_snapshot(struct derive *derived, const struct rende
     cJSON *document = plan_document(plan), *defaults = scene_write(&scene);
     cJSON *scene_json = NULL, *shown_json = NULL, *view_json = NULL;
     scene_finish(&scene);
-    if (!(scene_json = make_scene(document, defaults, arguments, err)) ||
-        !(view_json = make_view(arguments->view, arguments->size_px, err)))
+    if (!(scene_json = make_scene(document, defaults, arguments, err)) || !(view_json = make_view(arguments, err)))
         goto done;
     if (!(shown_json = scene_document_for_view(document, defaults, scene_json, view_json, &problem))) {
         refuse_problem(arguments->view ? arguments->view : "view", &problem, err);
@@ -332,15 +339,21 @@ static bool codec_from_path(const char *path, enum encode_codec *codec)
 /* False when there is nothing to draw; *code is then the exit code. */
 static bool parse_arguments(int argc, char **argv, struct render_arguments *arguments, int *code)
 {
-    static const struct option long_options[] = {
-        { "output", required_argument, NULL, 'o' },  { "scene", required_argument, NULL, 's' },
-        { "view", required_argument, NULL, 'v' },    { "size", required_argument, NULL, 'z' },
-        { "show", required_argument, NULL, 'r' },    { "slices", required_argument, NULL, 'l' },
-        { "volume", required_argument, NULL, 'u' },  { "clip", required_argument, NULL, 'c' },
-        { "no-caps", no_argument, NULL, 'n' },       { "gl", required_argument, NULL, 'g' },
-        { "quality", required_argument, NULL, 'q' }, { "annotations", no_argument, NULL, 'a' },
-        { "help", no_argument, NULL, 'h' },          { NULL, 0, NULL, 0 }
-    };
+    static const struct option long_options[] = { { "output", required_argument, NULL, 'o' },
+                                                  { "scene", required_argument, NULL, 's' },
+                                                  { "view", required_argument, NULL, 'v' },
+                                                  { "size", required_argument, NULL, 'z' },
+                                                  { "show", required_argument, NULL, 'r' },
+                                                  { "slices", required_argument, NULL, 'l' },
+                                                  { "volume", required_argument, NULL, 'u' },
+                                                  { "plane", required_argument, NULL, 'p' },
+                                                  { "clip", required_argument, NULL, 'c' },
+                                                  { "no-caps", no_argument, NULL, 'n' },
+                                                  { "gl", required_argument, NULL, 'g' },
+                                                  { "quality", required_argument, NULL, 'q' },
+                                                  { "annotations", no_argument, NULL, 'a' },
+                                                  { "help", no_argument, NULL, 'h' },
+                                                  { NULL, 0, NULL, 0 } };
     *code = EXIT_USAGE;
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
@@ -351,6 +364,7 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
         case 'r': arguments->show.regions = optarg; break;
         case 'l': arguments->show.slices = optarg; break;
         case 'u': arguments->show.volume = optarg; break;
+        case 'p': arguments->show.plane = optarg; break;
         case 'c':
             if (arguments->show.n_clips == RENDER_SHOW_MAX_CLIPS)
                 return command_usage_error("render", "--clip is given more than %d times", RENDER_SHOW_MAX_CLIPS),

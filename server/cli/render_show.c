@@ -123,6 +123,51 @@ static bool add_volume(const char *text, const cJSON *scene, cJSON *patch, struc
     return true;
 }
 
+/* Takes "X,Y,Z" off the text, up to its end or the separator. */
+static bool next_point(const char **text, char separator, double point[3])
+{
+    char word[WORD_SIZE];
+    const char *at = word;
+    if (!next_word(text, separator, word))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        char number[WORD_SIZE];
+        if (!next_word(&at, ',', number) || !parse_number(number, &point[i]))
+            return false;
+    }
+    return *at == 0;
+}
+
+/* Where the three slices meet. */
+static void read_crosshair(const cJSON *scene, double point[3])
+{
+    static const char *const kinds[] = { "sagittal", "coronal", "axial" };
+    const cJSON *image = cJSON_GetObjectItemCaseSensitive(scene, "image"),
+                *slices = cJSON_GetObjectItemCaseSensitive(image, "slices");
+    for (int i = 0; i < 3; i++)
+        point[i] = json_number(cJSON_GetObjectItemCaseSensitive(slices, kinds[i]), "position_mm", 0);
+}
+
+static bool add_plane(const char *text, const cJSON *scene, cJSON *patch, struct error *err)
+{
+    double normal[3], point[3];
+    const char *at = text;
+    bool is_good = next_point(&at, '@', normal);
+    if (is_good && *at)
+        is_good = next_point(&at, '@', point) && *at == 0;
+    else
+        read_crosshair(scene, point);
+    if (!is_good || (normal[0] == 0 && normal[1] == 0 && normal[2] == 0))
+        return error_set(err, ERROR_RANGE,
+                         "--plane '%s' is not a direction X,Y,Z in the patient, perhaps with a point @X,Y,Z in mm",
+                         text);
+    cJSON *plane = member(member(member(patch, "image"), "obliques"), RENDER_SHOW_PLANE);
+    cJSON_AddTrueToObject(plane, "visible");
+    cJSON_AddItemToObject(plane, "normal", cJSON_CreateDoubleArray(normal, 3));
+    cJSON_AddItemToObject(plane, "origin_mm", cJSON_CreateDoubleArray(point, 3));
+    return true;
+}
+
 static bool add_clip(const char *text, bool is_capped, cJSON *patch, struct error *err)
 {
     static const char *const planes[] = { "axial-low",    "axial-high",   "coronal-low",
@@ -151,7 +196,8 @@ cJSON *render_show_patch(const struct render_show *show, const cJSON *scene, str
     cJSON *patch = cJSON_CreateObject();
     bool is_good = (!show->regions || add_regions(show->regions, scene, patch, err)) &&
                    (!show->slices || add_slices(show->slices, patch, err)) &&
-                   (!show->volume || add_volume(show->volume, scene, patch, err));
+                   (!show->volume || add_volume(show->volume, scene, patch, err)) &&
+                   (!show->plane || add_plane(show->plane, scene, patch, err));
     for (int i = 0; is_good && i < show->n_clips; i++)
         is_good = add_clip(show->clips[i], !show->is_uncapped, patch, err);
     if (is_good)

@@ -5,12 +5,14 @@
 #include "server/wire/json.h"
 
 enum { RENDER_SHOW_MAX_CLIPS = 6 };
+#define RENDER_SHOW_PLANE "plane" /* id of the scene's oblique plane that `plane` makes */
 
 /* Borrowed words of the command line. All zero: nothing differs from the scene. */
 struct render_show {
     const char *regions;                      /* "ID,ID,...": these alone, opaque; "none" */
     const char *slices;                       /* "KIND[=MM],...": these slices alone; "none" */
     const char *volume;                       /* "METHOD[=VALUE]" */
+    const char *plane;                        /* "NORMAL[@POINT]", each X,Y,Z: the oblique plane RENDER_SHOW_PLANE */
     const char *clips[RENDER_SHOW_MAX_CLIPS]; /* "axial-high=MM" and its like */
     int n_clips;
     bool is_uncapped;

@@ -64,4 +64,14 @@ describe('the figures of the thesis, by one command each', () => {
     assertArea(shown, isGrey, scalp.above + markerBeyondScalp);
     assertArea(shown, isDrawn, scalp.above + markerBeyondScalp);
   });
+
+  // Half way between axial and coronal, the scalp is cut along its half axes of 73 mm and of 1 / sqrt(((1 / 88)^2 + (1 / 103)^2) / 2)
+  it('an oblique slice, alone and in space', () => {
+    const oblique = 1 / Math.sqrt((1 / 88 ** 2 + 1 / 103 ** 2) / 2);
+    const options = ['--plane', '0,1,1@0,0,0', '--show', 'none', '--slices', 'none', '--scene', '{"image":{"window":{"center":-500,"width":10}}}']; // half way from air
+    const { position_mm: _, ...flat } = JSON.parse(front).camera;
+    assertArea(picture(JSON.stringify({ camera: flat }), ...options), isDrawn, ellipse(73, oblique) + markerBeyondScalp);
+    const { camera } = JSON.parse(from([0, -500, -500], [0, 0, 1])); // square on
+    assertArea(picture(JSON.stringify({ kind: '3d', camera }), ...options), isDrawn, ellipse(73, oblique) + markerBeyondScalp);
+  });
 });
