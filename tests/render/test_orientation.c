@@ -1,5 +1,6 @@
 /* Left is left: a plan with marks on the patient's left, front and top is drawn from known directions. Where each mark
  * must appear follows from the definitions of patient axes and views. */
+#include "core/annotate/describe.h"
 #include "tests/render/shots.h"
 
 static const struct vec3 centre = { 5, -7, 11 }; /* off the origin, so that a mirrored axis cannot go unnoticed */
@@ -211,6 +212,177 @@ static void an_axial_slice_in_space_seen_from_above_has_the_left_on_screen_left(
     plan_and_derived_destroy(plan);
 }
 
+/* ---- the 48 orders in which the voxels of an image can be stored ------------------------------------------------ */
+
+enum { N_ORDERS = 48, ORDER_WIDTH = 200, ORDER_HEIGHT = 160 };
+static const uint32_t order_size[3] = { 20, 16, 12 }; /* along L, P, S */
+static const double order_mm[3] = { 1, 1.5, 2 };
+
+/* Which stored axis runs along each patient axis, and whether backwards. */
+static void order_of(int order, int axis_of[3], bool is_backwards[3])
+{
+    static const int permutations[6][3] = {
+        { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 }
+    };
+    for (int a = 0; a < 3; a++) {
+        axis_of[a] = permutations[order / 8][a];
+        is_backwards[a] = order >> a & 1;
+    }
+}
+
+/* The value of the voxel at a place counted towards L, P and S: greys that differ from voxel to voxel, and white in the
+ * corner at the left, back and top. */
+static uint8_t value_at(const uint32_t lps[3])
+{
+    if (lps[0] == order_size[0] - 1 && lps[1] == order_size[1] - 1 && lps[2] == order_size[2] - 1)
+        return 255;
+    return (uint8_t)(20 + (lps[0] * 73 + lps[1] * 131 + lps[2] * 197) % 160);
+}
+
+static struct plan *stored_plan(int order)
+{
+    int axis_of[3];
+    bool is_backwards[3];
+    uint32_t size[3];
+    struct vec3 steps[3] = { { 0, 0, 0 } };
+    order_of(order, axis_of, is_backwards);
+    for (int a = 0; a < 3; a++) {
+        double mm = is_backwards[a] ? -order_mm[a] : order_mm[a];
+        size[axis_of[a]] = order_size[a];
+        steps[axis_of[a]] = vec3(a == 0 ? mm : 0, a == 1 ? mm : 0, a == 2 ? mm : 0);
+    }
+    struct grid grid = made_grid(size[0], size[1], size[2], made_affine(steps[0], steps[1], steps[2], size, centre));
+    struct error err = { 0 };
+    struct volume *volume = volume_create(&grid, VOXEL_U8, &err);
+    assert_non_null(volume);
+    for (uint32_t k = 0; k < size[2]; k++)
+        for (uint32_t j = 0; j < size[1]; j++)
+            for (uint32_t i = 0; i < size[0]; i++) {
+                const uint32_t stored[3] = { i, j, k };
+                uint32_t lps[3];
+                for (int a = 0; a < 3; a++)
+                    lps[a] = is_backwards[a] ? order_size[a] - 1 - stored[axis_of[a]] : stored[axis_of[a]];
+                ((uint8_t *)volume->voxels)[(k * size[1] + j) * size[0] + i] = value_at(lps);
+            }
+    volume_measure(volume);
+    struct plan *plan = plan_create("made");
+    plan->bounds_lps_mm = grid_bounds_lps_mm(&grid);
+    (void)snprintf(plan->images[0].id, sizeof plan->images[0].id, "image");
+    plan->images[0].volume = volume;
+    plan->n_images = 1;
+    return plan;
+}
+
+enum { SHOW_AXIAL, SHOW_CORONAL, SHOW_SAGITTAL, SHOW_OBLIQUE, SHOW_SPACE, N_SHOWN };
+
+/* Through the marked corner: half a voxel from the three outer faces. */
+static struct snapshot *order_snapshot(struct plan *plan, int shown)
+{
+    static const enum scene_kind kinds[N_SHOWN] = { SCENE_KIND_AXIAL, SCENE_KIND_CORONAL, SCENE_KIND_SAGITTAL,
+                                                    SCENE_KIND_OBLIQUE, SCENE_KIND_3D };
+    const struct vec3 corner = vec3(centre.x + 9.5, centre.y + 11.25, centre.z + 11);
+    struct scene scene = shots_scene(plan);
+    struct error err = { 0 };
+    char field[128];
+    scene.image.window.center = 127.5;
+    scene.image.window.width = 255;
+    scene.image.slices.sagittal.position_mm = corner.x;
+    scene.image.slices.coronal.position_mm = corner.y;
+    scene.image.slices.axial.position_mm = corner.z;
+    scene.image.slices.axial.visible = scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = true;
+    scene.image.obliques = mem_new(sizeof *scene.image.obliques);
+    scene.image.n_obliques = 1;
+    scene.image.obliques[0] = (struct scene_oblique_entry){ .id = "a", .value = scene_oblique_default };
+    scene.image.obliques[0].value.visible = true;
+    scene.image.obliques[0].value.origin_mm = corner;
+    scene.image.obliques[0].value.normal = vec3(1, 1.2, -2);
+    /* a shift that lays no edge of a voxel on the middle of a pixel */
+    const struct vec3 target = vec3(centre.x + 0.03, centre.y + 0.07, centre.z + 0.05);
+    struct view view = shown == SHOW_SPACE ? shots_view_from(target, vec3(0.9, 0.7, 0.8), vec3(0, 0, 1), 4.1)
+                                           : shots_view(kinds[shown], target, 5.3);
+    (void)snprintf(view.plane, sizeof view.plane, "a");
+    view.size_px[0] = ORDER_WIDTH;
+    view.size_px[1] = ORDER_HEIGHT;
+    view.camera.height_mm = ORDER_HEIGHT / (shown == SHOW_SPACE ? 4.1 : 5.3);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+    assert_string_equal(err.text, "");
+    return snapshot;
+}
+
+static struct image *order_picture(const struct snapshot *snapshot)
+{
+    struct error err = { 0 };
+    struct camera camera;
+    struct render_timing timing;
+    struct render_options options = { ORDER_WIDTH, ORDER_HEIGHT, SURFACE_FULL, false };
+    struct image *image = render_snapshot(shots_renderer, snapshot, &options, &camera, &timing, &err);
+    assert_string_equal(err.text, "");
+    return image;
+}
+
+/* The brightest pixels lie towards the edges that say L, P and S. */
+static void expect_corner_at_letters(const struct image *image, const struct edge_letters *letters)
+{
+    double x = 0, y = 0;
+    int n = 0;
+    for (int py = 0; py < image->height_px; py++)
+        for (int px = 0; px < image->width_px; px++)
+            if (shots_pixel(image, px, py)[0] > 225) {
+                x += px + 0.5;
+                y += py + 0.5;
+                n++;
+            }
+    assert_true(n > 4);
+    x = x / n - image->width_px / 2.0;
+    y = y / n - image->height_px / 2.0;
+    const char *horizontal = x > 0 ? letters->right : letters->left, *vertical = y > 0 ? letters->bottom : letters->top;
+    assert_true(strchr("LPS", horizontal[0]) != NULL);
+    assert_true(strchr("LPS", vertical[0]) != NULL);
+    assert_true(fabs(x) > 20 && fabs(y) > 20);
+}
+
+/* Which index of a file runs where is the file's matter: no picture, and no letter, depends on it. */
+static void all_48_orders_of_the_voxels_give_the_same_pictures(void **state)
+{
+    (void)state;
+    struct image *first[N_SHOWN] = { NULL }, *burnt[N_SHOWN] = { NULL };
+    for (int order = 0; order < N_ORDERS; order++) {
+        struct plan *plan = stored_plan(order);
+        for (int shown = 0; shown < N_SHOWN; shown++) {
+            struct snapshot *snapshot = order_snapshot(plan, shown);
+            struct image *image = order_picture(snapshot);
+            struct annotations words;
+            struct error err = { 0 };
+            assert_true(annotations_describe(&words, snapshot, ORDER_WIDTH, "", &err));
+            struct image *annotated = annotate_image(image, &words, &err);
+            assert_non_null(annotated);
+            if (order == 0) {
+                if (shown <= SHOW_SAGITTAL)
+                    expect_corner_at_letters(image, &words.letters);
+                first[shown] = image;
+                burnt[shown] = annotated;
+            } else {
+                for (int i = 0; i < 4 * ORDER_WIDTH * ORDER_HEIGHT; i++)
+                    if (abs(image->rgba[i] - first[shown]->rgba[i]) > 1)
+                        fail_msg("order %d, picture %d: %d instead of %d at %d, %d", order, shown, image->rgba[i],
+                                 first[shown]->rgba[i], i / 4 % ORDER_WIDTH, i / 4 / ORDER_WIDTH);
+                assert_int_equal(annotated->height_px, burnt[shown]->height_px);
+                for (int i = 0; i < 4 * annotated->width_px * annotated->height_px; i++)
+                    assert_in_range(annotated->rgba[i] + 1, burnt[shown]->rgba[i], burnt[shown]->rgba[i] + 2);
+                image_destroy(image);
+                image_destroy(annotated);
+            }
+            annotations_finish(&words);
+            snapshot_unref(snapshot);
+        }
+        shots_forget(plan);
+    }
+    for (int shown = 0; shown < N_SHOWN; shown++) {
+        image_destroy(first[shown]);
+        image_destroy(burnt[shown]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -220,6 +392,7 @@ int main(void)
         cmocka_unit_test(cross_sections_of_regions_lie_as_the_panes_say),
         cmocka_unit_test(image_slices_lie_as_the_panes_say),
         cmocka_unit_test(an_axial_slice_in_space_seen_from_above_has_the_left_on_screen_left),
+        cmocka_unit_test(all_48_orders_of_the_voxels_give_the_same_pictures),
     };
     return shots_run("orientation", tests, sizeof tests / sizeof tests[0]);
 }
