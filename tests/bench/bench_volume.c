@@ -13,6 +13,7 @@
 #include "core/load/load.h"
 #include "core/render/render.h"
 #include "core/scene/camera.h"
+#include "tests/bench/vtk_volume.h"
 #include "volume_presets.h"
 
 enum { REPEATS = 11, SIDE = 256 };
@@ -278,6 +279,74 @@ static void bench_plan(struct plan *plan, const char *what)
     plan_destroy(plan);
 }
 
+/* ---- beside VTK ----------------------------------------------------------------------------------------------------- */
+
+static double median(double values[REPEATS], int n)
+{
+    qsort(values, (size_t)n, sizeof values[0], compare);
+    return values[n / 2];
+}
+
+/* Ours and a mapper of VTK draw the same picture in turn, both from the eye of set_camera, in steps of a voxel where it
+ * moves and of half a voxel in a still, where ours has four rays for a pixel and VTK one. */
+static void bench_beside(struct derive *derived, const struct way *way, struct vtk_volume *vtk, const char *mapper,
+                         bool is_still, int n)
+{
+    int size_px[2] = { is_still ? 1024 : 512, is_still ? 768 : 384 };
+    double step_mm = is_still ? spacing_mm / 2 : spacing_mm;
+    double ours_ms[REPEATS], theirs_ms[REPEATS], theirs_busy_ms[REPEATS];
+    struct render_timing timing;
+    for (int i = -1; i < n; i++) { /* the first prepares and does not count */
+        struct scene_camera camera;
+        struct vtk_volume_time theirs;
+        const char *method = way->method == SCENE_VOLUME_METHOD_MIP ? "mip" : "ray";
+        set_camera(derive_plan(derived), i, &camera);
+        timing = (struct render_timing){ 0 };
+        image_destroy(draw(derived, way, i, size_px[0], size_px[1], is_still, &timing));
+        if (!vtk_volume_draw(vtk, mapper, method, step_mm, size_px, &camera, &theirs))
+            stop(&(struct error){ .text = "the VTK side" });
+        if (i < 0)
+            continue;
+        ours_ms[i] = (double)(timing.draw_us + timing.read_us) / 1e3;
+        theirs_ms[i] = theirs.ms;
+        theirs_busy_ms[i] = theirs.busy_ms;
+    }
+    double ours = median(ours_ms, n), theirs = median(theirs_ms, n);
+    bool is_smart = strcmp(mapper, "smart") == 0;
+    printf(
+        "{\"name\":\"volume beside VTK, %s, %s\",\"value\":%.2f,\"unit\":\"ms\",\"peer\":\"%s %s\",\"peer_value\":%.2f,"
+        "\"ratio\":%.2f,\"note\":\"made head 256^3, %d x %d%s; theirs %.0f ms of processor time, %s; median of %d\"}\n",
+        way->name, is_still ? "still" : "moving", ours,
+        is_smart ? "vtkSmartVolumeMapper" : "vtkFixedPointVolumeRayCastMapper", vtk->version, theirs, theirs / ours,
+        size_px[0], size_px[1], is_still ? ", ours anti-aliased" : "", median(theirs_busy_ms, n),
+        is_smart ? vtk->gl : "its own rays", n);
+    fflush(stdout);
+}
+
+static void bench_vtk(struct plan *plan)
+{
+    struct derive *derived = derive_create(plan);
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+        const struct way *way = &ways[i];
+        const struct volume_preset *preset = way->preset ? preset_of(way->preset) : preset_of("Bone");
+        struct vtk_volume vtk;
+        if (way->method != SCENE_VOLUME_METHOD_RAY && way->method != SCENE_VOLUME_METHOD_MIP)
+            continue;
+        if (!vtk_volume_start(&vtk, plan->images[0].volume, preset->points, preset->n_points, way->is_shaded)) {
+            fprintf(stderr, "bench_volume: no VTK for Python here: our times only\n");
+            break;
+        }
+        for (int is_still = 0; is_still < 2; is_still++) {
+            bench_beside(derived, way, &vtk, "fixed", is_still, 5);
+            if (i == 0) /* seconds a picture */
+                bench_beside(derived, way, &vtk, "smart", is_still, 3);
+        }
+        vtk_volume_end(&vtk);
+    }
+    renderer_forget(soft, plan);
+    derive_destroy(derived);
+}
+
 /* ---- for another program -------------------------------------------------------------------------------------------- */
 
 static void dump(const struct plan *plan, const char *folder)
@@ -332,6 +401,7 @@ int main(int argc, char **argv)
     soft = renderer_create(RENDER_SOFT, &err);
     if (!soft)
         stop(&err);
+    bench_vtk(head);
     bench_plan(head, "made head 256^3");
     static const char *const real[] = { "dicom-head-phantom", "openkbp-pt99" };
     for (size_t i = 0; getenv("BEAMROOM_DATA") && i < sizeof real / sizeof real[0]; i++) {

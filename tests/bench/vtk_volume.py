@@ -3,18 +3,17 @@
 
 usage: vtk_volume.py SETUP.json
 
-SETUP.json: {"file": "raw voxels, [z][y][x]", "type": "int16", "size": [nx, ny, nz], "spacing_mm": [x, y, z],
-"origin_mm": [x, y, z], "direction": [9 numbers: the matrix from grid axes to patient axes, row by row], "width_px", "height_px",
-"background": [r, g, b], "is_shaded", "is_linear", "points": [{"value", "color": [r, g, b], "opacity"}]}.
-The first voxel's centre is origin_mm; colours are 0 to 1; opacity is that of 1 mm; "type" is a numpy type; every key after height_px
-has a default (black, true, true, no points), direction and origin_mm too.
+SETUP.json: {"file": "raw voxels, [z][y][x]", "type": "int16", "size": [nx, ny, nz], "spacing_mm": [x, y, z], "origin_mm": [x, y, z],
+"direction": [9 numbers: the matrix from grid axes to patient axes, row by row], "background": [r, g, b], "is_shaded", "is_linear",
+"points": [{"value", "color": [r, g, b], "opacity"}]}. The first voxel's centre is origin_mm; colours are 0 to 1; opacity is that of 1 mm;
+"type" is a numpy type; all after spacing_mm have a default: 0, not turned, black, true, true, no points.
 
 First prints VTK's version, its number of threads and the OpenGL renderer, "_" for a space. Then, for each line on the standard input,
-"MAPPER METHOD STEP_MM EYE_X EYE_Y EYE_Z TARGET_X TARGET_Y TARGET_Z UP_X UP_Y UP_Z ANGLE_DEG [FILE]", draws a picture and prints
-"MILLISECONDS PIXELS": until the picture is in memory, and how many of its pixels the volume covers. MAPPER: fixed
-(vtkFixedPointVolumeRayCastMapper) or smart (vtkSmartVolumeMapper); METHOD: ray, mip or average (average: smart only); STEP_MM: between
-samples; a positive ANGLE_DEG is the vertical angle of view, a negative one half the height in mm in parallel projection, negated.
-FILE gets the picture, RGB, 8 bits, row by row from the top. The first picture of a mapper includes what it prepares.
+"MAPPER METHOD STEP_MM WIDTH_PX HEIGHT_PX EYE_X EYE_Y EYE_Z TARGET_X TARGET_Y TARGET_Z UP_X UP_Y UP_Z ANGLE_DEG [FILE]", draws a picture
+and prints "MILLISECONDS PROCESSOR_MILLISECONDS PIXELS": until the picture is in memory; of all threads together; how many of its pixels
+the volume covers. MAPPER: fixed (vtkFixedPointVolumeRayCastMapper) or smart (vtkSmartVolumeMapper); METHOD: ray, mip or average (smart
+only); STEP_MM: between samples; a positive ANGLE_DEG is the vertical angle of view, a negative one half the height in mm in parallel
+projection, negated. FILE gets the picture, RGB, 8 bits, row by row from the top. The first picture of a mapper includes what it prepares.
 Pictures are drawn by Mesa in software, without a display. Exit status 77: no VTK for Python here, or no such Mesa.
 """
 import ctypes
@@ -108,7 +107,7 @@ class Pictures:
         self.window.SetReadyForRendering(True)
         self.window.SetMultiSamples(0)
         self.window.SetOffScreenRendering(1)
-        self.window.SetSize(setup["width_px"], setup["height_px"])
+        self.window.SetSize(64, 64)
         self.window.OpenGLInit()
         self.image, self.matrix = make_image(setup)
         self.property = make_property(setup)
@@ -129,8 +128,8 @@ class Pictures:
             self.renderers[name] = renderer, volume.GetMapper()
         return self.renderers[name]
 
-    def draw(self, name, method, step_mm, eye, target, up, angle_deg):
-        """(milliseconds, picture as [height][width][4], row 0 at the bottom)"""
+    def draw(self, name, method, step_mm, size_px, eye, target, up, angle_deg):
+        """(milliseconds, those of all processors, picture as [height][width][4], row 0 at the bottom)"""
         renderer, mapper = self.renderer_of(name)
         mapper.SetBlendMode({"ray": 0, "mip": 1, "average": 3}[method])
         mapper.SetSampleDistance(step_mm)
@@ -146,13 +145,14 @@ class Pictures:
         renderer.ResetCameraClippingRange()
         self.window.AddRenderer(renderer)
         rgba = vtkUnsignedCharArray()
-        width, height = self.setup["width_px"], self.setup["height_px"]
-        began = time.perf_counter()
+        width, height = size_px
+        self.window.SetSize(width, height)
+        began, busy = time.perf_counter(), time.process_time()
         self.window.Render()
         self.window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, rgba)
-        took_ms = (time.perf_counter() - began) * 1e3
+        took_ms, busy_ms = (time.perf_counter() - began) * 1e3, (time.process_time() - busy) * 1e3
         self.window.RemoveRenderer(renderer)
-        return took_ms, vtk_to_numpy(rgba).reshape(height, width, 4)
+        return took_ms, busy_ms, vtk_to_numpy(rgba).reshape(height, width, 4)
 
 
 def main():
@@ -166,12 +166,14 @@ def main():
     background = numpy.round(numpy.array(setup.get("background", [0, 0, 0])) * 255).astype(int)
     for line in sys.stdin:
         words = line.split()
-        step_mm, *numbers = map(float, words[2:13])
-        took_ms, picture = pictures.draw(words[0], words[1], step_mm, numbers[0:3], numbers[3:6], numbers[6:9], numbers[9])
+        size_px = int(words[3]), int(words[4])
+        numbers = [float(word) for word in words[5:15]]
+        took_ms, busy_ms, picture = pictures.draw(words[0], words[1], float(words[2]), size_px, numbers[0:3], numbers[3:6],
+                                                  numbers[6:9], numbers[9])
         covered = (numpy.abs(picture[:, :, :3].astype(int) - background).max(axis=2) > 1).sum()
-        if len(words) > 13:
-            picture[::-1, :, :3].tofile(words[13])
-        print(f"{took_ms:.3f} {covered}", flush=True)
+        if len(words) > 15:
+            picture[::-1, :, :3].tofile(words[15])
+        print(f"{took_ms:.3f} {busy_ms:.3f} {covered}", flush=True)
 
 
 main()
