@@ -138,18 +138,20 @@ char *bench_page(const struct bench_machine *machine, const struct bench_plan *p
     fputs("\n|---|---:|", out);
     for (size_t i = 0; i < n_plans; i++)
         fputs("---:|", out);
-    fputs("\n| Single slice inlaid, linear | 25 |", out);
-    for (size_t i = 0; i < n_plans; i++) {
-        fputs(" ", out);
-        put_number(out, plans[i].slice_fps);
-        fputs(" |", out);
-    }
-    static const char *const volumes[2] = { "| Volume, 256 slices, nearest | 0.18 |",
-                                            "| Volume, 256 slices, linear | 0.09 |" };
-    for (int row = 0; row < 2; row++) {
-        fprintf(out, "\n%s", volumes[row]);
-        for (size_t i = 0; i < n_plans; i++)
-            fputs(" not drawn by this version |", out);
+    static const char *const ways[BENCH_N_IMAGE_WAYS] = {
+        [BENCH_SLICE] = "Single slice inlaid, linear | 25",
+        [BENCH_VOLUME_NEAREST] = "Volume, 256 slices, nearest | 0.18",
+        [BENCH_VOLUME_LINEAR] = "Volume, 256 slices, linear | 0.09",
+        [BENCH_RAY] = "Volume, rays through every voxel, lit | -",
+        [BENCH_RAY_PLAIN] = "Volume, rays through every voxel, not lit | -",
+    };
+    for (int way = 0; way < BENCH_N_IMAGE_WAYS; way++) {
+        fprintf(out, "\n| %s |", ways[way]);
+        for (size_t i = 0; i < n_plans; i++) {
+            fputs(" ", out);
+            put_number(out, plans[i].image_fps[way]);
+            fputs(" |", out);
+        }
     }
     fputs(
         "\n\n## Every region, every method\n\n"

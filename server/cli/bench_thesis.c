@@ -116,6 +116,23 @@ static void set_scene(const struct plan *plan, int region, const struct shape_ke
         false;
 }
 
+/* Shows the image in one of the ways, as far as it is not culled. */
+static void show_image(struct scene *scene, enum bench_image_way way)
+{
+    struct scene_volume_style *volume = &scene->image.volume;
+    scene->image.slices.axial.visible = way == BENCH_SLICE;
+    if (way == BENCH_SLICE || way == BENCH_NO_IMAGE)
+        return;
+    bool is_ray = way == BENCH_RAY || way == BENCH_RAY_PLAIN;
+    volume->visible = true;
+    volume->method = is_ray ? SCENE_VOLUME_METHOD_RAY : SCENE_VOLUME_METHOD_SLICES;
+    volume->interpolation = way == BENCH_VOLUME_NEAREST ? SCENE_INTERPOLATION_NEAREST : SCENE_INTERPOLATION_LINEAR;
+    volume->shaded = way == BENCH_RAY;
+    volume->steps = 256;
+    if (!is_ray)
+        volume->cull_below = scene->image.cull_below;
+}
+
 /* A snapshot from the home camera turned by turn_deg around the patient's long axis. Takes the scene. */
 static struct snapshot *turned(struct derive *derived, struct scene *scene, double turn_deg, struct error *err)
 {
@@ -133,7 +150,7 @@ static struct snapshot *turned(struct derive *derived, struct scene *scene, doub
 
 /* Median time of n pictures, each turned 7 degrees further. One more before them, which uploads, is not counted. */
 static bool time_pictures(struct derive *derived, struct renderer *renderer, int region, const struct shape_key *key,
-                          bool is_faceted, bool has_slice, int n, double *median_ms, struct error *err)
+                          bool is_faceted, enum bench_image_way way, int n, double *median_ms, struct error *err)
 {
     double samples[MAX_SAMPLES];
     const struct render_options options = { BENCH_SIZE_PX, BENCH_SIZE_PX, SURFACE_FULL, false };
@@ -143,7 +160,7 @@ static bool time_pictures(struct derive *derived, struct renderer *renderer, int
         struct render_timing timing;
         set_scene(derive_plan(derived), region, key, &scene);
         scene.surface.normals = is_faceted ? SCENE_NORMALS_FACE : SCENE_NORMALS_VERTEX;
-        scene.image.slices.axial.visible = has_slice;
+        show_image(&scene, way);
         struct snapshot *snapshot = turned(derived, &scene, 7 * i, err);
         struct image *image = snapshot ? render_snapshot(renderer, snapshot, &options, &camera, &timing, err) : NULL;
         snapshot_unref(snapshot);
@@ -186,8 +203,8 @@ static bool measure(struct derive *derived, struct renderer *renderer, size_t re
     }
     derive_set_budget(derived, DERIVE_BUDGET_BYTES);
     row->made_ms = median(samples, (size_t)n_repeats);
-    bool is_drawn =
-        time_pictures(derived, renderer, (int)region, &method->key, false, false, 5 * n_repeats, &row->draw_ms, err);
+    bool is_drawn = time_pictures(derived, renderer, (int)region, &method->key, false, BENCH_NO_IMAGE, 5 * n_repeats,
+                                  &row->draw_ms, err);
     renderer_forget(renderer, plan);
     return is_drawn;
 }
@@ -216,7 +233,8 @@ static bool measure_table1(struct derive *derived, struct renderer *renderer, si
                 return false;
         }
         row->made_ms = median(samples, (size_t)n_repeats);
-        if (!time_pictures(derived, renderer, (int)region, &key, i == 0, false, 5 * n_repeats, &row->draw_ms, err))
+        if (!time_pictures(derived, renderer, (int)region, &key, i == 0, BENCH_NO_IMAGE, 5 * n_repeats, &row->draw_ms,
+                           err))
             return false;
     }
     renderer_forget(renderer, plan);
@@ -228,7 +246,9 @@ bool bench_measure(struct derive *derived, struct renderer *renderer, int n_repe
 {
     const struct plan *plan = derive_plan(derived);
     size_t largest = SIZE_MAX, n_regions = plan->regions.n_regions;
-    *result = (struct bench_plan){ .is_phantom = plan->is_phantom, .slice_fps = NAN };
+    *result = (struct bench_plan){ .is_phantom = plan->is_phantom };
+    for (int way = 0; way < BENCH_N_IMAGE_WAYS; way++)
+        result->image_fps[way] = NAN;
     (void)snprintf(result->name, sizeof result->name, "%s", plan->name);
     result->rows = mem_new((n_regions * N_METHODS + 1) * sizeof *result->rows);
     for (size_t r = 0; r < n_regions; r++) {
@@ -248,12 +268,12 @@ bool bench_measure(struct derive *derived, struct renderer *renderer, int n_repe
     (void)snprintf(result->scalp, sizeof result->scalp, "%s", plan->regions.regions[largest].name);
     if (!measure_table1(derived, renderer, largest, n_repeats, result->table1, err))
         return false;
-    double slice_ms;
-    if (plan->n_images == 0)
-        return true;
-    if (!time_pictures(derived, renderer, -1, NULL, false, true, 5 * n_repeats, &slice_ms, err))
-        return false;
-    result->slice_fps = 1000 / slice_ms;
+    for (int way = 0; plan->n_images > 0 && way < BENCH_N_IMAGE_WAYS; way++) {
+        double ms;
+        if (!time_pictures(derived, renderer, -1, NULL, false, (enum bench_image_way)way, 5 * n_repeats, &ms, err))
+            return false;
+        result->image_fps[way] = 1000 / ms;
+    }
     return true;
 }
 

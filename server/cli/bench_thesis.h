@@ -6,6 +6,17 @@
 
 enum { BENCH_MAX_METHODS = 24, BENCH_SIZE_PX = 650 }; /* Sera3d's window */
 
+/* How the image alone is shown: Table 2 of the thesis, and the ways it had not. */
+enum bench_image_way {
+    BENCH_SLICE,
+    BENCH_VOLUME_NEAREST, /* 256 slices, as the thesis */
+    BENCH_VOLUME_LINEAR,
+    BENCH_RAY,       /* the transfer function of a new room */
+    BENCH_RAY_PLAIN, /* not lit */
+    BENCH_N_IMAGE_WAYS,
+    BENCH_NO_IMAGE
+};
+
 /* One region by one method. */
 struct bench_row {
     char region[REGION_NAME_SIZE];
@@ -23,8 +34,8 @@ struct bench_plan {
     size_t n_rows;
     /* Table 1 of the thesis, on the plan's scalp, else on its largest region */
     char scalp[REGION_NAME_SIZE];
-    struct bench_row table1[3]; /* 8-cell with face normals, 8-cell with vertex normals, marching cubes */
-    double slice_fps;           /* Table 2: pictures a second with one slice; not-a-number without an image */
+    struct bench_row table1[3];           /* 8-cell with face normals, 8-cell with vertex normals, marching cubes */
+    double image_fps[BENCH_N_IMAGE_WAYS]; /* Table 2: pictures a second; not-a-number without an image */
 };
 
 struct bench_machine {
