@@ -140,7 +140,7 @@ static void leaps_do_not_change_a_picture(void **state)
         struct view view = view_default;
         scene_for_plan(plan, &scene);
         scene.image.volume.visible = true;
-        scene.image.volume.method = (enum scene_volume_method)(test / 4);
+        scene.image.volume.method = (enum scene_volume_method)(test / 4); /* ray, slices, mip */
         scene.image.volume.cull_below = test / 4 > 0 ? 70 : -1e12;
         const struct scene_transfer_point points[] = {
             { 40, 0xff4020, 0 }, { 90, 0x40ff20, 0.3 }, { 110, 0x2040ff, 0 }, { 140, 0xffffff, 0.9 }

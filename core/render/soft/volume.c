@@ -117,6 +117,8 @@ static void set_values(struct soft_volume *volume, const struct volume *image, c
     }
     volume->scale = (float)(image->slope * per_value);
     volume->offset = (float)((image->offset - low) * per_value);
+    volume->value_scale = (float)per_value;
+    volume->value_offset = (float)(-low * per_value);
     volume->cull = (float)((draw->cull - low) * per_value);
     volume->grey_scale = (float)(1 / (per_value * draw->image.width));
     volume->grey_offset = (float)((low - draw->image.low) / draw->image.width);
@@ -199,7 +201,9 @@ bool soft_volume_init(struct soft_volume *volume, const struct draw *draw, const
     if (volume->method == SCENE_VOLUME_METHOD_AVERAGE)
         return true;
     volume->leaps = volume_leaps_get(snapshot->derived, draw->subject.index, ranges, n_ranges, err);
-    if (!volume->leaps)
+    if (volume->leaps && volume->method == SCENE_VOLUME_METHOD_MIP)
+        volume->bricks = volume_bricks_get(snapshot->derived, draw->subject.index, err);
+    if (!volume->leaps || (volume->method == SCENE_VOLUME_METHOD_MIP && !volume->bricks))
         return false;
     volume->leap = volume->leaps->leap;
     for (int axis = 0; axis < 3; axis++)
@@ -211,6 +215,9 @@ void soft_volume_finish(struct soft_volume *volume)
 {
     if (volume->leaps)
         derive_result_unref(&volume->leaps->base);
+    if (volume->bricks)
+        derive_result_unref(&volume->bricks->base);
     volume->leaps = NULL;
+    volume->bricks = NULL;
     volume->leap = NULL;
 }

@@ -25,8 +25,9 @@ struct soft_volume {
     const void *voxels;
     enum soft_voxel type;
     uint32_t size[3];
-    struct volume_leaps *leaps; /* a reference */
-    const uint8_t *leap;        /* of leaps; NULL: nothing is skipped */
+    struct volume_leaps *leaps;   /* a reference */
+    const uint8_t *leap;          /* of leaps; NULL: nothing is skipped */
+    struct volume_bricks *bricks; /* of mip: a reference */
     uint32_t n_bricks[3];
     /* rays: index of the origin, and change of it with a mm of depth; the same in the picture's axes right, up */
     struct soft_linear origin[3], per_depth[3], right, up;
@@ -38,6 +39,7 @@ struct soft_volume {
     /* values: t = raw scale + offset is an entry of the table, or of other methods grey 0..1; less than cull is not
      * there */
     float scale, offset, cull;
+    float value_scale, value_offset; /* t of a value in the image's unit */
     float step_voxels, step_limit_mm;
     double first_depth, part_depth; /* slices: of the first plane; from plane to plane */
     int n_slices;

@@ -7,9 +7,12 @@
 
 /* An opacity of 1 would be an absorption without end. */
 static const double most_opacity = 0.999;
-/* Voxels along a ray from sample to sample. The four samples of a pixel of a still take their values in turn,
- * so it has four to a voxel. */
-static const double moving_step = 1, still_step = 1;
+/* Voxels along a ray from sample to sample, while moving and in a still. The four samples of a pixel of a still take
+ * their values in turn, so it has four times as many to a voxel. The mean of many values needs fewer of them. */
+static const double steps[][2] = { [SCENE_VOLUME_METHOD_RAY] = { 1, 1 },
+                                   [SCENE_VOLUME_METHOD_SLICES] = { 1, 1 },
+                                   [SCENE_VOLUME_METHOD_MIP] = { 1, 2 },
+                                   [SCENE_VOLUME_METHOD_AVERAGE] = { 2, 4 } };
 /* As part of the values between which the transfer function changes, per mm. Noise is less, a surface is more. */
 static const double least_gradient = 0.03;
 
@@ -79,7 +82,7 @@ bool draw_volume(struct draw_list *list, const struct draw_scope *scope, struct 
         return true;
     const struct volume *volume = snapshot->plan->images[snapshot->image].volume;
     struct vec3 spacing_mm = grid_spacing_mm(&volume->grid);
-    double step = list->samples > 1 ? still_step : moving_step;
+    double step = steps[style->method][list->samples > 1];
     struct draw_volume draw = {
         .method = style->method,
         .cull = style->cull_below,
