@@ -422,6 +422,24 @@ static void the_largest_value_and_the_mean_are_those_of_the_field(void **state)
     }
 }
 
+/* Level 227 of hot iron: red 2 x 227 is 255 at most, green 2 x 99 = 198, blue 4 x 35 = 140 (DICOM PS3.6 B.1.1); next to
+ * it 2 and 4 less or more. All of the light behind is hidden, as red is as bright as can be. */
+static void the_largest_value_has_the_colour_of_the_images_map(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_I16, along_p);
+    struct scene scene = projected(plan, SCENE_VOLUME_METHOD_MIP);
+    scene.image.color_map = SCENE_COLOR_MAP_HOT_IRON;
+    struct image *image = moving(plan, scene, shots_view_from(origin, from_front, up, 4));
+    const uint8_t *pixel = shots_pixel(image, MIDDLE_X, MIDDLE_Y);
+    assert_int_equal(pixel[0], 255);
+    assert_close(pixel[1], 198, 2 * 5); /* up to half an interval off: 2 of 100, 5 levels */
+    assert_close(pixel[2], 140, 4 * 5);
+    image_destroy(image);
+    shots_forget(plan);
+}
+
 /* The mean counts values from 110 on: y from 5 to 20, 110 to 139 and half a voxel of 139. */
 static void the_mean_leaves_out_what_is_below_the_limit(void **state)
 {
@@ -555,7 +573,8 @@ static void pauses_do_not_change_a_picture(void **state)
     struct camera camera;
     struct render_timing timing;
     struct image *paused = render_end(picture, &camera, &timing);
-    assert_true(n_parts > 5);
+    if (renderer_facts(shots_renderer)->back_end == RENDER_SOFT)
+        assert_true(n_parts > 5);
     assert_memory_equal(paused->rgba, whole->rgba, (size_t)4 * SHOTS_WIDTH * SHOTS_HEIGHT);
     snapshot_unref(snapshot);
     image_destroy(whole);
@@ -577,6 +596,7 @@ int main(void)
         cmocka_unit_test(clip_planes_cut_a_volume_unless_it_is_exempt),
         cmocka_unit_test(a_capped_cut_through_a_volume_shows_the_image_where_the_volume_is_seen),
         cmocka_unit_test(the_largest_value_and_the_mean_are_those_of_the_field),
+        cmocka_unit_test(the_largest_value_has_the_colour_of_the_images_map),
         cmocka_unit_test(the_mean_leaves_out_what_is_below_the_limit),
         cmocka_unit_test(the_first_of_the_slices_that_is_not_culled_is_seen),
         cmocka_unit_test(a_surface_in_a_volume_is_lit_as_a_surface),

@@ -1,5 +1,6 @@
 /* Draws a volume by OpenGL: the uniforms and textures of the program that composes it with the translucent layers. */
 #include <float.h>
+#include <string.h>
 
 #include "core/render/gl/draw.h"
 
@@ -89,14 +90,21 @@ static void set_clips(const struct gl_frame *frame, const struct gl_program *pro
         frame->gl->Uniform4fv(program->clips, n, &clips[0][0]);
 }
 
+/* Rows of the texture `table`: colours and absorptions of the transfer function; colours of the image's levels. */
 static void bind_table(const struct gl_frame *frame, const struct gl_program *program, const struct draw_volume *volume)
 {
     const struct gl *gl = frame->gl;
+    float rows[2][DRAW_VOLUME_TABLE][4] = { 0 };
+    if (volume->table)
+        memcpy(rows[0], volume->table, sizeof rows[0]);
+    for (uint32_t level = 0; level < 256; level++)
+        for (int c = 0; c < 3; c++)
+            rows[1][level][c] =
+                (float)(volume->image.colors ? volume->image.colors[level] >> 8 * c & 255 : level) / 255.0f;
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_TABLE);
     gl->BindTexture(GL_TEXTURE_2D, frame->transfer);
     gl->Uniform1i(program->table, UNIT_TABLE);
-    if (volume->table)
-        gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, DRAW_VOLUME_TABLE, 1, 0, GL_RGBA, GL_FLOAT, volume->table);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, DRAW_VOLUME_TABLE, 2, 0, GL_RGBA, GL_FLOAT, rows);
 }
 
 bool gl_set_volume(const struct gl_frame *frame, const struct draw *draw, struct error *err)

@@ -123,6 +123,7 @@ static void set_values(struct soft_volume *volume, const struct volume *image, c
     volume->grey_scale = (float)(1 / (per_value * draw->image.width));
     volume->grey_offset = (float)((low - draw->image.low) / draw->image.width);
     volume->flip = draw->image.is_low_white ? 255 : 0;
+    volume->colors = draw->image.colors;
     for (int c = 0; c < 3; c++)
         volume->darkest[c] = visible_background[c];
     if (draw->method != SCENE_VOLUME_METHOD_RAY)

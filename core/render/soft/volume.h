@@ -52,6 +52,7 @@ struct soft_volume {
     /* colours of values: grey = t grey_scale + grey_offset */
     float grey_scale, grey_offset;
     uint32_t flip, darkest[3];
+    const uint32_t *colors; /* by level 0..255; NULL: grey */
 };
 
 /* A place in the picture is in samples. table: the draw's. What it takes from the store is given back by

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/draw_planes.h"
 
 /* An opacity of 1 would be an absorption without end. */
 static const double most_opacity = 0.999;
@@ -62,15 +63,15 @@ static bool has_opacity(const struct scene_volume_style *style)
     return false;
 }
 
+/* Window and colours of the image shown; a second image is not blended over a volume. */
 static struct draw_image look_of_image(const struct snapshot *snapshot)
 {
-    const struct scene_image_style *style = &snapshot->scene.image;
-    double low = style->window.center - style->window.width / 2, width = style->window.width;
-    return (struct draw_image){ .low = low,
-                                .width = width,
-                                .cull = (style->volume.cull_below - low) / width,
-                                .is_low_white = snapshot_is_low_white(snapshot),
-                                .is_linear = style->volume.interpolation != SCENE_INTERPOLATION_NEAREST };
+    const struct scene_volume_style *style = &snapshot->scene.image.volume;
+    struct draw_image image = draw_image_shown(snapshot, false);
+    image.cull = (style->cull_below - image.low) / image.width;
+    image.is_linear = style->interpolation != SCENE_INTERPOLATION_NEAREST;
+    image.blend = (struct draw_blend){ 0 };
+    return image;
 }
 
 bool draw_volume(struct draw_list *list, const struct draw_scope *scope, struct error *err)

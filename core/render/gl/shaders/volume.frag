@@ -8,7 +8,7 @@ uniform int n_layers;
 uniform float rank_depth;
 
 uniform sampler3D grid;
-uniform sampler2D table; // one row: colour and absorption per mm
+uniform sampler2D table; // rows: colour and absorption per mm; colour of the image's levels
 uniform int method;      // enum scene_volume_method
 uniform vec4 picture;    // of the picture: columns and rows of samples; first row of the band
 uniform vec4 unproject;  // z along forward = (y - depth w) / (depth z - x), depth -1 .. 1
@@ -51,7 +51,10 @@ float value_at(vec3 ijk) {
     return texelFetch(grid, ivec3(clamp(ijk + 0.5, vec3(0.0), size.xyz - 0.5)), 0).r * values.x + values.y;
 }
 bool is_there(float value) { return value >= cull && !isinf(value); }
-vec3 image_color(float value) { return vec3(mix(ends.x, ends.y, clamp(value * grey.x + grey.y, 0.0, 1.0))); }
+vec3 image_color(float value) {
+    float level = mix(ends.x, ends.y, clamp(value * grey.x + grey.y, 0.0, 1.0));
+    return texelFetch(table, ivec2(int(level * 255.0 + 0.5), 1), 0).rgb;
+}
 vec4 transfer(float value) {
     return texelFetch(table, ivec2(int(clamp((value - values.z) * values.w, 0.0, TABLE - 1.0) + 0.5), 0), 0);
 }
