@@ -106,21 +106,34 @@ void send_plan(struct room *room)
     send_to_all(room, &message);
 }
 
+/* Numbers of the member's open views that the newest change of the scene did not reach; NULL: none. */
+static cJSON *unreached_views(const struct member *member)
+{
+    cJSON *numbers = NULL;
+    for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
+        const struct stream *stream = member->views[i].stream;
+        if (!stream || stream->is_reached)
+            continue;
+        numbers = numbers ? numbers : cJSON_CreateArray();
+        json_append(numbers, cJSON_CreateNumber(i + 1));
+    }
+    return numbers;
+}
+
 void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32_t input, bool to_all)
 {
     struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = patch } };
     if (by)
         copy_text(message.scene.by, sizeof message.scene.by, by->id);
-    char *text = message_write(&message);
-    for (int i = 0; i < room->n_members && to_all; i++) {
+    for (int i = 0; i < room->n_members; i++) {
         struct member *member = room->members[i];
-        if (member != by && member->connection)
-            (void)send_text(room, member->connection, text);
-    }
-    free(text);
-    if (by) { /* the input number is only for its sender */
-        message.scene.input = input;
-        send_to_member(room, by, &message);
+        if (member != by && !to_all)
+            continue;
+        message.scene.input = member == by ? input : 0; /* the input number is only for its sender */
+        message.scene.unchanged = to_all ? unreached_views(member) : NULL;
+        send_to_member(room, member, &message);
+        cJSON_Delete(message.scene.unchanged);
+        message.scene.unchanged = NULL;
     }
     message_finish(&message);
 }

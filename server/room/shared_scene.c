@@ -26,14 +26,17 @@ bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by,
         cJSON_Delete(scene);
         return json_no_memory(problem, "a scene");
     }
-    cJSON_Delete(room->scene);
+    cJSON *before = room->scene;
     room->scene = scene;
     if (has_changed) {
         room->revision++;
-        streams_changed(room, true);
+        streams_scene_changed(room, before, patch);
         room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     }
+    cJSON_Delete(before);
     for (int i = 0; by && i < ROOM_MAX_VIEWS; i++) {
+        if (has_changed && by->views[i].stream && !by->views[i].stream->is_reached)
+            continue; /* the scene message says so */
         view_add_input(&by->views[i], input);
         stream_send_picture(room, by, &by->views[i]);
     }

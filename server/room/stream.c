@@ -7,6 +7,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/room/reach.h"
 #include "server/room/send.h"
 #include "server/wire/json_merge.h"
 
@@ -156,6 +157,16 @@ void streams_changed(struct room *room, bool scene_is_new)
     for (struct stream *stream = room->streams; stream; stream = stream->next) {
         stream->scene_is_stale = stream->scene_is_stale || scene_is_new;
         stream_changed(room, stream);
+    }
+}
+
+void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *patch)
+{
+    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+        stream->is_reached = has_override(stream->view) || change_reaches(stream->view, before, room->scene, patch);
+        stream->scene_is_stale = true;
+        if (stream->is_reached)
+            stream_changed(room, stream);
     }
 }
 

@@ -16,6 +16,9 @@ void stream_left(struct room *room, struct stream *stream);
 bool stream_set_view(struct room *room, struct stream *stream, cJSON *view);
 /* Raises the version of every stream; scene_is_new: overrides are applied anew. */
 void streams_changed(struct room *room, bool scene_is_new);
+/* The room's scene has changed by a merge patch from before: raises the version of the streams whose pictures differ,
+ * and notes in is_reached which these are. */
+void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *patch);
 /* Forgets outstanding requests without a word to the renderer: it is gone. */
 void streams_forget_requests(struct room *room);
 void streams_restart_pace(struct room *room);

@@ -1,5 +1,5 @@
 // Measurements for tests and benchmarks: window.beamroom. It changes nothing.
-//   beamroom.stats()   {input_to_paint_ms: [...], frames, frames_of: {view: n}, fps: {view: n}, headers: {view: FrameHeader}, badges: {view: word}}
+//   beamroom.stats()   {input_to_paint_ms: [...], frames, frames_of: {view: n}, fps: {view: n}, headers: {view: FrameHeader}, documents: {view: document}, badges: {view: word}}
 //   beamroom.clear()   forgets the measured times
 
 const capacity = 5000;
@@ -50,6 +50,7 @@ export class Hooks {
       frames_of: by((view) => this.#framesOf.get(view.number) ?? 0),
       fps: by((view) => view.fps.value),
       headers: by((view) => view.painted.value),
+      documents: by((view) => view.document.value),
       badges: by((_, index) => this.#panes[index].badge.value?.state ?? ''),
     };
   }

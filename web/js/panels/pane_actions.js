@@ -201,7 +201,7 @@ export class PaneActions {
   setSlice(positionMm, at) {
     const { plane } = this.view.document.value;
     const oblique = this.view.kind === 'oblique' && this.#room.scene.value.image.obliques?.[plane];
-    if (oblique) return void this.#room.patchScene({ image: { obliques: { [plane]: { origin_mm: originAt(this.plane, positionMm) } } } }, { view: this.#number, at });
+    if (oblique) return void this.#room.patchScene({ image: { obliques: { [plane]: { origin_mm: originAt({ ...this.plane, origin: oblique.origin_mm }, positionMm) } } } }, { view: this.#number, at });
     const point = crosshair(this.#room.scene.value);
     point[this.plane.normal.indexOf(1)] = positionMm;
     this.#moveCrosshair(point, at);

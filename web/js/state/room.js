@@ -197,6 +197,7 @@ export class RoomState {
       renderer: () => this.#rendererChanged(message),
       scene: () => {
         this.#scene.accept(message.patch, message.input);
+        this.#reach(message);
         this.#setRevision(message.revision);
         this.#showScene();
       },
@@ -262,11 +263,22 @@ export class RoomState {
     if (message.scene) {
       this.#isLoaded = true;
       this.#scene.replace(message.scene);
+      for (const view of this.views) view.sceneChanged(message.revision);
       this.#showScene();
       this.renderer.value = { state: 'ready', phase: '', percent: 100, problem: null };
     }
     this.#setRevision(message.revision);
     this.#shareOwn();
+  }
+
+  /** Tells the views whether the change of the scene reaches them. An input in a pane that it does not reach is answered by another one. */
+  #reach({ revision, input, unchanged }) {
+    const isSame = (view) => Array.isArray(unchanged) && unchanged.includes(view.number);
+    for (const view of this.views) view.sceneChanged(revision, isSame(view));
+    if (!input) return;
+    const expected = this.views.filter(isSame).map((view) => view.release(input)).find(Boolean);
+    const other = expected && this.views.find((view) => view.isOpen.value && !isSame(view));
+    other?.expect(input, expected.at, expected.sentAt);
   }
 
   #rendererChanged({ state, phase, percent, problem }) {

@@ -9,6 +9,8 @@ export class ViewState {
   #paintedAt = [];
   #received = 0; // sequence of the newest picture received; 0: none
   #refusedAt = 0; // #received when the refusal came: a later picture ends it
+  #revision = 0; // of the scene, as told last
+  #sameSince = 0; // the oldest revision of the scene with the same picture as that
   #unanswered = []; // {input, at, sentAt}; at: time of the input event, 0: not an input in this pane
 
   /** @param {number} number in messages and frames @param {string} kind of scene.json @param {object} more the document's number; name for people */
@@ -45,6 +47,13 @@ export class ViewState {
   expect(input, at, sentAt) {
     this.#unanswered.push({ input, at, sentAt });
     if (!this.staleSince.value) this.staleSince.value = sentAt;
+  }
+
+  /** Expects it no more. Returns what was expected; null: nothing. */
+  release(input) {
+    const entry = this.#unanswered.find((other) => other.input === input) ?? null;
+    if (entry) this.#forget((other) => other === entry);
+    return entry;
   }
 
   refuse(input) {
@@ -97,6 +106,19 @@ export class ViewState {
     this.refusal.value = reason;
   }
 
+  /** The scene has this revision now. isSame: this view's picture does not change by it, and no other one comes. */
+  sceneChanged(revision, isSame = false) {
+    this.#revision = revision;
+    if (!isSame) this.#sameSince = revision;
+    else if (this.painted.value) this.painted.value = this.#asOfNow(this.painted.value);
+  }
+
+  /** The header with the newest revision that its picture is of. */
+  #asOfNow(header) {
+    const isNow = header.scene_revision >= this.#sameSince && header.scene_revision < this.#revision;
+    return isNow ? { ...header, scene_revision: this.#revision } : header;
+  }
+
   /** Notes that a picture is on the screen. Returns the answered inputs. */
   paint(header, now) {
     this.#paintedAt = [...this.#paintedAt.filter((at) => now - at < fpsWindowMs), now];
@@ -105,7 +127,7 @@ export class ViewState {
     this.#forget((entry) => entry.input <= header.input_id);
     batch(() => {
       this.document.value = this.#replica.value;
-      this.painted.value = header;
+      this.painted.value = this.#asOfNow(header);
       if (header.sequence > this.#refusedAt) this.refusal.value = '';
       this.fps.value = this.#paintedAt.length;
     });
