@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "server/wire/json.h"
 #include "server/wire/json_merge.h"
 
 static const cJSON *field(const cJSON *object, const char *name)

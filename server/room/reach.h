@@ -1,8 +1,7 @@
 #pragma once
 /* Which pictures a change of the scene reaches: only those are drawn anew. A pure function on documents. Internal to
  * server/room. */
-#include <cjson/cJSON.h>
-#include <stdbool.h>
+#include "server/wire/json.h"
 
 /* False if the picture of a view without override is the same in two scenes: the fields of patch in which they differ
  * are of other planes, are drawn in 3-D only, or by the browser. In doubt true.
