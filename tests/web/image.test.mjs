@@ -118,6 +118,8 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.getByRole('radiogroup', { name: 'Second image colours' }).getByRole('radio', { name: 'Hot iron' }).click();
     await enter(page, 'Second image window high', 2000);
     await comes({ window: windows.ct, looks: { pet: { window: { center: 1000, width: 2000 }, color_map: 'hot-iron' } } });
+    const legend = page.locator('[data-view="2"] .image-legend');
+    assert.match(await legend.textContent(), /PET 30 %.*0.*2\D?000 Bq\/ml/s, 'its colours are explained in the pane');
     await full(page, 2);
     await shoot(page, 'image-blend');
     await row(page, 'image:pet');

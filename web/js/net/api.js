@@ -55,6 +55,7 @@ export function makeApi(fetch, base = 'api/v1') {
     pick: (plan, room, view, px, py, prefer = '') =>
       call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`),
     histogram: (plan, image) => call('GET', `plans/${id(plan)}/images/${id(image)}/histogram`),
+    ellipse: (plan, image, [centre, a, b]) => call('GET', `plans/${id(plan)}/images/${id(image)}/ellipse?center=${centre}&a=${a}&b=${b}`),
     surface: (plan, region, query, signal) => call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),
     surfaceUrl: (plan, region, query) => `${base}/plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`,
     /** The annotated picture as a PNG, with the revision of the scene it shows. @returns {Promise<{blob: Blob, revision: number}>} */

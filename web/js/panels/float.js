@@ -36,6 +36,7 @@ const keys = [
   ['Shift + 1 to 6', 'Layouts of the panes'],
   ['W', 'Window and level by left drag'],
   ['Z', 'Zoom by left drag'],
+  ['M', 'Measure in a slice: drag or click; Enter sets a point at the crosshair, Backspace takes it back'],
   ['C', 'All clip planes off, and on again'],
   ['K', 'Caps of the clip planes on or off'],
   ['F', 'Return to the presenter, or look for yourself'],

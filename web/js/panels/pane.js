@@ -21,6 +21,7 @@ import { paneKind } from './pane_kind.js';
 import { PaneLines } from './pane_lines.js';
 import { followMark } from './room_chip.js';
 import { readOut, spoken } from './read_out.js';
+import { imageLegend } from './window_fields.js';
 
 const resizeMs = 120;
 const maxSide = 4096;
@@ -37,15 +38,15 @@ export class Pane {
   #stops = [];
   #lastCaption = '';
 
-  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, decode, schedule, onPainted} */
-  constructor(host, { room, ui, api, refused, probed, histograms, decode, schedule, onPainted }, view) {
+  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, ellipses, decode, schedule, onPainted} */
+  constructor(host, { room, ui, api, refused, probed, histograms, ellipses, decode, schedule, onPainted }, view) {
     this.#room = room;
     this.#ui = ui;
     this.#view = view;
     this.#refused = refused;
     this.#probed = probed;
     this.host = host;
-    this.actions = new PaneActions(room, ui, api, view.number, histograms);
+    this.actions = new PaneActions(room, ui, api, view.number, { histograms, ellipses });
     this.lines = new PaneLines(room, ui, view, () => ({ box: this.#box, pane: this.#size.value }));
     this.badge = computed(() => fidelity({
       link: room.link.value,
@@ -182,14 +183,14 @@ export class Pane {
     const fullWidth = (header.width_px * 100) / header.scale_percent;
     const plan = this.#room.plan.value;
     const image = shownImage(plan, scene);
-    return overlay({
+    return html`${this.actions.measures.overlay({ header, box, pane })}${overlay({
       kind: view.kind, header, box, pane,
       isOffPlane: view.kind === 'oblique' && Math.abs(heightOver(this.actions.plane, crosshair(scene))) > stepAcross(this.actions.plane.normal, image?.stepMm ?? [1, 1, 1]) / 2,
       axes: scene.axes?.visible ? plan?.bounds : null,
       point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
       windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? 'No image: regions' : '',
-    });
+    })}`;
   }
 
   #cover() {
@@ -225,7 +226,8 @@ export class Pane {
         <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>` : nothing;
     const reasons = this.#view.kind === '3d' ? this.#refused.value : this.#view.missing.value.reasons;
     const missing = plan.regions.filter(({ id }) => reasons[id]);
-    return missing.length ? this.#missing(scene, missing, reasons, check) : check;
+    const images = this.#view.kind === '3d' ? nothing : imageLegend({ room: this.#room }, this.#view.number);
+    return html`${images}${missing.length ? this.#missing(scene, missing, reasons, check) : check}`;
   }
 
   #missing(scene, missing, reasons, check) {

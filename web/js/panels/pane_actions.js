@@ -5,6 +5,7 @@ import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
 import { Pointed } from '../state/pointed.js';
 import { toggleCaps, toggleClips } from './clip_rows.js';
 import { PaneCamera } from './pane_camera.js';
+import { PaneMeasures } from './pane_measures.js';
 import { PanePick } from './pane_pick.js';
 import { PaneWindow } from './pane_window.js';
 
@@ -25,7 +26,7 @@ export class PaneActions {
   #nextPick = null;
 
   /** @param {import('../state/room.js').RoomState} room @param {import('../state/ui.js').UiState} ui */
-  constructor(room, ui, api, number, histograms) {
+  constructor(room, ui, api, number, { histograms, ellipses }) {
     this.#room = room;
     this.#ui = ui;
     this.#number = number;
@@ -33,6 +34,7 @@ export class PaneActions {
     this.window = new PaneWindow(room, histograms, number);
     this.cameras = new PaneCamera(room, ui, number, () => this.box);
     this.#pick = new PanePick(room, api, this.view, () => this.box);
+    this.measures = new PaneMeasures({ room, ui, ellipses }, this.view, () => this.box, (x, y) => this.#pick.pointAt(x, y));
     this.pointed = new Pointed((x, y) => this.#pick.factsAt(x, y));
   }
 
@@ -55,12 +57,14 @@ export class PaneActions {
 
   // ---- pointer ------------------------------------------------------------------------------------------------------
 
-  start = () => {
+  start = (mode, at) => {
     this.#ui.active.value = this.#number;
     this.pointed.hide();
+    this.measures.start(mode, at);
   };
 
   move = (mode, { x, y, dx, dy, alt, at }) => {
+    if (this.measures.move(mode, { x, y, at })) return;
     const tool = mode === 'primary' ? this.#ui.tool.value : mode;
     if (tool === 'pan') this.cameras.pan(dx, dy, at);
     else if (this.is3d && (tool === 'roll' || (alt && mode === 'primary'))) this.cameras.rollBy(x, y, dx, dy, at);
@@ -70,9 +74,10 @@ export class PaneActions {
     else this.#crosshairAt(x, y, at, alt);
   };
 
-  end = () => {};
+  end = () => this.measures.end(performance.now());
 
   tap = ({ x, y, shift, alt, at }) => {
+    if (!shift && this.measures.tap({ x, y, at })) return;
     if (shift) {
       if (this.is3d) this.#crosshairToSeen(x, y, at);
       return;
@@ -81,7 +86,8 @@ export class PaneActions {
     this.#selectAt(x, y);
   };
 
-  doubleTap = ({ touch, at }) => {
+  doubleTap = ({ x, y, touch, at }) => {
+    if (this.measures.doubleTap({ x, y, at })) return;
     if (touch) this.reset(at);
     else this.#ui.maximise(this.#number);
   };
@@ -102,6 +108,7 @@ export class PaneActions {
   };
 
   hover = ({ x, y, shift, alt, at }) => {
+    if (this.measures.hover({ x, y })) return;
     if (!shift) return this.pointed.hover(x, y);
     this.pointed.hide();
     if (!this.#room.canChange.value) return;
@@ -213,7 +220,7 @@ export class PaneActions {
   key(event) {
     if (event.altKey || event.metaKey) return false;
     const at = event.timeStamp;
-    const act = event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at);
+    const act = this.measures.key(event, at) ?? (event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at));
     if (!act || !this.#room.canChange.value) return false;
     this.pointed.hide();
     act();
@@ -243,7 +250,7 @@ export class PaneActions {
       r: () => this.reset(at), ' ': () => this.reset(at), g: () => this.cameras.fit(at),
       f: () => this.#room.following.toggle(),
       c: () => toggleClips(this.#room, this.#ui, at), k: () => toggleCaps(this.#room, this.#ui, at),
-      w: () => this.#toggleTool('window'), z: () => this.#toggleTool('zoom'),
+      w: () => this.#toggleTool('window'), m: () => this.#toggleTool('measure'), z: () => this.#toggleTool('zoom'),
       Enter: () => this.#ui.maximise(this.#number),
     };
     return arrows[key] ?? common[key.length === 1 ? key.toLowerCase() : key] ?? null;
@@ -251,6 +258,7 @@ export class PaneActions {
 
   #toggleTool(tool) {
     this.#ui.tool.value = this.#ui.tool.value === tool ? 'crosshair' : tool;
+    if (this.#ui.tool.value === 'measure') this.#ui.select('measures');
   }
 }
 

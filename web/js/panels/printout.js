@@ -8,6 +8,7 @@ import { beamWords, crosshair, doseWords, reportSummary, shownImage } from '../s
 import { volumeDifference } from '../state/shapes.js';
 import { count, number, signed, significant, unitText } from './format.js';
 import { icon } from './icons.js';
+import { measureName, valueText } from './measure_words.js';
 
 const kinds = { '3d': '3-D', axial: 'Axial', coronal: 'Coronal', sagittal: 'Sagittal' };
 const research = 'For research and plan review. Not a medical device; not for diagnosis or treatment decisions.';
@@ -43,7 +44,7 @@ export const coverPage = (host, ui) => effect(() => {
 });
 
 /** A table of layout: its foot stands on every printed page. */
-const sheet = (world, plan) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${warnings(plan)}</div>
+const sheet = (world, plan) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${measures(world)}${warnings(plan)}</div>
   <footer class="sheet-foot"><div>${plan.name} · printed ${new Date().toISOString().slice(0, 16).replace('T', ' ')} UTC · revision ${world.room.revision.value}<br><b>${research}</b></div></footer></article>`;
 
 function head({ room }, plan) {
@@ -98,6 +99,16 @@ function figures({ printout }) {
   return html`<h2>Regions</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label="Figures of the regions"><table class="numbers-table"><thead><tr><th scope="col">Region</th><th scope="col">Univels</th><th scope="col">Volume, cm³</th><th scope="col">Surface</th><th scope="col">Triangles</th><th scope="col">Area, cm²</th><th scope="col">Encloses, cm³</th><th scope="col">to univels, %</th><th scope="col">Off at most, mm</th></tr></thead>
     <tbody>${rows.map((row) => html`<tr><th scope="row">${row.region.name}</th><td>${number(row.region.voxels)}</td><td>${number(row.region.volume_cm3, 2)}</td><td>${row.method}</td>${cells(row)}</tr>`)}</tbody></table></div>
     <p class="values">Univels and volume are the region's own; surfaces enclose all regions inside it as well. Off: distance from the univels' border.</p>`;
+}
+
+/** Of the newest picture; without one, of the room as it is now. */
+function measures(world) {
+  const { room, printout } = world;
+  const list = Object.entries(printout.entries.value.at(-1)?.record.scene.measures ?? room.scene.value?.measures ?? {});
+  if (!list.length) return nothing;
+  const place = (at) => `(${at.map((mm) => number(mm, 1)).join(', ')})`;
+  return html`<h2>Measures</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label="Measures"><table class="numbers-table"><thead><tr><th scope="col">Measure</th><th scope="col">Value</th><th scope="col">Points, mm L P S</th></tr></thead>
+    <tbody>${list.map(([id, measure]) => html`<tr><th scope="row">${measureName(id, measure)}</th><td>${valueText(world, id, measure)}</td><td>${measure.points.map(({ at_mm: at }) => place(at)).join(' ')}</td></tr>`)}</tbody></table></div>`;
 }
 
 function warnings(plan) {

@@ -3,6 +3,7 @@ import { html } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
 import { AfterRoom } from '../state/after_room.js';
 import { Comparison } from '../state/comparison.js';
+import { Ellipses } from '../state/ellipses.js';
 import { Histograms } from '../state/histograms.js';
 import { crosshair } from '../state/plan.js';
 import { Refusals, inQuestion } from '../state/refusals.js';
@@ -60,6 +61,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const comparison = new Comparison(api, signal([]));
   const refusals = new Refusals(api, signal({}));
   const histograms = new Histograms(api.histogram);
+  const ellipses = new Ellipses(api.ellipse, clock);
 
   const refused = computed(() => ({ ...refusals.reasons.value, ...room.view(1).missing.value.reasons }));
 
@@ -68,14 +70,14 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
     hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
   };
   stops.push(adapt(ui), effect(() => layOut(host.querySelector('.room'), ui))); // before the panes measure themselves: views open at their sizes
-  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, histograms, decode, schedule, onPainted }, view));
+  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, histograms, ellipses, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => {
     room.frameCame(detail.header);
     panes[detail.header.view - 1]?.painter.offer(detail);
   });
 
   const after = new AfterRoom({ api, clock, enter });
-  const world = { after, room, ui, api, ownName, undo, probed, shaped, refused, comparison, histograms, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
+  const world = { after, room, ui, api, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   if (!isBack) stops.push(offerName(world));

@@ -6,6 +6,7 @@ import { clipNote, clipRows, hasClips } from './clip_rows.js';
 import { count, number, windowText } from './format.js';
 import { icon } from './icons.js';
 import { imageName, showImage } from './image.js';
+import { hasMeasures, measureRows } from './measure.js';
 import { obliqueNote, obliqueRows } from './oblique_rows.js';
 import { regionRows } from './region_rows.js';
 import { eye, name, treeRow } from './tree_row.js';
@@ -13,7 +14,7 @@ import { volumeRow } from './volume.js';
 
 const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derived', none: '' };
 
-/** @type {{id: string, name: string, icon: string, has: (plan) => boolean, note: (world) => string, rows: (world) => unknown}[]} */
+/** @type {{id: string, name: string, icon: string, has: (plan, scene) => boolean, note: (world) => string, rows: (world) => unknown}[]} */
 const table = [
   { id: 'images', name: 'Images', icon: 'image', has: (plan) => plan.images.length, note: () => '', rows: images },
   { id: 'planes', name: 'Planes', icon: 'plane', has: hasClips, note: obliqueNote, rows: obliqueRows },
@@ -22,13 +23,14 @@ const table = [
   { id: 'beams', name: 'Beams', icon: 'target', has: (plan) => plan.beams.length + plan.curves.length, note: () => '', rows: beams },
   { id: 'tracks', name: 'Tracks', icon: 'tracks', has: (plan) => plan.nTracks, note: ({ room }) => count(room.plan.value.nTracks, 'segment'), rows: tracks },
   { id: 'clip', name: 'Clip', icon: 'clip', has: hasClips, note: clipNote, rows: clipRows },
+  { id: 'measures', name: 'Measures', icon: 'measure', has: hasMeasures, note: () => '', rows: measureRows },
 ];
 
-/** The sections of this plan. */
-export const sectionsOf = (plan) => (plan ? table.filter((section) => section.has(plan)) : []);
+/** The sections of this plan, and of what the scene has besides. */
+export const sectionsOf = (plan, scene) => (plan ? table.filter((section) => section.has(plan, scene)) : []);
 
 /** The section in which a row for this selection is. */
-export const sectionOfKind = { image: 'images', volume: 'images', region: 'regions', dose: 'doses', beam: 'beams', curve: 'beams', tracks: 'tracks', clip: 'clip', oblique: 'planes' };
+export const sectionOfKind = { image: 'images', volume: 'images', region: 'regions', dose: 'doses', beam: 'beams', curve: 'beams', tracks: 'tracks', clip: 'clip', oblique: 'planes', measure: 'measures' };
 
 function images(world) {
   const { room } = world;

@@ -6,13 +6,14 @@ import { drawingBlocks } from './drawing.js';
 import { count, number, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 import { imageBlock } from './image.js';
+import { measureBlock, measuresBlock } from './measure.js';
 import { pictureBlock } from './picture.js';
 import { componentName } from './probe.js';
 import { obliqueBlock } from './oblique_plane.js';
 import { regionBlock } from './region.js';
 import { volumeBlock } from './volume.js';
 
-const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose, beam, curve, tracks, clip: clipBlock, oblique: obliqueBlock };
+const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose, beam, curve, tracks, clip: clipBlock, oblique: obliqueBlock, measure: measureBlock, measures: measuresBlock };
 
 export function selection(world) {
   const { room, ui } = world;

@@ -16,10 +16,17 @@ const tools = [
   ['window', 'Window', 'Window and level by dragging in a slice (W)'],
   ['pan', 'Pan', 'Move the picture (middle button, Shift)'],
   ['zoom', 'Zoom', 'Zoom (right button, Z)'],
+  ['measure', 'Measure', 'Distance, angle, polyline or ellipse in a slice (M)'],
 ];
 
+/** With the tool comes the choice of what is measured. */
+function choose(ui, id) {
+  ui.tool.value = id;
+  if (id === 'measure') ui.choose('measures');
+}
+
 const tool = (ui, [id, name, title]) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${title} aria-pressed=${ui.tool.value === id}
-  aria-label=${name} tabindex=${id === 'crosshair' ? 0 : -1} @click=${() => { ui.tool.value = id; }}>${icon(id)}<span class="word">${name}</span></button>`;
+  aria-label=${name} tabindex=${id === 'crosshair' ? 0 : -1} @click=${() => choose(ui, id)}>${icon(id)}<span class="word">${name}</span></button>`;
 
 export function toolStrip(world) {
   return world.ui.isTouch.value ? dock(world) : strip(world);
@@ -65,9 +72,9 @@ function dock(world) {
   };
   const button = (picture, name, isOn, act) => html`<button class=${classMap({ tool: true, on: isOn })} tabindex="-1" aria-expanded=${isOn} @click=${act}>${icon(picture, 20)}<span class="word">${name}</span></button>`;
   return html`<div class="tools dock" role="toolbar" aria-label="Tools" @keydown=${roving}>
-    ${tools.slice(0, size === 'phone' ? 2 : 4).map((row) => tool(ui, row))}
+    ${tools.filter(([id]) => size !== 'phone' || ['crosshair', 'window', 'measure'].includes(id)).map((row) => tool(ui, row))}
     ${size === 'phone' ? nothing : html`<i class="rule"></i>`}
-    ${sectionsOf(plan).length ? button('tree', 'Parts', sheet === 'tree', () => ui.openSheet('tree')) : nothing}
+    ${sectionsOf(plan, scene).length ? button('tree', 'Parts', sheet === 'tree', () => ui.openSheet('tree')) : nothing}
     ${button('target', 'Probe', isTab('probe'), open('probe'))}
     ${button('panel', 'Selection', isTab('selection'), open('selection'))}
     ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}

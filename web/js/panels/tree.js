@@ -22,7 +22,7 @@ function whole(world) {
   const plan = room.plan.value;
   return html`<header class="panel-head"><h2>Plan</h2><span class="grow"></span>
       <button class="icon-button" title="Fold" aria-label="Fold the plan's parts" @click=${() => { ui.isTreeOpen.value = false; }}>${icon('chevronLeft')}</button></header>
-    ${plan ? html`${regionTools(world)}<div class="scroll">${list(world, 'Parts of the plan', sectionsOf(plan).map((section) => folding(world, section)), sectionsOf(plan).filter(({ id }) => !ui.folded.value.has(id)), true)}</div>` : loading}`;
+    ${plan ? html`${regionTools(world)}<div class="scroll">${list(world, 'Parts of the plan', sectionsOf(plan, room.scene.value).map((section) => folding(world, section)), sectionsOf(plan, room.scene.value).filter(({ id }) => !ui.folded.value.has(id)), true)}</div>` : loading}`;
 }
 
 /** True if one of the sections has the row that keys act on: with a rail another section may have been opened since. */
@@ -56,7 +56,7 @@ function folding(world, { id, name, note, rows }) {
 
 function rail(world) {
   const { room, ui } = world;
-  const sections = sectionsOf(room.plan.value);
+  const sections = sectionsOf(room.plan.value, room.scene.value);
   const open = sections.find(({ id }) => id === ui.section.value);
   const { size, overlay } = ui.arrangement.value;
   return html`<div class="rail" role="toolbar" aria-orientation="vertical" aria-label="Parts of the plan" @keydown=${roving}>
@@ -71,7 +71,7 @@ function rail(world) {
 
 function inSheet(world) {
   const { room, ui } = world;
-  const sections = sectionsOf(room.plan.value);
+  const sections = sectionsOf(room.plan.value, room.scene.value);
   const shown = sections.find(({ id }) => id === ui.sheetSection.value) ?? sections[0];
   return html`<i class="grip"></i><div class="tabs"><div role="tablist" aria-label="Parts of the plan" @keydown=${roving}>${sections.map(({ id, name }) => html`<button role="tab" id=${`part-${id}`} aria-selected=${id === shown.id}
       aria-controls=${id === shown.id ? 'part-panel' : nothing} tabindex=${id === shown.id ? 0 : -1} @click=${() => { ui.sheetSection.value = id; }}>${name}</button>`)}</div><span class="grow"></span>

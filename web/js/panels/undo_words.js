@@ -38,6 +38,7 @@ function fieldName({ path }) {
   if (group === 'image' && name === 'slices') return inner.at(-1) === 'position_mm' ? 'crosshair' : 'slices in 3-D';
   if (group === 'image' && name === 'volume') return volumeWords[inner[0]] ?? 'volume';
   if (group === 'image' && name === 'blend') return blendWords[inner[0]] ?? 'second image';
+  if (group === 'measures') return inner.length ? `${inner[0] === 'points' ? 'points' : inner[0] === 'visible' ? 'visibility' : inner[0]} of a measure` : 'measure';
   const known = words[`${group}.${name}`];
   if (known) return known;
   const ending = unitOf(name ?? '');

@@ -1,7 +1,8 @@
 // Window and colour map of one image as fields, buttons and a bar of its colours, for the image shown and for one blended over it.
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
-import { colorMaps, endsOf, isCt, isPet, isSameWindow, lookOf, lookPatch, roundedWindow, windowFrom, windowPresets } from '../state/image_look.js';
+import { blendedImage, colorMaps, endsOf, isCt, isPet, isSameWindow, lookOf, lookPatch, roundedWindow, windowFrom, windowPresets } from '../state/image_look.js';
+import { isLowWhite, shownImage } from '../state/plan.js';
 import { numberField, segment } from './fields.js';
 import { significant, unitText } from './format.js';
 
@@ -46,13 +47,22 @@ export function colorMapRow(world, image, of, isDisabled, change) {
     (color_map, event) => change(lookPatch(room.plan.value, room.scene.value, image, { color_map }), event))}</dd>`;
 }
 
-/** The colours of a window from its lower to its upper end: the legend of a colour map. */
-export function colorBar(world, image) {
-  const { room } = world;
+/** The colours of a window from its lower to its upper end. place: names the bar on the page. */
+export function colorBar({ room }, image, place = 'panel') {
   const { window, color_map: chosen } = lookOf(room.plan.value, room.scene.value, image);
   const [, , , stops] = colorMaps.find(([id]) => id === chosen) ?? colorMaps[0];
+  const isTurned = image === shownImage(room.plan.value, room.scene.value) ? isLowWhite(image, room.scene.value) : image.isInverted;
   const { low, high } = endsOf(window);
-  const id = `image-bar-${image.id}`;
-  return html`<div class="image-bar"><svg viewBox="0 0 100 10" preserveAspectRatio="none" aria-hidden="true"><linearGradient id=${id}>${stops.map(([at, color]) => svg`<stop offset=${at} stop-color=${color} />`)}</linearGradient>
+  const id = `image-bar-${place}-${image.id}`;
+  return html`<div class="image-bar"><svg viewBox="0 0 100 10" preserveAspectRatio="none" aria-hidden="true"><linearGradient id=${id} x1=${isTurned ? 1 : 0} x2=${isTurned ? 0 : 1}>${stops.map(([at, color]) => svg`<stop offset=${at} stop-color=${color} />`)}</linearGradient>
     <rect width="100" height="10" fill=${`url(#${id})`} /></svg><p><span>${significant(low)}</span><span>${significant(high)} ${unitText(image.unit)}</span></p></div>`;
+}
+
+/** In a slice pane: the colours of the image shown where they are no greys, and of one that is blended over it. */
+export function imageLegend({ room }, place) {
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const blended = blendedImage(plan, scene);
+  const shown = shownImage(plan, scene);
+  const images = [shown, blended].filter((image) => image && (image === blended || lookOf(plan, scene, image).color_map !== 'grey'));
+  return images.length ? html`<ul class="legend image-legend" aria-label="Colours of images">${images.map((image) => html`<li><span>${image.modality}${image === blended ? ` ${Math.round(scene.image.blend.opacity * 100)} %` : ''}</span>${colorBar({ room }, image, place)}</li>`)}</ul>` : nothing;
 }

@@ -1,5 +1,5 @@
 // State of this page alone: tool, layout, selection, unfolded panels. Nothing of it is sent; the browser keeps the layout.
-import { batch, computed, signal } from '../../lib/signals-core.js';
+import { batch, computed, effect, signal } from '../../lib/signals-core.js';
 import { arrange } from './arrangement.js';
 import { Layout } from './layout.js';
 
@@ -13,10 +13,12 @@ export class UiState {
   constructor(clock, storage = null) {
     this.#clock = clock;
     this.panes = new Layout(storage);
-    this.tool = signal('crosshair'); // crosshair | window | pan | zoom
+    this.tool = signal('crosshair'); // crosshair | window | pan | zoom | measure
+    this.measureKind = signal('distance'); // what the tool measures
+    this.draft = signal(null); // the measure that is being drawn: {view, kind, points, at: where the pointer is}
     this.maximised = signal(0); // a view; 0: none
     this.active = signal(1); // a view
-    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | tracks | curve | clip | oblique
+    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | tracks | curve | clip | oblique | measure | measures
     this.region = computed(() => (this.selection.value.kind === 'region' ? this.selection.value.id : ''));
     this.tab = signal('probe'); // probe | selection | plan
     this.window = signal({ width: 1600, height: 1000, isCoarse: false });
@@ -39,6 +41,9 @@ export class UiState {
       layout: this.panes.layout.value, two: this.panes.two.value, four: this.panes.four.value, isTreeOpen: this.isTreeOpen.value, section: this.section.value, isPinned: this.isPinned.value, sheet: this.sheet.value,
       isInspectorOpen: this.isInspectorOpen.value, active: this.active.value, maximised: this.maximised.value,
     }));
+    effect(() => {
+      if (this.tool.value !== 'measure') this.draft.value = null;
+    });
     this.isTouch = computed(() => ['tablet', 'phone'].includes(this.arrangement.value.size));
     this.visible = computed(() => this.arrangement.value.visible);
   }
@@ -125,9 +130,10 @@ export class UiState {
     this.maximised.value = this.maximised.value ? 0 : number;
   }
 
-  /** Closes one thing per call: the making of a plane, tool, popover, what the page has to close (returns whether it had), toast, floating section, sheet or maximised pane. */
+  /** Closes one thing per call: what is being drawn, the making of a plane, tool, popover, what the page has to close (returns whether it had), toast, floating section, sheet or maximised pane. */
   escape(close = () => false) {
-    if (this.picking.value) this.picking.value = null;
+    if (this.draft.value) this.draft.value = null;
+    else if (this.picking.value) this.picking.value = null;
     else if (this.tool.value !== 'crosshair') this.tool.value = 'crosshair';
     else if (this.popover.value) this.popover.value = '';
     else if (close()) return;
