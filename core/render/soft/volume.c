@@ -153,8 +153,14 @@ static void set_shading(struct soft_volume *volume, const struct camera *camera,
 /* The values between table entries that absorb, a little widened, as interpolated values are rounded. */
 static size_t seen_ranges(const struct draw_volume *draw, struct volume_range ranges[VOLUME_MAX_RANGES])
 {
+    const struct draw_image *image = &draw->image;
     if (draw->method != SCENE_VOLUME_METHOD_RAY) {
-        ranges[0] = (struct volume_range){ draw->cull - 1e-5 * (fabs(draw->cull) + draw->image.width), INFINITY };
+        double low = draw->cull - 1e-5 * (fabs(draw->cull) + image->width);
+        /* below the window the largest value adds no light, if that end of the window is black */
+        bool is_black = !image->is_low_white && (!image->colors || (image->colors[0] & 0xffffff) == 0);
+        if (draw->method == SCENE_VOLUME_METHOD_MIP && is_black)
+            low = fmax(low, image->low - 1e-5 * (fabs(image->low) + image->width));
+        ranges[0] = (struct volume_range){ low, INFINITY };
         return 1;
     }
     const double entry = draw->width / (DRAW_VOLUME_TABLE - 1);

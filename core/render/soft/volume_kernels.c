@@ -22,7 +22,8 @@ static inline FLOATS root(FLOATS x)
 /* Products of the low and high halves, added. */
 static inline INTS multiply_add(INTS a, INTS b)
 {
-    return (a << 16 >> 16) * (b << 16 >> 16) + (a >> 16) * (b >> 16);
+    const INTS low_a = (INTS)((WORDS)a << 16) >> 16, low_b = (INTS)((WORDS)b << 16) >> 16;
+    return low_a * low_b + (a >> 16) * (b >> 16);
 }
 #define PICK8(mask, a, b) pick(mask, a, b)
 #define LEAST8(a, b) pick((a) < (b), a, b)
