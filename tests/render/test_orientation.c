@@ -212,6 +212,44 @@ static void an_axial_slice_in_space_seen_from_above_has_the_left_on_screen_left(
     plan_and_derived_destroy(plan);
 }
 
+/* From the front L and S run right and up, P away from the viewer; the box is 80 mm wide and 80 high, so the ends are
+ * 48 mm from the middle, and from 40 mm on the lines are plain. */
+static void patient_axes_are_lines_through_the_middle_of_the_plan(void **state)
+{
+    (void)state;
+    enum { SCALE = 2 };
+    struct grid grid = marked_grid(0);
+    struct plan *plan = made_plan(&grid, mark_label, marks, 0);
+    struct image *with, *without;
+    for (int is_pane = 0; is_pane < 2; is_pane++) {
+        struct view view = is_pane ? shots_view(SCENE_KIND_CORONAL, centre, SCALE)
+                                   : shots_view_from(centre, vec3(0, -1, 0), vec3(0, 0, 1), SCALE);
+        struct scene scene = shots_scene(plan);
+        without = shots_plain(plan, scene, view);
+        scene = shots_scene(plan);
+        scene.axes.visible = true;
+        with = shots_plain(plan, scene, view);
+        size_t n_different = 0;
+        for (int y = 0; y < SHOTS_HEIGHT; y++)
+            for (int x = 0; x < SHOTS_WIDTH; x++) {
+                double right = x + 0.5 - SHOTS_WIDTH / 2.0, up = SHOTS_HEIGHT / 2.0 - y - 0.5;
+                bool is_different = memcmp(shots_pixel(with, x, y), shots_pixel(without, x, y), 4) != 0,
+                     is_near = (fabs(right) < 3 && fabs(up) < 48 * SCALE + 3) ||
+                               (fabs(up) < 3 && fabs(right) < 48 * SCALE + 3);
+                assert_false(is_different && (is_pane || !is_near));
+                n_different += is_different ? 1 : 0;
+                if (!is_pane && fabs(up) < 0.6 && fabs(right) > 41 * SCALE && fabs(right) < 47 * SCALE)
+                    assert_true(shots_pixel(with, x, y)[1] > 90); /* 3/4 covered; from the back half 0.55 of it */
+                if (!is_pane && fabs(up) < 0.6 && fabs(right) > 5 && fabs(right) < 38 * SCALE)
+                    assert_in_range(shots_pixel(with, x, y)[1], 25, 70); /* faint within the box */
+            }
+        assert_true(is_pane ? n_different == 0 : n_different > 2 * 96 * SCALE);
+        image_destroy(with);
+        image_destroy(without);
+    }
+    shots_forget(plan);
+}
+
 /* ---- the 48 orders in which the voxels of an image can be stored ------------------------------------------------ */
 
 enum { N_ORDERS = 48, ORDER_WIDTH = 200, ORDER_HEIGHT = 160 };
@@ -392,6 +430,7 @@ int main(void)
         cmocka_unit_test(cross_sections_of_regions_lie_as_the_panes_say),
         cmocka_unit_test(image_slices_lie_as_the_panes_say),
         cmocka_unit_test(an_axial_slice_in_space_seen_from_above_has_the_left_on_screen_left),
+        cmocka_unit_test(patient_axes_are_lines_through_the_middle_of_the_plan),
         cmocka_unit_test(all_48_orders_of_the_voxels_give_the_same_pictures),
     };
     return shots_run("orientation", tests, sizeof tests / sizeof tests[0]);

@@ -246,7 +246,8 @@ bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
         case DRAW_OUTLINE:
         case DRAW_CHECK:
         case DRAW_GRID_CUT:
-        case DRAW_GRID_BOX: break;
+        case DRAW_GRID_BOX:
+        case DRAW_AXES: break;
         }
     }
     return true;

@@ -371,7 +371,8 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
         case DRAW_OUTLINE:
         case DRAW_CHECK:
         case DRAW_GRID_CUT:
-        case DRAW_GRID_BOX: break;
+        case DRAW_GRID_BOX:
+        case DRAW_AXES: break;
         }
     }
 }

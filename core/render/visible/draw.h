@@ -24,7 +24,8 @@ enum draw_kind {
     DRAW_OUTLINE,  /* overlay: the outline of a region's surface or univels on a plane */
     DRAW_CHECK,    /* overlay: where univels and surface of a region differ on a plane */
     DRAW_GRID_CUT, /* overlay: where a plane cuts the grids of a dose */
-    DRAW_GRID_BOX  /* overlay: the edges of the grids of a dose */
+    DRAW_GRID_BOX, /* overlay: the edges of the grids of a dose */
+    DRAW_AXES      /* overlay: the patient axes of the plan (core/scene/axes.h) */
 };
 
 enum draw_depth {

@@ -7,6 +7,8 @@
 
 static const uint32_t grid_rgb = 0xf4f6f8;
 static const double grid_width_px = 1.5;
+static const uint32_t axes_rgb = 0xd6dce2;
+static const double axes_width_px = 1.5;
 
 static bool add_region(struct draw_list *list, const struct draw_scope *scope, size_t region, struct error *err)
 {
@@ -52,18 +54,11 @@ static bool add_regions(struct draw_list *list, const struct draw_scope *scope, 
     return is_good;
 }
 
-bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct error *err)
+static bool add_dose_grid(struct draw_list *list, const struct snapshot *snapshot, struct error *err)
 {
-    const struct snapshot *snapshot = scope->snapshot;
-    const struct scene *scene = &snapshot->scene;
-    bool is_pane = snapshot_is_pane(snapshot);
-    if (is_pane && (scene->outline.on_slices || scene->check.visible) && !add_regions(list, scope, err))
-        return false;
-    if (!scene->dose.grid || snapshot->dose < 0)
-        return true;
     return draw_list_add(list,
                          &(struct draw){ .pass = DRAW_OVERLAY,
-                                         .kind = is_pane ? DRAW_GRID_CUT : DRAW_GRID_BOX,
+                                         .kind = snapshot_is_pane(snapshot) ? DRAW_GRID_CUT : DRAW_GRID_BOX,
                                          .depth = DRAW_DEPTH_NONE,
                                          .subject = { SUBJECT_DOSE, (size_t)snapshot->dose, 0 },
                                          .plane = snapshot->pane,
@@ -71,4 +66,29 @@ bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct
                                          .opacity = 1,
                                          .lines = { .width_px = grid_width_px } },
                          err);
+}
+
+static bool add_axes(struct draw_list *list, struct error *err)
+{
+    return draw_list_add(list,
+                         &(struct draw){ .pass = DRAW_OVERLAY,
+                                         .kind = DRAW_AXES,
+                                         .depth = DRAW_DEPTH_NONE,
+                                         .subject = subject_plan(),
+                                         .color_rgb = axes_rgb,
+                                         .opacity = 1,
+                                         .lines = { .width_px = axes_width_px } },
+                         err);
+}
+
+bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct error *err)
+{
+    const struct snapshot *snapshot = scope->snapshot;
+    const struct scene *scene = &snapshot->scene;
+    bool is_pane = snapshot_is_pane(snapshot);
+    if (is_pane && (scene->outline.on_slices || scene->check.visible) && !add_regions(list, scope, err))
+        return false;
+    if (!is_pane && scene->axes.visible && !add_axes(list, err))
+        return false;
+    return !scene->dose.grid || snapshot->dose < 0 || add_dose_grid(list, snapshot, err);
 }

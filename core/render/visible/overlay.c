@@ -9,6 +9,7 @@
 #include "core/render/visible/check.h"
 #include "core/render/visible/cut.h"
 #include "core/render/visible/paint.h"
+#include "core/scene/axes.h"
 
 /* Limits of the lines that are kept: three panes of all regions that a plan can have, and 96 MiB at 48 bytes per line.
  */
@@ -345,6 +346,43 @@ static bool paint_dose_grid(const struct target *target, const struct draw *draw
     return is_good;
 }
 
+/* ---- the patient axes ------------------------------------------------------------------------------------------- */
+
+/* Part of an axis from its middle, 0 .. 1. */
+static void add_axis(const struct target *target, struct vec3 middle, struct vec3 end, double from, double to,
+                     double width_px)
+{
+    struct vec3 along = vec3_sub(end, middle), p = vec3_add(middle, vec3_scale(along, from)),
+                q = vec3_add(middle, vec3_scale(along, to));
+    double a[3] = { p.x, p.y, p.z }, b[3] = { q.x, q.y, q.z };
+    if (cut_before_eye(target->scope->camera, a, b))
+        paint_line(target->paint, project(target, a), project(target, b), width_px);
+}
+
+/* Lines over the picture are not hidden by what lies before them, so how strong they are says where they run: faint
+ * inside the plan's box, plain where they stand out of it; and the half that points away from the viewer is weaker. */
+static void paint_axes(const struct target *target, const struct draw *draw)
+{
+    static const double faint = 0.3, plain = 0.95, away = 0.55;
+    const struct camera *camera = target->scope->camera;
+    const double in_box = 0.5 / AXES_REACH;
+    struct vec3 middle;
+    struct axis_end ends[AXES_N_ENDS];
+    if (!axes_of_plan(target->scope->snapshot->plan, &middle, ends))
+        return;
+    double width_px = fmax(1, draw->lines.width_px * target->scale), rim_px = width_px + 2 * halo_px * target->scale;
+    for (int i = 0; i < AXES_N_ENDS; i++) {
+        struct vec3 along = vec3_sub(ends[i].at_lps_mm, middle);
+        double strength = vec3_dot(along, camera->forward) > 0 ? away : 1;
+        add_axis(target, middle, ends[i].at_lps_mm, 0, in_box, width_px);
+        paint_flush(target->paint, draw->color_rgb, faint * strength);
+        add_axis(target, middle, ends[i].at_lps_mm, in_box, 1, rim_px);
+        paint_flush(target->paint, halo_rgb, plain * strength);
+        add_axis(target, middle, ends[i].at_lps_mm, in_box, 1, width_px);
+        paint_flush(target->paint, draw->color_rgb, plain * strength);
+    }
+}
+
 static bool paint_draw(const struct target *target, const struct draw *draw, struct error *err)
 {
     switch (draw->kind) {
@@ -352,6 +390,7 @@ static bool paint_draw(const struct target *target, const struct draw *draw, str
     case DRAW_CHECK: return paint_check(target, draw, err);
     case DRAW_GRID_CUT:
     case DRAW_GRID_BOX: return paint_dose_grid(target, draw, err);
+    case DRAW_AXES: paint_axes(target, draw); break;
     case DRAW_SHAPE:
     case DRAW_IMAGE:
     case DRAW_LABELS:
