@@ -8,7 +8,9 @@
 
 #include "core/annotate/font.h"
 #include "core/base/mem.h"
+#include "core/render/visible/paint.h"
 
+#define LINE_PX 1.5
 enum { MIN_TEXT_PX = 12, MAX_TEXT_PX = 24, COLUMNS = 70, HALO_PX = 2 };
 static const uint8_t ink[3] = { 255, 255, 255 }, halo[3] = { 0, 0, 0 }, print[3] = { 24, 28, 33 },
                      print_pale[3] = { 92, 99, 106 }, chip_edge[3] = { 120, 126, 133 };
@@ -16,6 +18,8 @@ static const uint8_t ink[3] = { 255, 255, 255 }, halo[3] = { 0, 0, 0 }, print[3]
 void annotations_finish(struct annotations *annotations)
 {
     free(annotations->items);
+    free(annotations->lines);
+    free(annotations->labels);
     *annotations = (struct annotations){ .n_items = 0 };
 }
 
@@ -269,10 +273,78 @@ static struct image *copy_onto_white(const struct image *image, int width_px, in
     return copy;
 }
 
+/* A line's part within the picture, in pixels; false: none of it. Source: Y.-D. Liang, B. A. Barsky, A New Concept and
+ * Method for Line Clipping, ACM TOG 1984. */
+static bool clip_line(const struct annotation_line *line, const struct canvas *canvas, struct paint_point *from,
+                      struct paint_point *to)
+{
+    const double size[2] = { canvas->width_px, canvas->height_px };
+    double a[2], along[2], first = 0, last = 1;
+    for (int i = 0; i < 2; i++) {
+        a[i] = line->from[i] * size[i];
+        along[i] = line->to[i] * size[i] - a[i];
+        for (int side = 0; side < 2; side++) {
+            double speed = side ? along[i] : -along[i], room = side ? size[i] - a[i] : a[i];
+            if (speed > 0)
+                last = fmin(last, room / speed);
+            else if (speed < 0)
+                first = fmax(first, room / speed);
+            else if (!(room >= 0)) /* NaN too */
+                return false;
+        }
+    }
+    *from = (struct paint_point){ a[0] + first * along[0], a[1] + first * along[1] };
+    *to = (struct paint_point){ a[0] + last * along[0], a[1] + last * along[1] };
+    return first <= last;
+}
+
+/* Onto a copy of the picture's part of the canvas, so that nothing is painted beside it. */
+static bool paint_lines(const struct canvas *canvas, const struct annotations *annotations, struct error *err)
+{
+    if (annotations->n_lines == 0)
+        return true;
+    size_t row = 4 * (size_t)canvas->width_px, stride = 4 * (size_t)canvas->image->width_px;
+    struct image *copy = image_create(canvas->width_px, canvas->height_px, err);
+    struct paint *paint = copy ? paint_create(copy, err) : NULL;
+    for (size_t y = 0; paint && y < (size_t)canvas->height_px; y++)
+        memcpy(copy->rgba + y * row, canvas->image->rgba + y * stride, row);
+    for (int layer = 0; paint && layer < 2; layer++)
+        for (size_t i = 0; i < annotations->n_lines; i++) {
+            struct paint_point from, to;
+            if (clip_line(&annotations->lines[i], canvas, &from, &to))
+                paint_line(paint, from, to, layer == 0 ? LINE_PX + 2 : LINE_PX);
+            bool is_last = i + 1 == annotations->n_lines || annotations->lines[i + 1].rgb != annotations->lines[i].rgb;
+            if (is_last)
+                paint_flush(paint, layer == 0 ? 0x000000 : annotations->lines[i].rgb, layer == 0 ? 0.6 : 1);
+        }
+    for (size_t y = 0; paint && y < (size_t)canvas->height_px; y++)
+        memcpy(canvas->image->rgba + y * stride, copy->rgba + y * row, row);
+    bool is_done = paint != NULL;
+    paint_destroy(paint);
+    image_destroy(copy);
+    return is_done;
+}
+
+static bool paint_labels(const struct canvas *canvas, struct font *font, const struct annotations *annotations,
+                         struct error *err)
+{
+    for (size_t i = 0; i < annotations->n_labels; i++) {
+        const struct annotation_label *label = &annotations->labels[i];
+        double x = label->at[0] * canvas->width_px, y = label->at[1] * canvas->height_px;
+        int aside = label->is_centred ? 0 : font_size_px(font) * 2 / 3;
+        if (!(x >= 0 && x <= canvas->width_px && y >= 0 && y <= canvas->height_px))
+            continue;
+        if (!paint_word(canvas, font, label->text, (int)x + aside, !label->is_centred, (int)y - aside, err))
+            return false;
+    }
+    return true;
+}
+
 static bool paint_on_picture(const struct canvas *canvas, struct font *font, const struct annotations *annotations,
                              struct error *err)
 {
-    return paint_letters(canvas, font, &annotations->letters, err) &&
+    return paint_lines(canvas, annotations, err) && paint_labels(canvas, font, annotations, err) &&
+           paint_letters(canvas, font, &annotations->letters, err) &&
            (!(annotations->pixels_per_mm > 0) || paint_scale_bar(canvas, font, annotations->pixels_per_mm, err));
 }
 

@@ -25,8 +25,24 @@ struct annotation_item {
     char text[ANNOTATION_TEXT_SIZE]; /* UTF-8, also hostile (font.h) */
 };
 
+/* A line on the picture, a pixel and a half wide. Places are in parts of the picture's width and height, y down. */
+struct annotation_line {
+    double from[2], to[2];
+    uint32_t rgb;
+};
+/* A word on the picture: its middle at the place, or above it and to the right. */
+struct annotation_label {
+    double at[2];
+    bool is_centred;
+    char text[ANNOTATION_TEXT_SIZE + 128]; /* UTF-8, also hostile */
+};
+
 struct annotations {
     struct edge_letters letters;
+    struct annotation_line *lines; /* owned; [n_lines] */
+    size_t n_lines;
+    struct annotation_label *labels; /* owned; [n_labels] */
+    size_t n_labels;
     double pixels_per_mm;          /* of the picture as it is; 0: no scale bar */
     struct annotation_item *items; /* owned; [n_items], row by row */
     size_t n_items;
@@ -48,8 +64,9 @@ struct scale_bar annotate_scale_bar(int width_px, int height_px, double pixels_p
 /* Size of the text on a picture of this width. */
 int annotate_text_px(int width_px);
 
-/* A copy of the picture with letters and scale bar painted on it, and the caption on white below: as wide as the
- * picture (see ANNOTATE_MIN_WIDTH_PX), higher by the caption. All other pixels of the picture are unchanged. errors
- * ERROR_RANGE   the picture with its caption is higher than IMAGE_MAX_SIDE_PX ERROR_MEMORY thread  any */
+/* A copy of the picture with lines, labels, letters and scale bar painted on it, and the caption on white below: as
+ * wide as the picture (see ANNOTATE_MIN_WIDTH_PX), higher by the caption. All other pixels of the picture are
+ * unchanged. errors ERROR_RANGE   the picture with its caption is higher than IMAGE_MAX_SIDE_PX ERROR_MEMORY thread any
+ */
 NODISCARD struct image *annotate_image(const struct image *image, const struct annotations *annotations,
                                        struct error *err);

@@ -7,6 +7,7 @@
 #include <strings.h>
 #include <time.h>
 
+#include "core/annotate/marks.h"
 #include "core/annotate/words.h"
 #include "core/base/mem.h"
 #include "core/render/visible/visible.h"
@@ -241,6 +242,8 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
         return false;
     camera_resolve(snapshot, &camera);
     annotations->letters = letters_of_edges(camera.right, camera.up);
+    if (!marks_describe(annotations, snapshot, &camera, err))
+        return false;
     annotations->pixels_per_mm = camera.pixels_per_mm * width_px / snapshot->view.size_px[0];
 
     add_words(annotations, ANNOTATION_TITLE, plan->name[0] ? plan->name : plan->id);

@@ -2,6 +2,7 @@
 #include "core/annotate/words.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -15,6 +16,20 @@ void words_number(char text[40], double value, int digits)
     (void)snprintf(plain, sizeof plain, "%.*f", digits, is_between ? (floor(product) + 1) / scale : size);
     bool is_zero = strspn(plain, "0.") == strlen(plain);
     (void)snprintf(text, 40, "%s%s", value < 0 && !is_zero ? minus : "", plain);
+}
+
+void words_significant(char text[40], double value)
+{
+    char rounded[32];
+    (void)snprintf(rounded, sizeof rounded, "%.2e", fabs(value)); /* rounds first: 9.996 has the size of 10 */
+    const char *e = strchr(rounded, 'e');
+    int size = e ? atoi(e + 1) : 0;
+    if (!(fabs(value) > 0))
+        (void)snprintf(text, 40, "0");
+    else if (e && (size < -4 || size > 6))
+        (void)snprintf(text, 40, "%s%s", value < 0 ? minus : "", rounded);
+    else
+        words_number(text, value, size < 2 ? 2 - size : 0);
 }
 
 /* ---- planes ----------------------------------------------------------------------------------------------------- */
