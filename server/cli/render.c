@@ -1,6 +1,7 @@
 /* `beamroom render`: draws one picture of a plan. */
 #include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,7 @@
 #include "core/encode/encode.h"
 #include "core/render/render.h"
 #include "core/render/visible/visible.h"
+#include "core/scene/camera.h"
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/open_plan.h"
@@ -31,6 +33,8 @@ struct render_arguments {
     enum encode_codec codec;
     enum render_back_end back_end;
     int size_px[2]; /* 0: that of the view */
+    bool has_from;  /* from_deg is given: towards the patient's left from the front; up from the horizontal */
+    double from_deg[2];
     int quality;
     bool has_annotations;
 };
@@ -52,6 +56,8 @@ static void print_help(void)
         "  --clip PLANE=MM   cuts off what lies beyond: axial-low, axial-high, coronal-low, coronal-high, sagittal-low or\n"
         "                    sagittal-high, each at a position along S, P or L; given again: one more plane\n"
         "  --no-caps         leaves cuts of --clip open, so that they show what is hollow\n"
+        "  --window C/W      the image's window: centre and width, in its unit\n"
+        "  --from A,E        looks at the plan from A degrees off the front, towards the patient's left, and E degrees up\n"
         "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
         "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
         "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
@@ -132,13 +138,32 @@ static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const str
     cJSON *shown = NULL;
     patch = render_show_patch(&arguments->show, scene, err);
     if (patch && !(shown = scene_document_patch(document, defaults, scene, patch, &problem)))
-        refuse_problem("--show, --slices, --volume, --plane or --clip", &problem, err);
+        refuse_problem("--show, --slices, --volume, --window, --plane or --clip", &problem, err);
     cJSON_Delete(patch);
     cJSON_Delete(scene);
     return shown;
 }
 
-static cJSON *make_view(const struct render_arguments *arguments, struct error *err)
+/* Adds to a view's patch the home camera, turned to look from a direction. */
+static void add_from(cJSON *patch, const struct plan *plan, const double from_deg[2])
+{
+    struct scene_camera home;
+    camera_home(plan, SCENE_KIND_3D, &home);
+    double around = from_deg[0] * MATH_PI / 180, above = from_deg[1] * MATH_PI / 180;
+    double distance_mm = vec3_length(vec3_sub(home.position_mm, home.target_mm));
+    struct vec3 from = vec3(sin(around) * cos(above), -cos(around) * cos(above), sin(above));
+    struct vec3 eye = vec3_add(home.target_mm, vec3_scale(from, distance_mm));
+    /* what is up from the front, turned as the eye: from straight above too */
+    struct vec3 up = vec3(-sin(around) * sin(above), cos(around) * sin(above), cos(above));
+    cJSON *camera = cJSON_AddObjectToObject(patch, "camera");
+    json_add(camera, "position_mm", cJSON_CreateDoubleArray((double[]){ eye.x, eye.y, eye.z }, 3));
+    json_add(camera, "target_mm",
+             cJSON_CreateDoubleArray((double[]){ home.target_mm.x, home.target_mm.y, home.target_mm.z }, 3));
+    json_add(camera, "up", cJSON_CreateDoubleArray((double[]){ up.x, up.y, up.z }, 3));
+}
+
+/* The view that a new room starts with, patched by --view, then by --from and --size. NULL with err. */
+static cJSON *make_view(const struct plan *plan, const struct render_arguments *arguments, struct error *err)
 {
     struct problem problem = { 0 };
     const char *path = arguments->view;
@@ -156,16 +181,17 @@ static cJSON *make_view(const struct render_arguments *arguments, struct error *
         refuse_problem(path ? path : "view", &problem, err);
         return NULL;
     }
-    if (size_px[0] == 0)
-        return view;
-    cJSON *size = cJSON_CreateObject();
-    cJSON_AddItemToObject(size, "size_px", cJSON_CreateIntArray(size_px, 2));
-    cJSON *sized = view_document_patch(view, size, &problem);
-    cJSON_Delete(size);
+    patch = cJSON_CreateObject();
+    if (size_px[0])
+        json_add(patch, "size_px", cJSON_CreateIntArray(size_px, 2));
+    if (arguments->has_from)
+        add_from(patch, plan, arguments->from_deg);
+    cJSON *changed = view_document_patch(view, patch, &problem);
+    cJSON_Delete(patch);
     cJSON_Delete(view);
-    if (!sized)
-        refuse_problem("--size", &problem, err);
-    return sized;
+    if (!changed)
+        refuse_problem("--from or --size", &problem, err);
+    return changed;
 }
 
 /* The snapshot of the scene and view that the arguments name. NULL with err. view_document: the view, the caller's;
@@ -184,7 +210,8 @@ static struct snapshot *make_snapshot(struct derive *derived, const struct rende
     cJSON *document = plan_document(plan), *defaults = scene_write(&scene);
     cJSON *scene_json = NULL, *shown_json = NULL, *view_json = NULL;
     scene_finish(&scene);
-    if (!(scene_json = make_scene(document, defaults, arguments, err)) || !(view_json = make_view(arguments, err)))
+    if (!(scene_json = make_scene(document, defaults, arguments, err)) ||
+        !(view_json = make_view(plan, arguments, err)))
         goto done;
     if (!(shown_json = scene_document_for_view(document, defaults, scene_json, view_json, &problem))) {
         refuse_problem(arguments->view ? arguments->view : "view", &problem, err);
@@ -322,6 +349,16 @@ static bool parse_size(const char *text, int size_px[2])
            parse_between(&text, 16, 4096, &size_px[1]) && *text == 0;
 }
 
+static bool parse_from(const char *text, double from_deg[2])
+{
+    char *end;
+    from_deg[0] = strtod(text, &end);
+    if (end == text || *end++ != ',')
+        return false;
+    from_deg[1] = strtod(text = end, &end);
+    return end != text && *end == 0 && fabs(from_deg[0]) <= 360 && fabs(from_deg[1]) <= 90;
+}
+
 static bool parse_quality(const char *text, int *quality)
 {
     return parse_between(&text, 1, 100, quality) && *text == 0;
@@ -347,6 +384,8 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
                                                   { "slices", required_argument, NULL, 'l' },
                                                   { "volume", required_argument, NULL, 'u' },
                                                   { "plane", required_argument, NULL, 'p' },
+                                                  { "window", required_argument, NULL, 'w' },
+                                                  { "from", required_argument, NULL, 'f' },
                                                   { "clip", required_argument, NULL, 'c' },
                                                   { "no-caps", no_argument, NULL, 'n' },
                                                   { "gl", required_argument, NULL, 'g' },
@@ -365,6 +404,14 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
         case 'l': arguments->show.slices = optarg; break;
         case 'u': arguments->show.volume = optarg; break;
         case 'p': arguments->show.plane = optarg; break;
+        case 'w': arguments->show.window = optarg; break;
+        case 'f':
+            arguments->has_from = true;
+            if (!parse_from(optarg, arguments->from_deg))
+                return command_usage_error("render", "--from '%s' is not of the form 30,12: degrees up to 360 and 90",
+                                           optarg),
+                       false;
+            break;
         case 'c':
             if (arguments->show.n_clips == RENDER_SHOW_MAX_CLIPS)
                 return command_usage_error("render", "--clip is given more than %d times", RENDER_SHOW_MAX_CLIPS),

@@ -191,12 +191,26 @@ static bool add_clip(const char *text, bool is_capped, cJSON *patch, struct erro
     return true;
 }
 
+static bool add_window(const char *text, cJSON *patch, struct error *err)
+{
+    char word[WORD_SIZE];
+    double center, width;
+    const char *at = text;
+    if (!next_word(&at, '/', word) || !parse_number(word, &center) || !parse_number(at, &width))
+        return error_set(err, ERROR_RANGE, "--window '%s' is not of the form 40/400", text);
+    cJSON *window = member(member(patch, "image"), "window");
+    cJSON_AddNumberToObject(window, "center", center);
+    cJSON_AddNumberToObject(window, "width", width);
+    return true;
+}
+
 cJSON *render_show_patch(const struct render_show *show, const cJSON *scene, struct error *err)
 {
     cJSON *patch = cJSON_CreateObject();
     bool is_good = (!show->regions || add_regions(show->regions, scene, patch, err)) &&
                    (!show->slices || add_slices(show->slices, patch, err)) &&
                    (!show->volume || add_volume(show->volume, scene, patch, err)) &&
+                   (!show->window || add_window(show->window, patch, err)) &&
                    (!show->plane || add_plane(show->plane, scene, patch, err));
     for (int i = 0; is_good && i < show->n_clips; i++)
         is_good = add_clip(show->clips[i], !show->is_uncapped, patch, err);

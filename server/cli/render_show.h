@@ -12,6 +12,7 @@ struct render_show {
     const char *regions;                      /* "ID,ID,...": these alone, opaque; "none" */
     const char *slices;                       /* "KIND[=MM],...": these slices alone; "none" */
     const char *volume;                       /* "METHOD[=VALUE]" */
+    const char *window;                       /* "CENTRE/WIDTH" */
     const char *plane;                        /* "NORMAL[@POINT]", each X,Y,Z: the oblique plane RENDER_SHOW_PLANE */
     const char *clips[RENDER_SHOW_MAX_CLIPS]; /* "axial-high=MM" and its like */
     int n_clips;

@@ -63,6 +63,8 @@ describe('beamroom', () => {
       [['render', plan, '-o', 'x.jpg', '--slices', 'axial=top'], /--slices 'axial=top'/],
       [['render', plan, '-o', 'x.jpg', '--volume', 'slices='], /--volume is ray/],
       [['render', plan, '-o', 'x.jpg', '--clip', 'axial=3'], /--clip 'axial=3'/],
+      [['render', plan, '-o', 'x.jpg', '--window', '40'], /--window '40'/],
+      [['render', plan, '-o', 'x.jpg', '--from', '0,91'], /--from '0,91'/],
     ]) {
       const { status, stdout, stderr } = beamroom(...args);
       assert.equal(status, 2, `${args}: ${stderr}`);

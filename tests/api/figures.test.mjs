@@ -24,7 +24,10 @@ const markerBeyondScalp = 25 * (Math.PI - Math.acos(3 / 5)) + 3 * 4;
 
 const isDrawn = ([r, g, b]) => Math.max(r, g, b) > 40; // the background is 15, 17, 20
 const isGrey = ([r, g, b]) => isDrawn([r, g, b]) && Math.max(r, g, b) - Math.min(r, g, b) <= 4;
-const isDifferent = (one, other) => (rgb, x, y) => other.at(x, y).some((channel, i) => Math.abs(channel - one.at(x, y)[i]) > 8);
+
+// all that is not air is opaque, in one colour
+const tissue = ['--scene', JSON.stringify({ image: { volume: { points: [
+  { value: -450, color: '#ff8000', opacity: 0 }, { value: -450, color: '#ff8000', opacity: 0.9 }] } } })];
 
 let folder;
 let plan;
@@ -63,6 +66,54 @@ describe('the figures of the thesis, by one command each', () => {
     const shown = picture(above, '--show', 'none', '--slices', 'axial=0');
     assertArea(shown, isGrey, scalp.above + markerBeyondScalp);
     assertArea(shown, isDrawn, scalp.above + markerBeyondScalp);
+  });
+
+  it('17: the volume, without the air, by slices', () => {
+    const shown = picture(front, '--show', 'none', '--slices', 'none', '--volume', 'slices=-450', '--window', '0/2000');
+    assertArea(shown, isGrey, scalp.front + markerBeyondScalp);
+    assertArea(shown, isDrawn, scalp.front + markerBeyondScalp);
+  });
+
+  it('18: the volume with a higher limit: bone, and the marker free beside it', () => {
+    const low = picture(front, '--show', 'none', '--slices', 'none', '--volume', 'slices=-450', '--window', '0/2000');
+    const high = picture(front, '--show', 'none', '--slices', 'none', '--volume', 'slices=500', '--window', '0/2000');
+    assertArea(high, isGrey, cranium.front + marker);
+    // soft tissue before the skull is 60 HU, the skull 950: greys 0.53 and 0.98 of white
+    assert.ok(low.at(200, 150)[0] < 170 && high.at(200, 150)[0] > 210, `${low.at(200, 150)} ${high.at(200, 150)}`);
+  });
+
+  it('17 by rays: lit, in the colours of the transfer function, and no larger', () => {
+    const shown = picture(front, '--show', 'none', '--slices', 'none', ...tissue, '--volume', 'ray');
+    assertArea(shown, isDrawn, scalp.front + markerBeyondScalp);
+    assertArea(shown, ([r, , b]) => r > 2 * b && r > 40, scalp.front + markerBeyondScalp);
+  });
+
+  // Cut through the middle: from above, the rim of the ellipse at S 0, from the front half of the scalp.
+  const cut = ['--show', 'scalp,brain', '--slices', 'none', '--clip', 'axial-high=0'];
+  it('23: cut across, hollow', () => {
+    assertArea(picture(front, ...cut, '--no-caps'), isDrawn, scalp.front / 2);
+    const shown = picture(above, ...cut, '--no-caps');
+    assertArea(shown, isDrawn, scalp.above);
+    assert.ok(area(shown, isGrey) < 0.02 * scalp.above, 'nothing grey: no image');
+  });
+
+  it('24: the same cut, closed with the image', () => {
+    assertArea(picture(front, ...cut), isDrawn, scalp.front / 2);
+    const shown = picture(above, ...cut);
+    assertArea(shown, isGrey, scalp.above);
+    assertArea(shown, isDrawn, scalp.above);
+  });
+
+  it('a volume that is cut shows the image in the cut', () => {
+    const options = ['--show', 'none', '--slices', 'none', ...tissue, '--volume', 'ray', '--clip', 'axial-high=0', '--window', '0/2000'];
+    assertArea(picture(above, ...options), isGrey, scalp.above + markerBeyondScalp);
+    assert.ok(area(picture(above, ...options, '--no-caps'), isGrey) < 0.5 * scalp.above);
+  });
+
+  it('from any direction: the head is as wide from the side as it is long', () => {
+    const options = ['--show', 'scalp', '--slices', 'none', '--view', JSON.stringify({ camera: { projection: 'parallel', height_mm: 240 } })];
+    const ways = { '0,0': ellipse(73, 88), '90,0': ellipse(103, 88), '0,90': ellipse(73, 103) };
+    for (const [way, expected] of Object.entries(ways)) assertArea(picture('{}', ...options, '--from', way), isDrawn, expected);
   });
 
   // Half way between axial and coronal, the scalp is cut along its half axes of 73 mm and of 1 / sqrt(((1 / 88)^2 + (1 / 103)^2) / 2)
