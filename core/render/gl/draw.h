@@ -12,10 +12,11 @@ struct gl_frame {
     struct draw_cache *cache;
     const struct gl_target *target;
     struct gl_layers *layers;
-    GLuint no_vertices;            /* vertex array of programs that read no vertices */
-    GLuint polygon_array, polygon; /* vertex array and buffer of slices */
-    GLuint palette;                /* texture, label to colour */
-    GLuint transfer;               /* texture, value to colour and absorption */
+    GLuint no_vertices;             /* vertex array of programs that read no vertices */
+    GLuint polygon_array, polygon;  /* vertex array and buffer of slices */
+    GLuint segment_array, segments; /* vertex array and buffer of outlines: an instance is a segment, two points */
+    GLuint palette;                 /* texture, label to colour */
+    GLuint transfer;                /* texture, value to colour and absorption */
     const struct plan *plan;
     const struct draw_list *list;
     const struct camera *camera;
@@ -28,6 +29,8 @@ struct gl_frame {
 NODISCARD bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);
 NODISCARD bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 NODISCARD bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+/* Leaves the stencil test off and the depth test on. errors also ERROR_MEMORY */
+NODISCARD bool gl_draw_cap(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 /* Sets the program that composes layers with a volume, which is in use, and binds the textures of the volume. */
 NODISCARD bool gl_set_volume(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 void gl_unset_volume(const struct gl_frame *frame);

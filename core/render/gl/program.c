@@ -111,6 +111,8 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
         { &programs->colors[1], "colors, linear", image_constants(images[3], true, true), gl_shader_slice_vert,
           gl_shader_image_frag },
         { &programs->labels, "labels", "", gl_shader_slice_vert, gl_shader_labels_frag },
+        { &programs->fan, "fan", "", gl_shader_fan_vert, gl_shader_shade_frag },
+        { &programs->plain, "plain", "", gl_shader_plain_vert, gl_shader_shade_frag },
         { &programs->test, "test", "", gl_shader_whole_vert, gl_shader_test_frag },
     };
     *programs = (struct gl_programs){ 0 };
@@ -124,11 +126,22 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
 
 void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
 {
-    const GLuint names[] = { programs->smooth.name,         programs->faceted.name,        programs->compose.name,
-                             programs->lines.name,          programs->points.name,         programs->image[0].name,
-                             programs->image[1].name,       programs->colors[0].name,      programs->colors[1].name,
-                             programs->labels.name,         programs->test.name,           programs->volume.name,
-                             programs->smooth_clipped.name, programs->faceted_clipped.name };
+    const GLuint names[] = { programs->smooth.name,
+                             programs->faceted.name,
+                             programs->smooth_clipped.name,
+                             programs->faceted_clipped.name,
+                             programs->compose.name,
+                             programs->lines.name,
+                             programs->points.name,
+                             programs->image[0].name,
+                             programs->image[1].name,
+                             programs->colors[0].name,
+                             programs->colors[1].name,
+                             programs->labels.name,
+                             programs->fan.name,
+                             programs->plain.name,
+                             programs->test.name,
+                             programs->volume.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])
             gl->DeleteProgram(names[i]);

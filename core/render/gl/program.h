@@ -24,6 +24,8 @@ struct gl_programs {
     struct gl_program image[2];  /* slice of an image, window and level: the nearest voxel, linear */
     struct gl_program colors[2]; /* the same in colours, or with a second image over it */
     struct gl_program labels;    /* slice of a label layer: one colour a label */
+    struct gl_program fan;       /* the inside of outlines, for the stencil */
+    struct gl_program plain;     /* a polygon in one colour */
     struct gl_program test;      /* a texture's colour, by a triangle over the whole picture */
 };
 

@@ -22,7 +22,7 @@ struct gl_renderer {
     struct gl_programs programs;
     struct gl_target target;
     struct gl_layers layers;
-    GLuint no_vertices, polygon_array, polygon, palette, transfer;
+    GLuint no_vertices, polygon_array, polygon, segment_array, segments, palette, transfer;
     uint8_t *samples; /* of a band of a still, as read back */
     size_t n_samples_bytes;
 };
@@ -82,6 +82,17 @@ static void make_polygon(struct gl_renderer *renderer)
     gl->VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float), (const void *)(3 * sizeof(float)));
     gl->EnableVertexAttribArray(0);
     gl->EnableVertexAttribArray(1);
+    gl->BindVertexArray(0);
+
+    gl->GenVertexArrays(1, &renderer->segment_array);
+    gl->GenBuffers(1, &renderer->segments);
+    gl->BindVertexArray(renderer->segment_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, renderer->segments);
+    for (GLuint end = 0; end < 2; end++) {
+        gl->VertexAttribPointer(end, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float), (const void *)(3 * end * sizeof(float)));
+        gl->EnableVertexAttribArray(end);
+        gl->VertexAttribDivisor(end, 1);
+    }
     gl->BindVertexArray(0);
 
     renderer->palette = make_table(gl);
@@ -152,6 +163,8 @@ void gl_renderer_destroy(struct gl_renderer *renderer)
         gl->DeleteVertexArrays(1, &renderer->no_vertices);
         gl->DeleteVertexArrays(1, &renderer->polygon_array);
         gl->DeleteBuffers(1, &renderer->polygon);
+        gl->DeleteVertexArrays(1, &renderer->segment_array);
+        gl->DeleteBuffers(1, &renderer->segments);
         gl->DeleteTextures(1, &renderer->palette);
         gl->DeleteTextures(1, &renderer->transfer);
         gl_context_close(&renderer->context);
@@ -200,10 +213,13 @@ static bool draw_alike(const struct gl_frame *frame, const struct draw *draws, s
 {
     if (draws->kind == DRAW_SHAPE)
         return gl_draw_shapes(frame, draws, n, err);
-    if (draws->kind != DRAW_IMAGE && draws->kind != DRAW_LABELS)
-        return true;
-    for (size_t i = 0; i < n; i++)
-        if (!(draws->kind == DRAW_IMAGE ? gl_draw_image : gl_draw_labels)(frame, &draws[i], err))
+    bool (*const draw)(const struct gl_frame *frame, const struct draw *draw, struct error *err) =
+        draws->kind == DRAW_IMAGE    ? gl_draw_image
+        : draws->kind == DRAW_LABELS ? gl_draw_labels
+        : draws->kind == DRAW_CAP    ? gl_draw_cap
+                                     : NULL;
+    for (size_t i = 0; draw && i < n; i++)
+        if (!draw(frame, &draws[i], err))
             return false;
     return true;
 }
@@ -314,6 +330,8 @@ struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct d
                                         .no_vertices = renderer->no_vertices,
                                         .polygon_array = renderer->polygon_array,
                                         .polygon = renderer->polygon,
+                                        .segment_array = renderer->segment_array,
+                                        .segments = renderer->segments,
                                         .palette = renderer->palette,
                                         .transfer = renderer->transfer,
                                         .plan = scope->snapshot->plan,

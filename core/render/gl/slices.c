@@ -1,15 +1,7 @@
 /* Draws images and label layers on planes by OpenGL, as the polygon where the plane cuts the grid. */
 #include "core/render/gl/draw.h"
+#include "core/render/gl/polygon.h"
 #include "core/render/visible/color_map.h"
-
-/* The clipping starts from a rectangle, and each of the grid's six faces and of the clip planes adds at most one
- * corner. */
-enum { MAX_CORNERS = 10 + CLIP_MAX };
-
-struct polygon {
-    int n;
-    struct vec3 lps_mm[MAX_CORNERS];
-};
 
 /* Distance of a point from one of the grid's outer faces, in voxels; positive inside. */
 static double inside_face(const struct grid *grid, int face, struct vec3 p_lps_mm)
@@ -19,56 +11,28 @@ static double inside_face(const struct grid *grid, int face, struct vec3 p_lps_m
     return face % 2 ? grid->size[face / 2] - 0.5 - at : at + 0.5;
 }
 
-/* Keeps the part of the polygon where inside >= 0, given at its corners. Source: I. E. Sutherland, G. W. Hodgman,
- * Reentrant Polygon Clipping, CACM 1974. */
-static void clip(const double inside[MAX_CORNERS], struct polygon *polygon)
-{
-    struct polygon kept = { 0 };
-    for (int i = 0; i < polygon->n; i++) {
-        int next = (i + 1) % polygon->n;
-        struct vec3 a = polygon->lps_mm[i], b = polygon->lps_mm[next];
-        double fa = inside[i], fb = inside[next];
-        if (fa >= 0 && kept.n < MAX_CORNERS)
-            kept.lps_mm[kept.n++] = a;
-        if ((fa >= 0) != (fb >= 0) && kept.n < MAX_CORNERS)
-            kept.lps_mm[kept.n++] = vec3_add(a, vec3_scale(vec3_sub(b, a), fa / (fa - fb)));
-    }
-    *polygon = kept;
-}
-
 /* The polygon in which a draw's plane cuts a grid's outer faces, as far as no clip plane cuts it off; n < 3: nothing is
  * left. */
-static struct polygon slice_polygon(const struct grid *grid, const struct draw *draw)
+static struct gl_polygon slice_polygon(const struct grid *grid, const struct draw *draw)
 {
-    const struct plane *plane = &draw->plane;
-    double inside[MAX_CORNERS];
     struct box3 box = grid_bounds_lps_mm(grid);
-    struct plane upright = plane_upright(plane);
+    struct plane upright = plane_upright(&draw->plane);
     struct plane_reach reach = plane_reach(&upright, &box);
-    struct polygon polygon = { 4,
-                               { plane_point(&upright, reach.low_right_mm, reach.low_up_mm),
-                                 plane_point(&upright, reach.high_right_mm, reach.low_up_mm),
-                                 plane_point(&upright, reach.high_right_mm, reach.high_up_mm),
-                                 plane_point(&upright, reach.low_right_mm, reach.high_up_mm) } };
+    struct gl_polygon polygon = gl_polygon_of_reach(&upright, &reach);
     for (int face = 0; face < 6; face++) {
+        double inside[GL_POLYGON_CORNERS];
         for (int i = 0; i < polygon.n; i++)
             inside[i] = inside_face(grid, face, polygon.lps_mm[i]);
-        clip(inside, &polygon);
+        gl_polygon_keep(&polygon, inside);
     }
-    for (size_t c = 0; c < draw->clip.n_planes; c++) {
-        if (!clip_set_has(&draw->clip, c))
-            continue;
-        for (int i = 0; i < polygon.n; i++)
-            inside[i] = CLIP_SLACK_MM - plane_height_mm(&draw->clip.planes[c].plane, polygon.lps_mm[i]);
-        clip(inside, &polygon);
-    }
+    gl_polygon_clip(&polygon, &draw->clip);
     return polygon;
 }
 
-static void draw_polygon(const struct gl_frame *frame, const struct grid *grid, const struct polygon *polygon)
+static void draw_polygon(const struct gl_frame *frame, const struct grid *grid, const struct gl_polygon *polygon)
 {
     const struct gl *gl = frame->gl;
-    float vertices[MAX_CORNERS][6];
+    float vertices[GL_POLYGON_CORNERS][6];
     for (int i = 0; i < polygon->n; i++) {
         struct vec3 p = polygon->lps_mm[i], ijk = affine_point(&grid->ijk_from_lps_mm, p);
         vertices[i][0] = (float)p.x;
@@ -156,7 +120,7 @@ bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct
     const struct gl_program *program =
         has_colors ? &frame->programs->colors[image->is_linear] : &frame->programs->image[image->is_linear];
     const struct grid *grid = &frame->plan->images[draw->subject.index].volume->grid;
-    struct polygon polygon = slice_polygon(grid, draw);
+    struct gl_polygon polygon = slice_polygon(grid, draw);
     if (polygon.n < 3)
         return true;
     const struct gl_grid *texels =
@@ -182,7 +146,7 @@ bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struc
     const struct gl *gl = frame->gl;
     const struct gl_program *program = &frame->programs->labels;
     const struct grid *grid = &frame->plan->regions.layers[draw->subject.index]->grid;
-    struct polygon polygon = slice_polygon(grid, draw);
+    struct gl_polygon polygon = slice_polygon(grid, draw);
     if (polygon.n < 3)
         return true;
     const struct gl_grid *labels =

@@ -29,7 +29,7 @@ static GLenum make_framebuffers(const struct gl *gl, struct gl_target *target)
     gl->GenFramebuffers(1, &target->framebuffer);
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->color);
-    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
+    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
     status[0] = gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
     gl->GenFramebuffers(1, &target->over);
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->over);
@@ -56,8 +56,8 @@ bool gl_target_resize(const struct gl *gl, struct gl_target *target, int width_p
     gl->BindRenderbuffer(GL_RENDERBUFFER, target->color);
     gl->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_px, height_px);
     target->depth = make_texture(gl, GL_TEXTURE_2D);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, width_px, height_px, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
-                   NULL);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH24_STENCIL8, width_px, height_px, 0, GL_DEPTH_STENCIL,
+                   GL_UNSIGNED_INT_24_8, NULL);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     GLenum status = make_framebuffers(gl, target);
 
