@@ -197,6 +197,34 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await comes((now) => now.image.obliques['plane-2']?.name, 'Optic nerve');
   });
 
+  it('in its own pane an oblique plane has letters of its direction, the wheel moves it along its normal, and a click puts the crosshair on it', async () => {
+    await page.locator('button[aria-label="Show Optic nerve in a pane"]').click();
+    for (const view of [1, 5]) await full(page, view);
+    const pane = page.locator('[data-view="5"]');
+    assert.match(await pane.locator('h2').textContent(), /Optic nerve/);
+    const { origin_mm: before, normal } = (await scene()).image.obliques['plane-2'];
+    // normal (-1, 2, 0) / sqrt 5: right is (2, 1, 0) / sqrt 5, with cosines 0.89 to the left and 0.45 to the posterior
+    assert.equal(await pane.locator('[data-letters]').getAttribute('data-letters'), 'RA LP S I');
+    const [x, y] = await middleOf(page.locator('#picture-5'));
+    await page.mouse.move(x, y);
+    await page.mouse.wheel(0, -300); // three voxels of 1 mm, on
+    const along = (from, to) => to.reduce((sum, value, axis) => sum + (value - from[axis]) * normal[axis], 0);
+    await comes((now) => along(before, now.image.obliques['plane-2'].origin_mm), 3, 0.01);
+    const { origin_mm: origin } = (await scene()).image.obliques['plane-2'];
+    assert.ok(Math.abs(Math.hypot(...origin.map((value, axis) => value - before[axis])) - 3) < 0.01, 'along the normal and nowhere else');
+    await page.mouse.click(x + 30, y + 20);
+    const { slices } = (await scene()).image;
+    await comes((now) => now.image.slices.sagittal.position_mm !== slices.sagittal.position_mm, true);
+    const { sagittal, coronal, axial } = (await scene()).image.slices;
+    const point = [sagittal.position_mm, coronal.position_mm, axial.position_mm];
+    assert.ok(Math.abs(along(origin, point)) < 0.09, `${point} lies on the plane, to 0.1 mm along each axis`);
+    const at = await pixelOf(5, point);
+    assert.ok(Math.hypot(at[0] - x - 30, at[1] - y - 20) < 1, `${at} is where the click was`);
+    assert.equal(await pane.locator('.clip-handle[data-plane="plane-2"]').count(), 0, 'no line of its own');
+    assert.equal(await pane.locator('.clip-handle[data-plane="sagittal_high"]').count(), 1, 'the clip planes cut it too');
+    await page.locator('[aria-label="Four panes"]').click();
+  });
+
   it('with planes that cut, one chosen and others made, axe-core finds nothing and no text lies over text', async () => {
     await page.emulateMedia({ forcedColors: 'active' });
     await eye('coronal_low').click();

@@ -39,7 +39,13 @@ const layouts = [
   }],
 ];
 const dock = (name) => [`sheet ${name}`, (page) => page.locator('.dock button', { hasText: name }).click()];
-const parts = ['Images', 'Regions', 'Doses', 'Beams', 'Tracks', 'Clip'];
+const parts = ['Images', 'Planes', 'Regions', 'Doses', 'Beams', 'Tracks', 'Clip'];
+const planes = [
+  ['a new plane', (page) => page.locator('[data-key="oblique:"] button.name').click()],
+  ['an oblique plane', (page) => page.locator('.clip-angles button').click()],
+  ['points of a plane', (page) => page.locator('#tab-panel button', { hasText: 'Three points' }).click()],
+  ['no points', (page) => page.locator('#tab-panel button', { hasText: 'Cancel' }).click()],
+];
 const clip = [
   ['clip planes that cut', async (page) => {
     for (const id of ['sagittal_high', 'free', 'axial_high']) await page.locator(`[data-key="clip:${id}"] .eye`).click();
@@ -55,6 +61,7 @@ export const states = {
     ['a region', region],
     ...['dose', 'image', 'beam', 'tracks'].map((kind) => [`a ${kind}`, (page) => page.locator(`[data-key^="${kind}:"] button.name`).first().click()]),
     ['section Clip', (page) => page.locator('[data-key="section:clip"]').click()], ...clip, free,
+    ['section Planes', (page) => page.locator('[data-key="section:planes"]').click()], ...planes,
     ['the 3-D picture', (page) => page.locator('button[aria-label="3-D picture"]').click()],
     tab('Probe'), tab('Plan'), ...popovers, ...maximised,
     ...['Three panes in a row', 'One large, three small', 'Four panes'].map((name) => [name, (page) => page.locator(`[aria-label="${name}"]`).click()]),
@@ -66,6 +73,7 @@ export const states = {
     ['at first', async () => {}],
     ...['images', 'regions', 'doses', 'beams', 'tracks'].map((id) => [`section ${id}`, (page) => page.locator(`[data-section="${id}"]`).click()]),
     ['section clip', (page) => page.locator('[data-section="clip"]').click()], ...clip,
+    ['section planes', (page) => page.locator('[data-section="planes"]').click()], ...planes,
     ['section pinned', async (page) => {
       await page.locator('[data-section="regions"]').click();
       await page.locator('[aria-label="Pin"]').click();
@@ -78,13 +86,13 @@ export const states = {
   tablet: [
     ['at first', async () => {}],
     dock('Probe'), tab('Plan'), tab('Selection'), dock('Parts'),
-    ...parts.map((name) => tab(name)), ...clip, dock('Parts'), tab('Regions'), ['a region', region], ...popovers,
+    ...parts.map((name) => tab(name)), ...clip, dock('Parts'), tab('Planes'), ...planes, dock('Parts'), tab('Regions'), ['a region', region], ...popovers,
     ['sheet closed', (page) => page.locator('[aria-label="Close the sheet"]').click()], ...maximised, ...views, ...layouts,
   ],
   phone: [
     ['at first', async () => {}],
     ...views.slice(0, 1), ['nothing open', (page) => page.keyboard.press('Escape')],
     ...['Axial', 'Sagittal', 'Coronal', '3-D'].map((name) => [`pane ${name}`, (page) => page.locator('[aria-label="Pane"] button', { hasText: name }).click()]),
-    dock('Probe'), tab('Plan'), tab('Selection'), dock('Parts'), ...parts.map((name) => tab(name)), ...clip, dock('Parts'), tab('Regions'), ['a region', region], ...popovers,
+    dock('Probe'), tab('Plan'), tab('Selection'), dock('Parts'), ...parts.map((name) => tab(name)), ...clip, dock('Parts'), tab('Planes'), ...planes, dock('Parts'), tab('Regions'), ['a region', region], ...popovers,
   ],
 };

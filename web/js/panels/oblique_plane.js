@@ -6,7 +6,7 @@ import { crosshair } from '../state/plan.js';
 import { checkbox, numberField } from './fields.js';
 import { position as positionText } from './format.js';
 import { icon } from './icons.js';
-import { canOpen, change, deleteOblique, isFull, obliquesOf, openOblique, setOblique } from './oblique_rows.js';
+import { change, deleteOblique, isFull, obliquesOf, openOblique, setOblique } from './oblique_rows.js';
 import { takePoint } from './pane_picking.js';
 
 const tenths = (value) => Math.round(value * 10) / 10 || 0;
@@ -31,7 +31,7 @@ function planeBlock(world, id, oblique, isDisabled) {
       <dt title="Along its normal, from the patient's origin">Position</dt><dd>${numberField('Position along the normal in mm', tenths(positionOf(plane)), 'mm', isDisabled, (value, event) => set({ origin_mm: originAt(plane, Math.min(Math.max(value, -1e4), 1e4)) }, event))}</dd></dl>
     <p class="note">Faces ${facing(oblique.normal)}. Turn: 0° anterior, 90° left; tilt: 90° superior. In its pane the wheel moves it.</p>
     <div class="checks">${checkbox('Show in 3-D', oblique.visible, isDisabled, (visible, event) => set({ visible }, event))}</div>
-    <div class="buttons">${canOpen(world) ? html`<button @click=${(event) => openOblique(world, id, event)}>${icon('single')}Show in a pane</button>` : nothing}
+    <div class="buttons"><button @click=${() => openOblique(world, id)}>${icon('single')}Show in a pane</button>
       <button ?disabled=${isDisabled} @click=${(event) => set({ origin_mm: roundedOrigin(crosshair(world.room.scene.value)) }, event)}>${icon('crosshair')}To crosshair</button>
       <button ?disabled=${isDisabled} @click=${(event) => deleteOblique(world, id, event)}>${icon('trash')}Delete</button></div></section>`;
 }

@@ -1,8 +1,10 @@
 // The oblique planes in the tree, and what makes, changes and opens them.
-import { html, nothing } from '../../lib/lit-html.js';
+import { html } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
-import { facing, freeId, maxObliques, obliqueName } from '../state/obliques.js';
+import { obliqueView } from '../state/layout.js';
+import { facing, freeId, maxObliques, newOblique, obliqueName } from '../state/obliques.js';
 import { icon } from './icons.js';
+import { showOblique } from './pane_kind.js';
 import { eye, name, treeRow } from './tree_row.js';
 
 export const obliquesOf = ({ room }) => room.scene.value?.image.obliques ?? {};
@@ -23,7 +25,7 @@ export function obliqueRows(world) {
     const toggle = (event) => change(world, id, { visible: !oblique.visible }, event);
     return treeRow(world, { kind: 'oblique', id, words: [words, about], title: `${words}: faces ${about}`, isOn: oblique.visible, toggle }, html`
       ${eye(oblique.visible, `Show ${words} in 3-D`, 'Show or hide in 3-D', isDisabled, toggle)}${name(words)} <span class="tail clipped">${about}</span>
-      ${obliqueView(room) ? html`<button class="eye" tabindex="-1" aria-label=${`Show ${words} in a pane`} title="Show in a pane" @click=${(event) => { event.stopPropagation(); openOblique(world, id, event); }}>${icon('single')}</button>` : nothing}`);
+      <button class="eye" tabindex="-1" aria-label=${`Show ${words} in a pane`} title="Show in a pane" @click=${(event) => { event.stopPropagation(); openOblique(world, id); }}>${icon('single')}</button>`);
   })}${treeRow(world, { kind: 'oblique', id: '', words: ['New plane', '…'], title: 'By angles, by points, by a line, along a beam' }, html`${icon('plane')}${name('New plane …')}`)}`;
 }
 
@@ -38,7 +40,7 @@ export function setOblique(world, id, plane, event) {
   if (id) return void change(world, id, plane, event);
   if (isFull(world)) return void ui.notify('warn', `There are ${maxObliques} planes already; delete one first.`, 'oblique');
   const made = freeId(obliquesOf(world));
-  change(world, made, { visible: true, name: '', ...plane }, event);
+  change(world, made, newOblique(plane), event);
   ui.select('oblique', made);
 }
 
@@ -47,14 +49,10 @@ export function deleteOblique(world, id, event) {
   world.ui.select('oblique', '');
 }
 
-/** The view that shows an oblique plane; undefined where the page has no such pane. */
-const obliqueView = (room) => room.views.find(({ kind }) => kind === 'oblique');
-
-/** Shows the plane in the oblique pane; with no such pane on the screen, beside the 3-D picture. */
-export function openOblique({ room, ui }, id, event) {
-  const view = obliqueView(room);
-  room.patchView(view.number, { plane: id }, { at: event.timeStamp });
-  if (!ui.visible.value.includes(view.number)) ui.setLayout('oblique');
+/** Shows the plane in the oblique pane; with no such pane on the screen, beside the 3-D picture, on a telephone in its place. */
+export function openOblique({ room, ui }, id) {
+  showOblique(room, id);
+  if (ui.visible.value.includes(obliqueView)) return;
+  if (ui.arrangement.value.size === 'phone') ui.showInPlaceOf(ui.active.value, obliqueView);
+  else ui.setLayout('oblique');
 }
-
-export const canOpen = ({ room }) => Boolean(obliqueView(room));

@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect } from '../../lib/signals-core.js';
 import { obliqueView, views } from '../state/layout.js';
-import { alongBeam, freeId, maxObliques, normalOfAngles, roundedOrigin } from '../state/obliques.js';
+import { alongBeam, freeId, maxObliques, newOblique, normalOfAngles, obliqueName, roundedOrigin } from '../state/obliques.js';
 import { crosshair } from '../state/plan.js';
 import { icon } from './icons.js';
 
@@ -11,7 +11,10 @@ const tiltDeg = 60; // of the normal of a new plane over anterior: an axial slic
 export function paneKind({ room, ui }, view) {
   const name = `kind-${view.number}`;
   const isOpen = ui.popover.value === name;
-  return html`<span class="anchor view-kind"><h2><button aria-haspopup="menu" aria-expanded=${isOpen} title="Show something else in this pane" @click=${() => ui.toggle(name)}>${view.name}<span class="roomy">${icon('chevronDown', 12)}</span></button></h2>
+  const { plane } = view.document.value;
+  const oblique = view.kind === 'oblique' && room.scene.value?.image.obliques?.[plane];
+  const words = oblique ? html`<span class="clip-plane-name">${obliqueName(plane, oblique)}</span>` : view.name;
+  return html`<span class="anchor view-kind"><h2><button aria-haspopup="menu" aria-expanded=${isOpen} title="Show something else in this pane" @click=${() => ui.toggle(name)}>${words}<span class="roomy">${icon('chevronDown', 12)}</span></button></h2>
     ${isOpen ? menu({ room, ui }, view) : nothing}</span>`;
 }
 
@@ -32,7 +35,7 @@ function menu({ room, ui }, view) {
 function planeItems(room, view, item, isOff) {
   const obliques = Object.entries(room.scene.value?.image.obliques ?? {});
   const { plane } = view.document.value;
-  return html`${obliques.map(([id, { name }]) => item(name || id, id === plane, (at) => room.patchView(view.number, { plane: id }, { at }), isOff))}
+  return html`${obliques.map(([id, oblique]) => item(obliqueName(id, oblique), id === plane, (at) => room.patchView(view.number, { plane: id }, { at }), isOff))}
     ${obliques.length < maxObliques ? item('New plane through the crosshair', false, () => addOblique(room), isOff) : nothing}
     ${obliques.some(([id]) => id === plane) ? item('Move it to the crosshair', false,
       (at) => room.patchScene({ image: { obliques: { [plane]: { origin_mm: roundedOrigin(crosshair(room.scene.value)) } } } }, { view: view.number, at }), isOff) : nothing}`;
@@ -53,11 +56,12 @@ function addOblique(room) {
   const [beam] = room.plan.value.beams;
   const { normal = normalOfAngles(0, tiltDeg) } = (beam && alongBeam(beam)) ?? {};
   const id = freeId(scene.image.obliques);
-  room.patchScene({ image: { obliques: { [id]: { origin_mm: roundedOrigin(crosshair(scene)), normal } } } });
-  show(room, id);
+  room.patchScene({ image: { obliques: { [id]: newOblique({ origin_mm: roundedOrigin(crosshair(scene)), normal }, false) } } });
+  showOblique(room, id);
 }
 
-function show(room, plane) {
+/** The oblique view shows this plane, now or when it opens. */
+export function showOblique(room, plane) {
   const view = room.view(obliqueView);
   if (!view.isOpen.value) return void view.restart({ ...view.document.value, plane });
   if (room.following.isPresenting.value || !room.following.isFollowing.value) return void room.patchView(obliqueView, { plane });
@@ -84,7 +88,7 @@ export function giveOblique({ room, ui }) {
       const obliques = room.scene.peek()?.image.obliques;
       if (!obliques || obliques[room.view(obliqueView).document.peek().plane]) return;
       const [first] = Object.keys(obliques);
-      if (first) show(room, first);
+      if (first) showOblique(room, first);
       else if (room.following.isPresenting.peek()) addOblique(room);
     });
   });

@@ -140,6 +140,9 @@ export const turned = (normal, axis, angleRad) => roundedNormal(rotate(normal, a
 /** The angle by which a direction in a plane turns to become another, about the plane's normal by the right-hand rule. */
 export const angleBetween = (plane, from, to) => Math.atan2(dot(plane.normal, cross(from, to)), dot(from, to));
 
+/** A plane as the scene keeps it, with every field: only so can its making be undone. @param {{origin_mm: number[], normal: number[]}} plane */
+export const newOblique = ({ origin_mm, normal }, visible = true) => ({ visible, name: '', origin_mm, normal });
+
 /** An id that no oblique plane has yet: "plane-1". */
 export function freeId(obliques) {
   for (let n = 1; ; n++) if (!obliques[`plane-${n}`]) return `plane-${n}`;
