@@ -95,6 +95,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
         await act(page);
         await settled(page);
         assert.deepEqual(await overlaps(page), [], name);
+        assert.deepEqual(await cut(page, '.tabs > .icon-button, .panel-head .icon-button', '.room'), [], `${name}: a panel can be closed`);
         for (const { view, width, layout } of await panes(page))
           if (size === 'wide' || size === 'compact') assert.ok(width >= (layout === 'row' ? 190 : layout === '1+3' && view > 1 ? 250 : 420) - 0.5, `${name}: pane ${view} is ${width} px wide`);
         await shoot(page, `layout-${size}-${name.replaceAll(' ', '-').toLowerCase()}`);

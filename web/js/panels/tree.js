@@ -74,7 +74,7 @@ function inSheet(world) {
   const sections = sectionsOf(room.plan.value, room.scene.value);
   const shown = sections.find(({ id }) => id === ui.sheetSection.value) ?? sections[0];
   return html`<i class="grip"></i><div class="tabs"><div role="tablist" aria-label="Parts of the plan" @keydown=${roving}>${sections.map(({ id, name }) => html`<button role="tab" id=${`part-${id}`} aria-selected=${id === shown.id}
-      aria-controls=${id === shown.id ? 'part-panel' : nothing} tabindex=${id === shown.id ? 0 : -1} @click=${() => { ui.sheetSection.value = id; }}>${name}</button>`)}</div><span class="grow"></span>
+      aria-controls=${id === shown.id ? 'part-panel' : nothing} tabindex=${id === shown.id ? 0 : -1} @click=${({ currentTarget }) => { ui.sheetSection.value = id; currentTarget.scrollIntoView({ block: 'nearest', inline: 'nearest' }); }}>${name}</button>`)}</div><span class="grow"></span>
       <button class="icon-button" aria-label="Close the sheet" @click=${() => { ui.sheet.value = ''; }}>${icon('chevronDown')}</button></div>
     ${shown ? html`<div class="sheet-panel" role="tabpanel" id="part-panel" aria-labelledby=${`part-${shown.id}`}>${shown.id === 'regions' ? regionTools(world) : nothing}
       <div class="scroll">${list(world, shown.name, shown.rows(world), [shown])}</div></div>` : loading}`;
