@@ -6,7 +6,7 @@ import { crosshair, shownImage } from '../state/plan.js';
 import { axes } from '../view/camera.js';
 import { clipRange } from './clip_range.js';
 import { clipPosition } from './clip_rows.js';
-import { checkbox, numberField, segment } from './fields.js';
+import { checkbox, numberField } from './fields.js';
 import { number } from './format.js';
 import { icon } from './icons.js';
 import { swatch } from './probe.js';
@@ -80,7 +80,7 @@ function alongFields({ row, plan, scene, isDisabled, change }, label, keptFrom) 
 function beamFields(part) {
   const { plan, scene, isDisabled, change } = part;
   const shown = beamOf(plan, scene);
-  return html`${plan.beams.length > 1 ? html`<div class="clip-beams">${segment('Beam of the plane', plan.beams.map(({ id, name }) => [id, name || id]), shown.id, isDisabled, (id, event) => change({ clip: { beam: { id } } }, event))}</div>` : nothing}
+  return html`${plan.beams.length > 1 ? html`<div class="clip-beams" role="group" aria-label="Beam of the plane">${plan.beams.map(({ id, name }) => html`<button class=${id === shown.id ? 'on' : ''} aria-pressed=${id === shown.id} ?disabled=${isDisabled} @click=${(event) => change({ clip: { beam: { id } } }, event)}>${name || id}</button>`)}</div>` : nothing}
     ${alongFields(part, 'From the entry', true)}<p class="note">Across the beam ${shown.name || shown.id}, towards its target. What lies before the plane, as the beam runs, is cut off.</p>`;
 }
 
@@ -96,13 +96,14 @@ function freeFields(part) {
     <p class="note">Cuts off what faces ${facing(normal)}. Turn: 0° anterior, 90° left; tilt: 90° superior.</p>`;
 }
 
-function freeButtons({ world, plan, isDisabled, change }) {
+function freeButtons({ world, plan, scene, isDisabled, change }) {
   const { panes, ui } = world;
   const camera = () => (panes()[ui.active.value - 1]?.actions.is3d ? panes()[ui.active.value - 1] : panes()[0]).actions.camera;
   const square = (event) => change({ clip: { free: { normal: axes(camera()).forward.map((value) => Math.round(-value * 1e6) / 1e6 || 0) } } }, event);
-  const beam = plan.beams[0] && alongBeam(plan.beams[0]);
+  const shown = beamOf(plan, scene);
+  const beam = shown && alongBeam(shown);
   return html`<button ?disabled=${isDisabled} title="Square to the line of sight of the 3-D picture; what is nearer is cut off" @click=${square}>Square to the view</button>
-    ${beam ? html`<button ?disabled=${isDisabled} title="Through the axis of the beam, upright" @click=${(event) => change({ clip: { free: beam } }, event)}>Along the beam</button>` : nothing}`;
+    ${beam ? html`<button ?disabled=${isDisabled} title=${`Through the axis of the beam ${shown.name || shown.id}, upright`} @click=${(event) => change({ clip: { free: beam } }, event)}>Along the beam</button>` : nothing}`;
 }
 
 function capBlock({ row, plan, scene, isDisabled, change }) {

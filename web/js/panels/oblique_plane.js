@@ -43,7 +43,7 @@ function placeBlock(world, id, isDisabled) {
   const isOff = isDisabled || (!id && isFull(world));
   const through = () => roundedOrigin(crosshair(room.scene.value));
   const set = (plane, event) => setOblique(world, id, plane, event);
-  const [beam] = plan.beams;
+  const beams = plan.beams.filter(alongBeam);
   const start = (kind) => { ui.picking.value = { kind, id, points: [], from: null, to: null, view: 0 }; };
   return html`<section class="block"><h3>${icon('plane')} ${id ? 'Another place' : 'New plane'} <span class="dim">${!id && isFull(world) ? 'eight are the most' : ''}</span></h3>
     <div class="clip-make"><span class="dim">Through the crosshair, as</span><div class="buttons">${slices.map(([kind, word]) => html`<button ?disabled=${isOff} @click=${(event) => set({ origin_mm: through(), normal: normalOfKind[kind] }, event)}>${word}</button>`)}</div>
@@ -52,7 +52,7 @@ function placeBlock(world, id, isDisabled) {
         <span class="field"><input type="number" step="any" name="tilt" value="0" aria-label="Tilt of the plane in degrees" ?disabled=${isOff}><span>° tilt</span></span><button ?disabled=${isOff}>${id ? 'Set' : 'Add'}</button></form>
       <span class="dim">In the panes</span><div class="buttons"><button aria-pressed=${ui.picking.value?.kind === 'points'} ?disabled=${isOff} title="Click three points in slice panes" @click=${() => start('points')}>Three points</button>
         <button aria-pressed=${ui.picking.value?.kind === 'line'} ?disabled=${isOff} title="Drag a line in a slice pane: the plane stands on that slice" @click=${() => start('line')}>Line</button>
-        ${beam && alongBeam(beam) ? html`<button ?disabled=${isOff} title="Through the axis of the beam, upright" @click=${(event) => set(alongBeam(beam), event)}>Along the beam</button>` : nothing}</div></div>
+        ${beams.map((beam) => html`<button class="clip-beam" ?disabled=${isOff} title=${`Through the axis of the beam ${beam.name || beam.id}, upright`} @click=${(event) => set(alongBeam(beam), event)}>${beams.length > 1 ? `Along ${beam.name || beam.id}` : 'Along the beam'}</button>`)}</div></div>
     ${picking(world)}</section>`;
 }
 
