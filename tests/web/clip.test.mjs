@@ -126,6 +126,11 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await comes(on, '');
     await page.keyboard.press('c');
     await comes(on, 'axial_low,sagittal_high');
+    await page.locator('[data-key="clip:switch"] button', { hasText: 'All off' }).click();
+    await comes(on, '');
+    await page.locator('[data-key="clip:switch"] button', { hasText: 'On again' }).click();
+    await comes(on, 'axial_low,sagittal_high');
+    await page.locator('#picture-1').focus();
     await page.keyboard.press('k');
     await comes((now) => [now.clip.axial_low.cap, now.clip.sagittal_high.cap].join(), 'false,false');
     await page.locator('[aria-label="Help"]').click();

@@ -23,7 +23,7 @@ export function clipNote({ room }) {
 export function clipRows(world) {
   const { room } = world;
   if (!room.scene.value?.clip) return nothing;
-  return html`${clipsOf(room.plan.value).map((row) => planeRow(world, row))}${capsRow(world)}${crosshairRow(world)}`;
+  return html`${clipsOf(room.plan.value).map((row) => planeRow(world, row))}${capsRow(world)}${actionRows(world)}`;
 }
 
 function planeRow(world, row) {
@@ -53,12 +53,20 @@ function capsRow(world) {
   return treeRow(world, { kind: 'clip', id: 'caps', words: ['Caps show', words], title: `Caps show ${words}` }, html`${icon('image')}${name('Caps show')} <span class="tail">${words}</span>`);
 }
 
-function crosshairRow({ room, ui }) {
-  const isDisabled = !room.canChange.value || !enabledClips(room.plan.value, room.scene.value).length;
-  const act = (event) => !isDisabled && room.patchScene(allThroughCrosshair(room.plan.value, room.scene.value), how(ui, event));
-  const key = 'clip:crosshair';
+/** What acts on all planes: as key C does, and to the crosshair. */
+function actionRows({ room, ui }) {
+  const nOn = enabledClips(room.plan.value, room.scene.value).length;
+  const toggle = (event) => toggleClips(room, ui, event.timeStamp);
+  const move = (event) => room.patchScene(allThroughCrosshair(room.plan.value, room.scene.value), how(ui, event));
+  return html`${actionRow(room, ui, 'switch', 'clip', nOn ? 'All off' : 'On again', !nOn && !ui.clips.length, toggle)}${actionRow(room, ui, 'crosshair', 'crosshair', 'All to crosshair', !nOn, move)}`;
+}
+
+function actionRow(room, ui, id, picture, words, isOff, act) {
+  const isDisabled = isOff || !room.canChange.value;
+  const key = `clip:${id}`;
+  const run = (event) => !isDisabled && act(event);
   return html`<li class=${`row clip-all${ui.row.value === key ? ' current' : ''}`} role="treeitem" id=${`row-${key}`} data-key=${key} aria-level="2" aria-selected="false" aria-disabled=${isDisabled}
-    aria-label="All to crosshair" @click=${(event) => { ui.row.value = key; act(event); }} @row-toggle=${(event) => act(event.detail)}><button tabindex="-1" ?disabled=${isDisabled}>${icon('crosshair')}All to crosshair</button></li>`;
+    aria-label=${words} @click=${(event) => { ui.row.value = key; run(event); }} @row-toggle=${(event) => run(event.detail)}><button tabindex="-1" ?disabled=${isDisabled}>${icon(picture)}${words}</button></li>`;
 }
 
 // ---- keys of a pane -----------------------------------------------------------------------------------------------------

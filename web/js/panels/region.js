@@ -2,9 +2,10 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
+import { enabledClips } from '../state/clip.js';
 import { crosshairPatch, shownImage, soloPatch } from '../state/plan.js';
 import { isExportable, representations, shapeQuery, volumeDifference } from '../state/shapes.js';
-import { numberField, segment } from './fields.js';
+import { checkbox, numberField, segment } from './fields.js';
 import { number, seconds, signed, significant, volume } from './format.js';
 import { icon } from './icons.js';
 
@@ -31,6 +32,7 @@ export function regionBlock(world, region) {
         @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(style.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd>
       <dt>Colour</dt><dd><input type="color" .value=${live(style.color)} aria-label="Colour" ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}></dd>
       <dt title="Higher lies on top where regions overlap">Order</dt><dd>${numberField('Order, higher lies on top', style.order, '', isDisabled, (value, event) => change({ order: Math.min(Math.max(Math.round(value), -1000), 1000) }, event))}</dd></dl>
+    ${style.clipped && !enabledClips(plan, scene).length ? nothing : html`<div class="checks">${checkbox('Not cut by clip planes', style.clipped === false, isDisabled, (on, event) => change({ clipped: !on }, event), 'The region is whole before the cut')}</div>`}
     <div class="shown-as"><span class="dim">Shown as</span>${segment('Shown as', representations, style.representation, isDisabled || !region.voxels, (representation, event) => change({ representation }, event))}</div>
     ${region.voxels ? figures(world, region, style.representation) : nothing}
     <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(plan.regions, scene, region.id), how(event))}>${icon('solo')}<span>Solo</span></button>
