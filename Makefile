@@ -210,7 +210,7 @@ test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
 # Long ones: what waits for a minute, and the meeting and the planner's hour at every size of window
 SLOW_NODE := tests/api/slow.test.mjs
-LONG_NODE := $(SLOW_NODE) tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs
+LONG_NODE := $(SLOW_NODE) tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs tests/web/image.test.mjs tests/web/measure.test.mjs
 test-api: all demo
 	$(Q)tests/run_node.sh api $(filter-out $(SLOW_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs)))
 test-web: all demo
