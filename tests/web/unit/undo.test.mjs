@@ -277,4 +277,9 @@ test('steps are named, with the value and its unit', () => {
   assert.equal(name('scene', 'image.slices.axial.position_mm', 'image.slices.coronal.position_mm'), 'crosshair');
   assert.equal(name('scene', 'outline.width_px'), 'outline width');
   assert.equal(name(1, 'camera'), 'camera of 3-D');
+  assert.equal(name('scene', 'image.id', 'image.window', 'image.color_map', 'image.looks.ct'), 'image shown', 'its look goes with it');
+  assert.equal(name('scene', 'image.volume.points'), 'transfer function');
+  assert.equal(name('scene', 'image.blend.opacity'), 'opacity of the second image');
+  assert.equal(name('scene', 'measures.m1'), 'measure');
+  assert.equal(name('scene', 'measures.m1.points'), 'points of a measure');
 });
