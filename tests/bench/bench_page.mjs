@@ -84,6 +84,34 @@ try {
   }
   tell('release to full picture, 1024 x 768', quantile(stills, 0.5), 'ms', `median of ${releases}; at most 400 asked for`);
 
+  // four panes: the crosshair dragged in the coronal one moves two slices, and 3-D shows one of them
+  await page.keyboard.press('Enter');
+  await until(stats, (s) => [1, 2, 3, 4].every((view) => s.badges[view] === 'full'));
+  const pane = await page.locator('#picture-4').boundingBox();
+  const [middleX, middleY] = [pane.x + pane.width / 2, pane.y + pane.height / 2];
+  await page.mouse.move(middleX, middleY);
+  await page.mouse.down();
+  const dragAbout = async (ms) => {
+    const began = performance.now();
+    for (let step = 0; performance.now() - began < ms; step++) {
+      await page.mouse.move(middleX + 60 * Math.sin(step / 19), middleY + 60 * Math.sin(step / 23));
+      await sleep(12);
+    }
+    return (performance.now() - began) / 1000;
+  };
+  await dragAbout(1500); // the pace settles
+  await page.evaluate(() => globalThis.beamroom.clear());
+  const from = (await stats()).frames_of;
+  const took = await dragAbout(dragSeconds * 1000);
+  const { frames_of: to, input_to_paint_ms: times } = await stats();
+  await page.mouse.up();
+  const rate = (view) => (to[view] - from[view]) / took;
+  const panes = `four panes of ${Math.round(pane.width)} x ${Math.round(pane.height)}`;
+  tell('pictures a second of each pane while dragging the crosshair', Math.min(rate(2), rate(3)), '1/s', `${panes}: axial ${rate(2).toFixed(1)}, sagittal ${rate(3).toFixed(1)}, 3-D with the slice ${rate(1).toFixed(1)}; at least 30 asked for`);
+  tell('pictures of the pane that does not change', to[4] - from[4], '', 'none asked for');
+  tell('input to paint while dragging the crosshair, p50', quantile(times, 0.5), 'ms', `${times.length} inputs; at most 50 asked for`);
+  tell('input to paint while dragging the crosshair, p95', quantile(times, 0.95), 'ms', 'at most 90 asked for');
+
   const renders = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)[1]);
   await sleep(1000);
   const before = await renders();
