@@ -248,5 +248,27 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     assert.match(await slider.getAttribute('aria-label'), /^Oblique slice, [LRPASI]{1,2} in mm$/);
   });
 
+  it('with fingers: the figure opens six sides of 44 px, the slice slider and the menus are as large', async () => {
+    await open('phantom', { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true });
+    const small = (selector) => page.locator(selector).evaluateAll((elements) => elements.filter((element) => element.checkVisibility()).map((element) => {
+      const { width, height } = element.getBoundingClientRect();
+      return [element.getAttribute('aria-label') ?? element.textContent.trim(), width, height];
+    }).filter(([, width, height]) => Math.min(width, height) < 44));
+    const start = await matrixOf(1);
+    await page.locator('[data-view="1"] .view-all').tap();
+    assert.deepEqual(await small('.view-all, .view-menu button, .slice-slider'), []);
+    await page.getByRole('button', { name: 'Look from left' }).tap();
+    const m = await becomes(1, (now) => !isNear(now, start) && now[3] < -0.999);
+    assert.ok(m[3] < -0.999);
+    await page.locator('[data-view="3"] .view-kind button').tap();
+    assert.deepEqual(await small('.view-kind button'), []);
+    await page.getByRole('menuitemradio', { name: 'Oblique' }).tap();
+    await full(page, 5);
+    await page.locator('.dock button', { hasText: 'Panes' }).tap();
+    assert.deepEqual(await small('.view-panes button, .view-panes label'), []);
+    await page.getByRole('radio', { name: 'Two panes' }).tap();
+    await page.waitForFunction(() => document.querySelectorAll('.pane:not([hidden])').length === 2);
+  });
+
   it('has had no error', () => assert.deepEqual(world.errors, []));
 });

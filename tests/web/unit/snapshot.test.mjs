@@ -89,10 +89,10 @@ test('the difference of two scenes is the patch from one to the other', () => {
 
 test('a picture is shown again by one change of the scene and one of the view of its kind, as one step to undo', () => {
   const calls = [];
-  const ui = { active: { value: 1 }, maximised: { value: 3 } };
+  const ui = { active: { value: 1 }, maximised: { value: 3 }, visible: { value: [3] }, showInPlaceOf: (from, to) => calls.push(['instead', from, to]) };
   const room = {
     scene: { value: mergePatch(scene, { regions: { brain: { opacity: 1 } } }) },
-    views: ['3d', 'axial', 'sagittal', 'coronal'].map((kind, at) => ({ number: at + 1, kind })),
+    views: ['3d', 'axial', 'sagittal', 'coronal', 'oblique', '3d'].map((kind, at) => ({ number: at + 1, kind, ofKind: at === 5 ? 2 : 1 })),
     patchScene: (patch) => calls.push(['scene', patch]),
     patchView: (n, patch) => calls.push([n, patch]),
   };
@@ -100,6 +100,13 @@ test('a picture is shown again by one change of the scene and one of the view of
   restore({ room, ui, undo }, { ...record, scene, view });
   assert.deepEqual(calls, ['press', ['scene', { regions: { brain: { opacity: 0.5 } } }], [2, { camera: view.camera }], 'release']);
   assert.deepEqual([ui.active.value, ui.maximised.value], [2, 2]);
+  ui.maximised.value = 0;
+  ui.visible.value = [1, 2, 3, 4];
+  calls.length = 0;
+  restore({ room, ui, undo }, { ...record, scene: room.scene.value, view: { ...view, kind: 'oblique', plane: 'a', number: 1 } });
+  assert.deepEqual(calls, ['press', [5, { camera: view.camera, plane: 'a' }], 'release', ['instead', 2, 5]]);
+  restore({ room, ui, undo }, { ...record, scene: room.scene.value, view: { ...view, kind: '3d', number: 2 } });
+  assert.equal(ui.active.value, 6);
 });
 
 // ---- the report to print ------------------------------------------------------------------------------------------------

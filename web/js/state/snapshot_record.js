@@ -64,16 +64,19 @@ export function difference(now, wanted) {
 }
 
 /**
- * Shows the record's scene, and its camera in the view of its kind, as changes of this person: one step to undo.
+ * Shows the record's scene, and its camera in the view of its kind, as changes of this person: one step to undo. A view that no pane
+ * shows, as the oblique one, takes the place of the active one.
  * @param {object} world {room, ui, undo}
  */
 export function restore({ room, ui, undo }, record) {
-  const view = room.views.find(({ kind }) => kind === record.view.kind);
+  const { kind, number, plane, camera } = record.view;
+  const view = room.views.find((other) => other.kind === kind && other.ofKind === number) ?? room.views.find((other) => other.kind === kind);
   const scene = difference(room.scene.value, record.scene);
   undo?.press();
   if (Object.keys(scene).length) room.patchScene(scene, { view: view.number });
-  room.patchView(view.number, { camera: record.view.camera });
+  room.patchView(view.number, kind === 'oblique' ? { camera, plane } : { camera });
   undo?.release();
+  if (!ui.maximised.value && !ui.visible.value.includes(view.number)) ui.showInPlaceOf(ui.active.value, view.number);
   ui.active.value = view.number;
   if (ui.maximised.value) ui.maximised.value = view.number;
 }

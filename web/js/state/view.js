@@ -17,6 +17,7 @@ export class ViewState {
   constructor(number, kind, { number: ofKind = 1, name = kind } = {}) {
     this.number = number;
     this.kind = kind;
+    this.ofKind = ofKind;
     this.name = name;
     this.document = signal(ofKind > 1 ? { kind, number: ofKind } : { kind });
     this.isOpen = signal(false);
