@@ -210,7 +210,17 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     await page.keyboard.press('ArrowUp');
     const turned = await becomes(1, (m) => !isNear(m, own));
     assert.ok(isNear(await becomes(6, (m) => isNear(m, turned)), turned));
+    await page.locator('[data-view="6"] .view-all').click();
+    const { sequence } = await header(page, 6);
+    await page.getByRole('checkbox', { name: 'Only targets here' }).check();
+    await page.waitForFunction((old) => globalThis.beamroom.stats().headers[6].sequence > old, sequence);
+    await page.keyboard.press('Escape');
+    assert.match(await page.locator('[data-view="6"] .where').textContent(), /only targets/);
+    await full(page, 6);
     await shoot(page, 'views-two-3d');
+    assert.equal(await undo(page).getAttribute('title'), 'Undo: regions of 3-D 2 (Ctrl+Z)');
+    await page.keyboard.press('Control+z');
+    await page.waitForFunction(() => !document.querySelector('[data-view="6"] .where').textContent.includes('only targets'));
     await page.keyboard.press('Control+z');
     assert.ok(isNear(await becomes(6, (m) => isNear(m, own)), own), 'one step takes both back');
     await page.reload();

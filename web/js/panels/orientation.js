@@ -1,6 +1,7 @@
 // The orientation figure of a 3-D pane, whose sides are buttons, and the menu of its camera.
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
+import { isTarget } from '../state/plan.js';
 import { cubeSides, sides } from '../view/orientation.js';
 import { checkbox, segment } from './fields.js';
 import { icon } from './icons.js';
@@ -47,6 +48,7 @@ function menu({ room, ui }, actions, isDisabled) {
   const act = (run) => (event) => run(event.timeStamp);
   const hasTwo = room.views.filter(({ kind, isOpen }) => kind === '3d' && isOpen.value).length > 1;
   const scene = room.scene.value;
+  const { view } = actions;
   const link = (isOn, event) => {
     ui.panes.areCamerasLinked.value = isOn;
     if (isOn) cameras.link(event.timeStamp);
@@ -61,5 +63,18 @@ function menu({ room, ui }, actions, isDisabled) {
       <button ?disabled=${isDisabled} title="Roll to the right by 5° (.)" aria-label="Roll to the right" @click=${act((at) => cameras.roll(-5, at))}>${icon('rollRight')}</button></div>
     ${segment('Projection', [['perspective', 'Perspective'], ['parallel', 'Parallel']], cameras.value.projection, isDisabled, (id, event) => cameras.setProjection(id, event.timeStamp))}
     <div class="checks">${scene?.axes ? checkbox('Patient axes', scene.axes.visible, isDisabled, (visible, event) => room.patchScene({ axes: { visible } }, { view: actions.view.number, at: event.timeStamp }), 'Lines through the middle of the plan, for everybody') : nothing}
+      ${view.ofKind > 1 ? onlyTargets(room, view, isDisabled) : nothing}
       ${checkbox('Link the 3-D cameras', ui.panes.areCamerasLinked.value, false, link, hasTwo ? 'The two 3-D panes turn together' : 'For two 3-D panes: put 3-D 2 into a pane by its name')}</div></div>`;
 }
+
+/** A second 3-D picture beside the first: the same scene, without what lies around the targets. */
+function onlyTargets(room, view, isDisabled) {
+  const regions = room.plan.value?.regions ?? [];
+  if (!regions.some(isTarget)) return nothing;
+  const hidden = Object.fromEntries(regions.map((region) => [region.id, { visible: isTarget(region) }]));
+  return checkbox('Only targets here', hasOwnRegions(view), isDisabled, (isOn, event) => room.patchView(view.number, { override: { regions: isOn ? hidden : null } }, { at: event.timeStamp }),
+    'In this picture alone, for everybody who sees it');
+}
+
+/** True if the view shows other regions than the scene. */
+export const hasOwnRegions = (view) => Boolean(view.document.value.override?.regions) && view.ofKind > 1;

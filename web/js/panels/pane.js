@@ -15,7 +15,7 @@ import { PointerReader } from '../view/pointer.js';
 import { millimetres, number, windowText } from './format.js';
 import { icon } from './icons.js';
 import { mount, variables } from './mount.js';
-import { orientation } from './orientation.js';
+import { hasOwnRegions, orientation } from './orientation.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { paneKind } from './pane_kind.js';
 import { PaneLines } from './pane_lines.js';
@@ -150,7 +150,7 @@ export class Pane {
     if (!scene || !this.#room.plan.value) return '';
     if (kind === '3d') {
       const camera = this.#view.document.value && this.actions.camera;
-      return describe(camera);
+      return hasOwnRegions(this.#view) ? `${describe(camera)}, only targets` : describe(camera);
     }
     const { plane } = this.actions;
     return `${letters(plane.normal)} ${millimetres(positionOf(plane))}`;

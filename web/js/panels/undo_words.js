@@ -25,7 +25,8 @@ export function stepName(changes, room) {
   }
   names.push(...unique(rest.map(fieldName)));
   const panes = unique(views.map(({ of }) => room.view(of).name)).map((name) => (name.startsWith('3-D') ? name : name.toLowerCase()));
-  if (panes.length) names.push(`${views.every(({ path }) => path[0] === 'plane') ? 'plane' : 'camera'} of ${panes.join(', ')}`);
+  const what = { plane: 'plane', override: 'regions' };
+  if (panes.length) names.push(`${views.every(({ path }) => path[0] === views[0].path[0]) ? what[views[0].path[0]] ?? 'camera' : 'camera'} of ${panes.join(', ')}`);
   return names.length > 2 ? `${names[0]} and ${names.length - 1} more` : names.join(' and ');
 }
 

@@ -195,6 +195,6 @@ export class Following {
     const size_px = view.ownSize ?? view.document.value.size_px ?? usualSize;
     view.widening = widening(shared, view.kind, view.document.value.size_px ?? size_px, view.painted.value, size_px);
     const { number, plane } = view.document.value;
-    return { kind: view.kind, ...(number > 1 && { number }), ...(view.kind === 'oblique' && plane && { plane }), size_px, camera: widen(shared, view.kind, view.widening), override };
+    return { kind: view.kind, ...(number > 1 && { number }), ...(view.kind === 'oblique' && plane && { plane }), size_px, camera: widen(shared, view.kind, view.widening), override: mergePatch(view.document.value.override ?? {}, override) };
   }
 }
