@@ -258,6 +258,39 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     assert.match(await slider.getAttribute('aria-label'), /^Oblique slice, [LRPASI]{1,2} in mm$/);
   });
 
+  it('who follows sees the presenter\'s oblique plane and second 3-D picture, and does not leave by showing them', async () => {
+    await open();
+    await page.locator('#picture-1').focus();
+    await page.keyboard.press('Shift+Digit5');
+    await full(page, 5);
+    await until(async () => Object.keys((await world.scene(room)).image.obliques)[0], Boolean, 60000);
+    const other = await world.newPage(`#/rooms/${room}`);
+    await full(other, 1);
+    const standing = async () => (await other.locator('.strip').textContent()).includes('Following');
+    await other.locator('[aria-label="3-D and oblique"]').click();
+    await full(other, 5);
+    assert.equal(await standing(), true);
+    await page.locator('#picture-5').focus();
+    await page.keyboard.press('+');
+    await page.keyboard.press('ArrowUp');
+    await full(page, 5);
+    const shared = await matrixOf(5);
+    const seen = async () => Object.values((await header(other, 5)).clip_from_lps_mm);
+    assert.ok(isNear(await until(seen, (m) => isNear(m, shared), 60000), shared), 'zoom and place of the plane are the presenter\'s');
+    for (const each of [page, other]) {
+      await each.locator('[data-view="5"] .view-kind button').click();
+      await each.getByRole('menuitemradio', { name: '3-D 2' }).click();
+      await full(each, 6);
+    }
+    assert.equal(await standing(), true);
+    await page.locator('#picture-6').focus();
+    await page.keyboard.press('Numpad3');
+    const left = async () => Object.values((await header(other, 6)).clip_from_lps_mm);
+    assert.ok((await until(left, (m) => m[3] < -0.999, 60000))[3] < -0.999, 'from the left');
+    assert.ok(Object.values((await header(other, 1)).clip_from_lps_mm)[3] > -0.9, 'the first 3-D picture stays');
+    await other.context().close();
+  });
+
   it('with fingers: the figure opens six sides of 44 px, the slice slider and the menus are as large', async () => {
     await open('phantom', { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true });
     const small = (selector) => page.locator(selector).evaluateAll((elements) => elements.filter((element) => element.checkVisibility()).map((element) => {
