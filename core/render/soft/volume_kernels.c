@@ -4,7 +4,7 @@
 
 #define NAME(x) x##_portable
 #define TARGET
-#include "core/render/soft/volume_vectors.h"
+#include "core/render/soft/volume_vectors.inc"
 
 #define LANES_OR(v) ((((LONGS)(v))[0] | ((LONGS)(v))[1]) | (((LONGS)(v))[2] | ((LONGS)(v))[3]))
 #define ANY_SET(v) (LANES_OR(v) != 0)

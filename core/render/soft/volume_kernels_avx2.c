@@ -7,7 +7,7 @@
 
 #define NAME(x) x##_avx2
 #define TARGET __attribute__((target("avx2")))
-#include "core/render/soft/volume_vectors.h"
+#include "core/render/soft/volume_vectors.inc"
 
 #define ANY_SET(v) (!_mm256_testz_si256((__m256i)(v), (__m256i)(v)))
 #define PICK8(mask, a, b) ((FLOATS)_mm256_blendv_ps((__m256)(b), (__m256)(a), (__m256)(mask)))
