@@ -23,7 +23,7 @@ void words_significant(char text[40], double value)
     char rounded[32];
     (void)snprintf(rounded, sizeof rounded, "%.2e", fabs(value)); /* rounds first: 9.996 has the size of 10 */
     const char *e = strchr(rounded, 'e');
-    int size = e ? atoi(e + 1) : 0;
+    int size = e ? (int)strtol(e + 1, NULL, 10) : 0;
     if (!(fabs(value) > 0))
         (void)snprintf(text, 40, "0");
     else if (e && (size < -4 || size > 6))
