@@ -279,6 +279,21 @@ describe('a plan', () => {
     assert.equal(none.headers.get('content-disposition'), null);
   });
 
+  test('gives an oblique plane: square to the patient it is that slice, to the byte', async () => {
+    const camera = { target_mm: [3, -4, 5], height_mm: 200 }, size_px = [240, 180];
+    const image = { slices: { coronal: { position_mm: 12.5 } }, obliques: { mine: { origin_mm: [40, 12.5, -7], normal: [0, -3, 0] }, other: { origin_mm: [0, 0, 0], normal: [1, 1, 0] } } };
+    const picture = async (view) => {
+      const answer = await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ scene: { image }, view: { size_px, camera, ...view } }) });
+      assert.equal(answer.status, 200);
+      return Buffer.from(await answer.arrayBuffer());
+    };
+    const slice = await picture({ kind: 'coronal' });
+    assert.ok(slice.equals(await picture({ kind: 'oblique', plane: 'mine' })));
+    assert.ok(!slice.equals(await picture({ kind: 'oblique', plane: 'other' })));
+    assert.ok((await picture({ kind: 'axial' })).equals(await picture({ kind: 'oblique', plane: 'gone' })), 'a plane that is not there is the axial slice');
+  });
+
   test('tells how often values of an image are', async () => {
     const { images } = (await call(plan)).json;
     const image = `${plan}/images/${images[0].id}`, n = images[0].grid.size.reduce((product, side) => product * side);
