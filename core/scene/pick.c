@@ -397,7 +397,7 @@ size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, stru
     if (pick_volume(snapshot, ray.origin_lps_mm, ray.direction, &volume))
         n = add_hit(hits, n,
                     (struct pick_hit){ ray_point(&ray, volume.t_mm), image_subject(snapshot), volume.t_mm, volume.alpha,
-                                       false });
+                                       volume.is_on_cap });
     /* the ray starts on the near plane; distances count from the eye */
     for (size_t i = 0; i < n; i++)
         hits[i].distance_mm = vec3_length(vec3_sub(hits[i].point_lps_mm, camera.eye_lps_mm));

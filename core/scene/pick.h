@@ -12,7 +12,7 @@ struct pick_hit {
      * silhouettes. Outlines and points leave most of the picture free and cover a tenth of their opacity; slices and
      * caps cover all, and so does every hit in a slice pane. */
     double alpha;
-    bool is_on_cap; /* on the cap of a clip plane, inside the region */
+    bool is_on_cap; /* on the cap of a clip plane, inside the region or the volume */
 };
 enum { PICK_MAX_HITS = 32 };
 /* Fills hits front to back, returns how many. Hits every region that the scene shows (visible, opacity > 0) as if it

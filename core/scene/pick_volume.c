@@ -104,9 +104,9 @@ static bool follow_light(const struct volume_ray *ray, struct pick_volume_hit *h
 {
     const struct scene_volume_style *style = &ray->style->volume;
     double absorbed = 0, value;
-    *hit = (struct pick_volume_hit){ INFINITY, 0 };
+    *hit = (struct pick_volume_hit){ INFINITY, 0, false };
     if (ray->is_cut_face && value_at(ray, ray->first_mm, &value) && absorption(style, value) > 0) {
-        *hit = (struct pick_volume_hit){ ray->first_mm, 1 };
+        *hit = (struct pick_volume_hit){ ray->first_mm, 1, true };
         return true;
     }
     for (double t = ray->first_mm; t < ray->end_mm && exp(-absorbed) > least_left; t += ray->step_mm) {
@@ -133,7 +133,7 @@ static bool find_first(const struct volume_ray *ray, struct pick_volume_hit *hit
             else
                 before_mm = middle;
         }
-        *hit = (struct pick_volume_hit){ t, 1 };
+        *hit = (struct pick_volume_hit){ t, 1, false };
         return true;
     }
     return false;
@@ -143,6 +143,7 @@ static bool find_largest(const struct volume_ray *ray, const struct snapshot *sn
 {
     double largest = -INFINITY, sum = 0, value;
     size_t n = 0;
+    hit->is_on_cap = false;
     for (double t = ray->first_mm + ray->step_mm / 2; t < ray->end_mm; t += ray->step_mm) {
         if (!value_at(ray, t, &value))
             continue;

@@ -4,8 +4,9 @@
 #include "core/scene/snapshot.h"
 
 struct pick_volume_hit {
-    double t_mm;  /* along the ray */
-    double alpha; /* how much of what lies behind it the volume covers, all along the ray, 0 to 1 */
+    double t_mm;    /* along the ray */
+    double alpha;   /* how much of what lies behind it the volume covers, all along the ray, 0 to 1 */
+    bool is_on_cap; /* where a capped clip plane cuts what is seen */
 };
 
 /* Where a ray meets the snapshot's volume. ray: where half of its light is absorbed. slices: where the value first

@@ -63,12 +63,13 @@ static struct snapshot *snapshot_of(struct plan *plan, struct scene scene, struc
 }
 
 /* Position along P of the only hit of a ray from the front through the patient's origin, and its alpha. */
-static double hit_from_front(struct plan *plan, struct scene scene, double *alpha)
+static double hit_from_front(struct plan *plan, struct scene scene, double *alpha, bool is_on_cap)
 {
     struct pick_hit hits[PICK_MAX_HITS];
     struct snapshot *snapshot = snapshot_of(plan, scene, vec3(0, -400, 0));
     assert_int_equal(snapshot_pick(snapshot, 50.5, 50.5, hits), 1);
     assert_int_equal(hits[0].subject.kind, SUBJECT_IMAGE);
+    assert_int_equal(hits[0].is_on_cap, is_on_cap);
     assert_close(hits[0].point_lps_mm.x, 0, 1e-6);
     assert_close(hits[0].point_lps_mm.z, 0, 1e-6);
     assert_close(hits[0].distance_mm, hits[0].point_lps_mm.y + 400, 1e-6);
@@ -83,7 +84,7 @@ static void in_a_constant_volume_half_of_the_light_is_gone_where_it_should_be(vo
     (void)state;
     struct plan *plan = plan_of(constant);
     double alpha;
-    double y = hit_from_front(plan, volume_scene(plan, SCENE_VOLUME_METHOD_RAY, 0.04), &alpha);
+    double y = hit_from_front(plan, volume_scene(plan, SCENE_VOLUME_METHOD_RAY, 0.04), &alpha, false);
     assert_close(y, -30 + log(0.5) / log(1 - 0.04), 1e-6); /* 0.96^d = 1/2 */
     assert_close(alpha, 1 - pow(0.96, 60), 1e-6);
     plan_and_derived_destroy(plan);
@@ -122,7 +123,7 @@ static void opacity_that_grows_along_the_ray_is_added_up(void **state)
         double absorbed = (passing * log(passing) + k * s) / k;
         *(absorbed < log(2) ? &low : &high) = s;
     }
-    assert_close(hit_from_front(plan, scene, NULL), low - 30, 0.01); /* the outer half voxels have one value */
+    assert_close(hit_from_front(plan, scene, NULL, false), low - 30, 0.01); /* the outer half voxels have one value */
     plan_and_derived_destroy(plan);
 }
 
@@ -131,8 +132,8 @@ static void slices_are_hit_where_the_value_reaches_the_culled_one(void **state)
     (void)state;
     struct plan *plan = plan_of(ball);
     struct scene scene = volume_scene(plan, SCENE_VOLUME_METHOD_SLICES, 0);
-    scene.image.volume.cull_below = 800;                         /* a sphere of 20 mm */
-    assert_close(hit_from_front(plan, scene, NULL), -20, 0.015); /* trilinear: off by 2 / (8 20) */
+    scene.image.volume.cull_below = 800;                                /* a sphere of 20 mm */
+    assert_close(hit_from_front(plan, scene, NULL, false), -20, 0.015); /* trilinear: off by 2 / (8 20) */
     plan_and_derived_destroy(plan);
 }
 
@@ -141,7 +142,7 @@ static void a_projection_is_hit_where_the_value_is_largest(void **state)
     (void)state;
     struct plan *plan = plan_of(peaked);
     double alpha;
-    double y = hit_from_front(plan, volume_scene(plan, SCENE_VOLUME_METHOD_MIP, 0), &alpha);
+    double y = hit_from_front(plan, volume_scene(plan, SCENE_VOLUME_METHOD_MIP, 0), &alpha, false);
     assert_close(y, peak.y, 0.5); /* between two voxels, linear */
     const struct plan_image *image = &plan->images[0];
     double largest = 5000 - peak.x * peak.x - peak.z * peak.z;
@@ -158,7 +159,7 @@ static void a_clip_plane_hides_what_it_cuts_off_and_its_cap_is_hit(void **state)
             struct scene scene = volume_scene(plan, SCENE_VOLUME_METHOD_RAY, 0.2);
             scene.clip.coronal_low = (struct scene_clip_axis){ true, 7, is_capped };
             scene.image.volume.clipped = is_clipped;
-            double deep = log(0.5) / log(0.8), y = hit_from_front(plan, scene, NULL);
+            double deep = log(0.5) / log(0.8), y = hit_from_front(plan, scene, NULL, is_clipped && is_capped);
             assert_close(y, !is_clipped ? -30 + deep : is_capped ? 7 : 7 + deep, 1e-5);
         }
     plan_and_derived_destroy(plan);
