@@ -13,7 +13,7 @@ struct waiting_request *waiting_request_create(const struct pipeline_request *re
 {
     struct waiting_request *waiting = mem_new(sizeof *waiting);
     waiting->request = *request;
-    waiting->wants = mem_new((request->snapshot->plan->regions.n_regions + 1) * sizeof *waiting->wants);
+    waiting->wants = mem_new((2 * request->snapshot->plan->regions.n_regions + 1) * sizeof *waiting->wants);
     waiting->n_wants =
         visible_wants(request->snapshot, request->render.detail, request->render.is_still, waiting->wants);
     return waiting;

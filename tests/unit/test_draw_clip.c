@@ -191,6 +191,29 @@ static void a_cut_without_a_cap_shows_both_sides(void **state)
     end(&picture);
 }
 
+/* The surface of solid points closes their cut: it is built before the picture is drawn, once a cap needs it. */
+static void the_shapes_of_caps_are_wanted_in_advance(void **state)
+{
+    (void)state;
+    struct picture picture;
+    struct shape_want wants[4];
+    begin(&picture);
+    for (size_t i = 0; i < 2; i++)
+        picture.scene.regions[i].value.representation = SCENE_REPRESENTATION_SOLID;
+    (void)list_of(&picture);
+    assert_int_equal(visible_wants(picture.snapshot, SURFACE_COARSE, false, wants), 2);
+    cut_axial(&picture.scene, 10);
+    picture.scene.regions[1].value.clipped = false;
+    (void)list_of(&picture);
+    assert_int_equal(visible_wants(picture.snapshot, SURFACE_COARSE, false, wants), 3);
+    assert_int_equal(wants[1].subject.index, 0);
+    assert_int_equal(wants[1].key.representation, REPRESENTATION_SURFACE);
+    picture.scene.clip.axial_high.cap = false;
+    (void)list_of(&picture);
+    assert_int_equal(visible_wants(picture.snapshot, SURFACE_COARSE, false, wants), 2);
+    end(&picture);
+}
+
 static void panes_are_never_cut(void **state)
 {
     (void)state;
@@ -211,6 +234,7 @@ int main(void)
         cmocka_unit_test(what_is_wholly_cut_off_is_not_in_the_list),
         cmocka_unit_test(a_slice_in_a_clip_plane_is_drawn_on_it),
         cmocka_unit_test(a_cut_without_a_cap_shows_both_sides),
+        cmocka_unit_test(the_shapes_of_caps_are_wanted_in_advance),
         cmocka_unit_test(panes_are_never_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

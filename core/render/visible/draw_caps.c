@@ -12,24 +12,6 @@
 static const double region_tint = 0.35;
 static const double outline_width_px = 1.3;
 
-/* The shape whose triangles a cap closes; false: the region is not drawn as a closed body. */
-static bool find_body(const struct draw_scope *scope, size_t region, struct shape_want *want)
-{
-    const struct snapshot *snapshot = scope->snapshot;
-    *want = (struct shape_want){ subject_region(region), visible_shape_key(snapshot, region), scope->detail };
-    switch (want->key.representation) {
-    case REPRESENTATION_SURFACE: return true;
-    case REPRESENTATION_UNIVELS:
-    case REPRESENTATION_NURBS: want->detail = SURFACE_FULL; return true;
-    case REPRESENTATION_SOLID: want->key = visible_surface_key(snapshot); return true;
-    case REPRESENTATION_OUTLINE:
-    case REPRESENTATION_POINTS:
-    case REPRESENTATION_FAN:
-    case REPRESENTATION_N: break;
-    }
-    return false;
-}
-
 /* The regions that can have a part in caps, the lowest rank first. */
 static size_t rank_bodies(const struct snapshot *snapshot, struct visible_rank *ranks)
 {
@@ -47,7 +29,7 @@ static bool add_regions(struct draw_list *list, const struct draw_scope *scope, 
 {
     for (size_t i = 0; i < n; i++) {
         struct shape_want want;
-        if (!find_body(scope, ranks[i].region, &want))
+        if (!visible_body(scope->snapshot, ranks[i].region, scope->detail, &want))
             continue;
         const struct cut_lines *lines = cap_cache_lines(scope->caps, scope->snapshot->derived, &want, plane, err);
         if (!lines)

@@ -221,6 +221,32 @@ static bool find_want(const struct snapshot *snapshot, size_t region, enum surfa
     return is_checked || visible_has_outlined_surface(snapshot, region);
 }
 
+bool visible_body(const struct snapshot *snapshot, size_t region, enum surface_detail detail, struct shape_want *want)
+{
+    *want = (struct shape_want){ subject_region(region), visible_shape_key(snapshot, region), detail };
+    switch (want->key.representation) {
+    case REPRESENTATION_SURFACE: return true;
+    case REPRESENTATION_UNIVELS:
+    case REPRESENTATION_NURBS: want->detail = SURFACE_FULL; return true;
+    case REPRESENTATION_SOLID: want->key = visible_surface_key(snapshot); return true;
+    case REPRESENTATION_OUTLINE:
+    case REPRESENTATION_POINTS:
+    case REPRESENTATION_FAN:
+    case REPRESENTATION_N: break;
+    }
+    return false;
+}
+
+/* True if caps of the region need another shape than the one that is drawn. */
+static bool has_other_body(const struct snapshot *snapshot, size_t region)
+{
+    bool is_capped = false;
+    for (size_t i = 0; i < snapshot->n_clips; i++)
+        is_capped |= snapshot->clips[i].is_capped;
+    return is_capped && snapshot->styles[region].clipped && visible_is_drawn(snapshot, region) &&
+           visible_shape_key(snapshot, region).representation == REPRESENTATION_SOLID;
+}
+
 size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, bool is_still,
                      struct shape_want *wants)
 {
@@ -229,6 +255,8 @@ size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
         bool may_wait = is_in_space ? may_be_seen(snapshot, i) : is_still || visible_is_checked(snapshot, i);
         if (may_wait && find_want(snapshot, i, detail, &wants[n]))
+            n++;
+        if (is_in_space && has_other_body(snapshot, i) && visible_body(snapshot, i, detail, &wants[n]))
             n++;
     }
     return n;

@@ -34,9 +34,13 @@ struct shape_key visible_shape_key(const struct snapshot *snapshot, size_t regio
 /* The key of a surface by the scene's algorithm. */
 struct shape_key visible_surface_key(const struct snapshot *snapshot);
 
+/* The shape whose triangles a cap closes: of a surface, univels and nurbs the one that is drawn, of solid points the
+ * region's surface. False: the region is not drawn as a closed body. */
+bool visible_body(const struct snapshot *snapshot, size_t region, enum surface_detail detail, struct shape_want *want);
+
 /* Lists the shapes to build before a picture of the snapshot is drawn; shapes that the list lacks are built while it is
  * drawn. A moving slice pane waits for no surface to outline: it outlines univels until the surface is there. Fills
- * wants, which has room for n_regions of the plan; returns the number. */
+ * wants, which has room for twice n_regions of the plan; returns the number. */
 size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, bool is_still,
                      struct shape_want *wants);
 /* The regions that a picture, once drawn, does not show as the scene wants, because their shape was refused
