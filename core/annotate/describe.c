@@ -74,6 +74,24 @@ static void add_image(struct annotations *annotations, const struct snapshot *sn
         words_blend(add_item(annotations, ANNOTATION_PANE)->text, snapshot);
 }
 
+static bool has_volume(const struct snapshot *snapshot)
+{
+    return !snapshot_is_pane(snapshot) && snapshot->image >= 0 && snapshot->scene.image.volume.visible;
+}
+
+static bool has_caps(const struct snapshot *snapshot)
+{
+    for (size_t i = 0; i < snapshot->n_clips; i++)
+        if (snapshot->clips[i].is_capped)
+            return true;
+    return false;
+}
+
+static bool has_image_caps(const struct snapshot *snapshot)
+{
+    return has_caps(snapshot) && snapshot->scene.clip.cap.image;
+}
+
 static void add_pane(struct annotations *annotations, const struct snapshot *snapshot, const struct camera *camera)
 {
     bool is_pane = snapshot_is_pane(snapshot);
@@ -84,7 +102,7 @@ static void add_pane(struct annotations *annotations, const struct snapshot *sna
         add_words(annotations, ANNOTATION_PANE, camera->is_parallel ? "parallel projection" : "perspective, no scale");
     for (size_t i = 0; !is_pane && snapshot->image >= 0 && i < snapshot->n_slices; i++)
         add_plane(annotations, "slice ", &snapshot->scene, &snapshot->slices[i]);
-    if (snapshot->image >= 0 && (is_pane || snapshot->n_slices > 0))
+    if (snapshot->image >= 0 && (is_pane || snapshot->n_slices > 0 || has_volume(snapshot) || has_image_caps(snapshot)))
         add_image(annotations, snapshot);
 }
 
@@ -190,6 +208,91 @@ static const char *outline_words(enum scene_outline_method method)
                                                            : "Outlines: of the surfaces";
 }
 
+/* "superior to S 12.0 mm": what a clip plane cuts off. */
+static void cut_words(char text[ANNOTATION_TEXT_SIZE], const struct snapshot *snapshot, const struct clip_plane *clip)
+{
+    static const char *const sides[] = {
+        [CLIP_AXIAL_LOW] = "inferior to",       [CLIP_AXIAL_HIGH] = "superior to", [CLIP_CORONAL_LOW] = "anterior to",
+        [CLIP_CORONAL_HIGH] = "posterior to",   [CLIP_SAGITTAL_LOW] = "right of",  [CLIP_SAGITTAL_HIGH] = "left of",
+        [CLIP_BEAM] = "before the plane along", [CLIP_FREE] = "above the plane",
+    };
+    char place[WORDS_SIZE], along[40];
+    const struct scene_clip_beam *beam = &snapshot->scene.clip.beam;
+    if (clip->name == CLIP_BEAM) {
+        words_number(along, beam->along_mm, 1);
+        (void)snprintf(place, sizeof place, "%s at %s mm", beam->id[0] ? beam->id : snapshot->plan->beams[0].id, along);
+    } else {
+        struct plane plane = clip->plane;
+        if (clip->name != CLIP_FREE && vec3_dot(plane.normal, vec3(1, 1, 1)) < 0)
+            plane.normal = vec3_scale(plane.normal, -1); /* the position counts along the positive patient axis */
+        words_plane(place, &snapshot->scene, &plane);
+    }
+    (void)snprintf(text, ANNOTATION_TEXT_SIZE, "%s %.200s%s", sides[clip->name], place,
+                   clip->is_capped ? "" : ", without cap");
+}
+
+/* Adds an item that begins with `before` if it is the first of its list. */
+static void add_listed(struct annotations *annotations, const char *before, bool is_first, const char *words)
+{
+    (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "%s%.200s",
+                   is_first ? before : "", words);
+}
+
+/* What the clip planes do not cut though it is drawn. */
+static void add_exempt(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    enum { MAX_NAMED = 8 };
+    const struct region_set *set = &snapshot->plan->regions;
+    const struct scene_image_style *image = &snapshot->scene.image;
+    size_t n = 0;
+    for (size_t i = 0; i < set->n_regions; i++)
+        if (visible_is_drawn(snapshot, i) && !snapshot->styles[i].clipped && n++ < MAX_NAMED)
+            add_listed(annotations, "Not cut: ", n == 1,
+                       set->regions[i].name[0] ? set->regions[i].name : set->regions[i].id);
+    if (n > MAX_NAMED) {
+        char more[40];
+        (void)snprintf(more, sizeof more, "%zu more regions", n - MAX_NAMED);
+        add_listed(annotations, "", false, more);
+    }
+    if (snapshot->image >= 0 && snapshot->n_slices > 0 && !image->clipped)
+        add_listed(annotations, "Not cut: ", n++ == 0, "slices");
+    if (has_volume(snapshot) && !image->volume.clipped)
+        add_listed(annotations, "Not cut: ", n == 0, "volume");
+}
+
+static void add_cuts(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    char words[ANNOTATION_TEXT_SIZE];
+    for (size_t i = 0; i < snapshot->n_clips; i++) {
+        cut_words(words, snapshot, &snapshot->clips[i]);
+        add_listed(annotations, "Cut off: ", i == 0, words);
+    }
+    if (snapshot->n_clips > 0)
+        add_exempt(annotations, snapshot);
+    const struct scene_cap_style *cap = &snapshot->scene.clip.cap;
+    if (has_caps(snapshot)) {
+        bool has_image = cap->image && snapshot->image >= 0;
+        (void)snprintf(words, sizeof words, "%s%s%s", has_image ? "image" : "plain",
+                       cap->regions ? ", colours of regions" : "", cap->outlines ? ", outlines" : "");
+        add_listed(annotations, "Caps: ", true, words);
+    }
+}
+
+static void add_volume(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    const struct scene_volume_style *volume = &snapshot->scene.image.volume;
+    char words[64];
+    switch (volume->method) {
+    case SCENE_VOLUME_METHOD_RAY:
+        (void)snprintf(words, sizeof words, "by rays%s", volume->shaded ? ", shaded" : "");
+        break;
+    case SCENE_VOLUME_METHOD_SLICES: (void)snprintf(words, sizeof words, "by %d slices", (int)volume->steps); break;
+    case SCENE_VOLUME_METHOD_MIP: (void)snprintf(words, sizeof words, "largest value along each ray"); break;
+    case SCENE_VOLUME_METHOD_AVERAGE: (void)snprintf(words, sizeof words, "mean along each ray"); break;
+    }
+    add_listed(annotations, "Volume: ", true, words);
+}
+
 static void add_methods(struct annotations *annotations, const struct snapshot *snapshot)
 {
     bool has_surface = false, has_outline = snapshot_is_pane(snapshot) && snapshot->scene.outline.on_slices;
@@ -201,6 +304,9 @@ static void add_methods(struct annotations *annotations, const struct snapshot *
     if (has_surface)
         (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "Surfaces: %s",
                        surface_algorithm_word(visible_surface_key(snapshot).algorithm));
+    if (has_volume(snapshot))
+        add_volume(annotations, snapshot);
+    add_cuts(annotations, snapshot);
     if (has_outline && snapshot->plan->regions.n_regions > 0)
         add_words(annotations, ANNOTATION_METHODS, outline_words(snapshot->scene.outline.method));
     if (snapshot_is_pane(snapshot) && snapshot->scene.check.visible)

@@ -515,6 +515,48 @@ static void an_oblique_pane_and_a_blended_image_are_described(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static void cuts_caps_and_the_volume_are_described(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    char date[ANNOTATE_DATE_SIZE] = "", field[128];
+    for (int is_pane = 0; is_pane < 2; is_pane++) {
+        struct scene scene;
+        struct error err = { 0 };
+        scene_for_plan(plan, &scene);
+        scene.image.window = (struct scene_window){ 40, 400 };
+        scene.image.slices.axial.visible = false;
+        scene.regions[1].value.clipped = false;
+        scene.clip.axial_high = (struct scene_clip_axis){ true, 12, true };
+        scene.clip.coronal_low = (struct scene_clip_axis){ true, -3.5, false };
+        scene.clip.sagittal_low = (struct scene_clip_axis){ true, 7, true };
+        scene.clip.free = (struct scene_clip_free){ true, vec3(1, 2, 3), vec3(0, -3, -4), true };
+        scene.clip.cap.outlines = true;
+        scene.image.volume.visible = true;
+        scene.image.volume.method = SCENE_VOLUME_METHOD_MIP;
+        scene.image.volume.clipped = false;
+        struct view view = view_default;
+        view.kind = is_pane ? SCENE_KIND_AXIAL : SCENE_KIND_3D;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, date, &err));
+        /* only the 3-D picture is cut */
+        assert_string_equal(row_text(&words, ANNOTATION_METHODS),
+                            is_pane ? "Outlines: of the surfaces"
+                                    : "Surfaces: smooth|Volume: largest value along each ray|"
+                                      "Cut off: superior to S 12.0 mm|anterior to P \u22123.5 mm, without cap|"
+                                      "right of L 7.0 mm|above the plane through L 1.0  P 2.0  S 3.0 mm, "
+                                      "normal L 0.00  P \u22120.60  S \u22120.80|Not cut: high|volume|"
+                                      "Caps: image, outlines");
+        /* the volume and the caps show the image */
+        assert_non_null(strstr(row_text(&words, ANNOTATION_PANE), "Planning, CT|C 40  W 400 HU"));
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -530,6 +572,7 @@ int main(void)
         cmocka_unit_test(a_snapshot_is_described),
         cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),
         cmocka_unit_test(an_oblique_pane_and_a_blended_image_are_described),
+        cmocka_unit_test(cuts_caps_and_the_volume_are_described),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
