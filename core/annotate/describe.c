@@ -12,7 +12,7 @@
 #include "core/base/mem.h"
 #include "core/render/visible/visible.h"
 
-enum { MAX_OTHER_ITEMS = 64 }; /* beside regions */
+enum { MAX_OTHER_ITEMS = 96 }; /* beside regions */
 
 void annotate_date(int64_t unix_s, char date[ANNOTATE_DATE_SIZE])
 {
@@ -50,12 +50,15 @@ static void add_plane(struct annotations *annotations, const char *before, const
                       const struct plane *plane)
 {
     const char *name = words_plane_name(scene, plane);
-    char place[WORDS_SIZE];
+    char place[WORDS_SIZE], normal[WORDS_SIZE];
     words_plane(place, scene, plane);
+    words_normal(normal, plane);
     if (*name)
         (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%.240s", before, name);
     (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%.240s", *name ? "" : before,
                    place);
+    if (*normal)
+        add_words(annotations, ANNOTATION_PANE, normal);
 }
 
 static void add_image(struct annotations *annotations, const struct snapshot *snapshot)

@@ -55,21 +55,36 @@ static const struct scene_oblique_entry *find_oblique(const struct scene *scene,
     return NULL;
 }
 
-void words_plane(char text[WORDS_SIZE], const struct scene *scene, const struct plane *plane)
+/* The patient axis that the plane is square to; -1: none. */
+static int square_axis(const struct plane *plane)
 {
     const double cosines[3] = { plane->normal.x, plane->normal.y, plane->normal.z };
-    const struct scene_oblique_entry *oblique = find_oblique(scene, plane);
     for (int axis = 0; axis < 3; axis++)
-        if (cosines[axis] > 1 - 1e-12) {
-            char number[40];
-            words_number(number, plane_position_mm(plane), 1);
-            (void)snprintf(text, WORDS_SIZE, "%c %s mm", "LPS"[axis], number);
-            return;
-        }
-    char origin[120], normal[120];
-    write_vector(origin, oblique ? oblique->value.origin_mm : plane->origin_lps_mm, 1);
-    write_vector(normal, plane->normal, 2);
-    (void)snprintf(text, WORDS_SIZE, "through %.100s mm, normal %.100s", origin, normal);
+        if (cosines[axis] > 1 - 1e-12)
+            return axis;
+    return -1;
+}
+
+void words_plane(char text[WORDS_SIZE], const struct scene *scene, const struct plane *plane)
+{
+    const struct scene_oblique_entry *oblique = find_oblique(scene, plane);
+    int axis = square_axis(plane);
+    char words[120];
+    if (axis >= 0) {
+        words_number(words, plane_position_mm(plane), 1);
+        (void)snprintf(text, WORDS_SIZE, "%c %s mm", "LPS"[axis], words);
+        return;
+    }
+    write_vector(words, oblique ? oblique->value.origin_mm : plane->origin_lps_mm, 1);
+    (void)snprintf(text, WORDS_SIZE, "through %s mm", words);
+}
+
+void words_normal(char text[WORDS_SIZE], const struct plane *plane)
+{
+    char words[120];
+    write_vector(words, plane->normal, 2);
+    (void)snprintf(text, WORDS_SIZE, "%s%s", square_axis(plane) < 0 ? "normal " : "",
+                   square_axis(plane) < 0 ? words : "");
 }
 
 const char *words_plane_name(const struct scene *scene, const struct plane *plane)

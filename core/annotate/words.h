@@ -9,9 +9,11 @@ void words_number(char text[40], double value, int digits);
 /* Three significant figures: "0.0447", "10.0"; before the point all figures stay. As "1.23e+10" below 0.0001 and from
  * ten million on. */
 void words_significant(char text[40], double value);
-/* "S 34.0 mm": where a plane square to the patient cuts its axis. Of another one "through L 1.0  P 2.0  S 3.0 mm,
- * normal L 0.00  P 0.71  S 0.71"; the point is the one that the scene gives of an oblique plane. */
+/* "S 34.0 mm": where a plane square to the patient cuts its axis. Of another one "through L 1.0  P 2.0  S 3.0 mm"; the
+ * point is the one that the scene gives of an oblique plane. */
 void words_plane(char text[WORDS_SIZE], const struct scene *scene, const struct plane *plane);
+/* "normal L 0.00  P 0.71  S 0.71"; "" of a plane square to the patient. */
+void words_normal(char text[WORDS_SIZE], const struct plane *plane);
 /* The name, or else the id, of the scene's oblique plane that lies there; "": it has none. */
 const char *words_plane_name(const struct scene *scene, const struct plane *plane);
 /* The image's name with its modality. */

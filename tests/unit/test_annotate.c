@@ -499,7 +499,7 @@ static void an_oblique_pane_and_a_blended_image_are_described(void **state)
             char expected[512];
             assert_true(annotations_describe(&words, snapshot, 512, date, &err));
             snprintf(expected, sizeof expected,
-                     "%s%s|through L 1.0  P \u22122.3  S 3.0 mm, normal L 0.00  P \u22120.60  S 0.80|"
+                     "%s%s|through L 1.0  P \u22122.3  S 3.0 mm|normal L 0.00  P \u22120.60  S 0.80|"
                      "Planning, CT|C 40  W 400 HU|in rainbow colours|40 %% Uptake, PT over it: %s",
                      is_pane ? "Oblique|" : "3-D|perspective, no scale|slice S 3.0 mm|slice ",
                      is_named ? "Along the beam" : "a", is_named ? "C 3.00  W 6.00 SUV, in hot iron" : "C 5  W 10 SUV");
