@@ -23,8 +23,7 @@ static bool draw_translucent_regions(struct draw_list *list, const struct draw_s
 /* The functions that fill the list, in the order of drawing. */
 typedef bool fill(struct draw_list *list, const struct draw_scope *scope, struct error *err);
 static fill *const fills[] = {
-    draw_opaque_regions, /* before what they hide */
-    draw_planes,         draw_caps, draw_volume, draw_translucent_regions, draw_overlay,
+    draw_opaque_regions, draw_planes, draw_caps, draw_volume, draw_translucent_regions, draw_overlay,
 };
 
 struct draw_list *draw_list_create(const struct draw_scope *scope, const struct render_options *options,
