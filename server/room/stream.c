@@ -379,10 +379,17 @@ static bool shows_waiting_input(const struct stream *stream, const struct member
     return view->n_waiting > 0 && view->waiting[0].version <= stream->latest_version;
 }
 
+static bool is_refused(const struct stream *stream)
+{
+    return stream->refused_version > 0 && stream->refused_version == stream->version;
+}
+
 void stream_send_picture(struct room *room, struct member *member, struct member_view *view)
 {
     struct stream *stream = view->stream;
     if (!stream || !stream->latest || n_unshown(view) >= ROOM_MAX_UNSHOWN || !member->connection)
+        return;
+    if (is_refused(stream)) /* texts overtake pictures, and viewers take a picture as the end of a refusal */
         return;
     if (view->sent_number == stream->latest_number && !shows_waiting_input(stream, view))
         return;
@@ -512,11 +519,6 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
         room_picture_drop(picture);
     }
     (void)streams_request_due(room);
-}
-
-static bool is_refused(const struct stream *stream)
-{
-    return stream->refused_version > 0 && stream->refused_version == stream->version;
 }
 
 void stream_send_refusal(struct room *room, struct member *member, const struct member_view *view)

@@ -117,6 +117,21 @@ static void a_picture_of_before_the_refusal_is_not_shown_after_it(void **state)
     assert_int_equal(ann.n_frames, n_frames + 1);
 }
 
+static void who_opens_a_view_that_cannot_be_drawn_is_sent_the_reason_and_no_older_picture(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    settle_one(); /* there is a picture */
+    fake_turn(&fake, &ann, 5, 1);
+    fake_refuse(&fake, fake_newest(&fake));
+    fake_join(&fake, &ben, true);
+    assert_string_equal(refused(&ben), "422 ");
+    assert_int_equal(ben.n_frames, 0);
+    fake_turn(&fake, &ann, 10, 2);
+    fake_draw(&fake, fake_newest(&fake));
+    assert_int_equal(ben.n_frames, 1);
+}
+
 static void a_limit_that_says_when_to_come_again_is_no_last_word(void **state)
 {
     (void)state;
@@ -192,6 +207,7 @@ int main(void)
         ROOM_TEST(a_picture_beyond_a_limit_is_told_once_and_requested_again_only_after_a_change),
         ROOM_TEST(a_refusal_that_comes_late_does_not_hide_the_one_of_a_newer_view),
         ROOM_TEST(a_picture_of_before_the_refusal_is_not_shown_after_it),
+        ROOM_TEST(who_opens_a_view_that_cannot_be_drawn_is_sent_the_reason_and_no_older_picture),
         ROOM_TEST(a_limit_that_says_when_to_come_again_is_no_last_word),
         ROOM_TEST(what_a_picture_leaves_out_is_told_before_it_and_when_it_changes),
         ROOM_TEST(a_new_renderer_is_told_the_scene_and_draws_everything_anew),
