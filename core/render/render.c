@@ -14,6 +14,7 @@
 #include "core/render/soft/soft.h"
 #include "core/render/visible/cap_cache.h"
 #include "core/render/visible/draw_list.h"
+#include "core/render/visible/occlusion.h"
 #include "core/render/visible/overlay.h"
 
 /* One of gl and soft; the other is NULL. */
@@ -202,6 +203,18 @@ static struct image *end_back_end(struct render_picture *picture)
     return image;
 }
 
+/* Once, even if the overlay fails and is tried again. */
+static bool darken_hollows(struct render_picture *picture, struct error *err)
+{
+    const struct box3 *box = &picture->scope.snapshot->plan->bounds_lps_mm;
+    double diagonal_mm = box3_is_empty(box) ? 0 : vec3_length(vec3_sub(box->high, box->low));
+    bool is_good = occlusion_darken(picture->image, picture->list->depth, &picture->camera,
+                                    OCCLUSION_RADIUS_PART * diagonal_mm, err);
+    free(picture->list->depth);
+    picture->list->depth = NULL;
+    return is_good;
+}
+
 enum render_state render_go_on(struct render_picture *picture, const struct render_pause *pause, struct error *err)
 {
     assert_thread(picture->renderer);
@@ -217,6 +230,8 @@ enum render_state render_go_on(struct render_picture *picture, const struct rend
             return RENDER_PAUSED;
     }
     int64_t start_us = clock_now_us();
+    if (picture->list->depth && !darken_hollows(picture, err))
+        return RENDER_FAILED;
     struct check_counts check;
     if (!overlay_draw(picture->renderer->overlay, &picture->scope, picture->list, picture->image, &check, err))
         return RENDER_FAILED;

@@ -37,10 +37,11 @@ static void stop(const struct error *err)
 }
 
 /* What cuts the head in a picture, with caps. */
-enum cut { CUT_NONE, CUT_SLICE, CUT_THREE, CUT_DRAGGED };
+enum cut { CUT_NONE, CUT_SLICE, CUT_THREE, CUT_DRAGGED, CUT_OPENED, CUT_OCCLUDED };
 
 /* CUT_SLICE: an axial plane with the slice in it. CUT_THREE: axial, coronal and sagittal plane through the brain, all
- * five regions opaque. CUT_DRAGGED: an oblique plane too, another one in each picture. */
+ * five regions opaque. CUT_DRAGGED: an oblique plane too, another one in each picture. CUT_OPENED: those three without
+ * caps; CUT_OCCLUDED: and with ambient occlusion. */
 static void set_cut(struct scene *scene, enum cut cut, int step)
 {
     if (cut == CUT_NONE)
@@ -55,6 +56,9 @@ static void set_cut(struct scene *scene, enum cut cut, int step)
     scene->clip.sagittal_low.position_mm = -20;
     for (size_t i = 0; i < scene->n_regions; i++)
         scene->regions[i].value.opacity = 1;
+    if (cut == CUT_OPENED || cut == CUT_OCCLUDED)
+        scene->clip.axial_high.cap = scene->clip.coronal_low.cap = scene->clip.sagittal_low.cap = false;
+    scene->still.ambient_occlusion = cut == CUT_OCCLUDED;
     if (cut == CUT_DRAGGED) {
         scene->clip.free.enabled = true;
         scene->clip.free.normal = vec3(1, -1, 2);
@@ -186,6 +190,8 @@ int main(void)
     bench_cut("moving, 3 caps of 5 opaque regions", SCENE_KIND_3D, 1, SURFACE_COARSE, false, CUT_THREE);
     bench_cut("dragging an oblique plane, 4 caps", SCENE_KIND_3D, 1, SURFACE_COARSE, false, CUT_DRAGGED);
     bench_cut("still, 3 caps of 5 opaque regions", SCENE_KIND_3D, 1, SURFACE_FULL, true, CUT_THREE);
+    bench_cut("still, opened, 5 opaque regions", SCENE_KIND_3D, 1, SURFACE_FULL, true, CUT_OPENED);
+    bench_cut("still, opened, ambient occlusion", SCENE_KIND_3D, 1, SURFACE_FULL, true, CUT_OCCLUDED);
     bench_encoding("JPEG quality 80 4:2:0", (struct encode_options){ ENCODE_JPEG, 80, false });
     bench_encoding("JPEG quality 92 4:4:4", (struct encode_options){ ENCODE_JPEG, 92, true });
     bench_encoding("PNG", (struct encode_options){ ENCODE_PNG, 0, false });

@@ -224,6 +224,29 @@ static bool draw_alike(const struct gl_frame *frame, const struct draw *draws, s
     return true;
 }
 
+/* Keeps the depths of the band's pixels: those of opaque shapes, then, negative, those of planes before them. */
+static bool keep_depth(const struct gl_frame *frame, bool has_planes, struct error *err)
+{
+    const struct gl *gl = frame->gl;
+    const size_t width = (size_t)frame->target->width_px, samples = (size_t)frame->list->samples;
+    float *depth = mem_array(width * (size_t)frame->target->height_px, sizeof *depth, UINT64_MAX, err);
+    if (!depth)
+        return false;
+    gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl->ReadPixels(0, 0, frame->target->width_px, frame->target->height_px, GL_DEPTH_COMPONENT, GL_FLOAT, depth);
+    for (size_t y = 0; y < (size_t)frame->target->height_px / samples; y++) {
+        float *to = frame->list->depth + ((size_t)frame->first_row / samples + y) * (width / samples);
+        const float *from = depth + y * samples * width;
+        for (size_t x = 0; x < width / samples; x++)
+            if (!has_planes)
+                to[x] = from[x * samples];
+            else if (from[x * samples] < to[x])
+                to[x] = -from[x * samples];
+    }
+    free(depth);
+    return gl_check(gl, "reading depths", err);
+}
+
 /* Executes the list in its order. */
 static bool draw_all(const struct gl_frame *frame, struct error *err)
 {
@@ -235,7 +258,13 @@ static bool draw_all(const struct gl_frame *frame, struct error *err)
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     const struct draw_list *list = frame->list;
     bool is_good = true;
-    for (size_t i = 0, n; is_good && i < list->n_in_image; i += n) {
+    enum draw_pass kept = DRAW_OPAQUE;
+    for (size_t i = 0, n; is_good && i <= list->n_in_image; i += n) {
+        enum draw_pass pass = i < list->n_in_image ? list->draws[i].pass : DRAW_OVERLAY;
+        for (; is_good && list->depth && kept < DRAW_TRANSLUCENT && kept < pass; kept++)
+            is_good = keep_depth(frame, kept == DRAW_PLANES, err);
+        if (!is_good || i == list->n_in_image)
+            break;
         const struct draw *draw = &list->draws[i];
         if (draw->depth == DRAW_DEPTH_NONE)
             gl->Disable(GL_DEPTH_TEST);

@@ -340,6 +340,23 @@ static void write_rows(const struct soft_frame *frame, const struct soft_band *b
     }
 }
 
+/* Keeps the depths of the band's pixels: those of opaque shapes, then, negative, those of planes before them. */
+static void keep_depth(const struct soft_frame *frame, const struct soft_band *band, bool has_planes)
+{
+    int samples = frame->list->samples, width_px = frame->image->width_px;
+    for (int y = 0; y < band->n_rows; y += samples) {
+        float *to = frame->list->depth + (size_t)((band->first_row + y) / samples) * (size_t)width_px;
+        const float *from = band->depth + (size_t)y * (size_t)band->stride;
+        for (int x = 0; x < width_px; x++) {
+            float depth = 0.5f * from[x * samples] + 0.5f; /* the band's is -1 .. 1 */
+            if (!has_planes)
+                to[x] = depth;
+            else if (depth < to[x])
+                to[x] = -depth;
+        }
+    }
+}
+
 /* Executes the list in its order, within a band. */
 static void draw_all(const struct soft_frame *frame, const struct scratch *scratch, const struct soft_band *band,
                      int index)
@@ -349,7 +366,13 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
     const struct soft_plane *plane = frame->planes;
     const struct soft_cap *cap = frame->caps;
     const struct soft_kernels *kernels = frame->renderer->kernels;
-    for (size_t i = 0, n; i < list->n_in_image; i += n) {
+    enum draw_pass kept = DRAW_OPAQUE;
+    for (size_t i = 0, n; i <= list->n_in_image; i += n) {
+        enum draw_pass pass = i < list->n_in_image ? list->draws[i].pass : DRAW_OVERLAY;
+        for (; list->depth && kept < DRAW_TRANSLUCENT && kept < pass; kept++)
+            keep_depth(frame, band, kept == DRAW_PLANES);
+        if (i == list->n_in_image)
+            break;
         n = draw_list_n_layers(list, i);
         if (n > 0) {
             size_t n_volumes = list->draws[i].kind == DRAW_VOLUME;

@@ -189,6 +189,9 @@ struct draw_list {
     float (*transfer)[4];                /* of DRAW_VOLUME */
     struct draw_cap_region *cap_regions; /* of DRAW_CAP */
     size_t n_cap_regions;
+    /* [height_px][width_px] of the picture, filled by the back end for occlusion.h: at the first sample of each pixel;
+     * negative where a draw of DRAW_PLANES covers the opaque shapes. NULL: not wanted */
+    float *depth;
     struct draw_cache_use use; /* keeps the drawables until the list is destroyed */
 };
 

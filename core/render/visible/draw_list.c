@@ -26,6 +26,15 @@ static fill *const fills[] = {
     draw_opaque_regions, draw_planes, draw_caps, draw_volume, draw_translucent_regions, draw_overlay,
 };
 
+/* Its samples have no one depth, and may hide the surfaces that would be darker. */
+static bool has_volume(const struct draw_list *list)
+{
+    for (size_t i = 0; i < list->n_in_image; i++)
+        if (list->draws[i].kind == DRAW_VOLUME)
+            return true;
+    return false;
+}
+
 struct draw_list *draw_list_create(const struct draw_scope *scope, const struct render_options *options,
                                    struct error *err)
 {
@@ -40,6 +49,15 @@ struct draw_list *draw_list_create(const struct draw_scope *scope, const struct 
             draw_list_destroy(list);
             return NULL;
         }
+    if (options->is_still && snapshot->scene.still.ambient_occlusion && !snapshot_is_pane(snapshot) &&
+        !has_volume(list)) {
+        list->depth =
+            mem_array((size_t)options->width_px * (size_t)options->height_px, sizeof *list->depth, UINT64_MAX, err);
+        if (!list->depth) {
+            draw_list_destroy(list);
+            return NULL;
+        }
+    }
     return list;
 }
 
@@ -51,6 +69,7 @@ void draw_list_destroy(struct draw_list *list)
     draw_caps_release(list);
     free(list->draws);
     free(list->palettes);
+    free(list->depth);
     free(list->transfer);
     free(list);
 }
