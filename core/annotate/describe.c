@@ -219,7 +219,7 @@ static void cut_words(char text[ANNOTATION_TEXT_SIZE], const struct snapshot *sn
         [CLIP_CORONAL_HIGH] = "posterior to",   [CLIP_SAGITTAL_LOW] = "right of",  [CLIP_SAGITTAL_HIGH] = "left of",
         [CLIP_BEAM] = "before the plane along", [CLIP_FREE] = "above the plane",
     };
-    char place[WORDS_SIZE], along[40];
+    char place[WORDS_SIZE], normal[WORDS_SIZE] = "", along[40];
     const struct scene_clip_beam *beam = &snapshot->scene.clip.beam;
     if (clip->name == CLIP_BEAM) {
         words_number(along, beam->along_mm, 1);
@@ -229,9 +229,10 @@ static void cut_words(char text[ANNOTATION_TEXT_SIZE], const struct snapshot *sn
         if (clip->name != CLIP_FREE && vec3_dot(plane.normal, vec3(1, 1, 1)) < 0)
             plane.normal = vec3_scale(plane.normal, -1); /* the position counts along the positive patient axis */
         words_plane(place, &snapshot->scene, &plane);
+        words_normal(normal, &plane);
     }
-    (void)snprintf(text, ANNOTATION_TEXT_SIZE, "%s %.200s%s", sides[clip->name], place,
-                   clip->is_capped ? "" : ", without cap");
+    (void)snprintf(text, ANNOTATION_TEXT_SIZE, "%s %.100s%s%.100s%s", sides[clip->name], place, *normal ? ", " : "",
+                   normal, clip->is_capped ? "" : ", without cap");
 }
 
 /* Adds an item that begins with `before` if it is the first of its list. */
