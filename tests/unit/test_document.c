@@ -185,7 +185,8 @@ static size_t expect_references(const struct field_object *object, const char *b
 static void every_field_that_names_something_of_the_plan_is_refused_when_the_plan_has_no_such_thing(void **state)
 {
     (void)state;
-    assert_int_equal(expect_references(&scene_object, "{", "}", ""), 4); /* regions, check.region, image.id, dose.id */
+    /* regions, check.region, image.id, image.looks, image.blend.id, dose.id, clip.beam.id */
+    assert_int_equal(expect_references(&scene_object, "{", "}", ""), 7);
     cJSON *defaults = plan_defaults();
     cJSON *scene = patched(defaults, defaults,
                            "{\"image\":{\"id\":\"mr\"},\"dose\":{\"id\":\"plan\"},\"check\":{\"region\":\"tumor\"}}");
