@@ -147,7 +147,7 @@ describe('beamroom info', () => {
     assert.deepEqual(info.regions.map(({ id, parent }) => [id, parent]),
       [['scalp', null], ['cranium', 'scalp'], ['brain', 'cranium'], ['target', 'brain'], ['tumour', 'target']]);
     assert.equal(info.hierarchy, 'file');
-    assert.deepEqual(Object.keys(info.home), ['3d', 'axial', 'coronal', 'sagittal']);
+    assert.deepEqual(Object.keys(info.home), ['3d', 'axial', 'coronal', 'sagittal', 'oblique']);
     const { position_mm: eye, target_mm: target, up } = info.home['3d'];
     assert.ok(eye[1] < -103 && up[2] === 1, 'from the front, the top up');
     near(Math.atan2(eye[0] - target[0], target[1] - eye[1]), Math.PI / 6, 1e-6); // 30 degrees towards the patient's left

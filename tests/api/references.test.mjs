@@ -45,7 +45,7 @@ async function newRoom() {
 
 describe('a name the plan does not have', () => {
   test('can stand in these fields', () => {
-    assert.deepEqual(references().map(({ pointer }) => pointer).sort(), ['/check/region', '/dose/id', '/image/id', '/regions/nowhere']);
+    assert.deepEqual(references().map(({ pointer }) => pointer).sort(), ['/check/region', '/clip/beam/id', '/dose/id', '/image/blend/id', '/image/id', '/image/looks/nowhere', '/regions/nowhere']);
   });
 
   test('is refused in a picture over HTTP, in the scene and in the view\'s override', async () => {
