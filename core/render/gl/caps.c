@@ -136,24 +136,11 @@ static bool draw_outline(const struct gl_frame *frame, const struct draw *draw, 
     return send_segments(frame, region->lines, err) && gl_draw_shapes(frame, &line, 1, err);
 }
 
-/* Draws the volume's part: the image where it is dense enough to be seen. */
-static bool draw_dense(const struct gl_frame *frame, const struct draw *draw, struct error *err)
-{
-    struct draw as_image = *draw;
-    as_image.kind = DRAW_IMAGE;
-    as_image.image = draw->cap.image;
-    as_image.image.cull = (draw->cap.volume_from - as_image.image.low) / as_image.image.width;
-    frame->gl->Enable(GL_DEPTH_TEST);
-    return gl_draw_image(frame, &as_image, err);
-}
-
 bool gl_draw_cap(const struct gl_frame *frame, const struct draw *draw, struct error *err)
 {
     const struct gl *gl = frame->gl;
     const struct draw_cap *cap = &draw->cap;
-    bool is_good = !cap->has_volume || draw_dense(frame, draw, err);
-    if (cap->n_regions == 0)
-        return is_good;
+    bool is_good = true;
     const struct plane_reach reach = reach_of(draw);
     struct gl_polygon polygon = gl_polygon_of_reach(&draw->plane, &reach);
     const struct vec3 anchor = polygon.lps_mm[0];

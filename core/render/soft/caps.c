@@ -329,8 +329,6 @@ void soft_cap_draw(const struct soft_cap *cap, const struct soft_kernels *kernel
         return;
     const size_t n_words = (size_t)(band->width + 63) / 64;
     const bool has_grid = cap->plane.texture.voxels != NULL;
-    struct soft_texture seen = cap->plane.texture;
-    seen.cull = cap->cull;
     find_inside(cap, band, index, scratch);
     for (int y = 0; y < band->n_rows; y++) {
         double low, high;
@@ -341,7 +339,7 @@ void soft_cap_draw(const struct soft_cap *cap, const struct soft_kernels *kernel
         float *depth = band->depth + at;
         uint32_t *color = band->color + at;
         struct soft_cover cover = {
-            .texture = has_grid && draw->has_image ? &cap->plane.texture : NULL,
+            .texture = has_grid ? &cap->plane.texture : NULL,
             .image_first = has_grid ? to_sample(ceil(low), band->width) : 0,
             .image_end = has_grid ? to_sample(floor(high), band->width) + 1 : 0,
             .tints = draw->tint > 0 ? scratch->tints + (size_t)y * 64 * n_words : NULL,
@@ -351,14 +349,5 @@ void soft_cap_draw(const struct soft_cap *cap, const struct soft_kernels *kernel
         };
         for (int last; next_run(scratch->all + (size_t)y * n_words, &first, &last, end); first = last + 1)
             kernels->cover(&cover, &row, first, last - first + 1, depth, color);
-        if (!draw->has_volume || !has_grid)
-            continue;
-        first = cover.image_first > 0 ? cover.image_first : 0;
-        cover.tints = NULL;
-        cover.texture = &seen;
-        cover.is_culled = true;
-        cover.is_dark = !draw->has_image;
-        if (first < cover.image_end)
-            kernels->cover(&cover, &row, first, cover.image_end - first, depth, color);
     }
 }

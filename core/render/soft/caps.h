@@ -21,7 +21,6 @@ struct soft_cap {
     const struct draw *draw;
     struct soft_plane plane;         /* of the image; without a grid if the plan has none */
     uint32_t dark;                   /* the colour where there is no image */
-    float cull;                      /* of the volume, as grey */
     struct soft_cap_region *regions; /* as in draw_cap */
 };
 
@@ -34,7 +33,7 @@ struct soft_cap_scratch {
 NODISCARD bool soft_cap_scratch_resize(struct soft_cap_scratch *scratch, int width, struct error *err);
 void soft_cap_scratch_finish(struct soft_cap_scratch *scratch);
 
-/* Fills regions from the draw, which is borrowed; the caller fills plane, dark and cull. projection: rows of a
+/* Fills regions from the draw, which is borrowed; the caller fills plane and dark. projection: rows of a
  * soft_lighting. On failure soft_cap_finish frees what there is. errors ERROR_MEMORY */
 NODISCARD bool soft_cap_init(struct soft_cap *cap, const struct draw *draw, const struct soft_lighting *projection,
                              int height, int n_bands, struct error *err);

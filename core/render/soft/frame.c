@@ -188,17 +188,13 @@ static bool add_cap(struct soft_frame *frame, const struct draw *draw, struct er
 {
     const struct plan *plan = frame->scope->snapshot->plan;
     const struct draw_cap *style = &draw->cap;
-    const struct volume *volume =
-        style->has_image || style->has_volume ? plan->images[draw->subject.index].volume : NULL;
+    const struct volume *volume = style->has_image ? plan->images[draw->subject.index].volume : NULL;
     struct soft_cap *cap = &frame->caps[frame->n_caps++];
     if (!volume)
         soft_plane_init(&cap->plane, NULL, &draw->plane, &draw->clip, &frame->scope->camera->clip_from_lps_mm,
                         frame->width, frame->height);
-    else {
+    else
         cap->plane = make_image(frame, draw, &style->image);
-        cap->cull = (float)((style->volume_from - style->image.low) / style->image.width);
-    }
-    cap->plane.texture.has_depth = true;
     cap->dark = DRAW_CAP_DARK >> 16 | (DRAW_CAP_DARK & 0xff00) | (DRAW_CAP_DARK & 255) << 16 | 0xff000000u;
     struct soft_lighting projection = make_projection(frame);
     return soft_cap_init(cap, draw, &projection, frame->height, frame->n_bands, err) && add_outlines(frame, draw, err);

@@ -110,8 +110,6 @@ struct soft_cover {
     uint32_t tint;                      /* parts of 256 of them */
     uint32_t dark;                      /* the colour where the texture has none */
     float nearer;                       /* than the row's depth */
-    bool is_culled;                     /* drawn only where the texture is */
-    bool is_dark;                       /* then dark, not as the texture is */
 };
 
 struct soft_kernels {

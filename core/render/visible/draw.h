@@ -85,9 +85,7 @@ struct draw_cap_region {
 struct draw_cap {
     const struct draw_cap_region *regions; /* the lowest rank first: of several at a point the last one counts */
     size_t n_regions;
-    bool has_image,
-        has_volume;     /* has_volume: also where the volume is seen: the image's value is volume_from or more */
-    double volume_from; /* in the image's unit */
+    bool has_image;
     struct draw_image image;
     double tint;       /* part of the region's colour in the mixed one; 0: none */
     double outline_px; /* width of the regions' outlines on the full picture; 0: none */

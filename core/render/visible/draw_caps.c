@@ -60,7 +60,7 @@ static bool add_cap(struct draw_list *list, const struct draw_scope *scope, size
         cap.tint = cap.has_image ? region_tint : 1;
     if (snapshot->image >= 0)
         cap.image = draw_image_shown(snapshot, false);
-    if (cap.n_regions == 0 && !cap.has_volume)
+    if (cap.n_regions == 0)
         return true;
     struct clip_set others = draw_clip_set(snapshot, true);
     others.left_out |= 1u << clip;
