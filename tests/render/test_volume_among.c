@@ -111,6 +111,31 @@ static void a_capped_cut_through_a_volume_shows_the_image_where_the_volume_is_se
     shots_forget(plan);
 }
 
+/* Voxels of 2 mm, 8 px: from middle to middle of two voxels a nearest slice has one of their two greys. */
+static void a_slice_of_nearest_voxels_stays_one_after_a_picture_of_the_volume(void **state)
+{
+    (void)state;
+    const uint32_t size[3] = { 20, 20, 20 };
+    struct grid grid =
+        made_grid(20, 20, 20, made_affine(vec3(2, 0, 0), vec3(0, 2, 0), vec3(0, 0, 2), size, vec3(1, 1, 1)));
+    struct plan *plan = image_plan(&grid, VOXEL_I16, across);
+    struct scene scene = even_scene(plan, 0xffffff, 0.1);
+    image_destroy(moving(plan, scene, shots_view_from(origin, from_front, up, 4)));
+    scene = volume_scene(plan, NULL, 0);
+    scene.image.volume.visible = false;
+    scene.image.interpolation = SCENE_INTERPOLATION_NEAREST;
+    scene.image.window.center = 0;
+    scene.image.window.width = 100;
+    scene.image.slices.coronal.position_mm = 0;
+    struct image *image = moving(plan, scene, shots_view(SCENE_KIND_CORONAL, origin, 4));
+    for (int voxel = -8; voxel < 8; voxel++) /* their middles are at 0, 2, 4 mm ... */
+        for (int x = 1; x < 7; x++)
+            assert_close(shots_pixel(image, MIDDLE_X + 8 * voxel - 4 + x, MIDDLE_Y)[0],
+                         255 * (2 * 2 * voxel + 50) / 100.0, 1);
+    image_destroy(image);
+    shots_forget(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -118,6 +143,7 @@ int main(void)
         cmocka_unit_test(a_volume_ends_at_opaque_surfaces_and_slices),
         cmocka_unit_test(clip_planes_cut_a_volume_unless_it_is_exempt),
         cmocka_unit_test(a_capped_cut_through_a_volume_shows_the_image_where_the_volume_is_seen),
+        cmocka_unit_test(a_slice_of_nearest_voxels_stays_one_after_a_picture_of_the_volume),
     };
     return shots_run("volume_among", tests, sizeof tests / sizeof tests[0]);
 }

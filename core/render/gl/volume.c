@@ -145,6 +145,8 @@ void gl_unset_volume(const struct gl_frame *frame)
 {
     const struct gl *gl = frame->gl;
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_GRID);
+    gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_NEAREST); /* slices read the same texture */
+    gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     gl->BindTexture(GL_TEXTURE_3D, 0);
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_TABLE);
     gl->BindTexture(GL_TEXTURE_2D, 0);
