@@ -227,7 +227,7 @@ static void an_ellipse_of_any_size_takes_about_a_million_samples_at_the_most(voi
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         assert_true(ellipse_values(volume, centre, vec3_add(centre, vec3(sizes[i][0], 0, 0)),
                                    vec3_add(centre, vec3(0, sizes[i][1], 0)), &values));
-        assert_true(values.n + values.n_left_out <= 1.1 * ELLIPSE_MAX_SAMPLES);
+        assert_true((double)(values.n + values.n_left_out) <= 1.1 * ELLIPSE_MAX_SAMPLES);
         assert_true(values.n >= 1); /* the centre */
     }
     assert_false(ellipse_values(volume, centre, vec3(4, 4, 5), vec3(9, 4, 5), &values)); /* on one line */
