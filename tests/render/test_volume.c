@@ -139,10 +139,6 @@ static void without_points_nothing_is_drawn(void **state)
     shots_forget(plan);
 }
 
-static double nan_on_the_left(struct vec3 p)
-{
-    return p.x > 0 ? NAN : 1;
-}
 /* Of a ray along L, 20 mm of 40 are left. */
 static void what_is_not_a_number_absorbs_nothing(void **state)
 {

@@ -136,6 +136,23 @@ static void a_slice_of_nearest_voxels_stays_one_after_a_picture_of_the_volume(vo
     shots_forget(plan);
 }
 
+/* Where a neighbour is not a number there is no gradient, and of the light DRAW_VOLUME_FLAT is left, as where nothing
+ * changes: 0.8 of 128. */
+static void beside_what_is_not_a_number_a_volume_is_lit_as_without_gradient(void **state)
+{
+    (void)state;
+    struct grid grid = made_cube_grid(40);
+    struct plan *plan = image_plan(&grid, VOXEL_F32, nan_on_the_left);
+    struct scene scene = even_scene(plan, 0x808080, 1);
+    scene.image.volume.shaded = true;
+    scene.image.volume.interpolation = SCENE_INTERPOLATION_NEAREST;
+    struct image *image = moving(plan, scene, shots_view_from(origin, vec3(1, 0, 0), up, 4));
+    for (int i = 0; i < 64; i++)
+        assert_close(shots_pixel(image, MIDDLE_X + i % 8, MIDDLE_Y + i / 8)[0], 0.8 * 128, 2);
+    image_destroy(image);
+    shots_forget(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -144,6 +161,7 @@ int main(void)
         cmocka_unit_test(clip_planes_cut_a_volume_unless_it_is_exempt),
         cmocka_unit_test(a_capped_cut_through_a_volume_shows_the_image_where_the_volume_is_seen),
         cmocka_unit_test(a_slice_of_nearest_voxels_stays_one_after_a_picture_of_the_volume),
+        cmocka_unit_test(beside_what_is_not_a_number_a_volume_is_lit_as_without_gradient),
     };
     return shots_run("volume_among", tests, sizeof tests / sizeof tests[0]);
 }

@@ -17,6 +17,10 @@ static inline double one(struct vec3 p)
     (void)p;
     return 1;
 }
+static inline double nan_on_the_left(struct vec3 p)
+{
+    return p.x > 0 ? NAN : 1;
+}
 
 static inline struct plan *image_plan(const struct grid *grid, enum voxel_type type, double (*value)(struct vec3 p))
 {

@@ -105,8 +105,8 @@ struct draw_cap {
  * interval of length d has the value v at its part draw_volume_jitter and passes exp(-absorption(v) d) of the light.
  * Its colour is the table's; with is_shaded it is lit by the light of surfaces (two-sided, opaque) with the gradient g,
  * by central differences one voxel to either side, as the normal: of that light l counts f + (l - f) g^2 / (g^2 +
- * gradient^2) with f = DRAW_VOLUME_FLAT, its gloss likewise from 0. Where the ray enters through a capped clip plane
- * and the value there absorbs, it shows the colour of `image` there, opaque.
+ * gradient^2) with f = DRAW_VOLUME_FLAT, its gloss likewise from 0; a gradient that is not finite counts as 0. Where
+ * the ray enters through a capped clip plane and the value there absorbs, it shows the colour of `image` there, opaque.
  *
  * Method slices: n_slices planes at right angles to the line of sight, at the middles of n_slices equal parts of the
  * extent of the grid's outer faces along it. The nearest one that is there is opaque, in the colours of `image`.
