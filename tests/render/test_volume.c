@@ -324,6 +324,7 @@ static void threads_and_processors_do_not_change_a_picture(void **state)
             shots_style(&scene, "red")->opacity = 0.5;
             scene.clip.axial_high.enabled = true;
             scene.clip.axial_high.position_mm = 12;
+            scene.still.ambient_occlusion = picture == 3 || picture == 5;
             struct view view = shots_view_from(origin, vec3(0.5, -1, 0.7), up, 4);
             if (picture % 2)
                 view.camera.projection = SCENE_PROJECTION_PERSPECTIVE;

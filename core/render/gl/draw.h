@@ -31,9 +31,13 @@ NODISCARD bool gl_draw_image(const struct gl_frame *frame, const struct draw *dr
 NODISCARD bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 /* Leaves the stencil test off and the depth test on. errors also ERROR_MEMORY */
 NODISCARD bool gl_draw_cap(const struct gl_frame *frame, const struct draw *draw, struct error *err);
-/* Sets the program that composes layers with a volume, which is in use, and binds the textures of the volume. */
-NODISCARD bool gl_set_volume(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+/* Sets a program of the volume's rays, which is in use, and binds the textures of the volume. */
+NODISCARD bool gl_set_volume(const struct gl_frame *frame, const struct gl_program *program, const struct draw *draw,
+                             struct error *err);
 void gl_unset_volume(const struct gl_frame *frame);
 /* Shapes whose depth rule is DRAW_DEPTH_LAYER, and perhaps a volume among them. More than GL_LAYERS_MAX are composed in
  * groups of GL_LAYERS_MAX. Leaves the target's framebuffer bound. errors also ERROR_MEMORY */
 NODISCARD bool gl_draw_layers(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);
+/* Draws where a volume of the method ray has absorbed half of the light, into the depths of the first layer, and leaves
+ * its framebuffer bound. Of a depth d that is d / 2, on a cut face (1 + d) / 2, and 1 where it absorbs less. */
+NODISCARD bool gl_draw_volume_depth(const struct gl_frame *frame, const struct draw *draw, struct error *err);

@@ -73,23 +73,23 @@ static const char *image_constants(char text[120], bool is_linear, bool has_colo
     return text;
 }
 
-static const char *volume_constants(char text[480])
+static const char *volume_constants(char text[500], bool is_depth)
 {
     const uint8_t *rgb = visible_background;
-    (void)snprintf(text, 480,
+    (void)snprintf(text, 500,
                    "#define DARKEST_GREY (vec3(%d, %d, %d) / 255.0)\n#define FLAT %.9f\n#define TABLE %d.0\n"
                    "#define JITTER_X %uu\n#define JITTER_Y %uu\n#define LEAST_LEFT %.9f\n#define LEAST_LIT %.9f\n"
                    "#define METHOD_RAY %d\n#define METHOD_SLICES %d\n#define METHOD_MIP %d\n"
-                   "#define METHOD_AVERAGE %d\n",
+                   "#define METHOD_AVERAGE %d\n#define DEPTH %d\n",
                    rgb[0], rgb[1], rgb[2], DRAW_VOLUME_FLAT, DRAW_VOLUME_TABLE, DRAW_VOLUME_JITTER_X,
                    DRAW_VOLUME_JITTER_Y, least_left, least_lit, SCENE_VOLUME_METHOD_RAY, SCENE_VOLUME_METHOD_SLICES,
-                   SCENE_VOLUME_METHOD_MIP, SCENE_VOLUME_METHOD_AVERAGE);
+                   SCENE_VOLUME_METHOD_MIP, SCENE_VOLUME_METHOD_AVERAGE, is_depth);
     return text;
 }
 
 bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struct error *err)
 {
-    char constants[80], images[4][120], of_volume[480];
+    char constants[80], images[4][120], of_volume[2][500];
     const struct {
         struct gl_program *program;
         const char *name, *constants, *vertex, *fragment;
@@ -101,7 +101,10 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
         { &programs->lines, "lines", line_constants(constants), gl_shader_lines_vert, gl_shader_shade_frag },
         { &programs->points, "points", "", gl_shader_points_vert, gl_shader_shade_frag },
         { &programs->compose, "compose", "", gl_shader_whole_vert, gl_shader_compose_frag },
-        { &programs->volume, "volume", volume_constants(of_volume), gl_shader_whole_vert, gl_shader_volume_frag },
+        { &programs->volume, "volume", volume_constants(of_volume[0], false), gl_shader_whole_vert,
+          gl_shader_volume_frag },
+        { &programs->volume_depth, "volume, depth", volume_constants(of_volume[1], true), gl_shader_whole_vert,
+          gl_shader_volume_frag },
         { &programs->image[0], "image", image_constants(images[0], false, false), gl_shader_slice_vert,
           gl_shader_image_frag },
         { &programs->image[1], "image, linear", image_constants(images[1], true, false), gl_shader_slice_vert,
@@ -141,7 +144,8 @@ void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
                              programs->fan.name,
                              programs->plain.name,
                              programs->test.name,
-                             programs->volume.name };
+                             programs->volume.name,
+                             programs->volume_depth.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])
             gl->DeleteProgram(names[i]);

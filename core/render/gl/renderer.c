@@ -1,6 +1,7 @@
 /* The OpenGL back end: start, test and stop; a picture drawn and read back in bands. */
 #include "core/render/gl/renderer.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -224,8 +225,9 @@ static bool draw_alike(const struct gl_frame *frame, const struct draw *draws, s
     return true;
 }
 
-/* Keeps the depths of the band's pixels: those of opaque shapes, then, negative, those of planes before them. */
-static bool keep_depth(const struct gl_frame *frame, bool has_planes, struct error *err)
+/* Keeps the depths of the band's pixels: those of opaque shapes, then, negative, those of planes before them, then what
+ * gl_draw_volume_depth has left. drawn: the pass just drawn. */
+static bool keep_depth(const struct gl_frame *frame, enum draw_pass drawn, struct error *err)
 {
     const struct gl *gl = frame->gl;
     const size_t width = (size_t)frame->target->width_px, samples = (size_t)frame->list->samples;
@@ -237,11 +239,15 @@ static bool keep_depth(const struct gl_frame *frame, bool has_planes, struct err
     for (size_t y = 0; y < (size_t)frame->target->height_px / samples; y++) {
         float *to = frame->list->depth + ((size_t)frame->first_row / samples + y) * (width / samples);
         const float *from = depth + y * samples * width;
-        for (size_t x = 0; x < width / samples; x++)
-            if (!has_planes)
-                to[x] = from[x * samples];
-            else if (from[x * samples] < to[x])
-                to[x] = -from[x * samples];
+        for (size_t x = 0; x < width / samples; x++) {
+            const float here = from[x * samples], of_volume = 2 * here - (here < 0.5f ? 0 : 1);
+            if (drawn == DRAW_OPAQUE)
+                to[x] = here;
+            else if (drawn == DRAW_PLANES && here < to[x])
+                to[x] = -here;
+            else if (drawn == DRAW_TRANSLUCENT && here < 1 && of_volume < fabsf(to[x]))
+                to[x] = here < 0.5f ? of_volume : -of_volume;
+        }
     }
     free(depth);
     return gl_check(gl, "reading depths", err);
@@ -262,7 +268,7 @@ static bool draw_all(const struct gl_frame *frame, struct error *err)
     for (size_t i = 0, n; is_good && i <= list->n_in_image; i += n) {
         enum draw_pass pass = i < list->n_in_image ? list->draws[i].pass : DRAW_OVERLAY;
         for (; is_good && list->depth && kept < DRAW_TRANSLUCENT && kept < pass; kept++)
-            is_good = keep_depth(frame, kept == DRAW_PLANES, err);
+            is_good = keep_depth(frame, kept, err);
         if (!is_good || i == list->n_in_image)
             break;
         const struct draw *draw = &list->draws[i];
@@ -273,6 +279,10 @@ static bool draw_all(const struct gl_frame *frame, struct error *err)
         n = draw->depth == DRAW_DEPTH_LAYER ? draw_list_n_layers(list, i) : n_alike(list, i);
         is_good =
             draw->depth == DRAW_DEPTH_LAYER ? gl_draw_layers(frame, draw, n, err) : draw_alike(frame, draw, n, err);
+        if (is_good && list->depth && draw->kind == DRAW_VOLUME) {
+            is_good = gl_draw_volume_depth(frame, draw, err) && keep_depth(frame, DRAW_TRANSLUCENT, err);
+            gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->framebuffer);
+        }
     }
     return is_good;
 }

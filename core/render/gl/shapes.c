@@ -141,7 +141,7 @@ static bool compose(const struct gl_frame *frame, int n, const struct draw *volu
     const struct gl *gl = frame->gl;
     const struct gl_program *program = volume ? &frame->programs->volume : &frame->programs->compose;
     gl->UseProgram(program->name);
-    if (volume && !gl_set_volume(frame, volume, err))
+    if (volume && !gl_set_volume(frame, program, volume, err))
         return false;
     gl->BindFramebuffer(GL_FRAMEBUFFER, frame->target->over);
     gl->Disable(GL_DEPTH_TEST);

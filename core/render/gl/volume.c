@@ -107,12 +107,12 @@ static void bind_table(const struct gl_frame *frame, const struct gl_program *pr
     gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, DRAW_VOLUME_TABLE, 2, 0, GL_RGBA, GL_FLOAT, rows);
 }
 
-bool gl_set_volume(const struct gl_frame *frame, const struct draw *draw, struct error *err)
+bool gl_set_volume(const struct gl_frame *frame, const struct gl_program *program, const struct draw *draw,
+                   struct error *err)
 {
     const struct gl *gl = frame->gl;
     const struct draw_volume *volume = &draw->volume;
     const struct draw_image *image = &volume->image;
-    const struct gl_program *program = &frame->programs->volume;
     const struct grid *grid = &frame->plan->images[draw->subject.index].volume->grid;
     const struct gl_grid *texels =
         (const struct gl_grid *)draw_cache_grid(frame->cache, frame->plan, draw->subject, err);
@@ -151,4 +151,25 @@ void gl_unset_volume(const struct gl_frame *frame)
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_TABLE);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->ActiveTexture(GL_TEXTURE0);
+}
+
+bool gl_draw_volume_depth(const struct gl_frame *frame, const struct draw *draw, struct error *err)
+{
+    const struct gl *gl = frame->gl;
+    const struct gl_program *program = &frame->programs->volume_depth;
+    if (!gl_layers_resize(gl, frame->layers, frame->target, 1, err))
+        return false;
+    gl_layers_bind(gl, frame->layers, 0);
+    gl->UseProgram(program->name);
+    if (!gl_set_volume(frame, program, draw, err))
+        return false;
+    gl->Uniform1i(program->before, 0);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_2D, frame->target->depth);
+    gl->Enable(GL_DEPTH_TEST);
+    gl->BindVertexArray(frame->no_vertices);
+    gl->DrawArrays(GL_TRIANGLES, 0, 3);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl_unset_volume(frame);
+    return gl_check(gl, "drawing the depths of a volume", err);
 }

@@ -2,6 +2,7 @@
 #include "core/render/soft/soft.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -357,6 +358,30 @@ static void keep_depth(const struct soft_frame *frame, const struct soft_band *b
     }
 }
 
+/* Of the volume too: where it is nearer and has absorbed half of the light, at the band's pixels. */
+static void keep_volume_depth(const struct soft_frame *frame, const struct soft_band *band)
+{
+    const struct soft_volume_kernels *kernels = soft_volume_kernels_of(frame->renderer->kernels);
+    const int samples = frame->list->samples, width_px = frame->image->width_px;
+    struct soft_volume per_pixel;
+    soft_volume_per_pixel(frame->volume, &per_pixel);
+    for (int y = 0; y < band->n_rows; y += samples) {
+        const int row = (band->first_row + y) / samples;
+        float *to = frame->list->depth + (size_t)row * (size_t)width_px;
+        const float *from = band->depth + (size_t)y * (size_t)band->stride;
+        for (int x = 0; x < width_px; x += SOFT_LANES) {
+            const int n = width_px - x < SOFT_LANES ? width_px - x : SOFT_LANES;
+            float opaque[SOFT_LANES] = { 0 }, depth[SOFT_LANES];
+            for (int l = 0; l < n; l++)
+                opaque[l] = from[(x + l) * samples];
+            kernels->depths(&per_pixel, x, row, opaque, depth);
+            for (int l = 0; l < n; l++)
+                if (fabsf(depth[l]) < fabsf(to[x + l]))
+                    to[x + l] = depth[l];
+        }
+    }
+}
+
 /* Executes the list in its order, within a band. */
 static void draw_all(const struct soft_frame *frame, const struct scratch *scratch, const struct soft_band *band,
                      int index)
@@ -377,6 +402,8 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
         if (n > 0) {
             size_t n_volumes = list->draws[i].kind == DRAW_VOLUME;
             draw_layers(frame, item, n - n_volumes, n_volumes ? frame->volume : NULL, scratch, band, index);
+            if (list->depth && n_volumes)
+                keep_volume_depth(frame, band);
             item += n - n_volumes;
             continue;
         }

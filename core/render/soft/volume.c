@@ -105,6 +105,29 @@ static void set_slices(struct soft_volume *volume, const struct camera *camera, 
     volume->first_depth = low + 0.5 * volume->part_depth;
 }
 
+/* From places in samples to places in pixels. */
+static void scale_places(struct soft_linear *linear, int samples)
+{
+    linear->right *= samples;
+    linear->down *= samples;
+}
+
+void soft_volume_per_pixel(const struct soft_volume *volume, struct soft_volume *per_pixel)
+{
+    *per_pixel = *volume;
+    per_pixel->samples = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        scale_places(&per_pixel->origin[axis], volume->samples);
+        scale_places(&per_pixel->per_depth[axis], volume->samples);
+    }
+    scale_places(&per_pixel->right, volume->samples);
+    scale_places(&per_pixel->up, volume->samples);
+    for (int i = 0; i < volume->n_planes; i++) {
+        scale_places(&per_pixel->planes[i].origin_mm, volume->samples);
+        scale_places(&per_pixel->planes[i].per_depth, volume->samples);
+    }
+}
+
 /* ---- values ------------------------------------------------------------------------------------------------------- */
 
 /* t of a value, by how raw values become values. */

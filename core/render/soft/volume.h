@@ -60,6 +60,8 @@ struct soft_volume {
 NODISCARD bool soft_volume_init(struct soft_volume *volume, const struct draw *draw, const struct draw_scope *scope,
                                 int width, int height, int samples, struct error *err);
 void soft_volume_finish(struct soft_volume *volume);
+/* The same volume with a ray for each pixel of the picture, that of its first sample. Borrows from `volume`. */
+void soft_volume_per_pixel(const struct soft_volume *volume, struct soft_volume *per_pixel);
 
 struct soft_volume_kernels {
     const char *name;
@@ -67,6 +69,11 @@ struct soft_volume_kernels {
      * clears the layers. */
     void (*compose)(const struct soft_volume *volume, const struct soft_band *band, struct soft_layer *layers,
                     int n_layers, float rank_depth);
+    /* Depths 0 near .. 1 far where a volume of the method ray has absorbed half of the light, of SOFT_LANES pixels side
+     * by side: negative on a cut face, 1 where it absorbs less. x, y: the first one's place, in the units of the
+     * volume's rays. opaque: depths -1 .. 1 of the opaque draws. */
+    void (*depths)(const struct soft_volume *volume, int x, int y, const float opaque[SOFT_LANES],
+                   float depth[SOFT_LANES]);
 };
 extern const struct soft_volume_kernels soft_volume_kernels_portable;
 /* Those that go with the rasteriser's. */

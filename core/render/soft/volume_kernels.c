@@ -50,7 +50,7 @@ LOADER(load_8, uint8_t)
 #define LOAD8 load_8
 #include "core/render/soft/volume_kernels.inc"
 
-const struct soft_volume_kernels soft_volume_kernels_portable = { "portable", compose_portable };
+const struct soft_volume_kernels soft_volume_kernels_portable = { "portable", compose_portable, depths_portable };
 
 #if defined(__x86_64__)
 extern const struct soft_volume_kernels soft_volume_kernels_avx2;

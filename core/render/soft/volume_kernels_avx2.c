@@ -45,5 +45,5 @@ LOADER(load_8, uint8_t)
 #include "core/render/soft/volume_kernels.inc"
 
 extern const struct soft_volume_kernels soft_volume_kernels_avx2;
-const struct soft_volume_kernels soft_volume_kernels_avx2 = { "AVX2", compose_avx2 };
+const struct soft_volume_kernels soft_volume_kernels_avx2 = { "AVX2", compose_avx2, depths_avx2 };
 #endif

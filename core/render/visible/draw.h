@@ -188,7 +188,8 @@ struct draw_list {
     struct draw_cap_region *cap_regions; /* of DRAW_CAP */
     size_t n_cap_regions;
     /* [height_px][width_px] of the picture, filled by the back end for occlusion.h: at the first sample of each pixel;
-     * negative where a draw of DRAW_PLANES covers the opaque shapes. NULL: not wanted */
+     * negative where a draw of DRAW_PLANES or a volume's cut face covers the rest. A volume of the method ray is where
+     * it alone has absorbed half of the light; translucent shapes are not there. NULL: not wanted */
     float *depth;
     struct draw_cache_use use; /* keeps the drawables until the list is destroyed */
 };

@@ -26,11 +26,12 @@ static fill *const fills[] = {
     draw_opaque_regions, draw_planes, draw_caps, draw_volume, draw_translucent_regions, draw_overlay,
 };
 
-/* Its samples have no one depth, and may hide the surfaces that would be darker. */
-static bool has_volume(const struct draw_list *list)
+/* True: a volume is drawn by a method other than ray. Its samples have no depth of their own, and may hide the surfaces
+ * that would be darker. */
+static bool has_projected_volume(const struct draw_list *list)
 {
     for (size_t i = 0; i < list->n_in_image; i++)
-        if (list->draws[i].kind == DRAW_VOLUME)
+        if (list->draws[i].kind == DRAW_VOLUME && list->draws[i].volume.method != SCENE_VOLUME_METHOD_RAY)
             return true;
     return false;
 }
@@ -50,7 +51,7 @@ struct draw_list *draw_list_create(const struct draw_scope *scope, const struct 
             return NULL;
         }
     if (options->is_still && snapshot->scene.still.ambient_occlusion && !snapshot_is_pane(snapshot) &&
-        !has_volume(list)) {
+        !has_projected_volume(list)) {
         list->depth =
             mem_array((size_t)options->width_px * (size_t)options->height_px, sizeof *list->depth, UINT64_MAX, err);
         if (!list->depth) {

@@ -1,6 +1,6 @@
 #pragma once
-/* Ambient occlusion of a finished still: hollows of opaque surfaces are darker. From the depth of its pixels alone, so
- * that all back ends share it. */
+/* Ambient occlusion of a finished still: hollows of opaque surfaces and volumes are darker. From the depth of its
+ * pixels alone, so that all back ends share it. */
 #include "core/base/image.h"
 #include "core/scene/camera.h"
 
@@ -14,11 +14,11 @@
  * elevation e of the horizon above the tangent plane, the mean of cos^2 e over the azimuths. A plane is not changed.
  *
  *   depth   [height_px][width_px], 0 near .. 1 far; 1: nothing; negative: of something that keeps light off (a slice, a
- *           cap), but is not darkened itself
+ *           cap, a cut face), but is not darkened itself
  *   errors  ERROR_MEMORY
  *   thread  any; works with several
- *   source  L. Bavoil, M. Sainz, R. Dimitrov, Image-space horizon-based ambient occlusion, SIGGRAPH 2008 talks. Differs:
- *           the horizon is found by azimuth in the tangent plane from points spread over the disc around a pixel, by the
- *           same pattern in every picture. */
+ *   source  L. Bavoil, M. Sainz, R. Dimitrov, Image-space horizon-based ambient occlusion, SIGGRAPH 2008 talks.
+ *           Differs: the horizon is found by azimuth in the tangent plane from points spread over the disc around a
+ *           pixel, by the same pattern in every picture. */
 NODISCARD bool occlusion_darken(struct image *image, const float *depth, const struct camera *camera, double radius_mm,
                                 struct error *err);

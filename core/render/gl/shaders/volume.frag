@@ -94,6 +94,31 @@ void march_ray(float first, float end, float h, float at) {
     }
 }
 
+#if DEPTH
+// The distance where half of the light is absorbed, before end; else end. x: the distance, and the interval around it: y, its
+// start; z: the light there.
+vec3 find_half(float first, float end, float h, float light) {
+    for (float k = 0.0;; k += 1.0) {
+        float begin = first + k * h, d = min(h, end - begin);
+        if (!(d > 0.0)) break;
+        float value = value_at(origin_ijk + (begin + 0.5 * d) * step_ijk);
+        if (!is_there(value)) continue;
+        float left = light * exp(-transfer(value).a * d);
+        if (left < 0.5) return vec3(begin + d * (light - 0.5) / (light - left), begin, light);
+        light = left;
+    }
+    return vec3(end, end, light);
+}
+
+// The same to 1 / 64 of an interval h of the picture, as normals come from the depths of neighbouring pixels.
+float half_light(float entry, float end, float h) {
+    vec3 found = find_half(entry, end, h / 4.0, 1.0);
+    if (found.x >= end) return end;
+    float first = max(found.y - (found.z >= 1.0 ? h / 8.0 : 0.0), entry);
+    return find_half(first, min(found.y + h / 2.0, end), h / 64.0, found.z).x;
+}
+#endif
+
 // The largest value between two distances, or the mean: x; y: the length of what is there.
 vec2 gather(float first, float end, float h, float at) {
     vec2 sum = vec2(0.0);
@@ -136,6 +161,9 @@ int next_layer(ivec2 at, float opaque, inout float last, inout int last_layer) {
     return nearest;
 }
 
+float depth_of(float z) {
+    return 0.5 * (unproject.y + z * unproject.x) / (z * unproject.z + unproject.w) + 0.5;
+}
 float z_of(float depth) {
     float ndc = 2.0 * depth - 1.0;
     return (unproject.y - ndc * unproject.w) / (ndc * unproject.z - unproject.x);
@@ -181,6 +209,13 @@ void main() {
     }
     vec3 speed = abs(step_ijk);
     float h = min(march.x / max(max(speed.x, speed.y), speed.z), march.y), shift = jitter(), last = -4.0;
+#if DEPTH
+    float found = is_cut_face ? entry : half_light(entry, end, h);
+    if (!is_cut_face && !(found < end)) discard;
+    gl_FragDepth = 0.5 * clamp(depth_of(found / mm_per_z), 0.0, 1.0) + (is_cut_face ? 0.5 : 0.0);
+    result = vec4(0.0);
+    return;
+#endif
     float sheet = method == METHOD_SLICES && entry < end ? nearest_sheet(entry, end, mm_per_z) : end;
     bool has_sheet = method == METHOD_SLICES && entry < end && sheet < end;
     int last_layer = -1;
