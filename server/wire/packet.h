@@ -26,8 +26,8 @@ struct packet_part {
     bool is_required;
 };
 
-/* An argument of a question and the HTTP parameters it is read from: one, or three for a vec3. */
-/* A vec3 has three names, or one: then it is written "x,y,z". */
+/* An argument of a question and the HTTP parameters it is read from: one; of a vec3 three, or one that is written
+ * "x,y,z". */
 struct packet_parameter {
     const char *field, *names[3];
 };
