@@ -214,6 +214,23 @@ static void the_shapes_of_caps_are_wanted_in_advance(void **state)
     end(&picture);
 }
 
+/* The list cuts it for the cap before the picture can show that the outer one hides all of it. */
+static void the_body_of_a_region_is_wanted_for_its_cap_though_an_uncut_one_hides_it(void **state)
+{
+    (void)state;
+    struct picture picture;
+    struct shape_want wants[4];
+    begin(&picture);
+    picture.scene.regions[0].value.clipped = false;
+    (void)list_of(&picture);
+    assert_int_equal(visible_wants(picture.snapshot, SURFACE_COARSE, false, wants), 1);
+    cut_axial(&picture.scene, 0);
+    (void)list_of(&picture);
+    assert_int_equal(visible_wants(picture.snapshot, SURFACE_COARSE, false, wants), 2);
+    assert_int_equal(wants[1].subject.index, 1);
+    end(&picture);
+}
+
 static void panes_are_never_cut(void **state)
 {
     (void)state;
@@ -235,6 +252,7 @@ int main(void)
         cmocka_unit_test(a_slice_in_a_clip_plane_is_drawn_on_it),
         cmocka_unit_test(a_cut_without_a_cap_shows_both_sides),
         cmocka_unit_test(the_shapes_of_caps_are_wanted_in_advance),
+        cmocka_unit_test(the_body_of_a_region_is_wanted_for_its_cap_though_an_uncut_one_hides_it),
         cmocka_unit_test(panes_are_never_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -237,14 +237,13 @@ bool visible_body(const struct snapshot *snapshot, size_t region, enum surface_d
     return false;
 }
 
-/* True if caps of the region need another shape than the one that is drawn. */
-static bool has_other_body(const struct snapshot *snapshot, size_t region)
+/* True if caps close cuts through the region. */
+static bool may_be_capped(const struct snapshot *snapshot, size_t region)
 {
     bool is_capped = false;
     for (size_t i = 0; i < snapshot->n_clips; i++)
         is_capped |= snapshot->clips[i].is_capped;
-    return is_capped && snapshot->styles[region].clipped && visible_is_drawn(snapshot, region) &&
-           visible_shape_key(snapshot, region).representation == REPRESENTATION_SOLID;
+    return is_capped && snapshot->styles[region].clipped && visible_is_drawn(snapshot, region);
 }
 
 size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail, bool is_still,
@@ -254,10 +253,11 @@ size_t visible_wants(const struct snapshot *snapshot, enum surface_detail detail
     size_t n = 0;
     for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++) {
         bool may_wait = is_in_space ? may_be_seen(snapshot, i) : is_still || visible_is_checked(snapshot, i);
-        if (may_wait && find_want(snapshot, i, detail, &wants[n]))
-            n++;
-        if (is_in_space && has_other_body(snapshot, i) && visible_body(snapshot, i, detail, &wants[n]))
-            n++;
+        bool is_wanted = may_wait && find_want(snapshot, i, detail, &wants[n]);
+        n += is_wanted;
+        /* a cap needs the body also of a region that is hidden itself, or drawn as another shape */
+        if (may_be_capped(snapshot, i) && visible_body(snapshot, i, detail, &wants[n]))
+            n += !(is_wanted && shape_key_equal(&wants[n - 1].key, &wants[n].key));
     }
     return n;
 }
