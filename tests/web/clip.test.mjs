@@ -115,6 +115,10 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await comes((now) => now.regions.tumour.clipped, false);
     await page.locator('#tab-panel label', { hasText: 'Outlines' }).click();
     await comes((now) => now.clip.cap.outlines, true);
+    await page.locator('#tab-panel label', { hasText: 'Region colours' }).click();
+    await comes((now) => now.clip.cap.regions, true);
+    const isWhole = await page.locator('[data-key="clip:caps"] .name').evaluate((name) => name.scrollWidth <= name.clientWidth + 1 && name.getBoundingClientRect().width > 40);
+    assert.ok(isWhole, 'the row keeps its name, however much caps show');
   });
 
   it('C turns all planes off and on again, K their caps', async () => {

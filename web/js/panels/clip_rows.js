@@ -50,7 +50,7 @@ function planeRow(world, row) {
 /** What caps show: chosen as a plane is, and then in Selection. */
 function capsRow(world) {
   const words = capWords(world.room.scene.value.clip.cap);
-  return treeRow(world, { kind: 'clip', id: 'caps', words: ['Caps show', words], title: `Caps show ${words}` }, html`${icon('image')}${name('Caps show')} <span class="tail">${words}</span>`);
+  return treeRow(world, { kind: 'clip', id: 'caps', words: ['Caps show', words], title: `Caps show ${words}` }, html`${icon('image')}${name('Caps show')} <span class="tail clipped">${words}</span>`);
 }
 
 /** What acts on all planes: as key C does, and to the crosshair. */
