@@ -208,9 +208,9 @@ test-render: $(render_BIN)
 # FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones
 test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
-# Long ones: what waits for a minute, and the meeting and the planner's hour at every size of window
+# Long ones: what waits for a minute, and what looks at every size of window
 SLOW_NODE := tests/api/slow.test.mjs
-LONG_NODE := $(SLOW_NODE) tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs tests/web/image.test.mjs tests/web/measure.test.mjs
+LONG_NODE := $(SLOW_NODE) tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs tests/web/image.test.mjs tests/web/measure.test.mjs tests/web/axe.test.mjs tests/web/layout.test.mjs
 test-api: all demo
 	$(Q)tests/run_node.sh api $(filter-out $(SLOW_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs)))
 test-web: all demo

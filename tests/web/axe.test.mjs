@@ -5,12 +5,14 @@ import { axe } from './axe.mjs';
 import { full, missing, startWorld } from './browser.mjs';
 import { sizes, states } from './room_states.mjs';
 
+const isLong = process.env.LONG_TESTS === '1'; // every size; else two, and the overlaps of layout.test.mjs at the other two
+
 describe('the room page for screen readers and keyboards', { skip: missing && `${missing} is not there` }, () => {
   let world;
   before(async () => { world = await startWorld(); });
   after(async () => { await world?.stop(); });
 
-  for (const [size, options] of Object.entries(sizes))
+  for (const [size, options] of Object.entries(sizes).filter(([name]) => isLong || ['wide', 'tablet'].includes(name)))
     it(`${size}: axe-core finds nothing in any state`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
       await full(page);

@@ -9,6 +9,8 @@ import { writeLabels } from './labels.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes as roomSizes, states } from './room_states.mjs';
 
+const isLong = process.env.LONG_TESTS === '1'; // every size; else two, and axe.test.mjs at the other two
+
 const sizes = [[1600, 1000], [1280, 720], [1180, 820], [800, 500], [820, 1180]]; // 800 x 500: 1600 x 1000 at 200 %
 
 describe('sizes of windows', { skip: missing && `${missing} is not there` }, () => {
@@ -87,7 +89,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  for (const [size, options] of Object.entries(roomSizes))
+  for (const [size, options] of Object.entries(roomSizes).filter(([name]) => isLong || ['compact', 'phone'].includes(name)))
     it(`${size}: in no state does text lie over text, a letter or a control, and panes are as wide as they have to be`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
       await full(page);
