@@ -31,9 +31,14 @@ PYTHON ?= /usr/bin/python3
 FUZZ_SECONDS ?= 60
 JOBS := $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
+# Sanitizer builds are for finding faults, with names of functions and lines in their reports: -O1 -g1 compiles in half the time.
+OPTIMIZE ?= $(if $(SAN),-O1 -g1,-O2 -g)
+# Programs of tests are many and short-lived: gold links them in half the time.
+TEST_LDFLAGS := $(if $(shell command -v ld.gold),-fuse-ld=gold)
+
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Werror=implicit-function-declaration $(if $(WERROR),-Werror)
 CPPFLAGS += -I. -I$(GEN) -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -DBEAMROOM_VERSION='"$(VERSION)"'
-CFLAGS += -std=c17 -O2 -g -fno-math-errno -fstack-protector-strong -fPIE $(WARNINGS) -MMD -MP -pthread
+CFLAGS += -std=c17 $(OPTIMIZE) -fno-math-errno -fstack-protector-strong -fPIE $(WARNINGS) -MMD -MP -pthread
 # C++ is the shim over DCMTK alone (core/formats/dicom/*.cc): same checks, none of C++'s exceptions leave it.
 CXXFLAGS += $(filter-out -std=c17 $(WARNINGS),$(CFLAGS)) -std=c++17 -Wall -Wextra -Wpedantic -Wconversion $(if $(WERROR),-Werror)
 LDFLAGS += -pie -Wl,-z,relro,-z,now -pthread
@@ -87,11 +92,18 @@ GEN_SRC := $(GEN)/wire_gen.c $(GEN)/packets_gen.c $(GEN)/problem_gen.c $(GEN)/op
 # flags of the processor, which nobody reads.
 EXTRA_core_render_soft_kernels := -O3 -fno-trapping-math
 EXTRA_core_render_soft_kernels_avx2 := -O3 -fno-trapping-math
+EXTRA_core_render_soft_track_kernels := -O3 -fno-trapping-math
+EXTRA_core_render_soft_track_kernels_avx2 := -O3 -fno-trapping-math
 # Functions of vectors are static there, so their convention of calls does not matter.
 EXTRA_core_render_soft_volume_kernels := -O3 -fno-trapping-math -Wno-psabi
 EXTRA_core_render_soft_volume_kernels_avx2 := -O3 -fno-trapping-math
 # So are those over the cells of a picture.
 EXTRA_core_formats_dicom_dicom_unpack := -O3
+# The loops along rows of a dose are too.
+EXTRA_core_dose_dvh_kernels := -O3 -fno-trapping-math
+EXTRA_core_dose_dvh_sampler := -O3 -fno-trapping-math
+# And the smallest and largest of columns of voxels.
+EXTRA_core_surface_isosurface_bricks := -O3 -fno-trapping-math
 # FreeType's headers; the font that is compiled in is core/annotate/font.c's.
 EXTRA_core_annotate_font := -isystem /usr/include/freetype2
 
@@ -105,7 +117,7 @@ $(B)/obj/%.o: %.c | $(GEN_STAMP)
 	$(if $(Q),@echo "  CC $<")
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_$(subst /,_,$(basename $<))) -c $< -o $@
 
-$(B)/libcore.a: $(call obj,$(CORE_SRC) $(GEN)/scene.c $(GEN)/volume_presets.c $(GEN)/gl_shaders.c)
+$(B)/libcore.a: $(call obj,$(CORE_SRC) $(GEN)/scene.c $(GEN)/volume_presets.c $(GEN)/dose_presets.c $(GEN)/gl_shaders.c)
 $(B)/libwire.a: $(call obj,$(WIRE_SRC) $(GEN_SRC))
 $(B)/libserver.a: $(call obj,$(SERVER_SRC))
 $(B)/lib%.a:
@@ -158,9 +170,10 @@ $(1)_HELP := $(filter-out tests/$(1)/$(2)_%,$(call c_files,tests/$(1)))
 $(1)_BIN := $(patsubst tests/$(1)/%.c,$(B)/$(1)/%,$(filter tests/$(1)/$(2)_%,$(call c_files,tests/$(1))))
 $(B)/$(1)/%: $(B)/obj/tests/$(1)/%.o $$(call obj,$$($(1)_HELP)) $(B)/libserver.a $(B)/libwire.a $(B)/libcore.a
 	@mkdir -p $$(@D)
-	$$(Q)$$(CC) $$(LDFLAGS) -o $$@ $$(filter %.o,$$^) $$(filter %.a,$$^) $$(CORE_LIBS) $$(SERVER_LIBS) $(3)
-.PHONY: $(1)-programs
+	$$(Q)$$(CC) $$(LDFLAGS) $$(TEST_LDFLAGS) -o $$@ $$(filter %.o,$$^) $$(filter %.a,$$^) $$(CORE_LIBS) $$(SERVER_LIBS) $(3)
+.PHONY: $(1)-programs $(1)-objects
 $(1)-programs: $$($(1)_BIN)
+$(1)-objects: $$(call obj,$$(call c_files,tests/$(1)))
 endef
 $(eval $(call c_programs,unit,test,-lcmocka))
 $(B)/unit/test_renderer: | $(B)/beamroom-render
@@ -196,8 +209,9 @@ LABEL = $(1)$(if $(filter release,$(VARIANT)),, ($(VARIANT)))
 RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null && echo setarch -R))
 # Programs run side by side, but for pictures, whose back ends use all cores themselves. The thread sanitizer is slow: its programs
 # are those that start threads of their own, or the first of those that read plans by the same ones.
-ONE_THREAD := sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtplan \
-    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_real
+ONE_THREAD := annotate beam_numbers beam_place describe_beam contour_grid dvh_oracle dose_sera_means dicom_numbers dicom_rtplan_opening dicom_rtplan_real dicom_rtdose_dvh \
+    isoeffective profile sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtplan \
+    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_data plan_real
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
 PARALLEL := $(shell nproc)
 .PHONY: test-unit test-render test-faults test-api test-web test-long test-install test test-deep lint
@@ -208,15 +222,19 @@ test-render: $(render_BIN)
 # FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones
 test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
-# Long ones: what waits for a minute, and what looks at every size of window
+# Long ones: what waits for a minute, and what looks at every size of window (LONG_TESTS=rest: at those that test-web leaves out)
+LONG_TESTS ?= 1
 SLOW_NODE := tests/api/slow.test.mjs
-LONG_NODE := $(SLOW_NODE) tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs tests/web/image.test.mjs tests/web/measure.test.mjs tests/web/axe.test.mjs tests/web/layout.test.mjs
+LONG_NODE := $(SLOW_NODE) tests/web/charts.test.mjs tests/web/dose.test.mjs tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs tests/web/image.test.mjs tests/web/measure.test.mjs tests/web/axe.test.mjs tests/web/layout.test.mjs tests/web/start.test.mjs
+# What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest waits for most of its time.
+ALONE_NODE := tests/api/burst.test.mjs tests/api/fair.test.mjs
 test-api: all demo
-	$(Q)tests/run_node.sh api $(filter-out $(SLOW_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs)))
+	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
+	TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh api $(filter-out $(SLOW_NODE) $(ALONE_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))) && [ $$alone = 0 ]
 test-web: all demo
 	$(Q)tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs))
 test-long: all demo
-	$(Q)LONG_TESTS=1 tests/run_node.sh long $(LONG_NODE)
+	$(Q)LONG_TESTS=$(LONG_TESTS) tests/run_node.sh long $(LONG_NODE)
 test-install: all demo
 	$(Q)tests/install.sh
 lint: $(GEN_STAMP) $(call obj,$(CORE_SRC) $(WIRE_SRC) $(SERVER_SRC) $(DAEMON_SRC) $(RENDERER_SRC) $(CLI_SRC))

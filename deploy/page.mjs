@@ -1,18 +1,62 @@
 // Makes the page light to load: node deploy/page.mjs FOLDER, after deploy/web.sh has filled FOLDER.
-//   page/NAME-HASH.js .css .woff2   the modules and the style sheets that index.html names, each joined into one file, and the font
+//   page/NAME-HASH.js .css .woff2   the modules and the style sheets that index.html names, each joined into one file, and the font;
+//                                   modules that are imported on demand (import('...')), and what only they need, are files of their own
 //   index.html                      names those instead; the page of separate modules stays as modules.html, for debugging
 //   licences.txt                    of the libraries and the font
 //   FILE.gz FILE.br                 beside each text file that gets smaller
 // The files in page/ carry a hash of their contents in their names, so the daemon lets browsers keep them for ever.
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { createHash } from 'node:crypto';
+import { basename, join } from 'node:path';
 import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
 import { build } from 'esbuild';
 
 const folder = process.argv[2];
 const read = (name) => readFileSync(join(folder, name), 'utf8');
 const browsers = ['chrome107', 'firefox115', 'safari16.4'];
-const notice = '/*! The licences of lit-html and signals-core are in licences.txt */';
+const notice = '/*! The licences of lit-html, signals-core and uPlot are in licences.txt */';
+
+/** Makes one file of a module and all that it imports at once, and one of each module that is imported on demand, which takes from the first what both
+ *  need. esbuild alone would cut what they share into many small files, each of them a request that is compressed by itself.
+ *  The names carry one hash of everything: files that belong together are never mixed with older ones. @returns {Promise<{main: string}>} */
+async function joinModules(entry) {
+  const { metafile: { outputs }, outputFiles } = await build({ ...shared, entryPoints: [{ in: entry, out: 'main' }], entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]', splitting: true, format: 'esm', write: false });
+  const textOf = new Map(outputFiles.map(({ path, text }) => [basename(path), text]));
+  const parts = new Map(Object.entries(outputs).map(([name, output]) => [basename(name), output]));
+  const hash = createHash('sha256').update([...textOf].sort().flat().join('\n')).digest('hex').slice(0, 8).toUpperCase();
+  const finalName = (name) => name.replace(/-[A-Z0-9]{8}\.js$/, `-${hash}.js`);
+
+  /** A part after all that it imports at once. */
+  const withImports = (name) => [...parts.get(name).imports.filter(({ kind }) => kind === 'import-statement').flatMap(({ path }) => withImports(basename(path))), name];
+  const start = [...parts.keys()].find((name) => parts.get(name).entryPoint === entry);
+  const first = [...new Set(withImports(start))];
+  const longName = (name, exported) => `p${first.indexOf(name)}_${exported}`;
+  const exportsOf = (name, words) => parts.get(name).exports.map(words).join(', ');
+  const whole = [...first.slice(0, -1).map((name) => `export { ${exportsOf(name, (word) => `${word} as ${longName(name, word)}`)} } from './${name}';`), `import './${start}';`].join('\n');
+
+  /** The text of a part that is loaded later: what it takes from the first file it takes under the names that file has for it. */
+  const fromFirst = (text) => text.replace(/import(?:\{([^}]*)\}from)?"\.\/([^"]+)";/g, (statement, words, name) => {
+    if (!first.includes(name)) return statement;
+    if (!words) return ''; // it is there already
+    const named = words.split(',').map((word) => { const [exported, local = exported] = word.split(' as '); return `${longName(name, exported)} as ${local}`; });
+    return `import{${named.join(',')}}from"./${finalName(start)}";`;
+  });
+
+  const plugin = (isFirst) => ({ name: 'parts', setup({ onLoad, onResolve }) {
+    onResolve({ filter: /./ }, ({ path, kind }) => {
+      const name = basename(path);
+      if (kind === 'dynamic-import') return { path: `./${finalName(name)}`, external: true };
+      if (name === finalName(start)) return { path: `./${name}`, external: true };
+      return { path: name, namespace: 'part' };
+    });
+    onLoad({ filter: /./, namespace: 'part' }, ({ path }) => ({ contents: path === 'whole' ? whole : isFirst ? textOf.get(path) : fromFirst(textOf.get(path)) }));
+  } });
+  const ready = { ...shared, format: 'esm', banner: { js: notice } };
+  const lazy = [...parts.keys()].filter((name) => parts.get(name).entryPoint && name !== start);
+  await build({ ...ready, entryPoints: [{ in: 'whole', out: finalName(start).replace(/\.js$/, '') }], plugins: [plugin(true)] });
+  await build({ ...ready, entryPoints: lazy.map((name) => ({ in: name, out: finalName(name).replace(/\.js$/, '') })), chunkNames: 'shared-[hash]', splitting: true, plugins: [plugin(false)] });
+  return { main: `page/${finalName(start)}` };
+}
 
 const source = read('index.html');
 const sheets = [...source.matchAll(/^ *<link rel="stylesheet" href="([^"]+)" \/>\n/gm)];
@@ -20,17 +64,16 @@ const script = source.match(/^ *<script type="module" src="([^"]+)"><\/script>\n
 if (!sheets.length || !script) throw new Error('index.html names no style sheets or no module in the form that deploy/page.mjs knows');
 
 const shared = { absWorkingDir: join(process.cwd(), folder), bundle: true, minify: true, target: browsers, metafile: true, legalComments: 'none', logLevel: 'warning', outdir: 'page' };
-const code = await build({ ...shared, entryPoints: [{ in: script[1], out: 'main' }], entryNames: '[name]-[hash]', format: 'esm', banner: { js: notice } });
+const { main } = await joinModules(script[1]);
 const style = await build({ ...shared, entryNames: '[name]-[hash]', assetNames: '[name]-[hash]', loader: { '.woff2': 'file' },
   entryPoints: [{ in: 'page.css', out: 'main' }], plugins: [{ name: 'sheets', setup({ onLoad, onResolve }) {
     onResolve({ filter: /^page\.css$/ }, () => ({ path: 'page.css', namespace: 'sheets' }));
     onLoad({ filter: /.*/, namespace: 'sheets' }, () => ({ contents: sheets.map(([, href]) => `@import "./${href}";`).join('\n'), loader: 'css', resolveDir: join(process.cwd(), folder) }));
   } }] });
-const made = [code, style].flatMap(({ metafile }) => Object.keys(metafile.outputs));
-const only = (ending) => made.filter((name) => name.endsWith(ending)).map((name) => name.replaceAll('\\', '/'));
+const only = (ending) => Object.keys(style.metafile.outputs).filter((name) => name.endsWith(ending)).map((name) => name.replaceAll('\\', '/'));
 
 // The one list of what is loaded first.
-const [[main], [css]] = [only('.js'), only('.css')];
+const [css] = only('.css');
 const first = [`<link rel="modulepreload" href="${main}" />`, ...only('.woff2').map((font) => `<link rel="preload" href="${font}" as="font" type="font/woff2" crossorigin />`),
   `<link rel="stylesheet" href="${css}" />`, `<script type="module" src="${main}"></script>`];
 let page = source;

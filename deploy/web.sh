@@ -1,7 +1,7 @@
 #!/bin/bash
 # Puts the page together: deploy/web.sh DEST GENERATED
 #   DEST/...      the files of web/ as they are
-#   DEST/lib/     the pinned libraries, single ES modules: lit-html.js (directives in lib/directives/), signals-core.js;
+#   DEST/lib/     the pinned libraries, single ES modules: lit-html.js (directives in lib/directives/), signals-core.js, uplot.js with uplot.css;
 #                 the font Inter with the signs of Western European languages
 #   DEST/gen/     the tables and the reference page generated from proto/
 #   and what deploy/page.mjs makes of them: index.html with few requests, and everything compressed
@@ -19,6 +19,9 @@ for module in lit-html directive directive-helpers directives/class-map directiv
     library "lit-html/$module.js" "$module.js"
 done
 library @preact/signals-core/dist/signals-core.module.js signals-core.js
+library uplot/dist/uPlot.esm.js uplot.js
+cp node_modules/uplot/dist/uPlot.min.css "$part/lib/uplot.css"
+cp node_modules/uplot/LICENSE "$part/lib/LICENSE.uplot"
 cp node_modules/lit-html/LICENSE "$part/lib/LICENSE.lit-html"
 cp node_modules/@preact/signals-core/LICENSE "$part/lib/LICENSE.signals-core"
 cp node_modules/@fontsource-variable/inter/files/inter-latin-wght-normal.woff2 "$part/lib/"

@@ -1,5 +1,6 @@
 #pragma once
 /* Plans made by hand for tests: label layers and images filled from functions of the patient point. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -70,7 +71,7 @@ static inline struct plan *made_plan(const struct grid *grid, double (*label)(st
 {
     struct plan *plan = plan_create("made");
     plan->bounds_lps_mm = grid_bounds_lps_mm(grid);
-    plan->regions.layers[0] = made_volume(grid, VOXEL_U8, label);
+    plan->regions.layers[0] = made_volume(grid, n_regions > UINT8_MAX ? VOXEL_U16 : VOXEL_U8, label);
     plan->regions.n_layers = 1;
     plan->regions.regions = mem_new(sizeof(struct region) * (n_regions ? n_regions : 1));
     plan->regions.n_regions = n_regions;
@@ -83,6 +84,7 @@ static inline struct plan *made_plan(const struct grid *grid, double (*label)(st
         region->rgb[0] = (uint8_t)(regions[i].rgb >> 16);
         region->rgb[1] = (uint8_t)(regions[i].rgb >> 8);
         region->rgb[2] = (uint8_t)regions[i].rgb;
+        region->boron_ratio = region->cbe_boron = region->rbe_nitrogen = region->rbe_fast = region->rbe_gamma = NAN;
     }
     region_set_measure(&plan->regions);
     return plan;

@@ -15,6 +15,13 @@ enum { MIN_TEXT_PX = 12, MAX_TEXT_PX = 24, COLUMNS = 70, HALO_PX = 2 };
 static const uint8_t ink[3] = { 255, 255, 255 }, halo[3] = { 0, 0, 0 }, print[3] = { 24, 28, 33 },
                      print_pale[3] = { 92, 99, 106 }, chip_edge[3] = { 120, 126, 133 };
 
+struct annotation_item *annotation_add(struct annotations *annotations, enum annotation_row row)
+{
+    struct annotation_item *item = &annotations->items[annotations->n_items++];
+    item->row = row;
+    return item;
+}
+
 void annotations_finish(struct annotations *annotations)
 {
     free(annotations->items);

@@ -10,7 +10,10 @@
 enum annotation_row {
     ANNOTATION_TITLE, /* in a larger font */
     ANNOTATION_PANE,
+    ANNOTATION_BEAM,
     ANNOTATION_REGIONS,
+    ANNOTATION_DOSE,
+    ANNOTATION_LEVELS,
     ANNOTATION_METHODS,
     ANNOTATION_MISSING,
     ANNOTATION_ORIGIN,
@@ -47,6 +50,8 @@ struct annotations {
     struct annotation_item *items; /* owned; [n_items], row by row */
     size_t n_items;
 };
+/* Appends an item, of the row of the last one or of a later row; the caller has made room for it. */
+struct annotation_item *annotation_add(struct annotations *annotations, enum annotation_row row);
 void annotations_finish(struct annotations *annotations);
 
 /* Lines of a row before its last one says how many more items there are. */

@@ -7,6 +7,8 @@
 #include <strings.h>
 #include <time.h>
 
+#include "core/annotate/describe_beam.h"
+#include "core/annotate/describe_dose.h"
 #include "core/annotate/marks.h"
 #include "core/annotate/words.h"
 #include "core/base/mem.h"
@@ -22,27 +24,28 @@ void annotate_date(int64_t unix_s, char date[ANNOTATE_DATE_SIZE])
         date[0] = '\0';
 }
 
-static struct annotation_item *add_item(struct annotations *annotations, enum annotation_row row)
-{
-    struct annotation_item *item = &annotations->items[annotations->n_items++];
-    item->row = row;
-    return item;
-}
-
 static void add_words(struct annotations *annotations, enum annotation_row row, const char *words)
 {
-    (void)snprintf(add_item(annotations, row)->text, ANNOTATION_TEXT_SIZE, "%s", words);
+    (void)snprintf(annotation_add(annotations, row)->text, ANNOTATION_TEXT_SIZE, "%s", words);
 }
 
 /* ---- the pane --------------------------------------------------------------------------------------------------- */
 
-static const char *kind_words(enum scene_kind kind)
+/* A view of a beam that there is not shows what it falls back to. */
+static const char *kind_words(const struct snapshot *snapshot)
 {
     static const char *const words[] = { [SCENE_KIND_3D] = "3-D",
                                          [SCENE_KIND_AXIAL] = "Axial",
                                          [SCENE_KIND_CORONAL] = "Coronal",
                                          [SCENE_KIND_SAGITTAL] = "Sagittal",
-                                         [SCENE_KIND_OBLIQUE] = "Oblique" };
+                                         [SCENE_KIND_OBLIQUE] = "Oblique",
+                                         [SCENE_KIND_BEAM] = "Beam's eye",
+                                         [SCENE_KIND_BEAM_SLICE] = "Beam slice" };
+    enum scene_kind kind = snapshot->view.kind;
+    if (!snapshot_beam(snapshot) && kind == SCENE_KIND_BEAM)
+        kind = SCENE_KIND_3D;
+    if (!snapshot_beam(snapshot) && kind == SCENE_KIND_BEAM_SLICE)
+        kind = SCENE_KIND_AXIAL;
     return words[kind];
 }
 
@@ -54,18 +57,34 @@ static void add_plane(struct annotations *annotations, const char *before, const
     words_plane(place, scene, plane);
     words_normal(normal, plane);
     if (*name)
-        (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%.240s", before, name);
-    (void)snprintf(add_item(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%.240s", *name ? "" : before,
-                   place);
+        (void)snprintf(annotation_add(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%.240s", before,
+                       name);
+    (void)snprintf(annotation_add(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE, "%s%.240s",
+                   *name ? "" : before, place);
     if (*normal)
         add_words(annotations, ANNOTATION_PANE, normal);
+}
+
+/* A slice in space; the beam slice is the last one. */
+static void add_slice(struct annotations *annotations, const struct snapshot *snapshot, size_t index)
+{
+    const struct scene_beam_style *style = &snapshot->scene.beam;
+    char beam[WORDS_SIZE], place[WORDS_SIZE];
+    if (index + 1 < snapshot->n_slices || !style->slice.visible || !snapshot->has_beam) {
+        add_plane(annotations, "slice ", &snapshot->scene, &snapshot->slices[index]);
+        return;
+    }
+    beam_words(beam, snapshot, &snapshot->beam);
+    beam_place_words(place, style->slice.along_mm);
+    (void)snprintf(annotation_add(annotations, ANNOTATION_PANE)->text, ANNOTATION_TEXT_SIZE,
+                   "beam slice of %.160s, %.60s", beam, place);
 }
 
 static void add_image(struct annotations *annotations, const struct snapshot *snapshot)
 {
     const struct scene_image_style *style = &snapshot->scene.image;
-    words_image(add_item(annotations, ANNOTATION_PANE)->text, snapshot->plan, (size_t)snapshot->image);
-    words_window(add_item(annotations, ANNOTATION_PANE)->text, &style->window,
+    words_image(annotation_add(annotations, ANNOTATION_PANE)->text, snapshot->plan, (size_t)snapshot->image);
+    words_window(annotation_add(annotations, ANNOTATION_PANE)->text, &style->window,
                  snapshot->plan->images[snapshot->image].unit);
     if (style->color_map != SCENE_COLOR_MAP_GREY)
         add_words(annotations, ANNOTATION_PANE, words_color_map(style->color_map));
@@ -74,7 +93,7 @@ static void add_image(struct annotations *annotations, const struct snapshot *sn
     if (style->interpolation == SCENE_INTERPOLATION_NEAREST)
         add_words(annotations, ANNOTATION_PANE, "nearest voxel");
     if (snapshot->blend >= 0 && style->blend.opacity > 0)
-        words_blend(add_item(annotations, ANNOTATION_PANE)->text, snapshot);
+        words_blend(annotation_add(annotations, ANNOTATION_PANE)->text, snapshot);
 }
 
 static bool has_volume(const struct snapshot *snapshot)
@@ -98,13 +117,13 @@ static bool has_image_caps(const struct snapshot *snapshot)
 static void add_pane(struct annotations *annotations, const struct snapshot *snapshot, const struct camera *camera)
 {
     bool is_pane = snapshot_is_pane(snapshot);
-    add_words(annotations, ANNOTATION_PANE, kind_words(snapshot->view.kind));
+    add_words(annotations, ANNOTATION_PANE, kind_words(snapshot));
     if (is_pane)
         add_plane(annotations, "", &snapshot->scene, &snapshot->pane);
     else
         add_words(annotations, ANNOTATION_PANE, camera->is_parallel ? "parallel projection" : "perspective, no scale");
     for (size_t i = 0; !is_pane && snapshot->image >= 0 && i < snapshot->n_slices; i++)
-        add_plane(annotations, "slice ", &snapshot->scene, &snapshot->slices[i]);
+        add_slice(annotations, snapshot, i);
     if (snapshot->image >= 0 && (is_pane || snapshot->n_slices > 0 || has_volume(snapshot) || has_image_caps(snapshot)))
         add_image(annotations, snapshot);
 }
@@ -148,7 +167,7 @@ static void add_region(struct annotations *annotations, const struct snapshot *s
     const struct scene_region_style *style = &snapshot->styles[index];
     const struct region *region = &snapshot->plan->regions.regions[index];
     enum region_representation kind = visible_shape_key(snapshot, index).representation;
-    struct annotation_item *item = add_item(annotations, ANNOTATION_REGIONS);
+    struct annotation_item *item = annotation_add(annotations, ANNOTATION_REGIONS);
     char opacity[48] = "";
     bool is_pane = snapshot_is_pane(snapshot);
     item->has_chip = true;
@@ -193,11 +212,11 @@ static void add_missing(struct annotations *annotations, const struct snapshot *
         const struct subject subject = missing[i].subject;
         const char *name = subject.kind == SUBJECT_REGION ? snapshot->plan->regions.regions[subject.index].name
                                                           : subject_id(snapshot->plan, subject);
-        (void)snprintf(add_item(annotations, ANNOTATION_MISSING)->text, ANNOTATION_TEXT_SIZE, "%s%s",
+        (void)snprintf(annotation_add(annotations, ANNOTATION_MISSING)->text, ANNOTATION_TEXT_SIZE, "%s%s",
                        i == 0 ? "Not drawn: " : "", name);
     }
     if (n_missing > MAX_NAMED)
-        (void)snprintf(add_item(annotations, ANNOTATION_MISSING)->text, ANNOTATION_TEXT_SIZE, "and %zu more",
+        (void)snprintf(annotation_add(annotations, ANNOTATION_MISSING)->text, ANNOTATION_TEXT_SIZE, "and %zu more",
                        n_missing - MAX_NAMED);
 }
 
@@ -219,11 +238,13 @@ static void cut_words(char text[ANNOTATION_TEXT_SIZE], const struct snapshot *sn
         [CLIP_CORONAL_HIGH] = "posterior to",   [CLIP_SAGITTAL_LOW] = "right of",  [CLIP_SAGITTAL_HIGH] = "left of",
         [CLIP_BEAM] = "before the plane along", [CLIP_FREE] = "above the plane",
     };
-    char place[WORDS_SIZE], normal[WORDS_SIZE] = "", along[40];
-    const struct scene_clip_beam *beam = &snapshot->scene.clip.beam;
-    if (clip->name == CLIP_BEAM) {
-        words_number(along, beam->along_mm, 1);
-        (void)snprintf(place, sizeof place, "%s at %s mm", beam->id[0] ? beam->id : snapshot->plan->beams[0].id, along);
+    char place[WORDS_SIZE], normal[WORDS_SIZE] = "", along[40], name[WORDS_SIZE];
+    const struct scene_clip_beam *style = &snapshot->scene.clip.beam;
+    struct beam_shown beam;
+    if (clip->name == CLIP_BEAM && beam_shown_of(snapshot->plan, &snapshot->scene, style->id, &beam)) {
+        words_number(along, style->along_mm, 1);
+        beam_words(name, snapshot, &beam);
+        (void)snprintf(place, sizeof place, "%.200s at %s mm", name, along);
     } else {
         struct plane plane = clip->plane;
         if (clip->name != CLIP_FREE && vec3_dot(plane.normal, vec3(1, 1, 1)) < 0)
@@ -238,7 +259,7 @@ static void cut_words(char text[ANNOTATION_TEXT_SIZE], const struct snapshot *sn
 /* Adds an item that begins with `before` if it is the first of its list. */
 static void add_listed(struct annotations *annotations, const char *before, bool is_first, const char *words)
 {
-    (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "%s%.200s",
+    (void)snprintf(annotation_add(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "%s%.200s",
                    is_first ? before : "", words);
 }
 
@@ -306,7 +327,7 @@ static void add_methods(struct annotations *annotations, const struct snapshot *
         has_outline = has_outline || (visible_is_drawn(snapshot, i) && kind == REPRESENTATION_OUTLINE);
     }
     if (has_surface)
-        (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "Surfaces: %s",
+        (void)snprintf(annotation_add(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE, "Surfaces: %s",
                        surface_algorithm_word(visible_surface_key(snapshot).algorithm));
     if (has_volume(snapshot))
         add_volume(annotations, snapshot);
@@ -317,7 +338,7 @@ static void add_methods(struct annotations *annotations, const struct snapshot *
         add_words(annotations, ANNOTATION_METHODS, "Check of the segmentation: differences are marked");
     if (snapshot->scene.dose.grid && snapshot->dose >= 0) {
         const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
-        (void)snprintf(add_item(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE,
+        (void)snprintf(annotation_add(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE,
                        "Grid of the dose %s%s%s%s%s", dose->name[0] ? dose->name : dose->id, dose->unit[0] ? ", " : "",
                        dose->unit,
                        dose->per[0] == 0                    ? ""
@@ -331,7 +352,7 @@ static void add_origin(struct annotations *annotations, const struct snapshot *s
 {
     add_words(annotations, ANNOTATION_ORIGIN, date);
     if (snapshot->scene_revision > 0)
-        (void)snprintf(add_item(annotations, ANNOTATION_ORIGIN)->text, ANNOTATION_TEXT_SIZE, "revision %u",
+        (void)snprintf(annotation_add(annotations, ANNOTATION_ORIGIN)->text, ANNOTATION_TEXT_SIZE, "revision %u",
                        (unsigned)snapshot->scene_revision);
     add_words(annotations, ANNOTATION_ORIGIN, "Beamroom " BEAMROOM_VERSION);
     add_words(annotations, ANNOTATION_USE, "For research and plan review.");
@@ -347,12 +368,14 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
     size_t n_missing = visible_missing(snapshot, SURFACE_FULL, missing);
     *annotations = (struct annotations){ .n_items = 0 };
     annotations->items =
-        mem_array(plan->regions.n_regions + MAX_OTHER_ITEMS, sizeof annotations->items[0], UINT64_MAX, err);
+        mem_array(plan->regions.n_regions + MAX_OTHER_ITEMS + DESCRIBE_BEAM_MAX_ITEMS + DESCRIBE_DOSE_MAX_ITEMS,
+                  sizeof annotations->items[0], UINT64_MAX, err);
     if (!annotations->items)
         return false;
     camera_resolve(snapshot, &camera);
     annotations->letters = letters_of_edges(camera.right, camera.up);
-    if (!marks_describe(annotations, snapshot, &camera, err))
+    if (!marks_describe(annotations, snapshot, &camera, err) || !dose_label(annotations, snapshot, width_px, err) ||
+        !beam_label(annotations, snapshot, &camera, width_px, err))
         return false;
     annotations->pixels_per_mm = camera.pixels_per_mm * width_px / snapshot->view.size_px[0];
 
@@ -360,8 +383,10 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
     if (plan->is_phantom && !strstr(plan->name, "hantom"))
         add_words(annotations, ANNOTATION_TITLE, "(phantom)");
     add_pane(annotations, snapshot, &camera);
+    beam_describe(annotations, snapshot);
     if (!add_regions(annotations, snapshot, missing, n_missing, err))
         return false;
+    dose_describe(annotations, snapshot);
     add_methods(annotations, snapshot);
     add_missing(annotations, snapshot, missing, n_missing);
     add_origin(annotations, snapshot, date);

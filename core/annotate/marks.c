@@ -28,6 +28,10 @@ static bool place_of(const struct marks *marks, struct vec3 p, double place[2])
     double w = m[3] * p.x + m[7] * p.y + m[11] * p.z + m[15];
     if (!marks->camera->is_parallel && w < fmax(1e-3, marks->camera->near_mm / 10))
         return false;
+    bool has_eye = marks->snapshot->view.kind == SCENE_KIND_BEAM && snapshot_beam(marks->snapshot);
+    if (has_eye &&
+        vec3_dot(vec3_sub(p, marks->camera->eye_lps_mm), marks->camera->forward) < fmin(0, marks->camera->near_mm))
+        return false;
     struct vec3 clip = mat4_project(&marks->camera->clip_from_lps_mm, p);
     place[0] = (clip.x + 1) / 2;
     place[1] = (1 - clip.y) / 2;

@@ -261,6 +261,27 @@ bool once_cache_has_refusals(struct once_cache *cache)
     return has_some;
 }
 
+void once_cache_drop_alike(struct once_cache *cache, const struct once_key *key,
+                           bool (*is_alike)(const void *a, const void *b))
+{
+    size_t n_others = ONCE_CACHE_ALIKE;
+    pthread_mutex_lock(&cache->lock);
+    const struct entry *own = find(cache, key);
+    while (n_others >= ONCE_CACHE_ALIKE) {
+        struct entry *oldest = NULL;
+        n_others = 0;
+        for (struct entry *entry = cache->buckets[key->hash % N_BUCKETS]; entry; entry = entry->next)
+            if (entry != own && entry->result && entry->hash == key->hash && entry->n_key_bytes == key->n_bytes &&
+                is_alike(entry->key, key->bytes)) {
+                n_others++;
+                oldest = !oldest || entry->used < oldest->used ? entry : oldest;
+            }
+        if (n_others >= ONCE_CACHE_ALIKE)
+            drop(cache, oldest);
+    }
+    pthread_mutex_unlock(&cache->lock);
+}
+
 void once_cache_set_budget(struct once_cache *cache, uint64_t budget_bytes)
 {
     pthread_mutex_lock(&cache->lock);

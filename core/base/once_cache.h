@@ -60,6 +60,12 @@ bool once_cache_is_ready(struct once_cache *cache, const struct once_key *key);
 bool once_cache_is_refused(struct once_cache *cache, const struct once_key *key, struct error *why);
 bool once_cache_has_refusals(struct once_cache *cache);
 
+/* Drops results that the key's takes the place of, as when a value is dragged: of those with the key's hash and size
+ * whose keys are alike, the ONCE_CACHE_ALIKE last used are kept, the key's own among them. is_alike: called with the
+ * lock held. */
+enum { ONCE_CACHE_ALIKE = 2 };
+void once_cache_drop_alike(struct once_cache *cache, const struct once_key *key,
+                           bool (*is_alike)(const void *a, const void *b));
 /* Drops at once what exceeds the new budget. */
 void once_cache_set_budget(struct once_cache *cache, uint64_t budget_bytes);
 void once_cache_usage(struct once_cache *cache, struct once_cache_usage *usage);

@@ -21,6 +21,23 @@ bool patient_position_from_word(const char *word, enum patient_position *positio
     return false;
 }
 
+static const char *const outline_words[] = { "", "jaws", "leaves", "blocks" };
+
+const char *beam_outline_word(enum beam_outline_kind kind)
+{
+    return outline_words[kind];
+}
+
+bool beam_outline_kind_from_word(const char *word, enum beam_outline_kind *kind)
+{
+    for (int i = 1; i <= BEAM_OUTLINE_BLOCKS; i++)
+        if (strcmp(word, outline_words[i]) == 0) {
+            *kind = (enum beam_outline_kind)i;
+            return true;
+        }
+    return false;
+}
+
 static double cosine(double deg)
 {
     return cos(deg * MATH_PI / 180);
@@ -75,4 +92,36 @@ struct vec3 beam_patient_from_gantry(struct vec3 point_gantry_mm, const struct b
     struct vec3 left, back, head;
     patient_axes(position, &left, &back, &head);
     return vec3(vec3_dot(top, left), vec3_dot(top, back), vec3_dot(top, head));
+}
+
+static double whole_turn(double deg)
+{
+    double turned = fmod(deg, 360);
+    return turned < 0 ? turned + 360 : turned;
+}
+
+static double turn_between(double a_deg, double b_deg)
+{
+    double turn = whole_turn(a_deg - b_deg);
+    return fmin(turn, 360 - turn);
+}
+
+struct beam_angles beam_angles_from_direction(struct vec3 towards_source_lps, enum patient_position position,
+                                              const struct beam_angles *near)
+{
+    struct vec3 left, back, head;
+    patient_axes(position, &left, &back, &head);
+    /* table coordinates of the gantry's (0, 0, 1): (sin gantry cos couch, -sin gantry sin couch, cos gantry) */
+    struct vec3 table =
+        vec3_add(vec3_add(vec3_scale(left, towards_source_lps.x), vec3_scale(back, towards_source_lps.y)),
+                 vec3_scale(head, towards_source_lps.z));
+    double level = hypot(table.x, table.y), gantry = atan2(level, table.z) * 180 / MATH_PI;
+    if (level < 1e-9)
+        return (struct beam_angles){ .gantry_deg = whole_turn(gantry), .couch_deg = whole_turn(near->couch_deg) };
+    double couch = atan2(-table.y, table.x) * 180 / MATH_PI;
+    double one = turn_between(gantry, near->gantry_deg) + turn_between(couch, near->couch_deg),
+           other = turn_between(-gantry, near->gantry_deg) + turn_between(couch + 180, near->couch_deg);
+    if (other < one)
+        return (struct beam_angles){ .gantry_deg = whole_turn(-gantry), .couch_deg = whole_turn(couch + 180) };
+    return (struct beam_angles){ .gantry_deg = whole_turn(gantry), .couch_deg = whole_turn(couch) };
 }

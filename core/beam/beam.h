@@ -21,6 +21,28 @@ enum patient_position {
 const char *patient_position_word(enum patient_position position); /* "HFS", ...; "" if unknown */
 bool patient_position_from_word(const char *word, enum patient_position *position);
 
+/* The outline of an opening, in the plane of the isocentre: closed polygons, apart from each other, the first point not
+ * repeated. Of jaws, leaves and blocks it is the one that leaves the least area open, within the jaws. */
+enum beam_outline_kind { BEAM_OUTLINE_NONE, BEAM_OUTLINE_JAWS, BEAM_OUTLINE_LEAVES, BEAM_OUTLINE_BLOCKS };
+enum { BEAM_OUTLINE_MAX_POINTS = 1600, BEAM_OUTLINE_MAX_POLYGONS = 400 };
+struct beam_outline {
+    enum beam_outline_kind kind; /* NONE: not given, or closed; without polygons */
+    uint16_t n_polygons;
+    uint16_t ends[BEAM_OUTLINE_MAX_POLYGONS]; /* polygon i has the points from ends[i - 1], of the first from 0, up to
+                                                 but without ends[i] */
+    float points_mm[BEAM_OUTLINE_MAX_POINTS][2]; /* along the collimator's x and y axis */
+};
+const char *beam_outline_word(enum beam_outline_kind kind); /* "jaws", "leaves", "blocks"; "" for NONE */
+bool beam_outline_kind_from_word(const char *word, enum beam_outline_kind *kind);
+static inline size_t beam_outline_begin(const struct beam_outline *outline, size_t polygon)
+{
+    return polygon ? outline->ends[polygon - 1] : 0;
+}
+static inline size_t beam_outline_n_points(const struct beam_outline *outline)
+{
+    return beam_outline_begin(outline, outline->n_polygons);
+}
+
 /* Delivery data of a treatment plan. Numbers not given are NaN. Angles in degrees, IEC 61217. */
 struct beam_delivery {
     int64_t number;     /* number in the plan */
@@ -37,6 +59,7 @@ struct beam_delivery {
     double jaws_x_mm[2], jaws_y_mm[2];       /* of the jaws, at the first control point */
     double opening_x_mm[2], opening_y_mm[2]; /* of jaws, leaves and blocks together: hull over all control points */
     double opening_cm2;                      /* at the first control point */
+    struct beam_outline outline;             /* at the first control point */
     struct vec3 collimator_x_lps, collimator_y_lps; /* unit vectors */
     double dose_gy, meterset;                       /* per fraction */
     char meterset_unit[8];                          /* "MU", "MINUTE" */
@@ -71,3 +94,11 @@ struct beam_angles {
 };
 struct vec3 beam_patient_from_gantry(struct vec3 point_gantry_mm, const struct beam_angles *angles,
                                      enum patient_position position);
+/* The gantry and couch angle at which a beam comes from a direction, on a level table: of the two pairs that there are
+ * the one nearer to known angles. Fills only gantry_deg and couch_deg, 0 to below 360, the others with 0. Along the
+ * couch's axis of rotation, where any couch angle does, that of near.
+ *
+ *   towards_source_lps  of unit length, patient LPS
+ *   source              as beam_patient_from_gantry, of which it is the inverse */
+struct beam_angles beam_angles_from_direction(struct vec3 towards_source_lps, enum patient_position position,
+                                              const struct beam_angles *near);

@@ -133,6 +133,13 @@ bool derive_has_refusals(struct derive *derive)
     return once_cache_has_refusals(derive->cache);
 }
 
+void derive_drop_alike(struct derive *derive, const struct derive_recipe *recipe,
+                       bool (*is_alike)(const void *a, const void *b))
+{
+    struct once_key key = key_of(recipe);
+    once_cache_drop_alike(derive->cache, &key, is_alike);
+}
+
 void derive_set_budget(struct derive *derive, uint64_t n_bytes)
 {
     once_cache_set_budget(derive->cache, n_bytes);

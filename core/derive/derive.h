@@ -3,7 +3,7 @@
  * immutable, reference-counted result, which is built once, by the first caller, and kept within one budget of memory
  * over all kinds of result. Knows no kind by name: a kind is one file of its own, which exports its functions and calls
  * derive_get with its `struct derive_kind`. Kinds now: region_shape.h, coarse_reduction.h,
- * shape_slabs.h, volume_bricks.h. */
+ * shape_slabs.h, volume_bricks.h, dose_field.h, dose_coverage.h, isodose_shape.h, coverage_shape.h. */
 #include "core/base/once_cache.h"
 #include "core/derive/subject.h"
 
@@ -70,6 +70,12 @@ bool derive_is_refusal(enum error_code code);
 /* True if the recipe was refused before; fills why. Builds nothing. ONCE_CACHE_MAX_REFUSALS are remembered. */
 bool derive_is_refused(struct derive *derive, const struct derive_recipe *recipe, struct error *why);
 bool derive_has_refusals(struct derive *derive);
+
+/* For a recipe whose values people drag, after derive_get: of the results whose recipes are alike its own, keeps the
+ * ONCE_CACHE_ALIKE last used. is_alike: of two recipes of any kind and of equal size; true if they differ in nothing
+ * but such values. */
+void derive_drop_alike(struct derive *derive, const struct derive_recipe *recipe,
+                       bool (*is_alike)(const void *a, const void *b));
 
 /* Drops at once what exceeds the new budget. */
 void derive_set_budget(struct derive *derive, uint64_t n_bytes);

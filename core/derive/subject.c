@@ -26,6 +26,9 @@ bool subject_exists(const struct plan *plan, struct subject subject)
     case SUBJECT_IMAGE: return subject.index < plan->n_images;
     case SUBJECT_LABEL_LAYER: return subject.index < plan->regions.n_layers;
     case SUBJECT_DOSE: return subject.index < plan->n_doses;
+    case SUBJECT_ISODOSE: return plan->n_doses > 0;
+    case SUBJECT_BEAM: return subject.key || subject.index < plan->n_beams;
+    case SUBJECT_TRACKS: return subject.index < plan->tracks.n_segments;
     }
     return false;
 }
@@ -37,7 +40,10 @@ const char *subject_id(const struct plan *plan, struct subject subject)
     case SUBJECT_REGION: return plan->regions.regions[subject.index].id;
     case SUBJECT_IMAGE: return plan->images[subject.index].id;
     case SUBJECT_DOSE: return plan->doses[subject.index].id;
-    case SUBJECT_LABEL_LAYER: break; /* has none */
+    case SUBJECT_BEAM: return subject.key ? "" : plan->beams[subject.index].id;
+    case SUBJECT_LABEL_LAYER:
+    case SUBJECT_TRACKS:
+    case SUBJECT_ISODOSE: break; /* have none in the plan */
     }
     return "";
 }

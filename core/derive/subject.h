@@ -8,7 +8,10 @@ enum subject_kind {
     SUBJECT_REGION,
     SUBJECT_IMAGE,       /* index: of the plan's images */
     SUBJECT_LABEL_LAYER, /* index: of the layers of its regions */
-    SUBJECT_DOSE         /* index: of its doses */
+    SUBJECT_DOSE,        /* index: of its doses */
+    SUBJECT_ISODOSE,     /* index: of the levels of a scene's dose */
+    SUBJECT_BEAM,        /* index: of its beams; key 1: the draft of the scene, index 0 */
+    SUBJECT_TRACKS       /* its tracks; index: of the segment, where one is meant */
 };
 
 struct subject {

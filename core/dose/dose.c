@@ -73,8 +73,10 @@ void dose_unit_of(const struct dose *dose, enum dose_quantity quantity, char uni
 
 void dose_finish(struct dose *dose)
 {
-    for (size_t i = 0; i < dose->n_components; i++)
+    for (size_t i = 0; i < dose->n_components; i++) {
         volume_unref(dose->components[i].values);
+        volume_unref(dose->components[i].error);
+    }
     volume_unref(dose->mask);
     dose->n_components = 0;
     dose->mask = NULL;

@@ -27,6 +27,7 @@ struct dose_component {
     enum dose_quantity quantity;
     bool is_per_ppm;       /* boron or blood boron: values are per 1 ppm of boron-10 */
     struct volume *values; /* unit: dose_unit_of */
+    struct volume *error;  /* statistical error, one standard deviation, in the unit of the values; NULL: not given */
     bool has_boron_ppm;    /* total or weighted total: boron_ppm is known */
     double boron_ppm; /* ppm of boron-10 in blood included in the values, with each tissue's ratio to blood as in the
                          program that wrote the file */
@@ -43,6 +44,15 @@ enum dose_frame {
 const char *dose_frame_word(enum dose_frame frame); /* "same", "unknown", "differs" */
 bool dose_frame_from_word(const char *word, enum dose_frame *frame);
 
+/* What a file states of the dose in a region, beside the dose: the planning program's own figures. */
+enum { DOSE_MAX_STATED = 64, DOSE_STATED_NAME_SIZE = 128 };
+struct dose_stated {
+    char region[DOSE_STATED_NAME_SIZE]; /* name of the region in the files; "" while only its number is known */
+    int64_t number;                     /* of the region in the file (ROI number) */
+    double low, mean, high;             /* in the dose's unit; NaN: not stated */
+    double volume_cm3;                  /* NaN: not stated */
+};
+
 struct dose {
     char id[64];
     char name[64];  /* for people; "" if the files give none */
@@ -56,6 +66,9 @@ struct dose {
     /* Indexed by quantity; 0: unknown. */
     double reference[DOSE_N_QUANTITIES]; /* the file's own 100 % */
     double body_high[DOSE_N_QUANTITIES]; /* largest value inside any region of the plan */
+    /* Of the only component, a total or weighted total. */
+    struct dose_stated stated[DOSE_MAX_STATED];
+    size_t n_stated;
 };
 void dose_finish(struct dose *dose);
 

@@ -46,6 +46,8 @@ struct plan_file_component {
     double boron_ppm; /* boron-10 in blood that a total includes, 0 to PLAN_FILE_MAX_PPM */
     double reference; /* the value that counts as 100 %; 0: not given */
     char path[FOLDER_NAME_SIZE];
+    char error[FOLDER_NAME_SIZE]; /* the statistical error, one standard deviation, in the unit of the values; "": none
+                                   */
 };
 struct plan_file_dose {
     char id[64], name[64], unit[16], per[64];

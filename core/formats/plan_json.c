@@ -93,6 +93,7 @@ static bool parse_component(const struct json_place *at, const cJSON *entry, str
     struct plan_file_component *component = &dose->components[dose->n_components];
     char word[32];
     if (!place_path(at, entry, "path", true, component->path) ||
+        !place_path(at, entry, "error", false, component->error) ||
         !place_text(at, entry, "quantity", word, sizeof word) ||
         !place_bool(at, entry, "per_ppm", &component->is_per_ppm))
         return false;
@@ -131,8 +132,10 @@ static bool parse_doses(const struct json_place *top, const cJSON *root, struct 
 {
     static const char *const known[] = { "id",        "name", "path", "quantity", "per_ppm",    "boron_ppm",
                                          "reference", "unit", "per",  "mask",     "components", "frame_of_reference",
-                                         NULL };
-    static const char *const known_inside[] = { "path", "quantity", "per_ppm", "boron_ppm", "reference", NULL };
+                                         "error",     NULL };
+    static const char *const known_inside[] = {
+        "path", "quantity", "per_ppm", "boron_ppm", "reference", "error", NULL
+    };
     const cJSON *list, *components;
     if (!place_list(top, root, "doses", PLAN_FILE_MAX_DOSES, &list))
         return false;

@@ -156,6 +156,24 @@ static void add_doses(cJSON *root, const struct plan_file *file)
             if (dose->components[c].reference > 0)
                 add_number(component, "reference", dose->components[c].reference);
             add_text(component, "path", dose->components[c].path);
+            add_text(component, "error", dose->components[c].error);
+        }
+    }
+}
+
+static void add_outline(cJSON *delivery, const struct beam_outline *outline)
+{
+    cJSON *entry = outline->n_polygons ? cJSON_CreateObject() : NULL;
+    if (!entry || !add(delivery, "outline", entry))
+        return;
+    add_text(entry, "kind", beam_outline_word(outline->kind));
+    cJSON *polygons = add_list(entry, "polygons_mm");
+    for (size_t i = 0; i < outline->n_polygons; i++) {
+        cJSON *polygon = append(polygons, cJSON_CreateArray());
+        for (size_t at = beam_outline_begin(outline, i); at < outline->ends[i]; at++) {
+            cJSON *point = append(polygon, cJSON_CreateArray());
+            append(point, exact_number((double)outline->points_mm[at][0]));
+            append(point, exact_number((double)outline->points_mm[at][1]));
         }
     }
 }
@@ -180,6 +198,7 @@ static void add_delivery(cJSON *beam, const struct beam_delivery *delivery)
         for (int v = 0; list && v < delivery_lists[i].n; v++)
             append(list, isfinite(values[v]) ? exact_number(values[v]) : cJSON_CreateNull());
     }
+    add_outline(entry, &delivery->outline);
     add_number(entry, "n_control_points", (double)delivery->n_control_points);
     add_text(entry, "meterset_unit", delivery->meterset_unit);
     add_number(entry, "n_fractions", (double)delivery->n_fractions);

@@ -43,35 +43,12 @@ static bool find_class(double type, double energy, uint8_t *class, struct counts
     return true;
 }
 
-static bool grow(struct track_set *set, size_t *capacity, const char *name, struct error *err)
-{
-    if (set->n_segments < *capacity)
-        return true;
-    if (set->n_segments >= TRACK_MAX_SEGMENTS)
-        return error_set(err, ERROR_LIMIT, "%s: more than %d segments in the plan", name, TRACK_MAX_SEGMENTS);
-    size_t wanted = *capacity < 1024 ? 1024 : *capacity * 2;
-    wanted = wanted < TRACK_MAX_SEGMENTS ? wanted : TRACK_MAX_SEGMENTS;
-    struct track_segment *segments = realloc(set->segments, wanted * sizeof *segments);
-    if (!segments)
-        return error_set(err, ERROR_MEMORY, "%s: no memory for %zu segments", name, wanted);
-    set->segments = segments;
-    *capacity = wanted;
-    return true;
-}
-
 static void put_point(float out[3], double rl, double pa, double is)
 {
     struct vec3 lps = sera_lps_from_rpi(rl, pa, is);
     out[0] = (float)lps.x;
     out[1] = (float)lps.y;
     out[2] = (float)lps.z;
-}
-
-/* True if the end points are equal once they are rounded to 32 bits. */
-static bool has_no_length(const struct track_segment *segment)
-{
-    const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
 static void report_counts(const struct counts *counts, const char *name, struct report *report)
@@ -107,17 +84,18 @@ bool pp_parse(const uint8_t *data, size_t size, const char *name, struct track_s
             continue;
         }
         counts.n_segments++;
-        if (!grow(set, &capacity, name, err))
+        if (!track_set_make_room(set, &capacity, name, err))
             return false;
         struct track_segment *segment = &set->segments[set->n_segments];
         put_point(segment->from_lps_mm, v[0], v[1], v[2]);
         put_point(segment->to_lps_mm, v[3], v[4], v[5]);
-        if (has_no_length(segment)) {
+        if (track_segment_is_point(segment)) {
             counts.n_zero_length++;
             continue;
         }
         set->n_segments++;
         segment->class = class;
+        segment->energy_mev = NAN;
         set->n_of_class[class]++;
     }
     if (counts.n_segments == 0)

@@ -201,6 +201,19 @@ static void add_dose_mask(struct loading *loading, struct dose *dose, struct par
                    "The mask of the dose \"%s\" lies on another grid; it is looked up by position.", dose->id);
 }
 
+/* Adds the statistical error of a component; it is dropped where the component's file did not have the quantity. */
+static void add_dose_error(struct dose *dose, const struct plan_file_dose *entry, struct part_reading *reading)
+{
+    struct volume *error = take_volume(reading);
+    for (size_t c = 0; c < dose->n_components; c++)
+        if (dose->components[c].quantity == entry->components[reading->component].quantity &&
+            !dose->components[c].error) {
+            dose->components[c].error = error;
+            return;
+        }
+    volume_unref(error);
+}
+
 /* Adds the dose of an entry of the plan file; a file or folder of DICOM doses may give several. */
 static void add_dose(struct loading *loading, size_t index)
 {
@@ -228,6 +241,8 @@ static void add_dose(struct loading *loading, size_t index)
     for (size_t i = 0; dose && i < loading->n_readings; i++)
         if (loading->readings[i].kind == PART_KIND_DOSE_MASK && loading->readings[i].index == index)
             add_dose_mask(loading, dose, &loading->readings[i]);
+        else if (loading->readings[i].kind == PART_KIND_DOSE_ERROR && loading->readings[i].index == index)
+            add_dose_error(dose, entry, &loading->readings[i]);
 }
 
 static void add_doses(struct loading *loading)

@@ -36,6 +36,32 @@ static void check_frame(const struct loading *loading, struct part_reading *read
         rtdose_check_frame(&reading->rtdose, first->frame_of_reference, reading->path, report);
 }
 
+/* Names the regions of stored histograms, by the structure set that the dose refers to, else by the only one. Drops
+ * those that no region has the number of. */
+static void name_stated(const struct loading *loading, const char *structs_uid, struct dose *dose)
+{
+    const struct rtstruct *structs = NULL;
+    size_t n_structs = 0, n = 0;
+    for (size_t i = 0; i < loading->n_readings; i++) {
+        const struct rtstruct *other = loading->readings[i].structs;
+        if (!other)
+            continue;
+        n_structs++;
+        structs = !structs || (structs_uid[0] && strcmp(other->uid, structs_uid) == 0) ? other : structs;
+    }
+    if (structs && n_structs > 1 && strcmp(structs->uid, structs_uid) != 0)
+        structs = NULL;
+    for (size_t i = 0; structs && i < dose->n_stated; i++)
+        for (size_t r = 0; r < structs->n_rois; r++)
+            if (structs->rois[r].number == dose->stated[i].number) {
+                struct dose_stated stated = dose->stated[i];
+                memcpy(stated.region, structs->rois[r].name, sizeof stated.region);
+                dose->stated[n++] = stated;
+                break;
+            }
+    dose->n_stated = n;
+}
+
 static void add_group(struct loading *loading, struct rtdose *objects, size_t n, const struct plan_file_dose *entry,
                       const char *where)
 {
@@ -60,6 +86,7 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
         struct dose *dose = &plan->doses[plan->n_doses];
         *dose = doses[i];
         memcpy(dose->name, name, sizeof dose->name);
+        name_stated(loading, objects[0].structs_uid, dose);
         if (entry)
             plan_dose_frame(dose, entry, where, &plan->report);
         plan_make_id(dose->id, entry && entry->id[0] && i == 0 ? entry->id : name, where, others, plan->n_doses++);
@@ -90,6 +117,7 @@ void plan_dicom_add_doses(struct loading *loading, size_t index, const struct pl
             where = n == 0 ? reading->path : where;
             objects[n++] = reading->rtdose;
             reading->rtdose.values = NULL;
+            reading->rtdose.stated = NULL;
             is_taken[i] = true;
         }
         if (n > 0)

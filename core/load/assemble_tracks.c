@@ -3,25 +3,56 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "core/formats/sera_pp.h"
+#include "core/formats/track_csv.h"
 #include "core/load/part_format.h"
 
+_Static_assert((int)TRACK_MAX_FILES >= (int)PLAN_FILE_MAX_TRACKS, "each file of tracks of a plan is kept");
+_Static_assert((int)TRACK_FILE_NAME_SIZE == (int)FOLDER_NAME_SIZE, "the path of a file fits");
+
+/* The columns of a table say their unit. */
+static bool parse_table(struct plan *plan, const struct plan_file_tracks *entry, const struct bytes *bytes,
+                        double *unit_mm, struct error *err)
+{
+    *unit_mm = 1;
+    if (entry->mm > 0 && entry->mm != 1)
+        report_add(&plan->report, REPORT_WARNING, "tracks.unit-doubtful", entry->path,
+                   "The plan says the tracks are in cm, but the columns of the table are in mm; mm was taken.");
+    return track_csv_parse(bytes->data, bytes->size, entry->path, &plan->tracks, &plan->report, err);
+}
+
+static bool parse_pp(struct plan *plan, const struct plan_file_tracks *entry, const struct bytes *bytes,
+                     double *unit_mm, struct error *err)
+{
+    size_t first = plan->tracks.n_segments;
+    if (!pp_parse(bytes->data, bytes->size, entry->path, &plan->tracks, &plan->report, err))
+        return false;
+    *unit_mm = pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report);
+    if (!(*unit_mm > 0))
+        return error_set(err, ERROR_MEMORY, "%s: no memory to tell its unit", entry->path);
+    pp_scale(&plan->tracks, first, *unit_mm, entry->path, &plan->report);
+    return true;
+}
+
 static bool add_file(struct plan *plan, const struct folder *folder, const struct plan_file_tracks *entry,
-                     struct error *err)
+                     enum part_format format, struct error *err)
 {
     struct bytes bytes;
+    double unit_mm;
     size_t first = plan->tracks.n_segments;
-    if (!folder_read(folder, entry->path, PP_MAX_BYTES, UINT64_MAX, &bytes, err))
+    size_t most = format == PART_TRACK_CSV ? TRACK_CSV_MAX_BYTES : PP_MAX_BYTES;
+    if (!folder_read(folder, entry->path, most, UINT64_MAX, &bytes, err))
         return false;
-    bool is_read = pp_parse(bytes.data, bytes.size, entry->path, &plan->tracks, &plan->report, err);
+    bool is_read = (format == PART_TRACK_CSV ? parse_table : parse_pp)(plan, entry, &bytes, &unit_mm, err);
     bytes_free(&bytes);
     if (!is_read)
         return false;
-    double mm = pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report);
-    if (!(mm > 0))
-        return error_set(err, ERROR_MEMORY, "%s: no memory to tell its unit", entry->path);
-    pp_scale(&plan->tracks, first, mm, entry->path, &plan->report);
+    struct track_file *kept = &plan->tracks.files[plan->tracks.n_files++];
+    memcpy(kept->path, entry->path, sizeof kept->path);
+    kept->n_segments = plan->tracks.n_segments - first;
+    kept->unit_mm = unit_mm;
     return true;
 }
 
@@ -54,12 +85,12 @@ bool plan_add_tracks(struct plan *plan, const struct folder *folder, const struc
         enum part_format format = part_format_of(folder, path);
         if (format == PART_ABSENT)
             return error_set(err, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", path);
-        if (format != PART_PP) {
+        if (format != PART_PP && format != PART_TRACK_CSV) {
             report_add(&plan->report, REPORT_WARNING, "tracks.unsupported", path,
                        "Tracks of this kind are not read by this version; the plan is shown without them.");
             continue;
         }
-        if (!add_file(plan, folder, &file->tracks[i], err))
+        if (!add_file(plan, folder, &file->tracks[i], format, err))
             return false;
     }
     beam_from_tracks(plan);

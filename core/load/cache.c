@@ -331,8 +331,10 @@ static void release_parts(struct plan *plan)
         volume_unref(plan->images[i].volume);
     region_set_finish(&plan->regions);
     for (size_t d = 0; d < PLAN_MAX_DOSES; d++) {
-        for (size_t c = 0; c < DOSE_N_QUANTITIES; c++)
+        for (size_t c = 0; c < DOSE_N_QUANTITIES; c++) {
             volume_unref(plan->doses[d].components[c].values);
+            volume_unref(plan->doses[d].components[c].error);
+        }
         volume_unref(plan->doses[d].mask);
     }
     track_set_finish(&plan->tracks);

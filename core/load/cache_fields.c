@@ -251,11 +251,50 @@ static void fields_dose(struct fields *fields, struct dose *dose)
         fields_finite(fields, &component->boron_ppm);
         fields_volume(fields, &component->values, false);
         require(fields, component->values != NULL);
+        fields_volume(fields, &component->error, false);
     }
     fields_volume(fields, &dose->mask, true);
     for (int q = 0; q < DOSE_N_QUANTITIES; q++) {
         fields_finite(fields, &dose->reference[q]);
         fields_finite(fields, &dose->body_high[q]);
+    }
+    fields_size(fields, &dose->n_stated, DOSE_MAX_STATED);
+    for (size_t i = 0; i < dose->n_stated; i++) {
+        struct dose_stated *stated = &dose->stated[i];
+        uint64_t number = (uint64_t)stated->number;
+        fields_text(fields, stated->region, sizeof stated->region);
+        fields_u64(fields, &number);
+        if (fields->is_reading)
+            stated->number = (int64_t)number;
+        fields_number(fields, &stated->low);
+        fields_number(fields, &stated->mean);
+        fields_number(fields, &stated->high);
+        fields_number(fields, &stated->volume_cm3);
+    }
+}
+
+static void fields_outline(struct fields *fields, struct beam_outline *outline)
+{
+    size_t n_polygons = outline->n_polygons, before = 0;
+    FIELDS_ENUM(fields, outline->kind, enum beam_outline_kind, BEAM_OUTLINE_BLOCKS + 1);
+    fields_size(fields, &n_polygons, BEAM_OUTLINE_MAX_POLYGONS);
+    require(fields, (n_polygons == 0) == (outline->kind == BEAM_OUTLINE_NONE));
+    for (size_t i = 0; i < n_polygons; i++) {
+        size_t end = outline->ends[i];
+        fields_size(fields, &end, BEAM_OUTLINE_MAX_POINTS);
+        require(fields, end >= before + 3);
+        if (fields->is_bad)
+            return;
+        for (size_t point = before; point < end; point++)
+            for (int axis = 0; axis < 2; axis++) {
+                fields_bytes(fields, &outline->points_mm[point][axis], sizeof(float));
+                require(fields, isfinite(outline->points_mm[point][axis]));
+            }
+        before = end;
+        if (fields->is_reading) {
+            outline->ends[i] = (uint16_t)end;
+            outline->n_polygons = (uint16_t)(i + 1);
+        }
     }
 }
 
@@ -295,6 +334,7 @@ static void fields_delivery(struct fields *fields, struct beam_delivery *d)
     fields_size(fields, &d->n_control_points, UINT32_MAX);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         fields_number(fields, numbers[i]);
+    fields_outline(fields, &d->outline);
 }
 
 static void fields_beam(struct fields *fields, struct beam *beam)
@@ -311,7 +351,7 @@ static void fields_beam(struct fields *fields, struct beam *beam)
 
 static void fields_tracks(struct fields *fields, struct track_set *tracks)
 {
-    enum { SEGMENT_BYTES = 6 * sizeof(float) + 1 };
+    enum { SEGMENT_BYTES = 7 * sizeof(float) + 1 };
     fields_size(fields, &tracks->n_segments, TRACK_MAX_SEGMENTS);
     if (fields->is_reading && !fields->is_bad) {
         require(fields, tracks->n_segments <= (fields->size - fields->at) / SEGMENT_BYTES);
@@ -325,11 +365,24 @@ static void fields_tracks(struct fields *fields, struct track_set *tracks)
         fields_bytes(fields, segment->from_lps_mm, sizeof segment->from_lps_mm);
         fields_bytes(fields, segment->to_lps_mm, sizeof segment->to_lps_mm);
         FIELDS_ENUM(fields, segment->class, uint8_t, TRACK_N_CLASSES);
+        fields_bytes(fields, &segment->energy_mev, sizeof segment->energy_mev);
+        require(fields, isnan(segment->energy_mev) || (isfinite(segment->energy_mev) && segment->energy_mev >= 0));
         for (int axis = 0; axis < 3; axis++)
             require(fields, isfinite(segment->from_lps_mm[axis]) && isfinite(segment->to_lps_mm[axis]));
         if (fields->is_reading)
             tracks->n_of_class[segment->class]++;
     }
+    size_t n_left = tracks->n_segments;
+    fields_size(fields, &tracks->n_files, TRACK_MAX_FILES);
+    for (size_t i = 0; i < tracks->n_files; i++) {
+        struct track_file *file = &tracks->files[i];
+        fields_text(fields, file->path, sizeof file->path);
+        fields_size(fields, &file->n_segments, n_left);
+        n_left -= file->n_segments;
+        fields_finite(fields, &file->unit_mm);
+        require(fields, file->unit_mm > 0);
+    }
+    require(fields, n_left == 0);
 }
 
 /* The n points along an axis of a curve, strictly rising. */

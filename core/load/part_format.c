@@ -3,6 +3,7 @@
 
 #include "core/formats/dicom/dicom_index.h"
 #include "core/formats/text.h"
+#include "core/formats/track_csv.h"
 #include "core/load/nifti_parts.h"
 #include "core/load/part_names.h"
 
@@ -16,6 +17,18 @@ static bool is_dicom_file(const struct folder *folder, const char *name)
     bool is_read = folder_read_part(&part, name, 0, head, n, NULL);
     folder_close_part(&part);
     return !is_read || dicom_looks_like(head, n); /* the scan reports a file that the disk does not give */
+}
+
+static bool is_track_table(const struct folder *folder, const char *name)
+{
+    uint8_t head[1024];
+    struct folder_part part;
+    if (!text_has_ending(name, ".csv") || !folder_open_part(folder, name, &part, NULL))
+        return false;
+    size_t n = part.n_bytes < sizeof head ? (size_t)part.n_bytes : sizeof head;
+    bool is_read = folder_read_part(&part, name, 0, head, n, NULL);
+    folder_close_part(&part);
+    return is_read && track_csv_looks_like(head, n);
 }
 
 enum part_format part_format_of(const struct folder *folder, const char *name)
@@ -55,6 +68,8 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
             return endings[i].format;
     if (text_equal(part_base_name(name), "body_data.txt"))
         return PART_SERA_PREFERENCES;
+    if (is_track_table(folder, name))
+        return PART_TRACK_CSV;
     return is_dicom_file(folder, name) ? PART_DICOM : PART_UNKNOWN;
 }
 
@@ -71,6 +86,7 @@ const char *part_format_word(enum part_format format)
     case PART_UVH: return "SERA univels";
     case PART_QSH: return "SERA image";
     case PART_PP: return "SERA tracks";
+    case PART_TRACK_CSV: return "a table of tracks";
     case PART_DICOM: return "DICOM";
     case PART_NRRD: return "NRRD";
     case PART_SERA_RST: return "SERA dose";

@@ -1,5 +1,5 @@
 #pragma once
-/* The format of a file in a plan's folder, recognised by its name and, for DICOM, by its first bytes. */
+/* The format of a file in a plan's folder, recognised by its name and, for DICOM and tables, by its first bytes. */
 #include "core/formats/folder.h"
 
 enum part_format {
@@ -8,6 +8,7 @@ enum part_format {
     PART_UVH,
     PART_QSH, /* .qim with its .qhd */
     PART_PP,
+    PART_TRACK_CSV, /* .csv with the columns of tracks */
     PART_DICOM,
     PART_NRRD,
     PART_SERA_RST,         /* dose on a mesh */
@@ -18,7 +19,7 @@ enum part_format {
 };
 
 /* The format by the ending of the name. A folder counts as DICOM. A file without a known ending counts as DICOM when
- * its first bytes say so. */
+ * its first bytes say so, and a .csv as tracks when its header names their columns. */
 enum part_format part_format_of(const struct folder *folder, const char *name);
 bool part_is_sera_dose(enum part_format format);       /* a file that holds several quantities */
 const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... */

@@ -119,6 +119,10 @@ static bool list_dose(struct loading *loading, size_t i, struct error *err)
         else if (list_dicom(loading, PART_KIND_DOSE, DICOM_KIND_DOSE, i, c, path, most) == 0)
             return refuse_dicom(loading, path, "dose", err);
     }
+    for (size_t c = 0; is_readable && c < dose->n_components; c++)
+        if (dose->components[c].error[0])
+            list_part(loading, PART_KIND_DOSE_ERROR, i, c, dose->components[c].error,
+                      part_format_of(&loading->folder, dose->components[c].error));
     if (is_readable && dose->mask[0])
         list_part(loading, PART_KIND_DOSE_MASK, i, 0, dose->mask, part_format_of(&loading->folder, dose->mask));
     return true;
@@ -131,7 +135,7 @@ bool plan_list_parts(struct loading *loading, struct error *err)
     size_t n_objects = parts->dicom ? parts->dicom->n_objects : 0;
     /* upper bound: an entry that names a folder may stand for many files, and two entries may name the same files */
     size_t most = file->n_images + file->n_regions * (2 + n_objects) +
-                  file->n_doses * (DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) + PLAN_DICOM_MAX_DOSES +
+                  file->n_doses * (2 * DOSE_N_QUANTITIES + 1 + PLAN_DICOM_MAX_DOSES) + PLAN_DICOM_MAX_DOSES +
                   (file->n_beam_files + 1) * PLAN_DICOM_MAX_PLANS;
     bool is_made = true;
     loading->readings = mem_array(most + 1, sizeof *loading->readings, UINT32_MAX, err);

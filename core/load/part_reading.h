@@ -10,7 +10,14 @@
 #include "core/formats/sera_uvh.h"
 #include "core/load/part_format.h"
 
-enum part_kind { PART_KIND_IMAGE, PART_KIND_REGION, PART_KIND_DOSE, PART_KIND_DOSE_MASK, PART_KIND_BEAMS };
+enum part_kind {
+    PART_KIND_IMAGE,
+    PART_KIND_REGION,
+    PART_KIND_DOSE,
+    PART_KIND_DOSE_MASK,
+    PART_KIND_DOSE_ERROR,
+    PART_KIND_BEAMS
+};
 #define PART_WITHOUT_ENTRY SIZE_MAX
 
 /* Listed by part_list.c, filled by one thread in read_part.c, emptied by assemble*.c. Which of the results is filled

@@ -106,7 +106,7 @@ static bool read_region(const struct loading *loading, struct part_reading *read
 bool plan_read_part(struct loading *loading, struct part_reading *reading)
 {
     const struct folder *folder = &loading->folder;
-    if (reading->format == PART_DICOM && reading->kind != PART_KIND_DOSE_MASK)
+    if (reading->format == PART_DICOM && reading->kind != PART_KIND_DOSE_MASK && reading->kind != PART_KIND_DOSE_ERROR)
         return reading->kind == PART_KIND_IMAGE ? read_series(loading, reading) : read_rt_object(loading, reading);
     switch (reading->kind) {
     case PART_KIND_IMAGE:
@@ -121,6 +121,7 @@ bool plan_read_part(struct loading *loading, struct part_reading *reading)
         if (reading->format == PART_SERA_RST)
             return plan_read_rst(folder, reading->path, &reading->doses, &reading->report, &reading->err);
         return read_grid(folder, reading, RAW_IMAGE);
+    case PART_KIND_DOSE_ERROR: return read_grid(folder, reading, RAW_IMAGE);
     case PART_KIND_DOSE_MASK: return read_grid(folder, reading, RAW_MASK);
     case PART_KIND_REGION: return read_region(loading, reading);
     case PART_KIND_BEAMS: break;

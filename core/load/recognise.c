@@ -191,6 +191,7 @@ static void recognise_file(struct recognition *all, char *name)
         break;
     case PART_QSH: add_qsh(all, name); break;
     case PART_PP:
+    case PART_TRACK_CSV:
         if (file->n_tracks < PLAN_FILE_MAX_TRACKS)
             set_name(file->tracks[file->n_tracks++].path, FOLDER_NAME_SIZE, name);
         else

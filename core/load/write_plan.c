@@ -21,7 +21,7 @@
 static const char *const folders[] = { "images", "regions", "doses", "curves" };
 enum {
     N_FOLDERS = sizeof folders / sizeof folders[0],
-    MAX_FILES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (DOSE_N_QUANTITIES + 1)
+    MAX_FILES = PLAN_MAX_IMAGES + REGION_MAX_LAYERS + PLAN_MAX_DOSES * (2 * DOSE_N_QUANTITIES + 1)
 };
 
 /* One file of voxels to write; written by one thread. */
@@ -161,6 +161,11 @@ static void list_doses(struct plan_writing *writing)
             snprintf(component->path, sizeof component->path, "doses/%s_%s.nii.gz", dose->id,
                      dose_quantity_word(component->quantity));
             add_output(writing, dose->components[c].values, component->path);
+            if (dose->components[c].error) {
+                snprintf(component->error, sizeof component->error, "doses/%s_%s-error.nii.gz", dose->id,
+                         dose_quantity_word(component->quantity));
+                add_output(writing, dose->components[c].error, component->error);
+            }
         }
         if (dose->mask) {
             snprintf(entry->mask, sizeof entry->mask, "doses/%s_valid.nii.gz", dose->id);

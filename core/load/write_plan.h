@@ -3,10 +3,10 @@
 #include "core/plan/plan.h"
 
 /* Writes images/, regions/ (a label map for each layer, so that overlapping regions stay whole), doses/, curves/,
- * tracks.pp, preferences.rsc, colors.cmap and plan.json. The folder appears whole or not at all: it is built beside its
- * place and renamed. The report of opening the plan is not written. Opened again, the plan has the same values,
- * matrices to 1e-7 mm, regions, ids, colours, doses, beams, tracks, curves and preferences. A voxel of a label layer
- * that belongs to no region (SERA's filling around the patient) is written as 0.
+ * tracks.pp or, when there are energies, tracks.csv, preferences.rsc, colors.cmap and plan.json. The folder appears
+ * whole or not at all: it is built beside its place and renamed. The report of opening the plan is not written. Opened
+ * again, the plan has the same values, matrices to 1e-7 mm, regions, ids, colours, doses, beams, tracks, curves and
+ * preferences. A voxel of a label layer that belongs to no region (SERA's filling around the patient) is written as 0.
  *
  *   folder  a new name in an existing folder, or an empty folder
  *   lost    gets a line for each label layer with voxels that are written as 0; NULL: not wanted

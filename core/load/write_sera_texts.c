@@ -1,4 +1,4 @@
-/* Writes tracks, reference curves and preferences of a plan in SERA's formats. */
+/* Writes tracks, reference curves and preferences of a plan in SERA's formats; tracks with energies as a table. */
 #include "core/load/write_sera_texts.h"
 
 #include <limits.h>
@@ -40,28 +40,55 @@ static bool text_file_close(struct text_file *text_file, const char *folder, con
     return is_written;
 }
 
-/* Writes SERA's columns, in its axes (RL, PA, IS) = (L, -P, S). Nine digits keep every float exactly. */
-static bool write_tracks(const struct track_set *tracks, const char *folder, struct plan_file *file, struct error *err)
+/* SERA's columns, in its axes (RL, PA, IS) = (L, -P, S). */
+static void print_pp(struct text_file *text_file, const struct track_set *tracks)
 {
     static const int codes[TRACK_N_CLASSES][2] = {
         [TRACK_NEUTRON_HIGH] = { 0, 1 }, [TRACK_NEUTRON_MEDIUM] = { 0, 2 }, [TRACK_NEUTRON_LOW] = { 0, 3 },
         [TRACK_GAMMA_HIGH] = { 1, 1 },   [TRACK_GAMMA_MEDIUM] = { 1, 2 },   [TRACK_GAMMA_LOW] = { 1, 3 },
         [TRACK_LOST] = { 3, 0 },         [TRACK_BEAM_LINE] = { 2, 0 }
     };
+    for (size_t i = 0; text_file->out && i < tracks->n_segments; i++) {
+        const struct track_segment *segment = &tracks->segments[i];
+        const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
+        print(text_file, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2],
+              (double)b[0], -(double)b[1], (double)b[2], codes[segment->class][0], codes[segment->class][1]);
+    }
+}
+
+/* The table of core/formats/track_csv.h. */
+static void print_table(struct text_file *text_file, const struct track_set *tracks)
+{
+    if (text_file->out)
+        print(text_file, "x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,class,energy_mev\n");
+    for (size_t i = 0; text_file->out && i < tracks->n_segments; i++) {
+        const struct track_segment *segment = &tracks->segments[i];
+        const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
+        print(text_file, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%s,", (double)a[0], (double)a[1], (double)a[2], (double)b[0],
+              (double)b[1], (double)b[2], track_class_word((enum track_class)segment->class));
+        if (isnan(segment->energy_mev))
+            print(text_file, "\n");
+        else
+            print(text_file, "%.9g\n", (double)segment->energy_mev);
+    }
+}
+
+/* Writes SERA's file, or a table when there are energies, which SERA's does not hold. Nine digits keep every float
+ * exactly. */
+static bool write_tracks(const struct track_set *tracks, const char *folder, struct plan_file *file, struct error *err)
+{
     if (tracks->n_segments == 0)
         return true;
+    bool has_energies = false;
+    for (size_t i = 0; i < tracks->n_segments; i++)
+        has_energies = has_energies || !isnan(tracks->segments[i].energy_mev);
     struct plan_file_tracks *entry = &file->tracks[0];
-    snprintf(entry->path, sizeof entry->path, "tracks.pp");
+    snprintf(entry->path, sizeof entry->path, has_energies ? "tracks.csv" : "tracks.pp");
     entry->mm = 1;
     file->n_tracks = 1;
     struct text_file text_file = { 0 };
     text_file.out = open_memstream(&text_file.text, &text_file.n_bytes);
-    for (size_t i = 0; text_file.out && i < tracks->n_segments; i++) {
-        const struct track_segment *segment = &tracks->segments[i];
-        const float *a = segment->from_lps_mm, *b = segment->to_lps_mm;
-        print(&text_file, "%.9g %.9g %.9g %.9g %.9g %.9g %d %d\n", (double)a[0], -(double)a[1], (double)a[2],
-              (double)b[0], -(double)b[1], (double)b[2], codes[segment->class][0], codes[segment->class][1]);
-    }
+    (has_energies ? print_table : print_pp)(&text_file, tracks);
     return text_file_close(&text_file, folder, entry->path, err);
 }
 

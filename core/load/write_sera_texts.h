@@ -1,5 +1,5 @@
 #pragma once
-/* Writes tracks, reference curves and preferences of a plan in SERA's text formats. */
+/* Writes tracks, reference curves and preferences of a plan in SERA's text formats; tracks with energies as a table. */
 #include "core/formats/plan_file.h"
 #include "core/plan/plan.h"
 

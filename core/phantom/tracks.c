@@ -45,9 +45,9 @@ static bool add_segment(struct walk *walk, struct vec3 from, struct vec3 to, enu
 {
     if (walk->n_segments >= walk->n_limit)
         return false;
-    walk->segments[walk->n_segments++] = (struct track_segment){ { (float)from.x, (float)from.y, (float)from.z },
-                                                                 { (float)to.x, (float)to.y, (float)to.z },
-                                                                 (uint8_t) class };
+    walk->segments[walk->n_segments++] = (struct track_segment){
+        { (float)from.x, (float)from.y, (float)from.z }, { (float)to.x, (float)to.y, (float)to.z }, (uint8_t) class, NAN
+    };
     return true;
 }
 

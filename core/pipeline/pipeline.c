@@ -538,7 +538,9 @@ bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *r
 {
     struct picture *picture = mem_new(sizeof *picture);
     picture->request = *request;
-    picture->turn = (struct turns_item){ .source = request->source, .is_still = request->render.is_still };
+    picture->turn = (struct turns_item){ .source = request->source,
+                                         .is_still = request->render.is_still,
+                                         .is_acted = request->is_acted };
     if (atomic_fetch_add(&pipeline->n_waiting, 1) < PIPELINE_MAX_WAITING &&
         send(pipeline, &(struct message){ .kind = MESSAGE_REQUEST, .picture = picture })) {
         if (calls_for(pipeline, request))

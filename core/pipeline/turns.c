@@ -65,12 +65,15 @@ static struct source *find_source(struct turns *turns, uint64_t id)
 /* True if the newer of two requests of one source goes first. */
 static bool goes_before(const struct turns_item *item, const struct turns_item *older)
 {
-    return older->is_still && !item->is_still && older->n_overtaken < TURNS_MAX_OVERTAKING;
+    if (item->is_still)
+        return false;
+    return older->is_still ? older->n_overtaken < TURNS_MAX_OVERTAKING
+                           : item->is_acted && !older->is_acted && older->n_overtaken < TURNS_MAX_ACTED_OVERTAKING;
 }
 
 bool turns_may_interrupt(const struct turns_item *drawn, const struct turns_item *newcomer)
 {
-    return newcomer->source != drawn->source || goes_before(newcomer, drawn);
+    return newcomer->source != drawn->source || (drawn->is_still && goes_before(newcomer, drawn));
 }
 
 static void activate(struct turns *turns, struct turns_item *const *items, size_t n)
@@ -104,6 +107,19 @@ static int64_t key_of(const struct source *source, struct turns_item *const *ite
     return source->used_us - (items[source->item]->is_still ? 0 : TURNS_MOVING_AHEAD_US);
 }
 
+/* items[at] goes before older requests of its source: counts it for all stills, and of the moving pictures of other
+ * views for the oldest, which is the next of them. */
+static void count_overtaken(struct turns_item *const *items, size_t at)
+{
+    bool is_next = items[at]->is_acted;
+    for (size_t i = 0; i < at; i++) {
+        if (items[i]->source != items[at]->source || (!items[i]->is_still && (!is_next || items[i]->is_acted)))
+            continue;
+        items[i]->n_overtaken++;
+        is_next = is_next && items[i]->is_still;
+    }
+}
+
 size_t turns_choose(struct turns *turns, struct turns_item *const *items, size_t n)
 {
     const struct source *best = NULL;
@@ -125,8 +141,8 @@ size_t turns_choose(struct turns *turns, struct turns_item *const *items, size_t
     if (!best)
         return SIZE_MAX;
     struct turns_item *chosen = items[best->item];
-    for (size_t i = 0; i < best->item && !chosen->is_begun && !chosen->is_still; i++)
-        items[i]->n_overtaken += items[i]->source == chosen->source && items[i]->is_still;
+    if (!chosen->is_begun && !chosen->is_still)
+        count_overtaken(items, best->item);
     chosen->is_begun = true;
     return best->item;
 }

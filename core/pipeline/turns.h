@@ -5,21 +5,29 @@
  * A source is a set of requests that are counted together: a member's own views, a room's shared views, all scripts.
  * The source that has used the least time is next. A source whose next picture is a moving one is preferred as if it
  * had used TURNS_MOVING_AHEAD_US less. A source without requests saves at most TURNS_CREDIT_US for later. Within a
- * source, moving pictures go before stills, but at most TURNS_MAX_OVERTAKING of them before the same still; otherwise
- * the oldest request is next. */
+ * source, moving pictures go before stills, but at most TURNS_MAX_OVERTAKING of them before the same still; among
+ * moving pictures those of the view in which a person acts go first, but after TURNS_MAX_ACTED_OVERTAKING of them comes
+ * the oldest other one; otherwise the oldest request is next. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-enum { TURNS_MAX_OVERTAKING = 8, TURNS_CREDIT_US = 100000, TURNS_MOVING_AHEAD_US = 100000 };
+enum {
+    TURNS_MAX_OVERTAKING = 8,
+    TURNS_MAX_ACTED_OVERTAKING = 2,
+    TURNS_CREDIT_US = 100000,
+    TURNS_MOVING_AHEAD_US = 100000
+};
 
 /* A request that waits, or whose picture is paused. */
 struct turns_item {
     uint64_t source;
     bool is_still;
+    bool is_acted;   /* of the view in which a person acts; counts for moving pictures alone */
     bool is_held;    /* must not be chosen now */
     bool is_begun;   /* was chosen before */
-    int n_overtaken; /* of a still: later moving pictures of its source that were begun before it */
+    int n_overtaken; /* later pictures of its source that were begun before it as they go first; of a moving one only
+                        while it is the oldest */
 };
 
 struct turns;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/draw_isodoses.h"
 
 /* The set starts empty again beyond this size: a plan has as many shapes as regions times representations times their
  * settings. */
@@ -16,6 +17,7 @@ struct waiting_request *waiting_request_create(const struct pipeline_request *re
     waiting->wants = mem_new((2 * request->snapshot->plan->regions.n_regions + 1) * sizeof *waiting->wants);
     waiting->n_wants =
         visible_wants(request->snapshot, request->render.detail, request->render.is_still, waiting->wants);
+    waiting->has_isodoses = draw_isodoses_are_wanted(request->snapshot);
     return waiting;
 }
 
@@ -48,6 +50,7 @@ void waiting_request_build_shapes(struct waiting_request *waiting, const atomic_
 {
     struct building building = { waiting, cancel, false };
     derive_build_shapes(waiting->request.snapshot->derived, waiting->wants, waiting->n_wants, go_on, &building);
+    draw_isodoses_build(waiting->request.snapshot, waiting->request.render.detail, go_on, &building);
     waiting->is_built = !building.has_stopped;
 }
 
@@ -96,6 +99,8 @@ static bool has(const struct built_shapes *built, const struct shape_want *want)
 
 bool built_shapes_has_all(const struct built_shapes *built, const struct waiting_request *waiting)
 {
+    if (waiting->has_isodoses)
+        return false;
     for (size_t i = 0; i < waiting->n_wants; i++)
         if (!has(built, &waiting->wants[i]))
             return false;

@@ -13,6 +13,7 @@ struct waiting_request {
     bool is_built;                   /* every shape was built, or tried */
     struct shape_want *wants;        /* [n_wants], owned: the shapes that the picture needs */
     size_t n_wants;
+    bool has_isodoses; /* the picture also needs isodose surfaces, or that of a coverage */
 };
 /* Takes request->snapshot and request->annotation. */
 struct waiting_request *waiting_request_create(const struct pipeline_request *request);
@@ -26,6 +27,7 @@ void waiting_request_build_shapes(struct waiting_request *waiting, const atomic_
 struct built_shapes;
 struct built_shapes *built_shapes_create(void);
 void built_shapes_destroy(struct built_shapes *built);
-/* True if the set has every shape that the request needs. */
+/* True if the set has every shape that the request needs. Isodoses change with each level and weight: a request that
+ * shows some always passes by the building thread, which finds in the store those that are there. */
 bool built_shapes_has_all(const struct built_shapes *built, const struct waiting_request *waiting);
 void built_shapes_add(struct built_shapes *built, const struct waiting_request *waiting);

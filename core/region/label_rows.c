@@ -45,6 +45,11 @@ static inline uint64_t load_word(const void *at)
 DEFINE_ROWS(uint8_t)
 DEFINE_ROWS(uint16_t)
 
+uint32_t label_row_end(enum voxel_type type, const void *row, uint32_t i, uint32_t n)
+{
+    return type == VOXEL_U8 ? run_end_uint8_t(row, i, n) : run_end_uint16_t(row, i, n);
+}
+
 #define RUNS(type) \
     do { \
         const type *row = layer->voxels; \

@@ -3,6 +3,9 @@
  * region. Any thread. */
 #include "core/volume/volume.h"
 
+/* End of the run of equal labels that begins at index i of a row of n labels; type is VOXEL_U8 or VOXEL_U16. */
+uint32_t label_row_end(enum voxel_type type, const void *row, uint32_t i, uint32_t n);
+
 /* Calls run for each run of equal labels other than 0. Rows come in ascending j, then k. layer is U8 or U16. */
 void label_rows_runs(const struct volume *layer,
                      void (*run)(void *context, uint16_t label, uint32_t i, uint32_t j, uint32_t k, uint32_t length),

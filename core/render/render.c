@@ -14,6 +14,7 @@
 #include "core/render/soft/soft.h"
 #include "core/render/visible/cap_cache.h"
 #include "core/render/visible/draw_list.h"
+#include "core/render/visible/isoline_cache.h"
 #include "core/render/visible/occlusion.h"
 #include "core/render/visible/overlay.h"
 
@@ -24,6 +25,7 @@ struct renderer {
     struct soft_renderer *soft;
     struct draw_cache *cache; /* what the back end made of shapes and grids */
     struct cap_cache *caps;
+    struct isoline_cache *isolines;
     struct overlay *overlay;
 };
 
@@ -109,6 +111,7 @@ struct renderer *renderer_create(enum render_back_end back_end, struct error *er
     struct drawable_maker maker = renderer->gl ? gl_renderer_maker(renderer->gl) : soft_renderer_maker();
     renderer->cache = draw_cache_create(&maker);
     renderer->caps = cap_cache_create();
+    renderer->isolines = isoline_cache_create();
     renderer->overlay = overlay_create();
     return renderer;
 }
@@ -122,6 +125,7 @@ void renderer_destroy(struct renderer *renderer)
     gl_renderer_destroy(renderer->gl);
     soft_renderer_destroy(renderer->soft);
     cap_cache_destroy(renderer->caps);
+    isoline_cache_destroy(renderer->isolines);
     overlay_destroy(renderer->overlay);
     free(renderer);
 }
@@ -142,6 +146,7 @@ void renderer_forget(struct renderer *renderer, const struct plan *plan)
 {
     assert_thread(renderer);
     cap_cache_forget(renderer->caps, plan);
+    isoline_cache_forget(renderer->isolines, plan);
     overlay_forget(renderer->overlay, plan);
     draw_cache_forget(renderer->cache, plan);
     if (renderer->soft)
@@ -170,8 +175,9 @@ struct render_picture *render_begin(struct renderer *renderer, const struct snap
     struct render_picture *picture = mem_new(sizeof *picture);
     picture->renderer = renderer;
     picture->options = *options;
-    picture->scope = (struct draw_scope){ snapshot,        &picture->camera,  options->detail,
-                                          renderer->cache, options->is_still, renderer->caps };
+    picture->scope =
+        (struct draw_scope){ snapshot,          &picture->camera, options->detail,    renderer->cache,
+                             options->is_still, renderer->caps,   renderer->isolines, renderer->soft != NULL };
     camera_resolve(snapshot, &picture->camera);
     return picture;
 }

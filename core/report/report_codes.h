@@ -165,6 +165,8 @@
       "Check that the dose lies where it belongs.") \
     X("dose.offsets-uneven", "The frames of a dose are not evenly spaced.", "It was interpolated onto even planes.") \
     X("dose.single-plane", "A dose is a single plane.", "Nothing; it is as thick as the line says.") \
+    X("dose.histograms-left-out", "Stored histograms of a dose are not read.", \
+      "Histograms are computed from the dose; only the file's own figures to compare with are missing.") \
     X("dose.all-zero", "A dose is 0 everywhere.", "It is not listed; export it again if it should not be.") \
     X("dose.components", "Several objects are the components of one dose, by their descriptions.", \
       "Check the assignment.") \

@@ -65,7 +65,7 @@ static struct box3 home_box(const struct plan *plan)
 static double pane_height_mm(const struct box3 *box, enum scene_kind kind, const struct plane *plane)
 {
     struct vec3 size = vec3_sub(box->high, box->low);
-    if (kind == SCENE_KIND_OBLIQUE)
+    if (kind == SCENE_KIND_OBLIQUE || kind == SCENE_KIND_BEAM_SLICE)
         return fmax(home_margin * fmax(fmax(size.x, size.y), size.z), 0.1);
     return fmax(home_margin * fmax(box_extent(size, plane->right), box_extent(size, plane->up)), 0.1);
 }
@@ -77,33 +77,42 @@ static struct vec3 home_direction(void)
     return vec3(cos(rise) * sin(turn), -cos(rise) * cos(turn), sin(rise));
 }
 
-/* Distance of the eye from the box's centre, along home_direction, at which every corner lies within the opening angle.
- */
-static double home_distance_mm(const struct box3 *box, double fov_deg)
+/* Distance of the eye from a point, towards back, at which every corner of the box lies within the opening angle.
+ * right, up, back: orthonormal. */
+static double distance_to_see_mm(const struct box3 *box, struct vec3 point, struct vec3 right, struct vec3 up,
+                                 struct vec3 back, double fov_deg)
 {
     double slope = tan(fov_deg / 2 * MATH_PI / 180) / home_margin, distance = 0;
-    struct vec3 corners[8], centre = box_centre(box), back = home_direction();
-    struct vec3 right = vec3_normalize(vec3_cross(vec3(0, 0, 1), back)), up = vec3_cross(back, right);
+    struct vec3 corners[8];
     box_corners(box, corners);
     for (int i = 0; i < 8; i++) {
-        struct vec3 d = vec3_sub(corners[i], centre);
+        struct vec3 d = vec3_sub(corners[i], point);
         double across = fmax(fabs(vec3_dot(d, right)), fabs(vec3_dot(d, up)));
         distance = fmax(distance, across / slope + vec3_dot(d, back));
     }
     return fmax(distance, 1);
 }
 
+/* Of the eye of the 3-D home camera from the box's centre, along home_direction. */
+static double home_distance_mm(const struct box3 *box, double fov_deg)
+{
+    struct vec3 back = home_direction();
+    struct vec3 right = vec3_normalize(vec3_cross(vec3(0, 0, 1), back)), up = vec3_cross(back, right);
+    return distance_to_see_mm(box, box_centre(box), right, up, back, fov_deg);
+}
+
 void camera_home(const struct plan *plan, enum scene_kind kind, struct scene_camera *camera)
 {
     double fov_deg = scene_camera_default.fov_deg;
-    struct box3 box = kind == SCENE_KIND_3D ? home_box(plan) : pane_box(plan);
+    bool is_pane = camera_is_of_pane(kind);
+    struct box3 box = is_pane ? pane_box(plan) : home_box(plan);
     struct plane plane = plane_of_kind(kind, 0);
 
     *camera = scene_camera_default;
     camera->has_position_mm = camera->has_target_mm = camera->has_up = true;
     camera->target_mm = box_centre(&box);
     camera->up = plane.up;
-    if (kind == SCENE_KIND_3D) {
+    if (!is_pane) {
         camera->position_mm =
             vec3_add(camera->target_mm, vec3_scale(home_direction(), home_distance_mm(&box, fov_deg)));
     } else {
@@ -154,10 +163,34 @@ static double resolve_space(const struct plan *plan, const struct view *view, st
     return given->has_height_mm && camera->is_parallel ? given->height_mm : fmax(at_target, 1e-3);
 }
 
-/* Near and far enclose the regions and all images tightly, so that 24 bits of depth are enough. */
-static void resolve_depth(const struct plan *plan, struct camera *camera)
+static double resolve_beam(const struct plan *plan, const struct view *view, const struct beam_shown *beam,
+                           struct camera *camera)
+{
+    const struct scene_camera *given = &view->camera;
+    struct box3 box = home_box(plan);
+    struct plane plane = beam_plane(beam, beam->length_mm);
+    camera->right = plane.right;
+    camera->up = plane.up;
+    camera->forward = beam->direction;
+    camera->target_lps_mm = beam->target_lps_mm;
+    camera->is_parallel = view->beam.has_aperture_mm || given->projection == SCENE_PROJECTION_PARALLEL;
+    double home_mm = distance_to_see_mm(&box, beam->target_lps_mm, plane.right, plane.up, plane.normal, given->fov_deg);
+    camera->eye_lps_mm = beam_point(beam, view->beam.has_along_mm ? view->beam.along_mm : beam->length_mm - home_mm);
+    double at_target = 2 * home_mm * tan(given->fov_deg / 2 * MATH_PI / 180);
+    return given->has_height_mm && camera->is_parallel ? given->height_mm : fmax(at_target, 1e-3);
+}
+
+/* How far behind the eye of a parallel beam's-eye view things still are in the picture: a slice at the eye is, however
+ * its place is rounded, in 32 bits too. */
+static const double at_eye_mm = 0.02;
+
+/* Near and far enclose the regions, all images and what is drawn beyond them tightly, so that 24 bits of depth are
+ * enough. */
+static void resolve_depth(const struct plan *plan, const struct box3 *beyond, bool is_cut_at_eye, struct camera *camera)
 {
     struct box3 box = plan_box(plan);
+    if (beyond && !box3_is_empty(beyond))
+        box = box_union(box, beyond);
     struct vec3 corners[8];
     for (size_t i = 0; i < plan->n_images; i++) {
         struct box3 image = grid_bounds_lps_mm(&plan->images[i].volume->grid);
@@ -173,6 +206,10 @@ static void resolve_depth(const struct plan *plan, struct camera *camera)
     double slack = fmax(1, 0.01 * (far_mm - near_mm));
     near_mm -= slack;
     far_mm += slack;
+    if (camera->is_parallel && is_cut_at_eye) {
+        near_mm = fmax(near_mm, -at_eye_mm);
+        far_mm = fmax(far_mm, near_mm + 10);
+    }
     if (!camera->is_parallel) {
         far_mm = fmax(far_mm, 10);
         near_mm = fmax(near_mm, far_mm / 2000); /* the eye is inside or just before the plan: at 2000 : 1 the depth
@@ -207,13 +244,22 @@ static struct mat4 projection_matrix(const struct camera *camera, double half_wi
     return m;
 }
 
-void camera_of_view(const struct plan *plan, const struct view *view, const struct plane *pane, struct camera *camera)
+void camera_of_view(const struct plan *plan, const struct view *view, const struct plane *pane,
+                    const struct beam_shown *beam, struct camera *camera)
 {
+    camera_of_view_beyond(plan, view, pane, beam, NULL, camera);
+}
+
+void camera_of_view_beyond(const struct plan *plan, const struct view *view, const struct plane *pane,
+                           const struct beam_shown *beam, const struct box3 *beyond, struct camera *camera)
+{
+    bool is_beam = view->kind == SCENE_KIND_BEAM && beam;
     double width = view->size_px[0], height = view->size_px[1], smaller = fmin(width, height);
     *camera = (struct camera){ 0 };
-    double across_mm =
-        view->kind != SCENE_KIND_3D ? resolve_pane(plan, view, pane, camera) : resolve_space(plan, view, camera);
-    resolve_depth(plan, camera);
+    double across_mm = camera_is_of_pane(view->kind) ? resolve_pane(plan, view, pane, camera)
+                       : is_beam                     ? resolve_beam(plan, view, beam, camera)
+                                                     : resolve_space(plan, view, camera);
+    resolve_depth(plan, beyond, is_beam && view->beam.has_along_mm, camera);
 
     double half = camera->is_parallel ? across_mm / 2 : tan(view->camera.fov_deg / 2 * MATH_PI / 180);
     camera->pixels_per_mm = camera->is_parallel ? smaller / across_mm : 0;
@@ -228,7 +274,7 @@ void camera_of_view(const struct plan *plan, const struct view *view, const stru
 static bool check_fields(const struct view *view, char field[128], struct error *err)
 {
     const struct scene_camera *camera = &view->camera;
-    if (view->kind != SCENE_KIND_3D)
+    if (camera_is_of_pane(view->kind))
         return true;
     struct vec3 up = camera->has_up ? camera->up : vec3(0, 0, 1);
     if (camera->has_up && !(vec3_length(up) > 1e-9)) {
@@ -249,14 +295,14 @@ static bool check_fields(const struct view *view, char field[128], struct error 
     return true;
 }
 
-bool camera_check(const struct plan *plan, const struct view *view, const struct plane *pane, char field[128],
-                  struct error *err)
+bool camera_check(const struct plan *plan, const struct view *view, const struct plane *pane,
+                  const struct beam_shown *beam, char field[128], struct error *err)
 {
     struct camera camera;
     if (!check_fields(view, field, err))
         return false;
     /* without a target the camera looks at the plan's centre, so its position must not be there */
-    camera_of_view(plan, view, pane, &camera);
+    camera_of_view(plan, view, pane, beam, &camera);
     if (vec3_length(camera.forward) > 0.5)
         return true;
     snprintf(field, 128, "/camera/position_mm");

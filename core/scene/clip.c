@@ -2,7 +2,8 @@
 #include "core/scene/clip.h"
 
 #include <math.h>
-#include <string.h>
+
+#include "core/scene/beam_shown.h"
 
 /* The plane with its normal towards what is cut off. */
 static struct plane facing(struct plane plane, struct vec3 cut_off)
@@ -12,22 +13,13 @@ static struct plane facing(struct plane plane, struct vec3 cut_off)
     return plane;
 }
 
-static const struct beam *find_beam(const struct plan *plan, const char *id)
+static bool across_beam(const struct plan *plan, const struct scene *scene, struct plane *plane)
 {
-    for (size_t i = 0; i < plan->n_beams; i++)
-        if (id[0] == 0 || strcmp(plan->beams[i].id, id) == 0)
-            return &plan->beams[i];
-    return NULL;
-}
-
-static bool beam_plane(const struct plan *plan, const struct scene_clip_beam *clip, struct plane *plane)
-{
-    const struct beam *beam = find_beam(plan, clip->id);
-    if (!beam)
+    struct beam_shown beam;
+    if (!beam_shown_of(plan, scene, scene->clip.beam.id, &beam))
         return false;
-    struct vec3 along = vec3_normalize(vec3_sub(beam->target_lps_mm, beam->entry_lps_mm));
-    *plane = facing(plane_of_normal(vec3_add(beam->entry_lps_mm, vec3_scale(along, clip->along_mm)), along),
-                    vec3_scale(along, -1));
+    *plane = facing(plane_of_normal(beam_point(&beam, scene->clip.beam.along_mm), beam.direction),
+                    vec3_scale(beam.direction, -1));
     return true;
 }
 
@@ -54,7 +46,7 @@ size_t clip_planes(const struct plan *plan, const struct scene *scene, struct cl
                                            axes[i].axis->cap };
     }
     struct plane plane;
-    if (clip->beam.enabled && beam_plane(plan, &clip->beam, &plane))
+    if (clip->beam.enabled && across_beam(plan, scene, &plane))
         planes[n++] = (struct clip_plane){ CLIP_BEAM, plane, clip->beam.cap };
     if (clip->free.enabled)
         planes[n++] =

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "core/scene/camera.h"
+#include "core/scene/pick_beams.h"
+#include "core/scene/pick_isodoses.h"
 #include "core/scene/pick_volume.h"
 
 /* p(t) = origin + t direction, direction of unit length, t in millimetres >= 0 */
@@ -35,14 +37,19 @@ static bool is_shown(const struct snapshot *snapshot, size_t region)
 /* The part of a pixel that lines and points cover, roughly. */
 #define SPARSE_COVER 0.1
 
+static double surface_alpha(const struct snapshot *snapshot, double opacity)
+{
+    bool is_rim = opacity < 1 && snapshot->scene.surface.translucency == SCENE_TRANSLUCENCY_RIM;
+    return is_rim ? opacity * RIM_PLAIN_PART : opacity;
+}
+
 static double region_alpha(const struct snapshot *snapshot, size_t region)
 {
     const struct scene_region_style *style = &snapshot->styles[region];
     if (style->representation == SCENE_REPRESENTATION_OUTLINE || style->representation == SCENE_REPRESENTATION_POINTS)
         return style->opacity * SPARSE_COVER;
-    bool is_rim = style->opacity < 1 && style->representation != SCENE_REPRESENTATION_SOLID &&
-                  snapshot->scene.surface.translucency == SCENE_TRANSLUCENCY_RIM;
-    return is_rim ? style->opacity * RIM_PLAIN_PART : style->opacity;
+    return style->representation == SCENE_REPRESENTATION_SOLID ? style->opacity
+                                                               : surface_alpha(snapshot, style->opacity);
 }
 
 /* Inserts by distance, after hits of equal distance. Drops the farthest beyond PICK_MAX_HITS. Returns the new count. */
@@ -371,6 +378,10 @@ static size_t pick_pane(const struct snapshot *snapshot, const struct camera *ca
         if (holds[i] && region_depth(set, i) > deepest)
             deepest = region_depth(set, i);
     size_t n = 0;
+    struct pick_beam_hit beams[BEAMS_DRAWN_MAX];
+    size_t n_beams = pick_beams(snapshot, camera, px, py, beams);
+    for (size_t i = 0; i < n_beams && n < PICK_MAX_HITS; i++)
+        hits[n++] = (struct pick_hit){ point, beams[i].subject, 0, 1, false };
     for (int depth = deepest; depth >= 0; depth--)
         for (size_t i = 0; i < set->n_regions && n < PICK_MAX_HITS; i++)
             if (holds[i] && is_shown(snapshot, i) && region_depth(set, i) == depth)
@@ -393,6 +404,19 @@ size_t snapshot_pick(const struct snapshot *snapshot, double px, double py, stru
     if (snapshot->n_clips > 0)
         n = pick_regions(snapshot, &ray, true, hits, n);
     n = pick_slices(snapshot, &ray, hits, n);
+    struct pick_isodose_hit isodoses[ISODOSES_MAX];
+    size_t n_isodoses = pick_isodoses(snapshot, ray.origin_lps_mm, ray.direction, isodoses);
+    for (size_t i = 0; i < n_isodoses; i++)
+        n = add_hit(hits, n,
+                    (struct pick_hit){ ray_point(&ray, isodoses[i].t_mm), isodoses[i].subject, isodoses[i].t_mm,
+                                       surface_alpha(snapshot, isodoses[i].opacity), false });
+    struct pick_beam_hit beams[BEAMS_DRAWN_MAX];
+    size_t n_beams = pick_beams(snapshot, &camera, px, py, beams);
+    for (size_t i = 0; i < n_beams; i++)
+        n = add_hit(hits, n,
+                    (struct pick_hit){ beams[i].point_lps_mm, beams[i].subject,
+                                       vec3_dot(vec3_sub(beams[i].point_lps_mm, ray.origin_lps_mm), ray.direction), 1,
+                                       false });
     struct pick_volume_hit volume;
     if (pick_volume(snapshot, ray.origin_lps_mm, ray.direction, &volume))
         n = add_hit(hits, n,

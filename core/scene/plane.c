@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "core/scene/beam_shown.h"
+
 struct plane plane_of_kind(enum scene_kind kind, double position_mm)
 {
     double p = position_mm;
@@ -11,6 +13,8 @@ struct plane plane_of_kind(enum scene_kind kind, double position_mm)
     case SCENE_KIND_SAGITTAL: return (struct plane){ vec3(p, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(1, 0, 0) };
     case SCENE_KIND_CORONAL:
     case SCENE_KIND_OBLIQUE:
+    case SCENE_KIND_BEAM:
+    case SCENE_KIND_BEAM_SLICE:
     case SCENE_KIND_3D: break;
     }
     return (struct plane){ vec3(0, p, 0), vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0) };
@@ -42,9 +46,10 @@ struct plane plane_of_normal(struct vec3 origin_lps_mm, struct vec3 normal)
     return (struct plane){ origin_lps_mm, right, up, normal };
 }
 
-struct plane plane_of_view(const struct scene *scene, const struct view *view)
+struct plane plane_of_view(const struct plan *plan, const struct scene *scene, const struct view *view)
 {
     const struct scene_slices *slices = &scene->image.slices;
+    struct beam_shown beam;
     switch (view->kind) {
     case SCENE_KIND_CORONAL: return plane_of_kind(SCENE_KIND_CORONAL, slices->coronal.position_mm);
     case SCENE_KIND_SAGITTAL: return plane_of_kind(SCENE_KIND_SAGITTAL, slices->sagittal.position_mm);
@@ -53,13 +58,21 @@ struct plane plane_of_view(const struct scene *scene, const struct view *view)
             if (strcmp(scene->image.obliques[i].id, view->plane) == 0)
                 return plane_of_normal(scene->image.obliques[i].value.origin_mm, scene->image.obliques[i].value.normal);
         break;
+    case SCENE_KIND_BEAM:
+        if (beam_shown_of(plan, scene, "", &beam))
+            return beam_plane(&beam, beam.length_mm);
+        break;
+    case SCENE_KIND_BEAM_SLICE:
+        if (beam_shown_of(plan, scene, "", &beam))
+            return beam_plane(&beam, scene->beam.slice.along_mm);
+        break;
     case SCENE_KIND_AXIAL:
     case SCENE_KIND_3D: break;
     }
     return plane_of_kind(SCENE_KIND_AXIAL, slices->axial.position_mm);
 }
 
-size_t planes_of_slices(const struct scene *scene, struct plane slices[PLANE_MAX_SLICES])
+size_t planes_of_slices(const struct plan *plan, const struct scene *scene, struct plane slices[PLANE_MAX_SLICES])
 {
     const struct {
         enum scene_kind kind;
@@ -71,11 +84,14 @@ size_t planes_of_slices(const struct scene *scene, struct plane slices[PLANE_MAX
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         if (all[i].slice->visible)
             slices[n++] = plane_of_kind(all[i].kind, all[i].slice->position_mm);
-    for (size_t i = 0; i < scene->image.n_obliques && n < PLANE_MAX_SLICES; i++) {
+    for (size_t i = 0; i < scene->image.n_obliques && n + 1 < PLANE_MAX_SLICES; i++) {
         const struct scene_oblique *oblique = &scene->image.obliques[i].value;
         if (oblique->visible)
             slices[n++] = plane_of_normal(oblique->origin_mm, oblique->normal);
     }
+    struct beam_shown beam;
+    if (scene->beam.slice.visible && beam_shown_of(plan, scene, "", &beam))
+        slices[n++] = beam_plane(&beam, scene->beam.slice.along_mm);
     return n;
 }
 

@@ -2,7 +2,7 @@
 /* A plane in the patient with its own axes, and the planes of a scene: image slices, slice panes. The only place that
  * knows which patient axis a slice or a kind of view belongs to; all others take the plane. Knows no grid, no pixels.
  */
-#include "core/math/vec.h"
+#include "core/plan/plan.h"
 #include "scene.h" /* generated from proto/scene.json */
 
 /* Patient LPS, mm. right, up and normal are unit vectors at right angles to each other; right x up is the normal or its
@@ -16,19 +16,20 @@ struct plane {
 
 /* The plane of a kind of slice pane, at a position along the positive patient axis, which is its normal. Axial is seen
  * from the feet (right: patient left, up: anterior), coronal from the front (right: patient left, up: superior),
- * sagittal from the patient's left (right: posterior, up: superior). SCENE_KIND_3D gives the coronal plane. */
+ * sagittal from the patient's left (right: posterior, up: superior). All other kinds give the coronal plane. */
 struct plane plane_of_kind(enum scene_kind kind, double position_mm);
 /* A plane of any direction, with the axes of the nearest of those three, turned about an axis in both: up is that
  * plane's up as far as it lies in the plane. The normal points to the same side as the nearest plane's; of a normal
  * square to the patient the result is exactly the plane_of_kind. normal: any length but 0, finite. */
 struct plane plane_of_normal(struct vec3 origin_lps_mm, struct vec3 normal);
-/* The plane that a view's slice pane shows. The view's kind is not SCENE_KIND_3D. An oblique view of a plane that the
- * scene does not have shows the axial slice. */
-struct plane plane_of_view(const struct scene *scene, const struct view *view);
+/* The plane that a view's slice pane shows; of a beam's-eye view that through the beam's target (beam_shown.h). The
+ * view's kind is not SCENE_KIND_3D. An oblique view of a plane that the scene does not have, and views of a beam that
+ * there is not, have the axial slice. */
+struct plane plane_of_view(const struct plan *plan, const struct scene *scene, const struct view *view);
 /* The image slices that a scene shows in space, in the order in which they are drawn: the three orthogonal ones, then
- * the obliques; returns how many. */
-enum { PLANE_MAX_SLICES = 3 + 8 };
-size_t planes_of_slices(const struct scene *scene, struct plane slices[PLANE_MAX_SLICES]);
+ * the obliques, then the beam slice; returns how many. */
+enum { PLANE_MAX_SLICES = 3 + 8 + 1 };
+size_t planes_of_slices(const struct plan *plan, const struct scene *scene, struct plane slices[PLANE_MAX_SLICES]);
 
 /* Field by field. */
 bool plane_equal(const struct plane *a, const struct plane *b);

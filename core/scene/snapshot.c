@@ -9,6 +9,8 @@
 
 #include "core/base/mem.h"
 #include "core/region/target.h"
+#include "core/scene/beams_drawn.h"
+#include "core/scene/first_dose.h"
 #include "core/volume/window.h"
 #include "volume_presets.h" /* generated from proto/volume_presets.json */
 
@@ -48,17 +50,6 @@ struct scene_image_look snapshot_look_of(const struct snapshot *snapshot, size_t
     return look;
 }
 
-/* Index of the dose that the scene shows; -1 if the plan has no dose, or none of that id. */
-static int dose_index(const struct plan *plan, const struct scene *scene)
-{
-    if (scene->dose.id[0] == 0)
-        return plan->n_doses ? 0 : -1;
-    for (size_t i = 0; i < plan->n_doses; i++)
-        if (strcmp(plan->doses[i].id, scene->dose.id) == 0)
-            return (int)i;
-    return -1;
-}
-
 /* Fills the styles by region index. A region that the scene does not name has the default style. */
 static bool resolve_styles(struct snapshot *snapshot, char field[128], struct error *err)
 {
@@ -87,7 +78,7 @@ static bool find_references(struct snapshot *snapshot, char field[128], struct e
     const struct scene *scene = &snapshot->scene;
     snapshot->image = scene_image_index(plan, scene);
     snapshot->blend = scene->image.blend.id[0] ? image_index(plan, scene->image.blend.id) : -1;
-    snapshot->dose = dose_index(plan, scene);
+    snapshot->dose = scene_dose_index(plan, scene);
     if (snapshot->image < 0 && scene->image.id[0]) {
         snprintf(field, 128, "/image/id");
         return error_set(err, ERROR_NOT_FOUND, "the plan has no image '%s'", scene->image.id);
@@ -100,11 +91,29 @@ static bool find_references(struct snapshot *snapshot, char field[128], struct e
         snprintf(field, 128, "/image/blend/id");
         return error_set(err, ERROR_NOT_FOUND, "the plan has no image '%s'", scene->image.blend.id);
     }
+    if (scene->beam.id[0] && !beam_shown_of(plan, scene, scene->beam.id, &snapshot->beam)) {
+        snprintf(field, 128, "/beam/id");
+        return error_set(err, ERROR_NOT_FOUND, "the plan has no beam '%s'", scene->beam.id);
+    }
     if (scene->check.region[0] && !region_find(&plan->regions, scene->check.region)) {
         snprintf(field, 128, "/check/region");
         return error_set(err, ERROR_NOT_FOUND, "the plan has no region '%s'", scene->check.region);
     }
     return true;
+}
+
+/* A dose that cannot be shown leaves the picture without dose, and is no error of the scene. */
+static void choose_dose(struct snapshot *snapshot)
+{
+    char why[DOSE_FIT_WHY_SIZE];
+    if (snapshot->dose < 0)
+        (void)error_set(&snapshot->dose_why, ERROR_NOT_FOUND, "the plan has no dose");
+    else if (!scene_dose_may_be_drawn(snapshot->plan, &snapshot->scene, (size_t)snapshot->dose, why))
+        (void)error_set(&snapshot->dose_why, ERROR_STATE, "%s", why);
+    else
+        snapshot->has_dose_choice =
+            dose_choice_of(snapshot->plan, &snapshot->scene, (size_t)snapshot->dose, snapshot->scene.dose.quantity,
+                           &snapshot->dose_choice, &snapshot->dose_why);
 }
 
 struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, struct view *view,
@@ -125,11 +134,14 @@ struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, st
         goto fail;
     if (!find_references(snapshot, field, err))
         goto fail;
-    snapshot->pane = plane_of_view(&snapshot->scene, &snapshot->view);
-    snapshot->n_slices = planes_of_slices(&snapshot->scene, snapshot->slices);
+    choose_dose(snapshot);
+    snapshot->has_beam = beam_shown_of(snapshot->plan, &snapshot->scene, "", &snapshot->beam);
+    snapshot->pane = plane_of_view(snapshot->plan, &snapshot->scene, &snapshot->view);
+    snapshot->n_slices = planes_of_slices(snapshot->plan, &snapshot->scene, snapshot->slices);
+    snapshot->beyond_lps_mm = snapshot_is_pane(snapshot) ? box3_empty() : beams_box(snapshot->plan, &snapshot->scene);
     if (!snapshot_is_pane(snapshot))
         snapshot->n_clips = clip_planes(snapshot->plan, &snapshot->scene, snapshot->clips);
-    if (!camera_check(snapshot->plan, &snapshot->view, &snapshot->pane, field, err))
+    if (!camera_check(snapshot->plan, &snapshot->view, &snapshot->pane, snapshot_beam(snapshot), field, err))
         goto fail;
     return snapshot;
 fail:
@@ -216,6 +228,7 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
             region->file_opacity < 1) /* SERA's preferences hold 100 % for regions that nobody set */
             entry->value.opacity = region->file_opacity;
     }
+    scene_first_dose(plan, &scene->dose);
     struct vec3 at = first_crosshair_lps_mm(plan);
     scene->image.slices.sagittal.position_mm = at.x;
     scene->image.slices.coronal.position_mm = at.y;

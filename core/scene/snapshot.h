@@ -4,8 +4,10 @@
 #include "core/derive/derive.h"
 #include "core/math/vec.h"
 #include "core/plan/plan.h"
+#include "core/scene/beam_shown.h"
 #include "core/scene/camera.h"
 #include "core/scene/clip.h"
+#include "core/scene/dose_choice.h"
 #include "core/scene/plane.h"
 #include "scene.h" /* generated from proto/scene.json */
 
@@ -19,6 +21,12 @@ struct snapshot {
     int image;                             /* index of the image shown; -1: the plan has none */
     int blend;                             /* index of the image that is blended over it; -1: none */
     int dose;                              /* index of the dose shown; -1: the plan has none */
+    bool has_dose_choice;                  /* the dose can be shown: dose_choice is valid, and it may be drawn */
+    struct dose_choice dose_choice;        /* the field shown */
+    struct error dose_why;                 /* unless has_dose_choice: why nothing is shown */
+    bool has_beam;                         /* beam is valid */
+    struct beam_shown beam;                /* the chosen beam, or its draft */
+    struct box3 beyond_lps_mm;             /* encloses the beams that a view into space draws; empty: none */
     struct plane pane;                     /* the plane of a slice pane; else unused */
     struct plane slices[PLANE_MAX_SLICES]; /* image slices shown in space, in the order of drawing */
     size_t n_slices;
@@ -51,13 +59,20 @@ bool snapshot_is_low_white(const struct snapshot *snapshot);
 /* Window and colours of an image that is not the one shown: as the scene's looks say, else its own first window, grey.
  */
 struct scene_image_look snapshot_look_of(const struct snapshot *snapshot, size_t image);
+/* The beam that a beam's-eye view or a beam slice is of; NULL: the view is of another kind, or there is no beam. */
+static inline const struct beam_shown *snapshot_beam(const struct snapshot *snapshot)
+{
+    bool is_of_beam = snapshot->view.kind == SCENE_KIND_BEAM || snapshot->view.kind == SCENE_KIND_BEAM_SLICE;
+    return is_of_beam && snapshot->has_beam ? &snapshot->beam : NULL;
+}
 /* The snapshot's camera, resolved. */
 static inline void camera_resolve(const struct snapshot *snapshot, struct camera *camera)
 {
-    camera_of_view(snapshot->plan, &snapshot->view, &snapshot->pane, camera);
+    camera_of_view_beyond(snapshot->plan, &snapshot->view, &snapshot->pane, snapshot_beam(snapshot),
+                          &snapshot->beyond_lps_mm, camera);
 }
 /* True if the picture is a slice pane: a parallel view of the plane `pane`. Else it is a view into space. */
 static inline bool snapshot_is_pane(const struct snapshot *snapshot)
 {
-    return snapshot->view.kind != SCENE_KIND_3D;
+    return camera_is_of_pane(snapshot->view.kind);
 }

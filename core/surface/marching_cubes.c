@@ -15,7 +15,6 @@
 #include "core/surface/marching_cubes.h"
 
 #include <assert.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,10 +22,7 @@
 #include "core/base/parallel.h"
 #include "core/surface/cube_cases.h"
 #include "core/surface/marching_rows.h"
-
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
+#include "core/surface/marching_triangles.h"
 
 enum { MAX_THREADS = 64 };
 
@@ -43,12 +39,6 @@ struct marching_job {
     struct marching_graph *graph;       /* NULL: not wanted */
 };
 
-static void range_of(uint32_t n, int part, int n_parts, uint32_t *from, uint32_t *end)
-{
-    *from = (uint32_t)((uint64_t)n * (uint64_t)part / (uint64_t)n_parts);
-    *end = (uint32_t)((uint64_t)n * (uint64_t)(part + 1) / (uint64_t)n_parts);
-}
-
 /* ---- the working grid ------------------------------------------------------------------------------------------- */
 
 static void measure_extent(void *context, int part, int n_parts)
@@ -58,7 +48,7 @@ static void measure_extent(void *context, int part, int n_parts)
     struct extent extent = { .is_empty = true };
     uint64_t columns[MAX_MASK_WORDS] = { 0 };
     uint32_t k, end;
-    range_of(mask->end_k - mask->low_k, part, n_parts, &k, &end);
+    marching_range(mask->end_k - mask->low_k, part, n_parts, &k, &end);
     for (k += mask->low_k, end += mask->low_k; k < end; k++)
         for (uint32_t j = mask->low_j; j < mask->end_j; j++) {
             const uint64_t *row = mask->bits + ((size_t)k * mask->size[1] + j) * mask->words;
@@ -115,22 +105,12 @@ static void place_working_grid(struct marching_job *job, const struct extent *ex
     job->grid.words = cells ? (cells + CELLS_A_WORD - 1) / CELLS_A_WORD : 1;
 }
 
-/* 64 bits of a row from bit `at` on, -1 allowed; bits beyond the row are 0. */
-static inline uint64_t bits_from(const uint64_t *row, uint32_t words, int32_t at)
-{
-    if (at < 0)
-        return row[0] << -at;
-    uint32_t word = (uint32_t)at / 64, shift = (uint32_t)at % 64;
-    uint64_t low = word < words ? row[word] >> shift : 0;
-    return shift && word + 1 < words ? low | row[word + 1] << (64 - shift) : low;
-}
-
 static void copy_rows(void *context, int part, int n_parts)
 {
     struct marching_job *job = context;
     const struct mask *mask = job->mask;
     uint32_t z, end;
-    for (range_of(job->grid.size[2], part, n_parts, &z, &end); z < end; z++)
+    for (marching_range(job->grid.size[2], part, n_parts, &z, &end); z < end; z++)
         for (uint32_t y = 0; y < job->grid.size[1]; y++) {
             int32_t j = job->grid.start[1] + (int32_t)y, k = job->grid.start[2] + (int32_t)z;
             uint64_t *to = job->grid.bits + ((size_t)z * job->grid.size[1] + y) * job->grid.words;
@@ -145,26 +125,6 @@ static void copy_rows(void *context, int part, int n_parts)
 }
 
 /* ---- counting and writing --------------------------------------------------------------------------------------- */
-
-INLINED void count_slices(struct marching_rows *grid, uint32_t from, uint32_t end)
-{
-    for (uint32_t z = from; z < end; z++)
-        for (uint32_t y = 0; y < grid->size[1]; y++) {
-            struct around rows = rows_around(grid, y, z);
-            struct row sum = { 0 };
-            for (uint32_t w = 0; w < grid->words; w++) {
-                if (is_uniform(&rows, w))
-                    continue;
-                struct crossings found = find_crossings(grid, &rows, w);
-                sum.x += (uint32_t)__builtin_popcountll(found.x);
-                sum.y += (uint32_t)__builtin_popcountll(found.y);
-                sum.z += (uint32_t)__builtin_popcountll(found.z);
-                for (uint64_t cells = found.active; cells; cells &= cells - 1)
-                    sum.triangles += grid->cases[case_at(&rows, w, __builtin_ctzll(cells))].n_triangles;
-            }
-            grid->rows[(size_t)z * grid->size[1] + y] = sum;
-        }
-}
 
 INLINED float *put(float *at, struct vec3 p)
 {
@@ -200,64 +160,6 @@ INLINED void write_vertices(const struct marching_rows *grid, const struct row *
     }
 }
 
-static void write_triangles(const struct marching_rows *grid, const struct row *row, const struct around *rows)
-{
-    uint32_t vertex[CUBE_EDGES] = FIRST_VERTICES(grid, row);
-    uint32_t *out = grid->mesh->indices + 3 * (size_t)row->triangles;
-    for (uint32_t w = 0; w < grid->words; w++) {
-        if (is_uniform(rows, w))
-            continue;
-        for (uint64_t cells = find_crossings(grid, rows, w).active; cells; cells &= cells - 1) {
-            const struct cube_case *cube = &grid->cases[case_at(rows, w, __builtin_ctzll(cells))];
-            uint32_t following[8];
-            for (int e = 0; e < 8; e++)
-                following[e] = vertex[e] + cube->is_crossed[e];
-            /* edges 8..11 on the face x = 1 are edges 4..7 of the next cell */
-            memcpy(vertex + 8, following + 4, 4 * sizeof *vertex);
-            for (int corner = 0; corner < 3 * cube->n_triangles; corner++)
-                *out++ = vertex[cube->edges[corner]];
-            memcpy(vertex, following, sizeof following);
-        }
-    }
-}
-
-#if defined(__x86_64__)
-/* The same with the running numbers in one register. Always writes the five triangles that a cell can have; the next
- * cell overwrites the surplus. `end`: end of this thread's triangles, which the last writes must not cross. */
-FAST static void write_triangles_avx2(const struct marching_rows *grid, const struct row *row,
-                                      const struct around *rows, const uint32_t *end)
-{
-    const uint32_t first[8] = FIRST_VERTICES(grid, row);
-    __m256i vertex = _mm256_loadu_si256((const __m256i *)first);
-    uint32_t *out = grid->mesh->indices + 3 * (size_t)row->triangles;
-    for (uint32_t w = 0; w < grid->words; w++) {
-        if (is_uniform(rows, w))
-            continue;
-        for (uint64_t cells = find_crossings(grid, rows, w).active; cells; cells &= cells - 1) {
-            const struct cube_case *cube = &grid->cases[case_at(rows, w, __builtin_ctzll(cells))];
-            __m256i crossed = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)cube->is_crossed));
-            __m256i following = _mm256_add_epi32(vertex, crossed);
-            __m256i far_face = _mm256_permute4x64_epi64(following, 0xee); /* edges 8..11 */
-            __m256i triangles[2];
-            for (int half = 0; half < 2; half++) {
-                __m256i edges = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(cube->edges + 8 * half)));
-                __m256i is_far = _mm256_cmpgt_epi32(edges, _mm256_set1_epi32(7));
-                triangles[half] = _mm256_blendv_epi8(_mm256_permutevar8x32_epi32(vertex, edges),
-                                                     _mm256_permutevar8x32_epi32(far_face, edges), is_far);
-            }
-            vertex = following;
-            if (end - out >= 16) {
-                _mm256_storeu_si256((__m256i *)out, triangles[0]);
-                _mm256_storeu_si256((__m256i *)(out + 8), triangles[1]);
-            } else {
-                memcpy(out, triangles, 3 * sizeof *out * cube->n_triangles);
-            }
-            out += 3 * cube->n_triangles;
-        }
-    }
-}
-#endif
-
 INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t end, bool has_positions, bool use_avx2)
 {
     const uint32_t *end_of_triangles = grid->mesh->indices + 3 * (size_t)grid->rows[end].triangles;
@@ -284,31 +186,14 @@ INLINED void write_rows(const struct marching_rows *grid, size_t from, size_t en
 }
 
 #if defined(__x86_64__)
-FAST static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end)
-{
-    count_slices(grid, from, end);
-}
 FAST static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end, bool has_positions)
 {
     write_rows(grid, from, end, has_positions, true);
 }
-static bool has_fast(void)
-{
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("bmi") &&
-           __builtin_cpu_supports("bmi2");
-}
 #else
-static void count_slices_fast(struct marching_rows *grid, uint32_t from, uint32_t end)
-{
-    count_slices(grid, from, end);
-}
 static void write_rows_fast(const struct marching_rows *grid, size_t from, size_t end, bool has_positions)
 {
     write_rows(grid, from, end, has_positions, false);
-}
-static bool has_fast(void)
-{
-    return false;
 }
 #endif
 
@@ -318,35 +203,16 @@ static void count_part(void *context, int part, int n_parts)
 {
     struct marching_job *job = context;
     uint32_t from, end;
-    range_of(job->grid.size[2], part, n_parts, &from, &end);
-    if (job->code == MARCHING_CUBES_PORTABLE)
-        count_slices(&job->grid, from, end);
-    else
-        count_slices_fast(&job->grid, from, end);
-}
-
-/* First row at or after this share of the triangles, so that parts have equal work wherever the region is. */
-static size_t row_at_share(const struct marching_job *job, size_t n_rows, int part, int n_parts)
-{
-    if (part == n_parts)
-        return n_rows;
-    uint64_t wanted = (uint64_t)job->grid.rows[n_rows].triangles * (uint64_t)part / (uint64_t)n_parts;
-    size_t low = 0, high = part ? n_rows : 0;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (job->grid.rows[middle].triangles < wanted)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    marching_range(job->grid.size[2], part, n_parts, &from, &end);
+    marching_rows_count(job->code, &job->grid, from, end);
 }
 
 static void write_part(void *context, int part, int n_parts)
 {
     const struct marching_job *job = context;
     size_t n_rows = (size_t)job->grid.size[1] * job->grid.size[2];
-    size_t from = row_at_share(job, n_rows, part, n_parts), end = row_at_share(job, n_rows, part + 1, n_parts);
+    size_t from = marching_rows_at_share(&job->grid, n_rows, part, n_parts),
+           end = marching_rows_at_share(&job->grid, n_rows, part + 1, n_parts);
     bool has_positions = !job->graph || !job->graph->has_no_positions;
     if (job->code == MARCHING_CUBES_PORTABLE)
         write_rows(&job->grid, from, end, has_positions, false);
@@ -356,39 +222,11 @@ static void write_part(void *context, int part, int n_parts)
         marching_graph_write(job->code, &job->grid, job->graph, from, end);
 }
 
-static bool number_rows(struct marching_job *job, const struct surface_options *options, struct error *err)
-{
-    size_t n_rows = (size_t)job->grid.size[1] * job->grid.size[2];
-    uint64_t vertices = 0, triangles = 0;
-    for (size_t at = 0; at <= n_rows; at++) {
-        struct row n = job->grid.rows[at];
-        job->grid.rows[at] = (struct row){ (uint32_t)vertices, (uint32_t)(vertices + n.x),
-                                           (uint32_t)(vertices + n.x + n.y), (uint32_t)triangles };
-        vertices += (uint64_t)n.x + n.y + n.z;
-        triangles += n.triangles;
-    }
-    if (triangles > options->max_triangles || triangles > UINT32_MAX || vertices > UINT32_MAX)
-        return error_set(err, ERROR_LIMIT, "a surface of %llu triangles: at most %zu are allowed",
-                         (unsigned long long)triangles,
-                         options->max_triangles < UINT32_MAX ? options->max_triangles : (size_t)UINT32_MAX);
-    job->grid.mesh = mesh_create((size_t)vertices, (size_t)triangles, err);
-    return job->grid.mesh != NULL;
-}
-
-static struct cube_case cases[2][256]; /* [is_mirrored] */
-static pthread_once_t cases_once = PTHREAD_ONCE_INIT;
-
-static void make_cases(void)
-{
-    cube_cases_make(cases[0], false);
-    cube_cases_make(cases[1], true);
-}
-
 static bool make_graph(const struct marching_job *job, bool is_closed, struct marching_graph *graph, struct error *err)
 {
     size_t n = job->grid.mesh->n_vertices;
     graph->points = mem_large_array(n, sizeof *graph->points, UINT64_MAX, err);
-    if (graph->points && !graph->has_no_links)
+    if (graph->points)
         graph->links = mem_large_array(n, sizeof *graph->links, UINT64_MAX, err);
     memcpy(graph->start, job->grid.start, sizeof graph->start);
     graph->lps_mm_from_at = job->mask->lps_mm_from_ijk;
@@ -397,7 +235,7 @@ static bool make_graph(const struct marching_job *job, bool is_closed, struct ma
     for (size_t v = 0; graph->links && !is_closed && v < n; v++)
         for (int slot = 0; slot < 4; slot++)
             graph->links[v][slot] = (uint32_t)v;
-    return graph->points && (graph->links || graph->has_no_links);
+    return graph->points && graph->links;
 }
 
 void marching_graph_finish(struct marching_graph *graph)
@@ -411,14 +249,12 @@ struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask
                                 const struct surface_options *options, struct marching_graph *graph, struct error *err)
 {
     assert(mask->words <= MAX_MASK_WORDS);
-    pthread_once(&cases_once, make_cases);
     int n_parts = options->n_threads > 0 ? options->n_threads : parallel_cores();
     n_parts = n_parts < MAX_THREADS ? n_parts : MAX_THREADS;
     struct marching_job job = {
         .mask = mask,
-        .grid = { .cases = cases[affine_determinant(&mask->lps_mm_from_ijk) < 0],
-                  .lps_mm_from_ijk = mask->lps_mm_from_ijk },
-        .code = has_fast() ? code : MARCHING_CUBES_PORTABLE,
+        .grid = { .cases = marching_rows_cases(&mask->lps_mm_from_ijk), .lps_mm_from_ijk = mask->lps_mm_from_ijk },
+        .code = marching_rows_code(code),
         .graph = graph,
     };
     struct marching_rows *grid = &job.grid;
@@ -438,7 +274,7 @@ struct mesh *marching_cubes_run(enum marching_cubes_code code, const struct mask
         grid->rows[n_rows] = (struct row){ 0 };
         parallel_run(n_parts, copy_rows, &job);
         parallel_run(n_parts, count_part, &job);
-        if (number_rows(&job, options, err)) {
+        if (marching_rows_number(grid, options, err)) {
             if (graph && !make_graph(&job, options->close_at_border, graph, err)) {
                 mesh_unref(grid->mesh);
                 grid->mesh = NULL;

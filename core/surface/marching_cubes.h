@@ -1,5 +1,5 @@
 #pragma once
-/* Inside core/surface: marching cubes with additional results for tests and for other methods (smoothing, fields). Any
+/* Inside core/surface: marching cubes with additional results for tests and for other methods (smoothing). Any
  * thread. */
 #include "core/surface/surface.h"
 
@@ -22,7 +22,6 @@ struct marching_graph {
     uint32_t (*links)[4];          /* [n_vertices] */
     struct affine lps_mm_from_at;
     int32_t start[3];      /* index in the mask of the working grid's voxel 0 0 0 */
-    bool has_no_links;     /* set by the caller: links are not wanted and stay NULL */
     bool has_no_positions; /* set by the caller, who writes the mesh's positions and bounds instead */
 };
 void marching_graph_finish(struct marching_graph *graph);

@@ -2,7 +2,7 @@
 /* Inside marching cubes: the working grid, and which crossed edges and cells each row owns. See marching_cubes.c. */
 #include "core/region/mask.h"
 #include "core/surface/cube_cases.h"
-#include "core/surface/mesh.h"
+#include "core/surface/marching_cubes.h"
 
 enum { CELLS_A_WORD = 63, MAX_MASK_WORDS = VOLUME_MAX_SIDE / 64 };
 #define LOW_63 (~(uint64_t)0 >> 1)
@@ -86,3 +86,32 @@ INLINED uint32_t case_at(const struct around *rows, uint32_t w, int bit)
         (row)->x, (row)[1].x, (row)[(grid)->size[1]].x, (row)[(grid)->size[1] + 1].x, (row)->y, \
             (row)[(grid)->size[1]].y, (row)->z, (row)[1].z \
     }
+
+/* Part `part` of n_parts of the numbers 0..n. */
+INLINED void marching_range(uint32_t n, int part, int n_parts, uint32_t *from, uint32_t *end)
+{
+    *from = (uint32_t)((uint64_t)n * (uint64_t)part / (uint64_t)n_parts);
+    *end = (uint32_t)((uint64_t)n * (uint64_t)(part + 1) / (uint64_t)n_parts);
+}
+
+/* 64 bits of a row from bit `at` on, -1 allowed; bits beyond the row are 0. */
+static inline uint64_t bits_from(const uint64_t *row, uint32_t words, int32_t at)
+{
+    if (at < 0)
+        return row[0] << -at;
+    uint32_t word = (uint32_t)at / 64, shift = (uint32_t)at % 64;
+    uint64_t low = word < words ? row[word] >> shift : 0;
+    return shift && word + 1 < words ? low | row[word + 1] << (64 - shift) : low;
+}
+
+/* The case table for a grid of this handedness. */
+const struct cube_case *marching_rows_cases(const struct affine *lps_mm_from_ijk);
+/* The portable version if this processor cannot run the best. */
+enum marching_cubes_code marching_rows_code(enum marching_cubes_code wanted);
+/* Counts what each row of slices from..end owns. */
+void marching_rows_count(enum marching_cubes_code code, struct marching_rows *grid, uint32_t from, uint32_t end);
+/* Replaces the counts by running totals and creates the mesh. Errors: ERROR_LIMIT, ERROR_MEMORY. */
+NODISCARD bool marching_rows_number(struct marching_rows *grid, const struct surface_options *options,
+                                    struct error *err);
+/* First row at or after this share of the triangles, so that parts have equal work wherever the surface is. */
+size_t marching_rows_at_share(const struct marching_rows *grid, size_t n_rows, int part, int n_parts);

@@ -29,17 +29,6 @@ extern const struct surface_options surface_defaults; /* 0, 40 million, true */
 NODISCARD struct mesh *surface_marching_cubes(const struct mask *mask, const struct surface_options *options,
                                               struct error *err);
 
-/* Marching cubes of a field, for instance a dose: inside is where the value is at least iso. A vertex is where the
- * value, interpolated linearly along a grid edge, is iso. It is at the midpoint if an end has no value: not finite,
- * which counts as outside, or beyond the grid (close_at_border), half a voxel outside the outermost values.
- *
- *   returns  as surface_marching_cubes; triangles may have no area where a value is exactly iso
- *   errors   ERROR_RANGE no value is inside, or iso is not finite; ERROR_LIMIT; ERROR_MEMORY
- *   thread   any; the field is shared and frozen
- *   source   as surface_marching_cubes. Triangles and vertices equal vtkFlyingEdges3D's on the same field. */
-NODISCARD struct mesh *surface_marching_cubes_field(const struct volume *field, double iso,
-                                                    const struct surface_options *options, struct error *err);
-
 /* The 8-cell algorithm: vertices at the centres of inside voxels. Within a cell the region is the convex hull of the
  * cell's inside corners; the surface is the boundary of all hulls together (corner_cases.c).
  *

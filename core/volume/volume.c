@@ -275,6 +275,9 @@ bool volume_voxel_at(const struct volume *volume, struct vec3 point_lps_mm, uint
     return true;
 }
 
+/* Nearer to a voxel's centre than rounding can tell: there a neighbour without a value does not count. In voxels. */
+#define NEAR_CENTRE 1e-7
+
 bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double *value)
 {
     uint32_t nearest[3], low[3], high[3];
@@ -285,7 +288,9 @@ bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double
     const double at[3] = { p.x, p.y, p.z };
     for (int axis = 0; axis < 3; axis++) {
         double last = volume->grid.size[axis] - 1.0;
-        double inside = fmin(fmax(at[axis], 0), last);
+        double inside = fmin(fmax(at[axis], 0), last), nearest_centre = floor(inside + 0.5);
+        if (fabs(inside - nearest_centre) < NEAR_CENTRE)
+            inside = nearest_centre;
         low[axis] = (uint32_t)inside;
         high[axis] = low[axis] < (uint32_t)last ? low[axis] + 1 : low[axis];
         weight[axis] = inside - low[axis];

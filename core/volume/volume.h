@@ -72,5 +72,5 @@ uint16_t volume_label(const struct volume *volume, uint32_t i, uint32_t j, uint3
 /* Finds the voxel that contains a patient point; false outside the grid's outer faces. */
 bool volume_voxel_at(const struct volume *volume, struct vec3 point_lps_mm, uint32_t ijk[3]);
 /* Trilinear value between voxel centres, clamped to the outermost centres. Returns false outside the outer faces, or if
- * a value is not finite. */
+ * a value is not finite that counts: at a voxel's centre only its own does. */
 bool volume_sample(const struct volume *volume, struct vec3 point_lps_mm, double *value);

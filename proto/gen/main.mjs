@@ -7,6 +7,7 @@
 //   openapi.json openapi.c  the HTTP API, as a file and for the daemon to serve
 //   wire.js              the field tables for the page
 //   volume_presets.h volume_presets.c volume_presets.js  transfer functions to begin with
+//   dose_presets.h dose_presets.c dose_presets.js  weights by kind of tissue, isoeffective parameters, isodose levels
 //   reference.html       all of it for people
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -15,6 +16,7 @@ import { checkedDocuments, checkedMessages } from './check.mjs';
 import { sceneHeader, sceneSource } from './scene_c.mjs';
 import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
+import { checkedDosePresets, dosePresetsHeader, dosePresetsScript, dosePresetsSource } from './dose_presets.mjs';
 import { openapi, openapiSource } from './openapi.mjs';
 import { checkPackets, packetsHeader, packetsSource, questionRoutes } from './packets.mjs';
 import { checkedPresets, presetsHeader, presetsScript, presetsSource } from './presets.mjs';
@@ -34,6 +36,7 @@ checkPackets(packets, scene);
 const http = read('http.json');
 const api = openapi({ ...http, routes: [...http.routes, ...questionRoutes(packets)] }, scene, '1');
 const presets = checkedPresets(read('volume_presets.json'), scene);
+const dosePresets = checkedDosePresets(read('dose_presets.json'), scene);
 const out = process.argv[2];
 mkdirSync(out, { recursive: true });
 const write = (name, text) => writeFileSync(join(out, name), text);
@@ -51,6 +54,9 @@ write('gl_shaders.c', shadersSource(shaders));
 write('volume_presets.h', presetsHeader());
 write('volume_presets.c', presetsSource(presets));
 write('volume_presets.js', presetsScript(presets));
+write('dose_presets.h', dosePresetsHeader());
+write('dose_presets.c', dosePresetsSource(dosePresets));
+write('dose_presets.js', dosePresetsScript(dosePresets));
 write('wire.js', wireScript(scene, messages));
 write('reference.html', referencePage(scene, messages, packets, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))));
 write('openapi.json', JSON.stringify(api, null, 1));

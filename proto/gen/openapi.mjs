@@ -25,6 +25,7 @@ const mediaOf = (kind) => {
   if (kind === 'json') return { 'application/json': { schema: { type: 'object' } } };
   if (kind === 'image') return { 'image/png': { schema: { type: 'string', format: 'binary' } }, 'image/jpeg': { schema: { type: 'string', format: 'binary' } } };
   if (kind === 'surface') return { ...mediaOf('json'), ...Object.fromEntries(['model/stl', 'application/octet-stream', 'model/gltf-binary'].map((type) => [type, { schema: { type: 'string', format: 'binary' } }])) };
+  if (kind === 'curves') return { ...mediaOf('json'), 'text/csv': { schema: { type: 'string' } } };
   if (kind === 'scene') return { 'application/json': { schema: { $ref: '#/components/schemas/scene' } } };
   return { [kind]: { schema: { type: 'string' } } };
 };

@@ -1,10 +1,13 @@
 // wire.js: the descriptions as data for the page; web/js/wire/check.js reads them.
+// Without the sentences "about", which are half of the text and nothing that the page needs.
 const wordsOf = (enums) => Object.fromEntries(Object.entries(enums).map(([name, { values }]) => [name, values.map(([word]) => word)]));
 
 /** Words of enums and fields of objects, of a checked description of documents. */
 export function tables({ enums, objects, documents }) {
   return { enums: wordsOf(enums), objects: Object.fromEntries(Object.entries({ ...objects, ...documents }).map(([name, { fields }]) => [name, fields])) };
 }
+
+const text = (value) => JSON.stringify(value, (key, part) => (key === 'about' && typeof part === 'string' ? undefined : part), 1);
 
 export function wireScript(scene, messages) {
   const { enums, objects } = tables(scene);
@@ -14,7 +17,7 @@ export function wireScript(scene, messages) {
   return '// Generated from proto/; change it there.\n' +
     `export const protocol = ${messages.version};\n` +
     `export const maxClientBytes = ${messages.max_client_bytes};\n` +
-    `export const enums = ${JSON.stringify(enums, null, 1)};\n` +
-    `export const objects = ${JSON.stringify(objects, null, 1)};\n` +
-    `export const messages = ${JSON.stringify(table, null, 1)};\n`;
+    `export const enums = ${text(enums)};\n` +
+    `export const objects = ${text(objects)};\n` +
+    `export const messages = ${text(table)};\n`;
 }

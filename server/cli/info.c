@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/dose/weights.h"
+#include "core/plan/dose_fit.h"
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/open_plan.h"
@@ -94,6 +96,24 @@ static void print_regions(const struct region_set *set)
         }
 }
 
+/* Whether the dose may lie on the image, and what its total lacks. */
+static void print_fit(const struct plan *plan, size_t index)
+{
+    const struct dose *dose = &plan->doses[index];
+    char why[DOSE_FIT_WHY_SIZE];
+    enum dose_fit fit = dose_fit_of(plan, index, why);
+    printf("  fit %s: %s%s\n", dose_fit_word(fit), why,
+           dose_fit_needs_acceptance(fit) ? " It is drawn once a person accepts it." : "");
+    uint32_t missing = dose_missing_summands(dose);
+    bool has_summands = false;
+    for (size_t c = 0; c < dose->n_components; c++)
+        has_summands |= dose_is_summand(dose->components[c].quantity);
+    for (int q = 0, n = 0; has_summands && q < DOSE_N_QUANTITIES; q++)
+        if (missing >> q & 1)
+            printf("%s%s", n++ ? ", " : "  its weighted total is without ", dose_quantity_word((enum dose_quantity)q));
+    printf("%s", has_summands && missing ? "\n" : "");
+}
+
 static void print_doses(const struct plan *plan)
 {
     for (size_t i = 0; i < plan->n_doses; i++) {
@@ -114,6 +134,7 @@ static void print_doses(const struct plan *plan)
             printf(", frame of reference %s",
                    dose->frame == DOSE_FRAME_DIFFERS ? "differs from the image's" : "unknown");
         printf("\n");
+        print_fit(plan, i);
         for (size_t c = 0; c < dose->n_components; c++) {
             const struct dose_component *component = &dose->components[c];
             char unit[DOSE_UNIT_SIZE];

@@ -18,6 +18,8 @@
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/open_plan.h"
+#include "server/cli/render_beam.h"
+#include "server/cli/render_dose.h"
 #include "server/cli/render_show.h"
 #include "server/cli/text.h"
 #include "server/wire/document.h"
@@ -30,6 +32,8 @@ struct render_arguments {
     const char *folder, *out;
     const char *scene, *view; /* a file's name, or JSON, which begins with "{" */
     struct render_show show;
+    struct render_dose dose;
+    struct render_beam beam;
     enum encode_codec codec;
     enum render_back_end back_end;
     int size_px[2]; /* 0: that of the view */
@@ -48,15 +52,34 @@ static void print_help(void)
         "  --scene JSON      what differs from the scene a new room starts with (a merge patch, RFC 7396): JSON in { }, or the\n"
         "                    name of a file of it\n"
         "  --view JSON       what differs from the view a new room starts with, 1024x768: camera, kind, size, override\n"
-        "  --show REGIONS    ids with commas between: these regions alone, opaque; none: no region\n"
+        "  --show REGIONS    ids with commas between: these regions alone, opaque or with the opacity in ID=0.3; none: no region\n"
         "  --slices SLICES   axial, coronal, sagittal, with commas between and perhaps =MM behind: these slices alone; none\n"
         "  --volume METHOD   the image as a volume: ray, slices, mip or average; METHOD=VALUE: without what is below VALUE\n"
         "  --plane N[@P]     an oblique plane with the direction N through the point P, else through where the slices meet,\n"
-        "                    each X,Y,Z towards L, P and S: its own picture, or a slice in one whose kind --view says\n"
+        "                    each X,Y,Z towards L, P and S: its own picture, or a slice in one whose kind is said\n"
         "  --clip PLANE=MM   cuts off what lies beyond: axial-low, axial-high, coronal-low, coronal-high, sagittal-low or\n"
-        "                    sagittal-high, each at a position along S, P or L; given again: one more plane\n"
+        "                    sagittal-high, each at a position along S, P or L, or beam, across the beam at a distance from\n"
+        "                    its entry, and what lies before; given again: one more plane\n"
         "  --no-caps         leaves cuts of --clip open, so that they show what is hollow\n"
         "  --window C/W      the image's window: centre and width, in its unit\n"
+        "  --dose ID         the dose that is shown; --accept-dose: also if it may not belong to the image\n"
+        "  --quantity WORD   weighted, total, boron, nitrogen, fast, gamma, isoeffective and others of the scene\n"
+        "  --ppm N           boron in blood; --tissue ID: the weights of this region everywhere\n"
+        "  --reference R     what 100 %% is: body, file, value=N, region-max=ID, region-mean=ID or point=X,Y,Z\n"
+        "  --level V[=COLOR] an isodose level, 95%% or 20Gy, alone; given again: one more\n"
+        "  --wash STYLE      dose as colour on slices, caps and textures: bands or smooth, =OPACITY behind\n"
+        "  --lines           isodose lines on slices and caps\n"
+        "  --isodoses GRID   isodose surfaces of all levels, made in the grid of the dose or of the univels\n"
+        "  --texture WHAT    what colours the regions shown: none, image or dose (of --wash)\n"
+        "  --beam[=ID]       draws this beam, without ID the first, with its aperture, and chooses it; given again: one more is\n"
+        "                    drawn\n"
+        "  --draft E:T       a draft of a beam in its place, from an entry to a target, each X,Y,Z in mm towards L, P and S\n"
+        "  --beam-slice MM   the image on the plane across the chosen beam, at this distance from its entry\n"
+        "  --tracks[=LIST]   particle tracks, of these classes alone: neutron-low, neutron-medium, neutron-high, gamma-low,\n"
+        "                    gamma-medium, gamma-high, lost, beam-line, with commas between; neutron, gamma: three each\n"
+        "  --kind KIND       3d, axial, coronal, sagittal, oblique; beam: along the chosen beam; beam-slice: across it\n"
+        "  --along MM        in a beam's-eye view: the eye's distance from the beam's entry; else the whole plan is seen\n"
+        "  --ring MM         in a beam's-eye view: an aperture ring of this diameter, in parallel projection\n"
         "  --from A,E        looks at the plan from A degrees off the front, towards the patient's left, and E degrees up\n"
         "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
         "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
@@ -141,7 +164,22 @@ static cJSON *make_scene(const cJSON *document, const cJSON *defaults, const str
         refuse_problem("--show, --slices, --volume, --window, --plane or --clip", &problem, err);
     cJSON_Delete(patch);
     cJSON_Delete(scene);
-    return shown;
+    if (!shown)
+        return NULL;
+    cJSON *dosed = NULL, *whole = NULL;
+    patch = render_dose_patch(&arguments->dose, shown, err);
+    if (patch && !(dosed = scene_document_patch(document, defaults, shown, patch, &problem)))
+        refuse_problem("an option about dose", &problem, err);
+    cJSON_Delete(patch);
+    cJSON_Delete(shown);
+    if (!dosed)
+        return NULL;
+    patch = render_beam_patch(&arguments->beam, document, dosed, err);
+    if (patch && !(whole = scene_document_patch(document, defaults, dosed, patch, &problem)))
+        refuse_problem("--beam, --draft, --beam-slice or --tracks", &problem, err);
+    cJSON_Delete(patch);
+    cJSON_Delete(dosed);
+    return whole;
 }
 
 /* Adds to a view's patch the home camera, turned to look from a direction. */
@@ -162,7 +200,7 @@ static void add_from(cJSON *patch, const struct plan *plan, const double from_de
     json_add(camera, "up", cJSON_CreateDoubleArray((double[]){ up.x, up.y, up.z }, 3));
 }
 
-/* The view that a new room starts with, patched by --view, then by --from and --size. NULL with err. */
+/* The view that a new room starts with, patched by --view, then by the short options. NULL with err. */
 static cJSON *make_view(const struct plan *plan, const struct render_arguments *arguments, struct error *err)
 {
     struct problem problem = { 0 };
@@ -182,15 +220,16 @@ static cJSON *make_view(const struct plan *plan, const struct render_arguments *
         return NULL;
     }
     patch = cJSON_CreateObject();
+    bool is_read = render_beam_add_view(&arguments->beam, patch, err);
     if (size_px[0])
         json_add(patch, "size_px", cJSON_CreateIntArray(size_px, 2));
     if (arguments->has_from)
         add_from(patch, plan, arguments->from_deg);
-    cJSON *changed = view_document_patch(view, patch, &problem);
+    cJSON *changed = is_read ? view_document_patch(view, patch, &problem) : NULL;
     cJSON_Delete(patch);
     cJSON_Delete(view);
-    if (!changed)
-        refuse_problem("--from or --size", &problem, err);
+    if (is_read && !changed)
+        refuse_problem("--kind, --along, --ring, --from or --size", &problem, err);
     return changed;
 }
 
@@ -373,26 +412,64 @@ static bool codec_from_path(const char *path, enum encode_codec *codec)
     return *codec == ENCODE_PNG || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0;
 }
 
+/* Checks the words of the options, before the plan is open. */
+static bool check_words(const struct render_arguments *arguments, struct error *err)
+{
+    struct render_dose dose = arguments->dose;
+    dose.is_accepted = false; /* of which dose is known once the plan is open */
+    cJSON *nothing = cJSON_CreateObject(), *view = cJSON_CreateObject();
+    cJSON *shown = render_show_patch(&arguments->show, nothing, err);
+    cJSON *dosed = shown ? render_dose_patch(&dose, nothing, err) : NULL;
+    cJSON *beam = dosed ? render_beam_patch(&arguments->beam, NULL, nothing, err) : NULL;
+    bool is_good = beam && render_beam_add_view(&arguments->beam, view, err);
+    cJSON_Delete(shown);
+    cJSON_Delete(dosed);
+    cJSON_Delete(beam);
+    cJSON_Delete(view);
+    cJSON_Delete(nothing);
+    return is_good;
+}
+
 /* False when there is nothing to draw; *code is then the exit code. */
 static bool parse_arguments(int argc, char **argv, struct render_arguments *arguments, int *code)
 {
-    static const struct option long_options[] = { { "output", required_argument, NULL, 'o' },
-                                                  { "scene", required_argument, NULL, 's' },
-                                                  { "view", required_argument, NULL, 'v' },
-                                                  { "size", required_argument, NULL, 'z' },
-                                                  { "show", required_argument, NULL, 'r' },
-                                                  { "slices", required_argument, NULL, 'l' },
-                                                  { "volume", required_argument, NULL, 'u' },
-                                                  { "plane", required_argument, NULL, 'p' },
-                                                  { "window", required_argument, NULL, 'w' },
-                                                  { "from", required_argument, NULL, 'f' },
-                                                  { "clip", required_argument, NULL, 'c' },
-                                                  { "no-caps", no_argument, NULL, 'n' },
-                                                  { "gl", required_argument, NULL, 'g' },
-                                                  { "quality", required_argument, NULL, 'q' },
-                                                  { "annotations", no_argument, NULL, 'a' },
-                                                  { "help", no_argument, NULL, 'h' },
-                                                  { NULL, 0, NULL, 0 } };
+    static const struct option long_options[] = {
+        { "output", required_argument, NULL, 'o' },
+        { "scene", required_argument, NULL, 's' },
+        { "view", required_argument, NULL, 'v' },
+        { "size", required_argument, NULL, 'z' },
+        { "show", required_argument, NULL, 'r' },
+        { "slices", required_argument, NULL, 'l' },
+        { "volume", required_argument, NULL, 'u' },
+        { "plane", required_argument, NULL, 'p' },
+        { "window", required_argument, NULL, 'w' },
+        { "from", required_argument, NULL, 'f' },
+        { "clip", required_argument, NULL, 'c' },
+        { "no-caps", no_argument, NULL, 'n' },
+        { "dose", required_argument, NULL, 'd' },
+        { "accept-dose", no_argument, NULL, 'A' },
+        { "quantity", required_argument, NULL, 'Q' },
+        { "ppm", required_argument, NULL, 'P' },
+        { "tissue", required_argument, NULL, 'T' },
+        { "reference", required_argument, NULL, 'R' },
+        { "level", required_argument, NULL, 'L' },
+        { "wash", required_argument, NULL, 'W' },
+        { "lines", no_argument, NULL, 'I' },
+        { "isodoses", required_argument, NULL, 'S' },
+        { "texture", required_argument, NULL, 'X' },
+        { "beam", optional_argument, NULL, 'b' },
+        { "draft", required_argument, NULL, 'D' },
+        { "beam-slice", required_argument, NULL, 'B' },
+        { "tracks", optional_argument, NULL, 't' },
+        { "kind", required_argument, NULL, 'k' },
+        { "along", required_argument, NULL, 'E' },
+        { "ring", required_argument, NULL, 'G' },
+        { "gl", required_argument, NULL, 'g' },
+        { "quality", required_argument, NULL, 'q' },
+        { "annotations", no_argument, NULL, 'a' },
+        { "help", no_argument, NULL, 'h' },
+        { NULL, 0, NULL, 0 },
+    };
     *code = EXIT_USAGE;
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
@@ -417,8 +494,36 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
                 return command_usage_error("render", "--clip is given more than %d times", RENDER_SHOW_MAX_CLIPS),
                        false;
             arguments->show.clips[arguments->show.n_clips++] = optarg;
+            arguments->beam.has_clip = arguments->beam.has_clip || strncmp(optarg, "beam", 4) == 0;
             break;
         case 'n': arguments->show.is_uncapped = true; break;
+        case 'd': arguments->dose.dose = optarg; break;
+        case 'A': arguments->dose.is_accepted = true; break;
+        case 'Q': arguments->dose.quantity = optarg; break;
+        case 'P': arguments->dose.ppm = optarg; break;
+        case 'T': arguments->dose.tissue = optarg; break;
+        case 'R': arguments->dose.reference = optarg; break;
+        case 'W': arguments->dose.wash = optarg; break;
+        case 'I': arguments->dose.has_lines = true; break;
+        case 'S': arguments->dose.isodoses = optarg; break;
+        case 'X': arguments->dose.texture = optarg; break;
+        case 'b':
+            if (arguments->beam.n_beams == RENDER_BEAM_MAX)
+                return command_usage_error("render", "--beam is given more than %d times", RENDER_BEAM_MAX), false;
+            arguments->beam.beams[arguments->beam.n_beams++] = optarg ? optarg : "";
+            break;
+        case 'D': arguments->beam.draft = optarg; break;
+        case 'B': arguments->beam.slice = optarg; break;
+        case 't': arguments->beam.tracks = optarg ? optarg : ""; break;
+        case 'k': arguments->beam.kind = optarg; break;
+        case 'E': arguments->beam.along = optarg; break;
+        case 'G': arguments->beam.ring = optarg; break;
+        case 'L':
+            if (arguments->dose.n_levels == RENDER_DOSE_MAX_LEVELS)
+                return command_usage_error("render", "--level is given more than %d times", RENDER_DOSE_MAX_LEVELS),
+                       false;
+            arguments->dose.levels[arguments->dose.n_levels++] = optarg;
+            break;
         case 'z':
             if (!parse_size(optarg, arguments->size_px))
                 return command_usage_error("render", "--size '%s' is not of the form 1024x768, each 16 to 4096",
@@ -446,10 +551,7 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
         }
     }
     struct error err = { 0 };
-    cJSON *nothing = cJSON_CreateObject(), *patch = render_show_patch(&arguments->show, nothing, &err);
-    cJSON_Delete(nothing);
-    cJSON_Delete(patch);
-    if (!patch)
+    if (!check_words(arguments, &err))
         return command_usage_error("render", "%s", err.text), false;
     if (argc - optind != 1)
         return command_usage_error("render", "one folder is needed, %d are given", argc - optind), false;

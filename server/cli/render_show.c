@@ -1,41 +1,9 @@
 /* From the short options of `beamroom render` to a merge patch on a scene. */
 #include "server/cli/render_show.h"
 
-#include <errno.h>
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { WORD_SIZE = 80 };
-
-static cJSON *member(cJSON *object, const char *name)
-{
-    cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
-    return found ? found : cJSON_AddObjectToObject(object, name);
-}
-
-/* Takes the next word before the separator off the text. False: there is none, or it is longer than any that is known.
- */
-static bool next_word(const char **text, char separator, char word[WORD_SIZE])
-{
-    size_t n = strcspn(*text, (const char[]){ separator, 0 });
-    if (n == 0 || n >= WORD_SIZE)
-        return false;
-    memcpy(word, *text, n);
-    word[n] = 0;
-    *text += n;
-    if (**text == separator)
-        (*text)++;
-    return true;
-}
-
-static bool parse_number(const char *text, double *value)
-{
-    char *end;
-    errno = 0;
-    *value = strtod(text, &end);
-    return end != text && *end == 0 && errno == 0 && isfinite(*value);
-}
+#include "server/cli/render_words.h"
 
 /* Cuts "NAME=NUMBER" in two; without "=" has_value is false. False: what follows "=" is no number. */
 static bool split_value(char *word, bool *has_value, double *value)
@@ -45,7 +13,7 @@ static bool split_value(char *word, bool *has_value, double *value)
     if (!equals)
         return true;
     *equals = 0;
-    return parse_number(equals + 1, value);
+    return render_number(equals + 1, value);
 }
 
 static bool is_one_of(const char *word, const char *const *words, size_t n)
@@ -58,21 +26,25 @@ static bool is_one_of(const char *word, const char *const *words, size_t n)
 
 static bool add_regions(const char *text, const cJSON *scene, cJSON *patch, struct error *err)
 {
-    cJSON *regions = member(patch, "regions");
+    cJSON *regions = render_member(patch, "regions");
     const cJSON *known;
     cJSON_ArrayForEach(known, cJSON_GetObjectItemCaseSensitive(scene, "regions"))
-        cJSON_AddFalseToObject(member(regions, known->string), "visible");
+        cJSON_AddFalseToObject(render_member(regions, known->string), "visible");
     if (strcmp(text, "none") == 0)
         return true;
     for (const char *at = text; *at || at == text;) {
-        char id[WORD_SIZE];
-        if (!next_word(&at, ',', id))
-            return error_set(err, ERROR_RANGE, "--show '%s' is not none or ids of regions with commas between", text);
-        cJSON *region = member(regions, id);
+        char id[RENDER_WORD_SIZE];
+        bool has_opacity;
+        double opacity = 1;
+        if (!render_next_word(&at, ',', id) || !split_value(id, &has_opacity, &opacity))
+            return error_set(
+                err, ERROR_RANGE,
+                "--show '%s' is not none or ids of regions with commas between, each perhaps with =OPACITY", text);
+        cJSON *region = render_member(regions, id);
         cJSON_DeleteItemFromObjectCaseSensitive(region, "visible");
         cJSON_DeleteItemFromObjectCaseSensitive(region, "opacity");
         cJSON_AddTrueToObject(region, "visible");
-        cJSON_AddNumberToObject(region, "opacity", 1);
+        cJSON_AddNumberToObject(region, "opacity", opacity);
     }
     return true;
 }
@@ -80,21 +52,22 @@ static bool add_regions(const char *text, const cJSON *scene, cJSON *patch, stru
 static bool add_slices(const char *text, cJSON *patch, struct error *err)
 {
     static const char *const kinds[] = { "axial", "coronal", "sagittal" };
-    cJSON *slices = member(member(patch, "image"), "slices");
+    cJSON *slices = render_member(render_member(patch, "image"), "slices");
     for (size_t i = 0; i < 3; i++)
-        cJSON_AddFalseToObject(member(slices, kinds[i]), "visible");
+        cJSON_AddFalseToObject(render_member(slices, kinds[i]), "visible");
     if (strcmp(text, "none") == 0)
         return true;
     for (const char *at = text; *at || at == text;) {
-        char word[WORD_SIZE];
+        char word[RENDER_WORD_SIZE];
         bool has_position;
         double position_mm;
-        if (!next_word(&at, ',', word) || !split_value(word, &has_position, &position_mm) || !is_one_of(word, kinds, 3))
+        if (!render_next_word(&at, ',', word) || !split_value(word, &has_position, &position_mm) ||
+            !is_one_of(word, kinds, 3))
             return error_set(err, ERROR_RANGE,
                              "--slices '%s' is not none or some of axial, coronal, sagittal with commas between, each "
                              "perhaps with =MM",
                              text);
-        cJSON *slice = member(slices, word);
+        cJSON *slice = render_member(slices, word);
         cJSON_ReplaceItemInObjectCaseSensitive(slice, "visible", cJSON_CreateTrue());
         if (has_position)
             cJSON_AddNumberToObject(slice, "position_mm", position_mm);
@@ -105,12 +78,12 @@ static bool add_slices(const char *text, cJSON *patch, struct error *err)
 static bool add_volume(const char *text, const cJSON *scene, cJSON *patch, struct error *err)
 {
     static const char *const methods[] = { "ray", "slices", "mip", "average" };
-    char word[WORD_SIZE];
+    char word[RENDER_WORD_SIZE];
     bool has_cull;
     double cull;
-    if (!next_word(&text, 0, word) || !split_value(word, &has_cull, &cull) || !is_one_of(word, methods, 4))
+    if (!render_next_word(&text, 0, word) || !split_value(word, &has_cull, &cull) || !is_one_of(word, methods, 4))
         return error_set(err, ERROR_RANGE, "--volume is ray, slices, mip or average, perhaps with =VALUE");
-    cJSON *image = member(patch, "image"), *volume = member(image, "volume");
+    cJSON *image = render_member(patch, "image"), *volume = render_member(image, "volume");
     cJSON_AddTrueToObject(volume, "visible");
     cJSON_AddStringToObject(volume, "method", word);
     if (has_cull)
@@ -121,21 +94,6 @@ static bool add_volume(const char *text, const cJSON *scene, cJSON *patch, struc
                                                   cJSON_GetObjectItemCaseSensitive(scene, "image"), "cull_below"),
                                               true));
     return true;
-}
-
-/* Takes "X,Y,Z" off the text, up to its end or the separator. */
-static bool next_point(const char **text, char separator, double point[3])
-{
-    char word[WORD_SIZE];
-    const char *at = word;
-    if (!next_word(text, separator, word))
-        return false;
-    for (int i = 0; i < 3; i++) {
-        char number[WORD_SIZE];
-        if (!next_word(&at, ',', number) || !parse_number(number, &point[i]))
-            return false;
-    }
-    return *at == 0;
 }
 
 /* Where the three slices meet. */
@@ -152,16 +110,16 @@ static bool add_plane(const char *text, const cJSON *scene, cJSON *patch, struct
 {
     double normal[3], point[3];
     const char *at = text;
-    bool is_good = next_point(&at, '@', normal);
+    bool is_good = render_next_point(&at, '@', normal);
     if (is_good && *at)
-        is_good = next_point(&at, '@', point) && *at == 0;
+        is_good = render_next_point(&at, '@', point) && *at == 0;
     else
         read_crosshair(scene, point);
     if (!is_good || (normal[0] == 0 && normal[1] == 0 && normal[2] == 0))
         return error_set(err, ERROR_RANGE,
                          "--plane '%s' is not a direction X,Y,Z in the patient, perhaps with a point @X,Y,Z in mm",
                          text);
-    cJSON *plane = member(member(member(patch, "image"), "obliques"), RENDER_SHOW_PLANE);
+    cJSON *plane = render_member(render_member(render_member(patch, "image"), "obliques"), RENDER_SHOW_PLANE);
     cJSON_AddTrueToObject(plane, "visible");
     cJSON_AddItemToObject(plane, "normal", cJSON_CreateDoubleArray(normal, 3));
     cJSON_AddItemToObject(plane, "origin_mm", cJSON_CreateDoubleArray(point, 3));
@@ -170,20 +128,25 @@ static bool add_plane(const char *text, const cJSON *scene, cJSON *patch, struct
 
 static bool add_clip(const char *text, bool is_capped, cJSON *patch, struct error *err)
 {
-    static const char *const planes[] = { "axial-low",    "axial-high",   "coronal-low",
-                                          "coronal-high", "sagittal-low", "sagittal-high" };
-    char word[WORD_SIZE];
+    static const char *const planes[] = { "axial-low",    "axial-high",    "coronal-low", "coronal-high",
+                                          "sagittal-low", "sagittal-high", "beam" };
+    char word[RENDER_WORD_SIZE];
     bool has_position;
     double position_mm;
     const char *at = text;
-    if (!next_word(&at, 0, word) || !split_value(word, &has_position, &position_mm) || !has_position ||
+    if (!render_next_word(&at, 0, word) || !split_value(word, &has_position, &position_mm) || !has_position ||
         !is_one_of(word, planes, sizeof planes / sizeof planes[0]))
         return error_set(err, ERROR_RANGE,
-                         "--clip '%s' is not axial-low=MM, axial-high=MM or the same with coronal or sagittal", text);
-    *strchr(word, '-') = '_';
-    cJSON *plane = member(member(patch, "clip"), word);
-    cJSON_DeleteItemFromObjectCaseSensitive(plane, "position_mm"); /* named twice: the last one counts */
-    cJSON_AddNumberToObject(plane, "position_mm", position_mm);
+                         "--clip '%s' is not axial-low=MM, axial-high=MM or the same with coronal or sagittal, or "
+                         "beam=MM",
+                         text);
+    const char *position = strcmp(word, "beam") == 0 ? "along_mm" : "position_mm";
+    char *hyphen = strchr(word, '-');
+    if (hyphen)
+        *hyphen = '_';
+    cJSON *plane = render_member(render_member(patch, "clip"), word);
+    cJSON_DeleteItemFromObjectCaseSensitive(plane, position); /* named twice: the last one counts */
+    cJSON_AddNumberToObject(plane, position, position_mm);
     if (!cJSON_GetObjectItemCaseSensitive(plane, "enabled")) {
         cJSON_AddTrueToObject(plane, "enabled");
         cJSON_AddBoolToObject(plane, "cap", is_capped);
@@ -193,12 +156,12 @@ static bool add_clip(const char *text, bool is_capped, cJSON *patch, struct erro
 
 static bool add_window(const char *text, cJSON *patch, struct error *err)
 {
-    char word[WORD_SIZE];
+    char word[RENDER_WORD_SIZE];
     double center, width;
     const char *at = text;
-    if (!next_word(&at, '/', word) || !parse_number(word, &center) || !parse_number(at, &width))
+    if (!render_next_word(&at, '/', word) || !render_number(word, &center) || !render_number(at, &width))
         return error_set(err, ERROR_RANGE, "--window '%s' is not of the form 40/400", text);
-    cJSON *window = member(member(patch, "image"), "window");
+    cJSON *window = render_member(render_member(patch, "image"), "window");
     cJSON_AddNumberToObject(window, "center", center);
     cJSON_AddNumberToObject(window, "width", width);
     return true;

@@ -4,12 +4,12 @@
 #include "core/base/error.h"
 #include "server/wire/json.h"
 
-enum { RENDER_SHOW_MAX_CLIPS = 6 };
+enum { RENDER_SHOW_MAX_CLIPS = 7 };
 #define RENDER_SHOW_PLANE "plane" /* id of the scene's oblique plane that `plane` makes */
 
 /* Borrowed words of the command line. All zero: nothing differs from the scene. */
 struct render_show {
-    const char *regions;                      /* "ID,ID,...": these alone, opaque; "none" */
+    const char *regions;                      /* "ID[=OPACITY],...": these alone, else opaque; "none" */
     const char *slices;                       /* "KIND[=MM],...": these slices alone; "none" */
     const char *volume;                       /* "METHOD[=VALUE]" */
     const char *window;                       /* "CENTRE/WIDTH" */

@@ -1,6 +1,8 @@
 /* Sends queries of calls to renderers and answers the calls. */
 #include "server/http/api_queries.h"
 
+#include <stdio.h>
+
 bool api_find_plan(struct api *api, struct call *call, struct fleet_plan *plan)
 {
     if (fleet_plan_find(net_fleet(api->net), call->ids[0], plan))
@@ -20,12 +22,43 @@ void api_query_send(struct api *api, struct call *call, const char *plan_id, str
         reply(call, NULL, &problem);
 }
 
+/* The media type is chosen here and not by the renderer, which is not trusted. PLY has no registered type. */
+static const char *media_type(enum mesh_format format)
+{
+    return format == MESH_STL ? "model/stl" : format == MESH_GLB ? "model/gltf-binary" : "application/octet-stream";
+}
+
+void api_mesh_answer(struct call *call, struct packet *answer, const char *name, enum mesh_format format)
+{
+    struct problem broken;
+    if (!answer->blob) {
+        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no surface");
+        call_answer_problem(call, &broken);
+        return;
+    }
+    char disposition[256]; /* ids need no quoting */
+    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%s.%s\"", name, mesh_format_word(format));
+    call_add_header(call, "Content-Disposition", disposition);
+    uint8_t *bytes = answer->blob;
+    answer->blob = NULL;
+    call_answer_bytes(call, 200, media_type(format), bytes, answer->n_blob);
+}
+
 void api_query_answer(void *context, struct packet *answer, const struct problem *problem)
 {
     struct call *call = context;
+    const cJSON *table = answer ? cJSON_GetObjectItemCaseSensitive(answer->answer.body, ANSWER_CSV) : NULL;
+    const cJSON *mesh = answer ? cJSON_GetObjectItemCaseSensitive(answer->answer.body, ANSWER_MESH) : NULL;
+    enum mesh_format format;
     if (problem)
         call_answer_problem(call, problem);
-    else
+    else if (cJSON_IsString(table))
+        call_answer_text(call, 200, "text/csv; charset=utf-8", table->valuestring);
+    else if (cJSON_IsString(mesh) && mesh_format_from_word(mesh->valuestring, &format)) {
+        char name[192];
+        (void)snprintf(name, sizeof name, "%.63s-%.63s", call->ids[0], call->ids[1]);
+        api_mesh_answer(call, answer, name, format);
+    } else
         call_answer_json(call, 200, packet_take_document(answer, answer->answer.body));
 }
 

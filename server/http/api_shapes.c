@@ -12,12 +12,6 @@
 
 enum { TIMED_PX = 650 }; /* the window in which Sera3d's frame rates were taken */
 
-/* The media type is chosen here and not by the renderer, which is not trusted. PLY has no registered type. */
-static const char *media_type(enum mesh_format format)
-{
-    return format == MESH_STL ? "model/stl" : format == MESH_GLB ? "model/gltf-binary" : "application/octet-stream";
-}
-
 /* A call for a shape that is not answered yet. */
 struct shape_call {
     char plan_id[64], region[64];
@@ -46,21 +40,11 @@ static void refuse(struct call *call, struct shape_call *request, const struct p
 
 static void file_came(struct call *call, struct shape_call *request, struct packet *answer)
 {
-    struct problem broken;
-    if (!answer->blob) {
-        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no surface");
-        refuse(call, request, &broken);
-        return;
-    }
-    char disposition[192]; /* ids need no quoting */
-    (void)snprintf(disposition, sizeof disposition, "attachment; filename=\"%.63s-%.63s.%s\"", request->plan_id,
-                   request->region, mesh_format_word(request->query.format));
-    call_add_header(call, "Content-Disposition", disposition);
-    uint8_t *bytes = answer->blob;
-    answer->blob = NULL;
-    const char *type = media_type(request->query.format);
+    char name[192];
+    (void)snprintf(name, sizeof name, "%.63s-%.63s", request->plan_id, request->region);
+    enum mesh_format format = request->query.format;
     shape_call_destroy(call->api, request);
-    call_answer_bytes(call, 200, type, bytes, answer->n_blob);
+    api_mesh_answer(call, answer, name, format);
 }
 
 /* ---- frames per second ------------------------------------------------------------------------------------------ */

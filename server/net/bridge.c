@@ -121,6 +121,7 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
     render->full_color = request->full_color;
     render->detail = request->coarse ? PACKET_DETAIL_COARSE : PACKET_DETAIL_FULL;
     render->still = request->is_still;
+    render->acted = request->is_acted;
 
     struct picture_request *sent = mem_new(sizeof *sent);
     *sent = (struct picture_request){ .next = entry->requests,

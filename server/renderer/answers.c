@@ -146,7 +146,22 @@ cJSON *answer_probe(struct question *question, struct derive *derived, struct pr
     return json;
 }
 
-/* {hits: [{point_lps_mm, region: id | null, distance_mm, alpha, cap, seen}]}, front to back; one is seen */
+/* The planned beam of a hit, and whether its draft was hit; a draft in a plan without beams has the id "". */
+static void add_beam(cJSON *json, const struct snapshot *snapshot, struct subject subject)
+{
+    bool is_beam = subject.kind == SUBJECT_BEAM, is_draft = is_beam && subject.key;
+    if (is_draft)
+        subject = (struct subject){ SUBJECT_BEAM, snapshot->beam.beam < 0 ? 0 : (size_t)snapshot->beam.beam,
+                                    snapshot->beam.beam < 0 };
+    if (is_beam)
+        cJSON_AddStringToObject(json, "beam", subject_id(snapshot->plan, subject));
+    else
+        cJSON_AddNullToObject(json, "beam");
+    cJSON_AddBoolToObject(json, "draft", is_draft);
+}
+
+/* {hits: [{point_lps_mm, region: id | null, level: id | null, beam: id | null, draft, distance_mm, alpha, cap, seen}]},
+ * front to back; one is seen */
 cJSON *answer_pick(struct question *question, struct derive *derived, struct problem *problem)
 {
     const struct snapshot *snapshot = question->snapshot;
@@ -170,6 +185,11 @@ cJSON *answer_pick(struct question *question, struct derive *derived, struct pro
             cJSON_AddStringToObject(hit, "region", subject_id(plan, hits[i].subject));
         else
             cJSON_AddNullToObject(hit, "region");
+        if (hits[i].subject.kind == SUBJECT_ISODOSE)
+            cJSON_AddStringToObject(hit, "level", snapshot->scene.dose.levels[hits[i].subject.index].id);
+        else
+            cJSON_AddNullToObject(hit, "level");
+        add_beam(hit, snapshot, hits[i].subject);
         add_number(hit, "distance_mm", hits[i].distance_mm);
         add_number(hit, "alpha", hits[i].alpha);
         cJSON_AddBoolToObject(hit, "cap", hits[i].is_on_cap);

@@ -154,6 +154,7 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
     struct pipeline_request drawn = {
         .id = (uint64_t)render->id,
         .source = source_number(render->source),
+        .is_acted = render->acted,
         .snapshot = snapshot,
         .render = { width > 1 ? width : 1, height > 1 ? height : 1, is_coarse ? SURFACE_COARSE : SURFACE_FULL,
                     render->still },

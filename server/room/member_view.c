@@ -243,6 +243,7 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
     if (cJSON_GetObjectItemCaseSensitive(patch->patch, "size_px"))
         read_size(document, view->size_px);
     write_size(document, view->size_px);
+    stream->acted_us = room->now_us;
     if (!view->is_following) {
         (void)stream_set_view(room, stream, document);
     } else if (views_are_alike(document, stream->view)) {

@@ -11,7 +11,10 @@ static const double least_height_mm = 0.1, largest_height_mm = 10000; /* of came
 static bool is_parallel(const cJSON *view, const cJSON *camera)
 {
     const char *kind = json_text(view, "kind"), *projection = json_text(camera, "projection");
-    return (kind && strcmp(kind, "3d") != 0) || (projection && strcmp(projection, "parallel") == 0);
+    bool is_of_beam = kind && strcmp(kind, "beam") == 0, is_in_space = !kind || is_of_beam || strcmp(kind, "3d") == 0;
+    const cJSON *beam = cJSON_GetObjectItemCaseSensitive(view, "beam");
+    bool has_ring = is_of_beam && cJSON_IsNumber(cJSON_GetObjectItemCaseSensitive(beam, "aperture_mm"));
+    return !is_in_space || has_ring || (projection && strcmp(projection, "parallel") == 0);
 }
 
 static int smaller_side(const cJSON *view)
@@ -43,11 +46,11 @@ static cJSON *object_in(cJSON *override, const char *name)
     return present ? present : cJSON_AddObjectToObject(override, name);
 }
 
-static bool set_position(cJSON *slice, double mm)
+static bool set_position(cJSON *slice, const char *name, double mm)
 {
-    cJSON *present = cJSON_GetObjectItemCaseSensitive(slice, "position_mm");
+    cJSON *present = cJSON_GetObjectItemCaseSensitive(slice, name);
     if (!present)
-        return cJSON_AddNumberToObject(slice, "position_mm", mm) != NULL;
+        return cJSON_AddNumberToObject(slice, name, mm) != NULL;
     cJSON_SetNumberValue(present, mm);
     return true;
 }
@@ -62,10 +65,22 @@ static bool set_slices(cJSON *view, const cJSON *scene)
     for (size_t i = 0; slices && i < sizeof names / sizeof names[0]; i++) {
         double mm = json_number(cJSON_GetObjectItemCaseSensitive(shown, names[i]), "position_mm", 0);
         cJSON *slice = object_in(slices, names[i]);
-        if (!slice || !set_position(slice, mm))
+        if (!slice || !set_position(slice, "position_mm", mm))
             return false;
     }
     return slices != NULL;
+}
+
+/* Keeps the beam slice where it is. */
+static bool set_beam_slice(cJSON *view, const cJSON *scene)
+{
+    const cJSON *beam = cJSON_GetObjectItemCaseSensitive(scene, "beam"),
+                *shown = cJSON_GetObjectItemCaseSensitive(beam, "slice");
+    if (!shown)
+        return true;
+    cJSON *override = object_in(view, "override"), *own_beam = override ? object_in(override, "beam") : NULL,
+          *slice = own_beam ? object_in(own_beam, "slice") : NULL;
+    return slice && set_position(slice, "along_mm", json_number(shown, "along_mm", 0));
 }
 
 /* Keeps the plane of an oblique view where it is; a plane that the scene does not have stays the axial slice. */
@@ -97,7 +112,7 @@ cJSON *own_view(const cJSON *shared, const cJSON *scene, const int size_px[2], s
     cJSON *view = cJSON_Duplicate(shared, true);
     if (view)
         set_size(view, size_px);
-    if (view && (!scene || (set_slices(view, scene) && set_oblique(view, scene))))
+    if (view && (!scene || (set_slices(view, scene) && set_beam_slice(view, scene) && set_oblique(view, scene))))
         return view;
     cJSON_Delete(view);
     (void)json_no_memory(problem, "a view");

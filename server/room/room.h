@@ -26,6 +26,7 @@ struct room_render {
     uint32_t scene_revision;
     int scale_percent, quality;
     bool is_still, full_color, coarse; /* coarse: coarse surfaces are good enough */
+    bool is_acted;                     /* of the view in which a member acts: its pictures go first */
     const char *member;                /* id of the member whose own view it is; NULL: a shared view */
 };
 

@@ -35,6 +35,7 @@ struct stream {
     uint64_t refused_version;    /* newest version that cannot be drawn; 0: none */
     struct problem refusal;      /* why it cannot */
     int64_t changed_us;          /* when version last went up */
+    int64_t acted_us;            /* when a member last acted in a view of it; 0: never */
     int64_t retry_us;            /* nothing is requested before */
     int n_failed;                /* pictures that failed in a row */
     struct request requests[2];

@@ -50,5 +50,9 @@ bool member_scene_patch(struct room *room, struct member *member, const struct m
 {
     if (!member_presents(room, member))
         return refuse_not_presenter(room, problem, "change the scene");
-    return scene_apply_patch(room, message->scene_patch.patch, member, (uint32_t)message->scene_patch.input, problem);
+    const struct message_scene_patch *patch = &message->scene_patch;
+    struct stream *acted = patch->view > 0 ? member->views[patch->view - 1].stream : NULL;
+    if (acted)
+        acted->acted_us = room->now_us;
+    return scene_apply_patch(room, patch->patch, member, (uint32_t)patch->input, problem);
 }

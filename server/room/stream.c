@@ -13,6 +13,8 @@
 
 enum { STILL_QUALITY = 92 };
 static const int64_t still_after_us = ROOM_STILL_AFTER_MS * INT64_C(1000);
+/* A drag sends changes all the time; after a pause of this length it is over. */
+static const int64_t acted_for_us = 500000;
 
 /* ---- streams ---------------------------------------------------------------------------------------------------- */
 
@@ -308,6 +310,7 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
                                   .is_still = is_still,
                                   .full_color = is_still,
                                   .coarse = choice.coarse,
+                                  .is_acted = stream->acted_us > 0 && room->now_us - stream->acted_us < acted_for_us,
                                   .member = owner_of(room, stream) };
     room->counters.pictures_requested++;
     room->callbacks.render(room->callbacks.context, room, &render);

@@ -88,6 +88,11 @@ NODISCARD uint8_t *packet_encode(const struct packet *packet, const uint8_t *blo
  * with PROBLEM_VALIDATION (pointer names the field) or PROBLEM_LIMIT. */
 NODISCARD bool packet_from_json(cJSON *json, enum packet_direction direction, size_t n_blob, struct packet *packet,
                                 struct problem *problem);
+/* The only member of an answer's body that is sent as text/csv instead of JSON: a string with the whole table. */
+#define ANSWER_CSV "text/csv"
+/* The member of an answer's body that says in which format the blob beside it is, a word of mesh_export.h. */
+#define ANSWER_MESH "mesh"
+
 /* Takes a document out of a packet that was read: the caller's to delete. NULL when document is NULL. */
 NODISCARD cJSON *packet_take_document(struct packet *packet, const cJSON *document);
 void packet_finish(struct packet *packet);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/plan/dose_fit.h"
 #include "core/region/target.h"
 #include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
@@ -138,8 +139,10 @@ static cJSON *known(double value)
     return value > 0 ? number(value) : cJSON_CreateNull();
 }
 
-static cJSON *dose_object(const struct dose *dose)
+static cJSON *dose_object(const struct plan *plan, size_t index)
 {
+    const struct dose *dose = &plan->doses[index];
+    char why[DOSE_FIT_WHY_SIZE];
     cJSON *object = cJSON_CreateObject(), *components = cJSON_CreateArray();
     json_add(object, "id", cJSON_CreateString(dose->id));
     json_add(object, "name", cJSON_CreateString(dose->name));
@@ -147,6 +150,8 @@ static cJSON *dose_object(const struct dose *dose)
     json_add(object, "per", cJSON_CreateString(dose->per));
     json_add(object, "frame_of_reference",
              dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
+    json_add(object, "fit", cJSON_CreateString(dose_fit_word(dose_fit_of(plan, index, why))));
+    json_add(object, "fit_reason", cJSON_CreateString(why));
     json_add(object, "masked", cJSON_CreateBool(dose->mask != NULL));
     for (size_t i = 0; i < dose->n_components; i++) {
         const struct dose_component *component = &dose->components[i];
@@ -175,6 +180,26 @@ static cJSON *span(const double edges[2])
     return cJSON_CreateDoubleArray(edges, 2);
 }
 
+cJSON *beam_outline_object(const struct beam_outline *outline)
+{
+    if (outline->n_polygons == 0)
+        return cJSON_CreateNull();
+    cJSON *object = cJSON_CreateObject(), *polygons = cJSON_CreateArray();
+    json_add(object, "kind", cJSON_CreateString(beam_outline_word(outline->kind)));
+    for (size_t i = 0; i < outline->n_polygons; i++) {
+        cJSON *polygon = cJSON_CreateArray();
+        for (size_t at = beam_outline_begin(outline, i); at < outline->ends[i]; at++) {
+            double xy[2];
+            for (int axis = 0; axis < 2; axis++) /* to 0.1 um: a float's digits beyond are no part of the file */
+                xy[axis] = round((double)outline->points_mm[at][axis] * 1e4) / 1e4;
+            json_append(polygon, cJSON_CreateDoubleArray(xy, 2));
+        }
+        json_append(polygons, polygon);
+    }
+    json_add(object, "polygons_mm", polygons);
+    return object;
+}
+
 static cJSON *delivery_object(const struct beam_delivery *delivery)
 {
     cJSON *object = cJSON_CreateObject();
@@ -195,6 +220,7 @@ static cJSON *delivery_object(const struct beam_delivery *delivery)
     json_add(object, "opening_x_mm", span(delivery->opening_x_mm));
     json_add(object, "opening_y_mm", span(delivery->opening_y_mm));
     json_add(object, "opening_cm2", number(delivery->opening_cm2));
+    json_add(object, "outline", beam_outline_object(&delivery->outline));
     json_add(object, "control_points", number((double)delivery->n_control_points));
     json_add(object, "dose_gy", number(delivery->dose_gy));
     json_add(object, "meterset", number(delivery->meterset));
@@ -215,13 +241,50 @@ static cJSON *beam_object(const struct beam *beam)
     return object;
 }
 
+static cJSON *color_text(const uint8_t rgb[3])
+{
+    char color[8];
+    (void)snprintf(color, sizeof color, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    return cJSON_CreateString(color);
+}
+
+static cJSON *track_color(enum track_class class)
+{
+    uint32_t rgb = track_class_look(class).color_rgb;
+    const uint8_t bytes[3] = { (uint8_t)(rgb >> 16), (uint8_t)(rgb >> 8), (uint8_t)rgb };
+    return color_text(bytes);
+}
+
+static cJSON *track_looks(const struct track_set *tracks)
+{
+    cJSON *looks = cJSON_CreateArray();
+    for (int class = 0; class < TRACK_N_CLASSES; class ++) {
+        if (tracks->n_of_class[class] == 0)
+            continue;
+        const struct track_look look = track_class_look((enum track_class) class);
+        const double dash_px[2] = { look.on_px, look.off_px };
+        cJSON *object = cJSON_CreateObject();
+        json_add(object, "class", cJSON_CreateString(track_class_word((enum track_class) class)));
+        json_add(object, "color", track_color((enum track_class) class));
+        json_add(object, "dash_px", look.off_px > 0 ? cJSON_CreateDoubleArray(dash_px, 2) : cJSON_CreateNull());
+        json_add(object, "has_cross", cJSON_CreateBool(look.has_cross));
+        json_append(looks, object);
+    }
+    return looks;
+}
+
 static cJSON *tracks_object(const struct track_set *tracks)
 {
-    cJSON *object = cJSON_CreateObject(), *classes = cJSON_CreateObject();
+    cJSON *object = cJSON_CreateObject(), *classes = cJSON_CreateObject(), *colors = cJSON_CreateObject();
     json_add(object, "segments", number((double)tracks->n_segments));
-    for (int class = 0; class < TRACK_N_CLASSES; class ++)
-        json_add(classes, track_class_word((enum track_class) class), number((double)tracks->n_of_class[class]));
+    for (int class = 0; class < TRACK_N_CLASSES; class ++) {
+        const char *word = track_class_word((enum track_class) class);
+        json_add(classes, word, number((double)tracks->n_of_class[class]));
+        json_add(colors, word, track_color((enum track_class) class));
+    }
     json_add(object, "classes", classes);
+    json_add(object, "looks", track_looks(tracks));
+    json_add(object, "colors", colors);
     return object;
 }
 
@@ -251,13 +314,6 @@ static cJSON *curve_object(const struct dose_curve *curve)
     }
     json_add(object, "quantities", quantities);
     return object;
-}
-
-static cJSON *color_text(const uint8_t rgb[3])
-{
-    char color[8];
-    snprintf(color, sizeof color, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-    return cJSON_CreateString(color);
 }
 
 static cJSON *preferences_object(const struct plan_preferences *preferences)
@@ -317,7 +373,7 @@ static cJSON *write_plan(const struct plan *plan)
     for (size_t i = 0; i < plan->regions.n_regions; i++)
         json_append(regions, region_object(&plan->regions, i));
     for (size_t i = 0; i < plan->n_doses; i++)
-        json_append(doses, dose_object(&plan->doses[i]));
+        json_append(doses, dose_object(plan, i));
     for (size_t i = 0; i < plan->n_beams; i++)
         json_append(beams, beam_object(&plan->beams[i]));
     json_add(object, "id", cJSON_CreateString(plan->id));

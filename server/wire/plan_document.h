@@ -6,7 +6,8 @@
  *   id, name, note, is_phantom,
  *   load_ms,
  *   bounds_mm: box | null,
- *   home: {"3d": camera, axial, coronal, sagittal, oblique},  of views without a camera; each as the camera of a view
+ *   home: {"3d": camera, axial, coronal, sagittal, oblique, beam, "beam-slice"},  of views without a camera; each
+ *     as the camera of a view; of beam, place and direction do not count
  *   images: [ {id, name, modality, unit, grid, low, high, window: {center, width}, is_inverted} ],
  *   regions: [ {
  *     id, name, is_target, color: "#rrggbb", color_from_file, parent: id | null, depth,
@@ -18,6 +19,7 @@
  *   doses: [ {
  *     id, name, unit, per, masked,
  *     frame_of_reference: "same" | "unknown" | "differs" | null,  DICOM: compared with the image's; null: no DICOM
+ *     fit: "same" | "unknown" | "differs" | "apart", fit_reason,  core/plan/dose_fit.h
  *     components: [ {
  *       quantity, unit, per_ppm, grid, low, high,
  *       boron_ppm,  boron in blood that a total includes; null: not known
@@ -25,7 +27,10 @@
  *     } ]
  *   } ],
  *   beams: [ {id, name, entry_mm, target_mm, aperture_mm | null, delivery: {number, radiation, machine, ...} | null} ],
- *   tracks: {segments, classes: {"neutron-high": n, ...}},
+ *   tracks: {
+ *     segments, classes: {"neutron-high": n, ...},
+ *     looks: [ {class, color: "#rrggbb", dash_px: [on, off] | null, has_cross} ]  of the classes with segments
+ *   },
  *   curves: [ {  reference curves along a beam
  *     id, name, unit, per, depth_mm: [low, high], radius_mm: [low, high],
  *     quantities: [ {quantity, unit, per_ppm, peak, peak_depth_mm} ]  peaks on the axis
@@ -45,3 +50,5 @@
 
 /* A new object, for cJSON_Delete. NULL: no memory. */
 NODISCARD cJSON *plan_document(const struct plan *plan);
+/* {kind: "jaws" | "leaves" | "blocks", polygons_mm: [[[x, y], ...], ...]} along the collimator axes; null for none. */
+cJSON *beam_outline_object(const struct beam_outline *outline);

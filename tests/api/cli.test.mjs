@@ -5,6 +5,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'no
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
+import { inflateSync } from 'node:zlib';
 import { web } from './daemon.mjs';
 import { parseStrict } from './strict_json.mjs';
 
@@ -60,9 +61,18 @@ describe('beamroom', () => {
       [['render', plan, '-o', 'x.jpg', '--quality', '101'], /--quality '101'/],
       [['render', plan, '-o', 'x.jpg', '--gl', 'metal'], /--gl 'metal'/],
       [['render', plan, '-o', 'x.jpg', '--show', ''], /--show ''/],
+      [['render', plan, '-o', 'x.jpg', '--show', 'brain=half'], /--show 'brain=half'/],
       [['render', plan, '-o', 'x.jpg', '--slices', 'axial=top'], /--slices 'axial=top'/],
       [['render', plan, '-o', 'x.jpg', '--volume', 'slices='], /--volume is ray/],
       [['render', plan, '-o', 'x.jpg', '--clip', 'axial=3'], /--clip 'axial=3'/],
+      [['render', plan, '-o', 'x.jpg', '--clip', 'beam'], /--clip 'beam'/],
+      [['render', plan, '-o', 'x.jpg', '--draft', '1,2,3'], /--draft '1,2,3' is not ENTRY:TARGET/],
+      [['render', plan, '-o', 'x.jpg', '--draft', '1,2,3:1,2,3'], /--draft '1,2,3:1,2,3' is not/],
+      [['render', plan, '-o', 'x.jpg', '--beam-slice', 'skin'], /--beam-slice 'skin' is not a number/],
+      [['render', plan, '-o', 'x.jpg', '--tracks=lost,electron'], /--tracks 'lost,electron' is not some of neutron/],
+      [['render', plan, '-o', 'x.jpg', '--ring', 'wide'], /--ring 'wide' is not a diameter/],
+      [['render', plan, '-o', 'x.jpg', '--along', 'mid'], /--along 'mid' is not a number/],
+      [['render', plan, '-o', 'x.jpg', '--ring', '40', '--kind', 'axial'], /--ring is of the beam's-eye view, and --kind is axial/],
       [['render', plan, '-o', 'x.jpg', '--window', '40'], /--window '40'/],
       [['render', plan, '-o', 'x.jpg', '--from', '0,91'], /--from '0,91'/],
     ]) {
@@ -147,7 +157,7 @@ describe('beamroom info', () => {
     assert.deepEqual(info.regions.map(({ id, parent }) => [id, parent]),
       [['scalp', null], ['cranium', 'scalp'], ['brain', 'cranium'], ['target', 'brain'], ['tumour', 'target']]);
     assert.equal(info.hierarchy, 'file');
-    assert.deepEqual(Object.keys(info.home), ['3d', 'axial', 'coronal', 'sagittal', 'oblique']);
+    assert.deepEqual(Object.keys(info.home), ['3d', 'axial', 'coronal', 'sagittal', 'oblique', 'beam', 'beam-slice']);
     const { position_mm: eye, target_mm: target, up } = info.home['3d'];
     assert.ok(eye[1] < -103 && up[2] === 1, 'from the front, the top up');
     near(Math.atan2(eye[0] - target[0], target[1] - eye[1]), Math.PI / 6, 1e-6); // 30 degrees towards the patient's left
@@ -274,13 +284,61 @@ describe('beamroom render', () => {
       ['--view', '{', /the JSON given: /],
       ['--show', 'brian', /\/regions\/brian: the plan has no region/],
       ['--clip', 'axial-high=1e9', /\/clip\/axial_high\/position_mm is 1e\+09, expected/],
+      ['--clip', 'beam=1e9', /\/clip\/beam\/along_mm is 1e\+09, expected/],
+      ['--beam=beam-2', /--beam.*: \/beam\/id: the plan has no beam "beam-2"/],
+      ['--kind', 'sideways', /\/kind is "sideways", expected one of/],
+      ['--ring', '-3', /\/beam\/aperture_mm is -3, expected/],
     ]) {
-      const { status, stderr } = beamroom('render', plan, '-o', out, option, value);
+      const { status, stderr } = beamroom('render', plan, '-o', out, ...(sentence ? [option, value] : [option]));
       assert.equal(status, 1, stderr);
-      assert.match(stderr, sentence);
+      assert.match(stderr, sentence ?? value);
     }
     assert.equal(beamroom('render', plan, '-o', out, '--view', join(folder, 'none.json')).status, 1);
     assert.ok(!existsSync(out));
+  });
+
+  // The beam of the phantom comes from S 88 down to S 10. What its options say is read back from the record in the PNG.
+  it('shows beams and tracks by short options', () => {
+    const record = (...options) => {
+      const out = join(folder, 'beam.png');
+      const { status, stderr } = beamroom('render', plan, '-o', out, '--size', '320x200', '--annotations', ...options);
+      assert.equal(status, 0, stderr);
+      const bytes = readFileSync(out);
+      const at = bytes.indexOf('iTXtbeamroom\0'); // after it: compressed, by deflate, no language, no translated keyword
+      return parseStrict(inflateSync(bytes.subarray(at + 17, at + 4 + bytes.readUInt32BE(at - 4))).toString());
+    };
+    const eye = record('--beam', '--ring', '100', '--along', '-20', '--tracks=neutron,lost');
+    assert.deepEqual([eye.view.kind, eye.view.beam.aperture_mm, eye.view.beam.along_mm], ['beam', 100, -20]);
+    assert.deepEqual([eye.scene.beam.id, eye.scene.beam.looks['beam-1'].visible, eye.scene.tracks.visible], ['beam-1', true, true]);
+    assert.deepEqual(Object.entries(eye.scene.tracks.classes).filter(([, isShown]) => isShown).map(([name]) => name),
+      ['neutron_high', 'neutron_medium', 'neutron_low', 'lost']);
+    const shown = record('--show', 'scalp=0.25,brain').scene.regions;
+    assert.deepEqual(['scalp', 'cranium', 'brain'].map((id) => [shown[id].visible, shown[id].opacity]), [[true, 0.25], [false, shown.cranium.opacity], [true, 1]]);
+    const slice = record('--kind', 'beam-slice', '--beam-slice', '30', '--clip', 'beam=20', '--tracks');
+    assert.equal(slice.view.kind, 'beam-slice');
+    assert.deepEqual(slice.scene.beam.slice, { visible: true, along_mm: 30 });
+    assert.deepEqual(slice.scene.clip.beam, { enabled: true, id: '', along_mm: 20, cap: true });
+    assert.ok(Object.values(slice.scene.tracks.classes).every((isShown) => isShown));
+    const { draft, looks } = record('--kind', '3d', '--draft', '0,-120,5:0,0,5').scene.beam;
+    assert.deepEqual([draft.enabled, draft.line.entry_mm, draft.line.target_mm], [true, [0, -120, 5], [0, 0, 5]]);
+    assert.deepEqual(looks, {});
+  });
+
+  it('refuses what is of a beam or of tracks in a plan without them, unless a draft is given', () => {
+    const bare = join(folder, 'bare');
+    assert.equal(beamroom('convert', plan, bare).status, 0);
+    const { beams, tracks, ...rest } = JSON.parse(readFileSync(join(bare, 'plan.json'), 'utf8'));
+    assert.ok(beams.length === 1 && tracks);
+    writeFileSync(join(bare, 'plan.json'), JSON.stringify(rest));
+    const refused = (...options) => beamroom('render', bare, '-o', join(folder, 'none.png'), '--size', '64x48', ...options);
+    for (const [option, ...value] of [['--beam'], ['--kind', 'beam'], ['--beam-slice', '3'], ['--clip', 'beam=3'], ['--ring', '30'], ['--along', '0']]) {
+      const { status, stderr } = refused(option, ...value);
+      assert.equal(status, 1);
+      assert.match(stderr, new RegExp(`${option}.*: the plan has no beams; --draft ENTRY:TARGET draws one`));
+    }
+    assert.match(refused('--tracks').stderr, /--tracks: the plan has no tracks/);
+    const drafted = refused('--kind', 'beam', '--draft', '0,0,120:0,0,0');
+    assert.equal(drafted.status, 0, drafted.stderr);
   });
 
   it('writes only the picture into the picture, whatever is closed, and says so when standard output is full', () => {

@@ -2,108 +2,13 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
-import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
 import { after, before, describe, test } from 'node:test';
 import { call, openPlan, sleep, startDaemon, until } from './daemon.mjs';
+import { FIRST, HOST, exchange, open, openEach, startWithPlan, statuses } from './plain_connection.mjs';
 import { Client } from './ws_client.mjs';
-
-const HOST = 'Host: localhost\r\n', FIRST = `GET /healthz HTTP/1.1\r\n${HOST}\r\n`;
-const statuses = (text) => [...text.matchAll(/HTTP\/1\.1 (\d{3}) [A-Z]/g)].map((found) => Number(found[1]));
-
-/** Opens a connection that sends bytes; ended resolves with how it ended: 'end' by the server, an error code, or 'open' after ms. */
-function open(url, bytes, { from = '127.0.0.1', ms = 15000 } = {}) {
-  const { hostname, port } = new URL(url);
-  const socket = connect({ host: hostname, port: Number(port), localAddress: from });
-  const connection = { socket, text: '' };
-  socket.setEncoding('latin1');
-  connection.answered = new Promise((done) => {
-    socket.on('data', (text) => {
-      connection.text += text;
-      if (statuses(connection.text).length) done();
-    });
-    socket.on('close', done);
-  });
-  connection.ended = new Promise((done) => {
-    const timer = setTimeout(() => { socket.destroy(); done('open'); }, ms);
-    socket.on('error', (error) => { clearTimeout(timer); done(error.code); });
-    socket.on('close', () => { clearTimeout(timer); done('end'); });
-  });
-  socket.write(bytes);
-  return connection;
-}
-
-/** Opens n connections by make and keeps them open, a few at a time, fewer than may wait for their request heads; the status of each. */
-async function openEach(n, make) {
-  const all = [];
-  while (all.length < n) {
-    const some = Array.from({ length: Math.min(20, n - all.length) }, (_, i) => make(all.length + i));
-    all.push(...some);
-    await Promise.all(some.map((c) => c.answered));
-  }
-  const list = all.map((c) => statuses(c.text)[0]);
-  return { list, n: (status) => list.filter((one) => one === status).length, drop: () => { for (const c of all) c.socket.destroy(); } };
-}
-
-/** Starts a daemon and waits until it has found its plan. */
-async function startWithPlan(args = []) {
-  const daemon = await startDaemon({ args: ['--stub', ...args] });
-  await until(() => call(`${daemon.url}/api/v1/plans/phantom`), (answer) => answer.status === 200);
-  return daemon;
-}
-
-/** Everything received until the server closes the connection; fails when it does not. */
-async function exchange(url, bytes, options) {
-  const connection = open(url, bytes, options);
-  assert.equal(await connection.ended, 'end', `how ${JSON.stringify(bytes.slice(0, 80))} ended, after ${connection.text.slice(0, 200)}`);
-  return connection.text;
-}
-
-describe('a burst of connections', () => {
-  let daemon, room, client, input = 0, moving;
-  const camera = (x) => ({ camera: { position_mm: [x, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } });
-  before(async () => {
-    daemon = await startWithPlan();
-    await openPlan(daemon.url, 'phantom');
-    room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
-    client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-    client.send({ type: 'hello', protocol: 2 });
-    await client.message('welcome');
-    client.send({ type: 'view.open', view: 1, document: { size_px: [64, 64] } });
-    await client.frame();
-    moving = setInterval(() => client.send({ type: 'view.patch', view: 1, input: ++input, patch: camera(input) }), 20);
-  });
-  after(async () => {
-    clearInterval(moving);
-    client?.cut();
-    await daemon?.stop();
-  });
-
-  test('of 2,000 from four addresses is served or refused, each of them; frames go on, and so do requests afterwards', { timeout: 180000 }, async () => {
-    const rounds = Number(process.env.BEAMROOM_BURSTS ?? 3);
-    for (let round = 0; round < rounds; round++) {
-      const n_frames = client.frames.length;
-      const all = Array.from({ length: 2000 }, (_, i) => open(daemon.url, `GET /healthz HTTP/1.1\r\n${HOST}\r\n`, { from: `127.0.1.${2 + i % 4}`, ms: 60000 }));
-      const answered = (c) => /^HTTP\/1\.1 (200|429) [^]*\r\n\r\n/.test(c.text);
-      await Promise.all(all.map((c) => Promise.race([c.ended, until(() => answered(c), Boolean, 60000)])));
-      const silent = all.filter((c) => !answered(c));
-      const n_ok = all.filter((c) => statuses(c.text)[0] === 200).length;
-      /* a connection that was closed before its head arrived gets no answer: the system's own queue is limited */
-      assert.ok(silent.every((c) => c.socket.destroyed), `round ${round}: ${silent.length} of 2,000 were neither answered nor closed`);
-      assert.ok(n_ok >= 200, `round ${round}: ${n_ok} were served`); /* 64 of each address may wait for their heads at once */
-      for (const c of all.filter((one) => statuses(one.text)[0] === 429)) assert.match(c.text, /application\/problem\+json[^]*Retry-After: \d/);
-      for (const c of all) c.socket.destroy();
-      await client.frame((f) => f.input > 0, n_frames + 1, 30000);
-      const healthy = await until(async () => (await call(`${daemon.url}/healthz`).catch(() => ({}))).status, (status) => status === 200, 30000);
-      assert.equal(healthy, 200, `after round ${round}`);
-    }
-    const after_ = client.frames.length;
-    await client.frame(() => true, after_ + 5, 30000);
-    assert.equal((await call(`${daemon.url}/api/v1/rooms/${room}`)).status, 200);
-  });
-});
 
 describe('WebSockets of one address', () => {
   let daemon;
@@ -310,7 +215,7 @@ describe('a condition', () => {
     });
 });
 
-describe('the process', () => {
+describe('the process', { concurrency: 4 }, () => { // each test waits for some seconds
   /** A socket like a service manager's, and the datagrams it received. */
   async function startManager() {
     const folder = mkdtempSync(join(tmpdir(), 'beamroom-notify-')), path = join(folder, 'notify');

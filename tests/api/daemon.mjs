@@ -4,6 +4,7 @@ import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { createInterface } from 'node:readline';
+import { inspect } from 'node:util';
 import { parseStrict } from './strict_json.mjs';
 
 export const bin = process.env.BEAMROOM_BIN ?? resolve('build/release');
@@ -43,12 +44,13 @@ export async function startDaemon({ plans = [demo], args = [], data: given, cwd,
 
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** Asks until the answer suits. Returns the last answer after a minute at most, as machines may be slow and busy. */
+/** Asks until the answer suits, and returns it. A minute is long, as machines may be slow and busy; then the wait itself fails. */
 export async function until(ask, suits, ms = 60000) {
   const end = Date.now() + ms;
   for (;;) {
     const answer = await ask();
-    if (suits(answer) || Date.now() > end) return answer;
+    if (suits(answer)) return answer;
+    if (Date.now() > end) throw new Error(`not within ${ms} ms: ${suits}; the last answer: ${inspect(answer, { depth: 4 })}`);
     await sleep(30);
   }
 }

@@ -88,6 +88,57 @@ describe('the figures of the thesis, by one command each', () => {
     assertArea(shown, ([r, , b]) => r > 2 * b && r > 40, scalp.front + markerBeyondScalp);
   });
 
+  // One level in one colour, opaque: its wash on a slice through S 50, its line around that, its surface above that
+  const level = (percent) => ['--tissue', 'brain', '--quantity', 'gamma', '--level', `${percent}=#00ff00`];
+  const isGreen = ([r, g, b]) => g > r + 60 && g > b + 60;
+  it('19: dose as colour on a slice, smaller for higher levels, and its line at its edge', () => {
+    const slice = ['--show', 'none', '--slices', 'axial=50'];
+    const [low, high] = [30, 60].map((percent) => picture(above, ...slice, ...level(percent), '--wash', 'bands=1'));
+    assert.ok(area(high, isGreen) > 100 && area(low, isGreen) > area(high, isGreen) + 500, `${area(low, isGreen)} ${area(high, isGreen)}`);
+    assert.ok(area(low, isDrawn) < 1.02 * area(picture(above, ...slice), isDrawn), 'nothing beside the slice');
+    // the dose is round about the beam, which comes from above at L 0, P 0: a line of 6 px, whose
+    // edges are soft, and the wash's circle
+    const line = picture(above, ...slice, ...level(30), '--lines', '--scene', '{"dose":{"lines":{"width_px":6}}}');
+    const radius = Math.sqrt(area(low, isGreen) / Math.PI);
+    const length = area(line, isGreen) / (6 / pixelsPerMm);
+    assert.ok(Math.abs(length - 2 * Math.PI * radius) < 0.2 * 2 * Math.PI * radius, `${length} mm of line around a circle of ${radius} mm`);
+  });
+
+  it('20: dose as colour on a surface leaves its outline as it is', () => {
+    const surface = ['--show', 'brain', '--slices', 'none'];
+    const plain = picture(front, ...surface), washed = picture(front, ...surface, ...level(30), '--wash', 'bands=1', '--texture', 'dose');
+    assert.equal(area(washed, isDrawn), area(plain, isDrawn));
+    assert.ok(area(plain, isGreen) === 0 && area(washed, isGreen) > 500);
+    // the beam comes from above: the dose is in the upper half
+    const { y } = centreOf(washed, isGreen);
+    assert.ok(y < 150, `${y}`);
+  });
+
+  it('21: isodose surfaces lie inside each other', () => {
+    const [low, high] = [30, 60].map((percent) => picture(front, '--show', 'none', '--slices', 'none', ...level(percent), '--isodoses', 'univels'));
+    assert.ok(area(high, isDrawn) > 100 && area(low, isDrawn) > area(high, isDrawn) + 500);
+    // to the sides and below; above, the dose's mask ends both
+    const edges = (shown) => {
+      const found = { left: 400, right: 0, bottom: 0 };
+      for (let y = 0; y < 300; y++)
+        for (let x = 0; x < 400; x++)
+          if (isDrawn(shown.at(x, y))) Object.assign(found, { left: Math.min(found.left, x), right: Math.max(found.right, x), bottom: y });
+      return found;
+    };
+    const [outer, inner] = [low, high].map(edges);
+    assert.ok(outer.left < inner.left && outer.right > inner.right && outer.bottom > inner.bottom, JSON.stringify([outer, inner]));
+  });
+
+  it('an option about dose that cannot be read, or names what the plan does not have, is refused with its name', () => {
+    const fails = (...options) => spawnSync(bin, ['render', plan, '-o', join(folder, 'none.png'), ...options], { encoding: 'utf8' }).stderr;
+    assert.match(fails('--level', 'hot'), /--level 'hot' is not a number/);
+    assert.match(fails('--wash', 'rainbow'), /--wash 'rainbow' is not bands or smooth/);
+    assert.match(fails('--reference', 'point=1,2'), /--reference 'point=1,2' is not/);
+    assert.match(fails('--ppm', 'many'), /--ppm 'many' is not a number/);
+    assert.match(fails('--dose', 'mine'), /dose/);
+    assert.match(fails('--accept-dose'), /--accept-dose needs --dose/);
+  });
+
   // Cut through the middle: from above, the rim of the ellipse at S 0, from the front half of the scalp.
   const cut = ['--show', 'scalp,brain', '--slices', 'none', '--clip', 'axial-high=0'];
   it('23: cut across, hollow', () => {
@@ -102,6 +153,40 @@ describe('the figures of the thesis, by one command each', () => {
     const shown = picture(above, ...cut);
     assertArea(shown, isGrey, scalp.above);
     assertArea(shown, isDrawn, scalp.above);
+  });
+
+  const isColoured = ([r, g, b]) => Math.max(r, g, b) > 60 && Math.max(r, g, b) - Math.min(r, g, b) > 40;
+  it('25: tracks, in the colours of their classes, most of them above, where the beam comes from', () => {
+    const all = picture(front, '--show', 'none', '--slices', 'none', '--tracks');
+    const neutrons = picture(front, '--show', 'none', '--slices', 'none', '--tracks=neutron');
+    const { n, y } = centreOf(all, isColoured);
+    assert.ok(n > centreOf(neutrons, isColoured).n + 100 && y < 150, `${n} pixels about the line ${y}`);
+  });
+
+  // The beam comes from above, S 88: its picture shows what one from above shows, turned, and no ring or cross lies beyond the scalp.
+  const eye = (more) => JSON.stringify({ camera: { height_mm: 240 }, beam: { crosshair: false, ...more } });
+  it('26 and 27: along the beam, in parallel projection with its ring', () => {
+    const shown = picture(eye(), '--show', 'scalp', '--slices', 'none', '--ring', '100');
+    assertArea(shown, isDrawn, scalp.above);
+    // the ring, white, is 50 mm off the middle; between its ticks, on the diagonals
+    const isWhite = ([r, g, b]) => Math.min(r, g, b) > 225;
+    for (const [dx, dy] of [[1, 1], [-1, 1], [1, -1], [-1, -1]]) {
+      const onWay = Array.from({ length: 400 }, (_, step) => 20 + step / 4);
+      const found = onWay.filter((px) => isWhite(shown.at(Math.floor(200 + dx * px * Math.SQRT1_2), Math.floor(150 + dy * px * Math.SQRT1_2))));
+      const middleMm = found.reduce((sum, px) => sum + px, 0) / found.length / pixelsPerMm;
+      assert.ok(Math.abs(middleMm - 50) < 0.8, `a ring ${middleMm} mm off the middle`); // a pixel
+    }
+    // a perspective camera close by sees less of it than one far away
+    const [near, far] = [0, -300].map((along) => area(picture(eye({ along_mm: along }), '--show', 'brain', '--slices', 'none', '--kind', 'beam'), isDrawn));
+    assert.ok(near > 1.5 * far, `${near} ${far}`);
+  });
+
+  it('28: cut across the beam, and the beam slice there', () => {
+    const across = ['--show', 'scalp,brain', '--slices', 'none', '--clip', 'beam=88'];
+    assertArea(picture(front, ...across), isDrawn, scalp.front / 2);
+    assertArea(picture(above, ...across, '--no-caps', '--beam-slice', '88'), isGrey, scalp.above + markerBeyondScalp);
+    const pane = picture(JSON.stringify({ camera: { height_mm: 240 } }), '--kind', 'beam-slice', '--show', 'none', '--beam-slice', '88', '--scene', '{"image":{"window":{"center":-500,"width":10}}}');
+    assertArea(pane, isDrawn, scalp.above + markerBeyondScalp);
   });
 
   it('a volume that is cut shows the image in the cut', () => {

@@ -352,6 +352,15 @@ describe('a plan', () => {
     for (const { alpha } of hits) assert.ok(alpha > 0 && alpha <= 1);
     const { hits: skin } = (await call(`${plan}/pick?view=${view}&px=200&py=200&prefer=scalp`)).json;
     assert.deepEqual(skin.map(({ seen }) => seen), hits.map((_, at) => at === 0), 'nothing is before the scalp');
+    assert.deepEqual(hits.map(({ beam, draft }) => [beam, draft]), hits.map(() => [null, false]), 'no beam is drawn');
+    const { beams: [beam] } = (await call(plan)).json;
+    const above = { size_px: [400, 400], camera: { position_mm: [0, -600, 0], target_mm: [beam.entry_mm[0], beam.entry_mm[1], beam.entry_mm[2] + 10], projection: 'parallel', height_mm: 100 } };
+    for (const [overlaid, expected] of [[{ looks: { [beam.id]: { visible: true } } }, [beam.id, false]], [{ draft: { enabled: true, line: { entry_mm: beam.entry_mm, target_mm: beam.target_mm } } }, [beam.id, true]]]) {
+      const drawn = encodeURIComponent(JSON.stringify({ ...above, override: { beam: overlaid } }));
+      const { hits: lines } = (await call(`${plan}/pick?view=${drawn}&px=202&py=200`)).json;
+      assert.equal(lines[0].region, null);
+      assert.ok(lines.some(({ beam: id, draft }) => id === expected[0] && draft === expected[1]), JSON.stringify(lines));
+    }
     assertProblem(await call(`${plan}/pick?view=${view}&px=200&py=200&prefer=liver`), 404, 'not-found', '/prefer');
     assertProblem(await call(`${plan}/pick?view=${view}&px=200`), 422, 'validation', '/py');
   });

@@ -112,6 +112,38 @@ try {
   tell('input to paint while dragging the crosshair, p50', quantile(times, 0.5), 'ms', `${times.length} inputs; at most 50 asked for`);
   tell('input to paint while dragging the crosshair, p95', quantile(times, 0.95), 'ms', 'at most 90 asked for');
 
+  // the same with the beam's eye in place of 3-D: regions transparent, tracks and a beam slice in it, and the beam's target is dragged
+  await page.getByRole('button', { name: 'Panes', exact: true }).click();
+  await page.locator('.beam-presets button', { hasText: "Beam's eye" }).click();
+  const more = { tracks: { visible: true }, beam: { slice: { visible: true, along_mm: 60 }, looks: { 'beam-1': { visible: true } } } };
+  if ((await call(`${daemon.url}/api/v1/rooms/${room.id}/scene`, 'PATCH', more, { 'If-Match': '*' })).status !== 200) throw new Error('no tracks');
+  await page.getByRole('button', { name: 'Move beam' }).click();
+  await until(stats, (s) => [7, 2, 3, 4].every((view) => s.badges[view] === 'full'));
+  const eye = await page.locator('#picture-7').boundingBox();
+  const [eyeX, eyeY] = [eye.x + eye.width / 2, eye.y + eye.height / 2];
+  await page.mouse.move(eyeX, eyeY);
+  await page.mouse.down();
+  const dragBeam = async (ms) => {
+    for (let step = 0, began = performance.now(); performance.now() - began < ms; step++) {
+      await page.mouse.move(eyeX + 60 * Math.sin(step / 19), eyeY + 60 * Math.sin(step / 23));
+      await sleep(12);
+    }
+  };
+  await dragBeam(1500); // the pace settles
+  await page.evaluate(() => globalThis.beamroom.clear());
+  const eyeFrom = (await stats()).frames_of[7];
+  const dragged = performance.now();
+  await dragBeam(dragSeconds * 1000);
+  const eyeSeconds = (performance.now() - dragged) / 1000;
+  const { input_to_paint_ms: eyeTimes, frames_of: { 7: eyeTo }, headers: { 7: eyeHeader } } = await stats();
+  await page.mouse.up();
+  const { beam } = (await call(`${daemon.url}/api/v1/rooms/${room.id}/scene`)).json;
+  if (!beam.draft.enabled) throw new Error('the beam was not moved');
+  const eyeNote = `four panes, the beam's eye ${Math.round(eye.width)} x ${Math.round(eye.height)} with ${eyeHeader.width_px} x ${eyeHeader.height_px}`;
+  tell('input to paint while dragging the beam in its beam\'s-eye view, p50', quantile(eyeTimes, 0.5), 'ms', `${eyeTimes.length} inputs, ${eyeNote}, 1000 tracks, a beam slice; at most 50 asked for`);
+  tell('input to paint while dragging the beam in its beam\'s-eye view, p95', quantile(eyeTimes, 0.95), 'ms', 'at most 90 asked for');
+  tell('pictures a second of the beam\'s-eye view while dragging the beam', (eyeTo - eyeFrom) / eyeSeconds, '1/s', `drawing one takes ${(eyeHeader.render_us / 1000).toFixed(1)} ms`);
+
   const renders = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)[1]);
   await sleep(1000);
   const before = await renders();

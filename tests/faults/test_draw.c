@@ -19,7 +19,34 @@ static struct plan *make_plan(void)
     struct plan *plan = ragged_plan();
     struct grid grid = ragged_grid();
     made_plan_add_image(plan, &grid, VOXEL_I16, grey);
+    struct dose *dose = &plan->doses[plan->n_doses++];
+    snprintf(dose->id, sizeof dose->id, "mc");
+    snprintf(dose->unit, sizeof dose->unit, "Gy");
+    for (int i = 0; i < 2; i++)
+        dose->components[dose->n_components++] = (struct dose_component){
+            .quantity = i ? DOSE_GAMMA : DOSE_BORON, .is_per_ppm = !i, .values = made_volume(&grid, VOXEL_F32, grey)
+        };
+    plan->beams[plan->n_beams++] =
+        (struct beam){ .id = "field", .entry_lps_mm = { 0, -40, 0 }, .target_lps_mm = { 0, 0, 0 }, .aperture_mm = 20 };
     return plan;
+}
+
+/* In the plan's box and across it, of all classes. */
+static void add_tracks(struct plan *plan)
+{
+    enum { N = 300 };
+    struct track_set *set = &plan->tracks;
+    set->segments = mem_new(N * sizeof *set->segments);
+    for (; set->n_segments < N; set->n_segments++) {
+        float at = (float)set->n_segments;
+        set->segments[set->n_segments] = (struct track_segment){
+            .from_lps_mm = { fmodf(at, 7), fmodf(at, 11), fmodf(at, 13) },
+            .to_lps_mm = { fmodf(at, 17) - 4, fmodf(at, 5), set->n_segments % 40 ? fmodf(at, 19) : 900 },
+            .class = (uint8_t)(set->n_segments % TRACK_N_CLASSES),
+            .energy_mev = NAN,
+        };
+        set->n_of_class[set->n_segments % TRACK_N_CLASSES]++;
+    }
 }
 
 static void add_shape(struct outcome *outcome, const struct shape *shape)
@@ -96,7 +123,10 @@ struct picture_case {
     enum scene_kind kind;
     enum scene_representation representation;
     bool is_checked;
-    bool is_cut; /* with caps, outlined */
+    bool is_cut;   /* with caps, outlined */
+    bool has_dose; /* in colours, lines and surfaces, and a region's coverage */
+    bool has_tracks;
+    bool has_beams; /* one and its draft, translucent apertures */
 };
 
 /* A picture that leaves a region out says which (visible_missing). */
@@ -124,6 +154,22 @@ static void draw(void *context, struct outcome *outcome)
         scene.clip.free.normal = vec3(1, -1, 1);
         scene.clip.cap.regions = scene.clip.cap.outlines = true;
     }
+    if (wanted->has_tracks) {
+        add_tracks(plan);
+        scene.tracks.visible = true;
+    }
+    if (wanted->has_dose) {
+        scene.dose.lines.visible = scene.dose.surfaces.visible = true;
+        scene.dose.wash.visible = wanted->kind == SCENE_KIND_3D; /* on a slice lines find the dose themselves */
+        for (size_t i = 0; i < scene.dose.n_levels; i++)
+            scene.dose.levels[i].value.surface = true;
+        scene.dose.coverage.visible = true;
+        scene.dose.coverage.has_low = true;
+        scene.dose.coverage.low = 50;
+        memcpy(scene.dose.coverage.region, scene.regions[0].id, sizeof scene.dose.coverage.region);
+    }
+    scene.beam.draft.enabled = wanted->has_beams;
+    scene.beam.draft.line.entry_mm = vec3(-40, 0, 5);
     struct view view = view_default;
     view.kind = wanted->kind;
     view.size_px[0] = 120;
@@ -172,7 +218,9 @@ done:
 static void walk_pictures(void)
 {
     for (int r = 0; r <= SCENE_REPRESENTATION_FAN; r++) {
-        struct picture_case wanted = { RENDER_SOFT, SCENE_KIND_3D, (enum scene_representation)r, false, false };
+        struct picture_case wanted = { .back_end = RENDER_SOFT,
+                                       .kind = SCENE_KIND_3D,
+                                       .representation = (enum scene_representation)r };
         char name[128];
         snprintf(name, sizeof name, "regions as %s are drawn and compressed",
                  region_representation_word((enum region_representation)r));
@@ -183,20 +231,61 @@ static void walk_pictures(void)
                                    .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
         walk_run(&walk);
     }
-    struct picture_case slice = { RENDER_SOFT, SCENE_KIND_AXIAL, SCENE_REPRESENTATION_SURFACE, false, false };
+    struct picture_case slice = { .back_end = RENDER_SOFT, .kind = SCENE_KIND_AXIAL };
     const struct walk walk = { .name = "a slice is drawn and compressed",
                                .run = draw,
                                .context = &slice,
                                .is_library_leaky = true,
                                .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
     walk_run(&walk);
-    struct picture_case cut = { RENDER_SOFT, SCENE_KIND_3D, SCENE_REPRESENTATION_SURFACE, false, true };
+    struct picture_case cut = { .back_end = RENDER_SOFT, .kind = SCENE_KIND_3D, .is_cut = true };
     const struct walk cut_walk = { .name = "regions that are cut and capped are drawn and compressed",
                                    .run = draw,
                                    .context = &cut,
                                    .is_library_leaky = true,
                                    .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
     walk_run(&cut_walk);
+    struct picture_case tracks = { .back_end = RENDER_SOFT,
+                                   .kind = SCENE_KIND_3D,
+                                   .representation = SCENE_REPRESENTATION_SURFACE,
+                                   .is_cut = true,
+                                   .has_tracks = true };
+    const struct walk tracks_walk = { .name = "tracks among regions that are cut are drawn and compressed",
+                                      .run = draw,
+                                      .context = &tracks,
+                                      .is_library_leaky = true,
+                                      .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
+    walk_run(&tracks_walk);
+    for (int in_space = 0; in_space < 2; in_space++) {
+        struct picture_case dose = { .back_end = RENDER_SOFT,
+                                     .kind = in_space ? SCENE_KIND_3D : SCENE_KIND_AXIAL,
+                                     .representation = SCENE_REPRESENTATION_SURFACE,
+                                     .has_dose = true };
+        const struct walk dose_walk = { .name = in_space ? "a dose in space is drawn and compressed"
+                                                         : "a dose on a slice is drawn and compressed",
+                                        .run = draw,
+                                        .context = &dose,
+                                        .is_library_leaky = true,
+                                        .kinds = { [FAULT_MEMORY] = true, [FAULT_START] = true } };
+        walk_run(&dose_walk);
+    }
+}
+
+static void walk_beams(void)
+{
+    for (int in_space = 0; in_space < 2; in_space++) {
+        struct picture_case beams = { .back_end = RENDER_SOFT,
+                                      .kind = in_space ? SCENE_KIND_3D : SCENE_KIND_AXIAL,
+                                      .representation = SCENE_REPRESENTATION_SURFACE,
+                                      .has_beams = true };
+        const struct walk walk = { .name = in_space ? "beams in space are drawn and compressed"
+                                                    : "beams on a slice are drawn and compressed",
+                                   .run = draw,
+                                   .context = &beams,
+                                   .is_library_leaky = true,
+                                   .kinds = { [FAULT_MEMORY] = true } };
+        walk_run(&walk);
+    }
 }
 
 /* A caption of a snapshot of which a picture was drawn. */
@@ -245,5 +334,6 @@ int main(void)
     walk_annotations();
     walk_shapes();
     walk_pictures();
+    walk_beams();
     return walks_end();
 }

@@ -5,9 +5,9 @@
 
 #define TAG DICOM_TAG
 
-void made_dose(struct made_dicom *made, int number)
+void made_dose_begin(struct made_dicom *made, int number)
 {
-    static const char sop_class[] = "1.2.840.10008.5.1.4.1.1.481.2", plan_class[] = "1.2.840.10008.5.1.4.1.1.481.5";
+    static const char sop_class[] = "1.2.840.10008.5.1.4.1.1.481.2";
     char uid[32];
     *made = (struct made_dicom){ 0 };
     made_begin(made, MADE_IMPLICIT);
@@ -33,6 +33,12 @@ void made_dose(struct made_dicom *made, int number)
     made_text(made, TAG(0x3004, 0x000a), "CS", "PLAN");
     made_text(made, TAG(0x3004, 0x000c), "DS", "0");
     made_text(made, TAG(0x3004, 0x000e), "DS", "0.5");
+}
+
+void made_dose_end(struct made_dicom *made, int number)
+{
+    static const char plan_class[] = "1.2.840.10008.5.1.4.1.1.481.5";
+    char uid[32];
     made_sequence(made, TAG(0x300c, 0x0002));
     made_item(made);
     made_text(made, TAG(0x0008, 0x1150), "UI", plan_class);
@@ -42,4 +48,10 @@ void made_dose(struct made_dicom *made, int number)
     made_sequence_end(made);
     made_head(made, TAG(0x7fe0, 0x0010), "OW", 8);
     made_words(made, (uint16_t[]){ 1, 2, 3, 4 }, 4);
+}
+
+void made_dose(struct made_dicom *made, int number)
+{
+    made_dose_begin(made, number);
+    made_dose_end(made, number);
 }

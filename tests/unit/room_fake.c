@@ -17,7 +17,8 @@ static void render(void *context, struct room *room, const struct room_render *r
                                .quality = request->quality,
                                .is_still = request->is_still,
                                .full_color = request->full_color,
-                               .coarse = request->coarse };
+                               .coarse = request->coarse,
+                               .is_acted = request->is_acted };
 }
 
 static void forget(void *context, struct room *room, uint64_t request)

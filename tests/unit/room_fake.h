@@ -17,7 +17,7 @@ struct fake_request {
     cJSON *view, *scene;
     uint32_t scene_revision;
     int scale_percent, quality;
-    bool is_still, full_color, coarse, is_answered, is_forgotten;
+    bool is_still, full_color, coarse, is_acted, is_answered, is_forgotten;
 };
 
 struct fake_room {

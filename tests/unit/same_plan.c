@@ -8,16 +8,16 @@
  * not be noticed. */
 #define IS_COMPARED_UP_TO(type, bytes) \
     _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
-IS_COMPARED_UP_TO(struct plan, 57792);
+IS_COMPARED_UP_TO(struct plan, 1110728);
 IS_COMPARED_UP_TO(struct plan_image, 248);
 IS_COMPARED_UP_TO(struct plan_preferences, 1296);
 IS_COMPARED_UP_TO(struct region, 336);
 IS_COMPARED_UP_TO(struct region_set, 2080);
-IS_COMPARED_UP_TO(struct dose, 760);
-IS_COMPARED_UP_TO(struct dose_component, 32);
+IS_COMPARED_UP_TO(struct dose, 11608);
+IS_COMPARED_UP_TO(struct dose_component, 40);
 IS_COMPARED_UP_TO(struct dose_curve, 480);
-IS_COMPARED_UP_TO(struct beam, 464);
-IS_COMPARED_UP_TO(struct track_segment, 28);
+IS_COMPARED_UP_TO(struct beam, 14072);
+IS_COMPARED_UP_TO(struct track_segment, 32);
 IS_COMPARED_UP_TO(struct volume, 264);
 
 static void same_number(double found, double expected)
@@ -122,6 +122,15 @@ static void same_doses(const struct plan *found, const struct plan *expected, do
             same_number(a->reference[q], b->reference[q]);
             same_number(a->body_high[q], b->body_high[q]);
         }
+        assert_int_equal(a->n_stated, b->n_stated);
+        for (size_t s = 0; s < a->n_stated; s++) {
+            assert_string_equal(a->stated[s].region, b->stated[s].region);
+            assert_int_equal(a->stated[s].number, b->stated[s].number);
+            same_number(a->stated[s].low, b->stated[s].low);
+            same_number(a->stated[s].mean, b->stated[s].mean);
+            same_number(a->stated[s].high, b->stated[s].high);
+            same_number(a->stated[s].volume_cm3, b->stated[s].volume_cm3);
+        }
         assert_int_equal(a->n_components, b->n_components);
         for (size_t c = 0; c < a->n_components; c++) {
             assert_int_equal(a->components[c].quantity, b->components[c].quantity);
@@ -129,6 +138,9 @@ static void same_doses(const struct plan *found, const struct plan *expected, do
             assert_int_equal(a->components[c].has_boron_ppm, b->components[c].has_boron_ppm);
             same_number(a->components[c].boron_ppm, b->components[c].boron_ppm);
             same_volume(a->components[c].values, b->components[c].values, mm);
+            assert_int_equal(a->components[c].error != NULL, b->components[c].error != NULL);
+            if (a->components[c].error)
+                same_volume(a->components[c].error, b->components[c].error, mm);
         }
         assert_int_equal(a->mask != NULL, b->mask != NULL);
         if (a->mask)
@@ -158,6 +170,12 @@ static void same_delivery(const struct beam_delivery *a, const struct beam_deliv
         same_number(a->opening_y_mm[i], b->opening_y_mm[i]);
     }
     same_number(a->opening_cm2, b->opening_cm2);
+    assert_int_equal(a->outline.kind, b->outline.kind);
+    assert_int_equal(a->outline.n_polygons, b->outline.n_polygons);
+    for (size_t i = 0; i < a->outline.n_polygons; i++)
+        assert_int_equal(a->outline.ends[i], b->outline.ends[i]);
+    assert_memory_equal(a->outline.points_mm, b->outline.points_mm,
+                        beam_outline_n_points(&a->outline) * sizeof *a->outline.points_mm);
     same_vector(a->collimator_x_lps, b->collimator_x_lps);
     same_vector(a->collimator_y_lps, b->collimator_y_lps);
     same_number(a->dose_gy, b->dose_gy);
@@ -243,6 +261,7 @@ void assert_same_plan(const struct plan *found, const struct plan *expected, dou
         assert_memory_equal(a->from_lps_mm, b->from_lps_mm, sizeof a->from_lps_mm);
         assert_memory_equal(a->to_lps_mm, b->to_lps_mm, sizeof a->to_lps_mm);
         assert_int_equal(a->class, b->class);
+        same_number((double)a->energy_mev, (double)b->energy_mev);
     }
     assert_close(vec3_length(vec3_sub(found->bounds_lps_mm.low, expected->bounds_lps_mm.low)), 0, mm);
     assert_close(vec3_length(vec3_sub(found->bounds_lps_mm.high, expected->bounds_lps_mm.high)), 0, mm);

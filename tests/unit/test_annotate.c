@@ -117,7 +117,7 @@ static void letters_are_those_of_the_planes_and_of_oblique_cameras(void **state)
         view.camera.target_mm = vector_of(cJSON_GetArrayItem(given, 1));
         view.camera.up = vector_of(cJSON_GetArrayItem(given, 2));
         struct camera camera;
-        camera_of_view(plan, &view, NULL, &camera);
+        camera_of_view(plan, &view, NULL, NULL, &camera);
         struct edge_letters letters = letters_of_edges(camera.right, camera.up);
         expect_letters(&letters, cJSON_GetObjectItem(item, "letters"));
         n++;
@@ -420,6 +420,74 @@ static void a_snapshot_is_described(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static double ten(struct vec3 p)
+{
+    return 10 + 0 * p.x;
+}
+
+static void a_dose_is_described_with_what_it_lacks_and_its_levels(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    struct dose *dose = &plan->doses[plan->n_doses++];
+    const struct grid *grid = &plan->images[0].volume->grid;
+    *dose = (struct dose){ .id = "run-1", .name = "Run 1", .unit = "Gy", .per = "per fraction", .has_frame = true };
+    dose->frame = DOSE_FRAME_DIFFERS;
+    dose->components[dose->n_components++] =
+        (struct dose_component){ .quantity = DOSE_BORON, .values = made_volume(grid, VOXEL_F32, ten) };
+    dose->components[dose->n_components++] =
+        (struct dose_component){ .quantity = DOSE_GAMMA, .values = made_volume(grid, VOXEL_F32, ten) };
+    for (int is_accepted = 0; is_accepted < 2; is_accepted++) {
+        struct scene scene;
+        struct error err = { 0 };
+        char field[128];
+        scene_for_plan(plan, &scene);
+        scene.dose.quantity = SCENE_DOSE_QUANTITY_WEIGHTED;
+        scene.dose.lines.visible = true;
+        scene.dose.factor = 30;
+        snprintf(scene.dose.weights_name, sizeof scene.dose.weights_name, "Set A");
+        scene.dose.reference = (struct scene_dose_reference){ .kind = SCENE_DOSE_REFERENCE_KIND_VALUE, .value = 40 };
+        free(scene.dose.levels);
+        scene.dose.levels = mem_new(3 * sizeof *scene.dose.levels);
+        scene.dose.n_levels = 3;
+        for (int i = 0; i < 3; i++) {
+            snprintf(scene.dose.levels[i].id, sizeof scene.dose.levels[i].id, "l%d", i);
+            scene.dose.levels[i].value = scene_dose_level_default;
+        }
+        scene.dose.levels[0].value.value = 90;
+        scene.dose.levels[0].value.color_rgb = 0x010203;
+        scene.dose.levels[1].value.value = 10;
+        scene.dose.levels[1].value.unit = SCENE_DOSE_UNIT_DOSE;
+        scene.dose.levels[2].value.value = 50;
+        scene.dose.levels[2].value.visible = false;
+        if (is_accepted) {
+            scene.dose.accepted = mem_new(sizeof *scene.dose.accepted);
+            scene.dose.n_accepted = 1;
+            snprintf(scene.dose.accepted[0].id, sizeof scene.dose.accepted[0].id, "run-1");
+            scene.dose.accepted[0].value.accepted = true;
+        }
+        struct view view = view_default;
+        view.kind = SCENE_KIND_AXIAL;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, "", &err));
+        const char *said = row_text(&words, ANNOTATION_DOSE);
+        if (is_accepted) {
+            assert_string_equal(said, "Dose Run 1 \u00d7 30|weighted dose in Gy(w) per fraction|"
+                                      "100 % = 40.0 Gy(w), prescription|weights: Set A|without nitrogen|without fast|"
+                                      "Dose from another frame of reference");
+            assert_string_equal(row_text(&words, ANNOTATION_LEVELS), "90 % = 36.0 Gy(w)|25.0 % = 10.0 Gy(w)");
+        } else {
+            assert_non_null(strstr(said, "Dose not drawn: The dose was computed in another frame of reference"));
+            assert_string_equal(row_text(&words, ANNOTATION_LEVELS), "");
+        }
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 static void a_window_stands_in_the_caption_as_on_the_page(void **state)
 {
     (void)state;
@@ -570,6 +638,7 @@ int main(void)
         cmocka_unit_test(a_long_name_gives_way_in_the_middle),
         cmocka_unit_test(hostile_text_is_drawn_as_replacements),
         cmocka_unit_test(a_snapshot_is_described),
+        cmocka_unit_test(a_dose_is_described_with_what_it_lacks_and_its_levels),
         cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),
         cmocka_unit_test(an_oblique_pane_and_a_blended_image_are_described),
         cmocka_unit_test(cuts_caps_and_the_volume_are_described),

@@ -233,7 +233,7 @@ static void turning_an_oblique_plane_changes_no_scale(void **state)
         struct view view = view_default;
         struct camera camera;
         view.kind = SCENE_KIND_OBLIQUE;
-        camera_of_view(plan, &view, &plane, &camera);
+        camera_of_view(plan, &view, &plane, NULL, &camera);
         assert_close(camera.pixels_per_mm, 768 / (1.08 * largest_mm), 1e-9);
         assert_close(plane_height_mm(&plane, camera.target_lps_mm), 0, 1e-9);
         expect_vec3(camera.right, plane.right.x, plane.right.y, plane.right.z);

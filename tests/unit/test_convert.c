@@ -72,7 +72,7 @@ static void put_plan(const char *folder)
         "  {\"path\": \"m3.nii\", \"name\": \"inner\"}, {\"path\": \"m0.nii\", \"name\": \"Nothing\"}],\n"
         "\"hierarchy\": {\"Outer\": [\"inner-2\"]},\n"
         "\"doses\": [{\"id\": \"d\", \"unit\": \"Gy\", \"per\": \"fraction\", \"mask\": \"m1.nii\", \"components\": [\n"
-        "  {\"quantity\": \"boron\", \"per_ppm\": true, \"path\": \"a.nii.gz\"}, {\"quantity\": \"gamma\", \"path\": \"b.nii\"}]},\n"
+        "  {\"quantity\": \"boron\", \"per_ppm\": true, \"path\": \"a.nii.gz\"}, {\"quantity\": \"gamma\", \"path\": \"b.nii\", \"error\": \"a.nii.gz\"}]},\n"
         "  {\"id\": \"e\", \"unit\": \"cGy\", \"frame_of_reference\": \"differs\", \"path\": \"b.nii\", \"boron_ppm\": 12.7},\n"
         "  {\"id\": \"f\", \"frame_of_reference\": \"same\", \"path\": \"b.nii\", \"quantity\": \"weighted-total\", \"boron_ppm\": 0},\n"
         "  {\"id\": \"g\", \"frame_of_reference\": \"unknown\", \"path\": \"b.nii\"}],\n"
@@ -119,6 +119,10 @@ static void a_made_plan_comes_back_with_all_its_peculiarities(void **state)
     assert_true(plan->doses[2].frame == DOSE_FRAME_SAME &&
                 plan->doses[2].components[0].has_boron_ppm); /* 0 ppm is said too */
     assert_true(plan->doses[3].frame == DOSE_FRAME_UNKNOWN && !plan->doses[3].components[0].has_boron_ppm);
+    assert_null(plan->doses[0].components[0].error);
+    const struct volume *error = plan->doses[0].components[1].error; /* raw 97 - 9000 at the second voxel of a.nii.gz */
+    assert_non_null(error);
+    assert_close(volume_value(error, 1, 0, 0), 0.1 * (97 - 9000) - 1024.3, 1e-3);
     plan_destroy(plan);
     assert_comes_back(folder);
     folder_remove(folder);

@@ -244,6 +244,12 @@ static void add_beam(struct plan *plan, const char *name, struct vec3 entry, dou
                                  .dose_gy = 1e10,
                                  .meterset = 12345678901.5,
                                  .n_fractions = 2147483647 };
+    d->outline = (struct beam_outline){ .kind = BEAM_OUTLINE_LEAVES,
+                                        .n_polygons = 2,
+                                        .ends = { 3, BEAM_OUTLINE_MAX_POINTS },
+                                        .points_mm = { { -1e4F, 0.1F }, { 1.F / 3, 1e-30F }, { 7, 1e4F } } };
+    for (int i = 3; i < BEAM_OUTLINE_MAX_POINTS; i++)
+        d->outline.points_mm[i][0] = 0.37F * (float)i;
     snprintf(d->radiation, sizeof d->radiation, "NEUTRON");
     snprintf(d->machine, sizeof d->machine, "B\xc3\xbcndel");
     snprintf(d->meterset_unit, sizeof d->meterset_unit, "MINUTE");
@@ -258,7 +264,8 @@ static void add_tracks(struct plan *plan)
         plan->tracks.segments[plan->tracks.n_segments++] =
             (struct track_segment){ .from_lps_mm = { far, -1e-30F, 16777217.F / 16777219.F },
                                     .to_lps_mm = { 1e-38F, -far, 3 },
-                                    .class = (uint8_t)(i % TRACK_N_CLASSES) };
+                                    .class = (uint8_t)(i % TRACK_N_CLASSES),
+                                    .energy_mev = NAN };
         plan->tracks.n_of_class[i % TRACK_N_CLASSES]++;
     }
 }

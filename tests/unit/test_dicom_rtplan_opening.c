@@ -127,6 +127,86 @@ static void the_opening_is_what_jaws_and_leaves_leave(void **state)
     rtplan_destroy(plan);
 }
 
+/* Compares one polygon, whatever point it begins with and whichever way it turns. */
+static void assert_polygon(const struct beam_outline *outline, size_t polygon, const double (*expected)[2], size_t n)
+{
+    size_t from = beam_outline_begin(outline, polygon);
+    assert_int_equal(outline->ends[polygon] - from, n);
+    const float(*found)[2] = outline->points_mm + from;
+    for (size_t shift = 0; shift < 2 * n; shift++) {
+        bool is_same = true;
+        for (size_t i = 0; i < n; i++) {
+            const float *at = found[(shift < n ? i + shift : 2 * n - i + shift) % n];
+            is_same =
+                is_same && fabs((double)at[0] - expected[i][0]) < 1e-4 && fabs((double)at[1] - expected[i][1]) < 1e-4;
+        }
+        if (is_same)
+            return;
+    }
+    fail_msg("polygon %zu is another, from %g, %g on", polygon, (double)found[0][0], (double)found[0][1]);
+}
+
+static void the_outline_follows_jaws_and_leaves_of_the_first_control_point(void **state)
+{
+    (void)state;
+    static const double expected[][2] = {
+        { 30, -15 }, { 30, -10 }, { 5, -10 }, { 5, 0 },    { 10, 0 },    { 10, 10 },
+        { -10, 10 }, { -10, 0 },  { -5, 0 },  { -5, -10 }, { -30, -10 }, { -30, -15 }
+    };
+    struct made_rtplan made = { .position = "HFS",
+                                .sad = "1000",
+                                .iso = "0\\0\\0",
+                                .n_points = 3,
+                                .gantries = { "0" },
+                                .devices = jaws_and_leaves,
+                                .positions = three_steps };
+    struct rtplan *plan = made_rtplan_read(&made, NULL);
+    const struct beam_outline *outline = &plan->beams[0].delivery.outline;
+    assert_int_equal(outline->kind, BEAM_OUTLINE_LEAVES);
+    assert_int_equal(outline->n_polygons, 1);
+    assert_polygon(outline, 0, expected, 12);
+    rtplan_destroy(plan);
+}
+
+static void leaves_along_y(struct made_dicom *made)
+{
+    made_sequence(made, TAG(0x300a, 0x00b6));
+    made_rt_device(made, "MLCY", NULL, "-30\\-20\\-10\\0\\10\\20\\30");
+    made_sequence_end(made);
+}
+
+static void apart_and_together(struct made_dicom *made, int point)
+{
+    (void)point;
+    made_sequence(made, TAG(0x300a, 0x011a));
+    /* two pairs of the same opening, one that only touches them at its end, a closed one, and two that overlap */
+    made_rt_position(made, "MLCY", "-7\\-7\\4\\9\\0\\1\\4\\4\\8\\9\\5\\6");
+    made_sequence_end(made);
+}
+
+static void openings_that_only_touch_are_polygons_of_their_own(void **state)
+{
+    (void)state;
+    static const double one[][2] = { { -30, -7 }, { -10, -7 }, { -10, 4 }, { -30, 4 } },
+                        two[][2] = { { -10, 4 }, { 0, 4 }, { 0, 8 }, { -10, 8 } },
+                        three[][2] = { { 10, 0 }, { 20, 0 }, { 20, 1 }, { 30, 1 },
+                                       { 30, 6 }, { 20, 6 }, { 20, 5 }, { 10, 5 } };
+    struct made_rtplan made = { .position = "HFS",
+                                .sad = "1000",
+                                .iso = "0\\0\\0",
+                                .n_points = 1,
+                                .gantries = { "0" },
+                                .devices = leaves_along_y,
+                                .positions = apart_and_together };
+    struct rtplan *plan = made_rtplan_read(&made, NULL);
+    const struct beam_outline *outline = &plan->beams[0].delivery.outline;
+    assert_int_equal(outline->n_polygons, 3);
+    assert_polygon(outline, 0, one, 4);
+    assert_polygon(outline, 1, two, 4);
+    assert_polygon(outline, 2, three, 8);
+    rtplan_destroy(plan);
+}
+
 static void put_block(struct made_dicom *made, size_t n, double rx, double ry)
 {
     double *xy = malloc(2 * n * sizeof *xy);
@@ -173,6 +253,68 @@ static void round_applicator(struct made_dicom *made)
     made_sequence_end(made);
 }
 
+static void jaws_over_a_diamond(struct made_dicom *made)
+{
+    made_sequence(made, TAG(0x300a, 0x00b6));
+    made_rt_device(made, "X", NULL, NULL);
+    made_rt_device(made, "Y", NULL, NULL);
+    made_sequence_end(made);
+    square_block(made);
+}
+
+static void nearer_on_the_right(struct made_dicom *made, int point)
+{
+    (void)point;
+    made_sequence(made, TAG(0x300a, 0x011a));
+    made_rt_position(made, "X", "-100\\33");
+    made_rt_position(made, "Y", "-100\\100");
+    made_sequence_end(made);
+}
+
+static void jaws_cut_the_outline_of_a_block(void **state)
+{
+    (void)state;
+    /* the block's corners are 60 mm from (3, -4) along the axes; the right one is cut off 30 mm from the middle */
+    static const double expected[][2] = { { 33, -34 }, { 33, 26 }, { 3, 56 }, { -57, -4 }, { 3, -64 } };
+    struct made_rtplan made = { .position = "HFS",
+                                .sad = "1000",
+                                .iso = "0\\0\\0",
+                                .n_points = 1,
+                                .gantries = { "0" },
+                                .devices = jaws_over_a_diamond,
+                                .positions = nearer_on_the_right };
+    struct rtplan *plan = made_rtplan_read(&made, NULL);
+    const struct beam_outline *outline = &plan->beams[0].delivery.outline;
+    assert_int_equal(outline->kind, BEAM_OUTLINE_BLOCKS);
+    assert_int_equal(outline->n_polygons, 1);
+    assert_polygon(outline, 0, expected, 5);
+    rtplan_destroy(plan);
+}
+
+static void block_of_many_points(struct made_dicom *made)
+{
+    put_block(made, BEAM_OUTLINE_MAX_POINTS, 60, 60);
+}
+
+static void a_block_of_too_many_points_has_no_outline_and_says_so(void **state)
+{
+    (void)state;
+    struct report report = { 0 };
+    struct made_rtplan made = { .position = "HFS",
+                                .sad = "1000",
+                                .iso = "0\\0\\0",
+                                .n_points = 1,
+                                .gantries = { "0" },
+                                .devices = block_of_many_points };
+    struct rtplan *plan = made_rtplan_read(&made, &report);
+    assert_int_equal(plan->beams[0].delivery.outline.n_polygons, 0);
+    assert_int_equal(plan->beams[0].delivery.outline.kind, BEAM_OUTLINE_NONE);
+    assert_near(plan->beams[0].aperture_mm, 120, 1e-9);
+    assert_non_null(strstr(report_said(&report, "beam.bad-value"), "outline is not shown"));
+    rtplan_destroy(plan);
+    report_finish(&report);
+}
+
 static void only_a_round_opening_has_a_diameter(void **state)
 {
     (void)state;
@@ -208,6 +350,10 @@ int main(void)
         cmocka_unit_test(doubts_about_where_a_beam_is_come_before_those_about_its_opening),
         cmocka_unit_test(a_single_boundary_is_too_few_for_any_number_of_leaves),
         cmocka_unit_test(the_opening_is_what_jaws_and_leaves_leave),
+        cmocka_unit_test(the_outline_follows_jaws_and_leaves_of_the_first_control_point),
+        cmocka_unit_test(openings_that_only_touch_are_polygons_of_their_own),
+        cmocka_unit_test(jaws_cut_the_outline_of_a_block),
+        cmocka_unit_test(a_block_of_too_many_points_has_no_outline_and_says_so),
         cmocka_unit_test(only_a_round_opening_has_a_diameter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -72,6 +72,43 @@ static void compare_beam(const struct beam *beam, char *rest)
     assert_word(patient_position_word(d->patient_position), &rest);
 }
 
+/* Counts by pydicom and numpy where jaws and leaves are open, on points half a mm apart: inside our polygons, and
+ * nowhere else. */
+static bool compare_outlines(const char *path, const struct rtplan *plan)
+{
+    char folder[256], text_path[300], out[4096];
+    folder_make(folder);
+    (void)snprintf(text_path, sizeof text_path, "%s/outlines", folder);
+    FILE *text = fopen(text_path, "w");
+    assert_non_null(text);
+    for (size_t b = 0; b < plan->n_beams; b++) {
+        const struct beam_outline *outline = &plan->beams[b].delivery.outline;
+        for (size_t p = 0; p < outline->n_polygons; p++) {
+            fprintf(text, "%lld", (long long)plan->beams[b].delivery.number);
+            for (size_t at = beam_outline_begin(outline, p); at < outline->ends[p]; at++)
+                fprintf(text, " %.9g %.9g", (double)outline->points_mm[at][0], (double)outline->points_mm[at][1]);
+            fprintf(text, "\n");
+        }
+    }
+    assert_int_equal(fclose(text), 0);
+    int status = oracle_run((char *[]){ oracle_python(), "tests/oracle/rtplan_outline.py", (char *)(uintptr_t)path,
+                                        text_path, NULL },
+                            out, sizeof out);
+    folder_remove(folder);
+    if (status == ORACLE_MISSING)
+        return false;
+    assert_int_equal(status, 0);
+    size_t n = 0;
+    for (char *line = out; *line; n++) {
+        long number = strtol(line, &line, 10), n_open = strtol(line, &line, 10), n_wrong = strtol(line, &line, 10);
+        if (n_wrong != 0 || n_open == 0)
+            fail_msg("beam %ld: %ld of %ld open points are wrong", number, n_wrong, n_open);
+        line += *line == '\n';
+    }
+    assert_int_equal(n, plan->n_beams);
+    return true;
+}
+
 static bool compare_with_pydicom(const char *path, const struct rtplan *plan)
 {
     static char out[1 << 16];
@@ -90,7 +127,7 @@ static bool compare_with_pydicom(const char *path, const struct rtplan *plan)
         compare_beam(&plan->beams[n], line);
     }
     assert_int_equal(n, plan->n_beams);
-    return true;
+    return compare_outlines(path, plan);
 }
 
 /* The point where the beam axis enters the surface, by the planning system's distance. */

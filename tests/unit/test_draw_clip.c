@@ -75,7 +75,9 @@ static const struct draw_list *list_of(struct picture *picture)
     picture->snapshot = snapshot_create(derived_of(picture->plan), &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
     camera_resolve(picture->snapshot, &picture->camera);
-    const struct draw_scope scope = { picture->snapshot, &picture->camera, SURFACE_FULL, picture->cache, true, NULL };
+    const struct draw_scope scope = {
+        picture->snapshot, &picture->camera, SURFACE_FULL, picture->cache, true, NULL, NULL, false
+    };
     const struct render_options options = { 64, 48, SURFACE_FULL, false };
     picture->list = draw_list_create(&scope, &options, &err);
     assert_string_equal(err.text, "");

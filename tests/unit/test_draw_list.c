@@ -9,7 +9,8 @@
 struct counting {
     size_t n_made, n_shapes; /* made in all, there now */
     uint64_t bytes_each;
-    size_t n_left; /* before make_shape fails; SIZE_MAX: never */
+    size_t n_left;  /* before make_shape fails; SIZE_MAX: never */
+    size_t n_grids; /* there now */
 };
 
 static struct drawable *make_shape(void *context, const struct shape *shape, int n_passes, struct error *err)
@@ -34,11 +35,28 @@ static void destroy_shape(void *context, struct drawable *drawable)
     free(drawable);
 }
 
+static struct drawable *make_grid(void *context, const struct volume *const *volumes, size_t n, bool is_labels,
+                                  struct error *err)
+{
+    (void)volumes, (void)n, (void)is_labels, (void)err;
+    ((struct counting *)context)->n_grids++;
+    return mem_new(sizeof(struct drawable));
+}
+
+static void destroy_grid(void *context, struct drawable *drawable)
+{
+    ((struct counting *)context)->n_grids--;
+    free(drawable);
+}
+
 static struct draw_cache *counting_cache(struct counting *counting)
 {
     counting->n_left = SIZE_MAX;
-    return draw_cache_create(
-        &(struct drawable_maker){ .make_shape = make_shape, .destroy_shape = destroy_shape, .context = counting });
+    return draw_cache_create(&(struct drawable_maker){ .make_shape = make_shape,
+                                                       .destroy_shape = destroy_shape,
+                                                       .make_grid = make_grid,
+                                                       .destroy_grid = destroy_grid,
+                                                       .context = counting });
 }
 
 /* ---- a plan ----------------------------------------------------------------------------------------------------- */
@@ -86,7 +104,7 @@ static struct picture picture_of(struct plan *plan, struct scene scene, enum sce
     picture.snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     assert_string_equal(err.text, "");
     camera_resolve(picture.snapshot, &picture.camera);
-    const struct draw_scope scope = { picture.snapshot, &picture.camera, SURFACE_FULL, cache, true, NULL };
+    const struct draw_scope scope = { picture.snapshot, &picture.camera, SURFACE_FULL, cache, true, NULL, NULL, false };
     picture.list = draw_list_create(&scope, &options, &err);
     assert_string_equal(err.text, "");
     return picture;
@@ -239,6 +257,47 @@ static void what_is_requested_again_is_not_made_again(void **state)
     plan_and_derived_destroy(other);
 }
 
+/* A computed volume is made once; when nobody else holds it, it goes with the next picture, but not from a begun one.
+ */
+static void a_computed_volume_goes_when_nobody_else_holds_it(void **state)
+{
+    (void)state;
+    struct counting counting = { .bytes_each = 1000 };
+    struct draw_cache *cache = counting_cache(&counting);
+    struct plan *plan = make_plan();
+    struct draw_cache_use first, second, third;
+    struct error err = { 0 };
+    struct volume *volume = volume_create(&plan->images[0].volume->grid, VOXEL_F32, &err);
+    const struct volume *volumes[1] = { volume };
+    draw_cache_begin(cache, &first);
+    const struct drawable *made = draw_cache_volumes(cache, plan, volumes, 1, false, &err);
+    assert_non_null(made);
+    assert_ptr_equal(draw_cache_volumes(cache, plan, volumes, 1, false, &err), made);
+    assert_int_equal(counting.n_grids, 1);
+    draw_cache_begin(cache, &second);
+    draw_cache_end(&second);
+    volume_unref(volume);
+    draw_cache_begin(cache, &second);
+    assert_int_equal(counting.n_grids, 1); /* the first picture draws on */
+    draw_cache_end(&first);
+    draw_cache_begin(cache, &third);
+    assert_int_equal(counting.n_grids, 0);
+    draw_cache_end(&second);
+    draw_cache_end(&third);
+    volumes[0] = volume = volume_create(&plan->images[0].volume->grid, VOXEL_F32, &err);
+    draw_cache_begin(cache, &first);
+    assert_non_null(draw_cache_volumes(cache, plan, volumes, 1, false, &err));
+    draw_cache_end(&first);
+    draw_cache_begin(cache, &first);
+    assert_int_equal(counting.n_grids, 1); /* held by the test */
+    draw_cache_end(&first);
+    draw_cache_forget(cache, plan);
+    assert_int_equal(counting.n_grids, 0);
+    volume_unref(volume);
+    draw_cache_destroy(cache);
+    plan_and_derived_destroy(plan);
+}
+
 /* The error names the region, and nothing that began stays begun. */
 static void a_list_fails_when_a_shape_cannot_be_made(void **state)
 {
@@ -253,7 +312,7 @@ static void a_list_fails_when_a_shape_cannot_be_made(void **state)
     struct camera camera;
     struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
     camera_resolve(snapshot, &camera);
-    const struct draw_scope scope = { snapshot, &camera, SURFACE_FULL, cache, true, NULL };
+    const struct draw_scope scope = { snapshot, &camera, SURFACE_FULL, cache, true, NULL, NULL, false };
     const struct render_options options = { 64, 48, SURFACE_FULL, false };
     counting.n_left = 1;
     assert_null(draw_list_create(&scope, &options, &err));
@@ -275,6 +334,7 @@ int main(void)
         cmocka_unit_test(a_pane_has_the_image_and_the_overlay),
         cmocka_unit_test(the_least_recently_used_goes_and_nothing_that_is_in_use),
         cmocka_unit_test(what_is_requested_again_is_not_made_again),
+        cmocka_unit_test(a_computed_volume_goes_when_nobody_else_holds_it),
         cmocka_unit_test(a_list_fails_when_a_shape_cannot_be_made),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -220,8 +220,8 @@ static void tracks_hold_every_class_and_start_in_the_beam(void **state)
 static void a_track_is_written_in_fixed_columns_with_posterior_turned_to_anterior(void **state)
 {
     (void)state;
-    const struct track_segment segments[2] = { { { 1.5F, -2.25F, 3 }, { -100.125F, 20, -30 }, TRACK_GAMMA_LOW },
-                                               { { 0, 0, 150 }, { 0, 0, 10 }, TRACK_BEAM_LINE } };
+    const struct track_segment segments[2] = { { { 1.5F, -2.25F, 3 }, { -100.125F, 20, -30 }, TRACK_GAMMA_LOW, NAN },
+                                               { { 0, 0, 150 }, { 0, 0, 10 }, TRACK_BEAM_LINE, NAN } };
     struct error err = { 0 };
     size_t n_bytes;
     char *text = phantom_tracks_text(segments, 2, &n_bytes, &err);

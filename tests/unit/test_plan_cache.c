@@ -22,11 +22,11 @@
 enum {
     SIZE_IMAGE = 248,
     SIZE_REGION = 336,
-    SIZE_DOSE = 760,
-    SIZE_BEAM = 464,
-    SIZE_SEGMENT = 28,
+    SIZE_DOSE = 11608,
+    SIZE_BEAM = 14072,
+    SIZE_SEGMENT = 32,
     SIZE_VOLUME = 264,
-    SIZE_PLAN = 57792
+    SIZE_PLAN = 1110728
 };
 
 static struct plan *load_with_sources(const char *folder, const char *cache, struct plan_sources **sources)
@@ -66,13 +66,15 @@ static void put_plan(const char *folder)
 {
     static const char text[] =
         "{\"format\": \"beamroom-plan\", \"version\": 1, \"name\": \"kept\", \"images\": [{\"id\": \"mr\", \"inverted\": true, \"path\": \"mr.nii.gz\", \"modality\": "
-        "\"MR\"}], \"regions\": [{\"path\": \"labels.nii.gz\"}], \"doses\": [{\"id\": \"d\", \"unit\": \"Gy\", \"path\": \"dose.nii.gz\", "
+        "\"MR\"}], \"regions\": [{\"path\": \"labels.nii.gz\"}], \"doses\": [{\"id\": \"d\", \"unit\": \"Gy\", \"path\": \"dose.nii.gz\", \"error\": \"mr.nii.gz\", "
         "\"mask\": \"labels.nii.gz\"}], \"beams\": [{\"entry_mm\": [0, 0, 9], \"target_mm\": [0, 0, 0]}],"
-        "\"tracks\": [{\"path\": \"t.pp\", \"unit\": \"mm\"}]}";
+        "\"tracks\": [{\"path\": \"t.pp\", \"unit\": \"mm\"}, {\"path\": \"t.csv\"}]}";
     put_grid(folder, "mr.nii.gz", VOXEL_F32, 20);
     put_grid(folder, "labels.nii.gz", VOXEL_U8, 20);
     put_grid(folder, "dose.nii.gz", VOXEL_F32, 12);
     folder_put(folder, "t.pp", "1 2 3 4 5 6 0 1\n", 16);
+    folder_put_text(folder, "t.csv",
+                    "class,x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,energy_mev\nlost,1,2,3,4,5,7,0.25\nlost,1,2,3,4,5,8,\n");
     folder_put(folder, "plan.json", text, sizeof text - 1);
 }
 
@@ -118,6 +120,10 @@ static void a_kept_plan_opens_as_the_same_plan_with_its_report(void **state)
     struct plan *again = load(world.folder, world.cache);
     assert_true(again->is_from_cache);
     assert_same_plan(again, world.first, 0);
+    assert_int_equal(again->tracks.n_files, 2);
+    assert_string_equal(again->tracks.files[1].path, "t.csv");
+    assert_int_equal(again->tracks.files[1].n_segments, 2);
+    assert_close(again->tracks.files[1].unit_mm, 1, 0);
     assert_int_equal(again->report.n_lines, world.first->report.n_lines);
     for (size_t i = 0; i < again->report.n_lines; i++)
         assert_memory_equal(&again->report.lines[i], &world.first->report.lines[i], sizeof again->report.lines[i]);

@@ -73,7 +73,7 @@ static void a_plan_is_told_with_units_and_null_where_nothing_is_known(void **sta
     assert_json_point(item(axial, "up"), 0, -1, 0);
     assert_true(cJSON_GetArrayItem(item(axial, "position_mm"), 2)->valuedouble < 25.5);
     assert_string_equal(item(item(item(document, "home"), "3d"), "projection")->valuestring, "perspective");
-    assert_int_equal(cJSON_GetArraySize(item(document, "home")), 5); /* every kind of view */
+    assert_int_equal(cJSON_GetArraySize(item(document, "home")), 7); /* every kind of view */
 
     const cJSON *image = cJSON_GetArrayItem(item(document, "images"), 0), *grid = item(image, "grid");
     assert_close(item(image, "low")->valuedouble, -1000, 0);
@@ -147,6 +147,16 @@ static void doses_tracks_and_the_report_keep_their_words(void **state)
     assert_string_equal(item(dose, "frame_of_reference")->valuestring, "differs");
     assert_string_equal(item(total, "quantity")->valuestring, "total");
     assert_close(item(item(item(document, "tracks"), "classes"), "gamma-low")->valuedouble, 3, 0);
+    const cJSON *looks = item(item(document, "tracks"), "looks"), *look = cJSON_GetArrayItem(looks, 0);
+    assert_int_equal(cJSON_GetArraySize(looks), 1); /* of the classes with segments */
+    assert_string_equal(item(look, "class")->valuestring, "gamma-low");
+    assert_string_equal(item(look, "color")->valuestring, "#ccaca5");
+    assert_close(cJSON_GetArrayItem(item(look, "dash_px"), 1)->valuedouble, 3, 0);
+    assert_true(cJSON_IsFalse(item(look, "has_cross")));
+    const cJSON *colors = item(item(document, "tracks"), "colors");
+    assert_int_equal(cJSON_GetArraySize(colors), TRACK_N_CLASSES);
+    assert_string_equal(item(colors, "lost")->valuestring, "#ffffff");
+    assert_string_equal(item(colors, "beam-line")->valuestring, "#f4f6f8");
     const cJSON *told = cJSON_GetArrayItem(item(item(document, "report"), "lines"), 0);
     assert_string_equal(item(told, "severity")->valuestring, "warning");
     assert_string_equal(item(told, "code")->valuestring, "dose.negative");

@@ -206,6 +206,52 @@ static void a_second_picture_is_requested_when_the_first_should_be_drawn(void **
     assert_close(fake_camera_x(fake_newest(&fake)), 3, 0);
 }
 
+/* True if the newest picture that was asked for of this kind of view is of one in which a member acts. */
+static bool is_acted(const char *kind)
+{
+    for (size_t i = fake.n_requests; i-- > 0;)
+        if (strcmp(json_text(fake.requests[i].view, "kind"), kind) == 0)
+            return fake.requests[i].is_acted;
+    fail();
+    return false;
+}
+
+/* All pictures are drawn and shown, in view 2 as well. */
+static void settle_both_views(void)
+{
+    for (int turn = 0; turn < 4; turn++) {
+        settle_one();
+        for (size_t i = ann.n_frames; i-- > 0;)
+            if (ann.frames[i].view == 2) {
+                fake_say(&fake, &ann, "{\"type\":\"frame.shown\",\"view\":2,\"sequence\":%u}", ann.frames[i].sequence);
+                break;
+            }
+    }
+}
+
+static void pictures_of_the_view_in_which_a_member_acts_are_to_go_first(void **state)
+{
+    static const char hide[] =
+        "{\"type\":\"scene.patch\",\"view\":%d,\"patch\":{\"regions\":{\"%s\":{\"visible\":false}}}}";
+    (void)state;
+    fake_join(&fake, &ann, false); /* view 1 is 3-D */
+    fake_say(&fake, &ann,
+             "{\"type\":\"view.open\",\"view\":2,\"document\":{\"kind\":\"axial\",\"size_px\":[400,300]}}");
+    settle_both_views();
+    assert_false(is_acted("axial") || is_acted("3d"));
+    fake_say(&fake, &ann, hide, 2, "brain");
+    assert_true(is_acted("axial"));
+    assert_false(is_acted("3d"));
+    settle_both_views();
+    fake_turn(&fake, &ann, 1, 0);
+    assert_true(is_acted("3d"));
+    /* half a second after the last of them nobody acts any more */
+    settle_both_views();
+    fake_pass(&fake, 600);
+    fake_say(&fake, &ann, hide, 0, "scalp");
+    assert_false(is_acted("axial") || is_acted("3d"));
+}
+
 static void a_frame_is_not_sent_out_of_order(void **state)
 {
     (void)state;
@@ -387,6 +433,7 @@ int main(void)
         ROOM_TEST(an_acknowledgement_of_a_frame_never_sent_is_refused),
         ROOM_TEST(while_two_pictures_are_being_made_nothing_more_is_requested),
         ROOM_TEST(a_second_picture_is_requested_when_the_first_should_be_drawn),
+        ROOM_TEST(pictures_of_the_view_in_which_a_member_acts_are_to_go_first),
         ROOM_TEST(a_frame_is_not_sent_out_of_order),
         ROOM_TEST(a_change_does_not_wait_for_a_slow_still),
         ROOM_TEST(a_slow_member_does_not_slow_another),

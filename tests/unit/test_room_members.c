@@ -231,6 +231,38 @@ static void an_own_view_starts_as_a_copy_and_goes_its_own_way(void **state)
     cJSON_Delete(view);
 }
 
+/* Half as many pixels at the same scale show half as many mm; a beam's-eye view has a scale with its ring only. */
+static void an_own_beams_eye_view_keeps_ring_scale_and_beam_slice(void **state)
+{
+    (void)state;
+    for (int has_ring = 0; has_ring < 2; has_ring++) {
+        fake_hello(&fake, &ann);
+        fake_hello(&fake, &ben);
+        fake_say(
+            &fake, &ann,
+            "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"beam\",\"size_px\":[800,600],"
+            "\"camera\":{\"height_mm\":240},\"beam\":{\"along_mm\":-30%s}}}",
+            has_ring ? ",\"aperture_mm\":90" : "");
+        fake_say(&fake, &ben,
+                 "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"kind\":\"beam\",\"size_px\":[400,"
+                 "300]}}");
+        fake_say(&fake, &ann,
+                 "{\"type\":\"scene.patch\",\"patch\":{\"beam\":{\"slice\":{\"along_mm\":44}}},\"input\":1}");
+        fake_say(&fake, &ben, "{\"type\":\"follow\",\"follow\":false}");
+        cJSON *said = fake_heard(&ben, "view");
+        const cJSON *document = cJSON_GetObjectItem(said, "document"), *beam = cJSON_GetObjectItem(document, "beam"),
+                    *override = cJSON_GetObjectItem(document, "override");
+        assert_close(json_number(cJSON_GetObjectItem(document, "camera"), "height_mm", NAN), has_ring ? 120 : 240, 0);
+        assert_close(json_number(beam, "along_mm", NAN), -30, 0);
+        assert_close(json_number(beam, "aperture_mm", 0), has_ring ? 90 : 0, 0);
+        assert_close(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(override, "beam"), "slice"), "along_mm", NAN),
+                     44, 0);
+        cJSON_Delete(said);
+        room_end(NULL);
+        room_start(NULL);
+    }
+}
+
 static void each_kind_has_its_own_shared_view(void **state)
 {
     (void)state;
@@ -362,6 +394,7 @@ int main(void)
         ROOM_TEST(followers_hear_of_a_move_with_the_frame_that_shows_it_and_once),
         ROOM_TEST(a_shared_view_has_the_presenters_size),
         ROOM_TEST(an_own_view_starts_as_a_copy_and_goes_its_own_way),
+        ROOM_TEST(an_own_beams_eye_view_keeps_ring_scale_and_beam_slice),
         ROOM_TEST(each_kind_has_its_own_shared_view),
         ROOM_TEST(a_view_that_is_closed_gets_nothing_more),
         ROOM_TEST(pictures_of_a_closed_view_are_waited_for_by_nobody),

@@ -138,6 +138,45 @@ static void of_one_source_stills_let_eight_moving_pictures_pass(void **state)
     turns_destroy(turns);
 }
 
+static void where_a_person_acts_two_pictures_are_drawn_to_one_of_another_view(void **state)
+{
+    (void)state;
+    struct turns *turns = turns_create();
+    struct turns_item others[3] = { { .source = ORBIT }, { .source = ORBIT }, { .source = ORBIT } };
+    struct turns_item acted[5], *items[4];
+    size_t n = 0, n_acted = 0;
+    for (; n < 3; n++)
+        items[n] = &others[n];
+    /* whoever is drawn is asked for again behind those that wait: two of the acted view to one of another, in their
+     * order */
+    const int expected[] = { -1, -1, 0, -1, -1, 1, -1 };
+    for (size_t turn = 0; turn < 7; turn++) {
+        if (n == 3 && n_acted < 5) {
+            acted[n_acted] = (struct turns_item){ .source = ORBIT, .is_acted = true };
+            items[n++] = &acted[n_acted++];
+        }
+        size_t at = turns_choose(turns, items, n);
+        assert_true(at < n);
+        if (expected[turn] < 0)
+            assert_true(items[at]->is_acted);
+        else
+            assert_ptr_equal(items[at], &others[expected[turn]]);
+        struct turns_item *drawn = items[at];
+        for (n--; at < n; at++)
+            items[at] = items[at + 1];
+        if (!drawn->is_acted) {
+            *drawn = (struct turns_item){ .source = ORBIT };
+            items[n++] = drawn;
+        }
+    }
+    /* it does not end a moving picture of its source that is being drawn, nor does it wait behind a still */
+    assert_false(turns_may_interrupt(&(struct turns_item){ .source = ORBIT },
+                                     &(struct turns_item){ .source = ORBIT, .is_acted = true }));
+    assert_true(turns_may_interrupt(&(struct turns_item){ .source = ORBIT, .is_still = true },
+                                    &(struct turns_item){ .source = ORBIT, .is_acted = true }));
+    turns_destroy(turns);
+}
+
 static void what_is_held_is_passed_over(void **state)
 {
     (void)state;
@@ -184,6 +223,7 @@ int main(void)
         cmocka_unit_test(a_newcomer_gets_no_credit_for_the_time_before),
         cmocka_unit_test(asking_for_nothing_for_a_moment_forgives_nothing),
         cmocka_unit_test(of_one_source_stills_let_eight_moving_pictures_pass),
+        cmocka_unit_test(where_a_person_acts_two_pictures_are_drawn_to_one_of_another_view),
         cmocka_unit_test(what_is_held_is_passed_over),
         cmocka_unit_test(more_sources_than_are_remembered_are_served_too),
     };

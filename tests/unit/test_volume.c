@@ -104,9 +104,32 @@ static void a_grid_that_reaches_out_of_the_room_is_refused_with_its_corner(void 
     assert_non_null(strstr(err.text, "L 10001 P 0 S 0 mm; expected within 10000 mm"));
 }
 
+/* Of a grid with steps that no binary number has, every centre is a rounding error beside a whole index. */
+static void a_voxel_s_centre_has_its_value_whatever_lies_beside_it(void **state)
+{
+    (void)state;
+    struct affine map = { { { 3.906, 0, 0 }, { 0, -3.906, 0 }, { 0, 0, 2.5000001 } }, { -250.1, 249.93, -77.7 } };
+    struct grid grid;
+    struct error err = { 0 };
+    assert_true(grid_init(&grid, (const uint32_t[3]){ 40, 40, 40 }, &map, &err));
+    struct volume *volume = volume_create(&grid, VOXEL_F32, &err);
+    assert_non_null(volume);
+    for (uint32_t at = 0; at < 40 * 40 * 40; at++)
+        ((float *)volume->voxels)[at] = (at % 40 + at / 40 + at / 1600) % 2 ? NAN : 7;
+    for (uint32_t at = 0; at < 40 * 40 * 40; at++) {
+        struct vec3 centre = affine_point(&map, vec3(at % 40, at / 40 % 40, at / 1600));
+        bool is_number = !isnan(((float *)volume->voxels)[at]);
+        double value = 0;
+        if (volume_sample(volume, centre, &value) != is_number || (is_number && value != 7))
+            fail_msg("voxel %u", at);
+    }
+    volume_unref(volume);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_voxel_s_centre_has_its_value_whatever_lies_beside_it),
         cmocka_unit_test(a_grid_that_reaches_out_of_the_room_is_refused_with_its_corner),
         cmocka_unit_test(an_index_goes_to_the_patient_and_back),
         cmocka_unit_test(a_grid_says_toward_which_side_each_index_grows),

@@ -2,17 +2,15 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { axe } from './axe.mjs';
-import { full, missing, startWorld } from './browser.mjs';
+import { full, isDue, missing, once, startWorld } from './browser.mjs';
 import { sizes, states } from './room_states.mjs';
-
-const isLong = process.env.LONG_TESTS === '1'; // every size; else two, and the overlaps of layout.test.mjs at the other two
 
 describe('the room page for screen readers and keyboards', { skip: missing && `${missing} is not there` }, () => {
   let world;
   before(async () => { world = await startWorld(); });
   after(async () => { await world?.stop(); });
 
-  for (const [size, options] of Object.entries(sizes).filter(([name]) => isLong || ['wide', 'tablet'].includes(name)))
+  for (const [size, options] of Object.entries(sizes).filter(([name]) => isDue(name === 'tablet')))
     it(`${size}: axe-core finds nothing in any state`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
       await full(page);
@@ -41,7 +39,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
     return stops;
   };
 
-  it('the tree is one tab stop, and so is the strip', async () => {
+  once('the tree is one tab stop, and so is the strip', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom()}`, sizes.wide);
     await full(page);
     const stops = await tabStops(page);
@@ -51,7 +49,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
     await page.context().close();
   });
 
-  it('every function of a row is reached by keys', async () => {
+  once('every function of a row is reached by keys', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`, sizes.wide);
     await full(page);
@@ -85,7 +83,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
     await page.context().close();
   });
 
-  it('with forced colours what is pressed, chosen or active differs by its border', async () => {
+  once('with forced colours what is pressed, chosen or active differs by its border', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { ...sizes.wide, forcedColors: 'active', reducedMotion: 'reduce' });
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();

@@ -1,12 +1,20 @@
 // A daemon with the demo plan and a browser for it, for the tests of the page.
 import { existsSync, mkdirSync } from 'node:fs';
 import { join } from 'node:path';
+import { it } from 'node:test';
 import { bin, call, demo, openPlan, startDaemon } from '../api/daemon.mjs';
 
 const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const artifacts = 'build/test-artifacts';
 const flags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync'];
+
+/** LONG_TESTS: nothing: of what is tested at many sizes of windows, one; 1: all of everything; rest: only what the first leaves out. */
+const long = process.env.LONG_TESTS ?? '';
+/** Whether a case is to be run now. @param {boolean} isQuick it is one of those without LONG_TESTS */
+export const isDue = (isQuick) => long === '1' || isQuick === (long !== 'rest');
+/** A test that is run without LONG_TESTS. */
+export const once = long === 'rest' ? () => {} : it;
 
 /** What these tests need and is not there: they skip then. */
 export const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));

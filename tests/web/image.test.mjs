@@ -6,12 +6,10 @@ import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
+import { full, isDue, missing, once, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
 import { histogram, percentiles, windows, writeThreeImages } from './three_images.mjs';
-
-const isLong = process.env.LONG_TESTS === '1'; // at every size; else at two, and measure.test.mjs at the other two
 
 describe('images on the page', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -49,7 +47,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.getByLabel(label, { exact: true }).press('Enter');
   };
 
-  it('presets by modality, keys, numbers and a drag set the window on the server, and the threshold of slices in 3-D', async () => {
+  once('presets by modality, keys, numbers and a drag set the window on the server, and the threshold of slices in 3-D', async () => {
     const { page, comes } = await open();
     await row(page, 'image:ct');
     await preset(page, 'Bone 4');
@@ -91,7 +89,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  it('each image keeps its own window and colours; choosing one is one step to undo', async () => {
+  once('each image keeps its own window and colours; choosing one is one step to undo', async () => {
     const { page, comes, image } = await open();
     await row(page, 'image:ct');
     await preset(page, 'Lung 2');
@@ -111,7 +109,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  it('a second image is blended with its own window, colours and opacity', async () => {
+  once('a second image is blended with its own window, colours and opacity', async () => {
     const { page, comes, image } = await open();
     await row(page, 'image:ct');
     await page.getByLabel('Second image', { exact: true }).selectOption({ label: 'PET pet' });
@@ -164,7 +162,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
   };
   const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
 
-  it('a point follows the mouse while it is dragged, and the drag is one step to undo; a double click adds one; presets and switches are set', async () => {
+  once('a point follows the mouse while it is dragged, and the drag is one step to undo; a double click adds one; presets and switches are set', async () => {
     const { page, centre, valueAt, opacityAt, changed, box, image } = await openVolume();
     const [x, y] = await centre(1);
     await page.mouse.move(x, y);
@@ -198,7 +196,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  it('every point is chosen, moved, added, removed and coloured by keys, and in a table', async () => {
+  once('every point is chosen, moved, added, removed and coloured by keys, and in a table', async () => {
     const { page, plot, changed } = await openVolume();
     await plot.focus();
     await page.keyboard.press('Home');
@@ -229,7 +227,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.locator('[data-key="volume:"] button.name').tap();
   };
 
-  it('a finger drags a point, also when it comes down 20 px beside it', async () => {
+  once('a finger drags a point, also when it comes down 20 px beside it', async () => {
     const { page, centre, valueAt, changed } = await openVolume(sizes.tablet, toVolume);
     const devtools = await page.context().newCDPSession(page);
     const touch = (type, places) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
@@ -241,7 +239,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  for (const [size, options] of Object.entries(sizes).filter(([name]) => isLong || ['compact', 'phone'].includes(name)))
+  for (const [size, options] of Object.entries(sizes).filter(([name]) => isDue(name === 'phone')))
     it(`${size}: axe-core finds nothing and no text lies over another, in the Selection of image and volume`, async () => {
       const { page } = await open(options);
       const isTouch = Boolean(options.hasTouch);

@@ -4,12 +4,10 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { full, header, isDue, missing, newer, once, shoot, startWorld } from './browser.mjs';
 import { writeLabels } from './labels.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes as roomSizes, states } from './room_states.mjs';
-
-const isLong = process.env.LONG_TESTS === '1'; // every size; else two, and axe.test.mjs at the other two
 
 const sizes = [[1600, 1000], [1280, 720], [1180, 820], [800, 500], [820, 1180]]; // 800 x 500: 1600 x 1000 at 200 %
 
@@ -43,7 +41,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
   }), [selector, inside]);
 
   for (const [width, height] of sizes) {
-    it(`a room at ${width} x ${height}: the line on research use is whole, every pane has its letters`, async () => {
+    once(`a room at ${width} x ${height}: the line on research use is whole, every pane has its letters`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { viewport: { width, height } });
       const visible = await page.evaluate(() => [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)));
       for (const view of visible) await full(page, view);
@@ -61,7 +59,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
       await page.context().close();
     });
 
-    it(`the list of plans at ${width} x ${height}: names and buttons stay in their rows`, async () => {
+    once(`the list of plans at ${width} x ${height}: names and buttons stay in their rows`, async () => {
       const page = await world.newPage('', { viewport: { width, height } });
       await page.locator('[data-plan] .refusal').waitFor();
       assert.deepEqual(await cut(page, '.research', '.status'), []);
@@ -72,7 +70,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     });
   }
 
-  it('a pane maximised while all four are being drawn, and back: the other three come anew', async () => {
+  once('a pane maximised while all four are being drawn, and back: the other three come anew', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
     for (const view of [1, 2, 3, 4]) await full(page, view);
     const { scene_revision: revision } = await header(page, 2);
@@ -89,7 +87,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  for (const [size, options] of Object.entries(roomSizes).filter(([name]) => isLong || ['compact', 'phone'].includes(name)))
+  for (const [size, options] of Object.entries(roomSizes).filter(([name]) => isDue(name === 'compact')))
     it(`${size}: in no state does text lie over text, a letter or a control, and panes are as wide as they have to be`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
       await full(page);
@@ -111,7 +109,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
   /** Until every picture is at rest. */
   const settled = (page) => page.waitForFunction(() => [...document.querySelectorAll('.pane:not([hidden])')].every((pane) => globalThis.beamroom.stats().badges[pane.dataset.view] === 'full'));
 
-  it('panels never make one of four panes narrower than 420 px, at any width of a desk', async () => {
+  once('panels never make one of four panes narrower than 420 px, at any width of a desk', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom()}`, roomSizes.wide);
     await full(page);
     for (const width of [1920, 1433, 1400, 1399, 1280, 1209, 1208, 1100]) {
@@ -125,7 +123,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('what was clicked is in sight in the inspector: its head stands at the top', async () => {
+  once('what was clicked is in sight in the inspector: its head stands at the top', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom()}`, roomSizes.compact);
     await full(page);
     await page.locator('[data-section="regions"]').click();
@@ -139,7 +137,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('regions are found by a part of their names, hidden all at once, and left to the targets', async () => {
+  once('regions are found by a part of their names, hidden all at once, and left to the targets', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`, roomSizes.wide);
     await full(page);
@@ -164,7 +162,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('a name that is cut loses its middle, never its end', async () => {
+  once('a name that is cut loses its middle, never its end', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom('sides')}`, roomSizes.wide);
     await full(page);
     for (const side of ['left', 'right']) {
@@ -178,7 +176,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('the comparison of methods shows its table in every window', async () => {
+  once('the comparison of methods shows its table in every window', async () => {
     for (const [size, options] of Object.entries(roomSizes)) {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
       await full(page);
@@ -198,7 +196,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     }
   });
 
-  it('a plan of beams alone says that there is nothing to draw, and nothing runs through the words', async () => {
+  once('a plan of beams alone says that there is nothing to draw, and nothing runs through the words', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom('beams')}`);
     for (const view of [1, 2]) {
       await full(page, view);
@@ -209,7 +207,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  it('the load report of a plan that is refused says why', async () => {
+  once('the load report of a plan that is refused says why', async () => {
     const page = await world.newPage();
     await page.locator('[data-plan="a-head-with-a-very-long-name"]').click();
     await page.locator('.load-report .report', { hasText: 'Refused' }).waitFor();

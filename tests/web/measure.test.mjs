@@ -3,13 +3,11 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { full, header, isDue, missing, once, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
 
 const brain = { hounsfield: 38, noise: 5 }; // of the demo head, as core/phantom/head.c makes it
-
-const isLong = process.env.LONG_TESTS === '1'; // at every size; else at two, and image.test.mjs at the other two
 
 describe('measures on the page', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -50,7 +48,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
   const areAt = (measure, expected) => places(measure).length === expected.length && places(measure).every((at, index) => away(at, expected[index]) < 0.1);
   const drawn = (page, view, id) => page.locator(`[data-view="${view}"] [data-measure="${id}"]`);
 
-  it('every kind is drawn by mouse and says what geometry says, within 0.1 mm; in the panes of its plane and in 3-D', async () => {
+  once('every kind is drawn by mouse and says what geometry says, within 0.1 mm; in the panes of its plane and in 3-D', async () => {
     const { page, room, comes } = await open();
     const [L, P, S] = crosshairOf(await world.scene(room));
     await page.locator('[aria-label="Measure"]').click();
@@ -94,7 +92,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await page.context().close();
   });
 
-  it('a point is dragged later, in one step to undo; by keys and numbers everything can be done too', async () => {
+  once('a point is dragged later, in one step to undo; by keys and numbers everything can be done too', async () => {
     const { page, room, comes, measures } = await open();
     const [L, P, S] = crosshairOf(await world.scene(room));
     await page.locator('#picture-2').focus();
@@ -129,6 +127,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await page.locator('.image-measured', { hasText: '5.0 mm' }).waitFor();
     await page.getByRole('button', { name: 'Show Midline shift in the pictures' }).click();
     await drawn(page, 2, 'm1').waitFor({ state: 'detached' });
+    await comes(({ m1 }) => m1.visible === false, 'hidden');
     const kept = (await measures()).m1;
     await page.getByRole('button', { name: 'Delete Midline shift' }).click();
     await comes((now) => !now.m1, 'deleted');
@@ -149,7 +148,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await page.context().close();
   });
 
-  it('who follows and measures is on their own: the room has no such measure; the report to print lists the room\'s', async () => {
+  once('who follows and measures is on their own: the room has no such measure; the report to print lists the room\'s', async () => {
     const { page, room, comes, measures } = await open();
     const [, , S] = crosshairOf(await world.scene(room));
     const other = (await open(sizes.wide, room)).page;
@@ -176,7 +175,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await page.context().close();
   });
 
-  for (const [size, options] of Object.entries(sizes).filter(([name]) => isLong || ['wide', 'tablet'].includes(name)))
+  for (const [size, options] of Object.entries(sizes).filter(([name]) => isDue(name === 'tablet')))
     it(`${size}: axe-core finds nothing and no text lies over another while something is measured${options.hasTouch ? ', with fingers' : ''}`, async () => {
       const { page, room, comes } = await open(options);
       const [, , S] = crosshairOf(await world.scene(room));

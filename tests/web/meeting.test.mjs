@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { sleep } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { full, header, isDue, missing, once, shoot, startWorld } from './browser.mjs';
 import { startProxy } from './proxy.mjs';
 
 const sizes = [
@@ -12,9 +12,7 @@ const sizes = [
   ['1180x820-touch', { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true }],
   ['390x844-touch', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
 ];
-
-const isLong = process.env.LONG_TESTS === '1'; // every size; else two, and the planner's hour at the other two
-const played = isLong ? sizes : sizes.filter(([size]) => /1600|390/.test(size));
+const played = sizes.filter(([size]) => isDue(/1600/.test(size)));
 
 /** Until this holds; fails with the last value after 30 s. */
 async function until(what, holds, of = async () => undefined) {
@@ -195,7 +193,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
       await stop();
     });
 
-  for (const [name, options] of (isLong ? sizes : played).filter(([size]) => /1280|touch/.test(size)))
+  for (const [name, options] of sizes.filter(([size]) => /1280|touch/.test(size) && isDue(/390/.test(size))))
     it(`who came by the link gives a name, and changes it, at ${name}`, async () => {
       const { one, two, stop } = await meet(options);
       /** All words of chip and badges from now on. */
@@ -258,7 +256,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
       await stop();
     });
 
-  it('a link that swallows everything shows, what is done meanwhile is kept, and it comes back', async () => {
+  once('a link that swallows everything shows, what is done meanwhile is kept, and it comes back', async () => {
     const { one, two, three, stop } = await meet(sizes[0][1], proxy.url);
     const before = await place(three, 2);
     proxy.black(true);
@@ -285,7 +283,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
     await stop();
   });
 
-  it('what the presenter changes while the link is dead is sent when it is back', async () => {
+  once('what the presenter changes while the link is dead is sent when it is back', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`, { base: proxy.url });
     await allFull(page);
@@ -304,7 +302,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  if (isLong) it('a presenter who is gone for 30 s presents no more; others keep what they see and take over', async () => {
+  if (isDue(false)) it('a presenter who is gone for 30 s presents no more; others keep what they see and take over', async () => {
     const { one, two, three } = await meet(sizes[0][1]);
     await one.context().close();
     await says(two, /^Reviewer 1 is away$/);

@@ -202,12 +202,13 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     const page = await newPage(`#/rooms/${room}`);
     await full(page);
     const before = await look(page, 1);
-    await page.locator('[data-dose="goorley"] .eye').click();
+    await page.locator('[data-dose="goorley"] button.name').click();
+    await page.getByRole('button', { name: 'Box of the grid' }).click();
     await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].scene_revision > 1);
     await full(page);
     assert.notEqual((await look(page, 1)).print, before.print);
     const { json } = await call(`${daemon.url}/api/v1/rooms/${room}/scene`);
-    assert.deepEqual((json.scene ?? json).dose, { id: 'goorley', grid: true });
+    assert.deepEqual([(json.scene ?? json).dose.id, (json.scene ?? json).dose.grid], ['goorley', true]);
     await page.context().close();
   });
 
@@ -216,6 +217,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
     const links = page.locator('[aria-label="Download the surface"] a');
+    await links.first().waitFor();
     assert.deepEqual(await links.allTextContents().then((words) => words.map((word) => word.trim())), ['STL', 'PLY', 'GLB']);
     await shoot(page, 'downloads');
     for (const [at, ending, magic] of [[0, 'stl', 'Beamroom mm LPS tumour'], [1, 'ply', 'ply\n'], [2, 'glb', 'glTF']]) {

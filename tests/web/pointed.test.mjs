@@ -165,7 +165,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
 
   it('says without a pointer what lies at the crosshair of the pane with the focus', async () => {
     await page.locator('#picture-2').focus();
-    await page.waitForFunction(() => /^Axial, S \S+ mm, (tumour|target|brain|cranium|scalp), CT \S+ HU$/.test(document.querySelector('#caption-2').textContent));
+    await page.waitForFunction(() => /^Axial, S \S+ mm, (tumour|target|brain|cranium|scalp), CT \S+ HU(, \S+ Gy\(w\))?$/.test(document.querySelector('#caption-2').textContent));
     await page.waitForFunction(() => /^Sagittal, L \S+ mm$/.test(document.querySelector('#caption-3').textContent));
   });
 

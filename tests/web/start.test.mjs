@@ -8,8 +8,7 @@ import { after, before, describe, it } from 'node:test';
 import { call, openPlan } from '../api/daemon.mjs';
 import { Client } from '../api/ws_client.mjs';
 import { axe } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
-
+import { full, isDue, missing, once, shoot, startWorld } from './browser.mjs';
 const sizes = [[1280, 720], [390, 844]];
 
 describe('the start page', { skip: missing && `${missing} is not there` }, () => {
@@ -73,7 +72,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     if (folder) rmSync(folder, { recursive: true, force: true });
   });
 
-  it('folders that are no plans are one folded line, and a broken plan is not among them', async () => {
+  once('folders that are no plans are one folded line, and a broken plan is not among them', async () => {
     const page = await newPage();
     await page.locator('.folders summary', { hasText: '2 folders are not plans' }).waitFor();
     assert.equal(await page.locator('.refusal').count(), 1, 'of the broken plan alone');
@@ -84,7 +83,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.context().close();
   });
 
-  it('a plan that is not loaded has no thumbnail and is not loaded for one; a loaded plan has one', async () => {
+  once('a plan that is not loaded has no thumbnail and is not loaded for one; a loaded plan has one', async () => {
     const page = await newPage();
     const thumbnail = page.locator('[data-plan="phantom"] .thumb img');
     await page.waitForResponse(/\/api\/v1\/plans$/); // a second list
@@ -99,7 +98,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.context().close();
   });
 
-  it('the name is asked for once, and goes along into a room that is joined with one click', async () => {
+  once('the name is asked for once, and goes along into a room that is joined with one click', async () => {
     const room = await world.newRoom();
     await enter(room, 'Dr Alvarez');
     const page = await newPage();
@@ -122,7 +121,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.context().close();
   });
 
-  it('a full server says so for itself, and the plan is not refused', async () => {
+  once('a full server says so for itself, and the plan is not refused', async () => {
     const page = await newPage();
     const second = await upload(page, 'Second');
     const { json: { id: room } } = await call(`${world.daemon.url}/api/v1/rooms`, 'POST', { plan: second });
@@ -139,7 +138,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.context().close();
   });
 
-  it('before a plan is deleted, who is looking at it is named; with the keyboard too', async () => {
+  once('before a plan is deleted, who is looking at it is named; with the keyboard too', async () => {
     const page = await newPage();
     const id = 'second'; // where Chen and Dr B are
     await page.locator(`[data-plan="${id}"] [aria-label^="Delete"]`).focus();
@@ -161,7 +160,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.context().close();
   });
 
-  it('an address without a room says so, and offers its plan in a new room', async () => {
+  once('an address without a room says so, and offers its plan in a new room', async () => {
     const page = await newPage('#/rooms/nowhere/phantom');
     const card = page.locator('.ended', { hasText: 'There is no room at this address' });
     await card.waitFor();
@@ -180,8 +179,9 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
   });
 
   for (const [width, height] of sizes)
-    for (const forcedColors of ['none', 'active'])
+    for (const forcedColors of ['none', 'active'].filter((colors) => isDue(colors === (width > 600 ? 'active' : 'none'))))
       it(`at ${width} x ${height}${forcedColors === 'active' ? ' in forced colours' : ''}, axe-core finds nothing in any state, and nothing is wider than the window`, async () => {
+        await openPlan(world.daemon.url, 'phantom'); // a loaded plan has a thumbnail
         const page = await newPage('', { viewport: { width, height }, forcedColors });
         const check = async (state) => {
           await isClean(page, state, forcedColors === 'active');
@@ -215,7 +215,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
       });
 
   for (const [width, height, options] of [[1600, 1000, {}], [1280, 720, {}], [1180, 820, { hasTouch: true, isMobile: true }], [390, 844, { hasTouch: true, isMobile: true }]])
-    it(`at ${width} x ${height}, no text lies over another or over a control, and every plan shows its parts and its state`, async () => {
+    once(`at ${width} x ${height}, no text lies over another or over a control, and every plan shows its parts and its state`, async () => {
       const page = await newPage('', { viewport: { width, height }, ...options });
       await page.locator('.thumb img').first().waitFor();
       await shoot(page, `start-list-${width}`);
@@ -228,7 +228,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
       await page.context().close();
     });
 
-  it('every control is reached by the keyboard in the order of the page, with a ring around it', async () => {
+  once('every control is reached by the keyboard in the order of the page, with a ring around it', async () => {
     const page = await newPage();
     await page.evaluate(() => document.activeElement.blur());
     const seen = [];

@@ -70,7 +70,7 @@ test('a browser that takes gzip alone, as over plain HTTP, stays within the byte
   });
   const page = await ask('');
   const named = new Set([...page.text.matchAll(/(?:href|src)="(page\/[^"]+\.(?:js|css))"/g)].map(([, path]) => path));
-  assert.equal(named.size, 2);
+  assert.ok(named.size >= 2, `${[...named]}`);
   let total = page.bytes;
   for (const path of named) total += (await ask(path)).bytes;
   assert.ok(total <= maxBytes, `${total} bytes`);

@@ -4,7 +4,6 @@ import { makeApi } from './net/api.js';
 import { sendPlan } from './net/upload.js';
 import { Hooks } from './hooks.js';
 import { roomPage } from './panels/room_page.js';
-import { startPage } from './panels/start_page.js';
 import { OwnName } from './state/own_name.js';
 import { Thumbnails } from './state/thumbnails.js';
 import { isId } from './wire/check.js';
@@ -59,15 +58,22 @@ function connect(room) {
 }
 
 let leave = () => {};
+let nRoutes = 0;
 
-function route() {
+async function route() {
   const [, place, id, plan = ''] = location.hash.split('/');
   if (location.hash.startsWith('#picture-')) return; // the skip link's target, not a page
   leave();
+  leave = () => {};
+  nRoutes += 1;
   const host = document.querySelector('#page');
-  leave = place === 'rooms' && isId(id)
-    ? roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' })
-    : startPage(host, { api, clock, enter, send, ownName, thumbnails });
+  if (place === 'rooms' && isId(id))
+    leave = roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' });
+  else {
+    const n = nRoutes;
+    const { startPage } = await import('./panels/start_page.js'); // a file of its own: who opens a room by its link does not load it
+    if (n === nRoutes) leave = startPage(host, { api, clock, enter, send, ownName, thumbnails });
+  }
 }
 
 addEventListener('hashchange', route);

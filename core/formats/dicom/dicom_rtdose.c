@@ -8,6 +8,7 @@
 #include "core/base/mem.h"
 #include "core/formats/dicom/dicom_coded.h"
 #include "core/formats/dicom/dicom_numbers.h"
+#include "core/formats/dicom/dicom_rtdose_dvh.h"
 
 #define RTDOSE_CLASS "1.2.840.10008.5.1.4.1.1.481.2"
 #define MOST_GY 1000.0
@@ -33,7 +34,8 @@ enum {
     REFERENCED_PLAN_SEQUENCE = DICOM_TAG(0x300c, 0x0002),
     REFERENCED_BEAM_SEQUENCE = DICOM_TAG(0x300c, 0x0004),
     REFERENCED_BEAM = DICOM_TAG(0x300c, 0x0006),
-    REFERENCED_FRACTION_SEQUENCE = DICOM_TAG(0x300c, 0x0020)
+    REFERENCED_FRACTION_SEQUENCE = DICOM_TAG(0x300c, 0x0020),
+    REFERENCED_STRUCTS_SEQUENCE = DICOM_TAG(0x300c, 0x0060)
 };
 
 /* Positions of the frames. */
@@ -330,7 +332,10 @@ static void add_beams(struct rtdose *dose, const struct dicom_item *item)
 
 static void read_references(struct rtdose *dose, const struct dicom_item *root)
 {
-    const struct dicom_item *plan = dicom_item_at(root, REFERENCED_PLAN_SEQUENCE, 0);
+    const struct dicom_item *plan = dicom_item_at(root, REFERENCED_PLAN_SEQUENCE, 0),
+                            *structs = dicom_item_at(root, REFERENCED_STRUCTS_SEQUENCE, 0);
+    if (structs)
+        dicom_text(structs, REFERENCED_INSTANCE, dose->structs_uid, sizeof dose->structs_uid);
     if (!plan)
         return;
     dicom_text(plan, REFERENCED_INSTANCE, dose->plan_uid, sizeof dose->plan_uid);
@@ -406,6 +411,10 @@ bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose
     dicom_coded_report(&coded, file, &pixels, where, report);
     read_words(&read, root);
     read_references(&read, root);
+    if (!rtdose_read_dvhs(&read, root, where, report, err)) {
+        rtdose_finish(&read);
+        return false;
+    }
     volume_measure(read.values);
     read.is_all_zero = read.values->low == 0 && read.values->high == 0;
     if (strcmp(read.units, "GY") == 0 && read.values->high > MOST_GY)
@@ -422,6 +431,9 @@ void rtdose_finish(struct rtdose *dose)
 {
     volume_unref(dose->values);
     dose->values = NULL;
+    free(dose->stated);
+    dose->stated = NULL;
+    dose->n_stated = 0;
 }
 
 void rtdose_check_frame(struct rtdose *dose, const char *image_frame_uid, const char *where, struct report *report)

@@ -27,6 +27,9 @@ struct rtdose {
     bool is_all_zero;
     int64_t beams[RTDOSE_MAX_BEAMS]; /* numbers of the plan's beams that the object refers to */
     size_t n_beams;
+    char structs_uid[DICOM_UID_SIZE]; /* structure set of the stored histograms; "" if not given */
+    struct dose_stated *stated;       /* [n_stated] of stored histograms, by ROI number; owned, as values; NULL: none */
+    size_t n_stated;
 };
 
 /* Reads values and geometry of one object. Frame offsets may be relative or absolute, ascending or descending. If they

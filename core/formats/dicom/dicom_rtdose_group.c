@@ -202,8 +202,12 @@ static void add_components(struct grouping *grouping, size_t first, const bool *
 static void add_alone(struct grouping *grouping, struct rtdose *object)
 {
     struct dose *dose = new_dose(grouping, object);
-    if (dose)
-        add_component(dose, object, strcmp(object->type, "EFFECTIVE") == 0 ? DOSE_WEIGHTED_TOTAL : DOSE_TOTAL);
+    if (!dose)
+        return;
+    add_component(dose, object, strcmp(object->type, "EFFECTIVE") == 0 ? DOSE_WEIGHTED_TOTAL : DOSE_TOTAL);
+    for (size_t i = 0; i < object->n_stated; i++)
+        dose->stated[i] = object->stated[i];
+    dose->n_stated = object->n_stated;
 }
 
 static void leave_out_zeros(struct grouping *grouping)

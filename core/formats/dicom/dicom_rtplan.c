@@ -313,6 +313,8 @@ static bool read_beam(const struct reading *reading, const struct dicom_item *it
         opening_measure(reading->opening, i == 0, d);
         if (i == 0)
             place_collimator(d, &state);
+        if (i == 0 && !isnan(d->opening_cm2))
+            opening_outline(reading->opening, &d->outline);
     }
     if (!state.has_isocentre)
         return left_out(reading, beam, "has no isocentre, so nothing says where it is in the patient");

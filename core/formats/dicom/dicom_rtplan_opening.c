@@ -25,22 +25,9 @@ enum {
 enum { MOST_BLOCK_POINTS = 5000, LEAST_ROUND_POINTS = 12 };
 #define ROUND_SHARE \
     0.02 /* share of the radius by which the points of a block may miss a circle and still count as round */
-#define WIDE_OPEN_MM 1e4 /* coordinate of a side that no device limits */
-
-/* A rectangle; a side that no device limits is at WIDE_OPEN_MM. */
-struct rectangle {
-    double x[2], y[2];
-};
-
-static struct rectangle everything(void)
+static struct opening_rectangle everything(void)
 {
-    return (struct rectangle){ { -WIDE_OPEN_MM, WIDE_OPEN_MM }, { -WIDE_OPEN_MM, WIDE_OPEN_MM } };
-}
-
-static void narrow(double side[2], double low, double high)
-{
-    side[0] = fmax(side[0], low);
-    side[1] = fmin(side[1], high);
+    return (struct opening_rectangle){ { -OPENING_WIDE_MM, OPENING_WIDE_MM }, { -OPENING_WIDE_MM, OPENING_WIDE_MM } };
 }
 
 static void widen(double side[2], const double by[2])
@@ -49,13 +36,13 @@ static void widen(double side[2], const double by[2])
     side[1] = isnan(side[1]) ? by[1] : fmax(side[1], by[1]);
 }
 
-static bool is_leaves(const struct opening_device *device)
+bool opening_is_leaves(const struct opening_device *device)
 {
     return strncmp(device->type, "MLC", 3) == 0;
 }
 
 /* The direction of movement is the last letter of the type: "X", "ASYMY", "MLCX". */
-static bool moves_along_x(const struct opening_device *device)
+bool opening_moves_along_x(const struct opening_device *device)
 {
     size_t n = strlen(device->type);
     return n > 0 && device->type[n - 1] == 'X';
@@ -133,10 +120,10 @@ static bool add_device(struct opening *opening, const struct dicom_item *item, s
     if (n_pairs > OPENING_MAX_LEAVES)
         return error_set(err, ERROR_LIMIT, "a collimator of %lld pairs of leaves; the limit is %d", (long long)n_pairs,
                          OPENING_MAX_LEAVES);
-    if (has_pairs && (n_pairs < 1 || (!is_leaves(device) && n_pairs != 1)))
+    if (has_pairs && (n_pairs < 1 || (!opening_is_leaves(device) && n_pairs != 1)))
         dicom_doubt(opening->doubts, "%s: number of pairs (300A,00BC) is %lld, expected %s", device->type,
-                    (long long)n_pairs, is_leaves(device) ? "1 or more" : "1");
-    if (is_leaves(device) && !read_boundaries(opening, device, item, n_pairs))
+                    (long long)n_pairs, opening_is_leaves(device) ? "1 or more" : "1");
+    if (opening_is_leaves(device) && !read_boundaries(opening, device, item, n_pairs))
         return true;
     opening->n_devices++;
     return true;
@@ -147,7 +134,7 @@ static bool add_device(struct opening *opening, const struct dicom_item *item, s
 static void add_block(struct opening *opening, const double *xy, size_t n)
 {
     double doubled = 0, sum_x = 0, sum_y = 0, radius = 0;
-    struct rectangle box = { { INFINITY, -INFINITY }, { INFINITY, -INFINITY } };
+    struct opening_rectangle box = { { INFINITY, -INFINITY }, { INFINITY, -INFINITY } };
     for (size_t i = 0; i < n; i++) {
         const double *a = xy + 2 * i, *b = xy + 2 * ((i + 1) % n);
         doubled += a[0] * b[1] - b[0] * a[1];
@@ -176,6 +163,31 @@ static void add_block(struct opening *opening, const double *xy, size_t n)
     opening->round_mm = is_round ? 2 * radius : NAN;
 }
 
+/* Keeps the outline of a block, n points in the plane of the isocentre. Of blocks with too many points, or too many
+ * blocks, none is kept. */
+static void keep_block(struct opening *opening, const double *xy, size_t n)
+{
+    struct beam_outline *blocks = &opening->blocks;
+    size_t at = beam_outline_n_points(blocks);
+    if (opening->has_lost_blocks || n >= BEAM_OUTLINE_MAX_POINTS - at ||
+        blocks->n_polygons >= BEAM_OUTLINE_MAX_POLYGONS) {
+        if (!opening->has_lost_blocks)
+            dicom_doubt(opening->doubts,
+                        "blocks (300A,00F4): %d points or more, or more than %d blocks; their outline is not shown",
+                        BEAM_OUTLINE_MAX_POINTS, BEAM_OUTLINE_MAX_POLYGONS);
+        opening->has_lost_blocks = true;
+        blocks->kind = BEAM_OUTLINE_NONE;
+        blocks->n_polygons = 0;
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        blocks->points_mm[at + i][0] = (float)xy[2 * i];
+        blocks->points_mm[at + i][1] = (float)xy[2 * i + 1];
+    }
+    blocks->kind = BEAM_OUTLINE_BLOCKS;
+    blocks->ends[blocks->n_polygons++] = (uint16_t)(at + n);
+}
+
 static void add_blocks(struct opening *opening, const struct dicom_item *beam, uint32_t sequence)
 {
     size_t n = dicom_n_items(beam, sequence);
@@ -192,21 +204,25 @@ static void add_blocks(struct opening *opening, const struct dicom_item *beam, u
                         n_values, 2 * MOST_BLOCK_POINTS);
             continue;
         }
-        if (!are_within(xy, n_values, WIDE_OPEN_MM, &which)) {
+        if (!are_within(xy, n_values, OPENING_WIDE_MM, &which)) {
             dicom_doubt(opening->doubts, "block data (300A,0106): value %zu is %g mm, expected at most %g", which + 1,
-                        xy[which], WIDE_OPEN_MM);
+                        xy[which], OPENING_WIDE_MM);
             continue;
         }
         if (dicom_integer(item, BLOCK_N_POINTS, &n_said) && n_said != (int64_t)(n_values / 2))
             dicom_doubt(opening->doubts, "block data (300A,0106) has %zu points, expected the %lld of (300A,0104)",
                         n_values / 2, (long long)n_said);
         add_block(opening, xy, n_values / 2);
+        keep_block(opening, xy, n_values / 2);
     }
 }
 
 bool opening_init(struct opening *opening, const struct dicom_item *beam, struct error *err)
 {
     opening->n_devices = 0;
+    opening->blocks.kind = BEAM_OUTLINE_NONE;
+    opening->blocks.n_polygons = 0;
+    opening->has_lost_blocks = false;
     opening->block_x_mm[0] = opening->block_x_mm[1] = opening->block_y_mm[0] = opening->block_y_mm[1] = NAN;
     opening->block_cm2 = opening->round_mm = NAN;
     static const uint32_t sequences[] = { DEVICE_SEQUENCE, ION_DEVICE_SEQUENCE };
@@ -281,34 +297,40 @@ void opening_move(struct opening *opening, const struct dicom_item *control_poin
     }
 }
 
-/* The opening between the jaws; has_x and has_y are false for a direction without jaws. */
-static struct rectangle jaws_of(const struct opening *opening, bool *has_x, bool *has_y)
+struct opening_rectangle opening_jaws(const struct opening *opening, bool *has_x, bool *has_y)
 {
-    struct rectangle jaws = everything();
+    struct opening_rectangle jaws = everything();
     *has_x = *has_y = false;
     for (size_t d = 0; d < opening->n_devices; d++) {
         const struct opening_device *device = &opening->devices[d];
-        if (is_leaves(device) || !device->is_placed)
+        if (opening_is_leaves(device) || !device->is_placed)
             continue;
-        bool is_x = moves_along_x(device);
-        narrow(is_x ? jaws.x : jaws.y, device->positions_mm[0], device->positions_mm[1]);
+        bool is_x = opening_moves_along_x(device);
+        opening_narrow(is_x ? jaws.x : jaws.y, device->positions_mm[0], device->positions_mm[1]);
         *(is_x ? has_x : has_y) = true;
     }
     return jaws;
 }
 
-/* The hull and the area of what the leaves leave open inside the jaws. */
-static struct rectangle open_between_leaves(const struct opening_device *device, const struct rectangle *jaws,
-                                            double *mm2)
+bool opening_between(const struct opening_device *device, size_t pair, const struct opening_rectangle *jaws,
+                     struct opening_rectangle *gap)
 {
-    struct rectangle hull = { { INFINITY, -INFINITY }, { INFINITY, -INFINITY } };
-    bool is_x = moves_along_x(device);
+    bool is_x = opening_moves_along_x(device);
+    *gap = *jaws;
+    opening_narrow(is_x ? gap->x : gap->y, device->positions_mm[pair], device->positions_mm[device->n_pairs + pair]);
+    opening_narrow(is_x ? gap->y : gap->x, device->boundaries_mm[pair], device->boundaries_mm[pair + 1]);
+    return gap->x[0] < gap->x[1] && gap->y[0] < gap->y[1];
+}
+
+/* The hull and the area of what the leaves leave open inside the jaws. */
+static struct opening_rectangle open_between_leaves(const struct opening_device *device,
+                                                    const struct opening_rectangle *jaws, double *mm2)
+{
+    struct opening_rectangle hull = { { INFINITY, -INFINITY }, { INFINITY, -INFINITY } };
     *mm2 = 0;
     for (size_t pair = 0; pair < device->n_pairs; pair++) {
-        struct rectangle gap = *jaws;
-        narrow(is_x ? gap.x : gap.y, device->positions_mm[pair], device->positions_mm[device->n_pairs + pair]);
-        narrow(is_x ? gap.y : gap.x, device->boundaries_mm[pair], device->boundaries_mm[pair + 1]);
-        if (!(gap.x[0] < gap.x[1] && gap.y[0] < gap.y[1]))
+        struct opening_rectangle gap;
+        if (!opening_between(device, pair, jaws, &gap))
             continue;
         *mm2 += (gap.x[1] - gap.x[0]) * (gap.y[1] - gap.y[0]);
         hull.x[0] = fmin(hull.x[0], gap.x[0]);
@@ -320,25 +342,25 @@ static struct rectangle open_between_leaves(const struct opening_device *device,
 }
 
 /* Stores the current opening. Returns false if it is closed, or if no device states it. */
-static bool opening_now(const struct opening *opening, struct rectangle *open, double *cm2)
+static bool opening_now(const struct opening *opening, struct opening_rectangle *open, double *cm2)
 {
     bool has_x, has_y;
-    *open = jaws_of(opening, &has_x, &has_y);
-    struct rectangle jaws = *open;
+    *open = opening_jaws(opening, &has_x, &has_y);
+    struct opening_rectangle jaws = *open;
     double least_mm2 = (jaws.x[1] - jaws.x[0]) * (jaws.y[1] - jaws.y[0]);
     for (size_t d = 0; d < opening->n_devices; d++) {
-        if (!is_leaves(&opening->devices[d]) || !opening->devices[d].is_placed)
+        if (!opening_is_leaves(&opening->devices[d]) || !opening->devices[d].is_placed)
             continue;
         double mm2;
-        struct rectangle hull = open_between_leaves(&opening->devices[d], &jaws, &mm2);
-        narrow(open->x, hull.x[0], hull.x[1]);
-        narrow(open->y, hull.y[0], hull.y[1]);
+        struct opening_rectangle hull = open_between_leaves(&opening->devices[d], &jaws, &mm2);
+        opening_narrow(open->x, hull.x[0], hull.x[1]);
+        opening_narrow(open->y, hull.y[0], hull.y[1]);
         least_mm2 = fmin(least_mm2, mm2);
         has_x = has_y = true;
     }
     if (!isnan(opening->block_cm2)) {
-        narrow(open->x, opening->block_x_mm[0], opening->block_x_mm[1]);
-        narrow(open->y, opening->block_y_mm[0], opening->block_y_mm[1]);
+        opening_narrow(open->x, opening->block_x_mm[0], opening->block_x_mm[1]);
+        opening_narrow(open->y, opening->block_y_mm[0], opening->block_y_mm[1]);
         least_mm2 = fmin(least_mm2, opening->block_cm2 * 100);
         has_x = has_y = true;
     }
@@ -348,7 +370,7 @@ static bool opening_now(const struct opening *opening, struct rectangle *open, d
 
 void opening_measure(const struct opening *opening, bool is_first, struct beam_delivery *delivery)
 {
-    struct rectangle open;
+    struct opening_rectangle open;
     double cm2;
     bool is_open = opening_now(opening, &open, &cm2);
     if (is_open) {
@@ -358,7 +380,7 @@ void opening_measure(const struct opening *opening, bool is_first, struct beam_d
     if (!is_first)
         return;
     bool has_x, has_y;
-    struct rectangle jaws = jaws_of(opening, &has_x, &has_y);
+    struct opening_rectangle jaws = opening_jaws(opening, &has_x, &has_y);
     if (has_x)
         memcpy(delivery->jaws_x_mm, jaws.x, sizeof jaws.x);
     if (has_y)

@@ -1,4 +1,5 @@
-/* Draws caps by OpenGL: the inside of outlines by stencil parity, then the image where it is seen. */
+/* Draws caps by OpenGL: the inside of outlines by stencil parity, then the image where it is seen; and lines in planes.
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -106,7 +107,7 @@ static bool paint_seen(const struct gl_frame *frame, const struct draw *draw, co
     gl->Disable(GL_DEPTH_TEST);
     gl->StencilFunc(GL_EQUAL, STENCIL_SEEN, STENCIL_SEEN);
     gl->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-    if (draw->cap.has_image && !gl_draw_image(frame, &as_image, err))
+    if (draw->cap.has_image && !gl_draw_bare_image(frame, &as_image, err))
         return false;
     if (draw->cap.tint > 0) {
         gl->Enable(GL_BLEND);
@@ -114,26 +115,30 @@ static bool paint_seen(const struct gl_frame *frame, const struct draw *draw, co
         draw_plain(frame, polygon, region->color_rgb, draw->cap.tint);
         gl->Disable(GL_BLEND);
     }
-    return true;
+    return !draw->cap.image.wash || gl_paint_wash(frame, draw->cap.image.wash, &draw->plane, &draw->clip, err);
 }
 
-/* The outlines of a region, over the cap. */
-static bool draw_outline(const struct gl_frame *frame, const struct draw *draw, const struct draw_cap_region *region,
-                         struct error *err)
+static bool draw_lines(const struct gl_frame *frame, const struct draw *like, const struct cut_lines *lines,
+                       uint32_t rgb, double width_px, struct error *err)
 {
     const struct gl_shape shape = {
         .base = { .bounds_lps_mm = { { -INFINITY, -INFINITY, -INFINITY }, { INFINITY, INFINITY, INFINITY } } },
         .kind = SHAPE_LINES,
         .vertex_array = frame->segment_array,
-        .n = (GLsizei)region->lines->n,
+        .n = (GLsizei)lines->n,
     };
     const struct draw line = {
-        .clip = draw->clip,
-        .color_rgb = region->color_rgb,
+        .clip = like->clip,
+        .color_rgb = rgb,
         .opacity = 1,
-        .shape = { .drawable = &shape.base, .look = { .size_px = draw->cap.outline_px }, .cue = { .w = 1 } },
+        .shape = { .drawable = &shape.base, .look = { .size_px = width_px }, .cue = { .w = 1 } },
     };
-    return send_segments(frame, region->lines, err) && gl_draw_shapes(frame, &line, 1, err);
+    return send_segments(frame, lines, err) && gl_draw_shapes(frame, &line, 1, err);
+}
+
+bool gl_draw_isolines(const struct gl_frame *frame, const struct draw *draw, struct error *err)
+{
+    return draw_lines(frame, draw, draw->isolines.lines, draw->color_rgb, draw->isolines.width_px, err);
 }
 
 bool gl_draw_cap(const struct gl_frame *frame, const struct draw *draw, struct error *err)
@@ -160,6 +165,6 @@ bool gl_draw_cap(const struct gl_frame *frame, const struct draw *draw, struct e
     gl->StencilMask(0xff);
     gl->Enable(GL_DEPTH_TEST);
     for (size_t r = 0; is_good && cap->outline_px > 0 && r < cap->n_regions; r++)
-        is_good = draw_outline(frame, draw, &cap->regions[r], err);
+        is_good = draw_lines(frame, draw, cap->regions[r].lines, cap->regions[r].color_rgb, cap->outline_px, err);
     return is_good && gl_check(gl, "drawing a cap", err);
 }

@@ -1,5 +1,6 @@
 #pragma once
 /* The draws of a list by OpenGL, into the bound framebuffer. Every function leaves blending and culling off. */
+#include "core/render/gl/polygon.h"
 #include "core/render/gl/program.h"
 #include "core/render/gl/target.h"
 #include "core/render/gl/upload.h"
@@ -25,12 +26,42 @@ struct gl_frame {
     float clip_from_lps[16]; /* from patient points to the clip space of the band, upside down */
 };
 
+/* Draws a polygon with the program in use, which has the vertex shader slice.vert: at is 0..1 over the grid's outer
+ * faces. */
+void gl_draw_polygon(const struct gl_frame *frame, const struct grid *grid, const struct gl_polygon *polygon);
+
 /* errors of all: ERROR_GL, those of draw_cache_grid */
 NODISCARD bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);
 NODISCARD bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+/* The same without the image's wash. Stencil and depth rules are the caller's. */
+NODISCARD bool gl_draw_bare_image(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 NODISCARD bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+/* DRAW_WASH. */
+NODISCARD bool gl_draw_wash(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+/* Draws a wash over a plane, by the stencil and depth rules that are set. */
+NODISCARD bool gl_paint_wash(const struct gl_frame *frame, const struct draw_wash *wash, const struct plane *plane,
+                             const struct clip_set *clip, struct error *err);
+/* Sets the wash's uniforms and textures of a program with wash.glsl, which is in use. lps_from_place: of its places.
+ * wash NULL: only what a program needs that does not call it. */
+NODISCARD bool gl_set_wash(const struct gl_frame *frame, const struct gl_program *program, const struct draw_wash *wash,
+                           const struct affine *lps_from_place, struct error *err);
+/* Sets the uniforms and textures of a shape's texture; the program is in use. */
+NODISCARD bool gl_set_texture(const struct gl_frame *frame, const struct gl_program *program, const struct draw *draw,
+                              struct error *err);
+/* Sets the window of an image's texture. */
+void gl_set_grey(const struct gl *gl, GLint scale, GLint ends, const struct gl_grid *texels, double low, double width,
+                 bool is_low_white);
+/* Binds a table of one or two rows of colours by level to the unit; NULL: greys. */
+void gl_bind_colors(const struct gl_frame *frame, int unit, const uint32_t *first, const uint32_t *second);
+/* From 0..1 over one grid's outer faces to patient points. */
+struct affine gl_lps_from_faces(const struct grid *grid);
+/* errors also ERROR_MEMORY */
+NODISCARD bool gl_draw_tracks(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+NODISCARD bool gl_draw_marks(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 /* Leaves the stencil test off and the depth test on. errors also ERROR_MEMORY */
 NODISCARD bool gl_draw_cap(const struct gl_frame *frame, const struct draw *draw, struct error *err);
+/* errors also ERROR_MEMORY */
+NODISCARD bool gl_draw_isolines(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 /* Sets a program of the volume's rays, which is in use, and binds the textures of the volume. */
 NODISCARD bool gl_set_volume(const struct gl_frame *frame, const struct gl_program *program, const struct draw *draw,
                              struct error *err);

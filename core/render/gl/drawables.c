@@ -33,16 +33,30 @@ static void destroy_grid(void *context, struct drawable *drawable)
     free(grid);
 }
 
-static struct drawable *make_grid(void *context, const struct volume *volume, bool is_labels, struct error *err)
+static struct drawable *make_grid(void *context, const struct volume *const *volumes, size_t n, bool is_labels,
+                                  struct error *err)
 {
     struct gl_grid *made = mem_new(sizeof *made);
-    if (gl_upload_grid(context, volume, is_labels, made, err))
+    if (n == 1 ? gl_upload_grid(context, volumes[0], is_labels, made, err)
+               : gl_upload_stack(context, volumes, n, made, err))
         return &made->base;
     free(made);
     return NULL;
 }
 
+static void destroy_tracks(void *context, struct drawable *drawable)
+{
+    gl_tracks_destroy(context, (struct gl_tracks *)drawable);
+}
+
+static struct drawable *make_tracks(void *context, const struct track_set *set, struct error *err)
+{
+    struct gl_tracks *made = gl_tracks_create(context, set, err);
+    return made ? &made->base : NULL;
+}
+
 struct drawable_maker gl_drawable_maker(const struct gl *gl)
 {
-    return (struct drawable_maker){ make_shape, destroy_shape, make_grid, destroy_grid, (void *)(uintptr_t)gl };
+    return (struct drawable_maker){ make_shape,     destroy_shape,        make_grid, destroy_grid, make_tracks,
+                                    destroy_tracks, (void *)(uintptr_t)gl };
 }

@@ -36,3 +36,27 @@ void gl_polygon_clip(struct gl_polygon *polygon, const struct clip_set *clip)
         gl_polygon_keep(polygon, inside);
     }
 }
+
+/* Distance of a point from one of the grid's outer faces, in voxels; positive inside. */
+static double inside_face(const struct grid *grid, int face, struct vec3 p_lps_mm)
+{
+    struct vec3 ijk = affine_point(&grid->ijk_from_lps_mm, p_lps_mm);
+    double at = face / 2 == 0 ? ijk.x : face / 2 == 1 ? ijk.y : ijk.z;
+    return face % 2 ? grid->size[face / 2] - 0.5 - at : at + 0.5;
+}
+
+struct gl_polygon gl_slice_polygon(const struct grid *grid, const struct plane *plane, const struct clip_set *clip)
+{
+    struct box3 box = grid_bounds_lps_mm(grid);
+    struct plane upright = plane_upright(plane);
+    struct plane_reach reach = plane_reach(&upright, &box);
+    struct gl_polygon polygon = gl_polygon_of_reach(&upright, &reach);
+    for (int face = 0; face < 6; face++) {
+        double inside[GL_POLYGON_CORNERS];
+        for (int i = 0; i < polygon.n; i++)
+            inside[i] = inside_face(grid, face, polygon.lps_mm[i]);
+        gl_polygon_keep(&polygon, inside);
+    }
+    gl_polygon_clip(&polygon, clip);
+    return polygon;
+}

@@ -16,3 +16,6 @@ struct gl_polygon gl_polygon_of_reach(const struct plane *plane, const struct pl
 void gl_polygon_keep(struct gl_polygon *polygon, const double inside[GL_POLYGON_CORNERS]);
 /* Cuts off what lies above a clip plane of the set. */
 void gl_polygon_clip(struct gl_polygon *polygon, const struct clip_set *clip);
+/* The polygon in which a plane cuts a grid's outer faces, as far as no clip plane cuts it off; n < 3: nothing is left.
+ */
+struct gl_polygon gl_slice_polygon(const struct grid *grid, const struct plane *plane, const struct clip_set *clip);

@@ -65,6 +65,12 @@ static const char *line_constants(char text[80])
     return text;
 }
 
+static const char *track_constants(char text[80])
+{
+    (void)snprintf(text, 80, "#define DARKEST %.9f\n#define FAR %.9f\n", VISIBLE_DARKEST, DRAW_TRACKS_FAR);
+    return text;
+}
+
 static const char *image_constants(char text[120], bool is_linear, bool has_colors)
 {
     const uint8_t *rgb = visible_background;
@@ -73,23 +79,23 @@ static const char *image_constants(char text[120], bool is_linear, bool has_colo
     return text;
 }
 
-static const char *volume_constants(char text[500], bool is_depth)
+static const char *volume_constants(char text[540], bool is_depth, bool is_washed)
 {
     const uint8_t *rgb = visible_background;
-    (void)snprintf(text, 500,
+    (void)snprintf(text, 540,
                    "#define DARKEST_GREY (vec3(%d, %d, %d) / 255.0)\n#define FLAT %.9f\n#define TABLE %d.0\n"
                    "#define JITTER_X %uu\n#define JITTER_Y %uu\n#define LEAST_LEFT %.9f\n#define LEAST_LIT %.9f\n"
                    "#define METHOD_RAY %d\n#define METHOD_SLICES %d\n#define METHOD_MIP %d\n"
-                   "#define METHOD_AVERAGE %d\n#define DEPTH %d\n",
+                   "#define METHOD_AVERAGE %d\n#define DEPTH %d\n#define WASH %d\n",
                    rgb[0], rgb[1], rgb[2], DRAW_VOLUME_FLAT, DRAW_VOLUME_TABLE, DRAW_VOLUME_JITTER_X,
                    DRAW_VOLUME_JITTER_Y, least_left, least_lit, SCENE_VOLUME_METHOD_RAY, SCENE_VOLUME_METHOD_SLICES,
-                   SCENE_VOLUME_METHOD_MIP, SCENE_VOLUME_METHOD_AVERAGE, is_depth);
+                   SCENE_VOLUME_METHOD_MIP, SCENE_VOLUME_METHOD_AVERAGE, is_depth, is_washed);
     return text;
 }
 
 bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struct error *err)
 {
-    char constants[80], images[4][120], of_volume[2][500];
+    char constants[80], tracks[80], images[4][120], of_volume[3][540];
     const struct {
         struct gl_program *program;
         const char *name, *constants, *vertex, *fragment;
@@ -98,12 +104,19 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
         { &programs->faceted, "faceted", "", gl_shader_faceted_vert, gl_shader_faceted_frag },
         { &programs->smooth_clipped, "smooth", "#define CLIPPED\n", gl_shader_smooth_vert, gl_shader_shade_frag },
         { &programs->faceted_clipped, "faceted", "#define CLIPPED\n", gl_shader_faceted_vert, gl_shader_faceted_frag },
+        { &programs->smooth_textured, "smooth, textured", "#define CLIPPED\n#define TEXTURED\n", gl_shader_smooth_vert,
+          gl_shader_textured_frag },
+        { &programs->faceted_textured, "faceted, textured", "#define CLIPPED\n#define TEXTURED\n",
+          gl_shader_faceted_vert, gl_shader_faceted_frag },
         { &programs->lines, "lines", line_constants(constants), gl_shader_lines_vert, gl_shader_shade_frag },
+        { &programs->tracks, "tracks", track_constants(tracks), gl_shader_tracks_vert, gl_shader_tracks_frag },
         { &programs->points, "points", "", gl_shader_points_vert, gl_shader_shade_frag },
         { &programs->compose, "compose", "", gl_shader_whole_vert, gl_shader_compose_frag },
-        { &programs->volume, "volume", volume_constants(of_volume[0], false), gl_shader_whole_vert,
+        { &programs->volume, "volume", volume_constants(of_volume[0], false, false), gl_shader_whole_vert,
           gl_shader_volume_frag },
-        { &programs->volume_depth, "volume, depth", volume_constants(of_volume[1], true), gl_shader_whole_vert,
+        { &programs->volume_washed, "volume, washed", volume_constants(of_volume[2], false, true), gl_shader_whole_vert,
+          gl_shader_volume_frag },
+        { &programs->volume_depth, "volume, depth", volume_constants(of_volume[1], true, false), gl_shader_whole_vert,
           gl_shader_volume_frag },
         { &programs->image[0], "image", image_constants(images[0], false, false), gl_shader_slice_vert,
           gl_shader_image_frag },
@@ -114,6 +127,8 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
         { &programs->colors[1], "colors, linear", image_constants(images[3], true, true), gl_shader_slice_vert,
           gl_shader_image_frag },
         { &programs->labels, "labels", "", gl_shader_slice_vert, gl_shader_labels_frag },
+        { &programs->wash, "wash", "", gl_shader_slice_vert, gl_shader_wash_frag },
+        { &programs->marks, "marks", "", gl_shader_slice_vert, gl_shader_marks_frag },
         { &programs->fan, "fan", "", gl_shader_fan_vert, gl_shader_shade_frag },
         { &programs->plain, "plain", "", gl_shader_plain_vert, gl_shader_shade_frag },
         { &programs->test, "test", "", gl_shader_whole_vert, gl_shader_test_frag },
@@ -129,22 +144,17 @@ bool gl_programs_create(const struct gl *gl, struct gl_programs *programs, struc
 
 void gl_programs_destroy(const struct gl *gl, struct gl_programs *programs)
 {
-    const GLuint names[] = { programs->smooth.name,
-                             programs->faceted.name,
-                             programs->smooth_clipped.name,
-                             programs->faceted_clipped.name,
-                             programs->compose.name,
-                             programs->lines.name,
-                             programs->points.name,
-                             programs->image[0].name,
-                             programs->image[1].name,
-                             programs->colors[0].name,
-                             programs->colors[1].name,
-                             programs->labels.name,
-                             programs->fan.name,
-                             programs->plain.name,
-                             programs->test.name,
-                             programs->volume.name,
+    const GLuint names[] = { programs->smooth.name,          programs->faceted.name,
+                             programs->smooth_clipped.name,  programs->faceted_clipped.name,
+                             programs->compose.name,         programs->lines.name,
+                             programs->points.name,          programs->tracks.name,
+                             programs->image[0].name,        programs->image[1].name,
+                             programs->colors[0].name,       programs->colors[1].name,
+                             programs->labels.name,          programs->wash.name,
+                             programs->smooth_textured.name, programs->faceted_textured.name,
+                             programs->marks.name,           programs->fan.name,
+                             programs->plain.name,           programs->test.name,
+                             programs->volume.name,          programs->volume_washed.name,
                              programs->volume_depth.name };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i])

@@ -215,10 +215,14 @@ static bool draw_alike(const struct gl_frame *frame, const struct draw *draws, s
     if (draws->kind == DRAW_SHAPE)
         return gl_draw_shapes(frame, draws, n, err);
     bool (*const draw)(const struct gl_frame *frame, const struct draw *draw, struct error *err) =
-        draws->kind == DRAW_IMAGE    ? gl_draw_image
-        : draws->kind == DRAW_LABELS ? gl_draw_labels
-        : draws->kind == DRAW_CAP    ? gl_draw_cap
-                                     : NULL;
+        draws->kind == DRAW_IMAGE      ? gl_draw_image
+        : draws->kind == DRAW_LABELS   ? gl_draw_labels
+        : draws->kind == DRAW_WASH     ? gl_draw_wash
+        : draws->kind == DRAW_MARKS    ? gl_draw_marks
+        : draws->kind == DRAW_TRACKS   ? gl_draw_tracks
+        : draws->kind == DRAW_CAP      ? gl_draw_cap
+        : draws->kind == DRAW_ISOLINES ? gl_draw_isolines
+                                       : NULL;
     for (size_t i = 0; draw && i < n; i++)
         if (!draw(frame, &draws[i], err))
             return false;

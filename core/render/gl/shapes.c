@@ -36,18 +36,26 @@ static int set_clips(const struct gl_frame *frame, const struct gl_program *prog
     return n;
 }
 
+static const struct gl_program *program_of(const struct gl_programs *programs, const struct draw *draw)
+{
+    const struct gl_shape *shape = shape_of(draw);
+    bool is_flat = draw->shape.look.is_flat || shape->is_faceted, has_clips = draw_clip_cuts(&draw->clip);
+    if (shape->kind == SHAPE_LINES)
+        return &programs->lines;
+    if (shape->kind == SHAPE_POINTS)
+        return &programs->points;
+    if (draw->shape.texture.kind != SCENE_TEXTURE_NONE)
+        return is_flat ? &programs->faceted_textured : &programs->smooth_textured;
+    if (has_clips)
+        return is_flat ? &programs->faceted_clipped : &programs->smooth_clipped;
+    return is_flat ? &programs->faceted : &programs->smooth;
+}
+
 static const struct gl_program *use_program(const struct gl_frame *frame, const struct draw *draw)
 {
     const struct gl *gl = frame->gl;
-    const struct gl_shape *shape = shape_of(draw);
     const struct camera *camera = frame->camera;
-    const struct gl_programs *programs = frame->programs;
-    bool is_flat = draw->shape.look.is_flat || shape->is_faceted, has_clips = draw_clip_cuts(&draw->clip);
-    const struct gl_program *program = shape->kind == SHAPE_LINES    ? &programs->lines
-                                       : shape->kind == SHAPE_POINTS ? &programs->points
-                                       : is_flat   ? has_clips ? &programs->faceted_clipped : &programs->faceted
-                                       : has_clips ? &programs->smooth_clipped
-                                                   : &programs->smooth;
+    const struct gl_program *program = program_of(frame->programs, draw);
     const struct vec3 *r = &camera->right, *u = &camera->up, *f = &camera->forward, *e = &camera->eye_lps_mm;
     const float eye_from_lps[9] = { (float)r->x,  (float)u->x, (float)-f->x, (float)r->y, (float)u->y,
                                     (float)-f->y, (float)r->z, (float)u->z,  (float)-f->z };
@@ -107,15 +115,18 @@ static void draw_rectangles(const struct gl_frame *frame, const struct draw *dra
     gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, shape->n);
 }
 
-static void draw_shape(const struct gl_frame *frame, const struct draw *draw)
+static bool draw_shape(const struct gl_frame *frame, const struct draw *draw, struct error *err)
 {
     const struct gl_program *program = use_program(frame, draw);
+    if (draw->shape.texture.kind != SCENE_TEXTURE_NONE && !gl_set_texture(frame, program, draw, err))
+        return false;
     int n_clips = set_clips(frame, program, &draw->clip);
     frame->gl->BindVertexArray(shape_of(draw)->vertex_array);
     if (shape_of(draw)->kind == SHAPE_TRIANGLES)
         draw_triangles(frame, draw, n_clips);
     else
         draw_rectangles(frame, draw, program);
+    return true;
 }
 
 /* True if the shape can be seen in the band. */
@@ -130,8 +141,8 @@ static bool is_in_sight(const struct gl_frame *frame, const struct draw *draw)
 bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err)
 {
     for (size_t i = 0; i < n; i++)
-        if (is_in_sight(frame, &draws[i]))
-            draw_shape(frame, &draws[i]);
+        if (is_in_sight(frame, &draws[i]) && !draw_shape(frame, &draws[i], err))
+            return false;
     return gl_check(frame->gl, "drawing opaque shapes", err);
 }
 
@@ -139,7 +150,11 @@ bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size
 static bool compose(const struct gl_frame *frame, int n, const struct draw *volume, struct error *err)
 {
     const struct gl *gl = frame->gl;
-    const struct gl_program *program = volume ? &frame->programs->volume : &frame->programs->compose;
+    const struct gl_programs *programs = frame->programs;
+    const bool is_washed = volume && (volume->volume.wash || volume->volume.image.wash);
+    const struct gl_program *program = is_washed ? &programs->volume_washed
+                                       : volume  ? &programs->volume
+                                                 : &programs->compose;
     gl->UseProgram(program->name);
     if (volume && !gl_set_volume(frame, program, volume, err))
         return false;
@@ -188,11 +203,11 @@ bool gl_draw_layers(const struct gl_frame *frame, const struct draw *draws, size
     for (size_t first = 0; is_good && (first < n_seen || (first == 0 && volume)); first += GL_LAYERS_MAX) {
         int n_here = n_seen - first < GL_LAYERS_MAX ? (int)(n_seen - first) : GL_LAYERS_MAX;
         frame->gl->Enable(GL_DEPTH_TEST);
-        for (int i = 0; i < n_here; i++) {
+        for (int i = 0; is_good && i < n_here; i++) {
             gl_layers_bind(frame->gl, frame->layers, i);
-            draw_shape(frame, seen[first + (size_t)i]);
+            is_good = draw_shape(frame, seen[first + (size_t)i], err);
         }
-        is_good = compose(frame, n_here, first == 0 ? volume : NULL, err);
+        is_good = is_good && compose(frame, n_here, first == 0 ? volume : NULL, err);
     }
     free(seen);
     return is_good && gl_check(frame->gl, "drawing translucent shapes", err);

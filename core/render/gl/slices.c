@@ -3,33 +3,7 @@
 #include "core/render/gl/polygon.h"
 #include "core/render/visible/color_map.h"
 
-/* Distance of a point from one of the grid's outer faces, in voxels; positive inside. */
-static double inside_face(const struct grid *grid, int face, struct vec3 p_lps_mm)
-{
-    struct vec3 ijk = affine_point(&grid->ijk_from_lps_mm, p_lps_mm);
-    double at = face / 2 == 0 ? ijk.x : face / 2 == 1 ? ijk.y : ijk.z;
-    return face % 2 ? grid->size[face / 2] - 0.5 - at : at + 0.5;
-}
-
-/* The polygon in which a draw's plane cuts a grid's outer faces, as far as no clip plane cuts it off; n < 3: nothing is
- * left. */
-static struct gl_polygon slice_polygon(const struct grid *grid, const struct draw *draw)
-{
-    struct box3 box = grid_bounds_lps_mm(grid);
-    struct plane upright = plane_upright(&draw->plane);
-    struct plane_reach reach = plane_reach(&upright, &box);
-    struct gl_polygon polygon = gl_polygon_of_reach(&upright, &reach);
-    for (int face = 0; face < 6; face++) {
-        double inside[GL_POLYGON_CORNERS];
-        for (int i = 0; i < polygon.n; i++)
-            inside[i] = inside_face(grid, face, polygon.lps_mm[i]);
-        gl_polygon_keep(&polygon, inside);
-    }
-    gl_polygon_clip(&polygon, &draw->clip);
-    return polygon;
-}
-
-static void draw_polygon(const struct gl_frame *frame, const struct grid *grid, const struct gl_polygon *polygon)
+void gl_draw_polygon(const struct gl_frame *frame, const struct grid *grid, const struct gl_polygon *polygon)
 {
     const struct gl *gl = frame->gl;
     float vertices[GL_POLYGON_CORNERS][6];
@@ -65,8 +39,8 @@ static void place_matrix(const struct grid *to, const struct grid *from, float o
     }
 }
 
-static void set_grey(const struct gl *gl, GLint scale, GLint ends, const struct gl_grid *texels, double low,
-                     double width, bool is_low_white)
+void gl_set_grey(const struct gl *gl, GLint scale, GLint ends, const struct gl_grid *texels, double low, double width,
+                 bool is_low_white)
 {
     gl->Uniform2f(scale, (float)(texels->value_per_unit / width), (float)((texels->value_at_zero - low) / width));
     gl->Uniform2f(ends, is_low_white ? 1 : 0, is_low_white ? 0 : 1);
@@ -79,6 +53,18 @@ static void fill_colors(const uint32_t *colors, uint8_t row[4 * COLOR_MAP_LEVELS
             row[4 * level + c] = (uint8_t)(colors ? colors[level] >> 8 * c : (uint32_t)level);
 }
 
+void gl_bind_colors(const struct gl_frame *frame, int unit, const uint32_t *first, const uint32_t *second)
+{
+    const struct gl *gl = frame->gl;
+    uint8_t colors[2][4 * COLOR_MAP_LEVELS];
+    fill_colors(first, colors[0]);
+    fill_colors(second, colors[1]);
+    gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+    gl->BindTexture(GL_TEXTURE_2D, frame->palette);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, COLOR_MAP_LEVELS, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, colors);
+}
+
 /* Sets the uniforms of the program `colors` that `image` does not have. Texture units: 1 colours, 2 second image. */
 static bool set_colors(const struct gl_frame *frame, const struct draw *draw, const struct grid *grid,
                        struct error *err)
@@ -86,16 +72,10 @@ static bool set_colors(const struct gl_frame *frame, const struct draw *draw, co
     const struct gl *gl = frame->gl;
     const struct gl_program *program = &frame->programs->colors[draw->image.is_linear];
     const struct draw_blend *blend = &draw->image.blend;
-    uint8_t colors[2][4 * COLOR_MAP_LEVELS];
-    fill_colors(draw->image.colors, colors[0]);
-    fill_colors(blend->colors, colors[1]);
     gl->Uniform1i(program->palette, 1);
     gl->Uniform1i(program->second, 2);
     gl->Uniform1f(program->part, (float)blend->part);
-    gl->ActiveTexture(GL_TEXTURE1);
-    gl->BindTexture(GL_TEXTURE_2D, frame->palette);
-    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, COLOR_MAP_LEVELS, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, colors);
+    gl_bind_colors(frame, 1, draw->image.colors, blend->colors);
     if (!(blend->part > 0))
         return true;
     const struct gl_grid *texels =
@@ -106,13 +86,13 @@ static bool set_colors(const struct gl_frame *frame, const struct draw *draw, co
     float matrix[16];
     place_matrix(&frame->plan->images[blend->image].volume->grid, grid, matrix);
     gl->UniformMatrix4fv(program->second_from_at, 1, GL_FALSE, matrix);
-    set_grey(gl, program->second_grey, program->second_ends, texels, blend->low, blend->width, blend->is_low_white);
+    gl_set_grey(gl, program->second_grey, program->second_ends, texels, blend->low, blend->width, blend->is_low_white);
     gl->ActiveTexture(GL_TEXTURE2);
     gl->BindTexture(GL_TEXTURE_3D, texels->texture);
     return true;
 }
 
-bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err)
+bool gl_draw_bare_image(const struct gl_frame *frame, const struct draw *draw, struct error *err)
 {
     const struct gl *gl = frame->gl;
     const struct draw_image *image = &draw->image;
@@ -120,7 +100,7 @@ bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct
     const struct gl_program *program =
         has_colors ? &frame->programs->colors[image->is_linear] : &frame->programs->image[image->is_linear];
     const struct grid *grid = &frame->plan->images[draw->subject.index].volume->grid;
-    struct gl_polygon polygon = slice_polygon(grid, draw);
+    struct gl_polygon polygon = gl_slice_polygon(grid, &draw->plane, &draw->clip);
     if (polygon.n < 3)
         return true;
     const struct gl_grid *texels =
@@ -129,14 +109,14 @@ bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct
         return false;
     gl->UseProgram(program->name);
     gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
-    set_grey(gl, program->grey, program->ends, texels, image->low, image->width, image->is_low_white);
+    gl_set_grey(gl, program->grey, program->ends, texels, image->low, image->width, image->is_low_white);
     gl->Uniform1f(program->cull, (float)image->cull);
     gl->Uniform1i(program->source, 0);
     if (has_colors && !set_colors(frame, draw, grid, err))
         return false;
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_3D, texels->texture);
-    draw_polygon(frame, grid, &polygon);
+    gl_draw_polygon(frame, grid, &polygon);
     gl->BindTexture(GL_TEXTURE_3D, 0);
     return gl_check(gl, "drawing a slice", err);
 }
@@ -146,7 +126,7 @@ bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struc
     const struct gl *gl = frame->gl;
     const struct gl_program *program = &frame->programs->labels;
     const struct grid *grid = &frame->plan->regions.layers[draw->subject.index]->grid;
-    struct gl_polygon polygon = slice_polygon(grid, draw);
+    struct gl_polygon polygon = gl_slice_polygon(grid, &draw->plane, &draw->clip);
     if (polygon.n < 3)
         return true;
     const struct gl_grid *labels =
@@ -164,7 +144,7 @@ bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struc
     gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 256, 256, 0, GL_RGBA, GL_UNSIGNED_BYTE, draw->palette);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_3D, labels->texture);
-    draw_polygon(frame, grid, &polygon);
+    gl_draw_polygon(frame, grid, &polygon);
     gl->BindTexture(GL_TEXTURE_3D, 0);
     return gl_check(gl, "drawing a cross-section", err);
 }

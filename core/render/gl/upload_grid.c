@@ -28,10 +28,9 @@ static const struct texel_format label_formats[] = {
 };
 
 /* Checks the driver's limits before anything is uploaded, so that the error can name the sizes. */
-static bool check_size(const struct gl *gl, const struct volume *volume, const struct texel_format *format,
+static bool check_size(const struct gl *gl, const uint32_t size[3], const struct texel_format *format,
                        struct error *err)
 {
-    const uint32_t *size = volume->grid.size;
     GLint most = 0, width = 0;
     gl->GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
     if ((GLint)size[0] > most || (GLint)size[1] > most || (GLint)size[2] > most)
@@ -70,16 +69,14 @@ static bool upload_slabs(const struct gl *gl, const struct volume *volume, const
     return true;
 }
 
-static bool upload_grid(const struct gl *gl, const struct volume *volume, const struct texel_format *format,
-                        struct gl_grid *grid, struct error *err)
+/* Makes and binds a texture without values. errors leave nothing to delete */
+static bool make_texture(const struct gl *gl, const uint32_t size[3], const struct texel_format *format,
+                         GLuint *texture, struct error *err)
 {
-    if (!format->size)
-        return error_set(err, ERROR_UNSUPPORTED, "a label layer of real numbers");
-    if (!check_size(gl, volume, format, err))
+    if (!check_size(gl, size, format, err))
         return false;
-    const uint32_t *size = volume->grid.size;
-    gl->GenTextures(1, &grid->texture);
-    gl->BindTexture(GL_TEXTURE_3D, grid->texture);
+    gl->GenTextures(1, texture);
+    gl->BindTexture(GL_TEXTURE_3D, *texture);
     gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
@@ -89,12 +86,23 @@ static bool upload_grid(const struct gl *gl, const struct volume *volume, const 
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     gl->TexImage3D(GL_TEXTURE_3D, 0, (GLint)format->internal, (GLsizei)size[0], (GLsizei)size[1], (GLsizei)size[2], 0,
                    format->format, format->type, NULL);
-    bool is_good = gl_check(gl, "uploading a grid", err) && upload_slabs(gl, volume, format, err) &&
-                   gl_check(gl, "uploading a grid", err);
+    if (gl_check(gl, "uploading a grid", err))
+        return true;
+    gl->BindTexture(GL_TEXTURE_3D, 0);
+    gl->DeleteTextures(1, texture);
+    error_prefix(err, "%u x %u x %u voxels of %zu bytes", size[0], size[1], size[2], format->size);
+    return false;
+}
+
+/* After the values: unbinds the texture, and deletes it after an error. */
+static bool end_texture(const struct gl *gl, bool is_good, const uint32_t size[3], const struct texel_format *format,
+                        GLuint *texture, struct error *err)
+{
+    is_good = is_good && gl_check(gl, "uploading a grid", err);
     gl->BindTexture(GL_TEXTURE_3D, 0);
     if (is_good)
         return true;
-    gl->DeleteTextures(1, &grid->texture);
+    gl->DeleteTextures(1, texture);
     error_prefix(err, "%u x %u x %u voxels of %zu bytes", size[0], size[1], size[2], format->size);
     return false;
 }
@@ -103,9 +111,36 @@ bool gl_upload_grid(const struct gl *gl, const struct volume *volume, bool is_la
                     struct error *err)
 {
     const struct texel_format *format = is_labels ? &label_formats[volume->type] : &image_formats[volume->type];
-    if (!upload_grid(gl, volume, format, grid, err))
+    const uint32_t *size = volume->grid.size;
+    if (!format->size)
+        return error_set(err, ERROR_UNSUPPORTED, "a label layer of real numbers");
+    if (!make_texture(gl, size, format, &grid->texture, err) ||
+        !end_texture(gl, upload_slabs(gl, volume, format, err), size, format, &grid->texture, err))
         return false;
+    grid->n_along_z = 1;
     grid->value_per_unit = format->units * volume->slope;
     grid->value_at_zero = format->zero * volume->slope + volume->offset;
     return true;
+}
+
+bool gl_upload_stack(const struct gl *gl, const struct volume *const *volumes, size_t n, struct gl_grid *grid,
+                     struct error *err)
+{
+    const struct texel_format *format = &image_formats[VOXEL_F32];
+    const uint32_t *size = volumes[0]->grid.size;
+    GLint most = 0;
+    gl->GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
+    uint32_t n_high = (uint32_t)n, n_fit = (uint32_t)most / size[2], n_along = n_fit < n_high ? n_fit : n_high;
+    n_along = n_along > 0 ? n_along : 1;
+    const uint32_t all[3] = { size[0], size[1] * ((n_high + n_along - 1) / n_along), size[2] * n_along };
+    if (!make_texture(gl, all, format, &grid->texture, err))
+        return false;
+    for (uint32_t v = 0; v < n_high; v++)
+        gl->TexSubImage3D(GL_TEXTURE_3D, 0, 0, (GLint)(size[1] * (v / n_along)), (GLint)(size[2] * (v % n_along)),
+                          (GLsizei)size[0], (GLsizei)size[1], (GLsizei)size[2], format->format, format->type,
+                          volumes[v]->voxels);
+    grid->n_along_z = (int)n_along;
+    grid->value_per_unit = 1;
+    grid->value_at_zero = 0;
+    return end_texture(gl, true, all, format, &grid->texture, err);
 }

@@ -132,6 +132,11 @@ bool gl_set_volume(const struct gl_frame *frame, const struct gl_program *progra
     gl->Uniform1f(program->cull, (float)fmax(volume->cull, -(double)FLT_MAX));
     gl->Uniform2f(program->grey, (float)(1 / image->width), (float)(-image->low / image->width));
     gl->Uniform2f(program->ends, image->is_low_white ? 1 : 0, image->is_low_white ? 0 : 1);
+    const struct draw_wash *wash = volume->wash ? volume->wash : image->wash;
+    if (wash && !gl_set_wash(frame, program, wash, &grid->lps_mm_from_ijk, err))
+        return false;
+    gl->Uniform1i(program->is_face_washed, image->wash != NULL);
+    gl->Uniform1i(program->is_ray_washed, volume->wash != NULL);
     bind_table(frame, program, volume);
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_GRID);
     gl->BindTexture(GL_TEXTURE_3D, texels->texture);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/render/soft/volume.h"
 
 /* ---- outlines in the picture ------------------------------------------------------------------------------------ */
 
@@ -346,8 +347,13 @@ void soft_cap_draw(const struct soft_cap *cap, const struct soft_kernels *kernel
             .tint = (uint32_t)lround(256 * draw->tint),
             .dark = cap->dark,
             .nearer = nearer(&cap->plane),
+            .mark = cap->wash ? SOFT_OPAQUE ^ SOFT_MARK : 0,
         };
-        for (int last; next_run(scratch->all + (size_t)y * n_words, &first, &last, end); first = last + 1)
+        for (int last; next_run(scratch->all + (size_t)y * n_words, &first, &last, end); first = last + 1) {
             kernels->cover(&cover, &row, first, last - first + 1, depth, color);
+            if (cap->wash)
+                soft_volume_kernels_of(kernels)->wash(cap->wash, first, band->first_row + y, last - first + 1,
+                                                      SOFT_MARK, color);
+        }
     }
 }

@@ -20,6 +20,7 @@ struct soft_cap_region {
 struct soft_cap {
     const struct draw *draw;
     struct soft_plane plane;         /* of the image; without a grid if the plan has none */
+    const struct soft_wash *wash;    /* over all of it; the caller fills it; NULL: none */
     uint32_t dark;                   /* the colour where there is no image */
     struct soft_cap_region *regions; /* as in draw_cap */
 };

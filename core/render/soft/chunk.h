@@ -8,13 +8,17 @@
 
 enum { SOFT_CHUNK_PRIMITIVES = 4096 };
 
+struct soft_paint;
+struct clip_set; /* core/render/visible/draw.h */
+
 /* A shape of the draw list, as the rasteriser draws it. */
 struct soft_item {
     const struct soft_shape *shape;
     struct soft_lighting lighting;
     struct visible_look look;
-    struct visible_cue cue; /* lines */
-    double size;            /* look.size_px in sub-samples */
+    struct visible_cue cue;         /* lines */
+    double size;                    /* look.size_px in sub-samples */
+    const struct soft_paint *paint; /* laid over its samples; NULL: none */
     struct soft_vertex *vertices;
     struct soft_cuts cuts;
     uint8_t *above; /* by vertex, bits of cuts; NULL: nothing is cut off */
@@ -81,6 +85,8 @@ struct soft_polygon {
     struct soft_corner corners[SOFT_MAX_CORNERS];
 };
 void soft_project(const struct soft_lighting *lighting, double x, double y, double z, struct soft_corner *corner);
+/* The planes of a set. A capped plane cuts off what lies in it, which the cap covers; another one does not. */
+struct soft_cuts soft_cuts_of(const struct clip_set *clip);
 /* Cuts the part above the item's planes off a polygon of mesh vertices, and projects what is left. Neighbours at an
  * edge get the same corners, which are those of cut_mesh. shades: of the corners, 0..255; vertices: at most 4. */
 void soft_cut_polygon(const struct soft_item *item, const uint32_t *vertices, int n, const uint32_t *shades,

@@ -1,8 +1,23 @@
 /* Cuts triangles and segments off at clip planes, in patient space. */
 #include <math.h>
+#include <string.h>
 
 #include "core/render/soft/chunk.h"
 #include "core/render/visible/cut.h"
+#include "core/render/visible/draw.h"
+
+struct soft_cuts soft_cuts_of(const struct clip_set *clip)
+{
+    struct soft_cuts cuts = { .n = 0 };
+    for (size_t i = 0; i < clip->n_planes; i++) {
+        if (!clip_set_has(clip, i))
+            continue;
+        struct cut_plane cut = cut_plane(&clip->planes[i].plane);
+        memcpy(cuts.normal[cuts.n], cut.normal, sizeof cut.normal);
+        cuts.position[cuts.n++] = clip->planes[i].is_capped ? cut.position : nextafterf(cut.position, INFINITY);
+    }
+    return cuts;
+}
 
 /* A corner before projection. */
 struct point {

@@ -45,22 +45,70 @@ static struct soft_lighting make_lighting(const struct soft_frame *frame, const 
     l.opacity = (float)draw->opacity;
     l.is_rim = draw->shape.look.is_rim;
     l.is_two_sided = draw->shape.look.is_two_sided;
+    if (draw->shape.texture.kind == SCENE_TEXTURE_IMAGE)
+        l.color[0] = l.color[1] = l.color[2] = 1;
+    if (draw->shape.texture.kind != SCENE_TEXTURE_NONE && draw->depth != DRAW_DEPTH_LAYER)
+        l.mark = SOFT_OPAQUE ^ SOFT_MARK;
     return l;
 }
 
-/* A capped plane cuts off what lies in it, which the cap covers; another one does not. */
-static struct soft_cuts make_cuts(const struct clip_set *clip)
+/* ---- washes ----------------------------------------------------------------------------------------------------- */
+
+/* A wash over samples of a draw's plane; NULL: none. */
+static const struct soft_wash *add_wash(struct soft_frame *frame, const struct draw_wash *wash,
+                                        const struct plane *plane_lps)
 {
-    struct soft_cuts cuts = { .n = 0 };
-    for (size_t i = 0; i < clip->n_planes; i++) {
-        if (!clip_set_has(clip, i))
-            continue;
-        struct cut_plane cut = cut_plane(&clip->planes[i].plane);
-        memcpy(cuts.normal[cuts.n], cut.normal, sizeof cut.normal);
-        cuts.position[cuts.n++] = clip->planes[i].is_capped ? cut.position : nextafterf(cut.position, INFINITY);
-    }
-    return cuts;
+    if (!wash)
+        return NULL;
+    struct soft_wash *added = &frame->washes[frame->n_washes++];
+    if (wash->field)
+        dose_field_need_plane(wash->field, plane_lps->origin_lps_mm, plane_lps->normal);
+    soft_wash_on_plane(added, wash, plane_lps, &frame->scope->camera->clip_from_lps_mm, frame->width, frame->height);
+    return added;
 }
+
+static const struct soft_wash *add_volume_wash(struct soft_frame *frame, const struct draw_wash *wash, size_t image)
+{
+    if (!wash)
+        return NULL;
+    struct soft_wash *added = &frame->washes[frame->n_washes++];
+    if (wash->field) {
+        struct box3 box = grid_bounds_lps_mm(&frame->scope->snapshot->plan->images[image].volume->grid);
+        dose_field_need_box(wash->field, &box);
+    }
+    soft_wash_in_image(added, wash, &frame->scope->snapshot->plan->images[image].volume->grid);
+    return added;
+}
+
+/* What a draw lays over its shape; NULL: nothing. */
+static const struct soft_paint *add_paint(struct soft_frame *frame, const struct draw *draw)
+{
+    const struct draw_texture *texture = &draw->shape.texture;
+    const struct camera *camera = frame->scope->camera;
+    if (texture->kind == SCENE_TEXTURE_NONE)
+        return NULL;
+    struct soft_paint *paint = &frame->paints[frame->n_paints++];
+    if (texture->kind == SCENE_TEXTURE_DOSE) {
+        struct soft_wash *wash = &frame->washes[frame->n_washes++];
+        if (texture->wash->field)
+            dose_field_need_box(texture->wash->field, &draw->shape.drawable->bounds_lps_mm);
+        soft_wash_on_shapes(wash, texture->wash, camera, frame->width, frame->height);
+        paint->wash = wash;
+        return paint;
+    }
+    const struct volume *image = frame->scope->snapshot->plan->images[texture->image_index].volume;
+    if (!frame->texture) {
+        frame->texture = mem_new(sizeof *frame->texture);
+        soft_volume_init_image(frame->texture, image, &texture->image);
+    }
+    paint->image = frame->texture;
+    paint->places = soft_places_of_shapes(&image->grid, camera, frame->width, frame->height);
+    for (int c = 0; c < 3; c++)
+        paint->color[c] = (float)(draw->color_rgb >> (16 - 8 * c) & 255) / 255.0f;
+    return paint;
+}
+
+/* ---- draws ------------------------------------------------------------------------------------------------------ */
 
 static struct soft_item make_item(const struct soft_frame *frame, const struct draw *draw)
 {
@@ -70,7 +118,7 @@ static struct soft_item make_item(const struct soft_frame *frame, const struct d
         .lighting = make_lighting(frame, draw),
         .look = draw->shape.look,
         .cue = draw->shape.cue,
-        .cuts = make_cuts(&draw->clip),
+        .cuts = soft_cuts_of(&draw->clip),
         .size =
             fmax(1, draw->shape.look.size_px * samples_per_px) * SOFT_SUB, /* at least a sample in a small picture */
     };
@@ -95,7 +143,7 @@ static struct soft_plane make_grey(const struct soft_frame *frame, const struct 
     return plane;
 }
 
-/* The plane of a draw, of an image or a cap, with the image on it. */
+/* The plane of a draw, of an image or a cap, with the image on it; without a wash. */
 static struct soft_plane make_image(const struct soft_frame *frame, const struct draw *draw,
                                     const struct draw_image *image)
 {
@@ -116,6 +164,24 @@ static struct soft_plane make_image(const struct soft_frame *frame, const struct
     return plane;
 }
 
+static struct soft_plane make_slice(struct soft_frame *frame, const struct draw *draw)
+{
+    struct soft_plane plane = make_image(frame, draw, &draw->image);
+    plane.wash = add_wash(frame, draw->image.wash, &draw->plane);
+    plane.texture.alpha = plane.wash ? SOFT_MARK : SOFT_OPAQUE;
+    return plane;
+}
+
+static struct soft_plane make_wash(struct soft_frame *frame, const struct draw *draw)
+{
+    struct soft_plane plane;
+    soft_plane_init(&plane, draw->wash->rows[0], &draw->plane, &draw->clip, &frame->scope->camera->clip_from_lps_mm,
+                    frame->width, frame->height);
+    plane.wash = add_wash(frame, draw->wash, &draw->plane);
+    plane.is_wash_alone = true;
+    return plane;
+}
+
 static struct soft_plane make_labels(const struct soft_frame *frame, const struct draw *draw)
 {
     const struct volume *volume = frame->scope->snapshot->plan->regions.layers[draw->subject.index];
@@ -127,15 +193,32 @@ static struct soft_plane make_labels(const struct soft_frame *frame, const struc
     return plane;
 }
 
+static void add_marks(struct soft_frame *frame, const struct draw *draw)
+{
+    soft_marks_init(&frame->marks[frame->n_marks++], draw, &frame->scope->camera->clip_from_lps_mm, frame->width,
+                    frame->height, (double)frame->width / frame->scope->snapshot->view.size_px[0]);
+}
+
 static bool make_volume(struct soft_frame *frame, const struct draw *draw, struct error *err)
 {
     frame->volume = mem_new(sizeof *frame->volume);
-    return soft_volume_init(frame->volume, draw, frame->scope, frame->width, frame->height, frame->list->samples, err);
+    if (!soft_volume_init(frame->volume, draw, frame->scope, frame->width, frame->height, frame->list->samples, err))
+        return false;
+    frame->volume->wash = add_volume_wash(frame, draw->volume.wash, draw->subject.index);
+    frame->volume->face_wash = add_volume_wash(frame, draw->volume.image.wash, draw->subject.index);
+    return true;
+}
+
+static void make_tracks(struct soft_frame *frame, const struct draw *draw)
+{
+    frame->tracks = mem_new(sizeof *frame->tracks);
+    soft_track_view_init(frame->tracks, draw, frame->scope, frame->width, frame->height, frame->n_bands);
+    frame->n_track_chunks = soft_track_n_chunks(&draw->tracks);
 }
 
 /* ---- caps ------------------------------------------------------------------------------------------------------- */
 
-/* The lines of an outline as a shape. */
+/* The lines of an outline or of a dose as a shape. */
 static bool make_outline(struct soft_shape *shape, const struct cut_lines *lines, struct error *err)
 {
     size_t n = 2 * lines->n;
@@ -164,22 +247,30 @@ static void free_outline(struct soft_shape *shape)
     free((void *)shape->indices);
 }
 
+static bool add_line(struct soft_frame *frame, const struct draw *like, const struct cut_lines *lines, uint32_t rgb,
+                     double width_px, struct error *err)
+{
+    const struct draw line = {
+        .clip = like->clip,
+        .color_rgb = rgb,
+        .opacity = 1,
+        .shape = { .look = { .size_px = width_px }, .cue = { .w = 1 } },
+    };
+    struct soft_shape *shape = &frame->outlines[frame->n_outlines++];
+    if (!make_outline(shape, lines, err))
+        return false;
+    struct soft_item *item = &frame->items[frame->n_items++];
+    *item = make_item(frame, &line);
+    item->shape = shape;
+    return true;
+}
+
 static bool add_outlines(struct soft_frame *frame, const struct draw *draw, struct error *err)
 {
     for (size_t i = 0; draw->cap.outline_px > 0 && i < draw->cap.n_regions; i++) {
         const struct draw_cap_region *region = &draw->cap.regions[i];
-        const struct draw line = {
-            .clip = draw->clip,
-            .color_rgb = region->color_rgb,
-            .opacity = 1,
-            .shape = { .look = { .size_px = draw->cap.outline_px }, .cue = { .w = 1 } },
-        };
-        struct soft_shape *shape = &frame->outlines[frame->n_outlines++];
-        if (!make_outline(shape, region->lines, err))
+        if (!add_line(frame, draw, region->lines, region->color_rgb, draw->cap.outline_px, err))
             return false;
-        struct soft_item *item = &frame->items[frame->n_items++];
-        *item = make_item(frame, &line);
-        item->shape = shape;
     }
     return true;
 }
@@ -195,6 +286,7 @@ static bool add_cap(struct soft_frame *frame, const struct draw *draw, struct er
                         frame->width, frame->height);
     else
         cap->plane = make_image(frame, draw, &style->image);
+    cap->wash = add_wash(frame, style->image.wash, &draw->plane);
     cap->dark = DRAW_CAP_DARK >> 16 | (DRAW_CAP_DARK & 0xff00) | (DRAW_CAP_DARK & 255) << 16 | 0xff000000u;
     struct soft_lighting projection = make_projection(frame);
     return soft_cap_init(cap, draw, &projection, frame->height, frame->n_bands, err) && add_outlines(frame, draw, err);
@@ -205,17 +297,24 @@ static bool add_cap(struct soft_frame *frame, const struct draw *draw, struct er
 static bool make_arrays(struct soft_frame *frame, struct error *err)
 {
     const struct draw_list *list = frame->list;
-    size_t n = list->n_in_image, n_caps = 0, n_outlines = 0;
-    for (size_t i = 0; i < n; i++)
+    size_t n = list->n_in_image, n_caps = 0, n_outlines = 0, n_marks = 0;
+    for (size_t i = 0; i < n; i++) {
+        n_marks += list->draws[i].kind == DRAW_MARKS;
+        n_outlines += list->draws[i].kind == DRAW_ISOLINES;
         if (list->draws[i].kind == DRAW_CAP) {
             n_caps++;
             n_outlines += list->draws[i].cap.n_regions;
         }
+    }
     frame->items = mem_array(n + n_outlines, sizeof *frame->items, UINT64_MAX, err);
     frame->planes = frame->items ? mem_array(n, sizeof *frame->planes, UINT64_MAX, err) : NULL;
-    frame->caps = frame->planes ? mem_array(n_caps, sizeof *frame->caps, UINT64_MAX, err) : NULL;
+    frame->marks = frame->planes ? mem_array(n_marks, sizeof *frame->marks, UINT64_MAX, err) : NULL;
+    frame->caps = frame->marks ? mem_array(n_caps, sizeof *frame->caps, UINT64_MAX, err) : NULL;
     frame->outlines = frame->caps ? mem_array(n_outlines, sizeof *frame->outlines, UINT64_MAX, err) : NULL;
-    return frame->outlines != NULL;
+    frame->paints = frame->outlines ? mem_array(n, sizeof *frame->paints, UINT64_MAX, err) : NULL;
+    /* one a draw, but two of a volume */
+    frame->washes = frame->paints ? mem_array(list->wash ? n + 1 : 0, sizeof *frame->washes, UINT64_MAX, err) : NULL;
+    return frame->washes != NULL;
 }
 
 bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
@@ -228,8 +327,12 @@ bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
         size_t n_layers = draw_list_n_layers(list, i); /* one more than there are, with a volume */
         frame->n_layers = n_layers > frame->n_layers ? n_layers : frame->n_layers;
         switch (draw->kind) {
-        case DRAW_SHAPE: frame->items[frame->n_items++] = make_item(frame, draw); break;
-        case DRAW_IMAGE: frame->planes[frame->n_planes++] = make_image(frame, draw, &draw->image); break;
+        case DRAW_SHAPE:
+            frame->items[frame->n_items] = make_item(frame, draw);
+            frame->items[frame->n_items++].paint = add_paint(frame, draw);
+            break;
+        case DRAW_IMAGE: frame->planes[frame->n_planes++] = make_slice(frame, draw); break;
+        case DRAW_WASH: frame->planes[frame->n_planes++] = make_wash(frame, draw); break;
         case DRAW_LABELS: frame->planes[frame->n_planes++] = make_labels(frame, draw); break;
         case DRAW_CAP:
             if (!add_cap(frame, draw, err))
@@ -239,11 +342,19 @@ bool soft_frame_prepare(struct soft_frame *frame, struct error *err)
             if (!make_volume(frame, draw, err))
                 return false;
             break;
+        case DRAW_TRACKS: make_tracks(frame, draw); break;
+        case DRAW_MARKS: add_marks(frame, draw); break;
+        case DRAW_ISOLINES:
+            if (!add_line(frame, draw, draw->isolines.lines, draw->color_rgb, draw->isolines.width_px, err))
+                return false;
+            break;
         case DRAW_OUTLINE:
         case DRAW_CHECK:
         case DRAW_GRID_CUT:
         case DRAW_GRID_BOX:
-        case DRAW_AXES: break;
+        case DRAW_STROKES:
+        case DRAW_AXES:
+        case DRAW_BEAM_EYE: break;
         }
     }
     return true;
@@ -258,8 +369,13 @@ void soft_frame_finish(struct soft_frame *frame)
     if (frame->volume)
         soft_volume_finish(frame->volume);
     free(frame->volume);
+    free(frame->tracks);
+    free(frame->washes);
+    free(frame->paints);
+    free(frame->texture);
     free(frame->items);
     free(frame->planes);
+    free(frame->marks);
     free(frame->caps);
     free(frame->outlines);
 }

@@ -4,8 +4,11 @@
 
 #include "core/render/soft/bins.h"
 #include "core/render/soft/caps.h"
+#include "core/render/soft/marks.h"
 #include "core/render/soft/planes.h"
+#include "core/render/soft/tracks.h"
 #include "core/render/soft/volume.h"
+#include "core/render/soft/wash.h"
 #include "core/render/visible/back_end.h"
 #include "core/render/visible/draw.h"
 
@@ -22,11 +25,18 @@ struct soft_frame {
     int width, height, n_bands;  /* width and height in samples */
     struct soft_item *items;     /* the list's shapes and the outlines in its caps, in its order */
     struct soft_plane *planes;   /* the list's images and label layers, in its order */
+    struct soft_marks *marks;    /* the list's marks, in its order */
     struct soft_volume *volume;  /* the list's, or NULL */
     struct soft_cap *caps;       /* the list's caps, in its order */
     struct soft_shape *outlines; /* of the regions of caps, in their order; each is an item too */
-    size_t n_caps, n_outlines;
-    size_t n_items, n_planes, n_chunks, n_blocks;
+    size_t n_caps, n_outlines, n_marks;
+    struct soft_track_view *tracks; /* the list's, or NULL */
+    struct soft_wash *washes;       /* of planes, caps, shapes and the volume */
+    size_t n_washes;
+    struct soft_paint *paints;   /* of items */
+    struct soft_volume *texture; /* of paints; NULL: none shows an image */
+    size_t n_paints;
+    size_t n_items, n_planes, n_chunks, n_blocks, n_track_chunks;
     size_t n_layers;               /* composed at a time, at most */
     int layer_rows;                /* rows of a layer that are drawn at a time */
     struct image *image;           /* NULL: not prepared yet */
@@ -34,7 +44,7 @@ struct soft_frame {
     atomic_bool is_out_of_memory;
 };
 
-/* Fills items, planes, caps, volume and n_layers from the list. errors ERROR_MEMORY */
+/* Fills items, planes, marks, caps, volume and n_layers from the list. errors ERROR_MEMORY */
 NODISCARD bool soft_frame_prepare(struct soft_frame *frame, struct error *err);
 /* Frees what was filled, also by a preparation that failed. */
 void soft_frame_finish(struct soft_frame *frame);

@@ -11,6 +11,9 @@ enum { SOFT_SUB_BITS = 8, SOFT_SUB = 1 << SOFT_SUB_BITS };
 enum { SOFT_GUARD = 1 << 23 };
 /* In x: marks such a vertex, or one in front of the near plane. */
 #define SOFT_CLIPPED INT32_MIN
+/* Alpha of drawn opaque samples; of those that wait for the colours of wash.h it is SOFT_MARK. */
+#define SOFT_OPAQUE 0xff000000u
+#define SOFT_MARK 0xfd000000u
 /* Rows of samples in a band. */
 enum { SOFT_BAND_ROWS = 32 };
 /* Samples in a vector; and padding of a row, as drawing touches up to SOFT_LANES - 1 samples beyond a triangle. */
@@ -29,6 +32,7 @@ struct soft_lighting {
     float right[3], up[3], towards[3]; /* axes of eye space, in patient space */
     float color[3], opacity;
     bool is_rim, is_two_sided;
+    uint32_t mark; /* flips bits of the shaded colour's alpha */
 };
 
 /* Positions and normals by component. */
@@ -59,7 +63,7 @@ struct soft_layer {
     uint32_t *color;
     int range[2]; /* the columns that may hold something: range[0] <= x < range[1] */
 };
-enum { SOFT_MAX_LAYERS = 1024 };
+enum { SOFT_MAX_LAYERS = 1123 };
 
 /* Triangles to draw into a band. A ref is the number of a triangle of indices; with SOFT_EXTRA, of one of extras. With
  * SOFT_RECTANGLE too, it is a rectangle with the depth and colour of its first corner, left and above; the second
@@ -94,6 +98,7 @@ struct soft_texture {
     const uint32_t *palette; /* by label; NULL: grey */
     const uint32_t *colors;  /* by level 0..255, as draw_image has them; NULL: grey */
     bool is_linear, has_depth;
+    uint32_t alpha; /* of drawn samples, as a word; of labels the palette's */
 };
 
 /* A second image over a plane's: where it lies inside its grid and is finite, it makes `part` of the colour. */
@@ -109,6 +114,7 @@ struct soft_cover {
     const uint32_t *tints;              /* by sample of the row, mixed with the texture; NULL: none */
     uint32_t tint;                      /* parts of 256 of them */
     uint32_t dark;                      /* the colour where the texture has none */
+    uint32_t mark;                      /* flips bits of the drawn samples' alpha */
     float nearer;                       /* than the row's depth */
 };
 

@@ -34,5 +34,5 @@ __attribute__((always_inline)) static inline uint32_t light_at(const struct soft
                 flat = s->is_rim ? 0.3f * s->opacity : s->opacity;
     const float alpha = flat + rim * LIGHT_RIM(root);
     const float red = s->color[0] * lit + gloss, green = s->color[1] * lit + gloss, blue = s->color[2] * lit + gloss;
-    return LIGHT_BYTE(red) | LIGHT_BYTE(green) << 8 | LIGHT_BYTE(blue) << 16 | LIGHT_BYTE(alpha) << 24;
+    return (LIGHT_BYTE(red) | LIGHT_BYTE(green) << 8 | LIGHT_BYTE(blue) << 16 | LIGHT_BYTE(alpha) << 24) ^ s->mark;
 }

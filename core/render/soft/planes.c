@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/render/soft/volume.h"
+
 /* m[row][column] */
 struct mat3 {
     double m[3][3];
@@ -98,6 +100,7 @@ void soft_plane_init(struct soft_plane *plane, const struct volume *volume, cons
     for (int axis = 0; volume && axis < 3; axis++)
         plane->texture.size[axis] = volume->grid.size[axis];
     plane->texture.voxels = volume ? volume->voxels : NULL;
+    plane->texture.alpha = SOFT_OPAQUE;
 }
 
 void soft_plane_blend(struct soft_plane *plane, const struct soft_plane *second, double part)
@@ -167,7 +170,12 @@ void soft_plane_draw(const struct soft_plane *plane, const struct soft_kernels *
         soft_plane_narrow(plane, &row, &first, &last);
         int from = (int)ceil(fmin(first, band->width)), to = (int)floor(fmax(last, -1));
         size_t at = (size_t)y * (size_t)band->stride;
-        if (from <= to)
+        if (from > to)
+            continue;
+        if (!plane->is_wash_alone)
             kernels->sample(&plane->texture, &row, from, to - from + 1, band->depth + at, band->color + at);
+        if (plane->wash)
+            soft_volume_kernels_of(kernels)->wash(plane->wash, from, band->first_row + y, to - from + 1,
+                                                  plane->is_wash_alone ? SOFT_OPAQUE : SOFT_MARK, band->color + at);
     }
 }

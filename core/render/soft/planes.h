@@ -4,6 +4,8 @@
 #include "core/render/visible/draw.h"
 #include "core/scene/snapshot.h"
 
+struct soft_wash;
+
 struct soft_plane {
     struct soft_texture texture;
     double at[5]
@@ -14,6 +16,9 @@ struct soft_plane {
     bool has_blend;
     struct soft_blend blend;
     double blend_at[3][3]; /* as at, in the grid of blend */
+    const struct soft_wash
+        *wash;          /* over what is drawn; NULL: none. The caller fills it, with texture.alpha SOFT_MARK */
+    bool is_wash_alone; /* texture has the dose's grid and is not drawn: the wash lies over all samples */
 };
 
 /* For a picture of width x height samples. Fills texture's voxels and size; the caller fills its type and colours.

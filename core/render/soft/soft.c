@@ -2,7 +2,6 @@
 #include "core/render/soft/soft.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +10,10 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/render/soft/frame.h"
+#include "core/render/soft/rows.h"
 #include "core/render/visible/visible.h"
+#include "core/scene/beams_drawn.h"
+#include "core/scene/isodoses.h"
 
 /* More threads than MAX_THREADS would wait for memory and for each other. */
 enum { MAX_THREADS = 16, VERTEX_BLOCK = 8192 };
@@ -19,7 +21,9 @@ enum { MAX_THREADS = 16, VERTEX_BLOCK = 8192 };
 enum { MAX_SORTED = 2 };
 /* A thread's memory for translucent layers, unless a single row of all layers takes more. */
 enum { LAYER_BYTES = 1 << 20 };
-_Static_assert((int)SOFT_MAX_LAYERS >= (int)REGION_MAX, "every region of a plan can be translucent");
+_Static_assert(
+    (int)SOFT_MAX_LAYERS >= (int)REGION_MAX + (int)ISODOSES_MAX + (int)BEAMS_DRAWN_MAX + 1,
+    "every region of a plan, every isodose and every opening of a beam can be translucent, and a volume among them");
 
 /* The buffers of one thread. */
 struct scratch {
@@ -28,9 +32,10 @@ struct scratch {
     uint32_t *layers;
     size_t n_layers; /* samples of all layers; layers is [2][n_layers] */
     struct soft_cap_scratch caps;
+    struct soft_track_scratch *tracks; /* NULL: none were drawn yet */
 };
 
-/* A picture's triangles, projected and sorted into bands. */
+/* A picture's triangles and tracks, projected and sorted into bands. */
 struct soft_sorted {
     const struct soft_frame *owner; /* NULL: free */
     uint64_t used;                  /* value of n_uses at the last use */
@@ -40,6 +45,7 @@ struct soft_sorted {
     size_t n_above;
     struct soft_chunk *chunks;
     size_t n_chunks;
+    struct soft_track_chunks tracks;
 };
 
 struct soft_renderer {
@@ -88,6 +94,7 @@ static void drop_buffers(struct soft_renderer *renderer)
         struct soft_sorted *sorted = &renderer->sorted[i];
         for (size_t c = 0; c < sorted->n_chunks; c++)
             soft_chunk_finish(&sorted->chunks[c]);
+        soft_track_chunks_finish(&sorted->tracks);
         free(sorted->chunks);
         free(sorted->above);
         free(sorted->vertices);
@@ -97,6 +104,9 @@ static void drop_buffers(struct soft_renderer *renderer)
         free(renderer->scratch[i].band);
         free(renderer->scratch[i].layers);
         soft_cap_scratch_finish(&renderer->scratch[i].caps);
+        if (renderer->scratch[i].tracks)
+            soft_track_scratch_finish(renderer->scratch[i].tracks);
+        free(renderer->scratch[i].tracks);
         renderer->scratch[i] = (struct scratch){ 0 };
     }
 }
@@ -216,6 +226,8 @@ static bool make_room(struct soft_frame *frame, struct error *err)
         sorted->chunks = grown;
         sorted->n_chunks = frame->n_chunks;
     }
+    if (!soft_track_chunks_resize(&sorted->tracks, frame->n_track_chunks, err))
+        return false;
     struct soft_vertex *vertices = sorted->vertices;
     uint8_t *above = sorted->above;
     for (size_t i = 0; i < frame->n_items; i++) {
@@ -274,6 +286,20 @@ static void sort_triangles(void *context, int part, int n_parts)
             atomic_store(&frame->is_out_of_memory, true);
 }
 
+static void sort_tracks(void *context, int part, int n_parts)
+{
+    struct soft_frame *frame = context;
+    struct scratch *scratch = &frame->renderer->scratch[part];
+    (void)n_parts;
+    if (!scratch->tracks)
+        scratch->tracks = mem_new(sizeof *scratch->tracks);
+    const struct soft_track_kernels *kernels = soft_track_kernels_of(frame->renderer->kernels);
+    for (size_t piece; (piece = atomic_fetch_add(&frame->next, 1)) < frame->n_track_chunks;)
+        if (!soft_track_chunk_sort(&frame->sorted->tracks.chunks[piece], piece, frame->tracks, kernels,
+                                   scratch->tracks))
+            atomic_store(&frame->is_out_of_memory, true);
+}
+
 static void draw_item(const struct soft_frame *frame, const struct soft_item *item, const struct soft_band *band,
                       int index, int range[2])
 {
@@ -287,6 +313,15 @@ static void draw_item(const struct soft_frame *frame, const struct soft_item *it
         if (triangles.n_refs > 0)
             frame->renderer->kernels->raster(band, &triangles, range);
     }
+}
+
+static void draw_opaque(const struct soft_frame *frame, const struct soft_item *item, const struct soft_band *band,
+                        int index)
+{
+    int range[2];
+    draw_item(frame, item, band, index, range);
+    if (item->paint)
+        soft_volume_kernels_of(frame->renderer->kernels)->paint(item->paint, band, range, NULL);
 }
 
 /* Draws the nearest sheet of each item into a layer of its own, a few rows at a time, and composes the layers, with the
@@ -307,6 +342,9 @@ static void draw_layers(const struct soft_frame *frame, const struct soft_item *
             layer->depth = part.depth = (float *)(void *)scratch->layers + i * n_layer;
             layer->color = part.color = scratch->layers + scratch->n_layers + i * n_layer;
             draw_item(frame, &items[i], &part, index, layer->range);
+            if (items[i].paint)
+                soft_volume_kernels_of(frame->renderer->kernels)
+                    ->paint(items[i].paint, &part, layer->range, band->depth + (size_t)row * (size_t)band->stride);
         }
         part.depth = band->depth + (size_t)row * (size_t)band->stride;
         part.color = band->color + (size_t)row * (size_t)band->stride;
@@ -318,70 +356,6 @@ static void draw_layers(const struct soft_frame *frame, const struct soft_item *
     }
 }
 
-static void clear(const struct soft_band *band)
-{
-    const uint8_t *b = visible_background;
-    uint32_t color = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | 0xff000000u;
-    for (size_t i = 0; i < (size_t)band->stride * (size_t)band->n_rows; i++) {
-        band->depth[i] = 1;
-        band->color[i] = color;
-    }
-}
-
-static void write_rows(const struct soft_frame *frame, const struct soft_band *band)
-{
-    size_t width_px = (size_t)frame->image->width_px;
-    for (int y = 0; y < band->n_rows; y += frame->list->samples) {
-        const uint32_t *from = band->color + (size_t)y * (size_t)band->stride;
-        uint8_t *to = frame->image->rgba + (size_t)((band->first_row + y) / frame->list->samples) * width_px * 4;
-        if (frame->list->samples == 2)
-            frame->renderer->kernels->halve(from, from + band->stride, (int)width_px, (uint32_t *)(void *)to);
-        else
-            memcpy(to, from, width_px * 4);
-    }
-}
-
-/* Keeps the depths of the band's pixels: those of opaque shapes, then, negative, those of planes before them. */
-static void keep_depth(const struct soft_frame *frame, const struct soft_band *band, bool has_planes)
-{
-    int samples = frame->list->samples, width_px = frame->image->width_px;
-    for (int y = 0; y < band->n_rows; y += samples) {
-        float *to = frame->list->depth + (size_t)((band->first_row + y) / samples) * (size_t)width_px;
-        const float *from = band->depth + (size_t)y * (size_t)band->stride;
-        for (int x = 0; x < width_px; x++) {
-            float depth = 0.5f * from[x * samples] + 0.5f; /* the band's is -1 .. 1 */
-            if (!has_planes)
-                to[x] = depth;
-            else if (depth < to[x])
-                to[x] = -depth;
-        }
-    }
-}
-
-/* Of the volume too: where it is nearer and has absorbed half of the light, at the band's pixels. */
-static void keep_volume_depth(const struct soft_frame *frame, const struct soft_band *band)
-{
-    const struct soft_volume_kernels *kernels = soft_volume_kernels_of(frame->renderer->kernels);
-    const int samples = frame->list->samples, width_px = frame->image->width_px;
-    struct soft_volume per_pixel;
-    soft_volume_per_pixel(frame->volume, &per_pixel);
-    for (int y = 0; y < band->n_rows; y += samples) {
-        const int row = (band->first_row + y) / samples;
-        float *to = frame->list->depth + (size_t)row * (size_t)width_px;
-        const float *from = band->depth + (size_t)y * (size_t)band->stride;
-        for (int x = 0; x < width_px; x += SOFT_LANES) {
-            const int n = width_px - x < SOFT_LANES ? width_px - x : SOFT_LANES;
-            float opaque[SOFT_LANES] = { 0 }, depth[SOFT_LANES];
-            for (int l = 0; l < n; l++)
-                opaque[l] = from[(x + l) * samples];
-            kernels->depths(&per_pixel, x, row, opaque, depth);
-            for (int l = 0; l < n; l++)
-                if (fabsf(depth[l]) < fabsf(to[x + l]))
-                    to[x + l] = depth[l];
-        }
-    }
-}
-
 /* Executes the list in its order, within a band. */
 static void draw_all(const struct soft_frame *frame, const struct scratch *scratch, const struct soft_band *band,
                      int index)
@@ -389,13 +363,14 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
     const struct draw_list *list = frame->list;
     const struct soft_item *item = frame->items;
     const struct soft_plane *plane = frame->planes;
+    const struct soft_marks *marks = frame->marks;
     const struct soft_cap *cap = frame->caps;
     const struct soft_kernels *kernels = frame->renderer->kernels;
     enum draw_pass kept = DRAW_OPAQUE;
     for (size_t i = 0, n; i <= list->n_in_image; i += n) {
         enum draw_pass pass = i < list->n_in_image ? list->draws[i].pass : DRAW_OVERLAY;
         for (; list->depth && kept < DRAW_TRANSLUCENT && kept < pass; kept++)
-            keep_depth(frame, band, kept == DRAW_PLANES);
+            soft_rows_keep_depth(frame, band, kept == DRAW_PLANES);
         if (i == list->n_in_image)
             break;
         n = draw_list_n_layers(list, i);
@@ -403,26 +378,35 @@ static void draw_all(const struct soft_frame *frame, const struct scratch *scrat
             size_t n_volumes = list->draws[i].kind == DRAW_VOLUME;
             draw_layers(frame, item, n - n_volumes, n_volumes ? frame->volume : NULL, scratch, band, index);
             if (list->depth && n_volumes)
-                keep_volume_depth(frame, band);
+                soft_rows_keep_volume_depth(frame, kernels, band);
             item += n - n_volumes;
             continue;
         }
         n = 1;
         switch (list->draws[i].kind) {
-        case DRAW_SHAPE: draw_item(frame, item++, band, index, (int[2]){ 0, 0 }); break;
+        case DRAW_SHAPE:
+        case DRAW_ISOLINES: draw_opaque(frame, item++, band, index); break;
         case DRAW_IMAGE:
-        case DRAW_LABELS: soft_plane_draw(plane++, kernels, band); break;
+        case DRAW_LABELS:
+        case DRAW_WASH: soft_plane_draw(plane++, kernels, band); break;
         case DRAW_CAP:
             soft_cap_draw(cap++, kernels, band, index, &scratch->caps);
             for (size_t r = 0; list->draws[i].cap.outline_px > 0 && r < list->draws[i].cap.n_regions; r++)
-                draw_item(frame, item++, band, index, (int[2]){ 0, 0 });
+                draw_opaque(frame, item++, band, index);
             break;
+        case DRAW_TRACKS:
+            soft_tracks_draw(frame->tracks, soft_track_kernels_of(kernels), &frame->sorted->tracks,
+                             frame->n_track_chunks, band, index);
+            break;
+        case DRAW_MARKS: soft_marks_draw(marks++, band); break;
         case DRAW_VOLUME:
         case DRAW_OUTLINE:
         case DRAW_CHECK:
         case DRAW_GRID_CUT:
         case DRAW_GRID_BOX:
-        case DRAW_AXES: break;
+        case DRAW_STROKES:
+        case DRAW_AXES:
+        case DRAW_BEAM_EYE: break;
         }
     }
 }
@@ -450,9 +434,9 @@ static void draw_bands(void *context, int part, int n_parts)
                                   frame->width + SOFT_PADDING,
                                   (float *)(void *)scratch->band,
                                   scratch->band + scratch->n_band };
-        clear(&band);
+        soft_rows_clear(&band);
         draw_all(frame, scratch, &band, (int)piece);
-        write_rows(frame, &band);
+        soft_rows_write(frame, frame->renderer->kernels, &band);
     }
 }
 
@@ -495,6 +479,12 @@ static bool sort(struct soft_frame *frame, struct error *err)
         if (atomic_load(&frame->is_out_of_memory))
             return error_set(err, ERROR_MEMORY, "no memory to sort %zu triangles, lines and points",
                              n_primitives(frame));
+    }
+    if (frame->tracks) {
+        run(frame, sort_tracks);
+        if (atomic_load(&frame->is_out_of_memory))
+            return error_set(err, ERROR_MEMORY, "no memory to sort %zu segments of tracks",
+                             frame->tracks->tracks->shown.end - frame->tracks->tracks->shown.first);
     }
     return true;
 }

@@ -6,6 +6,10 @@
 
 #include "core/derive/volume_bricks.h"
 
+static const enum soft_voxel types[] = {
+    [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32
+};
+
 /* ---- rays --------------------------------------------------------------------------------------------------------- */
 
 /* The linear quantity with these values at the picture's corners left above, right above and left below. */
@@ -159,6 +163,20 @@ static void set_values(struct soft_volume *volume, const struct volume *image, c
     }
 }
 
+void soft_volume_init_image(struct soft_volume *volume, const struct volume *image, const struct draw_image *look)
+{
+    *volume = (struct soft_volume){ .voxels = image->voxels,
+                                    .type = types[image->type],
+                                    .is_linear = look->is_linear,
+                                    .scale = (float)(image->slope / look->width),
+                                    .offset = (float)((image->offset - look->low) / look->width),
+                                    .grey_scale = 1,
+                                    .flip = look->is_low_white ? 255 : 0,
+                                    .colors = look->colors };
+    for (int axis = 0; axis < 3; axis++)
+        volume->size[axis] = image->grid.size[axis];
+}
+
 static void set_shading(struct soft_volume *volume, const struct camera *camera, const struct grid *grid)
 {
     const struct affine *to_index = &grid->ijk_from_lps_mm;
@@ -206,9 +224,6 @@ static size_t seen_ranges(const struct draw_volume *draw, struct volume_range ra
 bool soft_volume_init(struct soft_volume *volume, const struct draw *draw, const struct draw_scope *scope, int width,
                       int height, int samples, struct error *err)
 {
-    static const enum soft_voxel types[] = {
-        [VOXEL_U8] = SOFT_U8, [VOXEL_I16] = SOFT_I16, [VOXEL_U16] = SOFT_U16, [VOXEL_F32] = SOFT_F32
-    };
     const struct snapshot *snapshot = scope->snapshot;
     const struct volume *image = snapshot->plan->images[draw->subject.index].volume;
     *volume = (struct soft_volume){ .method = draw->volume.method,

@@ -52,8 +52,14 @@ struct soft_volume {
     /* colours of values: grey = t grey_scale + grey_offset */
     float grey_scale, grey_offset;
     uint32_t flip, darkest[3];
-    const uint32_t *colors; /* by level 0..255; NULL: grey */
+    const uint32_t *colors;                   /* by level 0..255; NULL: grey */
+    const struct soft_wash *wash, *face_wash; /* of samples, of cut faces; NULL: none. The caller fills them */
 };
+
+/* Sets how values of an image become colours in its window, as far as `paint` needs it: voxels, type, size, scale,
+ * offset, interpolation and colours. */
+struct draw_image;
+void soft_volume_init_image(struct soft_volume *volume, const struct volume *image, const struct draw_image *look);
 
 /* A place in the picture is in samples. table: the draw's. What it takes from the store is given back by
  * soft_volume_finish. errors ERROR_MEMORY */
@@ -63,6 +69,8 @@ void soft_volume_finish(struct soft_volume *volume);
 /* The same volume with a ray for each pixel of the picture, that of its first sample. Borrows from `volume`. */
 void soft_volume_per_pixel(const struct soft_volume *volume, struct soft_volume *per_pixel);
 
+struct soft_wash;
+struct soft_paint;
 struct soft_volume_kernels {
     const char *name;
     /* Blends the volume and the layers over the band's colours, as compose of soft_kernels does for layers alone, and
@@ -74,6 +82,14 @@ struct soft_volume_kernels {
      * volume's rays. opaque: depths -1 .. 1 of the opaque draws. */
     void (*depths)(const struct soft_volume *volume, int x, int y, const float opaque[SOFT_LANES],
                    float depth[SOFT_LANES]);
+    /* Lays a wash over those of n samples of a plane, from (x, y) of the picture on, whose alpha is `mark`; it becomes
+     * SOFT_OPAQUE. color: the band's row. */
+    void (*wash)(const struct soft_wash *wash, int x, int y, int n, uint32_t mark, uint32_t *color);
+    /* Lays a wash or an image over the samples of a shape, in the columns range[0] .. range[1] - 1 of the band: with
+     * opaque NULL over those with the alpha SOFT_MARK, which becomes SOFT_OPAQUE; else over those of a layer that are
+     * nearer than `opaque`. */
+    void (*paint)(const struct soft_paint *paint, const struct soft_band *band, const int range[2],
+                  const float *opaque);
 };
 extern const struct soft_volume_kernels soft_volume_kernels_portable;
 /* Those that go with the rasteriser's. */

@@ -1,6 +1,7 @@
 /* The inner loops of volumes for any processor, and the choice between them and newer ones. */
 #include "core/derive/volume_bricks.h"
 #include "core/render/soft/volume.h"
+#include "core/render/soft/wash.h"
 
 #define NAME(x) x##_portable
 #define TARGET
@@ -50,7 +51,8 @@ LOADER(load_8, uint8_t)
 #define LOAD8 load_8
 #include "core/render/soft/volume_kernels.inc"
 
-const struct soft_volume_kernels soft_volume_kernels_portable = { "portable", compose_portable, depths_portable };
+const struct soft_volume_kernels soft_volume_kernels_portable = { "portable", compose_portable, depths_portable,
+                                                                  wash_portable, paint_portable };
 
 #if defined(__x86_64__)
 extern const struct soft_volume_kernels soft_volume_kernels_avx2;

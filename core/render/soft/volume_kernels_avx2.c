@@ -1,6 +1,7 @@
 /* The inner loops of volumes for processors with AVX2. */
 #include "core/derive/volume_bricks.h"
 #include "core/render/soft/volume.h"
+#include "core/render/soft/wash.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -45,5 +46,6 @@ LOADER(load_8, uint8_t)
 #include "core/render/soft/volume_kernels.inc"
 
 extern const struct soft_volume_kernels soft_volume_kernels_avx2;
-const struct soft_volume_kernels soft_volume_kernels_avx2 = { "AVX2", compose_avx2, depths_avx2 };
+const struct soft_volume_kernels soft_volume_kernels_avx2 = { "AVX2", compose_avx2, depths_avx2, wash_avx2,
+                                                              paint_avx2 };
 #endif

@@ -16,7 +16,7 @@ void cut_lines_finish(struct cut_lines *lines)
     *lines = (struct cut_lines){ 0 };
 }
 
-static bool add(struct cut_lines *lines, struct vec3 a, struct vec3 b, struct error *err)
+bool cut_lines_add(struct cut_lines *lines, struct vec3 a, struct vec3 b, struct error *err)
 {
     if (lines->n == lines->capacity) {
         size_t capacity = 2 * lines->capacity + 256;
@@ -221,8 +221,8 @@ static bool add_diamond(struct cut_lines *lines, const struct affine *map, struc
 {
     static const double corner[5][2] = { { 0.25, 0 }, { 0, 0.25 }, { -0.25, 0 }, { 0, -0.25 }, { 0.25, 0 } };
     for (int i = 0; i < 4; i++)
-        if (!add(lines, affine_point(map, vec3(at.x + corner[i][0], at.y + corner[i][1], 0)),
-                 affine_point(map, vec3(at.x + corner[i + 1][0], at.y + corner[i + 1][1], 0)), err))
+        if (!cut_lines_add(lines, affine_point(map, vec3(at.x + corner[i][0], at.y + corner[i][1], 0)),
+                           affine_point(map, vec3(at.x + corner[i + 1][0], at.y + corner[i + 1][1], 0)), err))
             return false;
     return true;
 }
@@ -242,8 +242,9 @@ bool cut_outlines(const struct mask *slice, enum outline_method method, struct c
         if (end - first == 1)
             is_good = add_diamond(lines, &slice->lps_mm_from_ijk, walk_point(set, first), err);
         for (uint32_t i = first; is_good && end - first > 1 && i < end; i++)
-            is_good = add(lines, affine_point(&slice->lps_mm_from_ijk, walk_point(set, i)),
-                          affine_point(&slice->lps_mm_from_ijk, walk_point(set, i + 1 < end ? i + 1 : first)), err);
+            is_good =
+                cut_lines_add(lines, affine_point(&slice->lps_mm_from_ijk, walk_point(set, i)),
+                              affine_point(&slice->lps_mm_from_ijk, walk_point(set, i + 1 < end ? i + 1 : first)), err);
     }
     outline_set_destroy(set);
     return is_good;
@@ -264,10 +265,12 @@ bool cut_borders(const struct mask *slice, struct cut_lines *lines, struct error
             double left = (double)u - 0.5, low = (double)v - 0.5;
             bool is_inside = has_pixel(slice, u, v);
             if (is_inside != has_pixel(slice, u - 1, v) &&
-                !add(lines, affine_point(map, vec3(left, low, 0)), affine_point(map, vec3(left, low + 1, 0)), err))
+                !cut_lines_add(lines, affine_point(map, vec3(left, low, 0)), affine_point(map, vec3(left, low + 1, 0)),
+                               err))
                 return false;
             if (is_inside != has_pixel(slice, u, v - 1) &&
-                !add(lines, affine_point(map, vec3(left, low, 0)), affine_point(map, vec3(left + 1, low, 0)), err))
+                !cut_lines_add(lines, affine_point(map, vec3(left, low, 0)), affine_point(map, vec3(left + 1, low, 0)),
+                               err))
                 return false;
         }
     return true;
@@ -296,7 +299,7 @@ static bool cut_polygon(const struct corner *corners, int n, double position_mm,
         if (is_a_above != is_b_above)
             found[n_found++] = is_a_above ? meet(b, a, position_mm) : meet(a, b, position_mm);
     }
-    return n_found < 2 || add(lines, found[0], found[1], err);
+    return n_found < 2 || cut_lines_add(lines, found[0], found[1], err);
 }
 
 /* The axis of a normal along an axis of the patient; -1: it is oblique. */

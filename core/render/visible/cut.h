@@ -11,6 +11,7 @@ struct cut_lines {
     size_t n, capacity;
 };
 void cut_lines_finish(struct cut_lines *lines);
+NODISCARD bool cut_lines_add(struct cut_lines *lines, struct vec3 a, struct vec3 b, struct error *err);
 
 /* A region's univels, with those of its descendants on the same grid. */
 struct cut_region {

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "core/base/log.h"
@@ -14,6 +15,9 @@ struct entry {
     struct subject subject;
     struct shape_key key;       /* of a shape */
     enum surface_detail detail; /* of a shape */
+    struct volume *volume;      /* of computed volumes: a reference of the first; else NULL */
+    size_t n_volumes;           /* of them */
+    struct shape *shape;        /* of a computed shape: a reference; else NULL */
     struct drawable *drawable;  /* NULL: the shape cannot be shown */
     struct drawable nothing;    /* stands for it then */
     uint64_t n_bytes;           /* counted against the budget */
@@ -35,16 +39,20 @@ struct draw_cache *draw_cache_create(const struct drawable_maker *maker)
     return cache;
 }
 
-static bool is_grid(struct subject subject)
+static bool is_grid(const struct entry *entry)
 {
-    return subject.kind == SUBJECT_IMAGE || subject.kind == SUBJECT_LABEL_LAYER;
+    return entry->volume || entry->subject.kind == SUBJECT_IMAGE || entry->subject.kind == SUBJECT_LABEL_LAYER;
 }
 
 static void entry_destroy(const struct draw_cache *cache, struct entry *entry)
 {
     const struct drawable_maker *maker = &cache->maker;
-    if (entry->drawable)
-        (is_grid(entry->subject) ? maker->destroy_grid : maker->destroy_shape)(maker->context, entry->drawable);
+    if (entry->drawable && entry->subject.kind == SUBJECT_TRACKS)
+        maker->destroy_tracks(maker->context, entry->drawable);
+    else if (entry->drawable)
+        (is_grid(entry) ? maker->destroy_grid : maker->destroy_shape)(maker->context, entry->drawable);
+    volume_unref(entry->volume);
+    shape_unref(entry->shape);
     free(entry);
 }
 
@@ -74,11 +82,23 @@ void draw_cache_destroy(struct draw_cache *cache)
     free(cache);
 }
 
+/* True if the cache alone still holds what the drawable was computed from. */
+static bool is_forsaken(const struct entry *entry)
+{
+    return (entry->volume && atomic_load(&entry->volume->references) == 1) ||
+           (entry->shape && atomic_load(&entry->shape->references) == 1);
+}
+
 static void trim(struct draw_cache *cache)
 {
     uint64_t oldest_begun = UINT64_MAX;
     for (const struct draw_cache_use *use = cache->begun; use; use = use->next)
         oldest_begun = use->picture < oldest_begun ? use->picture : oldest_begun;
+    for (struct entry **at = &cache->first; *at;)
+        if ((*at)->used < oldest_begun && is_forsaken(*at))
+            unlink_entry(cache, at);
+        else
+            at = &(*at)->next;
     while (cache->n_bytes > DRAW_CACHE_BYTES) {
         struct entry **oldest = NULL;
         for (struct entry **at = &cache->first; *at; at = &(*at)->next)
@@ -124,7 +144,7 @@ static const struct drawable *keep(struct draw_cache *cache, const struct entry 
 static const struct drawable *find_shape(struct draw_cache *cache, const struct entry *wanted)
 {
     for (struct entry *entry = cache->first; entry; entry = entry->next)
-        if (entry->plan == wanted->plan && entry->detail == wanted->detail &&
+        if (entry->plan == wanted->plan && !entry->volume && !entry->shape && entry->detail == wanted->detail &&
             subject_equal(entry->subject, wanted->subject) && shape_key_equal(&entry->key, &wanted->key)) {
             entry->used = cache->n_pictures;
             return entry->drawable ? entry->drawable : &entry->nothing;
@@ -151,7 +171,7 @@ static struct box3 bounds_of(const struct shape *shape)
     return box;
 }
 
-static struct drawable *make_shape(struct draw_cache *cache, const struct shape *shape, const struct shape_key *key,
+static struct drawable *make_shape(struct draw_cache *cache, const struct shape *shape, int n_passes,
                                    uint32_t reduction, struct error *err)
 {
     if (n_primitives(shape) > (size_t)INT32_MAX / 3) {
@@ -159,8 +179,7 @@ static struct drawable *make_shape(struct draw_cache *cache, const struct shape 
                   INT32_MAX / 3);
         return NULL;
     }
-    struct drawable *drawable =
-        cache->maker.make_shape(cache->maker.context, shape, visible_shading_passes(key, reduction), err);
+    struct drawable *drawable = cache->maker.make_shape(cache->maker.context, shape, n_passes, err);
     if (!drawable)
         return NULL;
     drawable->bounds_lps_mm = bounds_of(shape);
@@ -193,7 +212,7 @@ const struct drawable *draw_cache_shape(struct draw_cache *cache, struct derive 
     uint32_t reduction = 1;
     struct shape *shape = source(derived, want, &reduction, &why);
     if (shape)
-        made.drawable = make_shape(cache, shape, &want->key, reduction, &why);
+        made.drawable = make_shape(cache, shape, visible_shading_passes(&want->key, reduction), reduction, &why);
     bool is_refused = !shape && derive_is_refusal(why.code);
     shape_unref(shape);
     if (is_refused)
@@ -208,6 +227,42 @@ const struct drawable *draw_cache_shape(struct draw_cache *cache, struct derive 
     return NULL;
 }
 
+const struct drawable *draw_cache_computed_shape(struct draw_cache *cache, const struct plan *plan, struct shape *shape,
+                                                 int n_passes, uint32_t reduction, struct error *err)
+{
+    for (struct entry *entry = cache->first; entry; entry = entry->next)
+        if (entry->plan == plan && entry->shape == shape) {
+            entry->used = cache->n_pictures;
+            return entry->drawable;
+        }
+    struct entry made = { .plan = plan, .subject = subject_plan() };
+    made.drawable = make_shape(cache, shape, n_passes, reduction, err);
+    if (!made.drawable)
+        return NULL;
+    made.shape = shape_ref(shape);
+    made.n_bytes = sizeof made + made.drawable->n_bytes;
+    return keep(cache, &made);
+}
+
+/* ---- tracks ----------------------------------------------------------------------------------------------------- */
+
+const struct drawable *draw_cache_tracks(struct draw_cache *cache, const struct plan *plan, struct error *err)
+{
+    for (struct entry *entry = cache->first; entry; entry = entry->next)
+        if (entry->plan == plan && entry->subject.kind == SUBJECT_TRACKS) {
+            entry->used = cache->n_pictures;
+            return entry->drawable;
+        }
+    struct entry made = { .plan = plan, .subject = { SUBJECT_TRACKS, 0, 0 } };
+    made.drawable = cache->maker.make_tracks(cache->maker.context, &plan->tracks, err);
+    if (!made.drawable) {
+        error_prefix(err, "tracks");
+        return NULL;
+    }
+    made.n_bytes = made.drawable->n_bytes;
+    return keep(cache, &made);
+}
+
 /* ---- grids ------------------------------------------------------------------------------------------------------ */
 
 const struct drawable *draw_cache_grid(struct draw_cache *cache, const struct plan *plan, struct subject subject,
@@ -219,7 +274,7 @@ const struct drawable *draw_cache_grid(struct draw_cache *cache, const struct pl
     bool is_labels = subject.kind == SUBJECT_LABEL_LAYER;
     const struct volume *volume = is_labels ? plan->regions.layers[subject.index] : plan->images[subject.index].volume;
     struct entry made = { .plan = plan, .subject = subject };
-    made.drawable = cache->maker.make_grid(cache->maker.context, volume, is_labels, err);
+    made.drawable = cache->maker.make_grid(cache->maker.context, &volume, 1, is_labels, err);
     if (made.drawable) {
         made.n_bytes = made.drawable->n_bytes;
         return keep(cache, &made);
@@ -229,4 +284,23 @@ const struct drawable *draw_cache_grid(struct draw_cache *cache, const struct pl
     else
         error_prefix(err, "image %s", plan->images[subject.index].id);
     return NULL;
+}
+
+const struct drawable *draw_cache_volumes(struct draw_cache *cache, const struct plan *plan,
+                                          const struct volume *const *volumes, size_t n, bool is_labels,
+                                          struct error *err)
+{
+    for (struct entry *entry = cache->first; entry; entry = entry->next)
+        if (entry->plan == plan && entry->volume == volumes[0] && entry->n_volumes == n) {
+            entry->used = cache->n_pictures;
+            return entry->drawable;
+        }
+    struct entry made = { .plan = plan, .subject = subject_plan() };
+    made.drawable = cache->maker.make_grid(cache->maker.context, volumes, n, is_labels, err);
+    if (!made.drawable)
+        return NULL;
+    made.volume = volume_ref(volumes[0]);
+    made.n_volumes = n;
+    made.n_bytes = sizeof made + n * grid_n_voxels(&volumes[0]->grid) * voxel_size(volumes[0]->type);
+    return keep(cache, &made);
 }

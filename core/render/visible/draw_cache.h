@@ -1,7 +1,7 @@
 #pragma once
-/* What a back end makes of shapes and grids to draw them, kept from picture to picture: within a budget of memory the
- * least recently used is dropped first, nothing while a picture uses it, nothing outlives its plan. One policy for all
- * back ends, which only make and free their own kind of drawable. */
+/* What a back end makes of shapes, grids and tracks to draw them, kept from picture to picture: within a budget of
+ * memory the least recently used is dropped first, nothing while a picture uses it, nothing outlives its plan. One
+ * policy for all back ends, which only make and free their own kind of drawable. */
 #include "core/derive/shapes.h"
 #include "core/scene/snapshot.h"
 
@@ -19,8 +19,12 @@ struct drawable_maker {
     /* n_passes: of shading_normals, for triangles. */
     struct drawable *(*make_shape)(void *context, const struct shape *shape, int n_passes, struct error *err);
     void (*destroy_shape)(void *context, struct drawable *drawable);
-    struct drawable *(*make_grid)(void *context, const struct volume *volume, bool is_labels, struct error *err);
+    /* volumes: n of one type and grid, n > 1 only of real numbers with slope 1 and offset 0. */
+    struct drawable *(*make_grid)(void *context, const struct volume *const *volumes, size_t n, bool is_labels,
+                                  struct error *err);
     void (*destroy_grid)(void *context, struct drawable *drawable);
+    struct drawable *(*make_tracks)(void *context, const struct track_set *set, struct error *err);
+    void (*destroy_tracks)(void *context, struct drawable *drawable);
     void *context;
 };
 
@@ -53,6 +57,21 @@ typedef struct shape *draw_shape_source(struct derive *derived, const struct sha
 NODISCARD const struct drawable *draw_cache_shape(struct draw_cache *cache, struct derive *derived,
                                                   const struct shape_want *want, draw_shape_source *source,
                                                   struct error *err);
+/* The drawable of a shape that was computed from the plan for a scene, borrowed until the picture ends. It holds a
+ * reference of the shape; when a picture begins, those of shapes that nobody else holds any more are dropped. n_passes:
+ * of shading_normals. errors those of make_shape, ERROR_LIMIT as above */
+NODISCARD const struct drawable *draw_cache_computed_shape(struct draw_cache *cache, const struct plan *plan,
+                                                           struct shape *shape, int n_passes, uint32_t reduction,
+                                                           struct error *err);
 /* The drawable of the plan's image or label layer, borrowed until the plan is forgotten. errors those of make_grid */
 NODISCARD const struct drawable *draw_cache_grid(struct draw_cache *cache, const struct plan *plan,
                                                  struct subject subject, struct error *err);
+/* The drawable of the plan's tracks, borrowed until the picture ends. errors those of make_tracks */
+NODISCARD const struct drawable *draw_cache_tracks(struct draw_cache *cache, const struct plan *plan,
+                                                   struct error *err);
+/* The drawable of volumes that were computed from the plan, borrowed until the picture ends. It holds a reference of
+ * the first one, which with n tells lists of volumes apart; when a picture begins, those of volumes that nobody else
+ * holds any more are dropped. errors those of make_grid */
+NODISCARD const struct drawable *draw_cache_volumes(struct draw_cache *cache, const struct plan *plan,
+                                                    const struct volume *const *volumes, size_t n, bool is_labels,
+                                                    struct error *err);

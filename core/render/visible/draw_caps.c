@@ -7,6 +7,7 @@
 #include "core/render/visible/cap_cache.h"
 #include "core/render/visible/draw_clip.h"
 #include "core/render/visible/draw_planes.h"
+#include "core/render/visible/draw_wash.h"
 
 /* Of the region's colour in a cap that mixes it with the image. */
 static const double region_tint = 0.35;
@@ -60,6 +61,7 @@ static bool add_cap(struct draw_list *list, const struct draw_scope *scope, size
         cap.tint = cap.has_image ? region_tint : 1;
     if (snapshot->image >= 0)
         cap.image = draw_image_shown(snapshot, false);
+    cap.image.wash = draw_wash_shown(list, snapshot);
     if (cap.n_regions == 0)
         return true;
     struct clip_set others = draw_clip_set(snapshot, true);

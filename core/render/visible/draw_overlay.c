@@ -4,6 +4,9 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/beam_eye_marks.h"
+#include "core/render/visible/draw_beams.h"
+#include "core/render/visible/draw_isolines.h"
 
 static const uint32_t grid_rgb = 0xf4f6f8;
 static const double grid_width_px = 1.5;
@@ -81,6 +84,20 @@ static bool add_axes(struct draw_list *list, struct error *err)
                          err);
 }
 
+static bool add_beam_eye(struct draw_list *list, const struct draw_scope *scope, struct error *err)
+{
+    struct beam_eye_marks marks;
+    if (!beam_eye_marks_of(scope->snapshot, scope->camera, &marks))
+        return true;
+    return draw_list_add(list,
+                         &(struct draw){ .pass = DRAW_OVERLAY,
+                                         .kind = DRAW_BEAM_EYE,
+                                         .depth = DRAW_DEPTH_NONE,
+                                         .subject = subject_plan(),
+                                         .opacity = 1 },
+                         err);
+}
+
 bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct error *err)
 {
     const struct snapshot *snapshot = scope->snapshot;
@@ -88,7 +105,11 @@ bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct
     bool is_pane = snapshot_is_pane(snapshot);
     if (is_pane && (scene->outline.on_slices || scene->check.visible) && !add_regions(list, scope, err))
         return false;
+    if (is_pane && (!draw_isolines_on_pane(list, scope, err) || !draw_beams_on_pane(list, scope, err)))
+        return false;
     if (!is_pane && scene->axes.visible && !add_axes(list, err))
         return false;
-    return !scene->dose.grid || snapshot->dose < 0 || add_dose_grid(list, snapshot, err);
+    if (scene->dose.grid && snapshot->dose >= 0 && !add_dose_grid(list, snapshot, err))
+        return false;
+    return add_beam_eye(list, scope, err);
 }

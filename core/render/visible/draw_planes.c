@@ -8,6 +8,7 @@
 #include "core/base/mem.h"
 #include "core/render/visible/color_map.h"
 #include "core/render/visible/draw_clip.h"
+#include "core/render/visible/draw_wash.h"
 
 enum { PALETTE_BYTES = 4 * VISIBLE_N_LABELS };
 
@@ -52,6 +53,8 @@ static bool add_image(struct draw_list *list, const struct snapshot *snapshot, c
     struct clip_set clip = draw_clip_set(snapshot, snapshot->scene.image.clipped);
     if (draw_clip_cuts(&clip) && !draw_clip_slice(&clip, plane, &snapshot->plan->images[snapshot->image].volume->grid))
         return true;
+    struct draw_image image = draw_image_shown(snapshot, is_in_space);
+    image.wash = draw_wash_shown(list, snapshot);
     return draw_list_add(list,
                          &(struct draw){
                              .pass = DRAW_PLANES,
@@ -61,7 +64,7 @@ static bool add_image(struct draw_list *list, const struct snapshot *snapshot, c
                              .clip = clip,
                              .plane = *plane,
                              .opacity = 1,
-                             .image = draw_image_shown(snapshot, is_in_space),
+                             .image = image,
                          },
                          err);
 }
@@ -221,8 +224,10 @@ bool draw_planes(struct draw_list *list, const struct draw_scope *scope, struct 
 {
     const struct snapshot *snapshot = scope->snapshot;
     bool has_image = snapshot->image >= 0, is_good = true;
+    if (snapshot_is_pane(snapshot) && !has_image)
+        return add_labels(list, snapshot, err) && draw_wash_on_pane(list, scope, err);
     if (snapshot_is_pane(snapshot))
-        return has_image ? add_image(list, snapshot, &snapshot->pane, err) : add_labels(list, snapshot, err);
+        return add_image(list, snapshot, &snapshot->pane, err);
     for (size_t i = 0; is_good && has_image && i < snapshot->n_slices; i++)
         is_good = add_image(list, snapshot, &snapshot->slices[i], err);
     return is_good;

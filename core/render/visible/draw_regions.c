@@ -6,6 +6,8 @@
 
 #include "core/base/mem.h"
 #include "core/render/visible/draw_clip.h"
+#include "core/render/visible/draw_planes.h"
+#include "core/render/visible/draw_wash.h"
 
 /* A region whose shape can be seen, and what its place in the order depends on. */
 struct ranked {
@@ -43,7 +45,7 @@ static struct vec3 nearest_corner(const struct camera *camera, const struct box3
                 f.z > 0 ? box->low.z : box->high.z);
 }
 
-static double nearest_mm(const struct camera *camera, const struct box3 *box)
+double draw_nearest_mm(const struct camera *camera, const struct box3 *box)
 {
     struct vec3 e = camera->eye_lps_mm;
     if (camera->is_parallel)
@@ -131,7 +133,7 @@ static bool rank_regions(const struct draw_scope *scope, bool is_opaque, struct 
                                              visible_shape_key(snapshot, i),
                                              drawable,
                                              clip,
-                                             nearest_mm(scope->camera, box),
+                                             draw_nearest_mm(scope->camera, box),
                                              (int)snapshot->styles[i].order,
                                              region_depth(set, i),
                                              set->regions[i].n_voxels };
@@ -140,7 +142,27 @@ static bool rank_regions(const struct draw_scope *scope, bool is_opaque, struct 
     return true;
 }
 
-static struct draw draw_of(const struct draw_scope *scope, const struct ranked *rank, bool is_opaque)
+/* What colours a region's triangles. */
+static struct draw_texture texture_of(struct draw_list *list, const struct snapshot *snapshot,
+                                      const struct ranked *rank)
+{
+    enum region_representation kind = rank->key.representation;
+    struct draw_texture texture = { .kind = snapshot->styles[rank->region].texture };
+    bool has_triangles = kind == REPRESENTATION_SURFACE || kind == REPRESENTATION_UNIVELS ||
+                         kind == REPRESENTATION_NURBS || kind == REPRESENTATION_FAN;
+    if (texture.kind == SCENE_TEXTURE_IMAGE && snapshot->image >= 0) {
+        texture.image_index = (size_t)snapshot->image;
+        texture.image = draw_image_shown(snapshot, false);
+    } else if (texture.kind == SCENE_TEXTURE_DOSE)
+        texture.wash = draw_wash_of_region(list, snapshot, rank->region);
+    if (!has_triangles || (texture.kind == SCENE_TEXTURE_IMAGE && snapshot->image < 0) ||
+        (texture.kind == SCENE_TEXTURE_DOSE && !texture.wash))
+        texture.kind = SCENE_TEXTURE_NONE;
+    return texture;
+}
+
+static struct draw draw_of(struct draw_list *list, const struct draw_scope *scope, const struct ranked *rank,
+                           bool is_opaque)
 {
     const struct scene_region_style *style = &scope->snapshot->styles[rank->region];
     struct visible_look look = visible_look(scope->snapshot, rank->region, &rank->key);
@@ -155,7 +177,8 @@ static struct draw draw_of(const struct draw_scope *scope, const struct ranked *
         .opacity = style->opacity,
         .shape = { .drawable = rank->drawable,
                    .look = look,
-                   .cue = visible_depth_cue(scope->camera, &rank->drawable->bounds_lps_mm) },
+                   .cue = visible_depth_cue(scope->camera, &rank->drawable->bounds_lps_mm),
+                   .texture = texture_of(list, scope->snapshot, rank) },
     };
 }
 
@@ -165,7 +188,7 @@ bool draw_regions(struct draw_list *list, const struct draw_scope *scope, bool i
     struct ranked *ranks = mem_array(scope->snapshot->plan->regions.n_regions, sizeof *ranks, UINT64_MAX, err);
     bool is_good = ranks && rank_regions(scope, is_opaque, ranks, &n, err);
     for (size_t i = 0; is_good && i < n; i++) {
-        struct draw draw = draw_of(scope, &ranks[is_opaque ? n - 1 - i : i], is_opaque);
+        struct draw draw = draw_of(list, scope, &ranks[is_opaque ? n - 1 - i : i], is_opaque);
         is_good = draw_list_add(list, &draw, err);
     }
     free(ranks);

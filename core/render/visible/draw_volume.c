@@ -5,6 +5,7 @@
 
 #include "core/base/mem.h"
 #include "core/render/visible/draw_planes.h"
+#include "core/render/visible/draw_wash.h"
 
 /* An opacity of 1 would be an absorption without end. */
 static const double most_opacity = 0.999;
@@ -95,6 +96,9 @@ bool draw_volume(struct draw_list *list, const struct draw_scope *scope, struct 
         .step_voxels = step,
         .step_limit_mm = 2 * step * fmin(spacing_mm.x, fmin(spacing_mm.y, spacing_mm.z)),
     };
+    draw.image.wash = draw_wash_shown(list, snapshot);
+    if (snapshot->scene.dose.wash.volume && (is_ray || style->method == SCENE_VOLUME_METHOD_SLICES))
+        draw.wash = draw.image.wash;
     if (is_ray) {
         list->transfer = mem_array(DRAW_VOLUME_TABLE, sizeof *list->transfer, UINT64_MAX, err);
         if (!list->transfer)

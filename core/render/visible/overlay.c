@@ -6,6 +6,7 @@
 
 #include "core/base/mem.h"
 #include "core/derive/shape_slabs.h"
+#include "core/render/visible/beam_eye_marks.h"
 #include "core/render/visible/check.h"
 #include "core/render/visible/cut.h"
 #include "core/render/visible/paint.h"
@@ -220,6 +221,12 @@ static void paint_lines(const struct target *target, const struct cut_lines *lin
     paint_flush(target->paint, rgb, 1);
 }
 
+static void paint_strokes(const struct target *target, const struct draw *draw)
+{
+    stroke(target, draw->strokes.lines, draw->strokes.width_px);
+    paint_flush(target->paint, draw->color_rgb, draw->opacity);
+}
+
 /* The lines of an outline, borrowed until trim: of the surface; of univels if these are wanted, if the surface is not
  * built and must not be waited for, or if the region cannot have it. NULL on failure. */
 static const struct cut_lines *outline_lines(const struct target *target, const struct draw *draw, struct error *err)
@@ -248,7 +255,11 @@ static bool paint_halos(const struct target *target, const struct draw_list *lis
     for (size_t i = list->n_in_image; i < list->n; i++) {
         const struct draw *draw = &list->draws[i];
         const struct cut_lines *lines = draw->kind == DRAW_OUTLINE ? outline_lines(target, draw, err) : NULL;
-        if (lines)
+        if (draw->kind == DRAW_ISOLINES)
+            stroke(target, draw->isolines.lines, draw->isolines.width_px + 2 * halo_px);
+        else if (draw->kind == DRAW_STROKES && draw->opacity >= 1)
+            stroke(target, draw->strokes.lines, draw->strokes.width_px + 2 * halo_px);
+        else if (lines)
             stroke(target, lines, draw->lines.width_px + 2 * halo_px);
         else if (draw->kind == DRAW_OUTLINE)
             return false;
@@ -295,12 +306,19 @@ static bool paint_check(const struct target *target, const struct draw *draw, st
 
 /* ---- the dose's grid -------------------------------------------------------------------------------------------- */
 
-/* Shortens an edge to its part in front of the eye; false: none of it is. */
-static bool cut_before_eye(const struct camera *camera, double a[3], double b[3])
+static double depth_mm(const struct camera *camera, const double p[3])
 {
-    const double *m = camera->clip_from_lps_mm.m, least = fmax(1e-3, camera->near_mm / 10);
-    double wa = m[3] * a[0] + m[7] * a[1] + m[11] * a[2] + m[15], wb = m[3] * b[0] + m[7] * b[1] + m[11] * b[2] + m[15];
-    if (camera->is_parallel || (wa >= least && wb >= least))
+    return vec3_dot(vec3_sub(vec3(p[0], p[1], p[2]), camera->eye_lps_mm), camera->forward);
+}
+
+/* Shortens an edge to its part in front of the eye; false: none of it is. A parallel 3-D view has no eye: there all is
+ * in front. */
+static bool cut_before_eye(const struct target *target, double a[3], double b[3])
+{
+    const struct camera *camera = target->scope->camera;
+    double least = camera->is_parallel ? fmin(0, camera->near_mm) : fmax(1e-3, camera->near_mm / 10);
+    double wa = depth_mm(camera, a), wb = depth_mm(camera, b);
+    if ((camera->is_parallel && !snapshot_beam(target->scope->snapshot)) || (wa >= least && wb >= least))
         return true;
     if (wa < least && wb < least)
         return false;
@@ -318,7 +336,7 @@ static void add_box(const struct target *target, const struct grid *grid, double
         for (int axis = 1; axis < 8; axis *= 2) {
             const struct vec3 *p = &corners[corner & ~axis], *q = &corners[corner | axis];
             double a[3] = { p->x, p->y, p->z }, b[3] = { q->x, q->y, q->z };
-            if (!(corner & axis) && cut_before_eye(target->scope->camera, a, b))
+            if (!(corner & axis) && cut_before_eye(target, a, b))
                 paint_line(target->paint, project(target, a), project(target, b), width_px);
         }
 }
@@ -355,7 +373,7 @@ static void add_axis(const struct target *target, struct vec3 middle, struct vec
     struct vec3 along = vec3_sub(end, middle), p = vec3_add(middle, vec3_scale(along, from)),
                 q = vec3_add(middle, vec3_scale(along, to));
     double a[3] = { p.x, p.y, p.z }, b[3] = { q.x, q.y, q.z };
-    if (cut_before_eye(target->scope->camera, a, b))
+    if (cut_before_eye(target, a, b))
         paint_line(target->paint, project(target, a), project(target, b), width_px);
 }
 
@@ -383,19 +401,32 @@ static void paint_axes(const struct target *target, const struct draw *draw)
     }
 }
 
+static void paint_beam_eye(const struct target *target)
+{
+    struct beam_eye_marks marks;
+    if (beam_eye_marks_of(target->scope->snapshot, target->scope->camera, &marks))
+        beam_eye_paint(&marks, target->scope->camera, target->scale, target->paint);
+}
+
 static bool paint_draw(const struct target *target, const struct draw *draw, struct error *err)
 {
     switch (draw->kind) {
     case DRAW_OUTLINE: return paint_outline(target, draw, err);
+    case DRAW_ISOLINES: paint_lines(target, draw->isolines.lines, draw->isolines.width_px, draw->color_rgb); break;
     case DRAW_CHECK: return paint_check(target, draw, err);
     case DRAW_GRID_CUT:
     case DRAW_GRID_BOX: return paint_dose_grid(target, draw, err);
+    case DRAW_STROKES: paint_strokes(target, draw); break;
     case DRAW_AXES: paint_axes(target, draw); break;
+    case DRAW_BEAM_EYE: paint_beam_eye(target); break;
     case DRAW_SHAPE:
     case DRAW_IMAGE:
     case DRAW_LABELS:
     case DRAW_CAP:
-    case DRAW_VOLUME: break; /* a back end's */
+    case DRAW_VOLUME:
+    case DRAW_TRACKS:
+    case DRAW_WASH:
+    case DRAW_MARKS: break; /* a back end's */
     }
     return true;
 }

@@ -1,6 +1,6 @@
 #pragma once
 /* Executes the overlay of a draw list over a finished picture, alike for every back end: outlines of regions, the check
- * of a segmentation, grids of a dose. Lines have smooth edges, in moving pictures too. */
+ * of a segmentation, grids of a dose, beams. Lines have smooth edges, in moving pictures too. */
 #include "core/render/visible/check.h"
 #include "core/render/visible/draw.h"
 

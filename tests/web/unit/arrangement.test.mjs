@@ -121,3 +121,25 @@ test('two panes keep what was put into them; 3-D and oblique is a pair of its ow
   assert.deepEqual(layout.two.value, [1, 2]);
   assert.deepEqual(layouts.map(({ id }) => layoutId(id === 'oblique' ? '2x1' : id, id === 'oblique' ? [1, 5] : [1, 2])), layouts.map(({ id }) => id));
 });
+
+test('in a low window panes above the drawer stand in one row, and whole in a high one', () => {
+  assert.deepEqual([desk(1280, { drawer: 'bottom' }, 720).layout, desk(1280, { drawer: 'bottom' }, 720).drawer], ['row', 'bottom']);
+  assert.equal(desk(1280, { drawer: 'bottom', layout: '1+3' }, 799).layout, 'row');
+  assert.equal(desk(1280, { drawer: 'bottom' }, 800).layout, '2x2');
+  assert.equal(desk(1280, { drawer: '' }, 720).layout, '2x2');
+  assert.equal(desk(1280, { drawer: 'bottom', layout: '2x1' }, 720).layout, '2x1');
+  assert.deepEqual(desk(1280, { drawer: 'bottom', maximised: 2 }, 720).visible, [2]);
+  assert.equal(desk(1280, { drawer: 'bottom', section: 'regions', isPinned: true }, 720).overlay, 'pushes', 'a row of three has room beside a section');
+});
+
+test('beside the panes, from 1400 px on, the drawer leaves two panes of 420 px one above the other', () => {
+  const right = desk(1400, { drawer: 'right', two: [2, 1], section: 'regions', isPinned: true });
+  assert.deepEqual([right.drawer, right.tree, right.layout, right.visible, right.overlay, right.inspector], ['right', 'rail', '1x2', [2, 1], 'floats', 'pushes']);
+  assert.equal(desk(1399, { drawer: 'right' }).drawer, 'bottom');
+  assert.equal(desk(1600, { drawer: 'right', layout: 'single', active: 3 }).layout, 'single');
+});
+
+test('fingers have a sheet in place of the drawer', () => {
+  assert.equal(touch(1180, 820, { drawer: 'bottom' }).drawer, '');
+  assert.equal(touch(1180, 820, { drawer: 'bottom' }).layout, '1+3');
+});

@@ -8,7 +8,7 @@ const { RoomState } = await load('state/room.js');
 const { widen, widening } = await load('view/own_camera.js');
 
 const camera = { position_mm: [0, 0, -1000], target_mm: [0, 0, 0], up: [0, -1, 0], projection: 'parallel', fov_deg: 30, height_mm: 300 };
-const shared = { kind: 'axial', number: 1, plane: '', size_px: [900, 600], camera, override: {} };
+const shared = { kind: 'axial', number: 1, plane: '', size_px: [900, 600], camera, beam: { along_mm: null, crosshair: true, aperture_mm: null }, override: {} };
 const viewMessage = (follow, more = {}) => ({ type: 'view', view: 2, document: { ...shared, ...more }, follow, by: 'm2' });
 const sent = (connection) => connection.sent.map(({ type }) => type);
 

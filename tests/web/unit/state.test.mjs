@@ -77,6 +77,7 @@ test('many changes before a paint become one message with a growing input', () =
     ['scene.patch', { regions: { brain: { opacity: 0.7 } } }],
   ]);
   assert.ok(connection.sent[1].input > connection.sent[0].input);
+  assert.equal(connection.sent[1].view, 1, 'its pictures go first');
   flush();
   assert.equal(connection.sent.length, 2);
 });

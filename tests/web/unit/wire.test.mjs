@@ -26,7 +26,7 @@ for (const [name, { from, message, error }] of fixtures('bad'))
 
 test('a document gets every default of proto/scene.json', () => {
   const scene = readDocument('scene', { regions: { brain: { opacity: 0.5 } } });
-  assert.deepEqual(scene.regions.brain, { visible: true, representation: 'surface', order: 0, color: '#c8c8c8', opacity: 0.5, clipped: true });
+  assert.deepEqual(scene.regions.brain, { visible: true, representation: 'surface', order: 0, color: '#c8c8c8', opacity: 0.5, texture: 'none', clipped: true });
   assert.deepEqual(scene.image.window, { center: 40, width: 400 });
   assert.equal(readDocument('view', {}).camera.fov_deg, 30);
   assert.equal(readDocument('view', {}).camera.position_mm, null);

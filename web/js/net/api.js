@@ -54,6 +54,11 @@ export function makeApi(fetch, base = 'api/v1') {
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),
     pick: (plan, room, view, px, py, prefer = '') =>
       call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`),
+    /** A question about the scene of a room with a view's override: dvh, profile, constraints, dose/probe. */
+    ofScene: (plan, question, room, view, parameters, signal) => call('GET', `plans/${id(plan)}/${question}?${new URLSearchParams({ room, view: JSON.stringify(view), ...parameters })}`, { signal }),
+    /** Where the labels of a slice pane's isodose lines stand on its picture. */
+    isolines: (plan, room, view, textPx, signal) =>
+      call('GET', `plans/${id(plan)}/dose/isolines?room=${id(room)}&view=${id(JSON.stringify(view))}&text_px=${textPx}`, { signal }),
     histogram: (plan, image) => call('GET', `plans/${id(plan)}/images/${id(image)}/histogram`),
     ellipse: (plan, image, [centre, a, b]) => call('GET', `plans/${id(plan)}/images/${id(image)}/ellipse?center=${centre}&a=${a}&b=${b}`),
     surface: (plan, region, query, signal) => call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),

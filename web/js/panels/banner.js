@@ -1,6 +1,7 @@
 // The banner of a room: name of the plan, its warnings, members, invitation, help.
 import { html, nothing } from '../../lib/lit-html.js';
 import { troubles } from '../state/plan.js';
+import { ofDose } from './dose_later.js';
 import { icon } from './icons.js';
 import { initials } from './pane.js';
 import { roomChip } from './room_chip.js';
@@ -41,7 +42,8 @@ export function banner(world) {
   const others = members.filter((member) => member.id !== you);
   return html`${brand()}<i class="rule"></i>
     <div class="plan-name"><h1 title=${plan?.name ?? ''}><span>${plan?.name ?? room.planId.value}</span>${plan?.isPhantom ? html`<span class="tag phantom">PHANTOM</span>` : nothing}</h1>
-      <span class="dim">Plan <code>${room.planId.value}</code></span></div>
+      <span class="dim plan-id">Plan <code>${room.planId.value}</code></span>${ofDose(room)?.doseBasis(world, 'below')}</div>
+    ${ofDose(room)?.doseBasis(world, 'aside')}
     ${warnings(world)}
     <span class="grow"></span>
     ${own ? html`<div class="you" title=${`${own.name} (you)`}><span class="avatar own">${initials(own.name)}</span><span class="you-words"><b>${own.name} (you)</b>

@@ -101,7 +101,7 @@ function freeButtons({ world, plan, scene, isDisabled, change }) {
   const camera = () => (panes()[ui.active.value - 1]?.actions.is3d ? panes()[ui.active.value - 1] : panes()[0]).actions.camera;
   const square = (event) => change({ clip: { free: { normal: axes(camera()).forward.map((value) => Math.round(-value * 1e6) / 1e6 || 0) } } }, event);
   const shown = beamOf(plan, scene);
-  const beam = shown && alongBeam(shown);
+  const beam = shown && alongBeam({ entry_mm: shown.entry, target_mm: shown.target });
   return html`<button ?disabled=${isDisabled} title="Square to the line of sight of the 3-D picture; what is nearer is cut off" @click=${square}>Square to the view</button>
     ${beam ? html`<button ?disabled=${isDisabled} title=${`Through the axis of the beam ${shown.name || shown.id}, upright`} @click=${(event) => change({ clip: { free: beam } }, event)}>Along the beam</button>` : nothing}`;
 }

@@ -1,12 +1,34 @@
 // Small controls that several panels use.
-import { html, nothing } from '../../lib/lit-html.js';
+import { html, noChange, nothing } from '../../lib/lit-html.js';
+import { Directive, directive } from '../../lib/directive.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { roving } from './roving.js';
 
+class Typed extends Directive {
+  render(value) {
+    return value;
+  }
+
+  update({ element }, [value]) {
+    if (!this.isKnown) {
+      this.isKnown = true;
+      element.addEventListener('input', () => { this.isTyping = true; });
+      element.addEventListener('change', () => { this.isTyping = false; });
+    }
+    if (this.isTyping && element === document.activeElement) return noChange;
+    this.isTyping = false;
+    if (element.value !== value) element.value = value;
+    return noChange;
+  }
+}
+
+/** The value of a field, as live(); but what a person is typing stays until it is entered, whatever is drawn again meanwhile. */
+export const typed = directive(Typed);
+
 /** A field for a number, with its unit inside. */
 export function numberField(label, value, unit, isDisabled, change) {
-  return html`<span class="field"><input type="number" step="any" .value=${live(String(value))} aria-label=${label} ?disabled=${isDisabled}
+  return html`<span class="field"><input type="number" step="any" .value=${typed(String(value))} aria-label=${label} ?disabled=${isDisabled}
     @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change(event.target.valueAsNumber, event)}>${unit ? html`<span>${unit}</span>` : nothing}</span>`;
 }
 

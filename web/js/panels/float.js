@@ -1,6 +1,7 @@
 // Shown over the page: toasts, the list of keys.
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
+import { effect } from '../../lib/signals-core.js';
 import { icon } from './icons.js';
 
 const signs = { ok: 'check', warn: 'warning', err: 'error' };
@@ -33,12 +34,20 @@ const keys = [
   ['G', 'Fit to the selected region or measure'],
   ['R, Space', 'Reset the view'],
   ['1 to 5', 'Window presets; of an image that is no CT percentiles'],
-  ['Shift + 1 to 6', 'Layouts of the panes'],
+  ['Shift + 1 to 7', 'Layouts of the panes, the last in plans with a beam'],
+  ['B', 'Beam’s eye instead of 3-D, and back'],
+  ['[ ]', 'Beam slice 1 mm back and on along its beam (Shift: 10 mm)'],
   ['W', 'Window and level by left drag'],
   ['Z', 'Zoom by left drag'],
   ['M', 'Measure in a slice: drag or click; Enter sets a point at the crosshair, Backspace takes it back'],
+  ['With Move beam: arrow keys', 'Entry or target by 1 mm in the pane (Shift: 10 mm)'],
   ['C', 'All clip planes off, and on again'],
   ['K', 'Caps of the clip planes on or off'],
+  ['V', 'Plots of dose: histograms, depth profile'],
+  ['D', 'Wash of the dose on or off'],
+  ['I', 'Isodose lines on or off'],
+  ['T', 'Particle tracks on or off'],
+  ['Q', 'Pin the values at the crosshair'],
   ['F', 'Return to the presenter, or look for yourself'],
   ['Ctrl + Z', 'Undo your last change of scene or camera'],
   ['Ctrl + Shift + Z, Ctrl + Y', 'Redo it'],
@@ -56,3 +65,9 @@ export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<s
   <p class="note">Keys act in the pane that has the focus.</p>
   <dl>${keys.map(([key, what]) => html`<dt>${key}</dt><dd>${what}</dd>`)}</dl>
   <p class="note"><a href="gen/reference.html" target="_blank">Reference: scene, messages, HTTP API, problems, codes of load reports</a></p></section>`);
+
+/** While the report to print is open, what it covers takes no focus. @returns {() => void} stops */
+export const coverPage = (host, ui) => effect(() => {
+  const isOpen = ui.popover.value === 'printout';
+  for (const part of host.querySelectorAll('.room > :not(.floating)')) part.inert = isOpen;
+});

@@ -3,20 +3,11 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
 import { blendedImage, lookPatch } from '../state/image_look.js';
 import { isLowWhite, shownImage } from '../state/plan.js';
-import { showPatchWithVolume } from '../state/transfer.js';
 import { numberField, segment } from './fields.js';
 import { icon } from './icons.js';
+import { imageName, showImage } from './image_shown.js';
 import { slicesBlock } from './picture.js';
 import { colorBar, colorMapRow, windowFields } from './window_fields.js';
-
-export const imageName = (plan, image) => image.name || (plan.images.length > 1 ? `${image.modality} ${image.id}` : image.modality);
-
-/** Shows an image as it was shown last. */
-export function showImage({ room, ui }, image, event) {
-  const [plan, scene] = [room.plan.value, room.scene.value];
-  if (!room.canChange.value || !scene || image === shownImage(plan, scene)) return;
-  room.patchScene(showPatchWithVolume(plan, scene, image), { view: ui.active.value, at: event?.timeStamp });
-}
 
 export function imageBlock(world, isDisabled, change) {
   const { room, ui } = world;

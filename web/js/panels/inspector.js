@@ -1,13 +1,19 @@
 // The inspector: values at the crosshair, what was selected last, the plan. At the right, or in a sheet.
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
+import { hasCharts } from './chart_loader.js';
 import { icon } from './icons.js';
+import { Lazy } from './lazy.js';
 import { planTab } from './plan_tab.js';
 import { probe } from './probe.js';
 import { roving } from './roving.js';
-import { selection } from './selection.js';
 
+export const selected = new Lazy(() => import('./selection.js'));
+const selection = (world) => selected.draw((module) => module.selection(world));
 const tabs = [['probe', 'Probe', probe], ['selection', 'Selection', selection], ['plan', 'Plan', planTab]];
+
+/** In a sheet, which has the place of the drawer. */
+const dvhTab = ['dvh', 'DVH', (world) => world.charts.draw('sheet')];
 
 export function inspector(world) {
   const { room, ui } = world;
@@ -16,15 +22,15 @@ export function inspector(world) {
   if (!place && !isSheet) return nothing;
   if (place === 'folded')
     return html`<button class="icon-button unfold" title="Show the inspector" aria-label="Show the inspector" @click=${() => { ui.isInspectorOpen.value = true; }}>${icon('panel')}</button>`;
-  const tab = ui.tab.value;
-  const [, , content] = tabs.find(([id]) => id === tab);
+  const shown = isSheet && hasCharts(room.plan.value) ? [tabs[0], dvhTab, ...tabs.slice(1)] : tabs;
+  const [tab, , content] = shown.find(([id]) => id === ui.tab.value) ?? tabs[0];
   const fold = () => {
     if (isSheet) ui.sheet.value = '';
     else ui.isInspectorOpen.value = false;
   };
   const { kind, id: of } = ui.selection.value;
   return html`${isSheet ? html`<i class="grip"></i>` : nothing}<div class="tabs"><div role="tablist" aria-label="Inspector" @keydown=${roving}>
-      ${tabs.map(([id, name]) => html`<button role="tab" id=${`tab-${id}`} aria-selected=${tab === id} aria-controls="tab-panel" tabindex=${tab === id ? 0 : -1}
+      ${shown.map(([id, name]) => html`<button role="tab" id=${`tab-${id}`} aria-selected=${tab === id} aria-controls="tab-panel" tabindex=${tab === id ? 0 : -1}
         @click=${() => { ui.tab.value = id; }}>${name}</button>`)}</div><span class="grow"></span>
       <button class="icon-button" title=${isSheet ? 'Close' : 'Fold'} aria-label=${isSheet ? 'Close the sheet' : 'Fold the inspector'} @click=${fold}>${icon(isSheet ? 'chevronDown' : 'chevronRight')}</button></div>
     ${repeat([tab === 'selection' ? `${kind} ${of}` : tab], (key) => key, () => html`<div class="scroll" role="tabpanel" id="tab-panel" tabindex="0" aria-labelledby=${`tab-${tab}`}>

@@ -6,39 +6,24 @@ import { repeat } from '../../lib/directives/repeat.js';
 import { freeId, kindName, kinds, listed, mostMeasures, mostPoints, pointsAround, pointsOf, removePatch } from '../state/measures.js';
 import { nearestIn, planeOfView } from '../state/obliques.js';
 import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
+import { isInSpace } from '../view/kinds.js';
 import { add, scale, subtract } from '../view/vec.js';
 import { checkbox, numberField, segment } from './fields.js';
 import { icon } from './icons.js';
-import { imageName } from './image.js';
+import { imageName } from './image_shown.js';
 import { imageOf, kindIcons, measureName, valueTexts } from './measure_words.js';
 import { newMeasure } from './pane_measures.js';
-import { eye, name, treeRow } from './tree_row.js';
+import { measuresOf, showMeasure } from './measure_rows.js';
 
 const letters = ['L', 'P', 'S'];
-const measuresOf = (scene) => Object.entries(scene?.measures ?? {});
-
-export const hasMeasures = (plan, scene) => measuresOf(scene).length > 0;
 
 const jump = ({ room, ui }, measure, event) => {
   const [plan, scene] = [room.plan.value, room.scene.value];
   room.patchScene(crosshairPatch(plan, shownImage(plan, scene), pointsOf(measure)[0], { isFree: true }), { view: ui.active.value, at: event.timeStamp });
 };
-const show = ({ room, ui }, id, visible, event) => room.patchScene({ measures: { [id]: { visible } } }, { view: ui.active.value, at: event.timeStamp });
-
 function remove({ room, ui }, id, event) {
   room.patchScene(removePatch(id, room.following.isPresenting.value), { view: ui.active.value, at: event.timeStamp });
   ui.select('measures');
-}
-
-/** Rows of the tree. */
-export function measureRows(world) {
-  const { room } = world;
-  return repeat(measuresOf(room.scene.value), ([id]) => id, ([id, measure]) => {
-    const [words, value] = [measureName(id, measure), valueTexts(world, id, measure)[0] ?? ''];
-    const toggle = (event) => show(world, id, !measure.visible, event);
-    return treeRow(world, { kind: 'measure', id, words: [words, value], title: kindName(measure.kind), isOn: measure.visible, toggle }, html`
-      ${eye(measure.visible, `Show ${words}`, 'Show or hide', !room.canChange.value, toggle)}${name(words)} <span class="tail">${value}</span>`);
-  });
 }
 
 /** How the next measure is drawn, and all that there are. */
@@ -63,7 +48,7 @@ export function measuresBlock(world, isDisabled) {
 function addAtCrosshair({ room, ui }, kind, event) {
   const scene = room.scene.value;
   const active = room.view(ui.active.value);
-  const plane = planeOfView(scene, active.kind === '3d' ? { kind: 'axial' } : active.document.value);
+  const plane = planeOfView(scene, isInSpace(active.kind) ? { kind: 'axial' } : active.document.value, room.plan.value);
   const id = freeId(scene.measures, room.following.isPresenting.value);
   if (measuresOf(scene).length >= mostMeasures) return void ui.notify('warn', `There are ${mostMeasures} measures already: delete one first.`, 'measures');
   room.patchScene(newMeasure(id, kind, pointsAround(kind, nearestIn(plane, crosshair(scene)), plane), shownImage(room.plan.value, scene)), { view: ui.active.value, at: event.timeStamp });
@@ -77,7 +62,7 @@ function listBlock(world, isDisabled) {
   return html`<section class="block"><h3>Measures <span class="dim">${entries.length}</span></h3><ul class="image-list" aria-label="Measures">${repeat(entries, ([id]) => id, ([id, measure]) => {
     const words = measureName(id, measure);
     return html`<li><button class="image-measure-name" title=${words} @click=${() => ui.choose('measure', id)}>${icon(kindIcons[measure.kind])}<b>${words}</b><span>${valueTexts(world, id, measure).map((text) => html`<span>${text}</span> `)}</span></button>
-      <button class="icon-button small" aria-pressed=${measure.visible} aria-label=${`Show ${words} in the pictures`} title="Show or hide" ?disabled=${isDisabled} @click=${(event) => show(world, id, !measure.visible, event)}>${icon(measure.visible ? 'eye' : 'eyeOff')}</button>
+      <button class="icon-button small" aria-pressed=${measure.visible} aria-label=${`Show ${words} in the pictures`} title="Show or hide" ?disabled=${isDisabled} @click=${(event) => showMeasure(world, id, !measure.visible, event)}>${icon(measure.visible ? 'eye' : 'eyeOff')}</button>
       <button class="icon-button small" aria-label=${`Crosshair to ${words}`} title="Crosshair there" ?disabled=${isDisabled} @click=${(event) => jump(world, measure, event)}>${icon('target')}</button>
       <button class="icon-button small" aria-label=${`Delete ${words}`} title="Delete" ?disabled=${isDisabled} @click=${(event) => remove(world, id, event)}>${icon('trash')}</button></li>`;
   })}</ul></section>`;
@@ -99,7 +84,7 @@ export function measureBlock(world, isDisabled, changeScene) {
         ${isEllipse && plan.images.length > 1 ? html`<dt>Image</dt><dd><select aria-label="Image that is measured" ?disabled=${isDisabled} @change=${(event) => change({ image: event.target.value }, event)}>${plan.images.map((image) =>
           html`<option value=${image.id} .selected=${live(image === imageOf(plan, scene, measure))}>${imageName(plan, image)}</option>`)}</select></dd>` : nothing}</dl>
       ${pointTable(measure, isDisabled, change)}
-      <div class="checks">${checkbox('In the pictures', measure.visible, isDisabled, (isOn, event) => show(world, id, isOn, event))}</div>
+      <div class="checks">${checkbox('In the pictures', measure.visible, isDisabled, (isOn, event) => showMeasure(world, id, isOn, event))}</div>
       <div class="buttons">${measure.kind === 'polyline' ? html`<button ?disabled=${isDisabled || measure.points.length >= mostPoints} @click=${(event) => change({ points: listed(continued(pointsOf(measure))) }, event)}>Add a point</button>` : nothing}
         <button ?disabled=${isDisabled} @click=${(event) => jump(world, measure, event)}>${icon('target')}<span>Crosshair there</span></button>
         <button ?disabled=${isDisabled} @click=${(event) => remove(world, id, event)}>${icon('trash')}<span>Delete</span></button></div></section>

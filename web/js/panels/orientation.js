@@ -2,6 +2,7 @@
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { isTarget } from '../state/plan.js';
+import { isTurnable } from '../view/kinds.js';
 import { cubeSides, sides } from '../view/orientation.js';
 import { checkbox, segment } from './fields.js';
 import { icon } from './icons.js';
@@ -15,7 +16,7 @@ const leastPx = [180, 200]; // of the pane, to have room for the figure
 export function orientation({ room, ui }, actions, size) {
   const { view } = actions;
   const header = view.painted.value;
-  if (view.kind !== '3d' || !header || size[0] < leastPx[0] || size[1] < leastPx[1]) return nothing;
+  if (!isTurnable(view.kind) || !header || size[0] < leastPx[0] || size[1] < leastPx[1]) return nothing;
   const name = `camera-${view.number}`;
   const isOpen = ui.popover.value === name;
   const seen = cubeSides(header.clip_from_lps_mm);
@@ -46,7 +47,7 @@ function face({ letter, name, facing, middle, corners }, act) {
 function menu({ room, ui }, actions, isDisabled) {
   const { cameras } = actions;
   const act = (run) => (event) => run(event.timeStamp);
-  const hasTwo = room.views.filter(({ kind, isOpen }) => kind === '3d' && isOpen.value).length > 1;
+  const hasTwo = room.views.filter(({ kind, isOpen }) => isTurnable(kind) && isOpen.value).length > 1;
   const scene = room.scene.value;
   const { view } = actions;
   const link = (isOn, event) => {

@@ -8,11 +8,13 @@ import { heightOver, positionOf, reachOf, stepAcross } from '../state/obliques.j
 import { crosshair, isLowWhite, shownImage } from '../state/plan.js';
 import { nameSome } from '../state/refusals.js';
 import { describe } from '../view/camera.js';
+import { isInSpace, isTilted, isTurnable } from '../view/kinds.js';
 import { letters } from '../view/letters.js';
 import { overlay } from '../view/overlay.js';
 import { Painter } from '../view/painter.js';
 import { PointerReader } from '../view/pointer.js';
 import { millimetres, number, windowText } from './format.js';
+import { ofDose, ofDrawnDose } from './dose_later.js';
 import { icon } from './icons.js';
 import { mount, variables } from './mount.js';
 import { hasOwnRegions, orientation } from './orientation.js';
@@ -21,6 +23,7 @@ import { paneKind } from './pane_kind.js';
 import { PaneLines } from './pane_lines.js';
 import { followMark } from './room_chip.js';
 import { readOut, spoken } from './read_out.js';
+import { ofTracks } from './track_lazy.js';
 import { imageLegend } from './window_fields.js';
 
 const resizeMs = 120;
@@ -33,18 +36,20 @@ export class Pane {
   #view;
   #refused;
   #probed;
+  #doses;
   #size = signal([0, 0]);
   #resizeTimer = 0;
   #stops = [];
   #lastCaption = '';
 
-  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, ellipses, decode, schedule, onPainted} */
-  constructor(host, { room, ui, api, refused, probed, histograms, ellipses, decode, schedule, onPainted }, view) {
+  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, ellipses, doses, decode, schedule, onPainted} */
+  constructor(host, { room, ui, api, refused, probed, histograms, ellipses, doses, decode, schedule, onPainted }, view) {
     this.#room = room;
     this.#ui = ui;
     this.#view = view;
     this.#refused = refused;
     this.#probed = probed;
+    this.#doses = doses;
     this.host = host;
     this.actions = new PaneActions(room, ui, api, view.number, { histograms, ellipses });
     this.lines = new PaneLines(room, ui, view, () => ({ box: this.#box, pane: this.#size.value }));
@@ -120,9 +125,10 @@ export class Pane {
     const isMaximised = this.#ui.maximised.value === n;
     this.actions.box = this.#box;
     const { lines, handles } = this.lines.draw();
+    const tools = this.actions.tools.draw({ header: this.#view.painted.value, box: this.#box, pane: this.#size.value });
     return html`
       <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
-        ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${this.#whereInHead()}</span><span class="grow"></span>
+        ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${tools.where ?? this.#whereInHead()}</span>${tools.head ?? nothing}<span class="grow"></span>
         ${followMark(this.#room)}${this.#badgeButton()}
         <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
           title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${name}`}>
@@ -133,14 +139,14 @@ export class Pane {
           tabindex="0" role="group" aria-label=${`${name} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
           @focus=${() => { this.#ui.active.value = n; }}>
           <canvas width="16" height="16"></canvas>
-          ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}</svg>${handles}
+          ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}${tools.overlay}</svg>${handles}${tools.handles}
           <div class="pointed"></div>
           ${this.#cover()}
         </div>
         ${this.#legend()}
         ${orientation({ room: this.#room, ui: this.#ui }, this.actions, this.#size.value)}
-        ${this.#slider()}
-      </div>
+        ${tools.slider ?? this.#slider()}
+      </div>${tools.foot ?? nothing}
       <p class="hidden" id=${`caption-${n}`} aria-live="polite"></p>`;
   }
 
@@ -148,7 +154,9 @@ export class Pane {
     const { kind } = this.#view;
     const scene = this.#room.scene.value;
     if (!scene || !this.#room.plan.value) return '';
-    if (kind === '3d') {
+    if (kind === 'beam') return 'camera locked to beam';
+    if (kind === 'beam-slice') return `${millimetres(scene.beam.slice.along_mm)} from entry`;
+    if (isInSpace(kind)) {
       const camera = this.#view.document.value && this.actions.camera;
       return hasOwnRegions(this.#view) ? `${describe(camera)}, only targets` : describe(camera);
     }
@@ -159,7 +167,7 @@ export class Pane {
   /** The same with the parts marked that a narrow pane leaves out. */
   #whereInHead() {
     const where = this.#where();
-    const at = this.#view.kind === '3d' ? where.indexOf(', ') + 2 : 0;
+    const at = isTurnable(this.#view.kind) ? where.indexOf(', ') + 2 : 0;
     const to = where.endsWith(' mm') ? where.length - 3 : where.length;
     return html`<span class="roomy">${where.slice(0, at)}</span>${where.slice(at, to)}<span class="roomy">${where.slice(to)}</span>`;
   }
@@ -183,9 +191,11 @@ export class Pane {
     const fullWidth = (header.width_px * 100) / header.scale_percent;
     const plan = this.#room.plan.value;
     const image = shownImage(plan, scene);
-    return html`${this.actions.measures.overlay({ header, box, pane })}${overlay({
+    const plane = isInSpace(view.kind) ? null : this.actions.plane;
+    const tolerance = plane && stepAcross(plane.normal, image?.stepMm ?? [1, 1, 1]) / 2;
+    return html`${this.actions.measures.overlay({ header, box, pane })}${ofDrawnDose(this.#room)?.lineLabels({ doses: this.#doses, view, host: this.host, header, box })}${ofDrawnDose(this.#room)?.pinMarks({ scene, plane, tolerance, header, box, pane })}${plane ? nothing : ofTracks(this.#room)?.chosenTrack({ room: this.#room, ui: this.#ui }, { header, box })}${overlay({
       kind: view.kind, header, box, pane,
-      isOffPlane: view.kind === 'oblique' && Math.abs(heightOver(this.actions.plane, crosshair(scene))) > stepAcross(this.actions.plane.normal, image?.stepMm ?? [1, 1, 1]) / 2,
+      isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
       axes: scene.axes?.visible ? plan?.bounds : null,
       point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
@@ -212,7 +222,7 @@ export class Pane {
   #emptyWords() {
     const plan = this.#room.plan.value;
     if (!plan || plan.images.length || plan.regions.length) return nothing;
-    return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to ${this.#view.kind === '3d' ? 'draw' : 'cut through'}.</p></div>`;
+    return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to ${isInSpace(this.#view.kind) ? 'draw' : 'cut through'}.</p></div>`;
   }
 
   /** The legend: regions that are missing from the picture, and the colours of the segmentation check. */
@@ -221,17 +231,18 @@ export class Pane {
     const plan = this.#room.plan.value;
     if (!scene || !plan || !this.#view.painted.value) return nothing;
     const isLow = this.#size.value[1] < lowPane;
-    if (isLow && this.#view.kind !== '3d' && this.#ui.active.value !== this.#view.number) return nothing;
-    const check = this.#view.kind !== '3d' && scene.check.visible && plan.regions.length ? html`<ul class="legend" aria-label="Colours of the check">
+    if (isLow && !isInSpace(this.#view.kind) && this.#ui.active.value !== this.#view.number) return nothing;
+    const check = !isInSpace(this.#view.kind) && scene.check.visible && plan.regions.length ? html`<ul class="legend" aria-label="Colours of the check">
         <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>` : nothing;
-    const reasons = this.#view.kind === '3d' ? this.#refused.value : this.#view.missing.value.reasons;
+    const reasons = isInSpace(this.#view.kind) ? this.#refused.value : this.#view.missing.value.reasons;
     const missing = plan.regions.filter(({ id }) => reasons[id]);
-    const images = this.#view.kind === '3d' ? nothing : imageLegend({ room: this.#room }, this.#view.number);
-    return html`${images}${missing.length ? this.#missing(scene, missing, reasons, check) : check}`;
+    const images = isInSpace(this.#view.kind) ? nothing : imageLegend({ room: this.#room }, this.#view.number);
+    const dose = ofDrawnDose(this.#room)?.doseLegend({ room: this.#room, ui: this.#ui, doses: this.#doses }, this.#view, this.#size.value, missing.length > 0 || check !== nothing);
+    return html`${images}${dose}${missing.length ? this.#missing(scene, missing, reasons, check) : check}`;
   }
 
   #missing(scene, missing, reasons, check) {
-    const words = this.#view.kind !== '3d' ? 'Not checked' : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs') ? 'Not shown as NURBS' : 'Not drawn';
+    const words = !isInSpace(this.#view.kind) ? 'Not checked' : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs') ? 'Not shown as NURBS' : 'Not drawn';
     const nUnnamed = Math.max(0, this.#view.missing.value.n - missing.length);
     const show = () => {
       this.#ui.choose('region', missing[0].id);
@@ -243,7 +254,7 @@ export class Pane {
   #slider() {
     const { kind } = this.#view;
     const { scene, plan } = this.#room;
-    if (kind === '3d') return nothing;
+    if (isInSpace(kind)) return nothing;
     if (!scene.value || !plan.value) return html`<div class="slice-slider"></div>`; // its place, so that the picture keeps its size
     const { plane } = this.actions;
     const letter = letters(plane.normal);
@@ -268,7 +279,7 @@ export class Pane {
   #caption() {
     const { result, isOld } = this.#probed.value;
     if (!this.#view.painted.value?.is_still || isOld) return this.#lastCaption;
-    const facts = this.#ui.active.value === this.#view.number && result ? spoken(result, this.#room.plan.value, this.#room.scene.value) : [];
+    const facts = this.#ui.active.value === this.#view.number && result ? [...spoken(result, this.#room.plan.value, this.#room.scene.value), ofDose(this.#room)?.doseHere({ doses: this.#doses })] : [];
     this.#lastCaption = [this.#view.name, this.#where(), ...facts].filter(Boolean).join(', ');
     return this.#lastCaption;
   }

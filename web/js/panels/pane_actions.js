@@ -1,13 +1,19 @@
 // Turns pointer and keyboard input on a pane into changes of camera, crosshair, slice and window.
+import { beamShown } from '../state/beam_line.js';
 import { layouts } from '../state/layout.js';
 import { originAt, planeOfView, positionOf, stepAcross } from '../state/obliques.js';
 import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
 import { Pointed } from '../state/pointed.js';
+import { isInSpace, isTilted } from '../view/kinds.js';
 import { toggleCaps, toggleClips } from './clip_rows.js';
+import { beamKey, toggleBeamEye } from './beam_later.js';
+import { ofDose, pinHere } from './dose_later.js';
 import { PaneCamera } from './pane_camera.js';
 import { PaneMeasures } from './pane_measures.js';
 import { PanePick } from './pane_pick.js';
+import { PaneTools } from './pane_tools.js';
 import { PaneWindow } from './pane_window.js';
+import { toggleTracks } from './track_lazy.js';
 
 const degreesPerPixel = 0.4;
 const keyDegrees = 5;
@@ -35,6 +41,7 @@ export class PaneActions {
     this.cameras = new PaneCamera(room, ui, number, () => this.box);
     this.#pick = new PanePick(room, api, this.view, () => this.box);
     this.measures = new PaneMeasures({ room, ui, ellipses }, this.view, () => this.box, (x, y) => this.#pick.pointAt(x, y));
+    this.tools = new PaneTools({ room, ui, api, view: this.view, actions: this });
     this.pointed = new Pointed((x, y) => this.#pick.factsAt(x, y));
   }
 
@@ -43,7 +50,7 @@ export class PaneActions {
   }
 
   get is3d() {
-    return this.view.kind === '3d';
+    return isInSpace(this.view.kind);
   }
 
   get camera() {
@@ -52,7 +59,7 @@ export class PaneActions {
 
   /** The plane of a slice pane. */
   get plane() {
-    return planeOfView(this.#room.scene.value, this.view.document.value);
+    return planeOfView(this.#room.scene.value, this.view.document.value, this.#room.plan.value);
   }
 
   // ---- pointer ------------------------------------------------------------------------------------------------------
@@ -60,11 +67,11 @@ export class PaneActions {
   start = (mode, at) => {
     this.#ui.active.value = this.#number;
     this.pointed.hide();
-    this.measures.start(mode, at);
+    if (!this.tools.take('start', mode, at)) this.measures.start(mode, at);
   };
 
   move = (mode, { x, y, dx, dy, alt, at }) => {
-    if (this.measures.move(mode, { x, y, at })) return;
+    if (this.tools.take('move', mode, { x, y, dx, dy, alt, at }) || this.measures.move(mode, { x, y, at })) return;
     const tool = mode === 'primary' ? this.#ui.tool.value : mode;
     if (tool === 'pan') this.cameras.pan(dx, dy, at);
     else if (this.is3d && (tool === 'roll' || (alt && mode === 'primary'))) this.cameras.rollBy(x, y, dx, dy, at);
@@ -74,10 +81,13 @@ export class PaneActions {
     else this.#crosshairAt(x, y, at, alt);
   };
 
-  end = () => this.measures.end(performance.now());
+  end = () => {
+    this.tools.take('end');
+    this.measures.end(performance.now());
+  };
 
   tap = ({ x, y, shift, alt, at }) => {
-    if (!shift && this.measures.tap({ x, y, at })) return;
+    if (this.tools.take('tap', { x, y, shift, alt, at }) || (!shift && this.measures.tap({ x, y, at }))) return;
     if (shift) {
       if (this.is3d) this.#crosshairToSeen(x, y, at);
       return;
@@ -87,13 +97,14 @@ export class PaneActions {
   };
 
   doubleTap = ({ x, y, touch, at }) => {
-    if (this.measures.doubleTap({ x, y, at })) return;
+    if (this.tools.take('doubleTap', { x, y, touch, at }) || this.measures.doubleTap({ x, y, at })) return;
     if (touch) this.reset(at);
     else this.#ui.maximise(this.#number);
   };
 
   /** Probes there: crosshair and values in a card beside the finger. Opens no panel, as the picture would move away. */
   longPress = async ({ x, y, at }) => {
+    if (this.tools.take('longPress', { x, y, at })) return;
     this.#ui.active.value = this.#number;
     this.#ui.tab.value = 'probe';
     this.pointed.hide();
@@ -108,7 +119,7 @@ export class PaneActions {
   };
 
   hover = ({ x, y, shift, alt, at }) => {
-    if (this.measures.hover({ x, y })) return;
+    if (this.tools.take('hover', { x, y, shift, alt, at }) || this.measures.hover({ x, y })) return;
     if (!shift) return this.pointed.hover(x, y);
     this.pointed.hide();
     if (!this.#room.canChange.value) return;
@@ -121,19 +132,20 @@ export class PaneActions {
   };
 
   wheel = ({ x, y, steps, ctrl, at }) => {
+    if (this.tools.take('wheel', { x, y, steps, ctrl, at })) return;
     if (this.is3d || ctrl) this.cameras.zoom(wheelZoom ** -steps, [x, y], at);
     else this.stepSlice(-steps, at);
   };
 
   pinch = ({ x, y, dx, dy, factor, at }) => {
     this.pointed.hide();
-    this.cameras.pinch({ x, y, dx, dy, factor }, at);
+    if (!this.tools.take('pinch', { x, y, dx, dy, factor, at })) this.cameras.pinch({ x, y, dx, dy, factor }, at);
   };
 
   // ---- camera: pane_camera.js ------------------------------------------------------------------------------------------
 
   reset(at) {
-    this.cameras.reset(at);
+    if (!this.tools.take('reset', at)) this.cameras.reset(at);
   }
 
   lookFrom(name, at) {
@@ -149,7 +161,7 @@ export class PaneActions {
   /** isFree: anywhere, not only on the middles of voxels. */
   #crosshairAt(x, y, at, isFree = false) {
     const point = this.#pick.pointAt(x, y);
-    if (point) this.#moveCrosshair(point, at, isFree || this.view.kind === 'oblique'); // the voxels' middles do not lie on that plane
+    if (point) this.#moveCrosshair(point, at, isFree || isTilted(this.view.kind)); // the voxels' middles do not lie on that plane
   }
 
   #moveCrosshair(point, at, isFree = false) {
@@ -186,11 +198,18 @@ export class PaneActions {
     this.#isPicking = false;
   }
 
-  /** Selects the region that is seen at a place; the crosshair stays. */
+  /** Selects the track, the region, the isodose surface or the beam that is seen at a place; the crosshair stays. */
   async #selectAt(x, y) {
     try {
+      const track = this.is3d && this.#room.scene.value.tracks?.visible && await this.#pick.trackAt(x, y);
+      if (track) {
+        this.#ui.track.value = track;
+        return void this.#ui.select('track', String(track.segment));
+      }
       const hit = await this.#pick.seenAt(x, y);
-      if (hit) this.#ui.select(hit.region === null ? 'image' : 'region', hit.region ?? shownImage(this.#room.plan.value, this.#room.scene.value)?.id, this.is3d);
+      if (hit?.level) this.#ui.select('level', hit.level, this.is3d);
+      else if (hit?.beam != null) this.#ui.select('beam', hit.draft ? '' : hit.beam, this.is3d);
+      else if (hit) this.#ui.select(hit.region === null ? 'image' : 'region', hit.region ?? shownImage(this.#room.plan.value, this.#room.scene.value)?.id, this.is3d);
     } catch (error) {
       this.#ui.notify('err', error.message);
     }
@@ -199,13 +218,14 @@ export class PaneActions {
   /** Moves by whole slices of the image; the camera stays. */
   stepSlice(steps, at) {
     const { plan, scene } = this.#room;
-    if (!scene.value) return;
+    if (!scene.value || this.tools.take('stepSlice', steps, at)) return;
     const stepMm = shownImage(plan.value, scene.value)?.stepMm ?? [1, 1, 1];
     this.setSlice(positionOf(this.plane) + steps * stepAcross(this.plane.normal, stepMm), at);
   }
 
   /** An oblique plane moves along its normal and leaves the crosshair where it is. */
   setSlice(positionMm, at) {
+    if (this.tools.take('setSlice', positionMm, at)) return;
     const { plane } = this.view.document.value;
     const oblique = this.view.kind === 'oblique' && this.#room.scene.value.image.obliques?.[plane];
     if (oblique) return void this.#room.patchScene({ image: { obliques: { [plane]: { origin_mm: originAt({ ...this.plane, origin: oblique.origin_mm }, positionMm) } } } }, { view: this.#number, at });
@@ -220,7 +240,7 @@ export class PaneActions {
   key(event) {
     if (event.altKey || event.metaKey) return false;
     const at = event.timeStamp;
-    const act = this.measures.key(event, at) ?? (event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at));
+    const act = this.tools.key(event, at) ?? this.measures.key(event, at) ?? beamKey(this.#room, this.#ui, event, at) ?? (event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at));
     if (!act || !this.#room.canChange.value) return false;
     this.pointed.hide();
     act();
@@ -233,8 +253,8 @@ export class PaneActions {
   }
 
   #keyAction({ key, code, shiftKey }, at) {
-    const layout = shiftKey && layouts[/^Digit([1-6])$/.exec(code)?.[1] - 1];
-    if (layout) return () => this.#ui.setLayout(layout.id);
+    const layout = shiftKey && layouts[/^Digit([1-7])$/.exec(code)?.[1] - 1];
+    if (layout && (layout.id !== 'beam' || beamShown(this.#room.plan.value, this.#room.scene.value))) return () => this.#ui.setLayout(layout.id);
     const look = /^Numpad[137]$/.test(code) && this.is3d ? looks[code.at(-1)][shiftKey ? 1 : 0] : null;
     if (look) return () => this.cameras.lookFrom(look, at);
     if (/^[1-5]$/.test(key) && code.startsWith('Digit') && this.window.image) return () => this.window.setPreset(key, at);
@@ -248,12 +268,20 @@ export class PaneActions {
     const common = {
       '+': () => this.cameras.zoom(keyZoom, null, at), '=': () => this.cameras.zoom(keyZoom, null, at), '-': () => this.cameras.zoom(1 / keyZoom, null, at),
       r: () => this.reset(at), ' ': () => this.reset(at), g: () => this.cameras.fit(at),
-      f: () => this.#room.following.toggle(),
+      f: () => this.#room.following.toggle(), v: () => this.#ui.toggleDrawer(),
       c: () => toggleClips(this.#room, this.#ui, at), k: () => toggleCaps(this.#room, this.#ui, at),
+      d: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'wash', at), i: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'lines', at), q: () => this.#dose() && pinHere({ room: this.#room, ui: this.#ui }, at),
+      t: () => toggleTracks({ room: this.#room, ui: this.#ui }, at),
       w: () => this.#toggleTool('window'), m: () => this.#toggleTool('measure'), z: () => this.#toggleTool('zoom'),
+      b: () => toggleBeamEye(this.#room, this.#ui),
       Enter: () => this.#ui.maximise(this.#number),
     };
     return arrows[key] ?? common[key.length === 1 ? key.toLowerCase() : key] ?? null;
+  }
+
+  #dose() {
+    if (!this.#room.plan.value?.doses.length) this.#ui.notify('ok', 'This plan has no dose.', 'dose');
+    return ofDose(this.#room);
   }
 
   #toggleTool(tool) {

@@ -3,6 +3,7 @@ import { crosshair } from '../state/plan.js';
 import { planeOfView } from '../state/obliques.js';
 import * as cameras from '../view/camera.js';
 import { homeCamera } from '../view/home.js';
+import { isInSpace, isTurnable } from '../view/kinds.js';
 
 const keyPanPx = 24;
 
@@ -25,7 +26,7 @@ export class PaneCamera {
   }
 
   get is3d() {
-    return this.#view.kind === '3d';
+    return isInSpace(this.#view.kind);
   }
 
   /** With the home camera's fields where the document has none. */
@@ -39,7 +40,7 @@ export class PaneCamera {
 
   /** Of a slice pane. */
   get plane() {
-    return planeOfView(this.#room.scene.value, this.#view.document.value);
+    return planeOfView(this.#room.scene.value, this.#view.document.value, this.#room.plan.value);
   }
 
   get #size() {
@@ -127,12 +128,12 @@ export class PaneCamera {
   #linked(camera) {
     const { panes } = this.#ui;
     const others = this.#room.views.filter(({ number, isOpen }) => number !== this.#number && isOpen.value);
-    if (this.is3d) return panes.areCamerasLinked.value ? others.filter(({ kind }) => kind === '3d').map(({ number }) => [number, { ...camera }]) : [];
+    if (this.is3d) return panes.areCamerasLinked.value ? others.filter(({ kind }) => isTurnable(kind)).map(({ number }) => [number, { ...camera }]) : [];
     const scene = this.#room.scene.value;
     if (!panes.isZoomLinked.value || !scene) return [];
     const sizeOf = (view) => view.document.value.size_px ?? view.ownSize ?? [1, 1];
-    return others.filter(({ kind }) => kind !== '3d').map((view) => [view.number,
-      cameras.linkedSlice(camera, this.plane, sizeOf(this.#view), this.#of(view), planeOfView(scene, view.document.value), sizeOf(view), crosshair(scene))]);
+    return others.filter(({ kind }) => !isInSpace(kind)).map((view) => [view.number,
+      cameras.linkedSlice(camera, this.plane, sizeOf(this.#view), this.#of(view), planeOfView(scene, view.document.value, this.#room.plan.value), sizeOf(view), crosshair(scene))]);
   }
 }
 

@@ -1,9 +1,11 @@
 // The name in a pane's header: a menu of the views that the pane can show and, of an oblique view, of its planes.
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect } from '../../lib/signals-core.js';
+import { beamShown } from '../state/beam_line.js';
 import { obliqueView, views } from '../state/layout.js';
 import { alongBeam, freeId, maxObliques, newOblique, normalOfAngles, obliqueName, roundedOrigin } from '../state/obliques.js';
 import { crosshair } from '../state/plan.js';
+import { isOfBeam } from '../view/kinds.js';
 import { icon } from './icons.js';
 
 const tiltDeg = 60; // of the normal of a new plane over anterior: an axial slice turned by 30 degrees
@@ -28,7 +30,7 @@ function menu({ room, ui }, view) {
   const item = (words, isOn, run, isDisabled = false) => html`<button role="menuitemradio" aria-checked=${isOn} ?disabled=${isDisabled} @click=${choose(run)}>${isOn ? icon('check', 12) : html`<i></i>`}<span>${words}</span></button>`;
   const isOff = !room.canChange.value;
   return html`<div class="popover view-kinds"><div class="menu" role="menu" aria-label=${`In the pane of ${view.name}`} @keydown=${move}>
-    ${views.map(({ name }, index) => item(name, index + 1 === view.number, () => ui.showInPlaceOf(view.number, index + 1)))}
+    ${views.map(({ name, kind }, index) => (isOfBeam(kind) && !beamShown(room.plan.value, room.scene.value) ? nothing : item(name, index + 1 === view.number, () => ui.showInPlaceOf(view.number, index + 1))))}
     ${view.kind === 'oblique' ? html`<hr>${planeItems(room, view, item, isOff)}` : nothing}</div></div>`;
 }
 

@@ -3,6 +3,7 @@ import { html, nothing, svg } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { clipName, clipPlane, clipRow, clipWords, enabledClips, keepsWords, movedClip, positionOfClip, rangeOfClip } from '../state/clip.js';
 import { angleBetween, heightOver, nearestIn, obliqueName, originAt, planeOfNormal, planeOfView, positionOf, reachOf, roundedOrigin, turned } from '../state/obliques.js';
+import { isInSpace } from '../view/kinds.js';
 import { handleBox, heightsOver, keptPart, lineOf, namePlace, onLine, takenIn } from '../view/plane_lines.js';
 import { fromPicture, subtract } from '../view/vec.js';
 import { clipPosition } from './clip_rows.js';
@@ -45,7 +46,7 @@ export class PaneLines {
     const { box, pane } = this.#place();
     const header = this.#view.painted.value;
     const [plan, scene] = [this.#room.plan.value, this.#room.scene.value];
-    if (this.#view.kind === '3d' || !header || !scene?.clip || !plan || pane[0] < 2) return { lines: nothing, handles: nothing };
+    if (isInSpace(this.#view.kind) || !header || !scene?.clip || !plan || pane[0] < 2) return { lines: nothing, handles: nothing };
     const shown = this.#lines(plan, scene).map((line) => {
       const heights = heightsOver(line.plane, header.clip_from_lps_mm, this.#slice(scene).origin, box);
       const cut = lineOf(heights, box, this.#along.get(line.id));
@@ -86,7 +87,7 @@ export class PaneLines {
   }
 
   #slice(scene) {
-    return planeOfView(scene, this.#view.document.value);
+    return planeOfView(scene, this.#view.document.value, this.#room.plan.value);
   }
 
   #isChosen({ kind, id }) {

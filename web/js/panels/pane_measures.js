@@ -2,6 +2,7 @@
 import { circle, freeId, halfVoxelMm, isIn, listed, mostMeasures, mostPoints, pointsOf, pointsToDraw, withPoint } from '../state/measures.js';
 import { nearestIn, planeOfView } from '../state/obliques.js';
 import { crosshair, shownImage } from '../state/plan.js';
+import { isInSpace } from '../view/kinds.js';
 import { measureOverlay } from '../view/measure_overlay.js';
 import { toPicture } from '../view/vec.js';
 import { measureName, valueTexts } from './measure_words.js';
@@ -33,11 +34,11 @@ export class PaneMeasures {
   }
 
   get #plane() {
-    return this.#scene && this.#view.kind !== '3d' ? planeOfView(this.#scene, this.#view.document.value) : null;
+    return this.#scene && !isInSpace(this.#view.kind) ? planeOfView(this.#scene, this.#view.document.value, this.#world.room.plan.value) : null;
   }
 
   get #isTool() {
-    return this.#world.ui.tool.value === 'measure' && this.#view.kind !== '3d';
+    return this.#world.ui.tool.value === 'measure' && !isInSpace(this.#view.kind);
   }
 
   get #draft() {
@@ -70,7 +71,7 @@ export class PaneMeasures {
   // ---- picture ------------------------------------------------------------------------------------------------------------------
 
   overlay({ header, box, pane }) {
-    const is3d = this.#view.kind === '3d';
+    const is3d = isInSpace(this.#view.kind);
     const measures = this.#shown.map(([id, measure]) => ({ id, kind: measure.kind, points: pointsOf(measure), isChosen: this.#isChosen(id), hasHandles: this.#isTool || this.#isChosen(id),
       texts: [...(measure.name ? [measureName(id, measure)] : []), ...valueTexts(this.#world, id, measure)] }));
     const draft = this.#draft;
@@ -93,7 +94,7 @@ export class PaneMeasures {
     this.#grabbed = null;
     this.#isDrag = false;
     this.#last = { x, y };
-    if (mode !== 'primary' || this.#view.kind === '3d' || !this.#world.room.canChange.value) return false;
+    if (mode !== 'primary' || isInSpace(this.#view.kind) || !this.#world.room.canChange.value) return false;
     this.#grabbed = this.#draft ? null : this.#nearPoint(x, y);
     if (!this.#grabbed && this.#isTool) this.#pressed = { x, y };
     if (this.#grabbed) this.#world.ui.select('measure', this.#grabbed.id);
@@ -224,7 +225,7 @@ export class PaneMeasures {
 
   /** The measure whose points or straight lines run through a place. */
   #nearLine(x, y) {
-    if (this.#view.kind === '3d') return '';
+    if (isInSpace(this.#view.kind)) return '';
     return this.#shown.find(([, measure]) => {
       const places = pointsOf(measure).map((point) => this.#pixel(point)).filter(Boolean);
       const ends = measure.kind === 'ellipse' ? places.slice(1).map((end) => [places[0], end]) : places.slice(1).map((end, at) => [places[at], end]);

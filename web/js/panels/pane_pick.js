@@ -1,6 +1,7 @@
 // What lies under a place in a pane's picture: asks the server for the hit that is seen, or for the values at the point.
 import { crosshair } from '../state/plan.js';
 import { planeOfView } from '../state/obliques.js';
+import { isInSpace, isTilted } from '../view/kinds.js';
 import { fromPicture } from '../view/vec.js';
 
 export class PanePick {
@@ -30,9 +31,9 @@ export class PanePick {
     return header && scene ? fromPicture(header.clip_from_lps_mm, this.#fraction(x, y), this.#onPlane(scene)) : null;
   }
 
-  /** The crosshair lies in the three slices; in an oblique pane it may be beside the plane. */
+  /** The crosshair lies in the three slices; in a tilted pane it may be beside the plane. */
   #onPlane(scene) {
-    return this.#view.kind === 'oblique' ? planeOfView(scene, this.#view.document.value).origin : crosshair(scene);
+    return isTilted(this.#view.kind) ? planeOfView(scene, this.#view.document.value, this.#room.plan.value).origin : crosshair(scene);
   }
 
   /** The hit that a person sees at a place; null: none, or a newer question has been asked. */
@@ -50,25 +51,45 @@ export class PanePick {
     return hits.find(({ seen }) => seen) ?? null;
   }
 
+  /** The particle track that is seen at a place; null: none, or a newer question has been asked. */
+  async trackAt(x, y) {
+    const { size_px: size } = this.#view.document.value;
+    const [u, v] = this.#fraction(x, y);
+    if (!this.#view.painted.value || !size || u < 0 || v < 0 || u >= 1 || v >= 1) return null;
+    const number = ++this.#newest;
+    const track = await this.#api.ofScene(this.#room.planId.value, 'track', this.#room.id, this.#view.document.value, { px: u * size[0], py: v * size[1] });
+    return number === this.#newest && track.segment !== null ? track : null;
+  }
+
   /** Regions and image values at a place, for the read-out; null where there is nothing. */
   async factsAt(x, y) {
     const [u, v] = this.#fraction(x, y);
     if (u < 0 || v < 0 || u >= 1 || v >= 1) return null;
-    if (this.#view.kind !== '3d') {
+    if (!isInSpace(this.#view.kind)) {
       const point = this.pointAt(x, y);
       const result = point && await this.#api.probe(this.#room.planId.value, point);
-      return result && (result.regions.length || result.images.length) ? result : null;
+      return result && (result.regions.length || result.images.length) ? this.#withDose(result) : null;
     }
     const hit = await this.#hit(x, y);
     return hit && this.factsOf(hit);
   }
 
   /** Of a hit in 3-D: the region seen and those it lies in; of a slice, the values there. */
-  factsOf({ region, point_lps_mm }) {
-    if (region === null) return this.#api.probe(this.#room.planId.value, point_lps_mm);
+  async factsOf({ region, point_lps_mm }) {
+    if (region === null) return this.#withDose(await this.#api.probe(this.#room.planId.value, point_lps_mm));
     const regions = [];
     const parentOf = (id) => this.#room.plan.value?.regions.find((other) => other.id === id)?.parent;
     for (let id = region; id && !regions.includes(id); id = parentOf(id)) regions.push(id);
-    return { regions, images: [], point_lps_mm, onSurface: true };
+    return this.#withDose({ regions, images: [], point_lps_mm, onSurface: true });
+  }
+
+  /** With the dose at the point, while the scene shows it. */
+  async #withDose(facts) {
+    const { wash, lines, surfaces } = this.#room.scene.value.dose;
+    if (!this.#room.plan.value?.doses.length || !(wash.visible || lines.visible || surfaces.visible)) return facts;
+    const [x, y, z] = facts.point_lps_mm;
+    const { override } = this.#view.document.value;
+    const dose = await this.#api.ofScene(this.#room.planId.value, 'dose/probe', this.#room.id, override ? { override } : {}, { x, y, z }).catch(() => null);
+    return { ...facts, dose };
   }
 }

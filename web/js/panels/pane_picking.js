@@ -26,7 +26,7 @@ export function pickingLayer(world, view, box) {
   const picking = ui.picking.value;
   if (!picking) return nothing;
   const matrix = view.painted.value.clip_from_lps_mm;
-  const slice = () => planeOfView(room.scene.value, view.document.value);
+  const slice = () => planeOfView(room.scene.value, view.document.value, room.plan.value);
   const pointOf = ({ clientX, clientY, currentTarget }) => {
     const { left, top } = currentTarget.getBoundingClientRect();
     return fromPicture(matrix, [(clientX - left - box.x) / box.width, (clientY - top - box.y) / box.height], slice().origin);

@@ -4,10 +4,12 @@ import { reportSummary } from '../state/plan.js';
 import { number, seconds } from './format.js';
 import { reportLines } from './report.js';
 
-export function planTab({ room }) {
+export function planTab(world) {
+  const { room, charts } = world;
   const plan = room.plan.value;
   const parts = [['Images', plan.images.length], ['Regions', plan.regions.length], ['Doses', plan.doses.length], ['Beams', plan.beams.length], ['Reference curves', plan.curves.length], ['Segments of tracks', plan.nTracks]];
   return html`<section class="block"><h3>${plan.name}</h3>${plan.note ? html`<p>${plan.note}</p>` : nothing}
       <dl class="parts">${parts.filter(([, n]) => n).map(([name, n]) => html`<dt>${name}</dt><dd>${number(n)}</dd>`)}</dl></section>
+    ${plan.doses.length ? charts.draw('limits') : nothing}
     <section class="block"><h3>Load report</h3><p class="note">${reportSummary(plan.report)}${plan.loadMs === null ? '' : `, loaded in ${seconds(plan.loadMs)}`}</p></section>${reportLines(plan.report)}`;
 }

@@ -3,14 +3,16 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { live } from '../../lib/directives/live.js';
-import { effect } from '../../lib/signals-core.js';
+import { isDrafted } from '../state/beams.js';
 import { beamWords, crosshair, doseWords, reportSummary, shownImage } from '../state/plan.js';
 import { volumeDifference } from '../state/shapes.js';
+import { draftBelongs, draftWords } from './beam_words.js';
+import { hasCharts } from './chart_loader.js';
 import { count, number, signed, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 import { measureName, valueText } from './measure_words.js';
 
-const kinds = { '3d': '3-D', axial: 'Axial', coronal: 'Coronal', sagittal: 'Sagittal' };
+const kinds = { '3d': '3-D', axial: 'Axial', coronal: 'Coronal', sagittal: 'Sagittal', oblique: 'Oblique', beam: "Beam's-eye view", 'beam-slice': 'Beam slice' };
 const research = 'For research and plan review. Not a medical device; not for diagnosis or treatment decisions.';
 
 let measured = null; // what the figures were measured for: the list of entries
@@ -37,14 +39,8 @@ export function printoutDialog(world) {
     ${plan ? sheet(world, plan) : html`<p class="empty">The plan is being loaded.</p>`}</section>`;
 }
 
-/** While it is open, what it covers takes no focus. @returns {() => void} stops */
-export const coverPage = (host, ui) => effect(() => {
-  const isOpen = ui.popover.value === 'printout';
-  for (const part of host.querySelectorAll('.room > :not(.floating)')) part.inert = isOpen;
-});
-
 /** A table of layout: its foot stands on every printed page. */
-const sheet = (world, plan) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${measures(world)}${warnings(plan)}</div>
+const sheet = (world, plan) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${hasCharts(plan) ? world.charts.draw('printed') : nothing}${measures(world)}${warnings(plan)}</div>
   <footer class="sheet-foot"><div>${plan.name} · printed ${new Date().toISOString().slice(0, 16).replace('T', ' ')} UTC · revision ${world.room.revision.value}<br><b>${research}</b></div></footer></article>`;
 
 function head({ room }, plan) {
@@ -73,8 +69,13 @@ function pictures({ printout }, plan) {
           <button class="small" ?disabled=${at === 0} aria-label=${`${name} earlier`} @click=${() => printout.move(key, -1)}>Up</button>
           <button class="small" ?disabled=${at === entries.length - 1} aria-label=${`${name} later`} @click=${() => printout.move(key, 1)}>Down</button>
           <button class="small" aria-label=${`Remove ${name}`} @click=${() => printout.remove(key)}>Remove</button></span></figcaption>
-      ${values(entry, plan)}</figure>`;
+      ${draft(entry, plan)}${values(entry, plan)}</figure>`;
   });
+}
+
+/** Whose dose the picture shows, while a beam was drafted. */
+function draft({ record: { scene } }, plan) {
+  return isDrafted(plan, scene) ? html`<p class="values"><b>Draft beam:</b> ${[draftBelongs(plan, scene), draftWords(plan, scene)].filter(Boolean).join(', ')}.</p>` : nothing;
 }
 
 /** The values at the picture's crosshair. */

@@ -2,7 +2,7 @@
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { shownImage } from '../state/plan.js';
 import { cardOf, placeBeside } from '../view/place.js';
-import { imageValue, position, volume } from './format.js';
+import { imageValue, number, position, significant, unitText, volume } from './format.js';
 import { variables } from './mount.js';
 
 const mouseGap = 16;
@@ -27,7 +27,7 @@ export function readOut({ room, pointed }, host) {
 }
 
 /** The words of the card: the innermost region first. */
-export function words({ regions: ids, images, point_lps_mm: point, onSurface }, plan, scene) {
+export function words({ regions: ids, images, point_lps_mm: point, onSurface, dose }, plan, scene) {
   const regions = ids.map((id) => plan.regions.find((region) => region.id === id)).filter(Boolean);
   const [first, ...outer] = regions;
   const image = shownImage(plan, scene);
@@ -36,10 +36,13 @@ export function words({ regions: ids, images, point_lps_mm: point, onSurface }, 
     name: first?.name ?? (plan.regions.length ? 'Outside every region' : image?.modality ?? ''),
     color: first && (scene.regions[first.id]?.color ?? first.color),
     value: found && found.value !== null ? { label: image.modality, ...imageValue(found.value, image.unit) } : null,
-    lines: [outer.length ? `in ${outer.map((region) => region.name).join(', ')}` : '', first && scene.regions[first.id]?.visible === false ? 'hidden in this scene' : '',
+    lines: [doseLine(dose), outer.length ? `in ${outer.map((region) => region.name).join(', ')}` : '', first && scene.regions[first.id]?.visible === false ? 'hidden in this scene' : '',
       onSurface && first?.voxels ? volume(first.volume_cm3) : '', position(point)].filter(Boolean),
   };
 }
+
+/** "4.82 Gy(w), 78.6 %"; '' where the dose is not shown or has no value. */
+const doseLine = (answer) => (Number.isFinite(answer?.value) ? [`${significant(answer.value)} ${unitText(answer.unit)}`, Number.isFinite(answer.percent) ? `${number(answer.percent, 1)} %` : ''].filter(Boolean).join(', ') : '');
 
 /** The same for a caption: values at the crosshair. */
 export function spoken(result, plan, scene) {

@@ -1,8 +1,9 @@
 // The room page: panes with the panels around them, connected to the room's state.
-import { html } from '../../lib/lit-html.js';
+import { html, nothing } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
 import { AfterRoom } from '../state/after_room.js';
 import { Comparison } from '../state/comparison.js';
+import { DoseFacts } from '../state/dose_facts.js';
 import { Ellipses } from '../state/ellipses.js';
 import { Histograms } from '../state/histograms.js';
 import { crosshair } from '../state/plan.js';
@@ -14,15 +15,18 @@ import { Printout } from '../state/printout.js';
 import { UiState } from '../state/ui.js';
 import { Undo, listenUndo } from '../state/undo.js';
 import { banner } from './banner.js';
+import { leaveBeam } from './beam_later.js';
+import { draftBar } from './beam_lazy.js';
+import { ChartLoader } from './chart_loader.js';
+import { ofDose } from './dose_later.js';
 import { figuresDialog } from './figures.js';
 import { ended, watchEnd } from './ended.js';
-import { help, toasts } from './float.js';
-import { inspector } from './inspector.js';
+import { coverPage, help, toasts } from './float.js';
+import { inspector, selected } from './inspector.js';
 import { mount } from './mount.js';
 import { Pane } from './pane.js';
 import { giveOblique } from './pane_kind.js';
 import { paneSwitch } from './pane_switch.js';
-import { coverPage, printoutDialog } from './printout.js';
 import { listenSnapshots, otherPlanDialog, resumeSnapshot } from './snapshots.js';
 import { offerName } from './room_chip.js';
 import { sectionOfKind } from './sections.js';
@@ -34,13 +38,14 @@ const probeMs = 60;
 const tickMs = 250;
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
-const floating = (world) => html`${help(world)}${figuresDialog(world)}${ended(world)}${otherPlanDialog(world)}${printoutDialog(world)}`;
+const drawer = (world) => (world.ui.arrangement.value.drawer ? world.charts.draw('drawer') : nothing);
+const floating = (world) => html`${help(world)}${figuresDialog(world)}${ended(world)}${otherPlanDialog(world)}${world.printoutDialog.value?.(world) ?? nothing}`;
 
 const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>
   <header class="banner"></header><aside class="tree" aria-label="Plan"></aside>
   <section class="strip" aria-label="Tools"></section>
-  <main><div class="switch"></div><div class="panes">${views.map(({ kind }, index) => html`<section class="pane" data-view=${index + 1} data-kind=${kind}></section>`)}</div><div class="toasts"></div></main>
+  <main><div class="switch"></div><div class="dose-bars"></div><div class="panes">${views.map(({ kind }, index) => html`<section class="pane" data-view=${index + 1} data-kind=${kind}></section>`)}</div><section class="chart-drawer" aria-label="Plots of dose"></section><div class="toasts"></div></main>
   <aside class="inspector" aria-label="Inspector"></aside><footer class="status"></footer><div class="floating"></div></div>`;
 
 /**
@@ -63,26 +68,29 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const histograms = new Histograms(api.histogram);
   const ellipses = new Ellipses(api.ellipse, clock);
 
+  const doses = new DoseFacts(room, api);
   const refused = computed(() => ({ ...refusals.reasons.value, ...room.view(1).missing.value.reasons }));
 
   const onPainted = (header, isDrawn) => {
     const answered = room.frameShown(header, isDrawn);
     hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
   };
-  stops.push(adapt(ui), effect(() => layOut(host.querySelector('.room'), ui))); // before the panes measure themselves: views open at their sizes
-  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, histograms, ellipses, decode, schedule, onPainted }, view));
+  stops.push(loadBeforeClicks(), adapt(ui), effect(() => layOut(host.querySelector('.room'), ui))); // before the panes measure themselves: views open at their sizes
+  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, histograms, ellipses, doses, decode, schedule, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => {
     room.frameCame(detail.header);
     panes[detail.header.view - 1]?.painter.offer(detail);
   });
 
   const after = new AfterRoom({ api, clock, enter });
-  const world = { after, room, ui, api, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null) };
-  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
+  const world = { after, room, ui, api, clock, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
+  world.charts = new ChartLoader(world);
+  stops.push(() => world.charts.stop());
+  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofDose(room)?.doseBar(world)}${draftBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   if (!isBack) stops.push(offerName(world));
-  stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
+  stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), doses.start(clock));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), leaveBeam(world), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
@@ -98,17 +106,19 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
 
 /** Gives the style sheets the arrangement. */
 function layOut(element, ui) {
-  const { size, tree: place, overlay, inspector: at, sheet, layout, visible } = ui.arrangement.value;
-  Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, layout });
+  const { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout, visible } = ui.arrangement.value;
+  Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout });
   const panes = [...element.querySelectorAll('.pane')];
   const cells = [...ui.panes[layout === '2x1' || layout === '1x2' ? 'two' : 'four'].value];
   const order = [...cells, ...views.map((_, index) => index + 1).filter((n) => !cells.includes(n))].map((n) => panes.find((pane) => Number(pane.dataset.view) === n));
+  const focused = document.activeElement;
   if (order.some((pane, index) => pane !== panes[index])) panes[0].parentElement.append(...order); // Tab goes through them as they stand
   for (const pane of panes) {
     const n = Number(pane.dataset.view);
     pane.hidden = !visible.includes(n);
     pane.classList.toggle('active', ui.active.value === n);
   }
+  if (focused !== document.activeElement && !focused.closest('[hidden]')) focused.focus({ preventScroll: true }); // an element that is moved loses it
 }
 
 /** Scrolls the tree to what was selected, wherever it was clicked. */
@@ -206,6 +216,17 @@ function compare(room, ui, comparison) {
     stop();
     comparison.stop();
   };
+}
+
+/** The inspector's Selection is loaded when somebody begins to use the page: it is there before the first click. */
+function loadBeforeClicks() {
+  const abort = new AbortController();
+  const load = () => {
+    abort.abort();
+    selected.load();
+  };
+  for (const event of ['pointerover', 'keydown', 'touchstart']) addEventListener(event, load, { signal: abort.signal, passive: true });
+  return () => abort.abort();
 }
 
 /** Tells the state the size of the window and whether fingers use it; folds an inspector for which there is no room. */

@@ -40,6 +40,16 @@ async function add({ room, ui, printout }) {
   }
 }
 
+/** The dialog is loaded when it is first opened. */
+async function openPrintout({ ui, printoutDialog }) {
+  try {
+    ({ printoutDialog: printoutDialog.value } = await import('./printout.js'));
+    ui.popover.value = 'printout';
+  } catch {
+    ui.notify('err', 'The report to print could not be loaded: the server does not answer.', 'snapshot');
+  }
+}
+
 export function snapshotMenu(world) {
   const { room, ui, printout } = world;
   const isOpen = ui.popover.value === 'snapshot';
@@ -55,7 +65,7 @@ export function snapshotMenu(world) {
     ${isOpen ? html`<div class="popover snapshots"><div class="menu" role="menu" aria-label="Snapshot" @keydown=${move}>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>Save the active pane as PNG</span></button>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>Add it to the report to print</span></button>
-      <button role="menuitem" @click=${act(() => { ui.popover.value = 'printout'; })}>${icon('print')}<span>Report to print</span><span class="tag">${n}</span></button></div>
+      <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>Report to print</span><span class="tag">${n}</span></button></div>
       <p class="note">With letters, scale and caption. Drop the PNG on this page to see it again as it was.</p></div>` : nothing}</span>`;
 }
 

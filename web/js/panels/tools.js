@@ -3,6 +3,9 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { crosshair } from '../state/plan.js';
 import { number } from './format.js';
+import { ofBeams } from './beam_lazy.js';
+import { hasCharts } from './chart_loader.js';
+import { ofDose } from './dose_later.js';
 import { icon } from './icons.js';
 import { layoutButtons, panesMenu } from './pane_layouts.js';
 import { roving } from './roving.js';
@@ -36,11 +39,12 @@ function strip(world) {
   const { ui } = world;
   const isPicture = ui.tab.value === 'selection' && ui.selection.value.kind === 'view' && ui.isInspectorOpen.value;
   return html`<div class="tools" role="toolbar" aria-label="Tools" @keydown=${roving}>
-    ${tools.map((row) => tool(ui, row))}
+    ${tools.map((row) => tool(ui, row))}${ofBeams(world.room)?.moveTool(world)}
     <i class="rule"></i>
     ${layoutButtons(world)}${panesMenu(world)}
     <i class="rule"></i>
-    <button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
+    ${doseTools(world)}<button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
+    ${hasCharts(world.room.plan.value) ? html`<button class=${classMap({ tool: true, plain: true, on: ui.isDrawerOpen.value })} tabindex="-1" title="Plots of dose: histograms, depth profile (V)" aria-label="Plots of dose" aria-pressed=${ui.isDrawerOpen.value} @click=${() => ui.toggleDrawer()}>${icon('drawer')}</button>` : nothing}
     <span class="grow"></span>
     ${roomChip(world, 'strip')}
     ${stripEnd(world)}
@@ -55,6 +59,18 @@ export function stripEnd(world) {
     ${undoButtons(world)}
     <button class="tool plain" tabindex="-1" title="Reset this view (R)" aria-label="Reset view" ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
     ${snapshotMenu(world)}`;
+}
+
+/** Isodose lines and wash, where the plan has a dose. */
+function doseTools({ room, ui }, size = '') {
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  if (!plan?.doses.length || !scene || size === 'phone') return nothing;
+  const isDock = Boolean(size);
+  return [['lines', 'isodose', 'Isodose', 'Isodose lines (I)'], ['wash', 'wash', 'Wash', 'Wash of dose (D)']].map(([part, picture, word, title]) => {
+    const { visible } = scene.dose[part];
+    return html`<button class=${classMap({ tool: true, plain: !isDock, on: visible })} tabindex="-1" title=${title} aria-label=${word} aria-pressed=${visible} ?disabled=${!room.canChange.value}
+      @click=${(event) => ofDose(room)?.toggleDose(room, ui, part, event.timeStamp)}>${icon(picture, isDock ? 20 : 16)}${isDock ? html`<span class="word">${word}</span>` : nothing}</button>`;
+  });
 }
 
 /** Buttons 74 x 56; at the right the region and the position at the crosshair. */
@@ -72,12 +88,13 @@ function dock(world) {
   };
   const button = (picture, name, isOn, act) => html`<button class=${classMap({ tool: true, on: isOn })} tabindex="-1" aria-expanded=${isOn} @click=${act}>${icon(picture, 20)}<span class="word">${name}</span></button>`;
   return html`<div class="tools dock" role="toolbar" aria-label="Tools" @keydown=${roving}>
-    ${tools.filter(([id]) => size !== 'phone' || ['crosshair', 'window', 'measure'].includes(id)).map((row) => tool(ui, row))}
+    ${tools.filter(([id]) => (size !== 'phone' && !plan?.doses.length) || ['crosshair', 'window', 'measure'].includes(id)).map((row) => tool(ui, row))}
     ${size === 'phone' ? nothing : html`<i class="rule"></i>`}
     ${sectionsOf(plan, scene).length ? button('tree', 'Parts', sheet === 'tree', () => ui.openSheet('tree')) : nothing}
-    ${button('target', 'Probe', isTab('probe'), open('probe'))}
+    ${doseTools(world, size)}${button('target', 'Probe', isTab('probe'), open('probe'))}
+    ${hasCharts(plan) && size !== 'phone' ? button('curve', 'DVH', isTab('dvh'), open('dvh')) : nothing}
     ${button('panel', 'Selection', isTab('selection'), open('selection'))}
     ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}
-      <span class="grow"></span><p class="at-crosshair"><b>${region?.name ?? ''}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`}
+      <span class="grow"></span><p class="at-crosshair"><b>${[region?.name, ofDose(room)?.doseHere(world)].filter(Boolean).join(' · ')}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`}
   </div>`;
 }

@@ -60,7 +60,7 @@ function rail(world) {
   const open = sections.find(({ id }) => id === ui.section.value);
   const { size, overlay } = ui.arrangement.value;
   return html`<div class="rail" role="toolbar" aria-orientation="vertical" aria-label="Parts of the plan" @keydown=${roving}>
-      ${size === 'wide' ? html`<button class="icon-button" tabindex="0" title="Show the plan's parts" aria-label="Show the plan's parts" @click=${() => { ui.isTreeOpen.value = true; }}>${icon('tree')}</button>` : nothing}
+      ${size === 'wide' ? html`<button class="icon-button" tabindex="0" title="Show the plan's parts" aria-label="Show the plan's parts" @click=${() => { ui.isTreeOpen.value = true; ui.isDrawerRight.value = false; }}>${icon('tree')}</button>` : nothing}
       ${sections.map(({ id, name, icon: picture }, at) => html`<button class=${classMap({ 'icon-button': true, on: id === open?.id })} tabindex=${at === 0 && size !== 'wide' ? 0 : -1} title=${name} aria-label=${name} aria-expanded=${id === open?.id}
         data-section=${id} @click=${() => ui.openSection(id)}>${icon(picture)}</button>`)}</div>
     ${open ? html`<div class=${`section-pane ${overlay}`}><header class="panel-head"><h2>${open.name}</h2><span class="note">${open.note(world)}</span><span class="grow"></span>

@@ -5,7 +5,7 @@ let typed = { text: '', at: 0 };
 
 export function treeKeys(event, ui) {
   const { key, target, currentTarget, timeStamp } = event;
-  if (target.matches('input') || event.altKey || event.metaKey) return;
+  if (target.matches('input, select') || event.altKey || event.metaKey) return;
   const items = [...currentTarget.querySelectorAll('[role="treeitem"][data-key]')];
   const at = items.findIndex((item) => item.dataset.key === ui.row.value);
   const item = items[at];

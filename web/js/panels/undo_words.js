@@ -8,6 +8,10 @@ const blendWords = { id: 'second image', opacity: 'opacity of the second image' 
 const regionWords = { visible: 'visibility', clipped: 'clipping', color: 'colour', representation: 'form' };
 const units = { _mm: 'mm', _px: 'px', _deg: '°' };
 
+const doseWords = { id: 'dose shown', quantity: 'quantity of dose', grid: 'grid of the dose', factor: 'factor of the dose', sum: 'sum of doses', accepted: 'acceptance of a dose', tissue: 'weights of isodoses', blood_ppm: 'boron in blood', weights: 'weights', weights_name: 'weights', error: 'statistical error', interpolation: 'values between dose voxels', reference: 'reference of dose', levels: 'isodose levels', wash: 'wash', lines: 'isodose lines', surfaces: 'isodose surfaces', coverage: 'coverage', compare: 'comparison of doses' };
+
+const beamWords = { id: 'chosen beam', looks: 'look of a beam', opacity: 'opacity of openings', slice: 'beam slice', draft: 'draft beam', kept: 'kept draft' };
+
 const unitOf = (name) => Object.keys(units).find((ending) => name.endsWith(ending));
 const unique = (list) => [...new Set(list)];
 
@@ -25,7 +29,7 @@ export function stepName(changes, room) {
   }
   names.push(...unique(rest.map(fieldName)));
   const panes = unique(views.map(({ of }) => room.view(of).name)).map((name) => (name.startsWith('3-D') ? name : name.toLowerCase()));
-  const what = { plane: 'plane', override: 'regions' };
+  const what = { plane: 'plane', override: 'regions', beam: views[0]?.path[1] === 'aperture_mm' ? 'ring' : 'place' };
   if (panes.length) names.push(`${views.every(({ path }) => path[0] === views[0].path[0]) ? what[views[0].path[0]] ?? 'camera' : 'camera'} of ${panes.join(', ')}`);
   return names.length > 2 ? `${names[0]} and ${names.length - 1} more` : names.join(' and ');
 }
@@ -39,6 +43,11 @@ function fieldName({ path }) {
   if (group === 'image' && name === 'slices') return inner.at(-1) === 'position_mm' ? 'crosshair' : 'slices in 3-D';
   if (group === 'image' && name === 'volume') return volumeWords[inner[0]] ?? 'volume';
   if (group === 'image' && name === 'blend') return blendWords[inner[0]] ?? 'second image';
+  if (group === 'constraints') return 'limit of dose';
+  if (group === 'dose') return doseWords[name] ?? 'dose';
+  if (group === 'beam') return beamWords[name] ?? 'beam';
+  if (group === 'tracks') return 'particle tracks';
+  if (group === 'probes') return 'pinned probe';
   if (group === 'measures') return inner.length ? `${inner[0] === 'points' ? 'points' : inner[0] === 'visible' ? 'visibility' : inner[0]} of a measure` : 'measure';
   const known = words[`${group}.${name}`];
   if (known) return known;

@@ -1,4 +1,4 @@
-// The image as a volume in the 3-D picture: its row in the tree, and its Selection in the inspector.
+// The image as a volume in the 3-D picture: its Selection in the inspector.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { cullsNothing, usualCull } from '../state/image_look.js';
@@ -8,27 +8,9 @@ import { presetPoints, presetsOfImage } from '../state/volume_presets.js';
 import { checkbox, numberField, segment } from './fields.js';
 import { icon } from './icons.js';
 import { transferEditor } from './transfer_editor.js';
-import { eye, name, treeRow } from './tree_row.js';
+import { methods } from './volume_row.js';
 
-const methods = [
-  ['ray', 'Ray', 'Light is absorbed along each line of sight, by the transfer function'],
-  ['slices', 'Slices', 'Parallel slices, blended from back to front'],
-  ['mip', 'Maximum', 'The largest value on each line of sight'],
-  ['average', 'Average', 'The mean value on each line of sight'],
-];
 const [fewest, most] = [2, 1024]; // slices: proto/scene.json
-
-export function volumeRow(world) {
-  const { room, ui } = world;
-  const [plan, scene] = [room.plan.value, room.scene.value];
-  const image = shownImage(plan, scene);
-  const volume = scene?.image.volume;
-  if (!image || !volume) return nothing;
-  const toggle = (event) => room.patchScene(visiblePatch(plan, room.scene.value, !volume.visible), { view: ui.active.value, at: event.timeStamp });
-  const tail = methods.find(([id]) => id === volume.method)[1].toLowerCase();
-  return treeRow(world, { kind: 'volume', id: '', words: ['Volume', tail], title: `${image.modality} as a volume in 3-D`, isOn: volume.visible, toggle }, html`
-    ${eye(volume.visible, 'Show the volume', 'Show the image as a volume in 3-D', !room.canChange.value, toggle)}${name('Volume')} <span class="tail">${tail}</span>`);
-}
 
 export function volumeBlock(world, isDisabled, changeScene) {
   const { room } = world;

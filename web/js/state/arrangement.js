@@ -9,6 +9,8 @@ const standardCells = { two: [1, 2], four: [1, 2, 3, 4] };
 const [railPx, sectionPx, inspectorPx] = [48, 272, 320];
 const touchHeights = 60 + 72 + 28; // banner, dock, status
 const sheetPx = 328;
+const narrowestDrawer = 560; // px, beside the panes
+const lowestOfDrawer = 800; // px; in a window with less height panes above the drawer stand in one row
 
 /** @returns {'wide'|'compact'|'tablet'|'phone'} */
 export function sizeOf({ width, isCoarse }) {
@@ -21,13 +23,15 @@ export function sizeOf({ width, isCoarse }) {
  * @param {{width: number, height: number, isCoarse: boolean}} window
  * @param {object} chosen layout '' (as suits the window), '2x2', '1+3', 'row', '2x1' or 'single'; two, four: the views in the panes of
  *   layouts of two, and of three and four; isTreeOpen; section: open in the overlay;
- *   isPinned; isInspectorOpen; sheet '', 'tree' or 'inspector'; active, maximised: views
- * @returns {{size: string, tree: 'tree'|'rail'|'', overlay: ''|'floats'|'pushes', inspector: 'pushes'|'floats'|'folded'|'', sheet: string, layout: string, visible: number[]}}
+ *   isPinned; isInspectorOpen; sheet '', 'tree' or 'inspector'; drawer '', 'bottom' or 'right'; active, maximised: views
+ * @returns {{size: string, tree: 'tree'|'rail'|'', overlay: ''|'floats'|'pushes', inspector: 'pushes'|'floats'|'folded'|'', sheet: string, drawer: ''|'bottom'|'right', layout: string, visible: number[]}}
  *   layout '1x2': two panes one above the other; 'row4': four in a row; visible: views, in the order of their panes
  */
 export function arrange(window, chosen) {
   const size = sizeOf(window);
-  return size === 'tablet' || size === 'phone' ? onTouch(size, window, chosen) : onDesk(size, window, chosen);
+  if (size === 'tablet' || size === 'phone') return { ...onTouch(size, window, chosen), drawer: '' };
+  if (chosen.drawer === 'right' && size === 'wide') return besideDrawer(window, chosen);
+  return { ...onDesk(size, window, chosen), drawer: chosen.drawer ? 'bottom' : '' };
 }
 
 function onTouch(size, { width, height }, chosen) {
@@ -39,12 +43,22 @@ function onTouch(size, { width, height }, chosen) {
   return { ...panels, ...panes(isLow && layout !== 'single' ? 'row4' : layout, chosen) };
 }
 
-function onDesk(size, { width }, chosen) {
+/** The drawer beside the panes has the place of the tree, which goes behind the rail; two panes stand one above the other. */
+function besideDrawer({ width }, chosen) {
+  const layout = chosen.maximised || chosen.layout === 'single' ? 'single' : '1x2';
+  const fits = width - railPx - (chosen.isInspectorOpen ? inspectorPx : railPx) - narrowestPane >= narrowestDrawer;
+  const inspector = chosen.isInspectorOpen ? (fits ? 'pushes' : 'floats') : 'folded';
+  return { size: 'wide', tree: 'rail', sheet: '', inspector, overlay: chosen.section ? 'floats' : '', drawer: 'right', ...panes(layout, chosen) };
+}
+
+function onDesk(size, { width, height }, chosen) {
   const tree = size === 'wide' && chosen.isTreeOpen ? 'tree' : 'rail';
   const left = tree === 'tree' ? sectionPx : railPx;
   const section = tree === 'rail' && chosen.section ? sectionPx : 0;
   const inspector = chosen.isInspectorOpen ? inspectorPx : railPx;
-  const layout = chosen.maximised ? 'single' : chosen.layout || '2x2';
+  const isLow = Boolean(chosen.drawer) && height < lowestOfDrawer;
+  const asChosen = chosen.maximised ? 'single' : chosen.layout || '2x2';
+  const layout = isLow && ['2x2', '1+3'].includes(asChosen) ? 'row' : asChosen;
   // from 1400 px on both panels fit beside two columns, as they get a little narrower there (room.css)
   const fits = (aside, columns) => size === 'wide' && !section || (width - left - aside) / columns >= narrowestPane;
   const fitsRow = (aside) => (width - left - aside) / (2 + activeOfRow) >= narrowestOfRow;

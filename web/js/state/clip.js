@@ -1,5 +1,6 @@
 // The clip planes of a scene: what each keeps, where it is, the patches that change it. Pure; LPS, mm. The server's side is core/scene/clip.h.
-import { add, dot, scale, subtract, unit } from '../view/vec.js';
+import { dot, scale, unit } from '../view/vec.js';
+import { alongOf, beamPoint, beamShown } from './beam_line.js';
 import { normalOfAngles, normalOfKind, originAt, reachOf, roundedOrigin } from './obliques.js';
 import { crosshair, shownImage } from './plan.js';
 
@@ -27,7 +28,8 @@ export const keepsWords = (id) => (sides[id] ? `keeps ${sides[id]}` : '');
 export const clipWords = (id) => id.replace('_', ' ');
 export const clipRow = (id) => rowOf[id];
 
-export const beamOf = (plan, scene) => plan.beams.find(({ id }) => id === scene.clip.beam.id) ?? plan.beams[0] ?? null;
+/** The beam that the plane of a beam lies across: the scene's chosen one or its draft, or one that is named. */
+export const beamOf = (plan, scene) => beamShown(plan, scene, scene.clip.beam.id);
 /** The planes that this plan can have: one along a beam needs a beam. */
 export const clipsOf = (plan) => clipTable.filter(({ id }) => id !== 'beam' || plan.beams.length);
 
@@ -37,8 +39,6 @@ export function clipBox(plan, scene) {
   const ends = (pick, of) => [0, 1, 2].map((axis) => of(...boxes.map((box) => box[pick][axis])));
   return { low: ends('low', Math.min), high: ends('high', Math.max) };
 }
-
-const alongOf = ({ entry_mm: entry, target_mm: target }) => unit(subtract(target, entry));
 
 /**
  * The plane, its normal towards what it cuts off. @returns {{origin: number[], normal: number[]}|null} null: no such beam
@@ -50,8 +50,7 @@ export function clipPlane(plan, scene, id) {
   if (id === 'free') return { origin: style.origin_mm, normal: unit(style.normal) };
   const beam = beamOf(plan, scene);
   if (!beam) return null;
-  const along = alongOf(beam);
-  return { origin: add(beam.entry_mm, scale(along, style.along_mm)), normal: scale(along, -1) };
+  return { origin: beamPoint(beam, style.along_mm), normal: scale(beam.direction, -1) };
 }
 
 /** The planes that cut, in the order of the list: {id, origin, normal}. */
@@ -75,9 +74,8 @@ export function rangeOfClip(plan, scene, id) {
 
 function alongReach(beam, box) {
   if (!beam) return { low: 0, high: 0 };
-  const along = alongOf(beam);
-  const entry = dot(beam.entry_mm, along);
-  const { low, high } = reachOf(along, box);
+  const entry = dot(beam.entry, beam.direction);
+  const { low, high } = reachOf(beam.direction, box);
   return { low: low - entry, high: high - entry };
 }
 
@@ -99,7 +97,7 @@ export function positionThrough(plan, scene, id, point) {
   if (axis) return point[axisOf[axis]];
   if (id === 'free') return dot(point, unit(scene.clip.free.normal));
   const beam = beamOf(plan, scene);
-  return beam ? dot(subtract(point, beam.entry_mm), alongOf(beam)) : 0;
+  return beam ? alongOf(beam, point) : 0;
 }
 
 /** The patch that moves a plane through a point; the free plane gets it as its origin. */

@@ -1,8 +1,9 @@
 // Who presents, and whether this member follows the presenter with all panes or is on their own. Nobody else's picture
 // moves when a member leaves: their views become own views, and their changes of the scene the override of these.
 import { batch, computed, signal } from '../../lib/signals-core.js';
+import { asShown, ownBeam, wholeCamera, widen, widening } from '../view/own_camera.js';
 import { mergePatch } from '../wire/merge.js';
-import { wholeCamera, widen, widening } from '../view/own_camera.js';
+import { beamShown } from './beam_line.js';
 
 const usualSize = [1024, 768]; // of a pane that was never shown
 
@@ -47,8 +48,10 @@ export class Following {
     const slices = Object.fromEntries(Object.entries(scene.value.image.slices).map(([axis, { position_mm }]) => [axis, { position_mm }]));
     const planes = Object.entries(scene.value.image.obliques ?? {}).map(([id, { origin_mm, normal }]) => [id, { origin_mm, normal }]);
     const image = planes.length ? { slices, obliques: Object.fromEntries(planes) } : { slices };
+    const beam = beamShown(plan.value, scene.value);
+    const override = beam ? { image, beam: { slice: { along_mm: scene.value.beam.slice.along_mm } } } : { image };
     batch(() => {
-      for (const view of views) view.restart(this.#ownDocument(view, plan.value, { image }));
+      for (const view of views) view.restart(this.#ownDocument(view, plan.value, override, beam));
       this.isFollowing.value = false;
     });
     this.#act(false);
@@ -190,11 +193,12 @@ export class Following {
     if (this.#tell(follow ? { type: 'follow', follow } : { type: 'follow', follow, views })) for (const view of open) view.awaited.push(follow);
   }
 
-  #ownDocument(view, plan, override) {
-    const shared = wholeCamera({ ...view.document.value, kind: view.kind }, plan);
+  #ownDocument(view, plan, override, beam) {
+    const camera = wholeCamera({ ...view.document.value, kind: view.kind }, plan);
+    const shared = asShown(camera, view.document.value.beam);
     const size_px = view.ownSize ?? view.document.value.size_px ?? usualSize;
     view.widening = widening(shared, view.kind, view.document.value.size_px ?? size_px, view.painted.value, size_px);
     const { number, plane } = view.document.value;
-    return { kind: view.kind, ...(number > 1 && { number }), ...(view.kind === 'oblique' && plane && { plane }), size_px, camera: widen(shared, view.kind, view.widening), override: mergePatch(view.document.value.override ?? {}, override) };
+    return { kind: view.kind, ...(number > 1 && { number }), ...(view.kind === 'oblique' && plane && { plane }), size_px, ...(view.kind === 'beam' && { beam: ownBeam(view.document.value.beam, view.painted.value, beam) }), camera: { ...widen(shared, view.kind, view.widening), projection: camera.projection }, override: mergePatch(view.document.value.override ?? {}, override) };
   }
 }

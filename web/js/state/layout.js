@@ -11,11 +11,15 @@ export const views = [
   { kind: 'coronal', name: 'Coronal' },
   { kind: 'oblique', name: 'Oblique' },
   { kind: '3d', name: '3-D 2', number: 2 },
+  { kind: 'beam', name: "Beam's eye" },
+  { kind: 'beam-slice', name: 'Beam slice' },
 ];
 export const obliqueView = 5;
+export const beamView = 7;
+export const beamSliceView = 8;
 const standard = { two: [1, 2], four: [1, 2, 3, 4] };
 
-/** In the order of the strip and of the keys Shift + 1 to 6. @type {{id: string, name: string, icon: string, layout: string, two?: number[]}[]} */
+/** In the order of the strip and of the keys Shift + 1 to 7, the last in plans with a beam. @type {{id: string, name: string, icon: string, layout: string, two?: number[]}[]} */
 export const layouts = [
   { id: 'row', name: 'Three panes in a row', icon: 'row', layout: 'row' },
   { id: '2x2', name: 'Four panes', icon: 'grid', layout: '2x2' },
@@ -23,15 +27,18 @@ export const layouts = [
   { id: '2x1', name: 'Two panes', icon: 'two', layout: '2x1', two: [1, 2] },
   { id: 'oblique', name: '3-D and oblique', icon: 'twoOblique', layout: '2x1', two: [1, obliqueView] },
   { id: 'single', name: 'One pane', icon: 'single', layout: 'single' },
+  { id: 'beam', name: "Beam's eye and beam slice", icon: 'twoBeam', layout: '2x1', two: [beamView, beamSliceView] },
 ];
 
 /** The panes' views after the pane that shows one view is to show another: where that one stands already, they change places. */
 export const placed = (cells, from, to) => cells.map((view) => (view === from ? to : view === to ? from : view));
 
+/** The layout of its own that two views have. */
+const pairOf = (two) => layouts.find((other) => other.id !== '2x1' && other.two?.join() === two.join())?.id;
+
 /** Which of the layouts that is; '' for one without a button. */
 export function layoutId(layout, two) {
-  const isObliquePair = two.join() === layouts[4].two.join();
-  if (layout === '1x2' || layout === '2x1') return isObliquePair ? 'oblique' : '2x1';
+  if (layout === '1x2' || layout === '2x1') return pairOf(two) ?? '2x1';
   return layout === 'row4' ? '1+3' : layout;
 }
 
@@ -46,15 +53,16 @@ export class Layout {
     this.four = signal(isCells(kept.four, 4) ? kept.four : standard.four);
     this.isZoomLinked = signal(kept.isZoomLinked === true); // slice panes share mm per pixel and where the crosshair stands
     this.areCamerasLinked = signal(kept.areCamerasLinked === true); // the two 3-D views turn together
+    this.isBeamTogether = signal(kept.isBeamTogether !== false); // beam slice and clip plane slide together
     effect(() => write(storage, {
-      layout: this.layout.value, two: this.two.value, four: this.four.value, isZoomLinked: this.isZoomLinked.value, areCamerasLinked: this.areCamerasLinked.value,
+      layout: this.layout.value, two: this.two.value, four: this.four.value, isZoomLinked: this.isZoomLinked.value, areCamerasLinked: this.areCamerasLinked.value, isBeamTogether: this.isBeamTogether.value,
     }));
   }
 
   /** @param {string} id of `layouts` */
   choose(id) {
     const { layout, two } = layouts.find((other) => other.id === id);
-    if (two && !(id === '2x1' && this.two.value.join() !== layouts[4].two.join())) this.two.value = two; // two panes keep what was put into them
+    if (two && !(id === '2x1' && !pairOf(this.two.value))) this.two.value = two; // two panes keep what was put into them
     this.layout.value = layout;
   }
 

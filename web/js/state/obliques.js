@@ -1,5 +1,6 @@
 // Planes in the patient: those of slice panes and oblique panes, and planes made from angles, points or a line. Pure; LPS, mm.
 import { add, cross, dot, length, rotate, scale, subtract, unit } from '../view/vec.js';
+import { beamPlane, beamShown } from './beam_line.js';
 import { crosshair } from './plan.js';
 
 /**
@@ -50,8 +51,12 @@ export function planeOfOblique(scene, id) {
   return oblique ? planeOfNormal(oblique.origin_mm, oblique.normal) : planeOfKind('axial', scene?.image.slices.axial.position_mm ?? 0);
 }
 
-/** The plane that a slice pane shows: plane_of_view. @param {{kind: string, plane?: string}} view @returns {Plane} */
-export function planeOfView(scene, view) {
+/** The plane that a slice pane shows: plane_of_view. @param {{kind: string, plane?: string}} view @param plan of a beam slice @returns {Plane} */
+export function planeOfView(scene, view, plan = null) {
+  if (view.kind === 'beam-slice') {
+    const beam = beamShown(plan, scene);
+    return beam ? beamPlane(beam, scene.beam.slice.along_mm) : planeOfOblique(scene, '');
+  }
   if (view.kind === 'oblique') return planeOfOblique(scene, view.plane);
   return planeOfKind(view.kind, crosshair(scene)[axisOf[view.kind]]);
 }

@@ -58,6 +58,14 @@ function inOrder(regions) {
   return rows;
 }
 
+/** The classes that have segments, and how their lines are drawn. @returns {{id: string, n: number, color?: string, dash?: number[]|null, hasCross?: boolean}[]} */
+function readTracks({ classes = {}, looks = [] } = {}) {
+  return Object.entries(classes).filter(([, n]) => n > 0).map(([id, n]) => {
+    const { color, dash_px: dash, has_cross: hasCross } = looks.find((look) => look.class === id) ?? {};
+    return { id, n, color, dash, hasCross };
+  });
+}
+
 /** @param {object} document GET /api/v1/plans/{id} of a loaded plan */
 export function readPlan(document) {
   const images = (document.images ?? []).map(readImage);
@@ -73,7 +81,7 @@ export function readPlan(document) {
     beams: document.beams ?? [],
     curves: document.curves ?? [],
     nTracks: document.tracks?.segments ?? 0,
-    trackClasses: Object.entries(document.tracks?.classes ?? {}).filter(([, n]) => n > 0).map(([id, n]) => ({ id, n })),
+    trackClasses: readTracks(document.tracks),
     report: readReport(document.report),
     loadMs: document.load_ms ?? null,
     bounds: document.bounds_mm ?? { low: [-100, -100, -100], high: [100, 100, 100] },

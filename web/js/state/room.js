@@ -99,6 +99,18 @@ export class RoomState {
     }
   }
 
+  /** Whether showOwn() changes anything: who follows shares the presenter's pictures. */
+  get canShowOwn() {
+    return this.canChange.value && (this.following.isPresenting.value || !this.following.isFollowing.value);
+  }
+
+  /** Shows something for as long as it is wanted, by the override of the own views: no change of the scene and no step of undo. */
+  showOwn(patch) {
+    if (!this.canShowOwn) return;
+    this.following.patchOwn(patch);
+    this.#sending.plan();
+  }
+
   /** Changes a view: the presenter's are the room's; any other member leaves the presenter and changes their own. */
   patchView(number, patch, { at = this.#clock.now() } = {}) {
     if (this.canChange.value) this.#patchViews([[number, patch]], at, this.following.leave());

@@ -77,10 +77,10 @@ export class Sending {
     const patch = this.#scene.take(input);
     if (!patch) return;
     this.#nextInput += 1;
-    if (!this.#connection.send({ type: 'scene.patch', patch, input })) return void this.#takeBack(this.#scene, input);
     const { view, at } = this.#sceneOrigin;
-    this.#sceneOrigin = { view: 0, at: 0 };
     const origin = this.#views.find(({ number, isOpen }) => number === view && isOpen.value);
+    if (!this.#connection.send({ type: 'scene.patch', patch, ...(origin && { view }), input })) return void this.#takeBack(this.#scene, input);
+    this.#sceneOrigin = { view: 0, at: 0 };
     origin?.expect(input, at, now);
   }
 

@@ -69,12 +69,12 @@ export function difference(now, wanted) {
  * @param {object} world {room, ui, undo}
  */
 export function restore({ room, ui, undo }, record) {
-  const { kind, number, plane, camera } = record.view;
+  const { kind, number, plane, camera, beam } = record.view;
   const view = room.views.find((other) => other.kind === kind && other.ofKind === number) ?? room.views.find((other) => other.kind === kind);
   const scene = difference(room.scene.value, record.scene);
   undo?.press();
   if (Object.keys(scene).length) room.patchScene(scene, { view: view.number });
-  room.patchView(view.number, kind === 'oblique' ? { camera, plane } : { camera });
+  room.patchView(view.number, kind === 'oblique' ? { camera, plane } : kind === 'beam' ? { camera, beam } : { camera });
   undo?.release();
   if (!ui.maximised.value && !ui.visible.value.includes(view.number)) ui.showInPlaceOf(ui.active.value, view.number);
   ui.active.value = view.number;

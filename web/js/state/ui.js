@@ -13,14 +13,17 @@ export class UiState {
   constructor(clock, storage = null) {
     this.#clock = clock;
     this.panes = new Layout(storage);
-    this.tool = signal('crosshair'); // crosshair | window | pan | zoom | measure
+    this.tool = signal('crosshair'); // crosshair | window | pan | zoom | measure | beam
     this.measureKind = signal('distance'); // what the tool measures
     this.draft = signal(null); // the measure that is being drawn: {view, kind, points, at: where the pointer is}
     this.maximised = signal(0); // a view; 0: none
     this.active = signal(1); // a view
-    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | tracks | curve | clip | oblique | measure | measures
+    this.beamMover = signal('slice'); // what the slider of a beam's-eye pane moves: slice | clip | eye
+    this.beforeBeam = 1; // the 3-D view whose place the beam's eye took last
+    this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | kept | tracks | track | curve | clip | oblique | measure | measures
+    this.track = signal(null); // the particle track that was clicked last: the server's answer
     this.region = computed(() => (this.selection.value.kind === 'region' ? this.selection.value.id : ''));
-    this.tab = signal('probe'); // probe | selection | plan
+    this.tab = signal('probe'); // probe | selection | plan; in a sheet also dvh
     this.window = signal({ width: 1600, height: 1000, isCoarse: false });
     this.isTreeOpen = signal(true); // in a wide window; otherwise the sections are behind the rail or in a sheet
     this.isInspectorOpen = signal(true);
@@ -32,6 +35,8 @@ export class UiState {
     this.picking = signal(null); // while a plane is made in the panes: {kind: 'points' or 'line', id of the plane, points, from, to, view}
     this.clips = []; // clip planes that key C has turned off
     this.row = signal(''); // row of the tree that takes the focus
+    this.isDrawerOpen = signal(false); // histograms and profile of the dose
+    this.isDrawerRight = signal(false); // beside the panes, not below them
     this.filter = signal(''); // part of the names that the tree lists
     this.transferPoint = signal(0); // chosen point of the transfer function
     this.popover = signal(''); // name of the open popover
@@ -39,7 +44,7 @@ export class UiState {
     this.now = signal(clock.now()); // updated a few times a second, for ages on badges
     this.arrangement = computed(() => arrange(this.window.value, {
       layout: this.panes.layout.value, two: this.panes.two.value, four: this.panes.four.value, isTreeOpen: this.isTreeOpen.value, section: this.section.value, isPinned: this.isPinned.value, sheet: this.sheet.value,
-      isInspectorOpen: this.isInspectorOpen.value, active: this.active.value, maximised: this.maximised.value,
+      drawer: this.isDrawerOpen.value ? (this.isDrawerRight.value ? 'right' : 'bottom') : '', isInspectorOpen: this.isInspectorOpen.value, active: this.active.value, maximised: this.maximised.value,
     }));
     effect(() => {
       if (this.tool.value !== 'measure') this.draft.value = null;
@@ -97,6 +102,13 @@ export class UiState {
 
   openSheet(sheet) {
     this.sheet.value = this.sheet.value === sheet ? '' : sheet;
+  }
+
+  /** Opens or closes the drawer with the plots of dose, for fingers the sheet with them. */
+  toggleDrawer() {
+    if (!this.isTouch.value) this.isDrawerOpen.value = !this.isDrawerOpen.value;
+    else if (this.sheet.value === 'inspector' && this.tab.value === 'dvh') this.sheet.value = '';
+    else this.showTab('dvh');
   }
 
   /** @param {string} id of `layouts` in layout.js */

@@ -1,5 +1,6 @@
 // The home camera of each kind of view: the whole plan, or whole slices. The server works it out (core/scene/camera.c) and draws by
 // it what has no camera yet: only with the same numbers does the first touch not move the picture.
+import { isInSpace } from './kinds.js';
 
 const nowhere = { position_mm: [0, -1000, 0], target_mm: [0, 0, 0], up: [0, 0, 1], projection: 'perspective', fov_deg: 30, height_mm: null };
 
@@ -7,7 +8,7 @@ const nowhere = { position_mm: [0, -1000, 0], target_mm: [0, 0, 0], up: [0, 0, 1
 export function homeCamera(plan, kind) {
   const home = plan?.home ?? {};
   const given = home[kind] ?? (kind === 'oblique' ? obliqueHome(home) : null);
-  return given ? { height_mm: null, ...given } : { ...nowhere, ...(kind === '3d' ? {} : { projection: 'parallel', height_mm: 216 }) };
+  return given ? { height_mm: null, ...given } : { ...nowhere, ...(isInSpace(kind) ? {} : { projection: 'parallel', height_mm: 216 }) };
 }
 
 /** Only target and height count: as high as the highest of the three other panes, so that turning the plane changes no scale. */

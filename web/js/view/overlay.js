@@ -1,5 +1,6 @@
 // Draws over a picture, by the matrix that came with it: letters, crosshair, ends of the patient's axes, scale bar, window.
 import { nothing, svg } from '../../lib/lit-html.js';
+import { isInSpace } from './kinds.js';
 import { edgeLetters } from './letters.js';
 import { axisEnds } from './orientation.js';
 import { barMm, toPicture } from './vec.js';
@@ -28,11 +29,11 @@ export function overlay({ kind, header, box, pane: [width, height], point, isOff
   const at = point && toPicture(matrix, point);
   const mark = at && { x: box.x + at[0] * box.width, y: box.y + at[1] * box.height };
   return svg`
-    ${mark && (kind === '3d' ? marker(mark, box) : cross(mark, box, isOffPlane))}
+    ${mark && (isInSpace(kind) ? marker(mark, box) : cross(mark, box, isOffPlane))}
     ${edgeText(edgeLetters(matrix), width, height)}
-    ${kind === '3d' && axes ? axesText(matrix, axes, box) : nothing}
+    ${isInSpace(kind) && axes ? axesText(matrix, axes, box) : nothing}
     ${pxPerMm > 0 && width >= scaleFrom ? scaleBar(pxPerMm, width, height) : nothing}
-    ${kind !== '3d' && width >= windowFrom ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${fitting(windowText, width / 2 - letterHalf - 12)}</text>` : nothing}`;
+    ${!isInSpace(kind) && width >= windowFrom ? svg`<text class="halo caption" x=${width - 12} y=${height - 12} text-anchor="end">${fitting(windowText, width / 2 - letterHalf - 12)}</text>` : nothing}`;
 }
 
 /** The text, without what stands after the window's centre and width where there is no room for it; '' where there is none for those. */

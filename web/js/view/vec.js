@@ -33,6 +33,13 @@ export function pictureAxes(matrix) {
   return { right: unit(row(matrix, 0)), up: unit(row(matrix, 1)), forward: unit(forward) };
 }
 
+/** Perspective: where the eye is, the point that projects nowhere. */
+export function eyeOf(matrix) {
+  const [x, y, w] = [0, 1, 3].map((r) => row(matrix, r));
+  const parts = [scale(cross(y, w), -matrix[12]), scale(cross(w, x), -matrix[13]), scale(cross(x, y), -matrix[15])];
+  return scale(parts.reduce(add), 1 / dot(x, cross(y, w)));
+}
+
 /** Parallel projection: the patient point at x, y (0 to 1, y down) in the plane parallel to the picture through a given point. */
 export function fromPicture(matrix, [x, y], through) {
   const rows = [row(matrix, 0), row(matrix, 1)];

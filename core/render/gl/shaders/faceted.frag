@@ -1,5 +1,10 @@
 // A surface shaded by triangle normals, which are computed from the derivatives of the position.
 #include "light.glsl"
+#ifdef TEXTURED
+#include "wash.glsl"
+#include "linear.glsl"
+#include "texture.glsl"
+#endif
 uniform mat3 eye_from_lps;
 uniform float rounding;
 in vec3 towards;
@@ -11,4 +16,7 @@ void main() {
     float facing = dot(n, normalize(towards));
     if (facing < 0.0) n = -n; // the visible side of the triangle
     result = mix(light(eye_from_lps * n, min(abs(facing), 1.0)), rounded, rounding);
+#ifdef TEXTURED
+    result = textured(result, place);
+#endif
 }

@@ -13,11 +13,17 @@ uniform mat3 eye_from_lps;
 uniform vec4 viewer;
 uniform int is_two_sided;
 out vec4 shade;
+#ifdef TEXTURED
+out vec3 place;
+#endif
 void main() {
     vec3 towards = normalize(viewer.xyz - viewer.w * position);
     float cosine = dot(normal, towards), side = is_two_sided != 0 && cosine < 0.0 ? -1.0 : 1.0; // the side that is seen
     shade = light(eye_from_lps * (side * normal), clamp(side * cosine, 0.0, 1.0));
     gl_Position = clip_from_lps * vec4(position, 1.0);
+#ifdef TEXTURED
+    place = position;
+#endif
 #ifdef CLIPPED
     for (int i = 0; i < 8; i++) gl_ClipDistance[i] = i < n_clips ? kept(i, position) : 1.0;
 #endif

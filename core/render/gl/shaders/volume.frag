@@ -1,6 +1,11 @@
 // A volume with the translucent layers: along the ray of a sample from front to back, as core/render/visible/draw.h describes
 // DRAW_VOLUME. Alpha of the result is the share of the picture below that still shows, for blending.
 #include "light.glsl"
+#if WASH
+#include "wash.glsl"
+uniform int is_face_washed; // cut faces; samples of rays and slices
+uniform int is_ray_washed;
+#endif
 uniform sampler2DArray source; // layers
 uniform sampler2DArray depths;
 uniform sampler2D before; // depth of what is opaque
@@ -72,9 +77,27 @@ vec3 lit(vec3 rgb, vec3 ijk) {
     return min(rgb * mix(FLAT, terms.x, part) + part * terms.y, 1.0);
 }
 
+vec3 washed(vec3 rgb, vec3 ijk, bool is_washed) {
+#if WASH
+    if (is_washed) {
+        vec4 over = wash_at(ijk);
+        return mix(rgb, over.rgb, over.a);
+    }
+#endif
+    return rgb;
+}
+#if WASH
+#define FACE_WASHED (is_face_washed != 0)
+#define RAY_WASHED (is_ray_washed != 0)
+#else
+#define FACE_WASHED false
+#define RAY_WASHED false
+#endif
+
 // Hides what is behind a distance, in the colours of the image.
-void hide_at(float t) {
-    light_sum += passed * max(image_color(value_at(origin_ijk + t * step_ijk)), DARKEST_GREY);
+void hide_at(float t, bool is_washed) {
+    vec3 ijk = origin_ijk + t * step_ijk;
+    light_sum += passed * washed(max(image_color(value_at(ijk)), DARKEST_GREY), ijk, is_washed);
     passed = 0.0;
 }
 
@@ -89,7 +112,8 @@ void march_ray(float first, float end, float h, float at) {
         vec4 entry = transfer(value);
         if (entry.a <= 0.0) continue;
         float passes = exp(-entry.a * d), weight = passed * (1.0 - passes);
-        light_sum += weight * (is_shaded == 0 ? entry.rgb : weight > LEAST_LIT ? lit(entry.rgb, ijk) : entry.rgb * FLAT);
+        vec3 rgb = is_shaded == 0 ? entry.rgb : weight > LEAST_LIT ? lit(entry.rgb, ijk) : entry.rgb * FLAT;
+        light_sum += weight * washed(rgb, ijk, RAY_WASHED);
         passed *= passes;
     }
 }
@@ -222,12 +246,12 @@ void main() {
     while (passed > LEAST_LEFT) {
         int layer = next_layer(at, opaque, last, last_layer);
         float t = layer < 0 ? 1e30 : z_of(texelFetch(depths, ivec3(at, layer), 0).r) * mm_per_z;
-        if (is_cut_face && t > entry) hide_at(entry);
+        if (is_cut_face && t > entry) hide_at(entry, FACE_WASHED);
         if (method == METHOD_RAY && entry < min(t, end)) {
             march_ray(entry, min(t, end), h, shift);
             entry = min(t, end);
         }
-        if (has_sheet && t > sheet) hide_at(sheet);
+        if (has_sheet && t > sheet) hide_at(sheet, RAY_WASHED);
         if (layer < 0 || passed <= LEAST_LEFT) break;
         vec4 over = texelFetch(source, ivec3(at, layer), 0);
         light_sum += passed * over.a * over.rgb;

@@ -1,0 +1,209 @@
+/* Words for the dose of a snapshot, and the labels of its lines. */
+#include "core/annotate/describe_dose.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/annotate/words.h"
+#include "core/render/visible/isoline_labels.h"
+#include "core/scene/dose_scale.h"
+
+static char *add_text(struct annotations *annotations, enum annotation_row row)
+{
+    return annotation_add(annotations, row)->text;
+}
+
+bool dose_is_described(const struct snapshot *snapshot)
+{
+    const struct scene_dose_style *style = &snapshot->scene.dose;
+    bool is_wanted = style->lines.visible || style->wash.visible || style->surfaces.visible ||
+                     style->coverage.visible || style->compare.mode != SCENE_DOSE_COMPARISON_NONE;
+    for (size_t i = 0; i < snapshot->plan->regions.n_regions; i++)
+        is_wanted |= snapshot->styles[i].visible && snapshot->styles[i].texture == SCENE_TEXTURE_DOSE;
+    return is_wanted && snapshot->dose >= 0;
+}
+
+static const char *name_of(const struct dose *dose)
+{
+    return dose->name[0] ? dose->name : dose->id;
+}
+
+static const char *quantity_words(enum scene_dose_quantity quantity)
+{
+    switch (quantity) {
+    case SCENE_DOSE_QUANTITY_WEIGHTED: return "weighted dose";
+    case SCENE_DOSE_QUANTITY_TOTAL: return "physical dose";
+    case SCENE_DOSE_QUANTITY_ISOEFFECTIVE: return "photon-isoeffective dose";
+    case SCENE_DOSE_QUANTITY_BORON: return "boron dose";
+    case SCENE_DOSE_QUANTITY_NITROGEN: return "nitrogen dose";
+    case SCENE_DOSE_QUANTITY_FAST: return "fast neutron dose";
+    case SCENE_DOSE_QUANTITY_GAMMA: return "photon dose";
+    case SCENE_DOSE_QUANTITY_OTHER: return "dose of other recoils and captures";
+    case SCENE_DOSE_QUANTITY_FAST_FLUENCE: return "fluence of fast neutrons";
+    case SCENE_DOSE_QUANTITY_EPITHERMAL_FLUENCE: return "fluence of epithermal neutrons";
+    case SCENE_DOSE_QUANTITY_THERMAL_FLUENCE: return "fluence of thermal neutrons";
+    case SCENE_DOSE_QUANTITY_BLOOD_BORON: return "boron dose of the file, per ppm in blood";
+    case SCENE_DOSE_QUANTITY_WEIGHTED_TOTAL: return "weighted dose of the file";
+    }
+    return "dose";
+}
+
+/* "Dose A x 30": with a factor other than 1. */
+static void add_part(struct annotations *annotations, const char *before, const struct dose *dose, double factor)
+{
+    char *text = add_text(annotations, ANNOTATION_DOSE);
+    int n = snprintf(text, ANNOTATION_TEXT_SIZE, "%s%.64s", before, name_of(dose));
+    if (factor < 1 || factor > 1)
+        (void)snprintf(text + n, ANNOTATION_TEXT_SIZE - (size_t)n, " \u00d7 %.6g", factor);
+}
+
+static void add_parts(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    const struct dose_choice *choice = &snapshot->dose_choice;
+    for (size_t i = 0; i < choice->n_parts; i++)
+        add_part(annotations, i == 0 ? "Dose " : "plus ", &snapshot->plan->doses[choice->parts[i].dose],
+                 choice->parts[i].factor);
+}
+
+static void add_weights(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    const struct scene_dose_style *style = &snapshot->scene.dose;
+    const struct region *tissue = style->tissue[0] ? region_find(&snapshot->plan->regions, style->tissue) : NULL;
+    bool is_weighted = style->quantity == SCENE_DOSE_QUANTITY_WEIGHTED;
+    if (snapshot->dose_choice.blood_ppm > 0)
+        (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "%.4g ppm boron in blood",
+                       snapshot->dose_choice.blood_ppm);
+    if (is_weighted)
+        (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "weights: %.200s",
+                       style->weights_name[0] ? style->weights_name : "edited");
+    if (tissue && (is_weighted || !snapshot->dose_choice.is_everywhere || snapshot->dose_choice.blood_ppm > 0))
+        (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "everywhere as in %.64s",
+                       tissue->name[0] ? tissue->name : tissue->id);
+}
+
+/* What a total lacks, and that a person accepted a dose against doubt. */
+static void add_doubts(struct annotations *annotations, const struct snapshot *snapshot, uint32_t missing)
+{
+    for (int quantity = 0; quantity < DOSE_N_QUANTITIES; quantity++)
+        if (missing >> quantity & 1)
+            (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "without %s",
+                           dose_quantity_word((enum dose_quantity)quantity));
+    for (size_t i = 0; i < snapshot->dose_choice.n_parts; i++) {
+        enum dose_fit fit = dose_fit_of(snapshot->plan, snapshot->dose_choice.parts[i].dose, NULL);
+        if (dose_fit_needs_acceptance(fit)) {
+            (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "%s",
+                           fit == DOSE_FIT_DIFFERS ? "Dose from another frame of reference"
+                                                   : "Dose's grid does not meet the patient");
+            break;
+        }
+    }
+}
+
+static void add_reference(struct annotations *annotations, const struct dose_scale *scale)
+{
+    char value[40], *text = add_text(annotations, ANNOTATION_DOSE);
+    if (isnan(scale->reference)) {
+        (void)snprintf(text, ANNOTATION_TEXT_SIZE, "100 %% unknown: %.200s", scale->why_no_reference.text);
+        return;
+    }
+    words_significant(value, scale->reference);
+    (void)snprintf(text, ANNOTATION_TEXT_SIZE, "100 %% = %s %s, %s", value, scale->field->unit, scale->words);
+}
+
+static void add_levels(struct annotations *annotations, const struct snapshot *snapshot, const struct dose_scale *scale)
+{
+    const struct scene_dose_style *style = &snapshot->scene.dose;
+    bool has_lines = style->lines.visible || style->compare.mode == SCENE_DOSE_COMPARISON_LINES ||
+                     style->compare.mode == SCENE_DOSE_COMPARISON_DIFFERENCE;
+    bool has_any = has_lines || style->wash.visible || style->surfaces.visible;
+    for (size_t i = 0; has_any && i < style->n_levels; i++) {
+        const struct scene_dose_level *level = &style->levels[i].value;
+        bool is_drawn = (level->line && has_lines) || (level->wash && style->wash.visible) ||
+                        (level->surface && style->surfaces.visible);
+        double value = dose_level_value(scale, level->unit, level->value);
+        char number[40], percent[40];
+        if (!level->visible || !is_drawn || isnan(value))
+            continue;
+        struct annotation_item *item = annotation_add(annotations, ANNOTATION_LEVELS);
+        item->has_chip = true;
+        for (int channel = 0; channel < 3; channel++)
+            item->rgb[channel] = (uint8_t)(level->color_rgb >> (16 - 8 * channel));
+        words_significant(number, value);
+        words_significant(percent, 100 * value / scale->reference);
+        if (level->unit == SCENE_DOSE_UNIT_PERCENT)
+            (void)snprintf(percent, sizeof percent, "%.6g", level->value);
+        if (isnan(scale->reference))
+            (void)snprintf(item->text, sizeof item->text, "%s %s", number, scale->field->unit);
+        else
+            (void)snprintf(item->text, sizeof item->text, "%s %% = %s %s", percent, number, scale->field->unit);
+    }
+}
+
+static void add_comparison(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    static const char *const ways[] = { [SCENE_DOSE_COMPARISON_NONE] = "",
+                                        [SCENE_DOSE_COMPARISON_LINES] = "its lines dashed",
+                                        [SCENE_DOSE_COMPARISON_DIFFERENCE] = "second less first, its lines dashed",
+                                        [SCENE_DOSE_COMPARISON_GAMMA] = "gamma index" };
+    const struct scene_dose_compare *compare = &snapshot->scene.dose.compare;
+    for (size_t i = 0; compare->mode != SCENE_DOSE_COMPARISON_NONE && i < snapshot->plan->n_doses; i++)
+        if (strcmp(snapshot->plan->doses[i].id, compare->id) == 0)
+            (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Compared with %.64s: %s",
+                           name_of(&snapshot->plan->doses[i]), ways[compare->mode]);
+}
+
+void dose_describe(struct annotations *annotations, const struct snapshot *snapshot)
+{
+    struct dose_scale scale;
+    if (!dose_is_described(snapshot))
+        return;
+    if (!dose_scale_of(snapshot, &scale)) {
+        (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Dose not drawn: %.200s",
+                       scale.why.text);
+        dose_scale_finish(&scale);
+        return;
+    }
+    const char *per = scale.field->per;
+    add_parts(annotations, snapshot);
+    (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "%s in %s%s%s",
+                   quantity_words(snapshot->scene.dose.quantity), scale.field->unit,
+                   per[0] == 0                    ? ""
+                   : strncmp(per, "per ", 4) == 0 ? " "
+                                                  : " per ",
+                   per);
+    add_reference(annotations, &scale);
+    add_weights(annotations, snapshot);
+    add_doubts(annotations, snapshot, scale.field->missing);
+    add_comparison(annotations, snapshot);
+    add_levels(annotations, snapshot, &scale);
+    dose_scale_finish(&scale);
+}
+
+bool dose_label(struct annotations *annotations, const struct snapshot *snapshot, int width_px, struct error *err)
+{
+    struct isoline_scene lines;
+    struct isoline_labels labels = { .n = 0 };
+    double scale = (double)snapshot->view.size_px[0] / width_px;
+    if (!snapshot_is_pane(snapshot) || !isoline_scene_init(&lines, snapshot))
+        return true;
+    /* upright words in the font of the picture */
+    bool is_good = isoline_labels_place(&labels, snapshot, &lines, annotate_text_px(width_px) * scale, true, err);
+    struct annotation_label *grown =
+        is_good ? realloc(annotations->labels, (annotations->n_labels + labels.n + 1) * sizeof *grown) : NULL;
+    if (is_good && !grown)
+        is_good = error_set(err, ERROR_MEMORY, "no memory for the labels of isodose lines");
+    annotations->labels = grown ? grown : annotations->labels;
+    for (size_t i = 0; is_good && i < labels.n; i++) {
+        const struct isoline_label *label = &labels.labels[i];
+        const struct scene_dose_level *level = &snapshot->scene.dose.levels[label->level].value;
+        struct annotation_label *added = &annotations->labels[annotations->n_labels++];
+        *added = (struct annotation_label){ .is_centred = true,
+                                            .at = { label->place.x_px / snapshot->view.size_px[0],
+                                                    label->place.y_px / snapshot->view.size_px[1] } };
+        isoline_text(added->text, level, lines.doses[0].field->unit);
+    }
+    isoline_scene_finish(&lines);
+    return is_good;
+}

@@ -1,0 +1,194 @@
+#include "core/derive/dose_comparison.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/base/parallel.h"
+
+enum { MAX_THREADS = 64 };
+
+struct comparison_recipe {
+    struct derive_recipe base;
+    struct dose_comparison_choice choice;
+};
+
+/* ---- one volume of a field -------------------------------------------------------------------------------------------- */
+struct merging {
+    const struct dose_field *field;
+    float *values;
+};
+
+static void merge_some(void *context, int part, int n_parts)
+{
+    const struct merging *merging = context;
+    const struct grid *grid = &merging->field->rows[0]->grid;
+    for (uint32_t k = (uint32_t)part; k < grid->size[2]; k += (uint32_t)n_parts)
+        for (uint32_t j = 0; j < grid->size[1]; j++)
+            for (uint32_t i = 0; i < grid->size[0]; i++) {
+                size_t at = i + grid->size[0] * (j + (size_t)grid->size[1] * k);
+                uint8_t row = dose_field_row(merging->field, affine_point(&grid->lps_mm_from_ijk, vec3(i, j, k)));
+                merging->values[at] = row == DOSE_NO_ROW ? NAN : ((const float *)merging->field->rows[row]->voxels)[at];
+            }
+}
+
+/* The field's values with the tissue at each voxel's centre. One reference. */
+static struct volume *merge(const struct dose_field *field, struct error *err)
+{
+    if (!field->tissue)
+        return volume_ref(field->rows[0]);
+    struct volume *volume = volume_create_unset(&field->rows[0]->grid, VOXEL_F32, err);
+    if (volume) {
+        struct merging merging = { field, volume->voxels };
+        parallel_run(parallel_cores(), merge_some, &merging);
+    }
+    return volume;
+}
+
+/* ---- difference ------------------------------------------------------------------------------------------------------- */
+struct subtracting {
+    const struct volume *first;
+    const struct dose_field *second;
+    float *values;
+    struct {
+        uint64_t n, n_without;
+        double sum, squares, low, high;
+    } parts[MAX_THREADS];
+};
+
+static void subtract_some(void *context, int part, int n_parts)
+{
+    struct subtracting *subtracting = context;
+    const struct grid *grid = &subtracting->first->grid;
+    uint64_t n = 0, n_without = 0;
+    double sum = 0, squares = 0, low = INFINITY, high = -INFINITY;
+    for (uint32_t k = (uint32_t)part; k < grid->size[2]; k += (uint32_t)n_parts)
+        for (uint32_t j = 0; j < grid->size[1]; j++)
+            for (uint32_t i = 0; i < grid->size[0]; i++) {
+                size_t at = i + grid->size[0] * (j + (size_t)grid->size[1] * k);
+                double first = (double)((const float *)subtracting->first->voxels)[at], second;
+                subtracting->values[at] = NAN;
+                if (!isfinite(first))
+                    continue;
+                if (!dose_field_value(subtracting->second, affine_point(&grid->lps_mm_from_ijk, vec3(i, j, k)),
+                                      &second)) {
+                    n_without++;
+                    continue;
+                }
+                double difference = second - first;
+                subtracting->values[at] = (float)difference;
+                n++;
+                sum += difference;
+                squares += difference * difference;
+                low = fmin(low, difference);
+                high = fmax(high, difference);
+            }
+    subtracting->parts[part].n = n;
+    subtracting->parts[part].n_without = n_without;
+    subtracting->parts[part].sum = sum;
+    subtracting->parts[part].squares = squares;
+    subtracting->parts[part].low = low;
+    subtracting->parts[part].high = high;
+}
+
+static bool subtract(struct dose_comparison *comparison, const struct volume *first, const struct dose_field *second,
+                     struct error *err)
+{
+    comparison->values = volume_create_unset(&first->grid, VOXEL_F32, err);
+    struct subtracting *subtracting = comparison->values ? mem_new(sizeof *subtracting) : NULL;
+    if (!subtracting)
+        return false;
+    *subtracting = (struct subtracting){ .first = first, .second = second, .values = comparison->values->voxels };
+    int n_parts = parallel_cores();
+    parallel_run(n_parts, subtract_some, subtracting);
+    double sum = 0, squares = 0;
+    comparison->low = INFINITY;
+    comparison->high = -INFINITY;
+    for (int part = 0; part < n_parts; part++) {
+        comparison->n += subtracting->parts[part].n;
+        comparison->n_without += subtracting->parts[part].n_without;
+        sum += subtracting->parts[part].sum;
+        squares += subtracting->parts[part].squares;
+        comparison->low = fmin(comparison->low, subtracting->parts[part].low);
+        comparison->high = fmax(comparison->high, subtracting->parts[part].high);
+    }
+    comparison->mean = sum / (double)comparison->n; /* NAN of none */
+    comparison->root_mean_square = sqrt(squares / (double)comparison->n);
+    if (comparison->n == 0)
+        comparison->low = comparison->high = NAN;
+    volume_measure(comparison->values);
+    free(subtracting);
+    return true;
+}
+
+/* ---- results ---------------------------------------------------------------------------------------------------------- */
+static bool fill(struct dose_comparison *comparison, const struct dose_field *first, const struct dose_field *second,
+                 const struct dose_comparison_choice *choice, struct error *err)
+{
+    if (strcmp(first->unit, second->unit) != 0)
+        return error_set(err, ERROR_RANGE, "one dose is in \"%s\", the other in \"%s\": they cannot be compared",
+                         first->unit, second->unit);
+    struct volume *merged = merge(first, err), *other = NULL;
+    if (!merged)
+        return false;
+    if (choice->is_gamma) {
+        if ((other = merge(second, err)))
+            comparison->values = gamma_index(merged, other, &choice->gamma, &comparison->gamma, err);
+    } else if (subtract(comparison, merged, second, err))
+        memcpy(comparison->unit, first->unit, sizeof comparison->unit);
+    volume_unref(merged);
+    if (other)
+        volume_unref(other);
+    return comparison->values;
+}
+
+static bool is_equal(const struct derive_recipe *a, const struct derive_recipe *b)
+{
+    return memcmp(&((const struct comparison_recipe *)a)->choice, &((const struct comparison_recipe *)b)->choice,
+                  sizeof(struct dose_comparison_choice)) == 0;
+}
+
+static struct derive_result *build(struct derive *derive, const struct derive_recipe *base, const void *way,
+                                   struct error *err);
+
+static void destroy(struct derive_result *base)
+{
+    struct dose_comparison *comparison = (struct dose_comparison *)base;
+    if (comparison->values)
+        volume_unref(comparison->values);
+    free(comparison);
+}
+
+static const struct derive_kind kind = { sizeof(struct comparison_recipe), is_equal, build, destroy };
+
+static struct derive_result *build(struct derive *derive, const struct derive_recipe *base, const void *way,
+                                   struct error *err)
+{
+    const struct dose_comparison_choice *choice = &((const struct comparison_recipe *)base)->choice;
+    struct dose_field *first = dose_field_get(derive, &choice->first, err),
+                      *second = first ? dose_field_get(derive, &choice->second, err) : NULL;
+    struct dose_comparison *comparison = second ? mem_array(1, sizeof *comparison, UINT64_MAX, err) : NULL;
+    (void)way;
+    if (comparison) {
+        derive_result_init(&comparison->base, &kind, 0);
+        if (fill(comparison, first, second, choice, err))
+            comparison->base.n_bytes = sizeof *comparison + grid_n_voxels(&comparison->values->grid) * sizeof(float);
+        else {
+            destroy(&comparison->base);
+            comparison = NULL;
+        }
+    }
+    if (first)
+        derive_result_unref(&first->base);
+    if (second)
+        derive_result_unref(&second->base);
+    return comparison ? &comparison->base : NULL;
+}
+
+struct dose_comparison *dose_comparison_get(struct derive *derive, const struct dose_comparison_choice *choice,
+                                            struct error *err)
+{
+    const struct comparison_recipe recipe = { { &kind, { SUBJECT_DOSE, choice->first.parts[0].dose, 0 } }, *choice };
+    return (struct dose_comparison *)derive_get(derive, &recipe.base, NULL, err);
+}

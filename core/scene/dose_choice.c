@@ -1,0 +1,207 @@
+/* Turns a scene's dose into the recipe of its field. */
+#include "core/scene/dose_choice.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "dose_presets.h" /* generated from proto/dose_presets.json */
+
+/* By the quantity of a scene; the two that are computed have no quantity of the files. */
+static const struct {
+    const char *word;
+    enum dose_shown shown;
+    enum dose_quantity quantity;
+} quantities[] = {
+    [SCENE_DOSE_QUANTITY_WEIGHTED] = { "weighted", DOSE_SHOWN_WEIGHTED, DOSE_TOTAL },
+    [SCENE_DOSE_QUANTITY_TOTAL] = { "total", DOSE_SHOWN_QUANTITY, DOSE_TOTAL },
+    [SCENE_DOSE_QUANTITY_BORON] = { "boron", DOSE_SHOWN_QUANTITY, DOSE_BORON },
+    [SCENE_DOSE_QUANTITY_NITROGEN] = { "nitrogen", DOSE_SHOWN_QUANTITY, DOSE_NITROGEN },
+    [SCENE_DOSE_QUANTITY_FAST] = { "fast", DOSE_SHOWN_QUANTITY, DOSE_FAST },
+    [SCENE_DOSE_QUANTITY_GAMMA] = { "gamma", DOSE_SHOWN_QUANTITY, DOSE_GAMMA },
+    [SCENE_DOSE_QUANTITY_OTHER] = { "other", DOSE_SHOWN_QUANTITY, DOSE_OTHER },
+    [SCENE_DOSE_QUANTITY_FAST_FLUENCE] = { "fast-fluence", DOSE_SHOWN_QUANTITY, DOSE_FAST_FLUENCE },
+    [SCENE_DOSE_QUANTITY_EPITHERMAL_FLUENCE] = { "epithermal-fluence", DOSE_SHOWN_QUANTITY, DOSE_EPITHERMAL_FLUENCE },
+    [SCENE_DOSE_QUANTITY_THERMAL_FLUENCE] = { "thermal-fluence", DOSE_SHOWN_QUANTITY, DOSE_THERMAL_FLUENCE },
+    [SCENE_DOSE_QUANTITY_BLOOD_BORON] = { "blood-boron", DOSE_SHOWN_QUANTITY, DOSE_BLOOD_BORON },
+    [SCENE_DOSE_QUANTITY_WEIGHTED_TOTAL] = { "weighted-total", DOSE_SHOWN_QUANTITY, DOSE_WEIGHTED_TOTAL },
+    [SCENE_DOSE_QUANTITY_ISOEFFECTIVE] = { "isoeffective", DOSE_SHOWN_ISOEFFECTIVE, DOSE_TOTAL },
+};
+enum { N_QUANTITIES = sizeof quantities / sizeof *quantities };
+
+const char *dose_quantity_scene_word(enum scene_dose_quantity quantity)
+{
+    return quantities[quantity].word;
+}
+
+bool dose_quantity_from_scene_word(const char *word, enum scene_dose_quantity *quantity)
+{
+    for (int i = 0; i < N_QUANTITIES; i++)
+        if (strcmp(quantities[i].word, word) == 0) {
+            *quantity = (enum scene_dose_quantity)i;
+            return true;
+        }
+    return false;
+}
+
+static int dose_index(const struct plan *plan, const char *id)
+{
+    for (size_t i = 0; i < plan->n_doses; i++)
+        if (strcmp(plan->doses[i].id, id) == 0)
+            return (int)i;
+    return -1;
+}
+
+int scene_dose_index(const struct plan *plan, const struct scene *scene)
+{
+    return scene->dose.id[0] ? dose_index(plan, scene->dose.id) : plan->n_doses ? 0 : -1;
+}
+
+const struct scene_tissue_weights *scene_weights_of(const struct plan *plan, const struct scene *scene, size_t region)
+{
+    for (int at = (int)region; at >= 0; at = plan->regions.regions[at].parent)
+        for (size_t i = 0; i < scene->dose.n_weights; i++)
+            if (strcmp(scene->dose.weights[i].id, plan->regions.regions[at].id) == 0)
+                return &scene->dose.weights[i].value;
+    return NULL;
+}
+
+struct tissue_weights tissue_weights_of(const struct scene_tissue_weights *row)
+{
+    return (struct tissue_weights){ row->boron_ratio, row->cbe, row->nitrogen, row->fast, row->gamma, row->other };
+}
+
+/* Finds or adds a row. False with a sentence: there are DOSE_MAX_ROWS others, or the parameters are not known.
+ * *index: DOSE_NO_ROW: the tissue has no isoeffective dose. */
+static bool add_row(struct dose_choice *choice, const struct scene_tissue_weights *row, uint8_t *index,
+                    struct error *why)
+{
+    struct tissue_weights weights = tissue_weights_of(row);
+    uint32_t model = 0;
+    *index = DOSE_NO_ROW;
+    if (choice->shown != DOSE_SHOWN_WEIGHTED) /* of physical doses only the concentration differs between tissues */
+        weights = (struct tissue_weights){ row->boron_ratio, 1, 1, 1, 1, 1 };
+    if (choice->shown == DOSE_SHOWN_ISOEFFECTIVE) {
+        if (!row->isoeffective[0])
+            return true;
+        while (model < n_isoeffective_sets && strcmp(isoeffective_sets[model].name, row->isoeffective) != 0)
+            model++;
+        if (model == n_isoeffective_sets)
+            return error_set(why, ERROR_NOT_FOUND, "there are no parameters \"%.40s\" of the isoeffective dose",
+                             row->isoeffective);
+    }
+    size_t i = 0;
+    while (i < choice->n_rows &&
+           !(memcmp(&choice->rows[i], &weights, sizeof weights) == 0 && choice->models[i] == model))
+        i++;
+    if (i == DOSE_MAX_ROWS)
+        return error_set(why, ERROR_LIMIT, "more than %d different sets of weights", DOSE_MAX_ROWS);
+    choice->rows[i] = weights;
+    choice->models[i] = model;
+    choice->n_rows = i < choice->n_rows ? choice->n_rows : i + 1;
+    *index = (uint8_t)i;
+    return true;
+}
+
+static bool add_rows(const struct plan *plan, const struct scene *scene, struct dose_choice *choice, struct error *why)
+{
+    bool is_on_tissue = false;
+    for (size_t p = 0; p < choice->n_parts; p++)
+        is_on_tissue |= dose_depends_on_tissue(&plan->doses[choice->parts[p].dose], choice->shown, choice->quantity);
+    memset(choice->row_of_region, DOSE_NO_ROW, sizeof choice->row_of_region);
+    if (!is_on_tissue) {
+        choice->is_everywhere = true;
+        choice->n_rows = 1;
+        choice->rows[0] = (struct tissue_weights){ 1, 1, 1, 1, 1, 1 };
+        return true;
+    }
+    if (scene->dose.tissue[0]) {
+        const struct region *region = region_find(&plan->regions, scene->dose.tissue);
+        const struct scene_tissue_weights *row =
+            region ? scene_weights_of(plan, scene, (size_t)(region - plan->regions.regions)) : NULL;
+        if (!row)
+            return error_set(why, ERROR_NOT_FOUND, "\"%s\" has no weights that could hold everywhere",
+                             scene->dose.tissue);
+        uint8_t index;
+        choice->is_everywhere = true;
+        return add_row(choice, row, &index, why) &&
+               (index != DOSE_NO_ROW ||
+                error_set(why, ERROR_NOT_FOUND, "\"%s\" has no parameters of this dose", scene->dose.tissue));
+    }
+    for (size_t r = 0; r < plan->regions.n_regions; r++) {
+        const struct scene_tissue_weights *row = scene_weights_of(plan, scene, r);
+        if (row && !add_row(choice, row, &choice->row_of_region[r], why))
+            return false;
+    }
+    if (choice->n_rows == 0)
+        return error_set(why, ERROR_NOT_FOUND,
+                         choice->shown == DOSE_SHOWN_ISOEFFECTIVE ? "no tissue has parameters of the isoeffective dose"
+                                                                  : "no tissue has weights");
+    return true;
+}
+
+/* Adds a part that has the quantity. */
+static bool add_part(const struct plan *plan, struct dose_choice *choice, size_t dose, double factor, struct error *why)
+{
+    const struct dose *part = &plan->doses[dose];
+    bool has_it = dose_component_of(part, choice->quantity) != NULL;
+    if (dose_is_summed(part, choice->shown, choice->quantity)) {
+        has_it = false;
+        for (size_t c = 0; c < part->n_components; c++)
+            has_it |= dose_is_summand(part->components[c].quantity);
+        if (!has_it)
+            return error_set(why, ERROR_NOT_FOUND, "dose \"%s\" has no physical components to sum", part->id);
+    }
+    if (!has_it)
+        return error_set(why, ERROR_NOT_FOUND, "dose \"%s\" has no %s", part->id, dose_quantity_word(choice->quantity));
+    for (size_t p = 0; p < choice->n_parts; p++)
+        if (choice->parts[p].dose == dose)
+            return true; /* the dose shown counts once */
+    choice->parts[choice->n_parts].dose = dose;
+    choice->parts[choice->n_parts++].factor = factor;
+    return true;
+}
+
+bool dose_choice_of(const struct plan *plan, const struct scene *scene, size_t dose, enum scene_dose_quantity quantity,
+                    struct dose_choice *choice, struct error *why)
+{
+    memset(choice, 0, sizeof *choice);
+    choice->shown = quantities[quantity].shown;
+    choice->quantity = quantities[quantity].quantity;
+    choice->blood_ppm = scene->dose.blood_ppm;
+    choice->irradiation_min = choice->shown == DOSE_SHOWN_ISOEFFECTIVE ? scene->dose.irradiation_min : 0;
+    if (!add_part(plan, choice, dose, scene->dose.factor, why))
+        return false;
+    bool is_shown = (int)dose == scene_dose_index(plan, scene);
+    for (size_t i = 0; is_shown && i < scene->dose.n_sum; i++) {
+        int part = dose_index(plan, scene->dose.sum[i].id);
+        if (part >= 0 && !add_part(plan, choice, (size_t)part, scene->dose.sum[i].value.factor, why))
+            return false;
+    }
+    if (!add_rows(plan, scene, choice, why))
+        return false;
+    bool has_boron = false;
+    for (size_t p = 0; p < choice->n_parts; p++) {
+        const struct dose *part = &plan->doses[choice->parts[p].dose];
+        for (size_t c = 0; c < part->n_components; c++)
+            has_boron |= part->components[c].is_per_ppm && (dose_is_summed(part, choice->shown, choice->quantity)
+                                                                ? part->components[c].quantity == DOSE_BORON
+                                                                : part->components[c].quantity == choice->quantity);
+    }
+    if (!has_boron)
+        choice->blood_ppm = 0; /* what does not depend on it is one and the same field */
+    return true;
+}
+
+static bool is_accepted(const struct scene *scene, const char *id)
+{
+    for (size_t i = 0; i < scene->dose.n_accepted; i++)
+        if (strcmp(scene->dose.accepted[i].id, id) == 0)
+            return scene->dose.accepted[i].value.accepted;
+    return false;
+}
+
+bool scene_dose_may_be_drawn(const struct plan *plan, const struct scene *scene, size_t dose,
+                             char why[DOSE_FIT_WHY_SIZE])
+{
+    return !dose_fit_needs_acceptance(dose_fit_of(plan, dose, why)) || is_accepted(scene, plan->doses[dose].id);
+}

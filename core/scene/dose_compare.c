@@ -1,0 +1,39 @@
+#include "core/scene/dose_compare.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double most_gamma = 2; /* a voxel with more fails, by how much makes no difference on a picture */
+
+bool dose_compare_of(const struct snapshot *snapshot, const struct dose_scale *scale, bool is_gamma,
+                     struct dose_comparison_choice *choice, struct error *why)
+{
+    const struct plan *plan = snapshot->plan;
+    const struct scene_dose_compare *asked = &snapshot->scene.dose.compare;
+    char reason[DOSE_FIT_WHY_SIZE];
+    size_t second = 0;
+    while (second < plan->n_doses && strcmp(plan->doses[second].id, asked->id) != 0)
+        second++;
+    memset(choice, 0, sizeof *choice);
+    if (second == plan->n_doses)
+        return error_set(why, ERROR_NOT_FOUND, "no second dose is chosen");
+    if (!snapshot->has_dose_choice)
+        return error_set(why, ERROR_NOT_FOUND, "there is no first dose to compare with");
+    if (!scene_dose_may_be_drawn(plan, &snapshot->scene, second, reason))
+        return error_set(why, ERROR_RANGE, "%s", reason);
+    choice->first = snapshot->dose_choice;
+    if (!dose_choice_of(plan, &snapshot->scene, second, snapshot->scene.dose.quantity, &choice->second, why))
+        return false;
+    choice->is_gamma = is_gamma;
+    if (!is_gamma)
+        return true;
+    if (!isfinite(scale->reference))
+        return error_set(why, ERROR_RANGE, "the reference is unknown: %s", scale->why_no_reference.text);
+    choice->gamma.dose_percent = asked->dose_percent;
+    choice->gamma.is_local = asked->normalization == SCENE_GAMMA_NORMALIZATION_LOCAL;
+    choice->gamma.reference = scale->reference;
+    choice->gamma.distance_mm = asked->distance_mm;
+    choice->gamma.threshold = scale->reference * asked->threshold_percent / 100;
+    choice->gamma.most = most_gamma;
+    return true;
+}

@@ -1,0 +1,393 @@
+/* Answers to questions about the dose that a scene shows: its scale, and its values at a point. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/scene/dose_scale.h"
+#include "server/renderer/answers.h"
+#include "server/renderer/dose_answers.h"
+#include "server/wire/document.h"
+#include "wire_gen.h"
+
+void dose_add_number(cJSON *json, const char *name, double value)
+{
+    cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
+}
+
+/* NULL stands for null. */
+void dose_add_text(cJSON *json, const char *name, const char *text)
+{
+    cJSON_AddItemToObject(json, name, text ? cJSON_CreateString(text) : cJSON_CreateNull());
+}
+
+static void add_quantities(cJSON *json, const char *name, uint32_t bits)
+{
+    cJSON *list = cJSON_AddArrayToObject(json, name);
+    for (int i = 0; i < DOSE_N_QUANTITIES; i++)
+        if (bits >> i & 1)
+            cJSON_AddItemToArray(list, cJSON_CreateString(dose_quantity_word((enum dose_quantity)i)));
+}
+
+static cJSON *weights_object(const struct scene_tissue_weights *weights, double blood_ppm)
+{
+    cJSON *json = cJSON_CreateObject();
+    dose_add_number(json, "boron_ratio", weights->boron_ratio);
+    dose_add_number(json, "boron_ppm", weights->boron_ratio * blood_ppm);
+    dose_add_number(json, "cbe", weights->cbe);
+    dose_add_number(json, "nitrogen", weights->nitrogen);
+    dose_add_number(json, "fast", weights->fast);
+    dose_add_number(json, "gamma", weights->gamma);
+    dose_add_number(json, "other", weights->other);
+    return json;
+}
+
+/* Whether the dose belongs to the image: {fit, fit_reason, accepted}. */
+static void add_fit(cJSON *json, const struct snapshot *snapshot, size_t dose)
+{
+    char why[DOSE_FIT_WHY_SIZE];
+    enum dose_fit fit = dose_fit_of(snapshot->plan, dose, why);
+    cJSON_AddStringToObject(json, "fit", dose_fit_word(fit));
+    cJSON_AddStringToObject(json, "fit_reason", why);
+    cJSON_AddBoolToObject(json, "accepted",
+                          dose_fit_needs_acceptance(fit) &&
+                              scene_dose_may_be_drawn(snapshot->plan, &snapshot->scene, dose, NULL));
+}
+
+static void add_parts(cJSON *json, const struct snapshot *snapshot)
+{
+    const struct scene_dose_style *style = &snapshot->scene.dose;
+    cJSON *parts = cJSON_AddArrayToObject(json, "parts");
+    for (size_t i = 0; i <= style->n_sum; i++) {
+        cJSON *part = cJSON_CreateObject();
+        cJSON_AddStringToObject(part, "id", i == 0 ? snapshot->plan->doses[snapshot->dose].id : style->sum[i - 1].id);
+        dose_add_number(part, "factor", i == 0 ? style->factor : style->sum[i - 1].value.factor);
+        cJSON_AddItemToArray(parts, part);
+    }
+}
+
+void dose_add_weights(cJSON *json, const struct snapshot *snapshot)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    cJSON *list = cJSON_AddArrayToObject(json, "weights");
+    for (size_t r = 0; r < set->n_regions; r++) {
+        const struct scene_tissue_weights *weights = scene_weights_of(snapshot->plan, &snapshot->scene, r);
+        if (!weights)
+            continue;
+        cJSON *row = weights_object(weights, snapshot->scene.dose.blood_ppm);
+        cJSON_AddStringToObject(row, "region", set->regions[r].id);
+        cJSON_AddItemToArray(list, row);
+    }
+}
+
+static void add_reference(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale)
+{
+    cJSON *reference = cJSON_AddObjectToObject(json, "reference");
+    cJSON_AddStringToObject(reference, "kind",
+                            scene_dose_reference_kind_words.words[snapshot->scene.dose.reference.kind]);
+    cJSON_AddStringToObject(reference, "words", scale->words);
+    dose_add_number(reference, "value", scale->reference);
+    dose_add_text(reference, "reason", scale->why_no_reference.code ? scale->why_no_reference.text : NULL);
+}
+
+static void add_levels(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale)
+{
+    const struct scene_dose_style *style = &snapshot->scene.dose;
+    cJSON *levels = cJSON_AddArrayToObject(json, "levels");
+    for (size_t i = 0; i < style->n_levels; i++) {
+        cJSON *level = cJSON_CreateObject();
+        double value = dose_level_value(scale, style->levels[i].value.unit, style->levels[i].value.value);
+        cJSON_AddStringToObject(level, "id", style->levels[i].id);
+        dose_add_number(level, "value", value);
+        dose_add_number(level, "percent", 100 * value / scale->reference);
+        cJSON_AddItemToArray(levels, level);
+    }
+}
+
+/* What every read-out of a dose says beside its numbers. snapshot->dose >= 0. */
+void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale)
+{
+    const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
+    const struct scene_dose_style *style = &snapshot->scene.dose;
+    char unit[DOSE_UNIT_SIZE];
+    dose_shown_unit(dose,
+                    style->quantity == SCENE_DOSE_QUANTITY_WEIGHTED       ? DOSE_SHOWN_WEIGHTED
+                    : style->quantity == SCENE_DOSE_QUANTITY_ISOEFFECTIVE ? DOSE_SHOWN_ISOEFFECTIVE
+                                                                          : DOSE_SHOWN_QUANTITY,
+                    snapshot->dose_choice.quantity, unit);
+    cJSON_AddStringToObject(json, "id", dose->id);
+    cJSON_AddStringToObject(json, "name", dose->name);
+    cJSON_AddStringToObject(json, "per", dose->per);
+    cJSON_AddStringToObject(json, "quantity", scene_dose_quantity_words.words[style->quantity]);
+    cJSON_AddStringToObject(json, "unit", unit);
+    dose_add_text(json, "reason", scale->field ? NULL : scale->why.text);
+    add_fit(json, snapshot, (size_t)snapshot->dose);
+    add_quantities(json, "missing", scale->field ? scale->field->missing : 0);
+    add_parts(json, snapshot);
+    cJSON_AddItemToObject(json, "tissue", style->tissue[0] ? cJSON_CreateString(style->tissue) : cJSON_CreateNull());
+    dose_add_number(json, "blood_ppm", style->blood_ppm);
+    cJSON_AddStringToObject(json, "weights_name", style->weights_name);
+    add_reference(json, snapshot, scale);
+}
+
+bool dose_is_there(const struct snapshot *snapshot, struct problem *problem)
+{
+    return snapshot->dose >= 0 || problem_set(problem, PROBLEM_NOT_FOUND, "", "", "the plan has no dose");
+}
+
+/* Frees the scale when memory ran out, with a problem. */
+static bool is_whole(struct dose_scale *scale, struct problem *problem)
+{
+    struct error err = { 0 };
+    if (dose_scale_is_whole(scale, &err))
+        return true;
+    dose_scale_finish(scale);
+    return problem_from_error(problem, &err);
+}
+
+bool dose_asked_of(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
+                   struct dose_asked *asked, struct error *why)
+{
+    char sentence[DOSE_FIT_WHY_SIZE];
+    asked->dose = dose;
+    if (!dose_choice_of(snapshot->plan, &snapshot->scene, dose, quantity, &asked->choice, why))
+        return false;
+    dose_shown_unit(&snapshot->plan->doses[dose], asked->choice.shown, asked->choice.quantity, asked->unit);
+    return scene_dose_may_be_drawn(snapshot->plan, &snapshot->scene, dose, sentence) ||
+           error_set(why, ERROR_STATE, "%s", sentence);
+}
+
+struct snapshot *dose_snapshot_of(const struct snapshot *snapshot, const char *word, struct problem *problem)
+{
+    struct snapshot *copy = mem_new(sizeof *copy);
+    *copy = *snapshot;
+    if (!word || !word[0])
+        return copy;
+    struct dose_asked asked;
+    if (!dose_quantity_from_scene_word(word, &copy->scene.dose.quantity)) {
+        (void)problem_set(problem, PROBLEM_VALIDATION, "/quantity", "enum", "\"%.40s\" is no quantity", word);
+        free(copy);
+        return NULL;
+    }
+    copy->dose_why = (struct error){ 0 };
+    copy->has_dose_choice = dose_asked_of(copy, (size_t)copy->dose, copy->scene.dose.quantity, &asked, &copy->dose_why);
+    copy->dose_choice = asked.choice;
+    return copy;
+}
+
+/* {id, name, per, quantity, unit, drawn, reason, fit, fit_reason, accepted, missing, parts: [{id, factor}], tissue,
+ * blood_ppm, weights_name, reference: {kind, words, value, reason}, weights: [{region, ...}], levels: [{id, value,
+ * percent}], resampled} */
+cJSON *answer_dose(struct question *question, struct derive *derived, struct problem *problem)
+{
+    const struct snapshot *snapshot = question->snapshot;
+    struct dose_scale scale;
+    (void)derived;
+    if (!dose_is_there(snapshot, problem))
+        return NULL;
+    bool is_drawn = dose_scale_of(snapshot, &scale);
+    if (!is_whole(&scale, problem))
+        return NULL;
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddBoolToObject(json, "drawn", is_drawn);
+    dose_add_basis(json, snapshot, &scale);
+    dose_add_weights(json, snapshot);
+    add_levels(json, snapshot, &scale);
+    cJSON_AddBoolToObject(json, "resampled", scale.field && scale.field->is_resampled);
+    dose_scale_finish(&scale);
+    return json;
+}
+
+/* The value of a quantity of the scene's dose at a point, and the row of weights it has there. NAN with why: none. */
+static double value_at(const struct snapshot *snapshot, enum scene_dose_quantity quantity, struct vec3 point,
+                       const char **why)
+{
+    struct dose_choice choice;
+    struct error err = { 0 };
+    double value = NAN;
+    *why = NULL;
+    if (!dose_choice_of(snapshot->plan, &snapshot->scene, (size_t)snapshot->dose, quantity, &choice, &err)) {
+        *why = "not in this dose";
+        return NAN;
+    }
+    struct dose_field *field = dose_field_get(snapshot->derived, &choice, &err);
+    uint32_t at[3];
+    if (!field)
+        *why = "not computed";
+    else if (!volume_voxel_at(field->rows[0], point, at))
+        *why = "outside the dose grid";
+    else if (dose_field_row(field, point) == DOSE_NO_ROW)
+        *why = "in no tissue with weights";
+    else if (!dose_field_value(field, point, &value))
+        *why = "no value in the dose's file here";
+    if (field)
+        derive_result_unref(&field->base);
+    return *why ? NAN : value;
+}
+
+/* The innermost region at the point whose weights hold there; -1: none. */
+static int tissue_at(const struct snapshot *snapshot, const struct plan_probe *probe)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    if (snapshot->scene.dose.tissue[0]) {
+        const struct region *region = region_find(set, snapshot->scene.dose.tissue);
+        return region ? (int)(region - set->regions) : -1;
+    }
+    for (size_t i = 0; i < probe->n_regions; i++)
+        if (scene_weights_of(snapshot->plan, &snapshot->scene, probe->regions[i]))
+            return (int)probe->regions[i];
+    return -1;
+}
+
+/* NAN: the quantity is no summand, or weights is NULL: the tissue has none. */
+static double weight_in(const struct scene_tissue_weights *weights, enum dose_quantity quantity)
+{
+    if (!weights)
+        return NAN;
+    struct tissue_weights of = tissue_weights_of(weights);
+    return dose_weight_of(quantity, &of);
+}
+
+/* Statistical error of a component's value at a point, as a part of it; NAN: the files give none. */
+static double error_share(const struct dose_component *component, struct vec3 point)
+{
+    double value, error;
+    return component->error && volume_sample(component->values, point, &value) && value > 0 &&
+                   volume_sample(component->error, point, &error)
+               ? error / value
+               : NAN;
+}
+
+/* Of the shown value; errors of a sum's components count as independent, and one without an error makes it unknown. */
+static double shown_error_share(const struct snapshot *snapshot, struct vec3 point,
+                                const struct scene_tissue_weights *weights)
+{
+    const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
+    const struct dose_choice *choice = &snapshot->dose_choice;
+    double sum = 0, squares = 0;
+    if (!snapshot->has_dose_choice || choice->n_parts > 1 || choice->shown == DOSE_SHOWN_ISOEFFECTIVE)
+        return NAN;
+    if (!dose_is_summed(dose, choice->shown, choice->quantity)) {
+        const struct dose_component *component = dose_component_of(dose, choice->quantity);
+        return component ? error_share(component, point) : NAN;
+    }
+    for (size_t c = 0; c < dose->n_components; c++) {
+        const struct dose_component *component = &dose->components[c];
+        const char *why;
+        enum scene_dose_quantity quantity;
+        if (!dose_is_summand(component->quantity) ||
+            !dose_quantity_from_scene_word(dose_quantity_word(component->quantity), &quantity))
+            continue;
+        double weight = choice->shown == DOSE_SHOWN_WEIGHTED ? weight_in(weights, component->quantity) : 1,
+               value = value_at(snapshot, quantity, point, &why) * weight;
+        sum += value;
+        squares += value > 0 || isnan(value) ? pow(value * error_share(component, point), 2) : 0;
+    }
+    return sqrt(squares) / sum;
+}
+
+/* Every quantity of the dose at the point: as it is in the tissue, without and with its weight. */
+static void add_components(cJSON *json, const struct snapshot *snapshot, struct vec3 point,
+                           const struct scene_tissue_weights *weights)
+{
+    const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
+    cJSON *list = cJSON_AddArrayToObject(json, "components");
+    for (size_t c = 0; c < dose->n_components; c++) {
+        const struct dose_component *component = &dose->components[c];
+        enum scene_dose_quantity quantity;
+        char unit[DOSE_UNIT_SIZE];
+        const char *why = NULL;
+        if (!dose_quantity_from_scene_word(dose_quantity_word(component->quantity), &quantity))
+            continue;
+        cJSON *item = cJSON_CreateObject();
+        double value = value_at(snapshot, quantity, point, &why), weight = weight_in(weights, component->quantity);
+        dose_unit_of(dose, component->quantity, unit);
+        cJSON_AddStringToObject(item, "quantity", dose_quantity_word(component->quantity));
+        dose_add_number(item, "value", value);
+        cJSON_AddStringToObject(item, "unit", unit);
+        dose_add_text(item, "reason", why);
+        bool is_boron = component->quantity == DOSE_BORON && component->is_per_ppm;
+        dose_add_number(item, "boron_ppm",
+                        component->is_per_ppm
+                            ? snapshot->scene.dose.blood_ppm * (is_boron ? weights ? weights->boron_ratio : NAN : 1)
+                        : component->has_boron_ppm ? component->boron_ppm
+                                                   : NAN);
+        dose_add_number(item, "weight", weight);
+        dose_add_number(item, "weighted", value * weight);
+        dose_add_number(item, "error_percent", 100 * error_share(component, point));
+        cJSON_AddItemToArray(list, item);
+    }
+}
+
+static void add_place(cJSON *json, const struct plan *plan, const struct plan_probe *probe)
+{
+    cJSON *regions = cJSON_AddArrayToObject(json, "regions"), *images = cJSON_AddArrayToObject(json, "images");
+    for (size_t i = 0; i < probe->n_regions; i++)
+        cJSON_AddItemToArray(regions, cJSON_CreateString(plan->regions.regions[probe->regions[i]].id));
+    for (size_t i = 0; i < plan->n_images; i++) {
+        if (!probe->has_image[i])
+            continue;
+        cJSON *image = cJSON_CreateObject();
+        cJSON_AddStringToObject(image, "id", plan->images[i].id);
+        dose_add_number(image, "value", probe->image_value[i]);
+        cJSON_AddStringToObject(image, "unit", plan->images[i].unit);
+        cJSON_AddItemToArray(images, image);
+    }
+}
+
+/* {point_lps_mm, regions, images, id, name, per, quantity, unit, ..., value, percent, value_reason, weighted_by,
+ * weights, components: [{quantity, value, unit, reason, boron_ppm, weight, weighted}], totals: [{quantity, value, unit,
+ * reason}]}
+ */
+cJSON *answer_dose_probe(struct question *question, struct derive *derived, struct problem *problem)
+{
+    const struct snapshot *snapshot = question->snapshot;
+    const struct plan *plan = snapshot->plan;
+    const struct vec3 at = question->packet.dose_probe.point_lps_mm;
+    struct dose_scale scale;
+    struct plan_probe probe;
+    const char *why = NULL;
+    (void)derived;
+    if (!dose_is_there(snapshot, problem))
+        return NULL;
+    (void)dose_scale_of(snapshot, &scale);
+    if (!is_whole(&scale, problem))
+        return NULL;
+    plan_probe(plan, at, &probe);
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddItemToObject(json, "point_lps_mm", cJSON_CreateDoubleArray((double[3]){ at.x, at.y, at.z }, 3));
+    add_place(json, plan, &probe);
+    dose_add_basis(json, snapshot, &scale);
+    double value = value_at(snapshot, snapshot->scene.dose.quantity, at, &why);
+    dose_add_number(json, "value", value);
+    dose_add_number(json, "percent", 100 * value / scale.reference);
+    dose_add_text(json, "value_reason", why);
+    int tissue = tissue_at(snapshot, &probe);
+    const struct scene_tissue_weights *weights =
+        tissue >= 0 ? scene_weights_of(plan, &snapshot->scene, (size_t)tissue) : NULL;
+    dose_add_text(json, "weighted_by", weights ? plan->regions.regions[tissue].id : NULL);
+    cJSON_AddItemToObject(json, "weights",
+                          weights ? weights_object(weights, snapshot->scene.dose.blood_ppm) : cJSON_CreateNull());
+    dose_add_number(json, "error_percent", 100 * shown_error_share(snapshot, at, weights));
+    add_components(json, snapshot, at, weights);
+    static const enum scene_dose_quantity totals[] = { SCENE_DOSE_QUANTITY_WEIGHTED, SCENE_DOSE_QUANTITY_TOTAL,
+                                                       SCENE_DOSE_QUANTITY_ISOEFFECTIVE };
+    cJSON *list = cJSON_AddArrayToObject(json, "totals");
+    for (size_t i = 0; i < sizeof totals / sizeof *totals; i++) {
+        struct dose_choice choice;
+        struct error err = { 0 };
+        char unit[DOSE_UNIT_SIZE];
+        if (!dose_choice_of(plan, &snapshot->scene, (size_t)snapshot->dose, totals[i], &choice, &err))
+            continue;
+        cJSON *item = cJSON_CreateObject();
+        dose_shown_unit(&plan->doses[snapshot->dose], choice.shown, choice.quantity, unit);
+        cJSON_AddStringToObject(item, "quantity", scene_dose_quantity_words.words[totals[i]]);
+        dose_add_number(item, "value", value_at(snapshot, totals[i], at, &why));
+        cJSON_AddStringToObject(item, "unit", unit);
+        dose_add_text(item, "reason", why);
+        cJSON_AddItemToArray(list, item);
+    }
+    dose_scale_finish(&scale);
+    return json;
+}

@@ -1,0 +1,25 @@
+#pragma once
+/* Inside server/renderer: what the answers to questions about doses have in common. */
+#include "core/scene/dose_scale.h"
+#include "server/wire/document.h"
+
+void dose_add_number(cJSON *json, const char *name, double value);   /* null for what is not finite */
+void dose_add_text(cJSON *json, const char *name, const char *text); /* null for NULL */
+/* What every read-out of the snapshot's dose says beside its numbers; snapshot->dose >= 0. */
+void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale);
+void dose_add_weights(cJSON *json, const struct snapshot *snapshot); /* a row for each region with weights */
+/* False with problem: the plan has no dose. */
+NODISCARD bool dose_is_there(const struct snapshot *snapshot, struct problem *problem);
+
+/* A dose of the plan in a quantity, as the scene weighs it. */
+struct dose_asked {
+    size_t dose; /* index in the plan */
+    struct dose_choice choice;
+    char unit[DOSE_UNIT_SIZE];
+};
+/* Returns false with why: it has no such quantity, no weights, or a person has yet to accept it. */
+NODISCARD bool dose_asked_of(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
+                             struct dose_asked *asked, struct error *why);
+/* The snapshot with another quantity of its dose, or its own (word NULL or ""). Borrows all of the snapshot's; freed
+ * with free(). NULL with problem: no such quantity. */
+NODISCARD struct snapshot *dose_snapshot_of(const struct snapshot *snapshot, const char *word, struct problem *problem);

@@ -1,0 +1,83 @@
+#include "server/renderer/profile_line.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool read_point(const char *text, struct vec3 *point)
+{
+    double values[3];
+    for (int i = 0; i < 3; i++) {
+        char *end;
+        values[i] = strtod(text, &end);
+        if (end == text || *end != (i < 2 ? ',' : 0) || !(fabs(values[i]) <= 100000))
+            return false;
+        text = end + 1;
+    }
+    *point = vec3(values[0], values[1], values[2]);
+    return true;
+}
+
+/* From the beam's entry through its target to where the dose's grid or the regions end. */
+static bool follow_beam(const struct plan *plan, const struct beam *beam, const struct dose *dose,
+                        struct profile_line *line, struct problem *problem)
+{
+    struct vec3 way = vec3_sub(beam->target_lps_mm, beam->entry_lps_mm);
+    double low = INFINITY, high = -INFINITY;
+    line->ray.from_lps_mm = beam->entry_lps_mm;
+    line->ray.direction = vec3_normalize(way);
+    for (size_t i = 0; i < dose->n_components + plan->regions.n_layers; i++) {
+        const struct volume *volume =
+            i < dose->n_components ? dose->components[i].values : plan->regions.layers[i - dose->n_components];
+        double from = 0, to = 4 * GRID_FARTHEST_MM;
+        if (vec3_length(way) > 0 && ray_clip(&line->ray, &volume->grid, &from, &to)) {
+            low = fmin(low, from);
+            high = fmax(high, to);
+        }
+    }
+    line->ray.low_mm = low;
+    line->ray.high_mm = high;
+    return low < high || problem_set(problem, PROBLEM_VALIDATION, "/beam", "range",
+                                     "beam \"%.64s\" does not meet the dose's grid or a region", beam->id);
+}
+
+/* Leaves out what lies more than a margin before the first and behind the last region. */
+static bool narrow(const struct plan *plan, struct profile_line *line, struct problem *problem)
+{
+    const double margin_mm = 10;
+    struct ray_band *bands;
+    size_t n;
+    struct error err = { 0 };
+    if (!ray_bands(&plan->regions, &line->ray, &bands, &n, &err))
+        return problem_set(problem, PROBLEM_MEMORY, "", "", "%s", err.text);
+    if (n > 0) {
+        line->ray.low_mm = fmax(line->ray.low_mm, bands[0].from_mm - margin_mm);
+        line->ray.high_mm = fmin(line->ray.high_mm, bands[n - 1].to_mm + margin_mm);
+    }
+    free(bands);
+    return true;
+}
+
+bool profile_line_find(const struct plan *plan, const struct dose *dose, const struct packet_profile *asked,
+                       struct profile_line *line, struct problem *problem)
+{
+    line->n = (size_t)asked->samples;
+    if (asked->has_beam) {
+        for (size_t i = 0; i < plan->n_beams; i++)
+            if (strcmp(plan->beams[i].id, asked->beam) == 0)
+                return follow_beam(plan, &plan->beams[i], dose, line, problem) && narrow(plan, line, problem);
+        return problem_set(problem, PROBLEM_NOT_FOUND, "/beam", "", "the plan has no beam \"%.64s\"", asked->beam);
+    }
+    struct vec3 to;
+    if (!asked->has_from || !read_point(asked->from, &line->ray.from_lps_mm))
+        return problem_set(problem, PROBLEM_VALIDATION, "/from", "range",
+                           "a line needs a beam, or from and to, each three numbers in mm: x,y,z");
+    if (!asked->has_to || !read_point(asked->to, &to))
+        return problem_set(problem, PROBLEM_VALIDATION, "/to", "range", "\"to\" needs three numbers in mm: x,y,z");
+    struct vec3 way = vec3_sub(to, line->ray.from_lps_mm);
+    line->ray.low_mm = 0;
+    line->ray.high_mm = vec3_length(way);
+    line->ray.direction = vec3_normalize(way);
+    return line->ray.high_mm > 1e-6 ||
+           problem_set(problem, PROBLEM_VALIDATION, "/to", "range", "from and to are the same point");
+}

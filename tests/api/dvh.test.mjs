@@ -1,0 +1,140 @@
+// Histograms, coverage and limits of a scene's dose over HTTP.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { cpSync, existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { after, before, test } from 'node:test';
+import { call, demo, openPlan, realData, startDaemon } from './daemon.mjs';
+
+const brain = realData && join(realData, 'eclipse-ent-dose');
+const skip = brain && existsSync(brain) ? false : 'no real plans on this machine';
+const phantom = realData && join(realData, 'dicomrt-oncentra-phantom');
+let daemon, room, folder;
+const api = (rest) => call(`${daemon.url}/api/v1/plans/${rest}`);
+const near = (value, expected, share) => assert.ok(Math.abs(value - expected) <= share * Math.abs(expected), `${value}, not ${expected}`);
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'beamroom-dvh-'));
+  if (!skip) cpSync(phantom, join(folder, 'stated'), { recursive: true });
+  daemon = await startDaemon(skip ? {} : { plans: [demo, brain, folder] });
+  await openPlan(daemon.url, 'phantom');
+  room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+});
+after(async () => {
+  await daemon?.stop();
+  if (folder) rmSync(folder, { recursive: true });
+});
+
+/** A question about the room's scene with other values. */
+const ask = (question, override, more = '') => api(`phantom/${question}?room=${room}&view=${encodeURIComponent(JSON.stringify({ override }))}${more}`);
+
+test('histograms hold every univel of every region that is shown, and their figures agree with their counts', async () => {
+  const plan = (await api('phantom')).json;
+  const { status, json } = await ask('dvh', {}, '&bins=4096');
+  assert.equal(status, 200);
+  assert.equal(json.curves.length, plan.regions.length);
+  assert.match(json.method, /Univels without a value are left out/);
+  for (const curve of json.curves) {
+    const region = plan.regions.find(({ id }) => id === curve.region);
+    assert.equal(curve.n_univels, region.voxels);
+    const sum = curve.counts_cm3.reduce((all, cm3) => all + cm3, 0);
+    near(sum, curve.volume_cm3 - curve.missing_cm3, 1e-9);
+    const mean = curve.counts_cm3.reduce((all, cm3, bin) => all + cm3 * (curve.bin_from + (bin + 0.5) * curve.bin_width), 0) / sum;
+    near(mean, curve.mean, 1e-3);
+    let above = 0, bin = curve.counts_cm3.length;
+    while (above < 0.95 * sum) above += curve.counts_cm3[--bin];
+    assert.ok(Math.abs(curve.bin_from + bin * curve.bin_width - curve.metrics['D95%']) <= curve.bin_width * 1.01);
+    near(curve.metrics.HI, (curve.metrics['D2%'] - curve.metrics['D98%']) / curve.metrics['D50%'], 1e-9);
+    near(curve.bin_from + 4096 * curve.bin_width, curve.max, 1e-6);
+  }
+  const target = json.curves.find((curve) => curve.conformity);
+  for (const level of target.conformity) {
+    near(level.rtog, level.isodose_cm3 / target.volume_cm3, 1e-9);
+    if (level.isodose_cm3 > 0) near(level.paddick, level.covered_cm3 ** 2 / target.volume_cm3 / level.isodose_cm3, 1e-9);
+    assert.ok(level.covered_cm3 <= level.isodose_cm3 * (1 + 1e-9));
+  }
+});
+
+test('a mean follows blood ppm linearly, boron alone in proportion, and says with which weights', async () => {
+  const at = async (ppm, quantity) => (await ask('dvh', { dose: { blood_ppm: ppm } }, `&regions=brain&bins=1&quantity=${quantity}`)).json;
+  const [none, ten, twenty] = await Promise.all([0, 10, 20].map((ppm) => at(ppm, 'weighted')));
+  near(twenty.curves[0].mean - none.curves[0].mean, 2 * (ten.curves[0].mean - none.curves[0].mean), 1e-5);
+  assert.equal(twenty.blood_ppm, 20);
+  assert.ok(twenty.weights.some(({ region, boron_ppm: ppm }) => region === 'brain' && ppm > 0));
+  const boron = await Promise.all([10, 20].map((ppm) => at(ppm, 'boron')));
+  near(boron[1].curves[0].mean, 2 * boron[0].curves[0].mean, 1e-6);
+  assert.equal(boron[0].curves[0].quantity, 'boron');
+  assert.notEqual(boron[0].unit, twenty.unit);
+});
+
+test('regions, figures, quantities and bins that do not exist are refused by name', async () => {
+  for (const [more, status, word] of [['&regions=brain,nowhere', 404, 'nowhere'], ['&metrics=D95', 422, 'D95'], ['&quantity=colour', 422, 'colour'], ['&bins=5000', 422, 'bins'],
+    ['&border=6', 422, 'border'], ['&format=xml', 422, 'xml']]) {
+    const { status: found, json } = await ask('dvh', {}, more);
+    assert.equal(found, status, more);
+    assert.ok(json.detail.includes(word), json.detail);
+  }
+});
+
+test('as CSV a histogram is one line for each bin, from all of the volume on', async () => {
+  const { status, type, text } = await ask('dvh', {}, '&regions=brain,tumour&bins=10&format=csv');
+  assert.equal(status, 200);
+  assert.match(type, /^text\/csv/);
+  const rows = text.trimEnd().split('\r\n').map((line) => line.split(','));
+  assert.equal(rows.length, 1 + rows.slice(1).filter(([, region]) => region === 'brain').length * (rows.some(([, region]) => region === 'tumour') ? 2 : 1));
+  assert.equal(rows[1].length, rows[0].length);
+  assert.equal(rows[1][rows[0].indexOf('volume_from_percent')], '100');
+});
+
+test('coverage is what the histogram has above a level, and constraints are held to it', async () => {
+  const { json: histogram } = await ask('dvh', {}, '&regions=brain&metrics=V5,V5cc,D2cc&descendants=true');
+  const curve = histogram.curves[0];
+  const { json: coverage } = await ask('coverage', {}, '&region=brain&low=5&unit=dose');
+  near(coverage.volume_cm3, curve.metrics.V5cc, 2e-3);
+  near(100 * coverage.share, curve.metrics.V5, 2e-3);
+  near(coverage.region_cm3, curve.volume_cm3, 1e-9);
+  const own = (await ask('dvh', {}, '&regions=brain&metrics=D2cc')).json.curves[0];
+  const limits = { a: ['max', 'at-most', own.max * 1.001], b: ['max', 'at-most', own.max * 0.999], c: ['D2cc', 'at-least', own.metrics.D2cc * 0.99], d: ['D99999cc', 'at-most', 1], e: ['D95', 'at-most', 1] };
+  const constraints = Object.fromEntries(Object.entries(limits).map(([id, [metric, side, limit]]) => [id, { region: 'brain', quantity: 'weighted', metric, side, limit }]));
+  constraints.f = { region: 'brain', quantity: 'weighted-total', metric: 'max', side: 'at-most', limit: 1 };
+  const { json } = await ask('constraints', { constraints });
+  const met = Object.fromEntries(json.constraints.map((row) => [row.id, row.met]));
+  assert.deepEqual(met, { a: true, b: false, c: true, d: null, e: null, f: null });
+  for (const row of json.constraints) assert.equal(row.reason === null, row.met !== null, JSON.stringify(row));
+  near(json.constraints.find(({ id }) => id === 'a').value, own.max, 1e-9);
+  assert.equal(json.constraints.find(({ id }) => id === 'a').unit, histogram.unit);
+});
+
+test('means of a real plan are those of the planning program', { skip }, async () => {
+  await openPlan(daemon.url, 'eclipse-ent-dose');
+  const { json } = await api('eclipse-ent-dose/dvh?regions=ptv1,brain&metrics=mean,D50%25');
+  assert.equal(json.without_curves.length, 0);
+  const [ptv, head] = json.curves;
+  near(ptv.mean, 60.9598, 0.01); // the planning program's own table, as tests/oracle/dvh_values.py reads it
+  near(head.mean, 20.7685, 0.01);
+});
+
+test('histograms that an RTDOSE file carries stand beside ours, and ours agree with them', { skip }, async (context) => {
+  const written = spawnSync(process.env.PYTHON ?? '/usr/bin/python3', [resolve('tests/oracle/rtdose_dvh.py'), join(folder, 'stated')], { encoding: 'utf8' });
+  if (written.error || written.status === 77) {
+    context.skip('no pydicom or numpy on this machine');
+    return;
+  }
+  assert.equal(written.status, 0, written.stderr);
+  const theirs = written.stdout.trim().split('\n').map((line) => Number(line.split(' ')[2])).sort((a, b) => a - b);
+  await openPlan(daemon.url, 'stated');
+  const ours = [];
+  for (const { id } of (await api('stated')).json.doses) {
+    const { curves } = (await api(`stated/dvh?bins=1&view=${encodeURIComponent(JSON.stringify({ override: { dose: { id } } }))}`)).json;
+    for (const { mean, stated, volume_cm3: cm3 } of curves) {
+      near(mean, stated.mean, 0.01);
+      near(cm3, stated.volume_cm3, 1e-6);
+      assert.ok(Math.abs(stated.mean_difference_percent) < 1);
+      ours.push(mean);
+    }
+  }
+  assert.equal(ours.length, theirs.length);
+  ours.sort((a, b) => a - b).forEach((mean, index) => near(mean, theirs[index], 1e-5)); // numpy's own means
+  assert.equal((await ask('dvh', {}, '&regions=brain')).json.curves[0].stated, null);
+});

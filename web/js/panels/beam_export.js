@@ -1,0 +1,38 @@
+// The draft as a file: JSON, or a beam card for SERA.
+import { html, nothing } from '../../lib/lit-html.js';
+import { draftDocument } from '../state/beam_export.js';
+import { beamFacts } from '../state/beam_facts.js';
+import { endCompare } from '../state/beam_ui.js';
+import { icon } from './icons.js';
+
+export function download(name, text, type) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000); // a browser may begin to save it later
+}
+
+/** The answer of the draft as it is; null while it is still to come, or there is none. */
+const fresh = (world) => {
+  const { result, isOld } = beamFacts(world).answer.value;
+  return isOld || !result?.is_draft ? null : result;
+};
+
+export function exportMenu(world) {
+  const { room, ui } = world;
+  const isOpen = ui.popover.value === 'beam-export';
+  const answer = isOpen ? fresh(world) : null;
+  const save = (make) => (event) => {
+    event.currentTarget.closest('.anchor').querySelector('button').focus(); // the item goes
+    ui.popover.value = '';
+    endCompare(room);
+    make();
+  };
+  const json = () => download(`${room.planId.value}-draft-beam.json`, `${JSON.stringify(draftDocument(room.plan.value, room.scene.value, room.planId.value, answer), null, 2)}\n`, 'application/json');
+  const card = () => download(`${room.planId.value}-draft-beam.txt`, answer.card, 'text/plain');
+  return html`<span class="anchor"><button aria-haspopup="menu" aria-expanded=${isOpen} title="Save the draft as a file" @click=${() => ui.toggle('beam-export')}>Export</button>
+    ${isOpen ? html`<div class="popover beam-export"><div class="menu" role="menu" aria-label="Export the draft">
+      <button role="menuitem" @click=${save(json)}>${icon('download')}<span>JSON: planned and draft geometry</span></button>
+      <button role="menuitem" ?disabled=${!answer?.card} title=${answer?.card ? nothing : 'The server has not said it yet'} @click=${save(card)}>${icon('download')}<span>SERA beam card</span></button></div></div>` : nothing}</span>`;
+}

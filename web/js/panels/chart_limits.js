@@ -1,0 +1,121 @@
+// The table of limits of the inspector's Plan: each with its value and whether it is met; added, edited, removed, read from and saved as CSV.
+import { html, nothing } from '../../lib/lit-html.js';
+import { live } from '../../lib/directives/live.js';
+import { repeat } from '../../lib/directives/repeat.js';
+import { enums } from '../../gen/wire.js';
+import { constraintsCsv, constraintsFromCsv, freeConstraintId, measureOf, metricWords, mostConstraints, readConstraint, verdictOf } from '../state/dose_constraints.js';
+import { saveFile } from '../state/dose_csv.js';
+import { quantityName, regionName } from './chart_words.js';
+import { count, significant, unitText } from './format.js';
+import { icon } from './icons.js';
+
+const icons = { met: ['check', 'ok'], 'not met': ['error', 'err'], 'not known': ['warning', 'warn'] };
+const sides = { 'at-most': '≤', 'at-least': '≥' };
+/** The unit of a quantity of the dose shown, as its file has it: a dose in cGy has limits in cGy. */
+function unitOfQuantity({ room }, quantity) {
+  const { doses } = room.plan.value;
+  const shown = doses.find(({ id }) => id === room.scene.value.dose.id) ?? doses[0];
+  const part = shown.components.find((component) => component.quantity === quantity);
+  if (part?.unit) return unitText(part.unit);
+  const base = shown.unit || 'Gy';
+  return { weighted: `${base.replace(/\(w\)$/, '')}(w)`, isoeffective: `${base}(IsoE)` }[quantity] ?? base;
+}
+const limitUnit = (world, { metric, quantity }) => ({ dose: unitOfQuantity(world, quantity), percent: '%', cm3: 'cm³' })[measureOf(metric)];
+
+/** All of the scene with what is known of them. */
+export function limitRows({ room, curves }) {
+  const { result, error } = curves.limits.value;
+  return Object.entries(room.scene.value.constraints ?? {}).map(([id, constraint]) => ({ id, constraint, verdict: verdictOf(result?.constraints?.find((row) => row.id === id), error) }));
+}
+
+export const verdictSign = ({ word }) => html`<span class=${`chart-verdict ${icons[word][1]}`}>${icon(icons[word][0], 12)} ${word}</span>`;
+
+/** "tumor", "D95 % ≥ 20 Gy(w)" */
+export const limitWords = (world, { constraint }) => [regionName(world.room.plan.value)(constraint.region),
+  `${metricWords(constraint.metric, unitOfQuantity(world, constraint.quantity))} ${sides[constraint.side]} ${significant(constraint.limit)} ${limitUnit(world, constraint)}`];
+
+export const valueWords = ({ verdict }) => (verdict.value === null ? '–' : `${significant(verdict.value)} ${unitText(verdict.unit)}`);
+
+export function limitsBlock(world) {
+  const { room, curves } = world;
+  const plan = room.plan.value;
+  const rows = limitRows(world);
+  const isDisabled = !room.canChange.value;
+  const editing = curves.editing.value;
+  const isOld = curves.limits.value.isOld && rows.length > 0;
+  const tally = Object.keys(icons).map((word) => [word, rows.filter(({ verdict }) => verdict.word === word).length]).filter(([, n]) => n).map(([word, n]) => `${n} ${word}`).join(', ');
+  const start = (id, values) => {
+    curves.editing.value = { id, values, error: '' };
+  };
+  return html`<section class="block chart-limits" aria-label="Limits of dose"><h3>Limits of dose <span class="dim">${tally}</span>${isOld ? html` <span class="chart-stale warn">${icon('stale', 12)} old</span>` : nothing}</h3>
+    ${rows.length ? html`<ul>${repeat(rows, ({ id }) => id, (row) => one(world, row, isDisabled, start))}</ul>` : html`<p class="empty">None. A limit says, for example, that the brain may have at most 10 Gy(w).</p>`}
+    ${editing ? form(world, isDisabled) : html`<div class="buttons"><button ?disabled=${isDisabled || rows.length >= mostConstraints || !plan.regions.length} @click=${() => start('', { region: plan.regions[0].id, quantity: room.scene.value.dose.quantity, metric: 'D95%', side: 'at-least', limit: '' })}>Add a limit</button>
+      <button ?disabled=${isDisabled} title="Columns: region, quantity, metric, side, limit" @click=${(event) => event.currentTarget.nextElementSibling.click()}>${icon('upload', 12)}<span>Import CSV</span></button><input class="hidden" type="file" accept=".csv,text/csv" tabindex="-1" aria-hidden="true" @change=${(event) => read(world, event)}>
+      <button ?disabled=${!rows.length} @click=${() => saveFile(`${room.planId.value}-limits.csv`, constraintsCsv(rows, plan), 'text/csv')}>${icon('download', 12)}<span>CSV</span></button></div>`}
+    ${curves.importError.value ? html`<div class="refusal" role="alert">${icon('error', 16)}<p>${curves.importError.value}</p><button class="icon-button small" aria-label="Dismiss" @click=${() => { curves.importError.value = ''; }}>${icon('close', 12)}</button></div>` : nothing}</section>`;
+}
+
+function one(world, row, isDisabled, start) {
+  const { room } = world;
+  const { id, constraint, verdict } = row;
+  const [region, words] = limitWords(world, row);
+  const remove = (event) => patch(world, { [id]: null }, event);
+  return html`<li class="chart-limit" data-limit=${id}><b title=${region}>${region}</b>${verdictSign(verdict)}<span><button class="icon-button small" title="Edit" aria-label=${`Edit the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${() => start(id, { ...constraint })}>${icon('sliders', 12)}</button><button
+      class="icon-button small" title="Remove" aria-label=${`Remove the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${remove}>${icon('trash', 12)}</button></span>
+    <span>${words} <span class="note">${quantityName(constraint.quantity)}</span></span><b class="chart-value">${valueWords(row)}</b>${verdict.reason ? html`<span class="dim">${verdict.reason}</span>` : nothing}</li>`;
+}
+
+/** On one's own, a limit of the room is not taken away by leaving it out of the override, but by null there. */
+function patch({ room, ui }, constraints, event) {
+  room.patchScene({ constraints }, { view: ui.active.value, at: event?.timeStamp });
+}
+
+function form(world, isDisabled) {
+  const { room, curves } = world;
+  const { id, values, error } = curves.editing.value;
+  const plan = room.plan.value;
+  const set = (name) => (event) => {
+    curves.editing.value = { id, values: { ...values, [name]: event.target.value }, error: '' };
+  };
+  const keep = (event) => {
+    event.preventDefault();
+    try {
+      const constraint = readConstraint(curves.editing.value.values, plan);
+      patch(world, { [id || freeConstraintId(room.scene.value.constraints)]: constraint }, event);
+      curves.editing.value = null;
+    } catch (problem) {
+      curves.editing.value = { ...curves.editing.value, error: problem.message };
+    }
+  };
+  const choice = (name, label, options) => html`<label for=${`limit-${name}`}>${label}</label><select id=${`limit-${name}`} @change=${set(name)}>${options.map(([value, words]) => html`<option value=${value} .selected=${live(value === values[name])}>${words}</option>`)}</select>`;
+  return html`<form class="chart-form" aria-label=${id ? 'Edit a limit' : 'A new limit'} @submit=${keep}>
+    ${choice('region', 'Region', plan.regions.map((region) => [region.id, region.name]))}${choice('quantity', 'Quantity', enums.dose_quantity.map((quantity) => [quantity, quantityName(quantity)]))}
+    <label for="limit-metric">Figure</label><input id="limit-metric" maxlength="24" list="limit-metrics" title="mean, min, max, D95%, D2cc, V20, V20cc" .value=${live(values.metric)} @input=${set('metric')}><datalist id="limit-metrics">${['mean', 'min', 'max', 'D98%', 'D95%', 'D50%', 'D2%', 'D0.03cc', 'V20'].map((metric) => html`<option value=${metric}></option>`)}</datalist>
+    ${choice('side', 'Keeps it', [['at-most', 'at most'], ['at-least', 'at least']])}
+    <label for="limit-limit">Limit</label><input id="limit-limit" inputmode="decimal" .value=${live(String(values.limit))} @input=${set('limit')}>
+    ${error ? html`<div class="refusal" role="alert">${icon('error', 16)}<p>${error}</p></div>` : nothing}
+    <span></span><div class="buttons"><button class="primary" type="submit" ?disabled=${isDisabled}>${id ? 'Change it' : 'Add it'}</button><button type="button" @click=${() => { curves.editing.value = null; }}>Cancel</button></div></form>`;
+}
+
+/** Reads a file whole or not at all: limits that are there already stay, and those of the file are added. */
+async function read(world, event) {
+  const { room, curves, ui } = world;
+  const [file] = event.target.files;
+  event.target.value = '';
+  if (!file) return;
+  curves.importError.value = '';
+  try {
+    const now = room.scene.value.constraints ?? {};
+    const found = constraintsFromCsv(await file.text(), room.plan.value);
+    const added = found.filter((constraint) => !Object.values(now).some((other) => isSame(other, constraint)));
+    if (Object.keys(now).length + added.length > mostConstraints) throw new Error(`With the ${Object.keys(now).length} that are there, there would be ${Object.keys(now).length + added.length} limits; a scene has at most ${mostConstraints}.`);
+    const patched = {};
+    for (const constraint of added) patched[freeConstraintId(now, Object.keys(patched))] = constraint;
+    if (added.length) patch(world, patched);
+    ui.notify('ok', `${count(added.length, 'limit')} added${found.length > added.length ? `, ${found.length - added.length} there already` : ''}.`, 'limits');
+  } catch (error) {
+    curves.importError.value = `${file.name} was not read. ${error.message}`;
+  }
+}
+
+const isSame = (a, b) => ['region', 'quantity', 'metric', 'side', 'limit'].every((name) => a[name] === b[name]);

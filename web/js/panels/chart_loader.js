@@ -1,0 +1,22 @@
+// The plots of dose, loaded when they are first wanted: their code and uPlot are no part of what a first visit loads.
+import { Lazy } from './lazy.js';
+
+export class ChartLoader {
+  #parts;
+
+  constructor(world) {
+    this.#parts = new Lazy(async () => (await import('./charts.js')).makeCharts(world));
+  }
+
+  /** One part of the plots as a template. @param {'drawer'|'sheet'|'limits'|'printed'} name */
+  draw(name) {
+    return this.#parts.draw((parts) => parts[name]());
+  }
+
+  stop() {
+    this.#parts.loaded.peek()?.stop();
+  }
+}
+
+/** True for a plan that has doses to plot. */
+export const hasCharts = (plan) => (plan?.doses.length ?? 0) > 0;

@@ -1,0 +1,79 @@
+// A second dose beside the one shown, and the part of a region within limits: in Selection.
+import { html, nothing } from '../../lib/lit-html.js';
+import { live } from '../../lib/directives/live.js';
+import { doseName, shownDose, unitOf } from '../state/dose.js';
+import { checkbox, numberField, segment } from './fields.js';
+import { number, signed, significant, volume } from './format.js';
+import { icon } from './icons.js';
+
+const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+const modes = [['none', 'Off'], ['lines', 'Lines', 'Its isodoses, dashed'], ['difference', 'Difference', 'Second less first, as a wash'], ['gamma', 'Gamma', 'Gamma index, as a wash']];
+
+export function compareBlock(world, isDisabled, changeScene) {
+  const { room } = world;
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const shown = shownDose(plan, scene);
+  const others = plan.doses.filter((dose) => dose !== shown);
+  const { compare } = scene.dose;
+  const second = others.find(({ id }) => id === compare.id);
+  const change = (patch, event) => changeScene({ dose: { compare: patch } }, event);
+  const choose = (mode, event) => change({ mode, ...(!second && mode !== 'none' && { id: others[0].id }) }, event);
+  const field = (name, words, unit, low, high) => html`<dt>${words}</dt><dd>${numberField(words, compare[name], unit, isDisabled, (value, event) => change({ [name]: clamp(value, low, high) }, event))}</dd>`;
+  return html`<section class="block"><h3>Compare <span class="dim">${second && compare.mode !== 'none' ? `with ${doseName(second)}` : ''}</span></h3>
+    <div class="shown-as">${segment('Comparison', modes, compare.mode, isDisabled, choose)}</div>
+    <dl class="dose-list"><dt>Second dose</dt><dd><select class="dose-select" aria-label="Second dose" ?disabled=${isDisabled} @change=${(event) => change({ id: event.target.value, ...(!event.target.value && { mode: 'none' }) }, event)}>
+        <option value="" ?selected=${!second} .selected=${live(!second)}>none</option>${others.map((dose) => html`<option value=${dose.id} ?selected=${dose === second} .selected=${live(dose === second)}>${doseName(dose)}, ${unitOf(dose, scene.dose.quantity)}</option>`)}</select></dd>
+      ${compare.mode === 'difference' ? field('span_percent', 'Strongest colour at ±', '%', 0.01, 1000) : nothing}
+      ${compare.mode === 'gamma' ? html`${field('dose_percent', 'Dose difference', '%', 0.01, 100)}${field('distance_mm', 'Distance to agreement', 'mm', 0.01, 50)}${field('threshold_percent', 'Leave out below', '%', 0, 100)}
+        <dt>Difference is of</dt><dd>${segment('Normalization of gamma', [['global', 'reference'], ['local', 'point']], compare.normalization, isDisabled, (normalization, event) => change({ normalization }, event))}</dd>` : nothing}</dl>
+    ${['gamma', 'difference'].includes(compare.mode) && second ? comparedWords(world) : nothing}</section>`;
+}
+
+/** The figures of the comparison: how much passes, or how large the difference is. */
+function comparedWords({ room, doses }) {
+  const { compare } = room.scene.value.dose;
+  const { result, error, isOld } = doses.gamma.value;
+  if (error) return html`<p class="note err">${error}</p>`;
+  if (!result) return html`<p class="note">Comparing …</p>`;
+  if (result.comparison_reason) return html`<p class="note why">${icon('warning', 12)} ${result.comparison_reason}</p>`;
+  const { difference, unit } = result;
+  return html`<div class=${`dose-result${isOld ? ' old' : ''}`}>${compare.mode === 'gamma'
+    ? html`<p>Pass rate <b>${number(result.pass_percent, 1)} %</b> of ${number(result.voxels)} voxels</p><p class="note">γ ≤ 1 passes; mean ${significant(result.mean)}, largest ${significant(result.max)}${result.max >= 2 ? ' or more' : ''}.</p>`
+    : html`<p>Mean difference <b>${signed(difference.mean, 3)} ${difference.unit || unit}</b></p><p class="note">From ${signed(difference.low, 3)} to ${signed(difference.high, 3)} ${difference.unit || unit}, root mean square ${significant(difference.root_mean_square)}.</p>`}
+    ${result.method ? html`<p class="note">${result.method}</p>` : nothing}</div>`;
+}
+
+export function coverageBlock(world, isDisabled, changeScene) {
+  const { room } = world;
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const regions = plan.regions.filter(({ voxels }) => voxels > 0);
+  if (!regions.length) return nothing;
+  const { coverage } = scene.dose;
+  const unit = unitOf(shownDose(plan, scene), scene.dose.quantity);
+  const change = (patch, event) => changeScene({ dose: { coverage: patch } }, event);
+  const [low, high] = [coverage.low ?? null, coverage.high ?? null]; // a merge patch with null takes the field away
+  const isBelow = low === null;
+  const level = (isBelow ? high : low) ?? 95;
+  const limits = (below, value) => (below ? { low: null, high: value } : { low: value, high: null });
+  const toggle = (visible, event) => change({ visible, ...(low === null && high === null && limits(true, level)) }, event);
+  const target = plan.regions.find(({ is_target: is }) => is) ?? regions[0];
+  const of = plan.regions.find(({ id }) => id === coverage.region) ?? target;
+  return html`<section class="block"><h3>Coverage <span class="dim">of ${of.name}</span></h3>
+    <div class="checks dose-checks">${checkbox('Highlight the part', coverage.visible, isDisabled, toggle, 'Univels of the region within the limits, on slices and in 3-D')}</div>
+    <dl class="dose-list"><dt>Region</dt><dd><select class="dose-select" aria-label="Region of the coverage" ?disabled=${isDisabled} @change=${(event) => change({ region: event.target.value }, event)}>
+        ${regions.map(({ id, name }) => html`<option value=${id} ?selected=${id === of.id} .selected=${live(id === of.id)}>${name}</option>`)}</select></dd>
+      <dt>Dose is</dt><dd>${segment('Side of the coverage', [[true, 'below'], [false, 'at least']], isBelow, isDisabled, (below, event) => change(limits(below, level), event))}</dd>
+      <dt>Level</dt><dd class="dose-pair">${numberField('Level of the coverage', Number(level.toPrecision(6)), '', isDisabled, (value, event) => value >= 0 && change(limits(isBelow, value), event))}
+        ${segment('Unit of the coverage', [['percent', '%'], ['dose', unit]], coverage.unit, isDisabled, (id, event) => change({ unit: id }, event))}</dd>
+      <dt>Colour</dt><dd><input type="color" class="dose-swatch" .value=${live(coverage.color)} aria-label="Colour of the coverage" ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}></dd></dl>
+    ${coverage.visible ? coverageWords(world) : nothing}</section>`;
+}
+
+function coverageWords({ doses }) {
+  const { result, error, isOld } = doses.coverage.value;
+  if (error) return html`<p class="note err">${error}</p>`;
+  if (!result) return html`<p class="note">Counting …</p>`;
+  if (result.coverage_reason) return html`<p class="note why">${icon('warning', 12)} ${result.coverage_reason}</p>`;
+  return html`<p class=${`dose-result${isOld ? ' old' : ''}`}><b>${number(result.share * 100, 1)} %</b> of the region, <b>${volume(result.volume_cm3)}</b></p>
+    ${result.missing_cm3 > 0 ? html`<p class="note">${volume(result.missing_cm3)} of it have no dose and are not counted.</p>` : nothing}`;
+}

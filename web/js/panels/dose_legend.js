@@ -1,0 +1,67 @@
+// What a picture with dose must say: its levels with colour, value and unit, its reference, and whether it may not belong.
+import { html, nothing } from '../../lib/lit-html.js';
+import { acceptedWords, isOn, missingWords, referenceWords, shownDose, unitOf } from '../state/dose.js';
+import { levelsOf, percentOf, doseOf } from '../state/dose_levels.js';
+import { isTarget } from '../state/plan.js';
+import { isInSpace } from '../view/kinds.js';
+import { toPicture } from '../view/vec.js';
+import { number, significant } from './format.js';
+import { icon } from './icons.js';
+import { variables } from './mount.js';
+
+const rowPx = 16;
+const [narrow, narrowest] = [320, 240]; // px: of a pane with the legend at its foot, and with one only while it is active
+const besidesPx = 120; // of a pane: letters, scale, the other legends
+
+/** @param {object} world {room, doses} @param {import('../state/view.js').ViewState} view @param {[number, number]} size of the pane @param {boolean} isLeftTaken by another legend */
+export function doseLegend({ room, ui, doses }, view, [width, height], isLeftTaken) {
+  const is3d = isInSpace(view.kind);
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const dose = shownDose(plan, scene);
+  const { result: answer, isOld } = doses.scale.value;
+  if (!dose || !answer?.drawn || !doses.isOfScene(answer) || !isShown(scene, is3d) || (width < narrowest && !is3d && ui.active.value !== view.number)) return nothing;
+  const { wash, lines, surfaces, error, compare } = scene.dose;
+  const reference = doses.reference.value;
+  const unit = unitOf(dose, scene.dose.quantity);
+  const isUsed = (level) => level.visible && ((level.wash && wash.visible) || (level.line && lines.visible) || (is3d && level.surface && surfaces.visible));
+  const all = levelsOf(scene, reference).filter(isUsed);
+  const most = Math.max(1, Math.floor((height - besidesPx) / 2 / rowPx) - 1);
+  const levels = all.slice(0, all.length > most ? Math.max(1, most - 1) : most);
+  const words = referenceWords(plan, scene.dose.reference);
+  const notes = [acceptedWords(plan, scene), missingWords(answer.missing ?? [])].filter(Boolean);
+  const isLeft = !isLeftTaken && isAtRight(plan, view);
+  const place = width < narrow ? 'foot' : isLeft ? 'left' : '';
+  return html`<div class=${`legend dose-legend ${place}${isOld ? ' old' : ''}`} role="group" aria-label="Dose">
+    ${notes.map((text) => html`<p class="warn">${icon('warning', 12)} ${text}</p>`)}
+    ${all.length ? html`<p class="dose-legend-head"><span>% of ${words}</span> <span>${unit}</span></p>` : nothing}
+    <ul>${levels.map((level) => html`<li><i class=${level.wash && wash.visible ? 'area' : 'line'} ${variables({ '--color': level.color })}></i><span>${number(percentOf(level, reference), isWhole(percentOf(level, reference)) ? 0 : 1)} %</span><span>${significant(doseOf(level, reference))}</span></li>`)}
+      ${all.length > levels.length ? html`<li class="dim">and ${all.length - levels.length} lower</li>` : nothing}</ul>
+    ${error && wash.visible ? html`<p>Wash: statistical error, %</p>` : nothing}${compareWords(compare, plan)}</div>`;
+}
+
+/** True if the first target, where most dose is, stands in the right half of the picture. */
+function isAtRight(plan, view) {
+  const target = plan.regions.find(isTarget);
+  const at = target?.center_mm && toPicture(view.painted.value.clip_from_lps_mm, target.center_mm);
+  return Boolean(at) && at[0] > 0.5;
+}
+
+const isWhole = (value) => Math.abs(value - Math.round(value)) < 0.05;
+
+/** True if a picture of this kind shows dose. In 3-D lines and wash lie on slices, caps and regions whose texture is dose. */
+function isShown(scene, is3d) {
+  const { wash, lines, surfaces, compare, coverage } = scene.dose;
+  if (!is3d) return isOn(scene) && (wash.visible || lines.visible || compare.mode !== 'none' || coverage.visible);
+  const hasPlane = Object.values(scene.image.slices).some(({ visible }) => visible) || Object.values(scene.image.obliques ?? {}).some(({ visible }) => visible);
+  const hasCap = Object.values(scene.clip).some((plane) => plane?.enabled);
+  const hasTexture = Object.values(scene.regions).some(({ visible, texture }) => visible && texture === 'dose');
+  const isFlat = wash.visible || lines.visible || compare.mode !== 'none';
+  return surfaces.visible || coverage.visible || (isFlat && (hasPlane || hasCap)) || (wash.visible && (hasTexture || (wash.volume && scene.image.volume.visible)));
+}
+
+function compareWords({ id, mode, span_percent: span, dose_percent: percent, distance_mm: mm, normalization }, plan) {
+  const second = plan.doses.find((dose) => dose.id === id);
+  if (mode === 'none' || !second) return nothing;
+  const name = second.name || second.id;
+  return html`<p>${mode === 'gamma' ? `γ of ${name}: ${number(percent, percent % 1 ? 1 : 0)} % ${normalization}, ${number(mm, mm % 1 ? 1 : 0)} mm` : mode === 'difference' ? `${name} less the first, ± ${number(span, span % 1 ? 1 : 0)} %` : `dashed: ${name}`}</p>`;
+}

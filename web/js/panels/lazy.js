@@ -1,0 +1,59 @@
+// Parts of the page that are loaded when they are first drawn, so that they do not weigh on a first visit.
+import { html } from '../../lib/lit-html.js';
+import { signal } from '../../lib/signals-core.js';
+
+/** @template T */
+export class Lazy {
+  #load;
+  #loading = null; // the promise of an attempt that goes on
+  #error = signal(false);
+
+  /** @param {() => Promise<T>} load imports the module, and makes of it what is drawn */
+  constructor(load) {
+    this.#load = load;
+    this.loaded = signal(null); // T; null: not yet
+  }
+
+  /** A template of what is loaded; until then, and when it could not be loaded, one that says so. Read in an effect, it is told when it comes. @param {(loaded: T) => unknown} use */
+  draw(use) {
+    if (this.loaded.value) return use(this.loaded.value);
+    if (this.#error.value)
+      return html`<p class="empty" role="alert">This part of the page could not be loaded. <button class="link" @click=${() => { this.#error.value = false; }}>Try again</button></p>`;
+    this.load();
+    return html`<p class="empty">Loading …</p>`;
+  }
+
+  /** Loads it before it is drawn; resolves when it is there, or cannot be loaded, whoever asked for it first. */
+  load() {
+    if (!this.loaded.peek()) this.#loading ??= this.#attempt();
+    return this.#loading;
+  }
+
+  async #attempt() {
+    try {
+      this.loaded.value = await this.#load();
+    } catch {
+      this.#error.value = true;
+    }
+    this.#loading = null;
+  }
+}
+
+/** What is loaded; null until then, and loads it. */
+export function known(lazy) {
+  const module = lazy.loaded.value;
+  if (!module) lazy.load();
+  return module;
+}
+
+/** Adds a style sheet to the page, once; resolves when it is there. */
+export async function styled(href) {
+  const known = document.querySelector(`link[href="${href}"]`);
+  if (known?.sheet) return;
+  const link = known ?? Object.assign(document.createElement('link'), { rel: 'stylesheet', href });
+  await new Promise((done, failed) => {
+    link.addEventListener('load', done);
+    link.addEventListener('error', () => { link.remove(); failed(new Error(href)); });
+    if (!known) document.head.append(link);
+  });
+}

@@ -1,0 +1,56 @@
+// Comma-separated values as of RFC 4180, and files that the browser saves.
+
+/** A text that a spreadsheet would take for a formula gets an apostrophe in front. */
+const guarded = (text) => (/^[=+@\t]/.test(text) ? `'${text}` : text);
+const cell = (value) => {
+  if (typeof value === 'number') return Number.isFinite(value) ? String(Number(value.toPrecision(7))) : '';
+  const text = guarded(String(value ?? ''));
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+};
+
+/** @param {(string|number|null)[][]} rows numbers with seven figures, what is not known as an empty field */
+export const csvText = (rows) => rows.map((row) => `${row.map(cell).join(',')}\r\n`).join('');
+
+/** The rows of a text, each with the number of its line; lines without anything are left out. Throws an Error with a sentence. @returns {{line: number, cells: string[]}[]} */
+export function csvRows(text) {
+  const rows = [];
+  let [line, cells, field, isQuoted, wasQuoted] = [1, [], '', false, false];
+  let start = 1;
+  const endField = () => {
+    cells.push(wasQuoted ? field : field.trim());
+    [field, wasQuoted] = ['', false];
+  };
+  const endRow = () => {
+    endField();
+    if (cells.some((one) => one !== '')) rows.push({ line: start, cells });
+    [cells, start] = [[], line];
+  };
+  const source = text.replace(/^\uFEFF/, '').replace(/\r\n?/g, '\n');
+  for (let at = 0; at < source.length; at++) {
+    const sign = source[at];
+    if (sign === '\n') line += 1;
+    if (isQuoted) {
+      if (sign !== '"') field += sign;
+      else if (source[at + 1] === '"') field += source[++at];
+      else isQuoted = false;
+    } else if (sign === '"') {
+      if (field.trim() || wasQuoted) throw new Error(`Line ${line}: a quotation mark inside a field.`);
+      [field, isQuoted, wasQuoted] = ['', true, true];
+    } else if (sign === ',') endField();
+    else if (sign === '\n') endRow();
+    else if (!wasQuoted) field += sign;
+    else if (sign.trim()) throw new Error(`Line ${line}: text after a quotation mark.`);
+  }
+  if (isQuoted) throw new Error(`Line ${start}: a quotation mark is not closed.`);
+  endRow();
+  return rows;
+}
+
+/** Lets the browser save a text as a file. */
+export function saveFile(name, text, type) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000); // a browser may begin to save it later
+}

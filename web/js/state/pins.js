@@ -1,0 +1,24 @@
+// Pinned probes: points of the scene whose values are kept in view. Pure.
+
+export const maxPins = 32;
+
+/** The pins with their numbers, in the order in which they were set. */
+export const pinsOf = (scene) => Object.entries(scene?.probes ?? {}).map(([id, pin]) => ({ id, ...pin, label: pin.name || id.replace(/^pin-/, '') }));
+
+const same = (a, b) => a.every((value, axis) => Math.abs(value - b[axis]) < 0.05);
+
+/** @returns {{id: string, patch: object}|null} null: there is one already, or there are as many as there may be */
+export function pinnedAt(scene, point) {
+  const all = pinsOf(scene);
+  if (all.length >= maxPins || all.some((pin) => same(pin.at_mm, point))) return null;
+  let n = 1;
+  while (`pin-${n}` in scene.probes) n += 1;
+  const at = point.map((value) => Math.round(value * 1e4) / 1e4 || 0);
+  return { id: `pin-${n}`, patch: { probes: { [`pin-${n}`]: { at_mm: at, name: '' } } } };
+}
+
+/** Comma-separated values, as RFC 4180: a field is quoted where it has to be. @param {(string|number|null)[][]} rows */
+export const csv = (rows) => rows.map((row) => row.map((field) => {
+  const text = field === null || field === undefined ? '' : String(field);
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}).join(',')).join('\r\n').concat('\r\n');
