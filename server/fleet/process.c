@@ -181,7 +181,8 @@ bool process_is_awaited(const struct process *process)
 
 bool process_is_throttled(const struct process *process)
 {
-    return event_backlog_bytes(process->backlog) >= PROCESS_MAX_BACKLOG;
+    return event_backlog_bytes(process->backlog) >=
+           (process->has_progress ? PROCESS_MAX_PROGRESS : PROCESS_MAX_BACKLOG);
 }
 
 size_t process_poll(const struct process *process, struct pollfd polled[2])
@@ -280,11 +281,16 @@ static bool read_packets(struct process *process, size_t *n_read, int64_t now_us
     return process->child.channel >= 0 && !process_is_throttled(process);
 }
 
-/* Reports the whole lines printed so far, one event each. */
+static const char *end_of_line(const struct process *process, size_t begin)
+{
+    return process->n_output > begin ? memchr(process->output + begin, '\n', process->n_output - begin) : NULL;
+}
+
+/* Reports the whole lines printed so far, one event each, until it is throttled: the rest stays in output. */
 static void put_lines(struct process *process, int64_t now_us)
 {
     size_t begin = 0;
-    for (const char *end; (end = memchr(process->output + begin, '\n', process->n_output - begin));) {
+    for (const char *end; !process_is_throttled(process) && (end = end_of_line(process, begin));) {
         size_t n = (size_t)(end - (process->output + begin));
         struct watch_event *event = event_new(process, WATCH_LINE);
         event->output = mem_new(n + 1);
@@ -329,6 +335,8 @@ static bool read_output(struct process *process, size_t *n_read, int64_t now_us)
 static void read_in(struct process *process, int64_t now_us)
 {
     size_t n_read = 0;
+    if (process->has_progress)
+        put_lines(process, now_us); /* left by an earlier step */
     while (process->child.channel >= 0 && n_read < READ_ROUND && !process_is_throttled(process))
         if (!(process->is_program ? read_output(process, &n_read, now_us) : read_packets(process, &n_read, now_us)))
             return;
@@ -426,6 +434,8 @@ static void check_limits(struct process *process, const struct silence_limits *l
         process_stop(process, true, process->is_stopping ? "" : "closed its socket and went on", now_us);
         return;
     }
+    if (process->has_progress && process_is_throttled(process)) /* it is not read from */
+        process->limit_at_us = now_us + (int64_t)process->limit_ms * 1000;
     if (now_us >= process->limit_at_us && !process->is_stopping) {
         process_stop(process, true, "took longer than it may", now_us);
         return;
@@ -459,6 +469,8 @@ bool process_step(struct process *process, const struct silence_limits *limits, 
     check_limits(process, limits, now_us);
     if (!process->has_ended || (process->child.channel >= 0 && now_us < process->drain_until_us))
         return false;
+    if (process->has_progress && !process->is_stopping && end_of_line(process, 0))
+        return false; /* its last lines wait until earlier ones are handled */
     report_end(process);
     return true;
 }

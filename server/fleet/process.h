@@ -9,7 +9,8 @@
 enum {
     PROCESS_MAX_OUTPUT = 256 << 10,  /* bytes a program may print; with progress: in one line */
     PROCESS_MAX_OUTGOING = 64 << 20, /* bytes one renderer may leave unread before it counts as hung */
-    PROCESS_MAX_BACKLOG = 256 << 20  /* memory of one renderer's packets not yet handled; then it is not read from */
+    PROCESS_MAX_BACKLOG = 256 << 20, /* memory of one renderer's packets not yet handled; then it is not read from */
+    PROCESS_MAX_PROGRESS = 128 << 10 /* the same of a program's lines: some hundred */
 };
 
 /* A renderer's silence counts from the first ping that is not answered, and only while the watch itself runs. */

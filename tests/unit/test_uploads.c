@@ -262,6 +262,25 @@ static void cancelling_ends_the_unpacker_and_leaves_nothing(void **state)
     world_end(&world);
 }
 
+/* The flood's own end is reported after its lines; were all of them queued, it would come after hundreds of turns. */
+static void a_flood_of_progress_does_not_hold_up_what_is_reported_after_it(void **state)
+{
+    (void)state;
+    struct world world;
+    start(&world);
+    uint64_t flooding = begin_upload(&world, "y", "floods");
+    WORLD_UNTIL(&world, upload_of(&world, flooding).percent >= 13);
+    nanosleep(&(struct timespec){ .tv_sec = 1 }, NULL); /* nobody takes what is reported */
+    fleet_upload_cancel(world.fleet, flooding);
+    int n_turns = 0;
+    while (n_in(&world, "uploads") > 0 && n_turns++ < 30) {
+        nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
+        fleet_handle_events(world.fleet);
+    }
+    assert_int_equal(n_in(&world, "uploads"), 0);
+    world_end(&world);
+}
+
 static void more_archives_than_the_limit_are_refused_and_removed(void **state)
 {
     (void)state;
@@ -317,6 +336,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(impossible_progress_is_not_believed),
         cmocka_unit_test(one_that_is_slow_but_says_so_is_left_alone),
         cmocka_unit_test(cancelling_ends_the_unpacker_and_leaves_nothing),
+        cmocka_unit_test(a_flood_of_progress_does_not_hold_up_what_is_reported_after_it),
         cmocka_unit_test(more_archives_than_the_limit_are_refused_and_removed),
         cmocka_unit_test(what_an_earlier_run_left_is_removed_at_start),
     };
