@@ -118,7 +118,20 @@ function namesSomething(object, objects) {
 
 /** A description of messages (messages.json), checked. */
 export function checkedMessages(description) {
-  for (const message of description.messages)
+  const rights = description.enums.right?.values.map(([word]) => word);
+  for (const message of description.messages) {
     checkFields(message.fields, { enums: description.enums, references: {}, known: new Set(), isMessage: true }, message.name);
+    if (rights) need(message.from === 'client' ? rights.includes(message.right) : message.right === undefined, message.name, `a message from the page, and no other, has a "right": one of ${rights.join(', ')}`);
+  }
+  for (const [role, , given = []] of description.enums.member_role?.values ?? [])
+    need(given.length > 0 && given.every((right) => rights.includes(right)), role, `a role has rights: some of ${rights.join(', ')}`);
   return description;
+}
+
+/** The routes of rooms (http.json), each with its right. */
+export function checkedRoomRoutes({ routes }, { enums }) {
+  const rights = enums.right.values.map(([word]) => word);
+  for (const { method, path, right } of routes)
+    need(/\{room\}/.test(path) ? rights.includes(right) : right === undefined, `${method} ${path}`, `a route of a room, and no other, has a "right": one of ${rights.join(', ')}`);
+  return routes.filter(({ right }) => right !== undefined);
 }

@@ -12,7 +12,7 @@
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { checkedDocuments, checkedMessages } from './check.mjs';
+import { checkedDocuments, checkedMessages, checkedRoomRoutes } from './check.mjs';
 import { sceneHeader, sceneSource } from './scene_c.mjs';
 import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
@@ -44,7 +44,7 @@ const write = (name, text) => writeFileSync(join(out, name), text);
 write('scene.h', sceneHeader(scene));
 write('scene.c', sceneSource(scene));
 write('wire_gen.h', wireHeader(scene, messages));
-write('wire_gen.c', wireSource(scene, messages));
+write('wire_gen.c', wireSource(scene, messages, checkedRoomRoutes(http, messages)));
 write('packets_gen.h', packetsHeader(packets));
 write('packets_gen.c', packetsSource(packets));
 write('problem_gen.h', problemHeader(problems));

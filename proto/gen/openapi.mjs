@@ -46,7 +46,7 @@ export function openapi(http, scene, version) {
     const responses = {};
     for (const [status, kind] of Object.entries(route.answers)) responses[status] = { description: route.about, ...(kind && { content: mediaOf(kind) }) };
     responses.default = { description: `A problem: ${route.problems.join(', ') || 'internal'}.`, content: { 'application/problem+json': { schema: { $ref: '#/components/schemas/problem' } } } };
-    const operation = { summary: route.about, parameters, responses };
+    const operation = { summary: route.about, parameters, responses, ...(route.right && { 'x-right': route.right }) };
     if (route.body === 'scene') operation.requestBody = { required: true, content: { 'application/merge-patch+json': { schema: { type: 'object' } } } };
     else if (Array.isArray(route.body)) operation.requestBody = { required: true, content: Object.fromEntries(route.body.map((type) => [type, { schema: { type: 'string', format: 'binary' } }])) };
     else if (route.body) operation.requestBody = { required: true, content: { 'application/json': { schema: { type: 'object', additionalProperties: false,

@@ -40,10 +40,10 @@ export function referencePage(scene, messages, packets, problems, codes) {
   for (const [name, object] of Object.entries(scene.objects)) body += `<h3 id="object-${name}">${name}</h3>\n<p>${escape(object.about)}</p>\n${tableOf(object.fields, enums)}`;
   body += '<h2>Words</h2>\n';
   for (const [name, description] of Object.entries(enums))
-    body += `<h3>${name}</h3>\n<p>${escape(description.about)}</p>\n<ul>${description.values.map(([word, about]) => `<li><code>${escape(word)}</code>: ${escape(about)}</li>`).join('')}</ul>\n`;
+    body += `<h3>${name}</h3>\n<p>${escape(description.about)}</p>\n<ul>${description.values.map(([word, about, rights]) => `<li><code>${escape(word)}</code>: ${escape(about)}${rights ? `; rights: ${escape(rights.join(', '))}` : ''}</li>`).join('')}</ul>\n`;
   body += `<h2>WebSocket messages</h2>\n<p>${escape(messages.about)}</p>\n`;
   for (const message of messages.messages)
-    body += `<h3 id="message-${escape(message.name)}">${escape(message.name)} <small>from the ${message.from === 'client' ? 'page' : 'server'}</small></h3>\n<p>${escape(message.about)}</p>\n${tableOf(message.fields, enums)}`;
+    body += `<h3 id="message-${escape(message.name)}">${escape(message.name)} <small>from the ${message.from === 'client' ? 'page' : 'server'}</small></h3>\n<p>${escape(message.about)}${message.right ? ` Right: <code>${message.right}</code>.` : ''}</p>\n${tableOf(message.fields, enums)}`;
   body += packetsSection(packets, escape, tableOf);
   body += `<h2 id="problems">Problems</h2>\n<p>${escape(problems.about)}</p>\n<table><thead><tr><th>Type</th><th>Status</th><th>Title</th><th>What to do</th></tr></thead><tbody>\n` +
     problems.problems.map((p) => `<tr id="problem-${p.word}"><td><code>/problems/${p.word}</code></td><td>${p.status}</td><td>${escape(p.title)}</td><td>${escape(p.about)}</td></tr>`).join('\n') + '\n</tbody></table>\n';

@@ -14,6 +14,25 @@ export function tablesHeader(description, prefix) {
   return text;
 }
 
+const rightsHeader = `
+/* By role: 1 << right for each right that it has. */
+extern const unsigned wire_role_rights[];
+/* The routes of rooms, each with its right; the last one has no method. */
+struct wire_room_route {
+    const char *method, *path;
+    enum wire_right right;
+};
+extern const struct wire_room_route wire_room_routes[];
+`;
+
+function rightsSource({ enums }, roomRoutes) {
+  const bit = (right) => `1U << WIRE_RIGHT_${upper(right)}`;
+  const roles = enums.member_role.values.map(([role, , rights]) => `    [WIRE_MEMBER_ROLE_${upper(role)}] = ${rights.map(bit).join(' | ')},`);
+  const routes = roomRoutes.map(({ method, path, right }) => `    { "${method}", "${path}", WIRE_RIGHT_${upper(right)} },`);
+  return `\nconst unsigned wire_role_rights[] = {\n${roles.join('\n')}\n};\n` +
+    `const struct wire_room_route wire_room_routes[] = {\n${routes.join('\n')}\n    { NULL, NULL, WIRE_RIGHT_LOOK },\n};\n`;
+}
+
 export function wireHeader(scene, messages) {
   let text = `#pragma once\n${notice}#include <stdint.h>\n\n#include "scene.h"\n#include "server/wire/fields.h"\n\n`;
   text += `enum { WIRE_PROTOCOL = ${messages.version}, WIRE_MAX_CLIENT_BYTES = ${messages.max_client_bytes} };\n\n`;
@@ -26,8 +45,9 @@ export function wireHeader(scene, messages) {
     text += `/* ${message.from}: ${message.about} */\nstruct ${structOf(message)} {\n${message.fields.map((f) => declaration(f, 'wire')).join('')}};\n\n`;
   text += `enum message_type {\n${messages.messages.map((m) => `    MESSAGE_${upper(m.name)},`).join('\n')}\n    MESSAGE_N_TYPES\n};\n\n`;
   text += `struct message {\n    enum message_type type;\n    union {\n${messages.messages.map((m) => `        struct ${structOf(m)} ${lower(m.name)};`).join('\n')}\n    };\n};\n\n`;
-  text += 'struct message_description {\n    const char *name;\n    bool is_from_client;\n    size_t offset; /* of its struct in struct message */\n    const struct field_object *object;\n};\n';
+  text += `struct message_description {\n    const char *name;\n    bool is_from_client;\n    size_t offset; /* of its struct in struct message */\n    const struct field_object *object;\n${messages.enums.right ? '    enum wire_right right; /* of a message from the page */\n' : ''}};\n`;
   text += 'extern const struct message_description message_descriptions[MESSAGE_N_TYPES];\n';
+  if (messages.enums.member_role) text += rightsHeader;
   return text;
 }
 
@@ -75,7 +95,7 @@ export function tablesSource(description, prefix) {
   return text;
 }
 
-export function wireSource(scene, messages) {
+export function wireSource(scene, messages, roomRoutes = []) {
   let text = `${notice}#include "wire_gen.h"\n\n#include <stddef.h>\n\n`;
   for (const [name, description] of Object.entries(messages.enums)) text += words(name, description, 'wire');
   text += tablesSource(scene, 'scene');
@@ -84,6 +104,7 @@ export function wireSource(scene, messages) {
     text += `static const struct ${name} ${name}_default = ${objectInitializer(message, 'wire', {})};\n`;
     text += table(name, name, message, 'wire', `${name}_default`).replace(/^const struct field_object/m, 'static const struct field_object');
   }
-  const rows = messages.messages.map((m) => `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object },`);
-  return text + `const struct message_description message_descriptions[MESSAGE_N_TYPES] = {\n${rows.join('\n')}\n};\n`;
+  const rows = messages.messages.map((m) => `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object${messages.enums.right ? `, WIRE_RIGHT_${upper(m.right ?? 'look')}` : ''} },`);
+  text += `const struct message_description message_descriptions[MESSAGE_N_TYPES] = {\n${rows.join('\n')}\n};\n`;
+  return messages.enums.member_role ? text + rightsSource(messages, roomRoutes) : text;
 }

@@ -11,6 +11,7 @@
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/presenter.h"
+#include "server/room/roles.h"
 #include "server/room/send.h"
 
 static const char replaced[] = "this member has come back on another connection";
@@ -132,6 +133,8 @@ static struct member *member_create(struct room *room, const char *name)
     for (int number = 1; member->name[0] == 0 || (name[0] == 0 && name_is_taken(room, member->name)); number++)
         (void)snprintf(member->name, sizeof member->name, "Reviewer %d", number);
     make_secret(member->secret);
+    member->role = role_of_newcomer(room);
+    member->color = color_of_newcomer(room);
     room->members[room->n_members++] = member;
     return member;
 }

@@ -1,7 +1,10 @@
 /* Finds members and lists them as JSON. */
 #include "server/room/member_list.h"
 
+#include <stdio.h>
 #include <string.h>
+
+#include "server/room/roles.h"
 
 struct member *member_of_connection(const struct room *room, const void *connection)
 {
@@ -44,8 +47,12 @@ cJSON *room_members(const struct room *room)
     for (int i = 0; i < room->n_members; i++) {
         const struct member *member = room->members[i];
         cJSON *item = cJSON_CreateObject();
+        char color[8];
         cJSON_AddStringToObject(item, "id", member->id);
         cJSON_AddStringToObject(item, "name", is_blank(member->name) ? member->id : member->name);
+        (void)snprintf(color, sizeof color, "#%06x", color_rgb(member->color));
+        cJSON_AddStringToObject(item, "color", color);
+        cJSON_AddStringToObject(item, "role", wire_member_role_words.words[member->role]);
         cJSON_AddBoolToObject(item, "connected", member->connection != NULL);
         cJSON_AddBoolToObject(item, "following", member_follows(room, member));
         cJSON_AddBoolToObject(item, "presenting", member_presents(room, member));

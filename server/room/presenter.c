@@ -3,6 +3,7 @@
 
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
+#include "server/room/roles.h"
 #include "server/room/send.h"
 #include "server/room/shared_scene.h"
 #include "server/wire/json_merge.h"
@@ -80,7 +81,7 @@ static struct member *only_connected(const struct room *room)
             return NULL;
         only = room->members[i];
     }
-    return only;
+    return only && role_has_right(only->role, WIRE_RIGHT_SCENE) ? only : NULL;
 }
 
 bool presenter_settle(struct room *room)

@@ -12,6 +12,7 @@
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/presenter.h"
+#include "server/room/roles.h"
 #include "server/room/send.h"
 #include "server/room/shared_scene.h"
 #include "server/room/stream.h"
@@ -222,6 +223,8 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
         problem_set(&problem, PROBLEM_VALIDATION, "/type", "required", "%s", hello_first);
         if (refuse(room, connection, text, n, &problem))
             send_bye(room, connection, -1, hello_first);
+    } else if (!role_check(member->role, message_descriptions[message.type].right, &problem)) {
+        (void)refuse(room, connection, text, n, &problem);
     } else {
         for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++)
             if (handlers[i].type == message.type && !handlers[i].handle(room, member, &message, &problem))

@@ -3,6 +3,7 @@
  * Internal to server/room; one thread. */
 #include "server/room/pace.h"
 #include "server/room/room.h"
+#include "wire_gen.h"
 
 enum {
     MAX_WAITING_INPUTS =
@@ -70,6 +71,8 @@ struct member_view {       /* a pane of a member; its number is its index + 1 */
 
 struct member {
     char id[64], name[161], secret[2 * SECRET_BYTES + 1];
+    enum wire_member_role role;
+    int color;        /* color_rgb(color) */
     void *connection; /* NULL: away */
     bool is_lost; /* a message to it found no memory and its connection was closed; its views are still to be closed */
     int64_t away_us; /* when the connection was lost */

@@ -8,8 +8,8 @@
 
 struct problem {
     enum problem_type type;
-    /* For a validation problem: type, range, enum, unknown-field, required, duplicate, length, pattern, count, order
-     * or unknown-id; "" for other types. */
+    /* Of forbidden: role, or "". For a validation problem: type, range, enum, unknown-field, required, duplicate,
+     * length, pattern, count, order or unknown-id; "" for other types. */
     char code[32];
     char pointer[160];  /* RFC 6901: "/image/window/width"; "" the whole document */
     char detail[320];   /* a sentence: what was found, what was expected */
