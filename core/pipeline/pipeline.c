@@ -27,7 +27,7 @@ enum { ENCODE_STACK_BYTES = 512 << 10 };
 enum { MAX_BEGUN = 32, MAX_PICTURES = PIPELINE_MAX_WAITING + MAX_BEGUN };
 /* Messages that may wait. Encode threads send at most two for each picture they hold; so half of the room for drops
  * leaves room for every other message. */
-enum { MAX_MESSAGES = 512, MAX_MESSAGES_BEFORE_DROP = 256 };
+enum { MAX_MESSAGES = 2048, MAX_MESSAGES_BEFORE_DROP = 1024 };
 
 /* A request on its way through the pipeline. Owned by the render thread, then by an encode thread. */
 struct picture {

@@ -55,7 +55,7 @@ NODISCARD struct pipeline *pipeline_create(enum render_back_end back_end, bool s
                                            const struct pipeline_callbacks *callbacks, struct error *err);
 /* Limit on the images of all pictures that are begun and not yet compressed; a single image may be larger. */
 #define PIPELINE_MAX_IMAGE_BYTES ((uint64_t)256 << 20)
-enum { PIPELINE_MAX_WAITING = 64 };
+enum { PIPELINE_MAX_WAITING = 448 }; /* two of each of 200 people, and some */
 /* Takes request->snapshot and request->annotation, on failure too. Pictures of one source that are alike in size and
  * codec, and all moving or all stills, are delivered in order. Nothing is dropped, so the caller decides what is worth
  * a request.

@@ -13,13 +13,15 @@ enum { MAX_SOURCES = 512 };
 struct source {
     uint64_t id;
     int64_t used_us;
-    bool is_active; /* it has a request */
-    size_t item;    /* its request that is next; SIZE_MAX: all are held */
+    bool is_active;   /* it has a request */
+    bool is_entering; /* and had none at the choice before */
+    size_t item;      /* its request that is next; SIZE_MAX: all are held */
 };
 
 struct turns {
     struct source sources[MAX_SOURCES];
     size_t n;
+    int64_t n_active; /* sources with a request */
     int64_t floor_us; /* the least time that an active source has used; never falls */
 };
 
@@ -76,12 +78,30 @@ bool turns_may_interrupt(const struct turns_item *drawn, const struct turns_item
     return newcomer->source != drawn->source || (drawn->is_still && goes_before(newcomer, drawn));
 }
 
+/* What each active source has of an advantage. */
+static int64_t advantage(const struct turns *turns, int64_t us)
+{
+    return turns->n_active > TURNS_FEW_SOURCES ? us * TURNS_FEW_SOURCES / turns->n_active : us;
+}
+
+/* A source that enters has saved no more than the credit. */
+static void limit_credit(struct turns *turns)
+{
+    turns->n_active = 0;
+    for (size_t i = 0; i < turns->n; i++)
+        turns->n_active += turns->sources[i].is_active;
+    int64_t least_us = turns->floor_us - advantage(turns, TURNS_CREDIT_US);
+    for (struct source *source = turns->sources; source < turns->sources + turns->n; source++)
+        if (source->is_active && source->is_entering && source->used_us < least_us)
+            source->used_us = least_us;
+}
+
 static void activate(struct turns *turns, struct turns_item *const *items, size_t n)
 {
     bool was_active[MAX_SOURCES] = { false };
     for (size_t i = 0; i < turns->n; i++) {
         was_active[i] = turns->sources[i].is_active;
-        turns->sources[i].is_active = false;
+        turns->sources[i].is_active = turns->sources[i].is_entering = false;
         turns->sources[i].item = SIZE_MAX;
     }
     for (size_t i = 0; i < n; i++) { /* before a source is added: one with a request keeps its place */
@@ -89,22 +109,24 @@ static void activate(struct turns *turns, struct turns_item *const *items, size_
         if (!source || source->is_active)
             continue;
         source->is_active = true;
-        if (!was_active[source - turns->sources] && source->used_us < turns->floor_us - TURNS_CREDIT_US)
-            source->used_us = turns->floor_us - TURNS_CREDIT_US;
+        source->is_entering = !was_active[source - turns->sources];
     }
     for (size_t i = 0; i < n; i++) {
         struct source *source = find_source(turns, items[i]->source);
-        if (!source->is_active)
-            source->item = SIZE_MAX; /* added just now */
+        if (!source->is_active) { /* added just now */
+            source->item = SIZE_MAX;
+            source->is_entering = true;
+        }
         source->is_active = true;
         if (!items[i]->is_held && (source->item == SIZE_MAX || goes_before(items[i], items[source->item])))
             source->item = i;
     }
+    limit_credit(turns);
 }
 
-static int64_t key_of(const struct source *source, struct turns_item *const *items)
+static int64_t key_of(const struct turns *turns, const struct source *source, struct turns_item *const *items)
 {
-    return source->used_us - (items[source->item]->is_still ? 0 : TURNS_MOVING_AHEAD_US);
+    return source->used_us - (items[source->item]->is_still ? 0 : advantage(turns, TURNS_MOVING_AHEAD_US));
 }
 
 /* items[at] goes before older requests of its source: counts it for all stills, and of the moving pictures of other
@@ -132,7 +154,7 @@ size_t turns_choose(struct turns *turns, struct turns_item *const *items, size_t
         least_us = source->used_us < least_us ? source->used_us : least_us;
         if (source->item == SIZE_MAX)
             continue;
-        int64_t key = key_of(source, items), best_key = best ? key_of(best, items) : INT64_MAX;
+        int64_t key = key_of(turns, source, items), best_key = best ? key_of(turns, best, items) : INT64_MAX;
         if (!best || key < best_key || (key == best_key && source->item < best->item))
             best = source;
     }

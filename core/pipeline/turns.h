@@ -4,10 +4,11 @@
  *
  * A source is a set of requests that are counted together: a member's own views, a room's shared views, all scripts.
  * The source that has used the least time is next. A source whose next picture is a moving one is preferred as if it
- * had used TURNS_MOVING_AHEAD_US less. A source without requests saves at most TURNS_CREDIT_US for later. Within a
- * source, moving pictures go before stills, but at most TURNS_MAX_OVERTAKING of them before the same still; among
- * moving pictures those of the view in which a person acts go first, but after TURNS_MAX_ACTED_OVERTAKING of them comes
- * the oldest other one; otherwise the oldest request is next. */
+ * had used TURNS_MOVING_AHEAD_US less. A source without requests saves at most TURNS_CREDIT_US for later. When more
+ * than TURNS_FEW_SOURCES have requests, both advantages shrink: all sources together keep a still waiting no longer
+ * with them than those few could. Within a source, moving pictures go before stills, but at most TURNS_MAX_OVERTAKING
+ * of them before the same still; among moving pictures those of the view in which a person acts go first, but after
+ * TURNS_MAX_ACTED_OVERTAKING of them comes the oldest other one; otherwise the oldest request is next. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -16,7 +17,8 @@ enum {
     TURNS_MAX_OVERTAKING = 8,
     TURNS_MAX_ACTED_OVERTAKING = 2,
     TURNS_CREDIT_US = 100000,
-    TURNS_MOVING_AHEAD_US = 100000
+    TURNS_MOVING_AHEAD_US = 100000,
+    TURNS_FEW_SOURCES = 8
 };
 
 /* A request that waits, or whose picture is paused. */

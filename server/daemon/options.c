@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/room/room.h"
 #include "server/wire/document.h"
 
 enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL, KIND_NAMES, KIND_RANGES };
@@ -42,7 +43,8 @@ static const struct setting settings[] = {
       AT(room_idle_close_s), 0, 1 << 24 },
     { "max-rooms", "N", "rooms at once, of all plans; default 200, at most 10000", KIND_COUNT, AT(max_rooms), 1,
       SCENE_MAX_ROOMS },
-    { "max-members", "N", "people in one room; default 32, at most 64", KIND_COUNT, AT(max_members), 1, 64 },
+    { "max-members", "N", "people in one room; default 100, at most 200", KIND_COUNT, AT(max_members), 1,
+      ROOM_MAX_MEMBERS },
     { "max-upload-mib", "N", "largest archive that may be uploaded, in MiB; default 2048", KIND_COUNT,
       AT(max_upload_mib), 1, 1 << 24 },
     { "max-unpacked-mib", "N", "what may come out of one, in MiB; default 8192", KIND_COUNT, AT(max_unpacked_mib), 1,
@@ -194,7 +196,7 @@ bool options_read(struct options *options, int argc, char **argv, struct error *
                                  .plan_idle_close_s = 600,
                                  .room_idle_close_s = 86400,
                                  .max_rooms = 200,
-                                 .max_members = 32,
+                                 .max_members = 100,
                                  .max_upload_mib = 2048,
                                  .max_unpacked_mib = 8192,
                                  .max_cache_mib = 16384,

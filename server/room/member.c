@@ -168,6 +168,6 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     send_welcome(room, member);
     send_renderer_state(room, member);
     (void)presenter_settle(room);
-    send_members(room);
+    send_members_to_newcomer(room, member);
     return true;
 }

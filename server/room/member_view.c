@@ -13,17 +13,13 @@
 
 static void view_leave(struct room *room, struct member_view *view)
 {
-    struct stream *stream = view->stream;
-    view->stream = NULL;
     view->is_following = false;
     view->has_moved = false;
     view->n_waiting = 0;
     view->sent_number = 0;
     view->lag_least_us = view->lag_excess_us = 0;
-    if (stream && stream->is_shared) /* a shared stream stays for members who follow later */
-        stream_left(room, stream);
-    else if (stream)
-        stream_destroy(room, stream);
+    if (view->stream) /* a shared stream stays for members who follow later */
+        stream_remove_viewer(room, view);
 }
 
 static void view_close(struct room *room, struct member_view *view)
@@ -53,11 +49,14 @@ void view_add_input(struct member_view *view, uint32_t input)
     view->n_waiting++;
 }
 
-static void view_join(struct room *room, struct member_view *view, struct stream *stream, bool is_following)
+static void view_join(struct room *room, struct member *member, struct member_view *view, struct stream *stream,
+                      bool is_following)
 {
-    if (view->stream != stream)
+    if (view->stream != stream) {
         view_leave(room, view);
-    view->stream = stream;
+        view->member = member;
+        stream_add_viewer(stream, view);
+    }
     view->is_following = is_following;
     view->was_open = true;
 }
@@ -82,18 +81,15 @@ static bool is_members_own(const struct member_view *view)
 }
 
 /* The viewers of the stream but one are to be sent the changed view before its next frame. */
-static void note_mover(struct room *room, struct stream *stream, const struct member_view *mover_view,
-                       const struct member *by)
+static void note_mover(struct stream *stream, const struct member_view *mover_view, const struct member *by)
 {
     (void)snprintf(stream->mover, sizeof stream->mover, "%s", by->id);
-    for (int m = 0; m < room->n_members; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
-            struct member_view *view = &room->members[m]->views[v];
-            if (view->stream != stream || view == mover_view)
-                continue;
-            view->has_moved = true;
-            (void)snprintf(view->moved_by, sizeof view->moved_by, "%s", by->id);
-        }
+    for (struct member_view *view = stream->viewers; view; view = view->next_viewer) {
+        if (view == mover_view)
+            continue;
+        view->has_moved = true;
+        (void)snprintf(view->moved_by, sizeof view->moved_by, "%s", by->id);
+    }
 }
 
 /* The presenter changes a shared stream. Takes document. */
@@ -101,7 +97,7 @@ static void set_shared_view(struct room *room, struct member *presenter, const s
                             struct stream *stream, cJSON *document)
 {
     if (stream_set_view(room, stream, document))
-        note_mover(room, stream, view, presenter);
+        note_mover(stream, view, presenter);
 }
 
 /* What a member makes of a document to show the shared view of its kind: the document itself when the presenter makes
@@ -134,7 +130,7 @@ static void join_shared(struct room *room, struct member *member, struct member_
     } else {
         cJSON_Delete(document);
     }
-    view_join(room, view, stream, true);
+    view_join(room, member, view, stream, true);
 }
 
 /* A shared stream has the size of the presenter's view. */
@@ -196,7 +192,7 @@ bool member_view_open(struct room *room, struct member *member, const struct mes
         if (member_presents(room, member))
             share_size(room, member, view);
     } else {
-        view_join(room, view, stream_create(room, document, false), false);
+        view_join(room, member, view, stream_create(room, document, false), false);
     }
     view_add_input(view, (uint32_t)open->input);
     if (open->follow)
@@ -359,7 +355,7 @@ bool views_share(struct room *room, struct member *presenter, bool keep_override
         struct stream *stream = stream_shared(room, view->stream->view);
         if (was_own && stream && is_first) {
             set_shared_view(room, presenter, view, stream, documents[i]);
-            view_join(room, view, stream, true);
+            view_join(room, presenter, view, stream, true);
         } else if (was_own) {
             join_shared(room, presenter, view, documents[i]);
         } else if (is_first) {
@@ -449,7 +445,7 @@ static bool views_leave(struct room *room, struct member *member, const cJSON *v
         if (documents[i])
             read_size(documents[i], view->size_px);
         if (documents[i] && view->is_following)
-            view_join(room, view, stream_create(room, documents[i], false), false);
+            view_join(room, member, view, stream_create(room, documents[i], false), false);
         else if (documents[i])
             (void)stream_set_view(room, view->stream, documents[i]);
         view_add_input(view, input);

@@ -254,10 +254,12 @@ int64_t room_tick(struct room *room, int64_t now_us)
     members_close_lost(room);
     if (presenter_settle(room))
         send_members(room);
-    int64_t members_us = members_forget(room), streams_us = streams_request_due(room);
-    int64_t presenter_us = presenter_due_us(room);
-    int64_t least_us = members_us < streams_us ? members_us : streams_us;
-    return least_us < presenter_us ? least_us : presenter_us;
+    const int64_t due_us[] = { members_forget(room), streams_request_due(room), presenter_due_us(room),
+                               send_members_due(room) };
+    int64_t least_us = INT64_MAX;
+    for (size_t i = 0; i < sizeof due_us / sizeof due_us[0]; i++)
+        least_us = due_us[i] < least_us ? due_us[i] : least_us;
+    return least_us;
 }
 
 /* ---- for HTTP --------------------------------------------------------------------------------------------------- */

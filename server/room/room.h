@@ -7,7 +7,7 @@
 #include "server/wire/frame_header.h"
 
 enum {
-    ROOM_MAX_MEMBERS = 64,
+    ROOM_MAX_MEMBERS = 200,
     ROOM_MAX_VIEWS = 8,
     ROOM_MAX_UNSHOWN = 2,
     ROOM_STILL_AFTER_MS = 150,

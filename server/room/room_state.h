@@ -11,6 +11,10 @@ enum {
     SECRET_BYTES = 16,
     RETRY_US = 100000, /* pause after a failed picture; doubled each time */
     RETRY_AT_MOST_US = 4000000,
+    /* In a room of more members, the list of members goes out at most once in so many microseconds for each of them:
+     * everybody is sent a row for everybody, so 200 people who enter at once would make gigabytes of lists. */
+    FEW_MEMBERS = 24,
+    MEMBERS_EVERY_US = 2000,
 };
 
 struct request {      /* for one picture, outstanding */
@@ -44,10 +48,13 @@ struct stream {
     uint64_t latest_number, latest_version; /* latest's request, and the version it shows; 0: none */
     bool latest_is_still;
     struct pace pace;
+    struct member_view *viewers; /* the views that show it */
 };
 
-struct member_view {       /* a pane of a member; its number is its index + 1 */
-    struct stream *stream; /* NULL: closed */
+struct member_view {                                   /* a pane of a member; its number is its index + 1 */
+    struct stream *stream;                             /* NULL: closed */
+    struct member *member;                             /* whose it is, while it is open */
+    struct member_view *next_viewer, *previous_viewer; /* of the same stream */
     bool is_following, was_open;
     int size_px[2];                         /* this member's own, as sent last; a shared view has the presenter's */
     uint32_t sent_sequence, shown_sequence; /* they differ by at most ROOM_MAX_UNSHOWN */
@@ -100,6 +107,7 @@ struct room {
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
     uint32_t n_named;         /* members ever made, for ids */
     struct stream *streams;
+    int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
     uint64_t n_requests;
     struct room_counters counters;
 };

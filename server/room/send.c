@@ -74,11 +74,40 @@ void send_welcome(struct room *room, struct member *member)
     send_to_member(room, member, &message);
 }
 
-void send_members(struct room *room)
+static void send_members_now(struct room *room, struct member *only)
 {
     struct message message = { .type = MESSAGE_MEMBERS, .members = { room_members(room) } };
-    send_to_all(room, &message);
+    if (only)
+        send_to_member(room, only, &message);
+    else
+        send_to_all(room, &message);
     message_finish(&message);
+}
+
+void send_members(struct room *room)
+{
+    int64_t due_us = room->members_sent_us + MEMBERS_EVERY_US * (int64_t)room->n_members;
+    if (room->n_members > FEW_MEMBERS && room->now_us < due_us) {
+        room->members_due_us = due_us;
+        return;
+    }
+    room->members_sent_us = room->now_us;
+    room->members_due_us = 0;
+    send_members_now(room, NULL);
+}
+
+void send_members_to_newcomer(struct room *room, struct member *newcomer)
+{
+    send_members(room);
+    if (room->members_due_us)
+        send_members_now(room, newcomer);
+}
+
+int64_t send_members_due(struct room *room)
+{
+    if (room->members_due_us && room->now_us >= room->members_due_us)
+        send_members(room);
+    return room->members_due_us ? room->members_due_us : INT64_MAX;
 }
 
 void send_renderer_state(struct room *room, struct member *member)

@@ -10,7 +10,11 @@ bool send_to_connection(struct room *room, void *connection, const struct messag
 void send_to_all(struct room *room, const struct message *message);
 
 void send_welcome(struct room *room, struct member *member);
-void send_members(struct room *room);                               /* to all */
+/* To all; in a large room soon, when the list went out just before (MEMBERS_EVERY_US). */
+void send_members(struct room *room);
+/* The same, but to the newcomer at once. */
+void send_members_to_newcomer(struct room *room, struct member *newcomer);
+int64_t send_members_due(struct room *room); /* sends a list that is due; returns when one is due, INT64_MAX: none */
 void send_renderer_state(struct room *room, struct member *member); /* member NULL: to all */
 void send_plan(struct room *room);                                  /* to all */
 /* The accepted patch; by: who made it, or NULL; input: the maker's number. to_all false: only to the maker.

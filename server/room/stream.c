@@ -69,20 +69,11 @@ static void stream_changed(struct room *room, struct stream *stream)
     stream->changed_us = room->now_us;
 }
 
-static bool has_viewer(const struct room *room, const struct stream *stream)
-{
-    for (int m = 0; m < room->n_members; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++)
-            if (room->members[m]->views[v].stream == stream)
-                return true;
-    return false;
-}
-
 static void destroy_unseen_obliques(struct room *room)
 {
     for (struct stream *stream = room->streams, *next; stream; stream = next) {
         next = stream->next;
-        if (stream->is_shared && stream->kind == SCENE_KIND_OBLIQUE && !has_viewer(room, stream))
+        if (stream->is_shared && stream->kind == SCENE_KIND_OBLIQUE && !stream->viewers)
             stream_destroy(room, stream);
     }
 }
@@ -115,14 +106,41 @@ static bool forget_requests(struct room *room, struct stream *stream)
     return has_some;
 }
 
-void stream_left(struct room *room, struct stream *stream)
+/* The requests of a shared stream without viewers are forgotten; the next viewer needs them requested again. */
+static void forget_unseen(struct room *room, struct stream *stream)
 {
-    if (has_viewer(room, stream) || !forget_requests(room, stream))
+    if (!forget_requests(room, stream))
         return;
-    stream->requested_version = stream->latest_version; /* the next viewer needs them requested again */
+    stream->requested_version = stream->latest_version;
     stream->still_requested_version = stream->latest_is_still ? stream->latest_version : 0;
 }
 
+void stream_add_viewer(struct stream *stream, struct member_view *view)
+{
+    view->stream = stream;
+    view->previous_viewer = NULL;
+    view->next_viewer = stream->viewers;
+    if (view->next_viewer)
+        view->next_viewer->previous_viewer = view;
+    stream->viewers = view;
+}
+
+void stream_remove_viewer(struct room *room, struct member_view *view)
+{
+    struct stream *stream = view->stream;
+    if (view->previous_viewer)
+        view->previous_viewer->next_viewer = view->next_viewer;
+    else
+        stream->viewers = view->next_viewer;
+    if (view->next_viewer)
+        view->next_viewer->previous_viewer = view->previous_viewer;
+    view->stream = NULL;
+    view->next_viewer = view->previous_viewer = NULL;
+    if (!stream->is_shared)
+        stream_destroy(room, stream);
+    else if (!stream->viewers)
+        forget_unseen(room, stream);
+}
 void stream_destroy(struct room *room, struct stream *stream)
 {
     (void)forget_requests(room, stream);
@@ -185,15 +203,15 @@ void streams_forget_requests(struct room *room)
 
 static void report_removed_override(struct room *room, const struct stream *stream, const struct problem *problem)
 {
-    for (int m = 0; m < room->n_members; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
-            struct member *member = room->members[m];
-            if (member->views[v].stream != stream || !member->connection)
-                continue;
-            send_view(room, member, v, stream->mover);
-            (void)send_problem(room, member->connection, message_descriptions[MESSAGE_VIEW_OPEN].name, v + 1, 0,
-                               problem);
-        }
+    for (const struct member_view *view = stream->viewers; view; view = view->next_viewer) {
+        struct member *member = view->member;
+        int index = (int)(view - member->views);
+        if (!member->connection)
+            continue;
+        send_view(room, member, index, stream->mover);
+        (void)send_problem(room, member->connection, message_descriptions[MESSAGE_VIEW_OPEN].name, index + 1, 0,
+                           problem);
+    }
 }
 
 void streams_remove_bad_overrides(struct room *room)
@@ -234,15 +252,12 @@ static uint32_t n_unshown(const struct member_view *view)
 }
 
 /* True if any viewer of the stream still has credit beyond the requests in flight. */
-static bool has_credit(const struct room *room, const struct stream *stream)
+static bool has_credit(const struct stream *stream)
 {
     uint32_t coming = (uint32_t)n_outstanding(stream);
-    for (int m = 0; m < room->n_members; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
-            const struct member_view *view = &room->members[m]->views[v];
-            if (view->stream == stream && n_unshown(view) + coming < ROOM_MAX_UNSHOWN)
-                return true;
-        }
+    for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
+        if (n_unshown(view) + coming < ROOM_MAX_UNSHOWN)
+            return true;
     return false;
 }
 
@@ -273,13 +288,9 @@ const cJSON *stream_scene(struct room *room, struct stream *stream)
 }
 
 /* Id of the member whose own view it is; NULL: shared, or without a viewer. */
-static const char *owner_of(const struct room *room, const struct stream *stream)
+static const char *owner_of(const struct stream *stream)
 {
-    for (int m = 0; m < room->n_members && !stream->is_shared; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++)
-            if (room->members[m]->views[v].stream == stream)
-                return room->members[m]->id;
-    return NULL;
+    return stream->is_shared || !stream->viewers ? NULL : stream->viewers->member->id;
 }
 
 /* False: not now, but at retry_us. */
@@ -311,7 +322,7 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
                                   .full_color = is_still,
                                   .coarse = choice.coarse,
                                   .is_acted = stream->acted_us > 0 && room->now_us - stream->acted_us < acted_for_us,
-                                  .member = owner_of(room, stream) };
+                                  .member = owner_of(stream) };
     room->counters.pictures_requested++;
     room->callbacks.render(room->callbacks.context, room, &render);
     return true;
@@ -325,7 +336,7 @@ static int64_t request_due(struct room *room, struct stream *stream)
     for (;;) {
         bool wants_still = stream->still_requested_version < stream->version,
              wants_moving = stream->requested_version < stream->version;
-        if ((!wants_still && !wants_moving) || !has_credit(room, stream))
+        if ((!wants_still && !wants_moving) || !has_credit(stream))
             return INT64_MAX;
         if (room->now_us < stream->retry_us)
             return stream->retry_us;
@@ -425,27 +436,20 @@ void stream_send_picture(struct room *room, struct member *member, struct member
 
 static void send_to_subscribers(struct room *room, struct stream *stream)
 {
-    for (int m = 0; m < room->n_members; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
-            struct member_view *view = &room->members[m]->views[v];
-            if (view->stream != stream)
-                continue;
-            if (n_unshown(view) >= ROOM_MAX_UNSHOWN)
-                room->counters.frames_skipped++; /* the viewer gets the newest picture when its credit returns */
-            stream_send_picture(room, room->members[m], view);
-        }
+    for (struct member_view *view = stream->viewers; view; view = view->next_viewer) {
+        if (n_unshown(view) >= ROOM_MAX_UNSHOWN)
+            room->counters.frames_skipped++; /* the viewer gets the newest picture when its credit returns */
+        stream_send_picture(room, view->member, view);
+    }
 }
 
 /* The viewer with the best link decides: one slow member must not make the picture worse for others. */
-static void measure_lag(struct room *room, struct stream *stream)
+static void measure_lag(struct stream *stream)
 {
     int64_t least = INT64_MAX;
-    for (int m = 0; m < room->n_members; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++) {
-            const struct member_view *view = &room->members[m]->views[v];
-            if (view->stream == stream && view->lag_least_us && view->lag_excess_us < least)
-                least = view->lag_excess_us;
-        }
+    for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
+        if (view->lag_least_us && view->lag_excess_us < least)
+            least = view->lag_excess_us;
     if (least != INT64_MAX)
         pace_lagged(&stream->pace, least);
 }
@@ -463,7 +467,7 @@ void stream_acknowledged(struct room *room, struct member_view *view, uint32_t s
     else
         view->lag_least_us += (lag_us - view->lag_least_us) / 256; /* follows a link that became slower */
     view->lag_excess_us = lag_us - view->lag_least_us;
-    measure_lag(room, view->stream);
+    measure_lag(view->stream);
 }
 
 /* ---- answers ---------------------------------------------------------------------------------------------------- */
@@ -547,10 +551,9 @@ static void refuse_version(struct room *room, struct stream *stream, uint64_t ve
         return; /* the viewers were sent it, for this version or a newer one */
     stream->refused_version = version;
     stream->refusal = *problem;
-    for (int m = 0; m < room->n_members; m++)
-        for (int v = 0; v < ROOM_MAX_VIEWS; v++)
-            if (room->members[m]->views[v].stream == stream && room->members[m]->connection)
-                (void)send_problem(room, room->members[m]->connection, "", v + 1, 0, problem);
+    for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
+        if (view->member->connection)
+            (void)send_problem(room, view->member->connection, "", view - view->member->views + 1, 0, problem);
 }
 
 void room_picture_failed(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
@@ -565,8 +568,10 @@ void room_picture_failed(struct room *room, uint64_t number, const struct proble
         refuse_version(room, stream, request.version, problem);
         return;
     }
-    /* Request again, but not at once: a picture that fails every time must not keep the renderer busy. */
-    int64_t wait_us = RETRY_US << (stream->n_failed < 6 ? stream->n_failed : 6);
+    /* Request again, but not at once: a picture that fails every time must not keep the renderer busy. One that a busy
+     * renderer did not take is requested again before others have had many pictures each. */
+    const int most = problem && problem->type == PROBLEM_BUSY ? 2 : 6;
+    int64_t wait_us = RETRY_US << (stream->n_failed < most ? stream->n_failed : most);
     stream->n_failed++;
     stream->retry_us = now_us + (wait_us < RETRY_AT_MOST_US ? wait_us : RETRY_AT_MOST_US);
     if (request.is_still && stream->still_requested_version == request.version)

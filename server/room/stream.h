@@ -10,8 +10,10 @@
  * next one is made: planes have any names, and there would be no bound on such streams. */
 struct stream *stream_create(struct room *room, cJSON *view, bool is_shared);
 void stream_destroy(struct room *room, struct stream *stream);
-/* A view of a shared stream was closed: without any other viewer its requests are forgotten. */
-void stream_left(struct room *room, struct stream *stream);
+void stream_add_viewer(struct stream *stream, struct member_view *view);
+/* The view shows its stream no longer: an own stream ends; of a shared one without any other viewer the requests are
+ * forgotten. */
+void stream_remove_viewer(struct room *room, struct member_view *view);
 /* Takes view. Returns true when it differs from the present one. */
 bool stream_set_view(struct room *room, struct stream *stream, cJSON *view);
 /* Raises the version of every stream; scene_is_new: overrides are applied anew. */

@@ -271,7 +271,7 @@ static void more_than_the_limit_is_refused_and_never_blocks(void **state)
     struct plan *plan = small_plan();
     struct pipeline *pipeline = start(&receiver);
     size_t n_taken = 0, n_refused = 0;
-    for (uint64_t id = 1; id <= 100; id++) {
+    for (uint64_t id = 1; id <= PIPELINE_MAX_WAITING + 36; id++) {
         struct error err = { 0 };
         if (submit(pipeline, plan, id, 64, &err))
             n_taken++;

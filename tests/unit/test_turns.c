@@ -118,6 +118,32 @@ static void asking_for_nothing_for_a_moment_forgives_nothing(void **state)
     turns_destroy(turns);
 }
 
+/* The still of somebody who was there is next when each of those who come later has had about one picture, not the
+ * seven that credit and preference would be worth to a single newcomer. */
+static void many_newcomers_who_move_do_not_keep_a_still_waiting(void **state)
+{
+    enum { N = 200, PICTURE_US = 30 * MS };
+    (void)state;
+    struct turns *turns = turns_create();
+    struct turns_item still = { .source = 1000, .is_still = true }, moving[N];
+    struct turns_item *items[N + 1] = { &still };
+    assert_int_equal(turns_choose(turns, items, 1), 0); /* it was there before, and drawn before */
+    turns_charge(turns, still.source, PICTURE_US);
+    still.is_begun = false;
+    for (size_t i = 0; i < N; i++) {
+        moving[i] = (struct turns_item){ .source = i + 1 };
+        items[i + 1] = &moving[i];
+    }
+    int n_before = 0;
+    for (size_t at; (at = turns_choose(turns, items, N + 1)) != 0; n_before++) {
+        turns_charge(turns, items[at]->source, PICTURE_US);
+        moving[at - 1] = (struct turns_item){ .source = at };
+        assert_true(n_before < 10 * N);
+    }
+    assert_in_range(n_before, 0, 2 * N);
+    turns_destroy(turns);
+}
+
 static void of_one_source_stills_let_eight_moving_pictures_pass(void **state)
 {
     (void)state;
@@ -222,6 +248,7 @@ int main(void)
         cmocka_unit_test(a_moving_picture_waits_for_no_more_than_a_few_slices),
         cmocka_unit_test(a_newcomer_gets_no_credit_for_the_time_before),
         cmocka_unit_test(asking_for_nothing_for_a_moment_forgives_nothing),
+        cmocka_unit_test(many_newcomers_who_move_do_not_keep_a_still_waiting),
         cmocka_unit_test(of_one_source_stills_let_eight_moving_pictures_pass),
         cmocka_unit_test(where_a_person_acts_two_pictures_are_drawn_to_one_of_another_view),
         cmocka_unit_test(what_is_held_is_passed_over),
