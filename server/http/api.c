@@ -34,6 +34,8 @@ static const struct api_route api_routes[] = {
     { "GET", "/api/v1/rooms/{room}/scene", api_room_scene },
     { "PATCH", "/api/v1/rooms/{room}/scene", api_room_scene_patch },
     { "GET", "/api/v1/rooms/{room}/members", api_room_members },
+    { "GET", "/api/v1/rooms/{room}/notes", api_room_notes },
+    { "GET", "/api/v1/rooms/{room}/bookmarks", api_room_bookmarks },
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
 };

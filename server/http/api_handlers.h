@@ -27,5 +27,7 @@ void api_room_delete(struct api *api, struct call *call);
 void api_room_scene(struct api *api, struct call *call);
 void api_room_scene_patch(struct api *api, struct call *call);
 void api_room_members(struct api *api, struct call *call);
+void api_room_notes(struct api *api, struct call *call);
+void api_room_bookmarks(struct api *api, struct call *call);
 void api_room_snapshot(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);

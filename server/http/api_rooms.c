@@ -86,6 +86,26 @@ void api_room_members(struct api *api, struct call *call)
     call_answer_json(call, 200, answer);
 }
 
+static void answer_items(struct api *api, struct call *call, enum wire_item_kind kind, const char *name)
+{
+    struct room *room = find_room(api, call);
+    if (!room)
+        return;
+    cJSON *answer = cJSON_CreateObject();
+    json_add(answer, name, room_items(room, kind));
+    call_answer_json(call, 200, answer);
+}
+
+void api_room_notes(struct api *api, struct call *call)
+{
+    answer_items(api, call, WIRE_ITEM_KIND_NOTE, "notes");
+}
+
+void api_room_bookmarks(struct api *api, struct call *call)
+{
+    answer_items(api, call, WIRE_ITEM_KIND_BOOKMARK, "bookmarks");
+}
+
 static void write_etag(char etag[24], uint32_t revision)
 {
     (void)snprintf(etag, 24, "\"%u\"", revision);

@@ -190,7 +190,7 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
     if (!fleet_open(net->fleet, plan_id, problem))
         return NULL;
     const struct room_callbacks callbacks = {
-        bridge_render, bridge_forget, bridge_scene_changed, send_text, send_frame, close_connection, net
+        bridge_render, bridge_forget, bridge_scene_changed, send_text, send_frame, close_connection, NULL, net
     };
     struct net_room *room = mem_new(sizeof *room);
     *room = (struct net_room){ .net = net,

@@ -8,6 +8,8 @@
 #include <time.h>
 
 #include "core/base/mem.h"
+#include "server/room/item_list.h"
+#include "server/room/items.h"
 #include "server/room/member.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
@@ -57,6 +59,7 @@ void room_destroy(struct room *room)
     while (room->streams)
         stream_destroy(room, room->streams);
     forget_plan(room);
+    items_free(room);
     cJSON_Delete(room->scene);
     free(room);
 }
@@ -179,6 +182,8 @@ static const struct {
     { MESSAGE_SHOW_EVERYONE, presenter_show_everyone },
     { MESSAGE_SCENE_PATCH, member_scene_patch },
     { MESSAGE_FRAME_SHOWN, member_frame_shown },
+    { MESSAGE_ITEM_PUT, items_put },
+    { MESSAGE_ITEM_DELETE, items_delete },
     { MESSAGE_PING, handle_ping },
 };
 

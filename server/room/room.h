@@ -12,7 +12,11 @@ enum {
     ROOM_MAX_UNSHOWN = 2,
     ROOM_STILL_AFTER_MS = 150,
     ROOM_MEMBER_KEPT_S = 300,
-    ROOM_PRESENTER_KEPT_S = 30 /* how long a presenter without a connection still presents */
+    ROOM_PRESENTER_KEPT_S = 30,    /* how long a presenter without a connection still presents */
+    ROOM_MAX_ITEMS = 1000,         /* notes, replies and bookmarks together */
+    ROOM_MAX_ITEM_BYTES = 61440,   /* of the body of a bookmark, as JSON; a note may have less (note_body.h) */
+    ROOM_MAX_ITEM_FRAME = 2048,    /* of a row without its body */
+    ROOM_MAX_ITEMS_BYTES = 2 << 20 /* of all rows; they are in every welcome */
 };
 
 struct room;
@@ -54,6 +58,9 @@ struct room_callbacks {
                        struct room_picture *picture);
     /* close when all that was sent has gone out; room_connection_closed may follow but need not */
     void (*close)(void *context, void *connection);
+    /* An item is new or was changed: row is the whole of it as JSON, borrowed. row NULL: it was deleted. A store keeps
+     * the newest row of each id and gives it back with room_restore_item. NULL: nobody keeps items. */
+    void (*item_changed)(void *context, struct room *room, const char *row, const char *id);
     void *context;
 };
 
@@ -105,6 +112,14 @@ NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, int64_t n
 NODISCARD cJSON *room_document(const struct room *room);
 NODISCARD cJSON *room_members(const struct room *room);
 size_t room_n_connected(const struct room *room);
+
+/* Items: notes with their replies, and bookmarks. [row] of one kind, oldest first, as in the message welcome; NULL: no
+ * memory. */
+NODISCARD cJSON *room_items(const struct room *room, enum wire_item_kind kind);
+/* Gives a room an item that was kept: the row of item_changed. All rows of a room before its first member, in the order
+ * of created_ms; neither item_changed nor a message follows. False with problem when the row is damaged, there already
+ * or beyond a limit: the others can still be restored. */
+NODISCARD bool room_restore_item(struct room *room, const char *row, size_t n, struct problem *problem);
 
 /* Counters for /metrics. */
 struct room_counters {

@@ -86,6 +86,18 @@ struct member {
     struct member_view views[ROOM_MAX_VIEWS];
 };
 
+struct item { /* a note, a reply or a bookmark */
+    struct item *next;
+    char id[16];
+    enum wire_item_kind kind;
+    uint32_t version;
+    char author[64], author_name[161], author_color[8]; /* author_color: "#rrggbb" */
+    char changed_name[161];                             /* who changed it last */
+    int64_t created_ms, changed_ms;                     /* since 1970, UTC */
+    char parent[16];                                    /* of a reply: the note's id; "": none */
+    char *row;                                          /* all of this with the body, as JSON */
+};
+
 struct room {
     char id[64], plan_id[64];
     struct room_callbacks callbacks;
@@ -106,6 +118,8 @@ struct room {
     int n_members;
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
     uint32_t n_named;         /* members ever made, for ids */
+    struct item *items;       /* oldest first */
+    size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */
     struct stream *streams;
     int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
     uint64_t n_requests;

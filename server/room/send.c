@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "server/room/item_list.h"
 #include "server/room/member_list.h"
 #include "server/wire/document.h"
 #include "server/wire/message.h"
@@ -71,7 +72,10 @@ void send_welcome(struct room *room, struct member *member)
     welcome->scene = room->scene;
     welcome->revision = room->revision;
     copy_text(welcome->gl, sizeof welcome->gl, room->gl);
+    cJSON *items = items_rows(room);
+    welcome->items = items;
     send_to_member(room, member, &message);
+    cJSON_Delete(items);
 }
 
 static void send_members_now(struct room *room, struct member *only)

@@ -67,9 +67,18 @@ static void close_page(void *context, void *connection)
     ((struct fake_page *)connection)->is_closed = true;
 }
 
+static void item_changed(void *context, struct room *room, const char *row, const char *id)
+{
+    struct fake_room *fake = context;
+    (void)room;
+    assert_true(id_is_valid(id));
+    (void)snprintf(fake->kept[fake->n_kept++ % 8], sizeof fake->kept[0], "%s", row ? row : "");
+}
+
 void fake_room_start(struct fake_room *fake, int max_members)
 {
-    struct room_callbacks callbacks = { render, forget, scene_changed, send_text, send_frame, close_page, fake };
+    struct room_callbacks callbacks = { render,     forget,     scene_changed, send_text,
+                                        send_frame, close_page, item_changed,  fake };
     struct room_limits limits = { max_members };
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000000000;
@@ -138,7 +147,7 @@ void fake_other_plan_ready(struct fake_room *fake)
 
 void fake_say(struct fake_room *fake, struct fake_page *page, const char *format, ...)
 {
-    char text[4096];
+    char text[WIRE_MAX_CLIENT_BYTES];
     va_list args;
     va_start(args, format);
     int n = vsnprintf(text, sizeof text, format, args);

@@ -1,0 +1,305 @@
+/* Checks changes of items, writes their rows, and tells members and the room's owner. */
+#include "server/room/items.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <time.h>
+
+#include "core/base/mem.h"
+#include "server/room/item_list.h"
+#include "server/room/note_body.h"
+#include "server/room/roles.h"
+#include "server/room/send.h"
+
+/* ---- kinds ------------------------------------------------------------------------------------------------------ */
+
+/* Until bookmarks check what they hold: any object within the limit of bytes. */
+static cJSON *read_any_body(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
+                            struct problem *problem)
+{
+    (void)room;
+    (void)before;
+    (void)is_restored;
+    (void)problem;
+    return cJSON_Duplicate(body, true);
+}
+
+/* From kind to what its body may be. read: the body, checked and complete, as a new document, as note_body_read. */
+static const struct {
+    size_t max_bytes;
+    cJSON *(*read)(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
+                   struct problem *problem);
+} kinds[] = {
+    [WIRE_ITEM_KIND_NOTE] = { NOTE_MAX_BYTES, note_body_read },
+    [WIRE_ITEM_KIND_BOOKMARK] = { ROOM_MAX_ITEM_BYTES, read_any_body },
+};
+
+static const char *word_of(enum wire_item_kind kind)
+{
+    return wire_item_kind_words.words[kind];
+}
+
+/* The body's text, for free(). NULL with problem. */
+static char *read_body(const struct room *room, enum wire_item_kind kind, const cJSON *body, const struct item *before,
+                       bool is_restored, struct problem *problem)
+{
+    if (!cJSON_IsObject(body)) {
+        problem_set(problem, PROBLEM_VALIDATION, "/body", "type", "/body is not an object");
+        return NULL;
+    }
+    *problem = (struct problem){ 0 };
+    cJSON *read = kinds[kind].read(room, body, before, is_restored, problem);
+    if (!read && problem->type != PROBLEM_NONE)
+        return NULL;
+    char *text = json_print(read);
+    cJSON_Delete(read);
+    if (!text) {
+        json_no_memory(problem, "an item");
+    } else if (strlen(text) > kinds[kind].max_bytes) {
+        problem_set(problem, PROBLEM_TOO_LARGE, "/body", "", "the body has %zu bytes, a %s may have %zu", strlen(text),
+                    word_of(kind), kinds[kind].max_bytes);
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+/* ---- rows ------------------------------------------------------------------------------------------------------- */
+
+/* 40 random bits: an id is not used again, so that what a page says late about a deleted item reaches no other one. */
+static void make_id(const struct room *room, char id[16])
+{
+    uint8_t bytes[5];
+    do {
+        ssize_t n;
+        do
+            n = getrandom(bytes, sizeof bytes, 0);
+        while (n < 0 && errno == EINTR);
+        if (n != (ssize_t)sizeof bytes)
+            abort(); /* as a member's secret */
+        (void)snprintf(id, 16, "i-%02x%02x%02x%02x%02x", bytes[0], bytes[1], bytes[2], bytes[3], bytes[4]);
+    } while (items_find(room, id));
+}
+
+static int64_t wall_clock_ms(void)
+{
+    struct timespec now;
+    (void)clock_gettime(CLOCK_REALTIME, &now); /* only to be displayed */
+    return now.tv_sec * INT64_C(1000) + now.tv_nsec / 1000000;
+}
+
+/* The text of the row of an item with this body, for free(). NULL: no memory. */
+static char *write_row(const struct item *item, const char *body)
+{
+    cJSON *row = cJSON_CreateObject();
+    cJSON_AddStringToObject(row, "id", item->id);
+    cJSON_AddStringToObject(row, "kind", word_of(item->kind));
+    cJSON_AddNumberToObject(row, "version", item->version);
+    cJSON_AddStringToObject(row, "author", item->author);
+    cJSON_AddStringToObject(row, "author_name", item->author_name);
+    cJSON_AddStringToObject(row, "author_color", item->author_color);
+    cJSON_AddStringToObject(row, "changed_name", item->changed_name);
+    cJSON_AddNumberToObject(row, "created_ms", (double)item->created_ms);
+    cJSON_AddNumberToObject(row, "changed_ms", (double)item->changed_ms);
+    json_add(row, "body", cJSON_CreateRaw(body));
+    char *text = json_print(row);
+    cJSON_Delete(row);
+    return text;
+}
+
+static void copy_name(char to[161], const char *from)
+{
+    (void)snprintf(to, 161, "%s", from);
+}
+
+/* ---- changes ---------------------------------------------------------------------------------------------------- */
+
+/* Tells the room's owner and all members; row NULL: the item is deleted. input: the number of it that `by` gave. */
+static void tell(struct room *room, const char *id, const char *row, const struct member *by, uint32_t input)
+{
+    struct message message = { .type = MESSAGE_ITEM, .item = { .item = row ? cJSON_CreateRaw(row) : NULL } };
+    (void)snprintf(message.item.id, sizeof message.item.id, "%s", id);
+    (void)snprintf(message.item.by, sizeof message.item.by, "%s", by->id);
+    if (room->callbacks.item_changed)
+        room->callbacks.item_changed(room->callbacks.context, room, row, id);
+    for (int i = 0; i < room->n_members; i++) {
+        message.item.input = room->members[i] == by ? input : 0; /* the input number is only for its sender */
+        send_to_member(room, room->members[i], &message);
+    }
+    message_finish(&message);
+}
+
+/* The item that a member may change or delete, which knows it in this version (0: whatever it is). NULL with problem.
+ */
+static struct item *find_to_change(const struct room *room, const struct member *member, const char *id,
+                                   int64_t version, struct problem *problem)
+{
+    struct item *item = items_find(room, id);
+    if (!item) {
+        problem_set(problem, PROBLEM_NOT_FOUND, "/item", "", "there is no item \"%.63s\", or not any more", id);
+        return NULL;
+    }
+    if (strcmp(item->author, member->id) != 0 && member->role != WIRE_MEMBER_ROLE_PRESENTER) {
+        problem_set(problem, PROBLEM_FORBIDDEN, "/item", "",
+                    "this %s is by %.40s: only its author or a member of role presenter changes or deletes it",
+                    word_of(item->kind), item->author_name);
+        return NULL;
+    }
+    if (version && version != item->version) {
+        problem_set(problem, PROBLEM_CONFLICT, "/version", "",
+                    "this %s was changed by %.40s meanwhile: it is at version %u, the change was made for %lld",
+                    word_of(item->kind), item->changed_name, item->version, (long long)version);
+        return NULL;
+    }
+    return item;
+}
+
+bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    const struct message_item_put *put = &message->item_put;
+    struct item *before = NULL, next = { .kind = put->kind };
+    if (put->item[0]) {
+        if (put->version == 0)
+            return problem_set(problem, PROBLEM_VALIDATION, "/version", "required",
+                               "a change needs the version that it was made for");
+        before = find_to_change(room, member, put->item, put->version, problem);
+        if (!before)
+            return false;
+        if (before->kind != put->kind)
+            return problem_set(problem, PROBLEM_VALIDATION, "/kind", "enum", "this item is a %s and stays one",
+                               word_of(before->kind));
+        next = *before;
+    } else {
+        make_id(room, next.id);
+        (void)snprintf(next.author, sizeof next.author, "%s", member->id);
+        copy_name(next.author_name, member->name);
+        (void)snprintf(next.author_color, sizeof next.author_color, "#%06x", color_rgb(member->color) & 0xffffffU);
+        next.created_ms = wall_clock_ms();
+        const char *parent = json_text(put->body, "parent");
+        (void)snprintf(next.parent, sizeof next.parent, "%s", put->kind == WIRE_ITEM_KIND_NOTE && parent ? parent : "");
+    }
+    next.version++;
+    next.changed_ms = before ? wall_clock_ms() : next.created_ms;
+    copy_name(next.changed_name, member->name);
+    char *body = read_body(room, put->kind, put->body, before, false, problem);
+    char *row = body ? write_row(&next, body) : NULL;
+    if (body && !row)
+        json_no_memory(problem, "an item");
+    free(body);
+    if (!row || !items_have_place(room, before, strlen(row), problem)) {
+        free(row);
+        return false;
+    }
+    struct item *item = before ? before : mem_new(sizeof *item);
+    *item = next;
+    items_keep(room, item, row);
+    tell(room, item->id, item->row, member, (uint32_t)put->input);
+    return true;
+}
+
+bool items_delete(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    const struct message_item_delete *asked = &message->item_delete;
+    struct item *item = find_to_change(room, member, asked->item, asked->version, problem);
+    if (!item)
+        return false;
+    for (struct item *reply = room->items, *after; reply; reply = after) {
+        after = reply->next;
+        if (strcmp(reply->parent, item->id) != 0)
+            continue;
+        char id[sizeof reply->id];
+        memcpy(id, reply->id, sizeof id);
+        items_drop(room, reply);
+        tell(room, id, NULL, member, 0);
+    }
+    items_drop(room, item);
+    tell(room, asked->item, NULL, member, (uint32_t)asked->input);
+    return true;
+}
+
+/* ---- from the store --------------------------------------------------------------------------------------------- */
+
+static bool take_text(const cJSON *row, const char *name, char *to, size_t size, struct problem *problem)
+{
+    const char *text = json_text(row, name);
+    if (!text || strlen(text) >= size)
+        return problem_set(problem, PROBLEM_VALIDATION, name, "type", "%s of a kept item is not a text of %zu bytes",
+                           name, size - 1);
+    memcpy(to, text, strlen(text) + 1);
+    return true;
+}
+
+static bool take_number(const cJSON *row, const char *name, double most, int64_t *to, struct problem *problem)
+{
+    const double number = json_number(row, name, -1);
+    if (!(number >= 0 && number <= most))
+        return problem_set(problem, PROBLEM_VALIDATION, name, "range", "%s of a kept item is not 0 to %g", name, most);
+    *to = (int64_t)number;
+    return true;
+}
+
+static bool take_kind(const cJSON *row, enum wire_item_kind *kind, struct problem *problem)
+{
+    const char *word = json_text(row, "kind");
+    for (size_t i = 0; word && i < wire_item_kind_words.n; i++)
+        if (strcmp(word, wire_item_kind_words.words[i]) == 0) {
+            *kind = (enum wire_item_kind)i;
+            return true;
+        }
+    return problem_set(problem, PROBLEM_VALIDATION, "kind", "enum", "kind of a kept item is none of ours");
+}
+
+/* Members who come are not given the id of an item's author. */
+static void pass_id(struct room *room, const char *author)
+{
+    unsigned number;
+    if (sscanf(author, "m%9u", &number) == 1 && number > room->n_named)
+        room->n_named = number;
+}
+
+bool room_restore_item(struct room *room, const char *bytes, size_t n, struct problem *problem)
+{
+    struct item *item = NULL, read = { .version = 0 };
+    char *body = NULL, *text = NULL;
+    int64_t version = 0;
+    if (n > ROOM_MAX_ITEM_BYTES + ROOM_MAX_ITEM_FRAME)
+        return problem_set(problem, PROBLEM_TOO_LARGE, "", "", "a kept item has %zu bytes, at most %d are allowed", n,
+                           ROOM_MAX_ITEM_BYTES + ROOM_MAX_ITEM_FRAME);
+    cJSON *row = json_read(bytes, n, problem);
+    if (!row)
+        return false;
+    const char *parent = json_text(cJSON_GetObjectItemCaseSensitive(row, "body"), "parent");
+    if (take_kind(row, &read.kind, problem) && take_text(row, "id", read.id, sizeof read.id, problem) &&
+        take_text(row, "author", read.author, sizeof read.author, problem) &&
+        take_text(row, "author_name", read.author_name, sizeof read.author_name, problem) &&
+        take_text(row, "author_color", read.author_color, sizeof read.author_color, problem) &&
+        take_text(row, "changed_name", read.changed_name, sizeof read.changed_name, problem) &&
+        take_number(row, "version", UINT32_MAX - 1.0, &version, problem) &&
+        take_number(row, "created_ms", 9007199254740991.0, &read.created_ms, problem) &&
+        take_number(row, "changed_ms", 9007199254740991.0, &read.changed_ms, problem))
+        body = read_body(room, read.kind, cJSON_GetObjectItemCaseSensitive(row, "body"), NULL, true, problem);
+    if (body && (!id_is_valid(read.id) || version == 0 || items_find(room, read.id))) {
+        problem_set(problem, PROBLEM_VALIDATION, "id", "duplicate", "a kept item has no id or version of its own");
+    } else if (body) {
+        read.version = (uint32_t)version;
+        (void)snprintf(read.parent, sizeof read.parent, "%s",
+                       read.kind == WIRE_ITEM_KIND_NOTE && parent && strlen(parent) < sizeof read.parent ? parent : "");
+        text = write_row(&read, body);
+        if (!text)
+            json_no_memory(problem, "an item");
+    }
+    if (text && items_have_place(room, NULL, strlen(text), problem)) {
+        item = mem_new(sizeof *item);
+        *item = read;
+        items_keep(room, item, text);
+        pass_id(room, item->author);
+        text = NULL;
+    }
+    free(text);
+    free(body);
+    cJSON_Delete(row);
+    return item != NULL;
+}
