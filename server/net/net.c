@@ -80,6 +80,12 @@ static void send_text(void *context, void *connection, const char *text)
     ws_send_text(connection, text);
 }
 
+static void send_latest(void *context, void *connection, uint32_t key, const char *text)
+{
+    (void)context;
+    ws_send_latest(connection, key, text);
+}
+
 static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
 {
     (void)context;
@@ -189,9 +195,9 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
     while (find_room(net, id));
     if (!fleet_open(net->fleet, plan_id, problem))
         return NULL;
-    const struct room_callbacks callbacks = {
-        bridge_render, bridge_forget, bridge_scene_changed, send_text, send_frame, close_connection, NULL, net
-    };
+    const struct room_callbacks callbacks = { bridge_render,    bridge_forget, bridge_scene_changed,
+                                              send_text,        send_latest,   send_frame,
+                                              close_connection, NULL,          net };
     struct net_room *room = mem_new(sizeof *room);
     *room = (struct net_room){ .net = net,
                                .room = room_create(id, plan_id, &callbacks, &net->limits),

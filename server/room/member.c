@@ -8,8 +8,10 @@
 #include <sys/random.h>
 
 #include "core/base/mem.h"
+#include "server/room/look.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
+#include "server/room/pointers.h"
 #include "server/room/presenter.h"
 #include "server/room/roles.h"
 #include "server/room/send.h"
@@ -98,6 +100,8 @@ void member_disconnected(struct room *room, struct member *member)
     member->away_us = room->now_us;
     (void)presenter_settle(room);
     send_members(room);
+    pointer_end(room, member);
+    look_end(room, member);
 }
 
 static bool name_is_taken(const struct room *room, const char *name)
@@ -128,7 +132,8 @@ static bool make_place(struct room *room)
 static struct member *member_create(struct room *room, const char *name)
 {
     struct member *member = mem_new(sizeof *member);
-    (void)snprintf(member->id, sizeof member->id, "m%u", ++room->n_named);
+    member->number = ++room->n_named;
+    (void)snprintf(member->id, sizeof member->id, "m%u", member->number);
     (void)snprintf(member->name, sizeof member->name, "%s", name);
     for (int number = 1; member->name[0] == 0 || (name[0] == 0 && name_is_taken(room, member->name)); number++)
         (void)snprintf(member->name, sizeof member->name, "Reviewer %d", number);
@@ -169,5 +174,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     send_renderer_state(room, member);
     (void)presenter_settle(room);
     send_members_to_newcomer(room, member);
+    pointers_show(room, member);
+    look_show(room, member);
     return true;
 }

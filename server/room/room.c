@@ -10,9 +10,11 @@
 #include "core/base/mem.h"
 #include "server/room/item_list.h"
 #include "server/room/items.h"
+#include "server/room/look.h"
 #include "server/room/member.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
+#include "server/room/pointers.h"
 #include "server/room/presenter.h"
 #include "server/room/roles.h"
 #include "server/room/send.h"
@@ -184,6 +186,9 @@ static const struct {
     { MESSAGE_FRAME_SHOWN, member_frame_shown },
     { MESSAGE_ITEM_PUT, items_put },
     { MESSAGE_ITEM_DELETE, items_delete },
+    { MESSAGE_POINTER, pointer_move },
+    { MESSAGE_LOOK_HERE, look_here },
+    { MESSAGE_LOOK_COME, look_come },
     { MESSAGE_PING, handle_ping },
 };
 
@@ -256,11 +261,16 @@ bool room_has_member(const struct room *room, void *connection)
 int64_t room_tick(struct room *room, int64_t now_us)
 {
     room->now_us = now_us;
+    const int64_t pointers_us = pointers_tick(room), look_us = look_tick(room);
     members_close_lost(room);
     if (presenter_settle(room))
         send_members(room);
-    const int64_t due_us[] = { members_forget(room), streams_request_due(room), presenter_due_us(room),
-                               send_members_due(room) };
+    const int64_t due_us[] = { members_forget(room),
+                               streams_request_due(room),
+                               presenter_due_us(room),
+                               send_members_due(room),
+                               pointers_us,
+                               look_us };
     int64_t least_us = INT64_MAX;
     for (size_t i = 0; i < sizeof due_us / sizeof due_us[0]; i++)
         least_us = due_us[i] < least_us ? due_us[i] : least_us;

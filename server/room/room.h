@@ -53,6 +53,8 @@ struct room_callbacks {
     void (*scene_changed)(void *context, struct room *room, const cJSON *scene, uint32_t revision);
     /* a text message for one connection; text is borrowed */
     void (*send_text)(void *context, void *connection, const char *text);
+    /* the same; a text with the same key that waits for the connection is replaced by this one */
+    void (*send_latest)(void *context, void *connection, uint32_t key, const char *text);
     /* a frame for one connection, with its header; keeping the picture takes room_picture_hold */
     void (*send_frame)(void *context, void *connection, const struct frame_header *header,
                        struct room_picture *picture);

@@ -76,6 +76,22 @@ struct member_view {                                   /* a pane of a member; it
     char moved_by[64];
 };
 
+struct pointing { /* where a member points */
+    bool is_on;
+    bool is_due; /* it has changed since it was passed on */
+    int view;    /* 0: none */
+    struct vec3 point_mm;
+    int64_t moved_us, passed_us;
+};
+
+struct look {        /* the request to look at a point */
+    uint32_t number; /* of the newest; 0: there was none yet */
+    bool is_on, is_due;
+    char by[64];
+    struct vec3 point_mm;
+    int64_t since_us, told_us;
+};
+
 struct member {
     char id[64], name[161], secret[2 * SECRET_BYTES + 1];
     enum wire_member_role role;
@@ -83,6 +99,9 @@ struct member {
     void *connection; /* NULL: away */
     bool is_lost; /* a message to it found no memory and its connection was closed; its views are still to be closed */
     int64_t away_us; /* when the connection was lost */
+    uint32_t number; /* counts members from 1, never the same twice */
+    struct pointing pointing;
+    uint32_t came_to; /* number of the look this member has come to; 0: none */
     struct member_view views[ROOM_MAX_VIEWS];
 };
 
@@ -120,6 +139,7 @@ struct room {
     uint32_t n_named;         /* members ever made, for ids */
     struct item *items;       /* oldest first */
     size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */
+    struct look look;
     struct stream *streams;
     int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
     uint64_t n_requests;

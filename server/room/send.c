@@ -47,6 +47,32 @@ void send_to_member(struct room *room, struct member *member, const struct messa
         (void)send_to_connection(room, member->connection, message);
 }
 
+static void send_latest_text(struct room *room, struct member *member, uint32_t key, const char *text)
+{
+    if (!member->connection)
+        return;
+    if (text)
+        room->callbacks.send_latest(room->callbacks.context, member->connection, key, text);
+    else
+        (void)send_text(room, member->connection, NULL);
+}
+
+void send_latest(struct room *room, struct member *member, uint32_t key, const struct message *message)
+{
+    char *text = message_write(message);
+    send_latest_text(room, member, key, text);
+    free(text);
+}
+
+void send_latest_to_others(struct room *room, const struct member *but, uint32_t key, const struct message *message)
+{
+    char *text = message_write(message); /* written once for all */
+    for (int i = 0; i < room->n_members; i++)
+        if (room->members[i] != but)
+            send_latest_text(room, room->members[i], key, text);
+    free(text);
+}
+
 void send_to_all(struct room *room, const struct message *message)
 {
     char *text = message_write(message); /* written once for all */

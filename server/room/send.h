@@ -7,6 +7,9 @@
 void send_to_member(struct room *room, struct member *member, const struct message *message);
 /* False: there was no memory for it, and the connection was closed. */
 bool send_to_connection(struct room *room, void *connection, const struct message *message);
+/* Of the messages with one key a slow receiver is sent the newest only. */
+void send_latest(struct room *room, struct member *member, uint32_t key, const struct message *message);
+void send_latest_to_others(struct room *room, const struct member *but, uint32_t key, const struct message *message);
 void send_to_all(struct room *room, const struct message *message);
 
 void send_welcome(struct room *room, struct member *member);

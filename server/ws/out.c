@@ -106,22 +106,54 @@ void out_add_pong(struct ws_connection *connection, const void *bytes, size_t n)
     lws_callback_on_writable(connection->wsi);
 }
 
-void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, const void *bytes, size_t n)
+/* The message, if it may wait on the connection beside what waits already; NULL: the connection is cut. */
+static struct message_out *admit(struct ws_connection *connection, enum ws_opcode kind, const void *bytes, size_t n)
 {
     const struct ws_limits *limits = &connection->ws->limits;
-    if (connection->state != STATE_OPEN)
-        return;
+    const struct queue_out *texts = &connection->texts, *latest = &connection->latest;
     bool is_too_slow =
-        connection->texts.n >= limits->max_waiting || connection->texts.n_bytes + n > limits->max_waiting_bytes;
+        texts->n + latest->n >= limits->max_waiting || texts->n_bytes + latest->n_bytes + n > limits->max_waiting_bytes;
     struct message_out *message = is_too_slow ? NULL : out_message(kind, bytes, n);
     if (!message) {
         out_log_cut(connection->ws, is_too_slow ? "it takes its messages too slowly" : "no memory for a message to it");
         connection->state = STATE_CLOSING; /* without a close: it would not read that either */
         out_drop_frames(connection);
         end_within(connection, 0);
-        return;
     }
+    return message;
+}
+
+void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, const void *bytes, size_t n)
+{
+    struct message_out *message = connection->state == STATE_OPEN ? admit(connection, kind, bytes, n) : NULL;
+    if (!message)
+        return;
     out_queue_add(&connection->texts, message);
+    lws_callback_on_writable(connection->wsi);
+}
+
+void ws_send_latest(struct ws_connection *connection, uint32_t key, const char *text)
+{
+    struct queue_out *queue = &connection->latest;
+    struct message_out *message =
+        connection->state == STATE_OPEN ? admit(connection, WS_TEXT, text, strlen(text)) : NULL;
+    if (!message)
+        return;
+    message->key = key;
+    struct message_out **at = &queue->first;
+    while (*at && (*at)->key != key)
+        at = &(*at)->next;
+    if (*at) { /* the newer one takes the turn of the older one */
+        struct message_out *old = *at;
+        message->next = old->next;
+        *at = message;
+        if (queue->last == &old->next)
+            queue->last = &message->next;
+        queue->n_bytes += message->n - old->n;
+        free(old);
+    } else {
+        out_queue_add(queue, message);
+    }
     lws_callback_on_writable(connection->wsi);
 }
 
@@ -182,8 +214,8 @@ static bool is_sending(const struct ws_connection *connection)
     return connection->sending.message || connection->sending.picture;
 }
 
-/* Begins to send the next thing: pongs before messages, messages before the close, the close before frames (closing
- * drops those), views in turn. Returns false when nothing waits. */
+/* Begins to send the next thing: pongs before messages, messages before the close, the close before latest and
+ * frames (closing drops those), views in turn. Returns false when nothing waits. */
 static bool begin_next(struct ws_connection *connection)
 {
     struct message_out *message = queue_take_first(&connection->pongs);
@@ -193,6 +225,8 @@ static bool begin_next(struct ws_connection *connection)
         message = connection->close;
         connection->close = NULL;
     }
+    if (!message && connection->state == STATE_OPEN)
+        message = queue_take_first(&connection->latest);
     if (message) {
         begin_sending_message(connection, message);
         return true;
@@ -210,7 +244,8 @@ static bool begin_next(struct ws_connection *connection)
 
 static bool has_more(const struct ws_connection *connection)
 {
-    bool has = is_sending(connection) || connection->pongs.first || connection->texts.first || connection->close;
+    bool has = is_sending(connection) || connection->pongs.first || connection->texts.first || connection->close ||
+               (connection->state == STATE_OPEN && connection->latest.first);
     for (int i = 0; i < ROOM_MAX_VIEWS; i++)
         has = has || connection->slots[i].picture;
     return has;

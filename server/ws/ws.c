@@ -109,6 +109,7 @@ static void start(struct ws *ws, struct lws *wsi, const char *room_id, const str
     *connection = (struct ws_connection){ .ws = ws, .wsi = wsi, .count = *count, .state = STATE_OPEN };
     connection->pongs.last = &connection->pongs.first;
     connection->texts.last = &connection->texts.first;
+    connection->latest.last = &connection->latest.first;
     connection->opened_us = connection->heard_us = clock_now_us();
     ws_parser_init(&connection->parser, ws->limits.max_message_bytes, ws->limits.takes_binary);
     ws->counters.opened++;
@@ -257,6 +258,7 @@ static void closed(struct ws_connection *connection)
     out_drop_frames(connection);
     out_queue_clear(&connection->pongs);
     out_queue_clear(&connection->texts);
+    out_queue_clear(&connection->latest);
     free(connection->close);
     free(connection->sending.message);
     room_picture_drop(connection->sending.picture);

@@ -79,6 +79,8 @@ void ws_count(const struct ws *ws, struct ws_counters *counters);
 void ws_set_owner(struct ws_connection *connection, void *owner); /* a pointer of the caller's */
 void *ws_owner(const struct ws_connection *connection);
 void ws_send_text(struct ws_connection *connection, const char *text);
+/* Replaces a waiting text with the same key of which nothing was sent. Texts of ws_send_text go first. */
+void ws_send_latest(struct ws_connection *connection, uint32_t key, const char *text);
 void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, const void *bytes, size_t n);
 /* Replaces a waiting frame of the same view of which nothing was sent. */
 void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct room_picture *picture);

@@ -8,6 +8,7 @@
 struct message_out { /* a message, ping, pong or close that waits to be sent */
     struct message_out *next;
     enum ws_opcode opcode;
+    uint32_t key; /* of latest */
     size_t n;
     uint8_t bytes[];
 };
@@ -48,8 +49,8 @@ struct ws_connection { /* allocated and zeroed by libwebsockets, lives as long a
     struct ws_parser parser;
     struct rate messages, controls, bytes;
     size_t n_dropped;
-    struct queue_out pongs, texts;
-    struct message_out *close; /* sent after pongs and texts */
+    struct queue_out pongs, texts, latest; /* latest: at most one message of each key */
+    struct message_out *close;             /* sent after pongs and texts, instead of latest */
     struct frame_slot slots[ROOM_MAX_VIEWS];
     int next_slot;
     struct sending sending;

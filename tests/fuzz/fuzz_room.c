@@ -53,6 +53,12 @@ static void send_text(void *context, void *connection, const char *text)
     cJSON_Delete(json);
 }
 
+static void send_latest(void *context, void *connection, uint32_t key, const char *text)
+{
+    (void)key;
+    send_text(context, connection, text);
+}
+
 static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
 {
     struct page *page = connection;
@@ -167,7 +173,7 @@ static void check_presenter(const struct room *room)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
-    const struct room_callbacks callbacks = { render,     forget,           scene_changed, send_text,
+    const struct room_callbacks callbacks = { render,     forget,           scene_changed, send_text, send_latest,
                                               send_frame, close_connection, NULL,          NULL };
     struct room *room = room_create("7q4k-m2wz", "head", &callbacks, NULL);
     int64_t now_us = 1000000;

@@ -50,6 +50,21 @@ static void send_text(void *context, void *connection, const char *text)
     page->texts[page->n_texts++] = mem_copy_text(text);
 }
 
+static void send_latest(void *context, void *connection, uint32_t key, const char *text)
+{
+    struct fake_page *page = connection;
+    for (size_t i = page->n_texts; i-- > page->n_read;)
+        if (page->keys[i] == key + 1) {
+            free(page->texts[i]);
+            page->texts[i] = mem_copy_text(text);
+            return;
+        }
+    page->keys[page->n_texts] = key + 1;
+    send_text(context, connection, text);
+    if (!page->is_slow)
+        page->n_read = page->n_texts;
+}
+
 static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
 {
     struct fake_page *page = connection;
@@ -77,7 +92,7 @@ static void item_changed(void *context, struct room *room, const char *row, cons
 
 void fake_room_start(struct fake_room *fake, int max_members)
 {
-    struct room_callbacks callbacks = { render,     forget,     scene_changed, send_text,
+    struct room_callbacks callbacks = { render,     forget,     scene_changed, send_text, send_latest,
                                         send_frame, close_page, item_changed,  fake };
     struct room_limits limits = { max_members };
     memset(fake, 0, sizeof *fake);

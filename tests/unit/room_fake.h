@@ -6,6 +6,9 @@
 struct fake_page { /* one browser */
     char *texts[4096];
     size_t n_texts;
+    uint32_t keys[4096]; /* of texts sent by send_latest: key + 1 */
+    bool is_slow;        /* reads nothing: a text of send_latest replaces one with its key behind n_read */
+    size_t n_read;
     struct frame_header frames[512];
     size_t n_frames, n_bytes_last;
     uint8_t first_byte_last;

@@ -48,6 +48,7 @@ const keys = [
   ['I', 'Isodose lines on or off'],
   ['T', 'Particle tracks on or off'],
   ['Q', 'Pin the values at the crosshair'],
+  ['P', 'Point: the others see where; with Shift ask them to look here'],
   ['F', 'Return to the presenter, or look for yourself'],
   ['Ctrl + Z', 'Undo your last change of scene or camera'],
   ['Ctrl + Shift + Z, Ctrl + Y', 'Redo it'],
@@ -57,7 +58,7 @@ const keys = [
   ['There: Page up, Page down', 'Choose the point before, after'],
   ['There: Insert, Delete, double click', 'Add a point, remove it, add one there'],
   ['?', 'This list'],
-  ['Esc', 'Leave tool, popover, own view, message, full pane'],
+  ['Esc', 'Leave tool, popover, pointing, own view, message, full pane'],
 ];
 
 export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<section class="card help" role="dialog" tabindex="-1" aria-label="Keys and mouse">

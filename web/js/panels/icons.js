@@ -63,6 +63,7 @@ const paths = {
   clip: svg`<rect x="2" y="2" width="12" height="12" rx="1"/><path d="m2 11 9-9M6 14l8-8"/>`,
   flip: svg`<path d="M8 1.500v13M5.500 4.500 2 8l3.500 3.500ZM10.500 4.500 14 8l-3.500 3.500Z"/>`,
   plane: svg`<path d="M1.500 12 5 4h9.500L11 12Z"/><path d="M8 8V1.500"/>`,
+  point: svg`<path d="M3 2.500 13 7.200 8.700 8.800 7 13.200Z"/>`,
   pin: svg`<path d="M5.5 2h5M6.500 2v5L4 9.500h8L9.500 7V2M8 9.500V14"/>`,
   cube: svg`<path d="M8 1.800 13.800 5v6.200L8 14.300 2.200 11.200V5ZM2.200 5 8 8.200 13.800 5M8 8.200v6.100"/>`,
   row: svg`<rect x="2" y="2" width="12" height="12" rx="1"/><path d="M6.500 2v12M10.500 2v12"/>`,

@@ -52,7 +52,7 @@ export class Pane {
     this.#doses = doses;
     this.host = host;
     this.actions = new PaneActions(room, ui, api, view.number, { histograms, ellipses });
-    this.lines = new PaneLines(room, ui, view, () => ({ box: this.#box, pane: this.#size.value }));
+    this.lines = new PaneLines(room, ui, view, () => this.place);
     this.badge = computed(() => fidelity({
       link: room.link.value,
       renderer: room.renderer.value.state,
@@ -120,12 +120,17 @@ export class Pane {
     return header && pane[0] > 1 ? fitBox(pane, [header.width_px, header.height_px]) : { x: 0, y: 0, width: pane[0], height: pane[1] };
   }
 
+  /** The picture on the screen, its place in the pane, the pane's size. */
+  get place() {
+    return { header: this.#view.painted.value, box: this.#box, pane: this.#size.value };
+  }
+
   #draw() {
     const { name, number: n } = this.#view;
     const isMaximised = this.#ui.maximised.value === n;
     this.actions.box = this.#box;
     const { lines, handles } = this.lines.draw();
-    const tools = this.actions.tools.draw({ header: this.#view.painted.value, box: this.#box, pane: this.#size.value });
+    const tools = this.actions.tools.draw(this.place);
     return html`
       <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
         ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${tools.where ?? this.#whereInHead()}</span>${tools.head ?? nothing}<span class="grow"></span>
@@ -140,7 +145,7 @@ export class Pane {
           @focus=${() => { this.#ui.active.value = n; }}>
           <canvas width="16" height="16"></canvas>
           ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}${tools.overlay}</svg>${handles}${tools.handles}
-          <div class="pointed"></div>
+          <svg class="overlay pointers" aria-hidden="true"></svg><div class="pointed"></div>
           ${this.#cover()}
         </div>
         ${this.#legend()}

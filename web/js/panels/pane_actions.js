@@ -13,6 +13,7 @@ import { PaneMeasures } from './pane_measures.js';
 import { PanePick } from './pane_pick.js';
 import { PaneTools } from './pane_tools.js';
 import { PaneWindow } from './pane_window.js';
+import { pointKey } from './point_lazy.js';
 import { toggleTracks } from './track_lazy.js';
 
 const degreesPerPixel = 0.4;
@@ -273,6 +274,7 @@ export class PaneActions {
       d: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'wash', at), i: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'lines', at), q: () => this.#dose() && pinHere({ room: this.#room, ui: this.#ui }, at),
       t: () => toggleTracks({ room: this.#room, ui: this.#ui }, at),
       w: () => this.#toggleTool('window'), m: () => this.#toggleTool('measure'), z: () => this.#toggleTool('zoom'),
+      p: () => pointKey(this.#room, this.#ui, shiftKey),
       b: () => toggleBeamEye(this.#room, this.#ui),
       Enter: () => this.#ui.maximise(this.#number),
     };

@@ -27,6 +27,7 @@ import { mount } from './mount.js';
 import { Pane } from './pane.js';
 import { giveOblique } from './pane_kind.js';
 import { paneSwitch } from './pane_switch.js';
+import { startPointers } from './point_lazy.js';
 import { listenSnapshots, otherPlanDialog, resumeSnapshot } from './snapshots.js';
 import { offerName } from './room_chip.js';
 import { sectionOfKind } from './sections.js';
@@ -83,14 +84,14 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   });
 
   const after = new AfterRoom({ api, clock, enter });
-  const world = { after, room, ui, api, clock, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
+  const world = { after, room, ui, api, clock, storage, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
   world.charts = new ChartLoader(world);
   stops.push(() => world.charts.stop());
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofDose(room)?.doseBar(world)}${draftBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   if (!isBack) stops.push(offerName(world));
   stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), doses.start(clock));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), leaveBeam(world), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), leaveBeam(world), startPointers(world), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);
@@ -267,7 +268,7 @@ function moveFocus(host, ui) {
 function listenKeys(ui, room) {
   const onKey = (event) => {
     const isTyping = event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea');
-    if (event.key === 'Escape') ui.escape(() => room.following.return());
+    if (event.key === 'Escape') ui.escape(() => room.pointers.stop() || room.following.return());
     else if (event.key === '?' && !isTyping) ui.toggle('help');
   };
   const onPress = (event) => {

@@ -8,6 +8,7 @@ import { hasCharts } from './chart_loader.js';
 import { ofDose } from './dose_later.js';
 import { icon } from './icons.js';
 import { layoutButtons, panesMenu } from './pane_layouts.js';
+import { pointTools } from './point_lazy.js';
 import { roving } from './roving.js';
 import { roomChip } from './room_chip.js';
 import { sectionsOf } from './sections.js';
@@ -46,7 +47,7 @@ function strip(world) {
     ${doseTools(world)}<button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
     ${hasCharts(world.room.plan.value) ? html`<button class=${classMap({ tool: true, plain: true, on: ui.isDrawerOpen.value })} tabindex="-1" title="Plots of dose: histograms, depth profile (V)" aria-label="Plots of dose" aria-pressed=${ui.isDrawerOpen.value} @click=${() => ui.toggleDrawer()}>${icon('drawer')}</button>` : nothing}
     <span class="grow"></span>
-    ${roomChip(world, 'strip')}
+    ${pointTools(world)}${roomChip(world, 'strip')}
     ${stripEnd(world)}
   </div>`;
 }
@@ -94,7 +95,7 @@ function dock(world) {
     ${doseTools(world, size)}${button('target', 'Probe', isTab('probe'), open('probe'))}
     ${hasCharts(plan) && size !== 'phone' ? button('curve', 'DVH', isTab('dvh'), open('dvh')) : nothing}
     ${button('panel', 'Selection', isTab('selection'), open('selection'))}
-    ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}
+    ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}${pointTools(world, true)}
       <span class="grow"></span><p class="at-crosshair"><b>${[region?.name, ofDose(room)?.doseHere(world)].filter(Boolean).join(' · ')}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`}
   </div>`;
 }

@@ -6,6 +6,7 @@ import { Following } from './following.js';
 import { views as allViews } from './layout.js';
 import { Latency } from './latency.js';
 import { readPlan } from './plan.js';
+import { Pointers } from './pointers.js';
 import { Replica } from './replica.js';
 import { Sending } from './sending.js';
 import { ViewState } from './view.js';
@@ -58,6 +59,7 @@ export class RoomState {
     // Before the list of members has come, nobody knows whether a change is the room's or this member's own.
     this.canChange = computed(() => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null && this.members.value.length > 0);
     this.#sending = new Sending({ connection, clock, schedule, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
+    this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
     this.following = new Following(this, (message) => this.#sending.act(message));
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
     this.scene = computed(() => {
@@ -222,6 +224,8 @@ export class RoomState {
       members: () => {
         if (Array.isArray(message.members)) this.#membersChanged(message.members);
       },
+      'pointer.at': () => this.pointers.moved(message),
+      look: () => this.pointers.looked(message),
       pong: () => { this.pingMs.value = Math.round(this.#clock.now() - message.time_ms); },
       problem: () => this.#refused(message),
       bye: () => {},
@@ -232,6 +236,7 @@ export class RoomState {
   #welcome(message) {
     this.#setLink('open');
     this.#sending.hold();
+    this.pointers.restart();
     this.member.value = message.member;
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;

@@ -55,12 +55,12 @@ export class UiState {
 
   /**
    * @param {'ok'|'warn'|'err'} kind @param {string} topic a newer message replaces an older one on the same topic
-   * @param {{word: string, keys?: string, act: () => void}} [action] a button in the message
+   * @param {{word: string, keys?: string, act: () => void}} [action] a button in the message @param {number} [ms] how long it is shown
    */
-  notify = (kind, text, topic = text, action = null) => {
+  notify = (kind, text, topic = text, action = null, ms = toastMs) => {
     const toast = { id: this.#nextToast++, kind, text, topic, action };
     this.toasts.value = [...this.toasts.value.filter((other) => other.topic !== topic).slice(-2), toast];
-    this.#clock.setTimeout(() => this.dismiss(toast.id), toastMs);
+    this.#clock.setTimeout(() => this.dismiss(toast.id), ms);
   };
 
   dismiss(id) {
