@@ -49,6 +49,7 @@ const keys = [
   ['T', 'Particle tracks on or off'],
   ['Q', 'Pin the values at the crosshair'],
   ['P', 'Point: the others see where; with Shift ask them to look here'],
+  ['N', 'Write a note at the crosshair'],
   ['F', 'Return to the presenter, or look for yourself'],
   ['Ctrl + Z', 'Undo your last change of scene or camera'],
   ['Ctrl + Shift + Z, Ctrl + Y', 'Redo it'],

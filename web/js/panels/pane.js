@@ -17,6 +17,7 @@ import { millimetres, number, windowText } from './format.js';
 import { ofDose, ofDrawnDose } from './dose_later.js';
 import { icon } from './icons.js';
 import { mount, variables } from './mount.js';
+import { ofNotes } from './notes_lazy.js';
 import { hasOwnRegions, orientation } from './orientation.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { paneKind } from './pane_kind.js';
@@ -144,7 +145,7 @@ export class Pane {
           tabindex="0" role="group" aria-label=${`${name} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
           @focus=${() => { this.#ui.active.value = n; }}>
           <canvas width="16" height="16"></canvas>
-          ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}${tools.overlay}</svg>${handles}${tools.handles}
+          ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}${tools.overlay}</svg>${handles}${this.#notePins()}${tools.handles}
           <svg class="overlay pointers" aria-hidden="true"></svg><div class="pointed"></div>
           ${this.#cover()}
         </div>
@@ -206,6 +207,15 @@ export class Pane {
       pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
       windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? 'No image: regions' : '',
     })}`;
+  }
+
+  #notePins() {
+    const notes = ofNotes(this.#room);
+    const { scene, plan } = this.#room;
+    if (!notes || !scene.value) return nothing;
+    const plane = isInSpace(this.#view.kind) ? null : this.actions.plane;
+    const tolerance = plane && stepAcross(plane.normal, shownImage(plan.value, scene.value)?.stepMm ?? [1, 1, 1]) / 2;
+    return notes.notePins({ room: this.#room, ui: this.#ui }, { header: this.#view.painted.value, box: this.#box, pane: this.#size.value, plane, tolerance });
   }
 
   #cover() {

@@ -14,6 +14,7 @@ import { PanePick } from './pane_pick.js';
 import { PaneTools } from './pane_tools.js';
 import { PaneWindow } from './pane_window.js';
 import { pointKey } from './point_lazy.js';
+import { noteHere } from './notes_lazy.js';
 import { toggleTracks } from './track_lazy.js';
 
 const degreesPerPixel = 0.4;
@@ -272,6 +273,7 @@ export class PaneActions {
       f: () => this.#room.following.toggle(), v: () => this.#ui.toggleDrawer(),
       c: () => toggleClips(this.#room, this.#ui, at), k: () => toggleCaps(this.#room, this.#ui, at),
       d: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'wash', at), i: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'lines', at), q: () => this.#dose() && pinHere({ room: this.#room, ui: this.#ui }, at),
+      n: () => noteHere({ room: this.#room, ui: this.#ui }),
       t: () => toggleTracks({ room: this.#room, ui: this.#ui }, at),
       w: () => this.#toggleTool('window'), m: () => this.#toggleTool('measure'), z: () => this.#toggleTool('zoom'),
       p: () => pointKey(this.#room, this.#ui, shiftKey),

@@ -24,6 +24,7 @@ import { ended, watchEnd } from './ended.js';
 import { coverPage, help, toasts } from './float.js';
 import { inspector, selected } from './inspector.js';
 import { mount } from './mount.js';
+import { watchNotes } from './notes_lazy.js';
 import { Pane } from './pane.js';
 import { giveOblique } from './pane_kind.js';
 import { paneSwitch } from './pane_switch.js';
@@ -91,7 +92,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
     stops.push(mount(part(name), () => draw(world)));
   if (!isBack) stops.push(offerName(world));
   stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), doses.start(clock));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), leaveBeam(world), startPointers(world), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), watchNotes(world), leaveBeam(world), startPointers(world), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);

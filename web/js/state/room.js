@@ -3,6 +3,7 @@ import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
 import { mergePatch } from '../wire/merge.js';
 import { Following } from './following.js';
+import { Items } from './items.js';
 import { views as allViews } from './layout.js';
 import { Latency } from './latency.js';
 import { readPlan } from './plan.js';
@@ -60,6 +61,7 @@ export class RoomState {
     this.canChange = computed(() => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null && this.members.value.length > 0);
     this.#sending = new Sending({ connection, clock, schedule, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
     this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
+    this.items = new Items((message) => this.#sending.act(message));
     this.following = new Following(this, (message) => this.#sending.act(message));
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
     this.scene = computed(() => {
@@ -221,6 +223,7 @@ export class RoomState {
         if (view && Array.isArray(message.regions))
           view.missing.value = { n: message.n, reasons: Object.fromEntries(message.regions.map(({ region, reason }) => [region, reason])) };
       },
+      item: () => this.items.changed(message, this.member.value),
       members: () => {
         if (Array.isArray(message.members)) this.#membersChanged(message.members);
       },
@@ -243,6 +246,7 @@ export class RoomState {
     this.gl.value = message.gl;
     this.#isLoaded = false;
     this.#loaded(message);
+    this.items.replace(message.items ?? [], message.member);
     for (const view of this.views) {
       if (!this.following.isFollowing.value) view.restart(view.document.value); // the whole document goes with view.open
       if (view.isOpen.value) this.#openView(view);
@@ -316,6 +320,7 @@ export class RoomState {
   }
 
   #refused({ to, view, input, problem }) {
+    if (to.startsWith('item.') && this.items.refused(input, problem)) return; // whoever gave the command tells it
     this.#scene.refuse(input);
     if (this.view(view)) this.view(view).refuse(input);
     if (to === 'follow') this.following.refused();
@@ -338,6 +343,7 @@ export class RoomState {
 
   /** What the server has not answered is sent again after the next welcome. */
   #keepChanges() {
+    this.items.recall();
     this.#scene.recall();
     for (const view of this.views) view.recall();
     this.#sending.hold();

@@ -22,8 +22,10 @@ export class UiState {
     this.beforeBeam = 1; // the 3-D view whose place the beam's eye took last
     this.selection = signal({ kind: 'view', id: '' }); // what was clicked last: view | image | volume | region | dose | beam | kept | tracks | track | curve | clip | oblique | measure | measures
     this.track = signal(null); // the particle track that was clicked last: the server's answer
+    this.note = signal(''); // id of the note, or of the reply, that is open in the inspector
+    this.newNote = signal(null); // what a note that is being written is about: {point_mm} or {region}
     this.region = computed(() => (this.selection.value.kind === 'region' ? this.selection.value.id : ''));
-    this.tab = signal('probe'); // probe | selection | plan; in a sheet also dvh
+    this.tab = signal('probe'); // probe | selection | plan | notes; in a sheet also dvh
     this.window = signal({ width: 1600, height: 1000, isCoarse: false });
     this.isTreeOpen = signal(true); // in a wide window; otherwise the sections are behind the rail or in a sheet
     this.isInspectorOpen = signal(true);
