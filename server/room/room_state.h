@@ -49,6 +49,12 @@ struct stream {
     bool latest_is_still;
     struct pace pace;
     struct member_view *viewers; /* the views that show it */
+    struct {                     /* the message view as it was written last: most viewers are sent the same text */
+        char *text;              /* NULL: none, or the view has changed since */
+        int index;
+        bool is_following;
+        char by[64];
+    } told;
 };
 
 struct member_view {                                   /* a pane of a member; its number is its index + 1 */

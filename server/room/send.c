@@ -197,15 +197,34 @@ void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32
     message_finish(&message);
 }
 
+void send_view_forget(struct stream *stream)
+{
+    free(stream->told.text);
+    stream->told.text = NULL;
+}
+
 void send_view(struct room *room, struct member *member, int index, const char *by)
 {
     const struct member_view *view = &member->views[index];
+    struct stream *stream = view->stream;
     struct message message = { .type = MESSAGE_VIEW };
+    if (!member->connection)
+        return;
+    if (stream->told.text && stream->told.index == index && stream->told.is_following == view->is_following &&
+        strcmp(stream->told.by, by) == 0) {
+        (void)send_text(room, member->connection, stream->told.text);
+        return;
+    }
     message.view.view = index + 1;
     message.view.document = view->stream->view;
     message.view.follow = view->is_following;
     copy_text(message.view.by, sizeof message.view.by, by);
-    send_to_member(room, member, &message);
+    send_view_forget(stream);
+    stream->told.text = message_write(&message);
+    stream->told.index = index;
+    stream->told.is_following = view->is_following;
+    copy_text(stream->told.by, sizeof stream->told.by, by);
+    (void)send_text(room, member->connection, stream->told.text);
 }
 
 bool send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,

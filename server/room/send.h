@@ -25,6 +25,7 @@ void send_plan(struct room *room);                                  /* to all */
 void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32_t input, bool to_all);
 /* The document of one of the member's views; by: id of the member who moved it, "" for none. */
 void send_view(struct room *room, struct member *member, int index, const char *by);
+void send_view_forget(struct stream *stream); /* the stream's view is another one, or ends */
 /* to: type of the refused message, "" when it was none; view, input: of that message, 0 when it had none. Counts as a
  * refused message. False as send_to_connection. */
 bool send_problem(struct room *room, void *connection, const char *to, int64_t view, int64_t input,

@@ -149,6 +149,7 @@ void stream_destroy(struct room *room, struct stream *stream)
         at = &(*at)->next;
     *at = stream->next;
     room_picture_drop(stream->latest);
+    send_view_forget(stream);
     cJSON_Delete(stream->view);
     cJSON_Delete(stream->scene);
     free(stream);
@@ -161,6 +162,7 @@ bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
         return false;
     }
     assert(!stream->is_shared || views_are_alike(stream->view, view));
+    send_view_forget(stream);
     cJSON_Delete(stream->view);
     stream->view = view;
     stream->scene_is_stale = true;
@@ -221,6 +223,7 @@ void streams_remove_bad_overrides(struct room *room)
         if (override_is_valid(room, stream->view, &problem) || problem.type == PROBLEM_INTERNAL)
             continue; /* without memory nothing is known of it; a request that finds it bad says so */
         cJSON_DeleteItemFromObjectCaseSensitive(stream->view, "override");
+        send_view_forget(stream);
         stream->scene_is_stale = true;
         stream_changed(room, stream);
         report_removed_override(room, stream, &problem);

@@ -103,6 +103,13 @@ static void set_option(int socket, int level, int name, int value)
     }
 }
 
+/* All connections are checked at the same times, so that the thread wakes up once a second and not once for each. */
+static void check_later(struct ws_connection *connection)
+{
+    int64_t left_us = TIMER_US - clock_now_us() % TIMER_US;
+    lws_set_timer_usecs(connection->wsi, left_us < TIMER_US / 4 ? left_us + TIMER_US : left_us);
+}
+
 static void start(struct ws *ws, struct lws *wsi, const char *room_id, const struct ws_count *count)
 {
     struct ws_connection *connection = lws_wsi_user(wsi);
@@ -115,7 +122,7 @@ static void start(struct ws *ws, struct lws *wsi, const char *room_id, const str
     ws->counters.opened++;
     ws->counters.n_connections++;
     lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); /* time limits are checked in check_connection */
-    lws_set_timer_usecs(wsi, TIMER_US);
+    check_later(connection);
     ws->callbacks.opened(ws->callbacks.context, connection, room_id);
 }
 
@@ -235,7 +242,7 @@ static int check_connection(struct ws_connection *connection)
             lws_set_timer_usecs(connection->wsi, left_us);
         return left_us > 0 ? 0 : -1;
     }
-    lws_set_timer_usecs(connection->wsi, TIMER_US);
+    check_later(connection);
     if (now_us - connection->opened_us >= WS_HELLO_WITHIN_S * INT64_C(1000000) &&
         !ws->callbacks.is_greeted(ws->callbacks.context, connection)) {
         ws_bye(connection, WS_CLOSE_NORMAL, "no hello within 5 s", 1000);
