@@ -174,6 +174,58 @@ static void leave(void *context, struct outcome *outcome)
     faults_go_on();
 }
 
+/* A note is written, changed and deleted: the room and who keeps its items know the same of it, whatever fails. */
+static void write_note(void *context, struct outcome *outcome)
+{
+    (void)context;
+    faults_pause();
+    struct room_world *world = world_make();
+    struct room *room = world->fake.room;
+    static const char put[] = "{\"type\":\"item.put\",\"kind\":\"note\",\"body\":{\"text\":\"Edge?\",\"anchor\":{"
+                              "\"point_mm\":[1,2,3],\"region\":\"brain\"},\"mentions\":[{\"member\":\"m1\","
+                              "\"name\":\"Ann\"}]}}";
+    char change[200], remove[100];
+    faults_go_on();
+    room_text_came(room, &world->other, put, sizeof put - 1, world->fake.now_us);
+    faults_pause();
+    cJSON *row = world->fake.n_kept ? cJSON_Parse(world->fake.kept[0]) : NULL;
+    const char *id = json_text(row, "id");
+    (void)
+        snprintf(change, sizeof change,
+                 "{\"type\":\"item.put\",\"item\":\"%s\",\"version\":1,\"kind\":\"note\",\"body\":{\"text\":\"Rim.\"}}",
+                 id ? id : "i-0");
+    (void)snprintf(remove, sizeof remove, "{\"type\":\"item.delete\",\"item\":\"%s\"}", id ? id : "i-0");
+    faults_go_on();
+    if (!world->other.is_closed)
+        room_text_came(room, &world->other, change, strlen(change), world->fake.now_us);
+    faults_pause();
+    const size_t n_kept = world->fake.n_kept;
+    char *newest = n_kept ? mem_copy_text(world->fake.kept[n_kept - 1]) : NULL;
+    (void)json_no_memory(NULL, "what the fake renderer keeps");
+    cJSON *rows = room_items(room, WIRE_ITEM_KIND_NOTE);
+    char *first = cJSON_GetArraySize(rows) ? json_print(cJSON_GetArrayItem(rows, 0)) : NULL;
+    const bool is_same = newest && first ? strcmp(newest, first) == 0 : !newest && !first;
+    faults_go_on();
+    if (!world->other.is_closed)
+        room_text_came(room, &world->other, remove, strlen(remove), world->fake.now_us);
+    faults_pause();
+    (void)json_no_memory(NULL, "what the fake renderer keeps");
+    outcome->is_done = true;
+    outcome_add_number(outcome, (double)world->fake.n_kept);
+    add_page(outcome, &world->other);
+    if (!is_same) {
+        outcome->is_told = false;
+        outcome->digest = 1;
+        outcome_note(outcome, "the room has another note than who keeps it");
+    }
+    free(first);
+    free(newest);
+    cJSON_Delete(rows);
+    cJSON_Delete(row);
+    world_end(world);
+    faults_go_on();
+}
+
 static void draw_frame(void *context, struct outcome *outcome)
 {
     (void)context;
@@ -379,6 +431,7 @@ int main(void)
         { .name = "somebody joins a room, opens a view and changes the scene", .run = join },
         { .name = "a member leaves, and then presents because nobody else does", .run = leave },
         { .name = "a scene is changed", .run = patch_scene },
+        { .name = "a note is written, changed and deleted", .run = write_note },
         { .name = "pictures are drawn and shown", .run = draw_frame },
         { .name = "a renderer comes back with another plan", .run = ready_again },
         { .name = "a room is described", .run = describe_room },
