@@ -36,8 +36,11 @@ static const struct api_route api_routes[] = {
     { "GET", "/api/v1/rooms/{room}/members", api_room_members },
     { "GET", "/api/v1/rooms/{room}/notes", api_room_notes },
     { "GET", "/api/v1/rooms/{room}/bookmarks", api_room_bookmarks },
+    { "GET", "/api/v1/rooms/{room}/bookmarks/{bookmark}", api_room_bookmark },
+    { "GET", "/api/v1/rooms/{room}/bookmarks/{bookmark}/picture", api_room_bookmark_picture },
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
+    { "GET", "/p/{saved}", api_permalink },
 };
 static const size_t api_n_routes = sizeof api_routes / sizeof api_routes[0];
 

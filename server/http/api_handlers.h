@@ -29,5 +29,11 @@ void api_room_scene_patch(struct api *api, struct call *call);
 void api_room_members(struct api *api, struct call *call);
 void api_room_notes(struct api *api, struct call *call);
 void api_room_bookmarks(struct api *api, struct call *call);
+void api_room_bookmark(struct api *api, struct call *call);
+void api_room_bookmark_picture(struct api *api, struct call *call);
+void api_permalink(struct api *api, struct call *call);
 void api_room_snapshot(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);
+
+/* The body of the bookmark with this token, of any room; the caller's. NULL: there is none. */
+NODISCARD cJSON *api_bookmark_of_token(struct api *api, const char *token);

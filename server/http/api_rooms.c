@@ -28,6 +28,29 @@ void api_rooms(struct api *api, struct call *call)
     call_answer_json(call, 200, answer);
 }
 
+/* The bookmark under this token and its plan's id, borrowed from it. NULL with problem. */
+static cJSON *find_saved(struct api *api, const cJSON *token, const char **plan_id, struct problem *problem)
+{
+    if (!cJSON_IsString(token) || !id_is_valid(token->valuestring)) {
+        problem_set(problem, PROBLEM_VALIDATION, "/saved", "pattern", "\"saved\" must be the token of a bookmark");
+        return NULL;
+    }
+    cJSON *bookmark = api_bookmark_of_token(api, token->valuestring);
+    *plan_id = json_text(bookmark, "plan");
+    if (!bookmark)
+        problem_set(problem, PROBLEM_NOT_FOUND, "/saved", "",
+                    "nothing is saved under this link: the bookmark was deleted, or the link is not complete");
+    return bookmark;
+}
+
+/* The room with what it began with, where it was made from a bookmark. */
+static cJSON *document_of(const struct room *room)
+{
+    cJSON *document = room_document(room);
+    json_add(document, "saved", room_beginning(room));
+    return document;
+}
+
 void api_room_new(struct api *api, struct call *call)
 {
     static const char *const media_types[] = { "application/json", NULL };
@@ -35,21 +58,28 @@ void api_room_new(struct api *api, struct call *call)
     cJSON *body;
     if (!call_read_object(call, media_types, &body))
         return;
-    const cJSON *plan = cJSON_GetObjectItemCaseSensitive(body, "plan");
+    const cJSON *plan = cJSON_GetObjectItemCaseSensitive(body, "plan"),
+                *saved = cJSON_GetObjectItemCaseSensitive(body, "saved");
     const cJSON *item;
+    cJSON *bookmark = NULL;
+    const char *plan_id = cJSON_GetStringValue(plan);
     cJSON_ArrayForEach(item, body)
     {
         char pointer[64];
         (void)snprintf(pointer, sizeof pointer, "/%.60s", item->string);
-        if (strcmp(item->string, "plan") != 0)
+        if (strcmp(item->string, "plan") != 0 && strcmp(item->string, "saved") != 0)
             problem_set(&problem, PROBLEM_VALIDATION, pointer, "unknown-field", "%.60s is not a field of a room",
                         item->string);
     }
-    if (!plan)
-        problem_set(&problem, PROBLEM_VALIDATION, "/plan", "required", "which plan? \"plan\" is missing");
-    else if (!cJSON_IsString(plan) || !id_is_valid(plan->valuestring))
+    if (!plan == !saved)
+        problem_set(&problem, PROBLEM_VALIDATION, "/plan", "required",
+                    "which plan? give either \"plan\", or \"saved\", the token of a bookmark");
+    else if (plan && (!plan_id || !id_is_valid(plan_id)))
         problem_set(&problem, PROBLEM_VALIDATION, "/plan", "pattern", "\"plan\" must be the id of a plan");
-    struct room *room = problem.type == PROBLEM_NONE ? net_room_create(api->net, plan->valuestring, &problem) : NULL;
+    else if (saved && problem.type == PROBLEM_NONE)
+        bookmark = find_saved(api, saved, &plan_id, &problem);
+    struct room *room = problem.type == PROBLEM_NONE ? net_room_create(api->net, plan_id, bookmark, &problem) : NULL;
+    cJSON_Delete(bookmark);
     cJSON_Delete(body);
     if (!room) {
         call_answer_problem(call, &problem);
@@ -58,14 +88,14 @@ void api_room_new(struct api *api, struct call *call)
     char location[96];
     (void)snprintf(location, sizeof location, "/api/v1/rooms/%s", room_id(room));
     call_add_header(call, "Location", location);
-    call_answer_json(call, 201, room_document(room));
+    call_answer_json(call, 201, document_of(room));
 }
 
 void api_room(struct api *api, struct call *call)
 {
     struct room *room = find_room(api, call);
     if (room)
-        call_answer_json(call, 200, room_document(room));
+        call_answer_json(call, 200, document_of(room));
 }
 
 void api_room_delete(struct api *api, struct call *call)

@@ -170,7 +170,7 @@ static bool make_id(char id[16])
     return true;
 }
 
-struct room *net_room_create(struct net *net, const char *plan_id, struct problem *problem)
+struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem)
 {
     char id[16];
     if (net_is_stopping(net)) {
@@ -202,6 +202,11 @@ struct room *net_room_create(struct net *net, const char *plan_id, struct proble
     *room = (struct net_room){ .net = net,
                                .room = room_create(id, plan_id, &callbacks, &net->limits),
                                .state = FLEET_CLOSED };
+    if (bookmark && !room_begin_with(room->room, bookmark, problem)) {
+        room_destroy(room->room);
+        free(room);
+        return NULL;
+    }
     net->rooms[net->n_rooms++] = room;
     bridge_report_plan(room);
     schedule_room(room);

@@ -37,8 +37,9 @@ void net_adopt(struct net *net, int socket, const struct handshake *handshake, v
 
 /* On the net thread only: */
 struct fleet *net_fleet(struct net *net);
-/* Creates a room and opens its plan. NULL with problem. */
-struct room *net_room_create(struct net *net, const char *plan_id, struct problem *problem);
+/* Creates a room and opens its plan. bookmark: of this plan, what the room begins with (room_begin_with); NULL: with
+ * the plan's own scene. NULL with problem. */
+struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem);
 struct room *net_room_find(struct net *net, const char *room_id);
 void net_room_delete(struct net *net, const char *room_id);
 size_t net_n_rooms(const struct net *net);

@@ -9,23 +9,13 @@
 #include <time.h>
 
 #include "core/base/mem.h"
+#include "server/room/bookmark_body.h"
 #include "server/room/item_list.h"
 #include "server/room/note_body.h"
 #include "server/room/roles.h"
 #include "server/room/send.h"
 
 /* ---- kinds ------------------------------------------------------------------------------------------------------ */
-
-/* Until bookmarks check what they hold: any object within the limit of bytes. */
-static cJSON *read_any_body(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
-                            struct problem *problem)
-{
-    (void)room;
-    (void)before;
-    (void)is_restored;
-    (void)problem;
-    return cJSON_Duplicate(body, true);
-}
 
 /* From kind to what its body may be. read: the body, checked and complete, as a new document, as note_body_read. */
 static const struct {
@@ -34,7 +24,7 @@ static const struct {
                    struct problem *problem);
 } kinds[] = {
     [WIRE_ITEM_KIND_NOTE] = { NOTE_MAX_BYTES, note_body_read },
-    [WIRE_ITEM_KIND_BOOKMARK] = { ROOM_MAX_ITEM_BYTES, read_any_body },
+    [WIRE_ITEM_KIND_BOOKMARK] = { ROOM_MAX_ITEM_BYTES, bookmark_body_read },
 };
 
 static const char *word_of(enum wire_item_kind kind)

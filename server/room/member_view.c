@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/room/beginning.h"
 #include "server/room/member_list.h"
 #include "server/room/own_view.h"
 #include "server/room/send.h"
@@ -124,7 +125,7 @@ static void join_shared(struct room *room, struct member *member, struct member_
 {
     struct stream *stream = stream_shared(room, document);
     if (!stream) {
-        stream = stream_create(room, document, true);
+        stream = stream_create(room, beginning_view(room, document), true);
         if (member_presents(room, member))
             (void)snprintf(stream->mover, sizeof stream->mover, "%s", member->id);
     } else {

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "core/base/mem.h"
+#include "server/room/beginning.h"
 #include "server/room/item_list.h"
 #include "server/room/items.h"
 #include "server/room/look.h"
@@ -62,6 +63,7 @@ void room_destroy(struct room *room)
         stream_destroy(room, room->streams);
     forget_plan(room);
     items_free(room);
+    beginning_free(room);
     cJSON_Delete(room->scene);
     free(room);
 }
@@ -85,7 +87,7 @@ static bool replace_plan(struct room *room, const cJSON *plan_document, const cJ
     cJSON *plan = cJSON_Duplicate(plan_document, true), *defaults = cJSON_Duplicate(default_scene, true);
     cJSON *scene = NULL;
     if (plan && defaults)
-        scene = room->scene ? scene_document_renew(plan, defaults, room->scene) : cJSON_Duplicate(default_scene, true);
+        scene = room->scene ? scene_document_renew(plan, defaults, room->scene) : beginning_scene(room, plan, defaults);
     if (!scene) {
         cJSON_Delete(plan);
         cJSON_Delete(defaults);

@@ -133,8 +133,10 @@ struct room {
     enum wire_renderer_state state;
     char phase[160];
     double percent;
-    struct problem problem;         /* when failed */
-    cJSON *plan, *defaults, *scene; /* NULL before the plan is ready */
+    struct problem problem;           /* when failed */
+    cJSON *plan, *defaults, *scene;   /* NULL before the plan is ready */
+    cJSON *begins_with, *first_views; /* the bookmark that the room was made from, and its views; NULL: none */
+    cJSON *begun;                     /* what was opened of it, without the scene; NULL before the plan is ready */
     uint32_t revision;
     char gl[200];
     bool is_software;

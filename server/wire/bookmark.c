@@ -295,6 +295,19 @@ cJSON *bookmark_open(const cJSON *body, const cJSON *plan, const cJSON *defaults
     return NULL;
 }
 
+cJSON *bookmark_views(const cJSON *body)
+{
+    size_t refused = mem_n_refused();
+    struct report report = { NULL, BOOKMARK_MAX_REPORT }; /* full: nothing is written down */
+    struct problem problem = { 0 };
+    cJSON *views = cJSON_CreateArray();
+    if (open_views(cJSON_GetObjectItemCaseSensitive(body, "views"), NULL, views, &report, &problem) &&
+        mem_n_refused() == refused)
+        return views;
+    cJSON_Delete(views);
+    return NULL;
+}
+
 /* ---- making ----------------------------------------------------------------------------------------------------- */
 
 static cJSON *difference(const cJSON *before, const cJSON *after)

@@ -23,7 +23,7 @@ enum {
     BOOKMARK_MAX_NAME = 80, /* characters */
     BOOKMARK_MAX_VIEWS = 8,
     BOOKMARK_MAX_LAYOUT = 8,       /* members of layout, and of a list in it */
-    BOOKMARK_MAX_BYTES = 48 << 10, /* of the body as compact text: less than a message of a client */
+    BOOKMARK_MAX_BYTES = 60 << 10, /* of the body as compact text: less than a message of a client */
     BOOKMARK_MAX_REPORT = 32,      /* lines; further ones are counted */
     BOOKMARK_TOKEN_CHARS = 20      /* 100 random bits */
 };
@@ -38,6 +38,9 @@ NODISCARD bool bookmark_check(const cJSON *body, struct problem *problem);
  * validation problem, or "version" for a bookmark of a newer version. body passed bookmark_check. defaults: the plan's
  * default scene. NULL with problem when there is no memory. In time that grows with the document. */
 NODISCARD cJSON *bookmark_open(const cJSON *body, const cJSON *plan, const cJSON *defaults, struct problem *problem);
+
+/* The views of a bookmark without its plan: [{view, document: complete}]. NULL: no memory. */
+NODISCARD cJSON *bookmark_views(const cJSON *body);
 
 /* The smallest merge patch that makes scene from defaults; both complete documents. NULL: no memory. */
 NODISCARD cJSON *bookmark_difference(const cJSON *defaults, const cJSON *scene);

@@ -256,12 +256,14 @@ static void a_room_keeps_a_limited_number_of_items_and_bytes(void **state)
     memset(large, 'a', sizeof large - 1);
     int n_taken = 0;
     while (n_taken < 100 && fake_n_heard(&ann, "problem") == 1) {
-        fake_say(&fake, &ann, "{\"type\":\"item.put\",\"kind\":\"bookmark\",\"body\":{\"name\":\"%s\"}}", large);
+        fake_say(&fake, &ann,
+                 "{\"type\":\"item.put\",\"kind\":\"bookmark\",\"body\":{\"name\":\"n\",\"later\":\"%s\"}}", large);
         n_taken += fake_n_heard(&ann, "problem") == 1;
     }
-    assert_int_equal(n_taken, ROOM_MAX_ITEMS_BYTES / (60000 + 250)); /* 250: about the rest of a row */
+    assert_int_equal(n_taken, ROOM_MAX_ITEMS_BYTES / (60000 + 500)); /* 500: about the rest of a row */
     assert_string_equal(refused(&ann), "429 ");
-    fake_say(&fake, &ann, "{\"type\":\"item.put\",\"kind\":\"bookmark\",\"body\":{\"name\":\"%s%.3000s\"}}", large,
+    fake_say(&fake, &ann,
+             "{\"type\":\"item.put\",\"kind\":\"bookmark\",\"body\":{\"name\":\"n\",\"later\":\"%s%.3000s\"}}", large,
              large);
     assert_string_equal(refused(&ann), "413 /body");
 }

@@ -69,7 +69,11 @@ async function route() {
   const host = document.querySelector('#page');
   if (place === 'rooms' && isId(id))
     leave = roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' });
-  else {
+  else if (place === 'p' && isId(id)) {
+    const n = nRoutes;
+    const { permalinkPage } = await import('./panels/permalink.js');
+    if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => location.replace(address(room, of)) }); // going back does not make another room
+  } else {
     const n = nRoutes;
     const { startPage } = await import('./panels/start_page.js'); // a file of its own: who opens a room by its link does not load it
     if (n === nRoutes) leave = startPage(host, { api, clock, enter, send, ownName, thumbnails });

@@ -50,6 +50,10 @@ export function makeApi(fetch, base = 'api/v1') {
     thumbnail: (plan) => call('POST', `plans/${id(plan)}/render`, { isPicture: true, body: { view: { kind: '3d', size_px: thumbnailPx }, format: 'jpeg', quality: 85, only_loaded: true } }),
     rooms: (signal) => call('GET', 'rooms', { signal }),
     makeRoom: (plan) => call('POST', 'rooms', { body: { plan } }),
+    /** A room of its own that begins with a saved view. @param {string} token of its link */
+    makeRoomOfSaved: (token) => call('POST', 'rooms', { body: { saved: token } }),
+    bookmark: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}`),
+    bookmarkPicture: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}/picture`, { isPicture: true }),
     room: (room) => call('GET', `rooms/${id(room)}`),
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),
     pick: (plan, room, view, px, py, prefer = '') =>

@@ -58,6 +58,7 @@ const keys = [
   ['In a transfer function: arrow keys', 'Move the chosen point (Shift: a tenth of the way)'],
   ['There: Page up, Page down', 'Choose the point before, after'],
   ['There: Insert, Delete, double click', 'Add a point, remove it, add one there'],
+  ['While saved views are presented: Page up, Page down', 'The view before, the next one'],
   ['?', 'This list'],
   ['Esc', 'Leave tool, popover, pointing, own view, message, full pane'],
 ];

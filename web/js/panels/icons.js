@@ -47,6 +47,7 @@ const paths = {
   download: svg`<path d="M8 2v8.500M4.5 7.500 8 11l3.5-3.500M2 13.500h12"/>`,
   table: svg`<rect x="2" y="2.5" width="12" height="11" rx="1"/><path d="M2 6h12M2 10h12M7 2.500v11"/>`,
   sliders: svg`<path d="M2 4.500h7M13 4.500h1M2 11.500h2M8 11.500h6"/><circle cx="11" cy="4.5" r="1.800"/><circle cx="6" cy="11.5" r="1.800"/>`,
+  bookmark: svg`<path d="M4 2h8v12L8 11l-4 3Z"/>`,
   target: svg`<circle cx="8" cy="8" r="5"/><path d="M8 1v4M8 11v4M1 8h4M11 8h4"/>`,
   solo: svg`<circle cx="8" cy="8" r="6.2"/><circle cx="8" cy="8" r="2" fill="currentColor"/>`,
   circle: svg`<circle cx="8" cy="8" r="5.5"/>`,

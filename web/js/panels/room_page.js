@@ -17,6 +17,7 @@ import { Undo, listenUndo } from '../state/undo.js';
 import { banner } from './banner.js';
 import { leaveBeam } from './beam_later.js';
 import { draftBar } from './beam_lazy.js';
+import { leaveBookmarks, playBar, resumeBookmark } from './bookmark_lazy.js';
 import { ChartLoader } from './chart_loader.js';
 import { ofDose } from './dose_later.js';
 import { figuresDialog } from './figures.js';
@@ -88,11 +89,11 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   const world = { after, room, ui, api, clock, storage, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
   world.charts = new ChartLoader(world);
   stops.push(() => world.charts.stop());
-  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofDose(room)?.doseBar(world)}${draftBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
+  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofDose(room)?.doseBar(world)}${draftBar(world)}${playBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', toasts], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world)));
   if (!isBack) stops.push(offerName(world));
   stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), doses.start(clock));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), watchNotes(world), leaveBeam(world), startPointers(world), listenSnapshots(world), resumeSnapshot(world), coverPage(host, ui));
+  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), watchNotes(world), leaveBeam(world), startPointers(world), listenSnapshots(world), resumeSnapshot(world), resumeBookmark(world), () => leaveBookmarks(world), coverPage(host, ui));
 
   const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
   hooks.enter(room, panes);

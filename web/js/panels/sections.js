@@ -2,6 +2,7 @@
 import { html } from '../../lib/lit-html.js';
 import { blendedImage } from '../state/image_look.js';
 import { shownImage } from '../state/plan.js';
+import { bookmarkNote, bookmarkRows, hasBookmarks } from './bookmark_lazy.js';
 import { hasBeams, ofBeams } from './beam_lazy.js';
 import { clipNote, clipRows, hasClips } from './clip_rows.js';
 import { ofDose } from './dose_later.js';
@@ -27,13 +28,14 @@ const table = [
   { id: 'tracks', name: 'Tracks', icon: 'tracks', has: (plan) => plan.nTracks, note: (world) => ofTracks(world.room)?.trackNote(world) ?? '', rows: (world) => ofTracks(world.room)?.trackRows(world) },
   { id: 'clip', name: 'Clip', icon: 'clip', has: hasClips, note: clipNote, rows: clipRows },
   { id: 'measures', name: 'Measures', icon: 'measure', has: hasMeasures, note: () => '', rows: measureRows },
+  { id: 'saved', name: 'Saved views', icon: 'bookmark', has: hasBookmarks, note: bookmarkNote, rows: bookmarkRows },
 ];
 
 /** The sections of this plan, and of what the scene has besides. */
 export const sectionsOf = (plan, scene) => (plan ? table.filter((section) => section.has(plan, scene)) : []);
 
 /** The section in which a row for this selection is. */
-export const sectionOfKind = { image: 'images', volume: 'images', region: 'regions', dose: 'doses', quantity: 'doses', dosing: 'doses', level: 'doses', beam: 'beams', kept: 'beams', preset: 'beams', curve: 'beams', tracks: 'tracks', track: 'tracks', clip: 'clip', oblique: 'planes', measure: 'measures' };
+export const sectionOfKind = { image: 'images', volume: 'images', region: 'regions', dose: 'doses', quantity: 'doses', dosing: 'doses', level: 'doses', beam: 'beams', kept: 'beams', preset: 'beams', curve: 'beams', tracks: 'tracks', track: 'tracks', clip: 'clip', oblique: 'planes', measure: 'measures', bookmark: 'saved' };
 
 function images(world) {
   const { room } = world;

@@ -1,6 +1,7 @@
 // The inspector's Selection: what was clicked last, wherever it was. A row of the table for each kind.
 import { html, nothing } from '../../lib/lit-html.js';
 import { drawBeam } from './beam_lazy.js';
+import { drawBookmark } from './bookmark_lazy.js';
 import { clipBlock } from './clip_plane.js';
 import { doseBlock, levelBlock } from './dose_block.js';
 import { drawingBlocks } from './drawing.js';
@@ -13,7 +14,7 @@ import { regionBlock } from './region.js';
 import { drawTracks } from './track_lazy.js';
 import { volumeBlock } from './volume.js';
 
-const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose: doseBlock, quantity: doseBlock, dosing: doseBlock, level: levelBlock, beam: (...args) => drawBeam(({ beamBlock }) => beamBlock(...args)), kept: (...args) => drawBeam(({ keptBlock }) => keptBlock(...args)), curve, tracks: (...args) => drawTracks(({ trackBlock }) => trackBlock(...args)), track: (...args) => drawTracks(({ segmentBlock }) => segmentBlock(...args)), clip: clipBlock, oblique: obliqueBlock, measure: measureBlock, measures: measuresBlock };
+const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose: doseBlock, quantity: doseBlock, dosing: doseBlock, level: levelBlock, beam: (...args) => drawBeam(({ beamBlock }) => beamBlock(...args)), kept: (...args) => drawBeam(({ keptBlock }) => keptBlock(...args)), curve, tracks: (...args) => drawTracks(({ trackBlock }) => trackBlock(...args)), track: (...args) => drawTracks(({ segmentBlock }) => segmentBlock(...args)), clip: clipBlock, oblique: obliqueBlock, measure: measureBlock, measures: measuresBlock, bookmark: (...args) => drawBookmark(({ bookmarkBlock }) => bookmarkBlock(...args)) };
 
 export function selection(world) {
   const { room, ui } = world;
