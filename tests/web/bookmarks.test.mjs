@@ -137,6 +137,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
     for (const page of [ann, ben]) await until(() => cameraOf(page), (now) => isNear(now, cameras[2]));
     assert.equal((await world.scene(room)).axes.visible, true);
     assert.ok(await bar.getByRole('button', { name: 'Next view' }).isDisabled());
+    await ann.getByText('3 of 3').nth(1).waitFor(); // Selection goes along
     await shoot(ann, 'bookmark-presentation');
     assert.deepEqual(await findings(ann), []);
     await ann.keyboard.press('PageUp');

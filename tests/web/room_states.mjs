@@ -39,7 +39,7 @@ const layouts = [
   }],
 ];
 const dock = (name) => [`sheet ${name}`, (page) => page.locator('.dock button', { hasText: name }).click()];
-const parts = ['Images', 'Planes', 'Regions', 'Doses', 'Beams', 'Tracks', 'Clip'];
+const parts = ['Images', 'Planes', 'Regions', 'Doses', 'Beams', 'Tracks', 'Clip', 'Saved views'];
 const planes = [
   ['a new plane', (page) => page.locator('[data-key="oblique:"] button.name').click()],
   ['an oblique plane', (page) => page.locator('.clip-angles button').click()],
@@ -71,7 +71,7 @@ export const states = {
   ],
   compact: [
     ['at first', async () => {}],
-    ...['images', 'regions', 'doses', 'beams', 'tracks'].map((id) => [`section ${id}`, (page) => page.locator(`[data-section="${id}"]`).click()]),
+    ...['images', 'regions', 'doses', 'beams', 'tracks', 'saved'].map((id) => [`section ${id}`, (page) => page.locator(`[data-section="${id}"]`).click()]),
     ['section clip', (page) => page.locator('[data-section="clip"]').click()], ...clip,
     ['section planes', (page) => page.locator('[data-section="planes"]').click()], ...planes,
     ['section pinned', async (page) => {

@@ -60,8 +60,9 @@ export async function move({ room }, row, by) {
   if (at < 0 || to < 0 || to >= rows.length) return;
   const order = (index) => rows[index]?.body.order ?? 0;
   const beyond = to + by;
-  const place = beyond < 0 || beyond >= rows.length ? order(to) + by : (order(to) + order(beyond)) / 2;
-  if (place !== order(to) && place !== order(beyond)) return void await room.items.put('bookmark', { ...row.body, order: place }, row);
+  const isEnd = !rows[beyond];
+  const place = isEnd ? order(to) + by : (order(to) + order(beyond)) / 2;
+  if (place !== order(to) && (isEnd || place !== order(beyond))) return void await room.items.put('bookmark', { ...row.body, order: place }, row);
   const wanted = rows.filter((other) => other !== row); // no number is left between them
   wanted.splice(to, 0, row);
   for (const [index, other] of wanted.entries()) if (other.body.order !== index + 1) await room.items.put('bookmark', { ...other.body, order: index + 1 }, other);
@@ -179,6 +180,7 @@ export class Bookmarks {
     this.#stopViews = showViews(room, opened.views);
     undo?.release();
     this.shown.value = id;
+    if (id && this.isPlaying.value && ui.selection.value.kind === 'bookmark') ui.select('bookmark', id, false);
     this.report.value = { id, name: opened.name, lines: opened.report, n: opened.n_report };
   }
 
