@@ -106,10 +106,10 @@ test('two people write notes, answer at once, find, jump, resolve, and find all 
   await note(ann, 'Swelling').getByRole('button', { name: 'Resolve' }).click();
   await until(notes, (all) => all.find(({ body }) => body.text === 'Swelling here')?.body.resolved);
   await ben.locator('.note-error').waitFor();
-  await ben.getByRole('button', { name: 'Save' }).click();
+  await ben.getByRole('button', { name: 'Save', exact: true }).click();
   await ben.getByRole('alert').filter({ hasText: 'save again' }).waitFor();
   assert.equal(await ben.getByLabel('Change the text').inputValue(), 'Swelling, seen on T2');
-  await ben.getByRole('button', { name: 'Save' }).click();
+  await ben.getByRole('button', { name: 'Save', exact: true }).click();
   await until(notes, (all) => all.some(({ body }) => body.text === 'Swelling, seen on T2' && body.resolved));
 
   await ann.reload();

@@ -282,7 +282,7 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       await full(page, 2);
       const { window } = (await scene()).image;
       const isRoomy = (await picture(2).boundingBox()).width >= 360; // the width from which a picture has its window's text
-      const words = await picture(2).locator('.overlay:not(.clip-lines)').textContent();
+      const words = await picture(2).locator('.overlay:not(.clip-lines, .pointers)').textContent();
       assert.equal(words.includes(`C ${window.center.toFixed(0)}  W ${window.width.toFixed(0)}`), isRoomy, `${words} says ${JSON.stringify(window)}`);
 
       // ---- values at the pointer --------------------------------------------------------------------------------------------------
