@@ -119,10 +119,17 @@ test('two people write notes, answer at once, find, jump, resolve, and find all 
   await note(ann, 'Swelling, seen on T2').waitFor();
   await note(ann, 'the edge?').locator('.note-head').click();
   await ann.locator('.note-replies > li').nth(1).waitFor();
+  await openTab(ben);
+  if (await note(ben, 'the edge?').locator('.note-head').getAttribute('aria-expanded') !== 'true') await note(ben, 'the edge?').locator('.note-head').click();
+  await ben.getByLabel('Reply').fill('Half a thought');
   await note(ann, 'the edge?').getByRole('button', { name: 'Delete' }).first().click();
   await ann.getByRole('button', { name: 'Delete with 2 replies?' }).click();
   await note(ben, 'the edge?').waitFor({ state: 'detached' });
   assert.equal((await notes()).length, 1);
+  await ben.getByRole('status').filter({ hasText: 'Half a thought' }).waitFor(); // what was written for it is not lost
+  await ben.getByRole('button', { name: 'As a new note' }).click();
+  await ben.getByRole('button', { name: 'Add note' }).click();
+  await note(ann, 'Half a thought').waitFor();
   assert.deepEqual(world.errors, []);
 });
 

@@ -21,6 +21,16 @@ export function beginWith(room, key, text) {
 
 export const isWritten = (room, key) => draftOf(room, key).value.text.trim() !== '';
 
+/** What was written for notes that are deleted meanwhile. @param {Set<string>} ids of the notes that are there @returns {{text: string, drop: () => void}[]} */
+export function leftOver(room, ids) {
+  return [...drafts].flatMap(([key, draft]) => {
+    const [of, name] = key.split(' ');
+    const id = /^(?:re|edit)-(.+)$/.exec(name)?.[1];
+    if (of !== room.id || !id || ids.has(id) || !draft.value.text.trim()) return [];
+    return [{ text: draft.value.text, drop: () => { draft.value = empty; } }];
+  });
+}
+
 /** Moves the focus into the field, once it is drawn. */
 export const focusField = (key) => requestAnimationFrame(() => document.querySelector(`#note-field-${key}`)?.focus());
 

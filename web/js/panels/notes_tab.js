@@ -7,7 +7,7 @@ import { authorsOf, filtered, isResolved, noFilter, pointOf, threadsOf } from '.
 import { crosshairPatch, shownImage } from '../state/plan.js';
 import { position } from './format.js';
 import { icon } from './icons.js';
-import { beginWith, focusField, noteEditor } from './note_editor.js';
+import { beginWith, focusField, leftOver, noteEditor } from './note_editor.js';
 import { byline, mayChange, mayWrite, meIn, words } from './note_words.js';
 import { noteHere } from './notes_lazy.js';
 
@@ -33,7 +33,7 @@ export function notesTab(world) {
   const opened = threads.find(({ note, replies }) => note.id === ui.note.value || replies.some(({ id }) => id === ui.note.value));
   const shown = filtered(threads, filter.value, meIn(room));
   if (opened && !shown.includes(opened)) shown.unshift(opened); // a pin that was clicked, whatever the filter
-  return html`${head(world)}${threads.length ? filters(room, rows, threads) : nothing}
+  return html`${head(world)}${left(world, rows)}${threads.length ? filters(room, rows, threads) : nothing}
     ${shown.length ? html`<ol class="notes" aria-label="Notes">${repeat(shown, ({ note }) => note.id, (thread) => item(world, thread, thread === opened))}</ol>`
       : html`<p class="empty">${threads.length ? 'No note passes the filter.' : 'No notes yet. A note stands at a point or a region, for everybody in the room.'}</p>`}`;
 }
@@ -55,6 +55,19 @@ function head(world) {
     if (made) ui.note.value = made.id;
   };
   return html`<section class="block">${noteEditor(world, { key: 'new', label: `New note · ${placeWords(room, anchor)}`, word: 'Add note', save, cancel: () => { ui.newNote.value = null; } })}</section>`;
+}
+
+/** Words that were written for a note that somebody has deleted are not lost with it. */
+function left({ room, ui }, rows) {
+  return leftOver(room, new Set(rows.map(({ id }) => id))).map(({ text, drop }) => {
+    const again = () => {
+      beginWith(room, 'new', text);
+      drop();
+      noteHere({ room, ui });
+    };
+    return html`<section class="block" role="status"><p class="note-error">The note that you wrote this for was deleted.</p><p class="note-words">${text}</p>
+      <div class="note-buttons">${mayWrite(room) && !ui.newNote.value ? html`<button @click=${again}>As a new note</button>` : nothing}<button @click=${drop}>Discard</button></div></section>`;
+  });
 }
 
 function filters(room, rows, threads) {
