@@ -23,6 +23,7 @@
 #include "server/http/hosts.h"
 #include "server/http/http.h"
 #include "server/net/net.h"
+#include "server/store/backup.h"
 
 enum {
     PATH_SIZE = 4096,
@@ -193,10 +194,20 @@ static bool wait_for_plans(const struct net *net)
     return true;
 }
 
+/* --backup: copies the database of --data, also while a daemon uses it. */
+static bool back_up(const struct options *options, struct error *err)
+{
+    char database[PATH_SIZE + 16];
+    (void)snprintf(database, sizeof database, "%s/beamroom.db", options->data_folder);
+    return store_backup(database, options->backup, err);
+}
+
 /* Serves until a signal comes. */
 static bool serve(const struct options *options, struct error *err)
 {
     const char *data_folder = options->data_folder;
+    char database[PATH_SIZE + 16];
+    (void)snprintf(database, sizeof database, "%s/beamroom.db", data_folder);
     const struct net_options net_options = {
         .fleet = { .plan_folders = (const char *const *)options->plan_folders,
                    .n_plan_folders = options->n_plan_folders,
@@ -214,6 +225,7 @@ static bool serve(const struct options *options, struct error *err)
         .room_idle_close_s = (int)options->room_idle_close_s,
         .room = { .max_members = (int)options->max_members },
         .allowed_origin = options->allowed_origin,
+        .database = database,
     };
     char upload_folder[PATH_SIZE + 16];
     (void)snprintf(upload_folder, sizeof upload_folder, "%s/uploads", data_folder);
@@ -280,6 +292,7 @@ int main(int argc, char **argv)
         return 0;
     }
     log_start("beamroomd", options.log_level);
+    (void)signal(SIGXFSZ, SIG_IGN); /* a write beyond a limit on the size of files fails with EFBIG */
 
     signal(SIGPIPE, SIG_IGN);         /* a write to a closed socket fails with EPIPE */
     struct rlimit no_core = { 0, 0 }; /* no core files: memory holds patients' data */
@@ -289,6 +302,14 @@ int main(int argc, char **argv)
     raise_descriptors();
 
     bool ok = !options.gl || gl_is_known(options.gl, &err);
+    if (options.backup) {
+        (void)umask(0077);
+        ok = ok && fill_path(&options.data_folder, default_data_folder, &err) && back_up(&options, &err);
+        if (!ok)
+            fprintf(stderr, "beamroomd: --backup %s: %s\n", options.backup, err.text);
+        options_finish(&options);
+        return ok ? 0 : 1;
+    }
     ok = ok && fill_path(&options.data_folder, default_data_folder, &err) &&
          fill_path(&options.web_folder, default_web_folder, &err) &&
          fill_path(&options.renderer_path, default_renderer, &err) && make_folders(options.data_folder, &err);

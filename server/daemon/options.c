@@ -39,9 +39,9 @@ static const struct setting settings[] = {
       AT(max_renderer_mib), 0, 1 << 24 },
     { "plan-idle-close", "SECONDS", "close a plan nobody uses or is in a room with after this, 0 never; default 600",
       KIND_COUNT, AT(plan_idle_close_s), 0, 1 << 24 },
-    { "room-idle-close", "SECONDS", "close a room nobody is in after this, 0 never; default 86400", KIND_COUNT,
-      AT(room_idle_close_s), 0, 1 << 24 },
-    { "max-rooms", "N", "rooms at once, of all plans; default 200, at most 10000", KIND_COUNT, AT(max_rooms), 1,
+    { "room-idle-close", "SECONDS", "let a room nobody is in sleep on the disk after this, 0 never; default 86400",
+      KIND_COUNT, AT(room_idle_close_s), 0, 1 << 24 },
+    { "max-rooms", "N", "rooms in use at once, of all plans; default 200, at most 10000", KIND_COUNT, AT(max_rooms), 1,
       SCENE_MAX_ROOMS },
     { "max-members", "N", "people in one room; default 100, at most 200", KIND_COUNT, AT(max_members), 1,
       ROOM_MAX_MEMBERS },
@@ -62,6 +62,8 @@ static const struct setting settings[] = {
     { "user", "NAME",
       "started by root: the user to run as; default beamroom where there is one, else nobody; root stays root",
       KIND_TEXT, AT(user), 0, 0 },
+    { "backup", "FILE", "copy the rooms that --data keeps to this file, also while a daemon serves them, and end",
+      KIND_TEXT, AT(backup), 0, 0 },
     { "log-level", "LEVEL", "debug, info (default), warning or error", KIND_LEVEL, AT(log_level), 0, 0 },
     { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
     { "hang", "THREAD", "let the thread net, http or acceptor hang once it serves; for tests", KIND_TEXT, AT(hang), 0,
@@ -251,6 +253,7 @@ void options_finish(struct options *options)
     free(options->allowed_origin);
     free(options->user);
     free(options->hang);
+    free(options->backup);
 }
 
 void options_print_help(void)

@@ -102,6 +102,30 @@ bool api_route_at(size_t index, struct api_route *route)
     return index < api_n_routes || api_question_route(index - api_n_routes, &route->path);
 }
 
+/* Handles the call once more: the room that it needs is awake. */
+static void room_awoke(void *context, const char *room_id, const struct problem *problem)
+{
+    (void)room_id;
+    struct call *call = context;
+    if (problem)
+        call_answer_problem(call, problem);
+    else
+        api_handle(call->api, call);
+}
+
+/* True: the call needs a room that sleeps, and waits for it. */
+static bool wakes_room(struct api *api, struct call *call, const struct api_route *route)
+{
+    static const char in_room[] = "/api/v1/rooms/{room}";
+    const char *room = call_query(call, "room");
+    if (strncmp(route->path, in_room, sizeof in_room - 1) == 0)
+        room = call->method != CALL_DELETE && route->handle != api_room_ws ? call->ids[0] : NULL;
+    if (!room || !net_room_is_asleep(api->net, room))
+        return false;
+    net_room_wake(api->net, room, room_awoke, call);
+    return true;
+}
+
 void api_handle(struct api *api, struct call *call)
 {
     struct problem problem;
@@ -129,7 +153,8 @@ void api_handle(struct api *api, struct call *call)
                     return;
                 }
             call->route = route.path;
-            route.handle(api, call);
+            if (!wakes_room(api, call, &route))
+                route.handle(api, call);
             return;
         }
         is_known = true;

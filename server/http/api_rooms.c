@@ -8,6 +8,8 @@
 #include "server/http/api_queries.h"
 #include "server/http/etag.h"
 
+enum { MAX_ASLEEP = 100 }; /* rooms that sleep, in the list of rooms */
+
 /* The room that the call's address names; NULL: there is none, the call was answered. */
 static struct room *find_room(struct api *api, struct call *call)
 {
@@ -24,7 +26,10 @@ void api_rooms(struct api *api, struct call *call)
 {
     cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "rooms");
     for (size_t i = 0; i < net_n_rooms(api->net); i++)
-        cJSON_AddItemToArray(list, room_document(net_room_at(api->net, i)));
+        json_append(list, room_document(net_room_at(api->net, i)));
+    for (size_t i = 0; i < net_n_asleep(api->net) && i < MAX_ASLEEP; i++)
+        json_append(list, net_asleep_document(api->net, i));
+    cJSON_AddNumberToObject(answer, "n_asleep", (double)net_n_asleep(api->net));
     call_answer_json(call, 200, answer);
 }
 
@@ -100,7 +105,7 @@ void api_room(struct api *api, struct call *call)
 
 void api_room_delete(struct api *api, struct call *call)
 {
-    if (!find_room(api, call))
+    if (!net_room_is_asleep(api->net, call->ids[0]) && !find_room(api, call))
         return;
     net_room_delete(api->net, call->ids[0]);
     call_answer_nothing(call, 204);
@@ -150,8 +155,11 @@ static const cJSON *find_scene(struct api *api, struct call *call, struct room *
     const cJSON *scene = room_scene(*room, revision);
     if (!scene) {
         struct problem problem;
-        problem_set(&problem, PROBLEM_BUSY, "", "", "the plan of this room is not loaded yet");
-        problem.retry_after_ms = 500;
+        /* a room that was woken for this call: nobody is in it who would have opened the plan */
+        if (fleet_open(net_fleet(api->net), room_plan_id(*room), &problem)) {
+            problem_set(&problem, PROBLEM_BUSY, "", "", "the plan of this room is not loaded yet");
+            problem.retry_after_ms = 500;
+        }
         call_answer_problem(call, &problem);
     }
     return scene;

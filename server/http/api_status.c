@@ -110,7 +110,8 @@ void api_metrics(struct api *api, struct call *call)
     for (int state = 0; state <= FLEET_FAILED; state++)
         text_add(&text, "beamroom_plans{state=\"%s\"} %zu\n", fleet_state_word((enum fleet_state)state), plans[state]);
     add_metric(&text, "renderer_memory_bytes", "gauge", "Resident memory of all renderers.", memory_bytes);
-    add_metric(&text, "rooms", "gauge", "Rooms.", (double)net_n_rooms(api->net));
+    add_metric(&text, "rooms", "gauge", "Rooms in memory.", (double)net_n_rooms(api->net));
+    add_metric(&text, "rooms_asleep", "gauge", "Rooms that are kept on disk alone.", (double)net_n_asleep(api->net));
     add_metric(&text, "websocket_connections", "gauge", "Open WebSockets.", (double)n.n_connections);
     add_metric(&text, "websocket_connections_total", "counter", "WebSockets ever opened.", (double)n.connections);
     add_metric(&text, "websocket_refused_total", "counter", "WebSockets refused.", (double)n.connections_refused);

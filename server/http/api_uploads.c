@@ -38,9 +38,7 @@ void api_plan_delete(struct api *api, struct call *call)
     struct problem problem = { 0 };
     /* closes the plan's rooms first, but only if the plan can be deleted */
     if (fleet_plan_find(fleet, call->ids[0], &plan) && plan.is_uploaded)
-        for (size_t i = net_n_rooms(api->net); i-- > 0;)
-            if (strcmp(room_plan_id(net_room_at(api->net, i)), call->ids[0]) == 0)
-                net_room_delete(api->net, room_id(net_room_at(api->net, i)));
+        net_rooms_delete_of_plan(api->net, call->ids[0]);
     if (fleet_remove_plan(fleet, call->ids[0], &problem))
         call_answer_nothing(call, 204);
     else

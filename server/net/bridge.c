@@ -212,9 +212,11 @@ static void report_state(struct net_room *entry, const struct fleet_plan *plan)
 void bridge_report_plan(struct net_room *entry)
 {
     struct fleet_plan plan;
-    if (!fleet_plan_find(entry->net->fleet, room_plan_id(entry->room),
-                         &plan)) { /* its folder was removed while nobody held it */
+    if (!fleet_plan_find(entry->net->fleet, room_plan_id(entry->room), &plan)) {
         struct problem gone;
+        if (!fleet_is_listed(entry->net->fleet))
+            return; /* not yet known */
+        /* its folder was removed while nobody held it, or while the daemon did not run */
         problem_set(&gone, PROBLEM_NOT_FOUND, "", "", "the plan of this room is gone");
         entry->state = FLEET_UNREADABLE;
         room_renderer_state(entry->room, WIRE_RENDERER_STATE_FAILED, "", 0, &gone);
@@ -248,12 +250,23 @@ void bridge_leave(struct visitor *visitor)
     visitor->holds_plan = false;
 }
 
+/* The list of plans has changed: it may have the plan of a room that was entered while it was missing. */
+static void enter_again(struct net *net)
+{
+    struct fleet_plan plan;
+    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
+        if (visitor->room && !visitor->holds_plan &&
+            fleet_plan_find(net->fleet, room_plan_id(visitor->room->room), &plan))
+            bridge_enter(visitor);
+}
+
 void bridge_fleet_changed(void *context, const char *plan_id)
 {
     struct net *net = context;
     char id[64];
-    if (!plan_id) { /* the list of plans has changed: rooms do not depend on it */
+    if (!plan_id) {
         atomic_store(&net->is_listed, fleet_is_listed(net->fleet));
+        enter_again(net);
         return;
     }
     (void)snprintf(id, sizeof id, "%s", plan_id); /* borrowed until the next call into the fleet */

@@ -6,21 +6,24 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/net/asleep.h"
 #include "server/net/bridge.h"
+#include "server/net/keep.h"
 #include "server/net/net_state.h"
+#include "server/net/rooms.h"
 #include "server/net/schedule.h"
 
 enum {
     MAX_TASKS = 4096, /* tasks that may wait; one more makes net_post wait */
     FLEET_TICK_US = 250000,
-    FAREWELL_US = 1000000,   /* at the end, for the byes to be sent */
-    RESTART_RETRY_MS = 2000, /* when pages reconnect after a stop: about the time of a restart */
+    FAREWELL_US = 1000000,      /* at the end, for the byes to be sent */
+    RESTART_RETRY_MS = 2000,    /* when pages reconnect after a stop: about the time of a restart */
+    MAX_EARLY_BYTES = 256 << 10 /* what a connection may say while its room is being read from the disk */
 };
 
 struct task {
@@ -37,18 +40,6 @@ static void schedule_all(struct net *net)
     schedule_wake(net);
 }
 
-static void close_idle_rooms(struct net *net)
-{
-    int64_t now_us = clock_now_us(), after_us = net->room_idle_close_s * INT64_C(1000000);
-    for (size_t i = net->n_rooms; net->room_idle_close_s > 0 && i-- > 0;) {
-        const struct net_room *room = net->rooms[i];
-        if (room->empty_since_us && now_us - room->empty_since_us >= after_us) {
-            log_info("room closed: nobody there for %d s", net->room_idle_close_s);
-            net_room_delete(net, room_id(room->room));
-        }
-    }
-}
-
 static void timer_fired(void *context)
 {
     struct net *net = context;
@@ -56,7 +47,8 @@ static void timer_fired(void *context)
     if (now_us >= net->fleet_tick_us) {
         net->fleet_tick_us = now_us + FLEET_TICK_US;
         fleet_tick(net->fleet);
-        close_idle_rooms(net);
+        rooms_close_idle(net);
+        keep_write_due(net, false);
     }
     for (size_t i = 0; i < net->n_rooms; i++)
         if (net->rooms[i]->wake_us <= now_us)
@@ -66,51 +58,75 @@ static void timer_fired(void *context)
 
 /* ---- connections ------------------------------------------------------------------------------------------------ */
 
-static struct net_room *find_room(struct net *net, const char *id)
-{
-    for (size_t i = 0; i < net->n_rooms; i++)
-        if (strcmp(room_id(net->rooms[i]->room), id) == 0)
-            return net->rooms[i];
-    return NULL;
-}
-
-static void send_text(void *context, void *connection, const char *text)
-{
-    (void)context;
-    ws_send_text(connection, text);
-}
-
-static void send_latest(void *context, void *connection, uint32_t key, const char *text)
-{
-    (void)context;
-    ws_send_latest(connection, key, text);
-}
-
-static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
-{
-    (void)context;
-    ws_send_frame(connection, header, picture);
-}
-
-static void close_connection(void *context, void *connection)
-{
-    (void)context;
-    ws_close(connection, WS_CLOSE_NORMAL);
-}
-
 static bool has_room(void *context, const char *id)
 {
-    return find_room(context, id) != NULL;
+    return rooms_find(context, id) != NULL || asleep_find(context, id) != NULL;
+}
+
+static void free_early(struct visitor *visitor)
+{
+    while (visitor->early) {
+        struct early_text *text = visitor->early;
+        visitor->early = text->next;
+        free(text);
+    }
+    visitor->n_early_bytes = 0;
+}
+
+/* The room that connections wait for is awake, or cannot be. */
+static void let_in(void *context, const char *id, const struct problem *problem)
+{
+    struct net *net = context;
+    struct net_room *room = problem ? NULL : rooms_find(net, id);
+    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next) {
+        if (strcmp(visitor->asleep, id) != 0)
+            continue;
+        visitor->asleep[0] = 0;
+        visitor->room = room;
+        if (!room) {
+            free_early(visitor);
+            ws_bye(visitor->connection, WS_CLOSE_NORMAL,
+                   problem && problem->type != PROBLEM_NOT_FOUND ? problem->detail : "the room is closed",
+                   problem && problem->type != PROBLEM_NOT_FOUND ? WS_RETRY_MS : -1);
+            continue;
+        }
+        bridge_enter(visitor);
+        for (const struct early_text *text = visitor->early; text && visitor->room; text = text->next)
+            room_text_came(room->room, visitor->connection, text->text, text->n, clock_now_us());
+        free_early(visitor);
+        schedule_room(room);
+    }
+}
+
+static void keep_early(struct visitor *visitor, const char *text, size_t n)
+{
+    struct early_text **at = &visitor->early;
+    struct early_text *early = visitor->n_early_bytes + n <= MAX_EARLY_BYTES ? malloc(sizeof *early + n) : NULL;
+    if (!early) {
+        visitor->asleep[0] = 0;
+        free_early(visitor);
+        ws_bye(visitor->connection, WS_CLOSE_NORMAL, "too much was said before the room was awake", WS_RETRY_MS);
+        return;
+    }
+    *early = (struct early_text){ .n = n };
+    memcpy(early->text, text, n);
+    while (*at)
+        at = &(*at)->next;
+    *at = early;
+    visitor->n_early_bytes += n + sizeof *early;
 }
 
 static void connection_opened(void *context, struct ws_connection *connection, const char *id)
 {
     struct net *net = context;
     struct visitor *visitor = mem_new(sizeof *visitor);
-    *visitor = (struct visitor){ .next = net->visitors, .connection = connection, .room = find_room(net, id) };
+    *visitor = (struct visitor){ .next = net->visitors, .connection = connection, .room = rooms_find(net, id) };
     net->visitors = visitor;
     ws_set_owner(connection, visitor);
-    if (visitor->room)
+    if (!visitor->room && asleep_find(net, id)) {
+        (void)snprintf(visitor->asleep, sizeof visitor->asleep, "%s", id);
+        asleep_wake(net, id, let_in, net);
+    } else if (visitor->room)
         bridge_enter(visitor);
     else
         ws_bye(connection, WS_CLOSE_NORMAL, "the room is closed", -1);
@@ -120,10 +136,14 @@ static void message_received(void *context, struct ws_connection *connection, en
                              size_t n)
 {
     (void)kind; /* always a text: ws refuses binary messages */
-    struct net_room *room = ((struct visitor *)ws_owner(connection))->room;
+    struct visitor *visitor = ws_owner(connection);
+    struct net_room *room = visitor->room;
+    if (visitor->asleep[0])
+        keep_early(visitor, text, n);
     if (!room)
         return;
     room_text_came(room->room, connection, text, n, clock_now_us());
+    keep_write_due(context, false);
     schedule_room(room);
     schedule_wake(context);
 }
@@ -148,109 +168,8 @@ static void connection_closed(void *context, struct ws_connection *connection)
         schedule_room(visitor->room);
         schedule_wake(net);
     }
+    free_early(visitor);
     free(visitor);
-}
-
-/* ---- rooms ------------------------------------------------------------------------------------------------------ */
-
-/* 40 random bits as "7q4k-m2wz". The letters i, l and o and the digit 1 are left out: they are misread. */
-static bool make_id(char id[16])
-{
-    static const char letters[] = "abcdefghjkmnpqrstuvwxyz023456789";
-    uint8_t bytes[8];
-    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
-        return false;
-    char *at = id;
-    for (int i = 0; i < 8; i++) {
-        if (i == 4)
-            *at++ = '-';
-        *at++ = letters[bytes[i] % 32];
-    }
-    *at = 0;
-    return true;
-}
-
-struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem)
-{
-    char id[16];
-    if (net_is_stopping(net)) {
-        problem_set(problem, PROBLEM_BUSY, "", "", "the server is stopping");
-        return NULL;
-    }
-    if (net->n_rooms >= (size_t)net->max_rooms) {
-        problem_set(problem, PROBLEM_LIMIT, "", "", "there are %zu rooms already, at most %d are allowed", net->n_rooms,
-                    net->max_rooms);
-        return NULL;
-    }
-    if (!id_is_valid(plan_id)) {
-        problem_set(problem, PROBLEM_VALIDATION, "/plan", "pattern",
-                    "/plan is \"%.40s\", expected 1 to 63 of a-z, 0-9 and -", plan_id);
-        return NULL;
-    }
-    do
-        if (!make_id(id)) {
-            problem_set(problem, PROBLEM_INTERNAL, "", "", "the system gave no random numbers");
-            return NULL;
-        }
-    while (find_room(net, id));
-    if (!fleet_open(net->fleet, plan_id, problem))
-        return NULL;
-    const struct room_callbacks callbacks = { bridge_render,    bridge_forget, bridge_scene_changed,
-                                              send_text,        send_latest,   send_frame,
-                                              close_connection, NULL,          net };
-    struct net_room *room = mem_new(sizeof *room);
-    *room = (struct net_room){ .net = net,
-                               .room = room_create(id, plan_id, &callbacks, &net->limits),
-                               .state = FLEET_CLOSED };
-    if (bookmark && !room_begin_with(room->room, bookmark, problem)) {
-        room_destroy(room->room);
-        free(room);
-        return NULL;
-    }
-    net->rooms[net->n_rooms++] = room;
-    bridge_report_plan(room);
-    schedule_room(room);
-    schedule_wake(net);
-    return room->room;
-}
-
-struct room *net_room_find(struct net *net, const char *id)
-{
-    struct net_room *room = find_room(net, id);
-    return room ? room->room : NULL;
-}
-
-void net_room_delete(struct net *net, const char *id)
-{
-    size_t index = 0;
-    while (index < net->n_rooms && strcmp(room_id(net->rooms[index]->room), id) != 0)
-        index++;
-    if (index == net->n_rooms)
-        return;
-    struct net_room *room = net->rooms[index];
-    net->rooms[index] = net->rooms[--net->n_rooms];
-    bridge_close_room(room);
-    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
-        if (visitor->room == room) {
-            if (!room_has_member(room->room, visitor->connection)) /* members get theirs from room_destroy */
-                ws_bye(visitor->connection, WS_CLOSE_NORMAL, "the room is closed", -1);
-            bridge_leave(visitor);
-            visitor->room = NULL;
-        }
-    room_count(room->room, &net->closed);
-    room_destroy(room->room);
-    free(room);
-    schedule_wake(net);
-}
-
-size_t net_n_rooms(const struct net *net)
-{
-    return net->n_rooms;
-}
-
-struct room *net_room_at(const struct net *net, size_t index)
-{
-    return index < net->n_rooms ? net->rooms[index]->room : NULL;
 }
 
 struct fleet *net_fleet(struct net *net)
@@ -270,6 +189,45 @@ void net_count(const struct net *net, struct net_counters *counters)
         room_count(net->rooms[i]->room, &counters->rooms);
 }
 
+/* ---- the store ------------------------------------------------------------------------------------------------------ */
+
+static void handle_answer(struct net *net, void *argument)
+{
+    struct store_answer *answer = argument;
+    switch (answer->event) {
+    case STORE_OPENED:
+        asleep_add_all(net, answer->rooms, answer->n_rooms);
+        if (answer->is_new)
+            keep_all_again(net);
+        break;
+    case STORE_WRITTEN:
+        keep_written(net, answer);
+        keep_write_due(net, false);
+        break;
+    case STORE_READ: rooms_was_read(net, answer); break;
+    case STORE_FAILING:
+    case STORE_FINE: break;
+    }
+    store_answer_free(answer);
+}
+
+/* On the store's thread. */
+static void store_answered(void *context, struct store_answer *answer)
+{
+    struct net *net = context;
+    struct task *task = mem_new(sizeof *task);
+    *task = (struct task){ handle_answer, answer };
+    while (!net_is_stopping(net)) { /* when it stops it waits for this thread, and no answer is needed */
+        if (queue_try_put(net->tasks, task)) {
+            ws_wake(net->ws);
+            return;
+        }
+        sched_yield();
+    }
+    store_answer_free(answer);
+    free(task);
+}
+
 /* ---- tasks and the thread --------------------------------------------------------------------------------------- */
 
 static bool run_tasks(struct net *net)
@@ -286,8 +244,10 @@ static void woken(void *context)
 {
     struct net *net = context;
     fleet_handle_events(net->fleet);
-    if (run_tasks(net))
-        schedule_all(net); /* a task may have changed any room */
+    if (run_tasks(net)) { /* a task may have changed any room */
+        keep_write_due(net, false);
+        schedule_all(net);
+    }
 }
 
 void net_post(struct net *net, void (*run)(struct net *net, void *argument), void *argument)
@@ -356,15 +316,22 @@ static size_t n_connections(const struct net *net)
 static void *work(void *context)
 {
     struct net *net = context;
+    struct problem stops;
+    run_tasks(net); /* the rooms that are on disk */
     schedule_wake(net);
     while (!net_is_stopping(net))
         ws_serve(net->ws);
     run_tasks(net);
+    keep_write_due(net, true);
     for (struct visitor *visitor = net->visitors; visitor;
          visitor = visitor->next) /* before room_destroy says bye with another reason */
         ws_bye(visitor->connection, WS_CLOSE_GOING_AWAY, "the server is being stopped", RESTART_RETRY_MS);
+    problem_set(&stops, PROBLEM_BUSY, "", "", "the server is stopping");
+    asleep_tell(net, NULL, &stops);
     while (net->n_rooms)
-        net_room_delete(net, room_id(net->rooms[0]->room));
+        rooms_close(net, 0);
+    store_destroy(net->store); /* writes what it was handed over */
+    net->store = NULL;
     int64_t end_us = clock_now_us() + FAREWELL_US;
     while (n_connections(net) && clock_now_us() < end_us)
         ws_serve(net->ws);     /* fleet_tick wakes it four times a second */
@@ -395,12 +362,17 @@ struct net *net_create(const struct net_options *options, struct error *err)
     net->fleet = fleet_create(&fleet, err);
     if (!net->fleet)
         goto fail;
+    const struct store_options store = { options->database, store_answered, net };
+    if (options->database && !(net->store = store_create(&store, err)))
+        goto fail;
     if (pthread_create(&net->thread, NULL, work, net) != 0) {
         error_set(err, ERROR_IO, "no thread could be started");
         goto fail;
     }
     return net;
 fail:
+    atomic_store(&net->is_stopping, true);
+    store_destroy(net->store);
     fleet_destroy(net->fleet);
     ws_destroy(net->ws);
     queue_destroy(net->tasks);
@@ -418,6 +390,8 @@ void net_destroy(struct net *net)
     (void)pthread_join(net->thread, NULL);
     ws_destroy(net->ws);
     queue_destroy(net->tasks);
+    asleep_finish(net);
+    free(net->undeleted);
     free(net->rooms);
     free(net);
 }

@@ -12,13 +12,16 @@ struct net;
 struct net_options {
     struct fleet_options fleet; /* wake, changed and context are the net's own */
     int max_rooms;              /* 0: 200 */
-    int room_idle_close_s;      /* a room with nobody connected is closed after this; 0: never */
+    int room_idle_close_s;      /* a room with nobody connected is put to sleep after this, or deleted if nobody ever
+                                   used it or rooms are not kept; 0: never */
     struct room_limits room;
     /* a further Origin that may open a WebSocket, beside the request's own Host; NULL: none */
     const char *allowed_origin;
+    /* the file in which rooms are kept over a restart; NULL: none are */
+    const char *database;
 };
 
-/* Starts the thread. errors ERROR_IO, ERROR_MEMORY and those of fleet_create */
+/* Starts the thread. errors ERROR_IO, ERROR_MEMORY and those of fleet_create and store_create */
 NODISCARD struct net *net_create(const struct net_options *options, struct error *err);
 void net_destroy(struct net *net); /* says bye to every connection, stops renderers, joins */
 
@@ -41,7 +44,17 @@ struct fleet *net_fleet(struct net *net);
  * the plan's own scene. NULL with problem. */
 struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem);
 struct room *net_room_find(struct net *net, const char *room_id);
+/* For good, also of one that sleeps. */
 void net_room_delete(struct net *net, const char *room_id);
+void net_rooms_delete_of_plan(struct net *net, const char *plan_id);
+/* A room that sleeps is on disk alone: net_room_find does not find it. Whoever needs it wakes it; done is called once,
+ * with NULL when it is awake. */
+bool net_room_is_asleep(const struct net *net, const char *room_id);
+void net_room_wake(struct net *net, const char *room_id,
+                   void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
+size_t net_n_asleep(const struct net *net);
+/* As room_document, without members; the one last used is at 0. */
+NODISCARD cJSON *net_asleep_document(const struct net *net, size_t index);
 size_t net_n_rooms(const struct net *net);
 struct room *net_room_at(const struct net *net, size_t index);
 struct net_counters {

@@ -8,6 +8,7 @@
 #include "core/base/queue.h"
 #include "server/fleet/fleet.h"
 #include "server/room/room.h"
+#include "server/store/store.h"
 #include "server/ws/ws.h"
 
 struct net;
@@ -15,8 +16,17 @@ struct net;
 struct visitor { /* one WebSocket connection, from its opening on */
     struct visitor *next;
     struct ws_connection *connection;
-    struct net_room *room; /* NULL: its room was closed */
-    bool holds_plan;       /* fleet_hold, on the room's plan */
+    struct net_room *room;    /* NULL: its room was closed, or still sleeps */
+    char asleep[64];          /* id of the room that is being woken for it; "": none */
+    struct early_text *early; /* what it has said meanwhile */
+    size_t n_early_bytes;
+    bool holds_plan; /* fleet_hold, on the room's plan */
+};
+
+struct early_text {
+    struct early_text *next;
+    size_t n;
+    char text[];
 };
 
 struct picture_request { /* sent to the fleet and not yet answered */
@@ -40,6 +50,26 @@ struct net_room { /* a room and what the net thread keeps beside it */
     double percent;
     int64_t wake_us;        /* when room_tick is due */
     int64_t empty_since_us; /* 0: a member is connected */
+    struct {
+        unsigned changed;          /* parts (enum room_part) that are to be written */
+        uint64_t ticket;           /* of the write under way; 0: none */
+        uint32_t writing, written; /* revisions: in the write under way, on disk */
+        int64_t due_us;            /* no write begins before */
+        struct store_item *items;  /* changed ones that are to be written, each once */
+        size_t n_items;
+    } keep;
+};
+
+struct asleep_room { /* kept on disk alone */
+    struct store_summary facts;
+    uint64_t ticket; /* of the reading under way; 0: none */
+};
+
+struct waiter { /* for a room that is being read */
+    struct waiter *next;
+    char room[64];
+    void (*done)(void *context, const char *room_id, const struct problem *problem);
+    void *context;
 };
 
 struct net {
@@ -52,6 +82,13 @@ struct net {
     size_t n_rooms;
     int max_rooms, room_idle_close_s;
     struct room_limits limits;
+    struct store *store; /* NULL: rooms are not kept */
+    struct asleep_room *asleep;
+    size_t n_asleep;
+    struct waiter *waiters;
+    char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */
+    size_t n_undeleted;
+    uint64_t n_tickets;
     int64_t fleet_tick_us;              /* when fleet_tick is due */
     struct room_counters closed;        /* sum over the rooms that were closed */
     atomic_bool is_listed, is_stopping; /* read by any thread */

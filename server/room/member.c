@@ -8,6 +8,7 @@
 #include <sys/random.h>
 
 #include "core/base/mem.h"
+#include "server/room/known.h"
 #include "server/room/look.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
@@ -34,15 +35,9 @@ static void make_secret(char hex[2 * SECRET_BYTES + 1])
         (void)snprintf(hex + 2 * i, 3, "%02x", bytes[i]);
 }
 
-/* Compares in constant time: the time does not reveal how many digits match. The length is public. */
 static bool secret_is(const struct member *member, const char *secret)
 {
-    if (strlen(secret) != 2 * SECRET_BYTES)
-        return false;
-    unsigned char differs = 0;
-    for (size_t i = 0; i < 2 * SECRET_BYTES; i++)
-        differs |= (unsigned char)(secret[i] ^ member->secret[i]);
-    return differs == 0;
+    return strlen(secret) == 2 * SECRET_BYTES && secret_matches(secret, member->secret_hash);
 }
 
 static void member_free(struct room *room, int index)
@@ -72,6 +67,7 @@ int64_t members_forget(struct room *room)
             continue;
         int64_t due_us = member->away_us + kept_us;
         if (room->now_us >= due_us) {
+            known_add_member(room, member);
             member_free(room, i);
             has_changed = true;
         } else if (due_us < again_us) {
@@ -125,6 +121,7 @@ static bool make_place(struct room *room)
             longest = i;
     if (longest < 0)
         return false;
+    known_add_member(room, room->members[longest]);
     member_free(room, longest);
     return true;
 }
@@ -140,6 +137,7 @@ static struct member *member_create(struct room *room, const char *name)
     make_secret(member->secret);
     member->role = role_of_newcomer(room);
     member->color = color_of_newcomer(room);
+    secret_hash(member->secret, member->secret_hash);
     room->members[room->n_members++] = member;
     return member;
 }
@@ -161,14 +159,20 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
         views_close(room, member);
         if (old)
             send_bye(room, old, -1, replaced);
-        if (hello->name[0])
-            (void)snprintf(member->name, sizeof member->name, "%s", hello->name);
     } else if (make_place(room)) {
-        member = member_create(room, hello->name);
+        member = known_back(room, hello->member, hello->secret);
+        if (member)
+            room->members[room->n_members++] = member;
+        else
+            member = member_create(room, hello->name);
     } else {
         send_bye(room, connection, FULL_RETRY_MS, room_is_full);
         return false;
     }
+    if (hello->name[0])
+        (void)snprintf(member->name, sizeof member->name, "%s", hello->name);
+    if (!member->secret[0]) /* it came back with the secret of which only the hash was kept */
+        (void)snprintf(member->secret, sizeof member->secret, "%.32s", hello->secret);
     member->connection = connection;
     send_welcome(room, member);
     send_renderer_state(room, member);

@@ -11,6 +11,7 @@
 #include "server/room/beginning.h"
 #include "server/room/item_list.h"
 #include "server/room/items.h"
+#include "server/room/kept.h"
 #include "server/room/look.h"
 #include "server/room/member.h"
 #include "server/room/member_list.h"
@@ -65,6 +66,8 @@ void room_destroy(struct room *room)
     items_free(room);
     beginning_free(room);
     cJSON_Delete(room->scene);
+    cJSON_Delete(room->restored);
+    free(room->known);
     free(room);
 }
 
@@ -86,8 +89,9 @@ static bool replace_plan(struct room *room, const cJSON *plan_document, const cJ
 {
     cJSON *plan = cJSON_Duplicate(plan_document, true), *defaults = cJSON_Duplicate(default_scene, true);
     cJSON *scene = NULL;
+    const cJSON *before = room->scene ? room->scene : room->restored;
     if (plan && defaults)
-        scene = room->scene ? scene_document_renew(plan, defaults, room->scene) : beginning_scene(room, plan, defaults);
+        scene = before ? scene_document_renew(plan, defaults, before) : beginning_scene(room, plan, defaults);
     if (!scene) {
         cJSON_Delete(plan);
         cJSON_Delete(defaults);
@@ -96,10 +100,14 @@ static bool replace_plan(struct room *room, const cJSON *plan_document, const cJ
     forget_plan(room);
     room->plan = plan;
     room->defaults = defaults;
-    if (!room->scene || !json_equal(scene, room->scene))
+    if (!before || !json_equal(scene, before)) {
         room->revision++;
+        kept_changed(room, ROOM_SCENE);
+    }
     cJSON_Delete(room->scene);
+    cJSON_Delete(room->restored);
     room->scene = scene;
+    room->restored = NULL;
     return true;
 }
 
@@ -302,21 +310,35 @@ bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, str
     return true;
 }
 
-cJSON *room_document(const struct room *room)
+static cJSON *make_document(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,
+                            int64_t created_at_s, bool is_asleep, cJSON *members)
 {
     char created[32];
     struct tm utc;
-    time_t seconds = (time_t)room->created_at_s;
+    time_t seconds = (time_t)created_at_s;
     gmtime_r(&seconds, &utc);
     (void)strftime(created, sizeof created, "%Y-%m-%dT%H:%M:%SZ", &utc);
     cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "id", room->id);
-    cJSON_AddStringToObject(json, "plan", room->plan_id);
-    cJSON_AddNumberToObject(json, "revision", room->revision);
-    cJSON_AddStringToObject(json, "renderer", wire_renderer_state_words.words[room->state]);
+    cJSON_AddStringToObject(json, "id", id);
+    cJSON_AddStringToObject(json, "plan", plan_id);
+    cJSON_AddNumberToObject(json, "revision", revision);
+    cJSON_AddStringToObject(json, "renderer", wire_renderer_state_words.words[renderer]);
     cJSON_AddStringToObject(json, "created_at", created);
-    json_add(json, "members", room_members(room));
+    cJSON_AddBoolToObject(json, "asleep", is_asleep);
+    json_add(json, "members", members);
     return json;
+}
+
+cJSON *room_document(const struct room *room)
+{
+    return make_document(room->id, room->plan_id, room->revision, room->state, room->created_at_s, false,
+                         room_members(room));
+}
+
+cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,
+                        int64_t created_at_s)
+{
+    return make_document(id, plan_id, revision, renderer, created_at_s, true, cJSON_CreateArray());
 }
 
 size_t room_n_connected(const struct room *room)

@@ -12,11 +12,12 @@ enum {
     ROOM_MAX_UNSHOWN = 2,
     ROOM_STILL_AFTER_MS = 150,
     ROOM_MEMBER_KEPT_S = 300,
-    ROOM_PRESENTER_KEPT_S = 30,    /* how long a presenter without a connection still presents */
-    ROOM_MAX_ITEMS = 1000,         /* notes, replies and bookmarks together */
-    ROOM_MAX_ITEM_BYTES = 61440,   /* of the body of a bookmark, as JSON; a note may have less (note_body.h) */
-    ROOM_MAX_ITEM_FRAME = 2048,    /* of a row without its body */
-    ROOM_MAX_ITEMS_BYTES = 2 << 20 /* of all rows; they are in every welcome */
+    ROOM_PRESENTER_KEPT_S = 30,     /* how long a presenter without a connection still presents */
+    ROOM_MAX_ITEMS = 1000,          /* notes, replies and bookmarks together */
+    ROOM_MAX_ITEM_BYTES = 61440,    /* of the body of a bookmark, as JSON; a note may have less (note_body.h) */
+    ROOM_MAX_ITEM_FRAME = 2048,     /* of a row without its body */
+    ROOM_MAX_ITEMS_BYTES = 2 << 20, /* of all rows; they are in every welcome */
+    ROOM_MAX_KNOWN = 256 /* members that left and can come back as the same; beyond, the first who left cannot */
 };
 
 struct room;
@@ -64,6 +65,27 @@ struct room_callbacks {
      * the newest row of each id and gives it back with room_restore_item. NULL: nobody keeps items. */
     void (*item_changed)(void *context, struct room *room, const char *row, const char *id);
     void *context;
+    /* NULL, or: parts of the room (enum room_part) that are to be kept have changed; called often */
+    void (*kept_changed)(void *context, struct room *room, unsigned parts);
+};
+
+/* What of a room is kept on disk. */
+enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4 };
+enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS };
+
+struct room_kept_member {
+    char id[64], name[164], color[8], role[16];
+    unsigned char secret_hash[32]; /* of server/auth/secret.h */
+    bool has_left;                 /* it is not in the list of members, but may come back */
+};
+
+struct room_kept {
+    int64_t created_at_s;
+    uint32_t revision, n_named;
+    char presenter[64];               /* "": nobody */
+    char *scene, *views;              /* JSON; NULL: not asked for, or the plan was never loaded */
+    struct room_kept_member *members; /* NULL: not asked for */
+    size_t n_members;
 };
 
 struct room_limits {
@@ -112,6 +134,9 @@ NODISCARD cJSON *room_scene_for_view(const struct room *room, const cJSON *view,
 NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem);
 /* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */
 NODISCARD cJSON *room_document(const struct room *room);
+/* The same of a room that is not in memory: without members, and with asleep true. */
+NODISCARD cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision,
+                                  enum wire_renderer_state renderer, int64_t created_at_s);
 NODISCARD cJSON *room_members(const struct room *room);
 size_t room_n_connected(const struct room *room);
 
@@ -135,6 +160,15 @@ NODISCARD bool room_begin_with(struct room *room, const cJSON *body, struct prob
 /* {name, layout, views: [{view, document}], report, n_report} of the bookmark that the room began with; the report only
  * once the plan was loaded. NULL: it began with none. */
 NODISCARD cJSON *room_beginning(const struct room *room);
+
+/* Fills kept with these parts of the room; room_kept_finish frees them. False: no memory. */
+NODISCARD bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept);
+void room_kept_finish(struct room_kept *kept);
+/* Makes a room that was just created what it was when it was kept; its members are away. The scene counts once the plan
+ * is ready, as after a restart of the renderer. What is not readable in kept is left out, and said in the log. */
+void room_restore(struct room *room, const struct room_kept *kept, int64_t now_us);
+/* True once a member has entered, or the scene was changed. */
+bool room_was_used(const struct room *room);
 
 /* Counters for /metrics. */
 struct room_counters {

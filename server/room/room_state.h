@@ -1,6 +1,7 @@
 #pragma once
 /* The state of a room, its members, their views, and the streams that serve them; shared by the files of server/room.
  * Internal to server/room; one thread. */
+#include "server/auth/secret.h"
 #include "server/room/pace.h"
 #include "server/room/room.h"
 #include "wire_gen.h"
@@ -99,7 +100,8 @@ struct look {        /* the request to look at a point */
 };
 
 struct member {
-    char id[64], name[161], secret[2 * SECRET_BYTES + 1];
+    char id[64], name[161], secret[2 * SECRET_BYTES + 1]; /* secret "": only its hash is known until it comes back */
+    unsigned char secret_hash[SECRET_HASH_BYTES];
     enum wire_member_role role;
     int color;        /* color_rgb(color) */
     void *connection; /* NULL: away */
@@ -137,7 +139,9 @@ struct room {
     cJSON *plan, *defaults, *scene;   /* NULL before the plan is ready */
     cJSON *begins_with, *first_views; /* the bookmark that the room was made from, and its views; NULL: none */
     cJSON *begun;                     /* what was opened of it, without the scene; NULL before the plan is ready */
+    cJSON *restored;                  /* the scene as it was kept, until the plan is ready; else NULL */
     uint32_t revision;
+    bool is_changed; /* the scene was changed since the room was made */
     char gl[200];
     bool is_software;
 
@@ -148,6 +152,8 @@ struct room {
     struct item *items;       /* oldest first */
     size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */
     struct look look;
+    struct room_kept_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
+    int n_known;
     struct stream *streams;
     int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
     uint64_t n_requests;

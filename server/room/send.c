@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "server/room/item_list.h"
+#include "server/room/kept.h"
 #include "server/room/member_list.h"
 #include "server/wire/document.h"
 #include "server/wire/message.h"
@@ -116,6 +117,7 @@ static void send_members_now(struct room *room, struct member *only)
 
 void send_members(struct room *room)
 {
+    kept_changed(room, ROOM_MEMBERS);
     int64_t due_us = room->members_sent_us + MEMBERS_EVERY_US * (int64_t)room->n_members;
     if (room->n_members > FEW_MEMBERS && room->now_us < due_us) {
         room->members_due_us = due_us;

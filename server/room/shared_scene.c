@@ -1,6 +1,7 @@
 /* Applies patches to the shared scene. */
 #include "server/room/shared_scene.h"
 
+#include "server/room/kept.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/send.h"
@@ -30,6 +31,8 @@ bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by,
     room->scene = scene;
     if (has_changed) {
         room->revision++;
+        room->is_changed = true;
+        kept_changed(room, ROOM_SCENE);
         streams_scene_changed(room, before, patch);
         room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     }

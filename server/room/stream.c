@@ -7,6 +7,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/room/kept.h"
 #include "server/room/reach.h"
 #include "server/room/send.h"
 #include "server/wire/json_merge.h"
@@ -91,6 +92,8 @@ struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
     room->streams = stream;
     start_pace(room, stream);
     stream_changed(room, stream);
+    if (is_shared)
+        kept_changed(room, ROOM_VIEWS);
     return stream;
 }
 
@@ -166,6 +169,8 @@ bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
     cJSON_Delete(stream->view);
     stream->view = view;
     stream->scene_is_stale = true;
+    if (stream->is_shared)
+        kept_changed(room, ROOM_VIEWS);
     if (stream->kind != view_kind(view)) {
         stream->kind = view_kind(view);
         start_pace(room, stream);

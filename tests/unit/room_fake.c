@@ -93,7 +93,7 @@ static void item_changed(void *context, struct room *room, const char *row, cons
 void fake_room_start(struct fake_room *fake, int max_members)
 {
     struct room_callbacks callbacks = { render,     forget,     scene_changed, send_text, send_latest,
-                                        send_frame, close_page, item_changed,  fake };
+                                        send_frame, close_page, item_changed,  fake,      NULL };
     struct room_limits limits = { max_members };
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000000000;

@@ -19,10 +19,10 @@ export const once = long === 'rest' ? () => {} : it;
 /** What these tests need and is not there: they skip then. */
 export const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));
 
-/** @param {{plans?: string[], args?: string[]}} how */
-export async function startWorld({ plans = [], args = [] } = {}) {
+/** @param {{plans?: string[], args?: string[], data?: string}} how data: a state folder, kept afterwards */
+export async function startWorld({ plans = [], args = [], data } = {}) {
   mkdirSync(artifacts, { recursive: true });
-  const daemon = await startDaemon({ plans: [demo, ...plans], args });
+  const daemon = await startDaemon({ plans: [demo, ...plans], args, data });
   const { chromium } = await import('playwright-core');
   const browser = await chromium.launch({ executablePath: chromiumPath, headless: true, args: flags });
   const errors = [];
@@ -48,7 +48,7 @@ export async function startWorld({ plans = [], args = [] } = {}) {
     },
     async stop() {
       await browser.close();
-      await daemon.stop();
+      await this.daemon.stop(); // a test may have started another one
     },
   };
 }

@@ -1,0 +1,284 @@
+/* From rooms to rows and back. */
+#include "server/net/keep.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/wire/json.h"
+
+static int64_t wall_ms(void)
+{
+    struct timespec now;
+    (void)clock_gettime(CLOCK_REALTIME, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+/* The room's entry; NULL: rooms are not kept. */
+static struct net_room *find_kept(const struct net *net, const struct room *room)
+{
+    for (size_t i = 0; net->store && i < net->n_rooms; i++)
+        if (net->rooms[i]->room == room)
+            return net->rooms[i];
+    return NULL;
+}
+
+void keep_changed(void *context, struct room *room, unsigned parts)
+{
+    struct net_room *entry = find_kept(context, room);
+    if (entry)
+        entry->keep.changed |= parts;
+}
+
+static bool is_changed(const struct net_room *room)
+{
+    return room->keep.changed || room->keep.n_items;
+}
+
+bool keep_is_written(const struct net_room *room)
+{
+    return !is_changed(room) && room->keep.ticket == 0;
+}
+
+/* ---- items ------------------------------------------------------------------------------------------------------ */
+
+static void copy_text(char *to, size_t size, const char *from)
+{
+    (void)snprintf(to, size, "%s", from ? from : "");
+}
+
+/* What is searched for in the database stands in columns beside the whole row. */
+static void read_columns(const char *row, struct store_item *item)
+{
+    cJSON *json = json_read(row, strlen(row), NULL);
+    copy_text(item->kind, sizeof item->kind, json_text(json, "kind"));
+    copy_text(item->author, sizeof item->author, json_text(json, "author"));
+    copy_text(item->author_name, sizeof item->author_name, json_text(json, "author_name"));
+    item->version = (int64_t)json_number(json, "version", 0);
+    item->created_ms = (int64_t)json_number(json, "created_ms", 0);
+    item->changed_ms = (int64_t)json_number(json, "changed_ms", 0);
+    cJSON_Delete(json);
+}
+
+/* The place for an item that is to be written; NULL: no memory. */
+static struct store_item *item_place(struct net_room *room, const char *id)
+{
+    for (size_t i = 0; i < room->keep.n_items; i++)
+        if (strcmp(room->keep.items[i].id, id) == 0)
+            return &room->keep.items[i];
+    void *more = realloc(room->keep.items, (room->keep.n_items + 1) * sizeof room->keep.items[0]);
+    if (!more)
+        return NULL;
+    room->keep.items = more;
+    struct store_item *item = &room->keep.items[room->keep.n_items++];
+    *item = (struct store_item){ 0 };
+    return item;
+}
+
+static void item_changed(struct net_room *room, const char *row, const char *id)
+{
+    struct store_item *item = item_place(room, id);
+    if (!item) {
+        log_error("room %s: an item cannot be kept: no memory", room_id(room->room));
+        return;
+    }
+    free(item->body);
+    *item = (struct store_item){ 0 };
+    copy_text(item->id, sizeof item->id, id);
+    if (row) {
+        item->body = mem_copy_text(row);
+        read_columns(row, item);
+    }
+}
+
+void keep_item_changed(void *context, struct room *room, const char *row, const char *id)
+{
+    struct net_room *entry = find_kept(context, room);
+    if (entry)
+        item_changed(entry, row, id);
+}
+
+static void all_items_again(struct net_room *room)
+{
+    for (size_t kind = 0; kind < wire_item_kind_words.n; kind++) {
+        cJSON *rows = room_items(room->room, (enum wire_item_kind)kind);
+        const cJSON *row;
+        cJSON_ArrayForEach(row, rows)
+        {
+            char *text = json_print(row);
+            const char *id = json_text(row, "id");
+            if (text && id)
+                item_changed(room, text, id);
+            free(text);
+        }
+        cJSON_Delete(rows);
+    }
+}
+
+static void restore_items(struct room *room, const struct store_room *row)
+{
+    for (size_t i = 0; i < row->n_items; i++) {
+        struct problem problem = { 0 };
+        const char *text = row->items[i].body;
+        if (!room_restore_item(room, text, strlen(text), &problem))
+            log_error("room %s: item %s is left out: %s", room_id(room), row->items[i].id, problem.detail);
+    }
+}
+
+void keep_room_finish(struct net_room *room)
+{
+    for (size_t i = 0; i < room->keep.n_items; i++)
+        free(room->keep.items[i].body);
+    free(room->keep.items);
+    room->keep.items = NULL;
+    room->keep.n_items = 0;
+}
+
+/* ---- to the store ----------------------------------------------------------------------------------------------- */
+
+static void write_member(const struct room_kept_member *from, struct store_member *to)
+{
+    memcpy(to->id, from->id, sizeof to->id);
+    memcpy(to->name, from->name, sizeof to->name);
+    memcpy(to->color, from->color, sizeof to->color);
+    memcpy(to->role, from->role, sizeof to->role);
+    memcpy(to->secret_hash, from->secret_hash, sizeof to->secret_hash);
+    to->has_left = from->has_left;
+}
+
+/* The row with these parts; NULL: no memory. */
+static struct store_room *make_row(const struct net_room *room, unsigned parts)
+{
+    struct room_kept kept;
+    if (!room_keep(room->room, parts, &kept))
+        return NULL;
+    struct store_room *row = mem_new(sizeof *row);
+    (void)snprintf(row->id, sizeof row->id, "%s", room_id(room->room));
+    (void)snprintf(row->plan, sizeof row->plan, "%s", room_plan_id(room->room));
+    memcpy(row->presenter, kept.presenter, sizeof row->presenter);
+    row->created_ms = kept.created_at_s * 1000;
+    row->used_ms = wall_ms();
+    row->revision = kept.revision;
+    row->n_named = kept.n_named;
+    row->scene = kept.scene;
+    row->views = kept.views;
+    kept.scene = kept.views = NULL;
+    if (kept.members) {
+        row->members = mem_array(kept.n_members, sizeof row->members[0], 1 << 20, NULL);
+        row->n_members = row->members ? kept.n_members : 0;
+        for (size_t i = 0; i < row->n_members; i++)
+            write_member(&kept.members[i], &row->members[i]);
+        if (!row->members) {
+            store_room_free(row);
+            row = NULL;
+        }
+    }
+    room_kept_finish(&kept);
+    return row;
+}
+
+static void write_room(struct net *net, struct net_room *room)
+{
+    struct store_room *row = make_row(room, room->keep.changed);
+    uint64_t ticket = net->n_tickets + 1;
+    if (row) {
+        row->items = room->keep.items;
+        row->n_items = room->keep.n_items;
+    }
+    if (!row || !store_write(net->store, row, ticket)) { /* tried again */
+        if (row) {
+            row->items = NULL;
+            row->n_items = 0;
+        }
+        store_room_free(row);
+        return;
+    }
+    room->keep.items = NULL;
+    room->keep.n_items = 0;
+    net->n_tickets = ticket;
+    room->keep.ticket = ticket;
+    room->keep.changed = 0;
+    (void)room_scene(room->room, &room->keep.writing);
+}
+
+void keep_write_due(struct net *net, bool is_last)
+{
+    int64_t now_us = clock_now_us();
+    while (net->store && net->n_undeleted && store_delete(net->store, net->undeleted[net->n_undeleted - 1], 0))
+        net->n_undeleted--;
+    for (size_t i = 0; net->store && i < net->n_rooms; i++) {
+        struct net_room *room = net->rooms[i];
+        if (!is_changed(room) || (!is_last && (room->keep.ticket || now_us < room->keep.due_us)))
+            continue;
+        room->keep.due_us = now_us + KEEP_PAUSE_MS * INT64_C(1000);
+        write_room(net, room);
+    }
+}
+
+void keep_delete(struct net *net, const char *id)
+{
+    if (!net->store || store_delete(net->store, id, 0))
+        return;
+    void *more = realloc(net->undeleted, (net->n_undeleted + 1) * sizeof net->undeleted[0]);
+    if (!more) {
+        log_error("room %s stays on the disk: no memory", id);
+        return;
+    }
+    net->undeleted = more;
+    (void)snprintf(net->undeleted[net->n_undeleted++], sizeof net->undeleted[0], "%s", id);
+}
+
+/* ---- from the store --------------------------------------------------------------------------------------------- */
+
+void keep_written(struct net *net, const struct store_answer *answer)
+{
+    for (size_t i = 0; answer->ticket && i < net->n_rooms; i++) {
+        struct net_room *room = net->rooms[i];
+        if (room->keep.ticket != answer->ticket)
+            continue;
+        room->keep.ticket = 0;
+        if (answer->error.code == ERROR_NONE)
+            room->keep.written = room->keep.writing;
+    }
+}
+
+void keep_all_again(struct net *net)
+{
+    for (size_t i = 0; i < net->n_rooms; i++)
+        net->rooms[i]->keep.changed = ROOM_ALL_PARTS;
+    for (size_t i = 0; i < net->n_rooms; i++)
+        all_items_again(net->rooms[i]);
+}
+
+static void read_member(const struct store_member *from, struct room_kept_member *to)
+{
+    memcpy(to->id, from->id, sizeof to->id);
+    memcpy(to->name, from->name, sizeof to->name);
+    memcpy(to->color, from->color, sizeof to->color);
+    memcpy(to->role, from->role, sizeof to->role);
+    memcpy(to->secret_hash, from->secret_hash, sizeof to->secret_hash);
+    to->has_left = from->has_left;
+}
+
+void keep_restore(struct net_room *room, const struct store_room *row)
+{
+    struct room_kept kept = { .created_at_s = row->created_ms / 1000,
+                              .revision = row->revision,
+                              .n_named = row->n_named,
+                              .scene = row->scene,
+                              .views = row->views };
+    memcpy(kept.presenter, row->presenter, sizeof kept.presenter);
+    kept.members = mem_array(row->n_members, sizeof kept.members[0], 1 << 20, NULL);
+    kept.n_members = kept.members ? row->n_members : 0;
+    for (size_t i = 0; i < kept.n_members; i++)
+        read_member(&row->members[i], &kept.members[i]);
+    restore_items(room->room, row); /* before members */
+    room_restore(room->room, &kept, clock_now_us());
+    free(kept.members);
+    room->keep.changed = 0; /* it is what was read */
+    room->keep.written = row->revision;
+}

@@ -1,0 +1,291 @@
+/* The life of rooms: made, put to sleep, woken, deleted. */
+#include "server/net/rooms.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <time.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/net/asleep.h"
+#include "server/net/bridge.h"
+#include "server/net/keep.h"
+#include "server/net/net.h"
+#include "server/net/schedule.h"
+
+struct net_room *rooms_find(const struct net *net, const char *id)
+{
+    for (size_t i = 0; i < net->n_rooms; i++)
+        if (strcmp(room_id(net->rooms[i]->room), id) == 0)
+            return net->rooms[i];
+    return NULL;
+}
+
+static void send_text(void *context, void *connection, const char *text)
+{
+    (void)context;
+    ws_send_text(connection, text);
+}
+
+static void send_latest(void *context, void *connection, uint32_t key, const char *text)
+{
+    (void)context;
+    ws_send_latest(connection, key, text);
+}
+
+static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
+{
+    (void)context;
+    ws_send_frame(connection, header, picture);
+}
+
+static void close_connection(void *context, void *connection)
+{
+    (void)context;
+    ws_close(connection, WS_CLOSE_NORMAL);
+}
+
+/* ---- rooms ------------------------------------------------------------------------------------------------------ */
+
+/* 40 random bits as "7q4k-m2wz". The letters i, l and o and the digit 1 are left out: they are misread. */
+static bool make_id(char id[16])
+{
+    static const char letters[] = "abcdefghjkmnpqrstuvwxyz023456789";
+    uint8_t bytes[8];
+    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
+        return false;
+    char *at = id;
+    for (int i = 0; i < 8; i++) {
+        if (i == 4)
+            *at++ = '-';
+        *at++ = letters[bytes[i] % 32];
+    }
+    *at = 0;
+    return true;
+}
+
+static struct net_room *add_room(struct net *net, const char *id, const char *plan_id)
+{
+    const struct room_callbacks callbacks = { .render = bridge_render,
+                                              .forget = bridge_forget,
+                                              .scene_changed = bridge_scene_changed,
+                                              .send_text = send_text,
+                                              .send_latest = send_latest,
+                                              .send_frame = send_frame,
+                                              .close = close_connection,
+                                              .context = net,
+                                              .item_changed = keep_item_changed,
+                                              .kept_changed = keep_changed };
+    struct net_room *room = mem_new(sizeof *room);
+    *room = (struct net_room){ .net = net,
+                               .room = room_create(id, plan_id, &callbacks, &net->limits),
+                               .state = FLEET_CLOSED };
+    net->rooms[net->n_rooms++] = room;
+    return room;
+}
+
+void rooms_close(struct net *net, size_t index)
+{
+    struct net_room *room = net->rooms[index];
+    net->rooms[index] = net->rooms[--net->n_rooms];
+    bridge_close_room(room);
+    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
+        if (visitor->room == room) {
+            if (!room_has_member(room->room, visitor->connection)) /* members get theirs from room_destroy */
+                ws_bye(visitor->connection, WS_CLOSE_NORMAL, "the room is closed", -1);
+            bridge_leave(visitor);
+            visitor->room = NULL;
+        }
+    room_count(room->room, &net->closed);
+    room_destroy(room->room);
+    keep_room_finish(room);
+    free(room);
+    schedule_wake(net);
+}
+
+/* Puts the room to sleep: it was used, nobody is connected, and it is on disk as it is. False: not now. */
+static bool put_to_sleep(struct net *net, size_t index)
+{
+    const struct net_room *room = net->rooms[index];
+    struct room_kept kept;
+    if (!net->store || !room->empty_since_us || !room_was_used(room->room) || !keep_is_written(room) ||
+        !room_keep(room->room, ROOM_MEMBERS, &kept))
+        return false;
+    struct store_summary facts = { .created_ms = kept.created_at_s * 1000,
+                                   .used_ms =
+                                       (int64_t)time(NULL) * 1000 - (clock_now_us() - room->empty_since_us) / 1000,
+                                   .revision = kept.revision,
+                                   .n_members = (uint32_t)kept.n_members };
+    (void)snprintf(facts.id, sizeof facts.id, "%s", room_id(room->room));
+    (void)snprintf(facts.plan, sizeof facts.plan, "%s", room_plan_id(room->room));
+    room_kept_finish(&kept);
+    asleep_add(net, &facts);
+    rooms_close(net, index);
+    return true;
+}
+
+void rooms_close_idle(struct net *net)
+{
+    int64_t now_us = clock_now_us(), after_us = net->room_idle_close_s * INT64_C(1000000);
+    for (size_t i = net->n_rooms; net->room_idle_close_s > 0 && i-- > 0;) {
+        const struct net_room *room = net->rooms[i];
+        if (!room->empty_since_us || now_us - room->empty_since_us < after_us)
+            continue;
+        if (put_to_sleep(net, i)) {
+            log_info("room put to sleep: nobody there for %d s", net->room_idle_close_s);
+        } else if (!net->store || !room_was_used(room->room)) {
+            log_info("room closed: nobody there for %d s", net->room_idle_close_s);
+            net_room_delete(net, room_id(room->room));
+        }
+    }
+}
+
+/* True if one more room may be awake, perhaps because another one was put to sleep. */
+static bool make_place(struct net *net)
+{
+    size_t longest = net->n_rooms;
+    if (net->n_rooms < (size_t)net->max_rooms)
+        return true;
+    for (size_t i = 0; i < net->n_rooms; i++)
+        if (net->rooms[i]->empty_since_us && room_was_used(net->rooms[i]->room) && keep_is_written(net->rooms[i]) &&
+            (longest == net->n_rooms || net->rooms[i]->empty_since_us < net->rooms[longest]->empty_since_us))
+            longest = i;
+    return longest < net->n_rooms && put_to_sleep(net, longest);
+}
+
+struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem)
+{
+    char id[16];
+    if (atomic_load(&net->is_stopping)) {
+        problem_set(problem, PROBLEM_BUSY, "", "", "the server is stopping");
+        return NULL;
+    }
+    if (net->n_rooms + net->n_asleep >= STORE_MAX_ROOMS) {
+        problem_set(problem, PROBLEM_LIMIT, "", "", "%zu rooms are kept already, at most %d can be: delete some",
+                    net->n_rooms + net->n_asleep, STORE_MAX_ROOMS);
+        return NULL;
+    }
+    if (!make_place(net)) {
+        problem_set(problem, PROBLEM_LIMIT, "", "", "there are %zu rooms already, at most %d are allowed", net->n_rooms,
+                    net->max_rooms);
+        return NULL;
+    }
+    if (!id_is_valid(plan_id)) {
+        problem_set(problem, PROBLEM_VALIDATION, "/plan", "pattern",
+                    "/plan is \"%.40s\", expected 1 to 63 of a-z, 0-9 and -", plan_id);
+        return NULL;
+    }
+    do
+        if (!make_id(id)) {
+            problem_set(problem, PROBLEM_INTERNAL, "", "", "the system gave no random numbers");
+            return NULL;
+        }
+    while (rooms_find(net, id) || asleep_find(net, id));
+    if (!fleet_open(net->fleet, plan_id, problem))
+        return NULL;
+    struct net_room *room = add_room(net, id, plan_id);
+    room->keep.changed = net->store ? ROOM_ALL_PARTS : 0;
+    if (bookmark && !room_begin_with(room->room, bookmark, problem)) {
+        rooms_close(net, net->n_rooms - 1);
+        return NULL;
+    }
+    bridge_report_plan(room);
+    schedule_room(room);
+    schedule_wake(net);
+    return room->room;
+}
+
+struct room *net_room_find(struct net *net, const char *id)
+{
+    struct net_room *room = rooms_find(net, id);
+    return room ? room->room : NULL;
+}
+
+void net_room_delete(struct net *net, const char *id)
+{
+    struct problem gone;
+    char deleted[64]; /* id may be the room's own */
+    (void)snprintf(deleted, sizeof deleted, "%s", id);
+    size_t index = 0;
+    while (index < net->n_rooms && strcmp(room_id(net->rooms[index]->room), deleted) != 0)
+        index++;
+    if (index < net->n_rooms)
+        rooms_close(net, index);
+    else if (!asleep_find(net, deleted))
+        return;
+    asleep_remove(net, deleted);
+    keep_delete(net, deleted);
+    problem_set(&gone, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", deleted);
+    asleep_tell(net, deleted, &gone);
+}
+
+void net_rooms_delete_of_plan(struct net *net, const char *plan_id)
+{
+    for (size_t i = net->n_rooms; i-- > 0;)
+        if (strcmp(room_plan_id(net->rooms[i]->room), plan_id) == 0)
+            net_room_delete(net, room_id(net->rooms[i]->room));
+    for (size_t i = net->n_asleep; i-- > 0;)
+        if (strcmp(net->asleep[i].facts.plan, plan_id) == 0)
+            net_room_delete(net, net->asleep[i].facts.id);
+}
+
+bool net_room_is_asleep(const struct net *net, const char *id)
+{
+    return asleep_find(net, id) != NULL;
+}
+
+void net_room_wake(struct net *net, const char *id,
+                   void (*done)(void *context, const char *room_id, const struct problem *problem), void *context)
+{
+    asleep_wake(net, id, done, context);
+}
+
+size_t net_n_asleep(const struct net *net)
+{
+    return net->n_asleep;
+}
+
+cJSON *net_asleep_document(const struct net *net, size_t index)
+{
+    const struct store_summary *facts = &net->asleep[index].facts;
+    return room_document_of(facts->id, facts->plan, facts->revision, WIRE_RENDERER_STATE_CLOSED,
+                            facts->created_ms / 1000);
+}
+
+/* ---- the store -------------------------------------------------------------------------------------------------- */
+
+void rooms_was_read(struct net *net, const struct store_answer *answer)
+{
+    struct problem problem = { 0 };
+    struct asleep_room *asleep = asleep_of_answer(net, answer);
+    if (!asleep)
+        return;
+    const struct store_summary facts = asleep->facts;
+    asleep->ticket = 0;
+    if (!answer->room) {
+        problem_set(&problem, PROBLEM_STORAGE, "", "", "the room cannot be read from the disk: %s", answer->error.text);
+    } else if (!make_place(net)) {
+        problem_set(&problem, PROBLEM_LIMIT, "", "", "there are %zu rooms in use, at most %d are allowed", net->n_rooms,
+                    net->max_rooms);
+    } else {
+        asleep_remove(net, facts.id);
+        struct net_room *room = add_room(net, facts.id, facts.plan);
+        keep_restore(room, answer->room);
+        bridge_report_plan(room);
+        schedule_room(room);
+    }
+    asleep_tell(net, facts.id, problem.type == PROBLEM_NONE ? NULL : &problem);
+}
+
+size_t net_n_rooms(const struct net *net)
+{
+    return net->n_rooms;
+}
+
+struct room *net_room_at(const struct net *net, size_t index)
+{
+    return index < net->n_rooms ? net->rooms[index]->room : NULL;
+}

@@ -1,0 +1,11 @@
+#pragma once
+/* The life of rooms. Those of net.h that begin with net_room are here as well. Internal to server/net; net thread. */
+#include "server/net/net_state.h"
+
+struct net_room *rooms_find(const struct net *net, const char *id);
+/* Closes the room in memory; on disk it stays as it is. */
+void rooms_close(struct net *net, size_t index);
+/* Puts rooms to sleep that nobody was in for a while; deletes those that nobody ever used. */
+void rooms_close_idle(struct net *net);
+/* A room that sleeps was read from the disk, or cannot be. */
+void rooms_was_read(struct net *net, const struct store_answer *answer);

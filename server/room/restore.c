@@ -1,0 +1,141 @@
+/* Writes and reads what is kept of a room. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/room/known.h"
+#include "server/room/stream.h"
+#include "server/wire/document.h"
+#include "server/wire/json.h"
+
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
+
+/* [{view, mover}] of the shared views. */
+static char *write_views(const struct room *room)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (const struct stream *stream = room->streams; stream; stream = stream->next) {
+        if (!stream->is_shared)
+            continue;
+        cJSON *item = cJSON_CreateObject();
+        json_add(item, "view", cJSON_Duplicate(stream->view, true));
+        cJSON_AddStringToObject(item, "mover", stream->mover);
+        json_append(list, item);
+    }
+    char *text = list ? json_print(list) : NULL;
+    cJSON_Delete(list);
+    return text;
+}
+
+static bool write_members(const struct room *room, struct room_kept *kept)
+{
+    size_t n = (size_t)(room->n_members + room->n_known);
+    kept->members = mem_array(n, sizeof kept->members[0], 1 << 20, NULL);
+    if (!kept->members)
+        return false;
+    for (int i = 0; i < room->n_known; i++)
+        kept->members[kept->n_members++] = room->known[i];
+    for (int i = 0; i < room->n_members; i++)
+        known_write(room->members[i], &kept->members[kept->n_members++]);
+    return true;
+}
+
+bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept)
+{
+    const cJSON *scene = room->scene ? room->scene : room->restored;
+    *kept =
+        (struct room_kept){ .created_at_s = room->created_at_s, .revision = room->revision, .n_named = room->n_named };
+    if (room->presenter)
+        (void)snprintf(kept->presenter, sizeof kept->presenter, "%s", room->presenter->id);
+    bool ok = true;
+    if (ok && (parts & ROOM_SCENE) && scene)
+        ok = (kept->scene = json_print(scene)) != NULL;
+    if (ok && (parts & ROOM_VIEWS))
+        ok = (kept->views = write_views(room)) != NULL;
+    if (ok && (parts & ROOM_MEMBERS))
+        ok = write_members(room, kept);
+    if (!ok)
+        room_kept_finish(kept);
+    return ok;
+}
+
+void room_kept_finish(struct room_kept *kept)
+{
+    free(kept->scene);
+    free(kept->views);
+    free(kept->members);
+    *kept = (struct room_kept){ 0 };
+}
+
+/* ---- reading ---------------------------------------------------------------------------------------------------- */
+
+static cJSON *read_json(const struct room *room, const char *text, const char *what)
+{
+    struct problem problem = { 0 };
+    cJSON *json = text ? json_read(text, strlen(text), &problem) : NULL;
+    if (text && !json)
+        log_error("room %s: %s is not readable in the database: %s", room->id, what, problem.detail);
+    return json;
+}
+
+static void read_views(struct room *room, const char *text)
+{
+    cJSON *list = read_json(room, text, "the list of views");
+    const cJSON *item;
+    int n = 0;
+    cJSON_ArrayForEach(item, list)
+    {
+        struct problem problem = { 0 };
+        const cJSON *kept = cJSON_GetObjectItemCaseSensitive(item, "view");
+        cJSON *view = kept && n++ < 64 ? view_document_patch(NULL, kept, &problem) : NULL;
+        if (!view) {
+            log_error("room %s: a kept view is left out: %s", room->id, problem.detail);
+            continue;
+        }
+        if (stream_shared(room, view)) {
+            cJSON_Delete(view);
+            continue;
+        }
+        const char *mover = json_text(item, "mover");
+        struct stream *stream = stream_create(room, view, true);
+        (void)snprintf(stream->mover, sizeof stream->mover, "%s", mover && id_is_valid(mover) ? mover : "");
+    }
+    cJSON_Delete(list);
+}
+
+static void read_members(struct room *room, const struct room_kept *kept)
+{
+    for (size_t i = 0; i < kept->n_members; i++) {
+        const struct room_kept_member *from = &kept->members[i];
+        if (!id_is_valid(from->id))
+            continue;
+        if (from->has_left || room->n_members == room->max_members) {
+            known_add(room, from);
+            continue;
+        }
+        struct member *member = mem_new(sizeof *member);
+        known_read(from, member);
+        member->away_us = room->now_us;
+        room->members[room->n_members++] = member;
+        if (strcmp(member->id, kept->presenter) == 0)
+            room->presenter = member;
+    }
+}
+
+void room_restore(struct room *room, const struct room_kept *kept, int64_t now_us)
+{
+    room->now_us = now_us;
+    room->created_at_s = kept->created_at_s;
+    room->revision = kept->revision;
+    room->n_named = kept->n_named;
+    room->is_changed = true;
+    cJSON *scene = read_json(room, kept->scene, "the scene");
+    if (cJSON_IsObject(scene))
+        room->restored = scene;
+    else
+        cJSON_Delete(scene);
+    read_members(room, kept);
+    read_views(room, kept->views);
+}

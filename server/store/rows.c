@@ -1,0 +1,266 @@
+/* The statements that write and read rooms. */
+#include "server/store/rows.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "server/store/sql.h"
+
+void store_room_free(struct store_room *room)
+{
+    if (!room)
+        return;
+    for (size_t i = 0; i < room->n_items; i++)
+        free(room->items[i].body);
+    free(room->items);
+    free(room->members);
+    free(room->scene);
+    free(room->views);
+    free(room);
+}
+
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
+
+static bool write_row(sqlite3 *db, const struct store_room *room, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(
+        db,
+        "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, presenter, scene, views)"
+        " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9) ON CONFLICT(id) DO UPDATE SET used_ms = ?4, revision = ?5,"
+        " n_named = ?6, presenter = ?7, scene = coalesce(?8, scene), views = coalesce(?9, views)",
+        err);
+    if (!row)
+        return false;
+    sql_bind_text(row, 1, room->id);
+    sql_bind_text(row, 2, room->plan);
+    (void)sqlite3_bind_int64(row, 3, room->created_ms);
+    (void)sqlite3_bind_int64(row, 4, room->used_ms);
+    (void)sqlite3_bind_int64(row, 5, room->revision);
+    (void)sqlite3_bind_int64(row, 6, room->n_named);
+    sql_bind_text(row, 7, room->presenter);
+    sql_bind_text(row, 8, room->scene);
+    sql_bind_text(row, 9, room->views);
+    bool ok = sql_step(row, "writing a room", err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+static bool run_for(sqlite3 *db, const char *sql, const char *room, const char *id, const char *what, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db, sql, err);
+    if (!row)
+        return false;
+    sql_bind_text(row, 1, room);
+    if (id)
+        sql_bind_text(row, 2, id);
+    bool ok = sql_step(row, what, err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+static bool write_members(sqlite3 *db, const struct store_room *room, struct error *err)
+{
+    if (!run_for(db, "DELETE FROM members WHERE room = ?1", room->id, NULL, "writing members", err))
+        return false;
+    sqlite3_stmt *row = sql_prepare(db,
+                                    "INSERT INTO members(room, place, id, name, color, role, secret_hash, has_left)"
+                                    " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+                                    err);
+    bool ok = row != NULL;
+    for (size_t i = 0; ok && i < room->n_members; i++) {
+        const struct store_member *member = &room->members[i];
+        sql_bind_text(row, 1, room->id);
+        (void)sqlite3_bind_int64(row, 2, (sqlite3_int64)i);
+        sql_bind_text(row, 3, member->id);
+        sql_bind_text(row, 4, member->name);
+        sql_bind_text(row, 5, member->color);
+        sql_bind_text(row, 6, member->role);
+        (void)sqlite3_bind_blob(row, 7, member->secret_hash, STORE_HASH_BYTES, SQLITE_TRANSIENT);
+        (void)sqlite3_bind_int(row, 8, member->has_left);
+        ok = sql_step(row, "writing members", err);
+    }
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+static bool write_item(sqlite3 *db, const char *room, const struct store_item *item, struct error *err)
+{
+    if (!item->body)
+        return run_for(db, "DELETE FROM items WHERE room = ?1 AND id = ?2", room, item->id, "deleting an item", err);
+    sqlite3_stmt *row =
+        sql_prepare(db,
+                    "INSERT INTO items(room, id, kind, version, author, author_name, created_ms, changed_ms, body)"
+                    " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9) ON CONFLICT(room, id) DO UPDATE SET kind = ?3,"
+                    " version = ?4, author = ?5, author_name = ?6, created_ms = ?7, changed_ms = ?8, body = ?9",
+                    err);
+    if (!row)
+        return false;
+    sql_bind_text(row, 1, room);
+    sql_bind_text(row, 2, item->id);
+    sql_bind_text(row, 3, item->kind);
+    (void)sqlite3_bind_int64(row, 4, item->version);
+    sql_bind_text(row, 5, item->author);
+    sql_bind_text(row, 6, item->author_name);
+    (void)sqlite3_bind_int64(row, 7, item->created_ms);
+    (void)sqlite3_bind_int64(row, 8, item->changed_ms);
+    sql_bind_text(row, 9, item->body);
+    bool ok = sql_step(row, "writing an item", err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+bool rows_write_room(sqlite3 *db, const struct store_room *room, struct error *err)
+{
+    if (!write_row(db, room, err) || (room->members && !write_members(db, room, err)))
+        return false;
+    for (size_t i = 0; i < room->n_items; i++)
+        if (!write_item(db, room->id, &room->items[i], err))
+            return false;
+    return true;
+}
+
+bool rows_delete_room(sqlite3 *db, const char *id, struct error *err)
+{
+    return run_for(db, "DELETE FROM rooms WHERE id = ?1", id, NULL, "deleting a room", err);
+}
+
+/* ---- reading ---------------------------------------------------------------------------------------------------- */
+
+static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db,
+                                    "SELECT id, plan, created_ms, used_ms, revision, n_named, presenter, scene,"
+                                    " views FROM rooms WHERE id = ?1",
+                                    err);
+    if (!row)
+        return false;
+    sql_bind_text(row, 1, id);
+    int step = sqlite3_step(row);
+    bool ok = step == SQLITE_ROW;
+    if (ok) {
+        sql_text(row, 0, room->id, sizeof room->id);
+        sql_text(row, 1, room->plan, sizeof room->plan);
+        room->created_ms = sqlite3_column_int64(row, 2);
+        room->used_ms = sqlite3_column_int64(row, 3);
+        room->revision = (uint32_t)sqlite3_column_int64(row, 4);
+        room->n_named = (uint32_t)sqlite3_column_int64(row, 5);
+        sql_text(row, 6, room->presenter, sizeof room->presenter);
+        room->scene = sql_copy_text(row, 7);
+        room->views = sql_copy_text(row, 8);
+    } else if (step == SQLITE_DONE) {
+        error_set(err, ERROR_NOT_FOUND, "there is no room \"%.63s\"", id);
+    } else {
+        sql_fail(db, "reading a room", err);
+    }
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+/* Rows of a room to an array of size bytes each, at most `most`. */
+static bool read_list(sqlite3 *db, const char *sql, const char *id, size_t size, size_t most,
+                      bool (*read)(sqlite3_stmt *row, void *to), void **list, size_t *n, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db, sql, err);
+    size_t capacity = 0;
+    bool ok = row != NULL;
+    if (ok && id)
+        sql_bind_text(row, 1, id);
+    for (int step; ok && (step = sqlite3_step(row)) != SQLITE_DONE;) {
+        if (step != SQLITE_ROW) {
+            ok = sql_fail(db, "reading", err);
+            break;
+        }
+        if (*n == most)
+            break;
+        if (*n == capacity) {
+            capacity = capacity ? 2 * capacity : 16;
+            void *larger = realloc(*list, capacity * size);
+            if (!larger) {
+                ok = error_set(err, ERROR_MEMORY, "no memory for %zu rows", capacity);
+                break;
+            }
+            *list = larger;
+        }
+        char *to = (char *)*list + *n * size;
+        memset(to, 0, size);
+        ++*n; /* before it is read: what is read in part is freed with the list */
+        ok = read(row, to) || error_set(err, ERROR_MEMORY, "no memory for a row");
+    }
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+static bool read_member(sqlite3_stmt *row, void *to)
+{
+    struct store_member *member = to;
+    sql_text(row, 0, member->id, sizeof member->id);
+    sql_text(row, 1, member->name, sizeof member->name);
+    sql_text(row, 2, member->color, sizeof member->color);
+    sql_text(row, 3, member->role, sizeof member->role);
+    if (sqlite3_column_bytes(row, 4) == STORE_HASH_BYTES)
+        memcpy(member->secret_hash, sqlite3_column_blob(row, 4), STORE_HASH_BYTES);
+    member->has_left = sqlite3_column_int(row, 5) != 0;
+    return true;
+}
+
+static bool read_item(sqlite3_stmt *row, void *to)
+{
+    struct store_item *item = to;
+    sql_text(row, 0, item->id, sizeof item->id);
+    sql_text(row, 1, item->kind, sizeof item->kind);
+    item->version = sqlite3_column_int64(row, 2);
+    sql_text(row, 3, item->author, sizeof item->author);
+    sql_text(row, 4, item->author_name, sizeof item->author_name);
+    item->created_ms = sqlite3_column_int64(row, 5);
+    item->changed_ms = sqlite3_column_int64(row, 6);
+    item->body = sql_copy_text(row, 7);
+    return item->body != NULL;
+}
+
+static bool read_summary(sqlite3_stmt *row, void *to)
+{
+    struct store_summary *room = to;
+    sql_text(row, 0, room->id, sizeof room->id);
+    sql_text(row, 1, room->plan, sizeof room->plan);
+    room->created_ms = sqlite3_column_int64(row, 2);
+    room->used_ms = sqlite3_column_int64(row, 3);
+    room->revision = (uint32_t)sqlite3_column_int64(row, 4);
+    room->n_members = (uint32_t)sqlite3_column_int64(row, 5);
+    return true;
+}
+
+struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err)
+{
+    struct store_room *room = mem_new(sizeof *room);
+    void *members = NULL, *items = NULL;
+    bool ok =
+        read_row(db, id, room, err) &&
+        read_list(db,
+                  "SELECT id, name, color, role, secret_hash, has_left FROM members WHERE room = ?1"
+                  " ORDER BY place",
+                  id, sizeof(struct store_member), STORE_MAX_MEMBERS, read_member, &members, &room->n_members, err) &&
+        read_list(db,
+                  "SELECT id, kind, version, author, author_name, created_ms, changed_ms, body FROM items"
+                  " WHERE room = ?1 ORDER BY created_ms, rowid",
+                  id, sizeof(struct store_item), STORE_MAX_ITEMS, read_item, &items, &room->n_items, err);
+    room->members = members;
+    room->items = items;
+    if (ok)
+        return room;
+    store_room_free(room);
+    return NULL;
+}
+
+struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struct error *err)
+{
+    void *list = mem_new(1);
+    *n = 0;
+    if (read_list(db,
+                  "SELECT id, plan, created_ms, used_ms, revision,"
+                  " (SELECT count(*) FROM members WHERE members.room = rooms.id) FROM rooms ORDER BY used_ms DESC, id",
+                  NULL, sizeof(struct store_summary), most, read_summary, &list, n, err))
+        return list;
+    free(list);
+    return NULL;
+}

@@ -1,0 +1,15 @@
+#pragma once
+/* Rooms to rows and back. Each function inside or outside of a transaction of the caller's. Internal to server/store.
+ */
+#include <sqlite3.h>
+
+#include "core/base/error.h"
+#include "server/store/store_rows.h"
+
+/* Errors of all: those of sql_fail. */
+NODISCARD bool rows_write_room(sqlite3 *db, const struct store_room *room, struct error *err);
+NODISCARD bool rows_delete_room(sqlite3 *db, const char *id, struct error *err); /* true when there is none */
+/* NULL: ERROR_NOT_FOUND, ERROR_MEMORY, or of sql_fail. */
+NODISCARD struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err);
+/* All rooms, last used first, at most `most`. NULL with err; *n 0: there is none. */
+NODISCARD struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struct error *err);

@@ -1,0 +1,57 @@
+/* The steps of the schema. */
+#include "server/store/schema.h"
+
+#include <stdio.h>
+
+#include "server/store/sql.h"
+
+static const char *const steps[] = {
+    /* 1: rooms and who was in them */
+    "CREATE TABLE rooms(id TEXT PRIMARY KEY, plan TEXT NOT NULL, created_ms INTEGER NOT NULL, revision INTEGER NOT NULL,"
+    " n_named INTEGER NOT NULL, scene TEXT, views TEXT) STRICT;"
+    "CREATE TABLE members(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, place INTEGER NOT NULL,"
+    " id TEXT NOT NULL, name TEXT NOT NULL, secret_hash BLOB NOT NULL, PRIMARY KEY(room, id)) STRICT;",
+    /* 2: notes and bookmarks; roles and colours of members; when a room was last used and who presented */
+    "ALTER TABLE rooms ADD COLUMN used_ms INTEGER NOT NULL DEFAULT 0;"
+    "UPDATE rooms SET used_ms = created_ms;"
+    "ALTER TABLE rooms ADD COLUMN presenter TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE members ADD COLUMN color TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE members ADD COLUMN role TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE members ADD COLUMN has_left INTEGER NOT NULL DEFAULT 0;"
+    "CREATE TABLE items(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, id TEXT NOT NULL,"
+    " kind TEXT NOT NULL, version INTEGER NOT NULL, author TEXT NOT NULL, author_name TEXT NOT NULL,"
+    " created_ms INTEGER NOT NULL, changed_ms INTEGER NOT NULL, body TEXT NOT NULL, PRIMARY KEY(room, id)) STRICT;",
+};
+const int schema_version = (int)(sizeof steps / sizeof steps[0]);
+
+static bool read_version(sqlite3 *db, int *version, struct error *err)
+{
+    sqlite3_stmt *statement = sql_prepare(db, "PRAGMA user_version", err);
+    bool ok = statement && (sqlite3_step(statement) == SQLITE_ROW || sql_fail(db, "reading its version", err));
+    *version = ok ? sqlite3_column_int(statement, 0) : 0;
+    (void)sqlite3_finalize(statement);
+    return ok;
+}
+
+bool schema_update(sqlite3 *db, struct error *err)
+{
+    int version;
+    if (!read_version(db, &version, err))
+        return false;
+    if (version < 0 || version > schema_version)
+        return error_set(err, ERROR_UNSUPPORTED,
+                         "its version is %d, this program knows versions up to %d: run the program that made it",
+                         version, schema_version);
+    for (; version < schema_version; version++) {
+        char mark[64];
+        (void)snprintf(mark, sizeof mark, "PRAGMA user_version = %d", version + 1);
+        if (!sql_run(db, "BEGIN IMMEDIATE", err))
+            return false;
+        if (!sql_run(db, steps[version], err) || !sql_run(db, mark, err) || !sql_run(db, "COMMIT", err)) {
+            if (!sqlite3_get_autocommit(db))
+                (void)sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,323 @@
+/* The store's thread: batches, commits, tries again. */
+#include "server/store/store.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/base/clock.h"
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "core/base/queue.h"
+#include "server/store/database.h"
+#include "server/store/rows.h"
+#include "server/store/sql.h"
+
+enum { MAX_BATCH = 256, MAX_PENDING = STORE_QUEUE };
+
+enum request_kind { REQUEST_WRITE, REQUEST_DELETE, REQUEST_READ };
+
+struct request {
+    struct request *next; /* in the list of writes that are not yet on disk */
+    enum request_kind kind;
+    uint64_t ticket;
+    char room_id[64];
+    struct store_room *room; /* of a write */
+};
+
+struct store {
+    pthread_t thread;
+    char path[DATABASE_PATH_SIZE];
+    struct store_options options;
+    struct queue *queue;
+    /* the store's thread only */
+    sqlite3 *db;                   /* NULL: not open now */
+    struct request *first, **last; /* writes in their order */
+    size_t n_pending;
+    bool is_failing, was_open;
+    struct error failure; /* as last told */
+    int64_t retry_us, pause_ms;
+};
+
+void store_answer_free(struct store_answer *answer)
+{
+    if (!answer)
+        return;
+    store_room_free(answer->room);
+    free(answer->rooms);
+    free(answer);
+}
+
+static void request_free(void *item)
+{
+    struct request *request = item;
+    store_room_free(request->room);
+    free(request);
+}
+
+static void answer(struct store *store, const struct store_answer *said)
+{
+    struct store_answer *copy = mem_new(sizeof *copy);
+    *copy = *said;
+    store->options.answered(store->options.context, copy);
+}
+
+/* ---- opening ---------------------------------------------------------------------------------------------------- */
+
+static void fail(struct store *store, const struct error *err)
+{
+    bool is_news = !store->is_failing || strcmp(store->failure.text, err->text) != 0;
+    store->pause_ms = store->is_failing ? 2 * store->pause_ms : STORE_RETRY_MS;
+    if (store->pause_ms > STORE_RETRY_AT_MOST_MS)
+        store->pause_ms = STORE_RETRY_AT_MOST_MS;
+    store->retry_us = clock_now_us() + store->pause_ms * 1000;
+    store->is_failing = true;
+    if (!is_news)
+        return;
+    store->failure = *err;
+    log_error("nothing can be stored now: %s", err->text);
+    answer(store, &(struct store_answer){ .event = STORE_FAILING, .error = *err });
+}
+
+static void recover(struct store *store)
+{
+    if (!store->is_failing)
+        return;
+    store->is_failing = false;
+    log_info("storing goes on");
+    answer(store, &(struct store_answer){ .event = STORE_FINE });
+}
+
+static bool open_database(struct store *store, struct error *err)
+{
+    char moved[DATABASE_PATH_SIZE];
+    struct store_answer opened = { .event = STORE_OPENED };
+    store->db = database_open(store->path, moved, err);
+    if (moved[0])
+        log_error("%s was damaged; it lies aside as %s, and a new one was begun", store->path, moved);
+    if (!store->db)
+        return false;
+    opened.rooms = rows_list_rooms(store->db, STORE_MAX_ROOMS, &opened.n_rooms, err);
+    if (!opened.rooms) {
+        database_close(store->db);
+        store->db = NULL;
+        return false;
+    }
+    opened.is_new = store->was_open && moved[0] != 0;
+    store->was_open = true;
+    answer(store, &opened);
+    return true;
+}
+
+/* ---- writing ---------------------------------------------------------------------------------------------------- */
+
+static bool apply(struct store *store, const struct request *request, struct error *err)
+{
+    if (request->kind == REQUEST_DELETE)
+        return rows_delete_room(store->db, request->room_id, err);
+    return rows_write_room(store->db, request->room, err);
+}
+
+/* Commits the first n pending writes together. */
+static bool commit(struct store *store, size_t n, struct error *err)
+{
+    const struct request *request = store->first;
+    bool ok = sql_run(store->db, "BEGIN IMMEDIATE", err);
+    for (size_t i = 0; ok && i < n; i++, request = request->next)
+        ok = apply(store, request, err);
+    ok = ok && sql_run(store->db, "COMMIT", err);
+    if (!ok && !sqlite3_get_autocommit(store->db))
+        (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+    return ok;
+}
+
+static void finish(struct store *store, size_t n, const struct error *err)
+{
+    while (n-- > 0) {
+        struct request *request = store->first;
+        store->first = request->next;
+        store->n_pending--;
+        if (!store->first)
+            store->last = &store->first;
+        struct store_answer written = { .event = STORE_WRITTEN, .ticket = request->ticket };
+        if (err)
+            written.error = *err;
+        answer(store, &written);
+        request_free(request);
+    }
+}
+
+/* Brings pending writes to the disk as far as that goes now. */
+static void write_pending(struct store *store)
+{
+    struct error err = { 0 };
+    if (!store->db && !open_database(store, &err)) {
+        fail(store, &err);
+        return;
+    }
+    while (store->n_pending > 0) {
+        size_t n = store->n_pending < MAX_BATCH ? store->n_pending : MAX_BATCH;
+        err = (struct error){ 0 };
+        bool ok = commit(store, n, &err);
+        if (!ok && err.code == ERROR_STATE && n > 1) { /* one of them is bad: it must not hold up the others */
+            n = 1;
+            err = (struct error){ 0 };
+            ok = commit(store, n, &err);
+        }
+        if (ok) {
+            finish(store, n, NULL);
+        } else if (err.code == ERROR_STATE) {
+            log_error("a room cannot be stored: %s", err.text);
+            finish(store, n, &err);
+        } else {
+            if (err.code == ERROR_FORMAT) { /* damaged: opening moves it aside */
+                database_close(store->db);
+                store->db = NULL;
+            }
+            fail(store, &err);
+            return;
+        }
+    }
+    recover(store);
+}
+
+static void read_room(struct store *store, const struct request *request)
+{
+    struct store_answer read = { .event = STORE_READ, .ticket = request->ticket };
+    if (store->db)
+        read.room = rows_read_room(store->db, request->room_id, &read.error);
+    else
+        read.error = store->failure;
+    answer(store, &read);
+}
+
+static void take(struct store *store, struct request *request)
+{
+    if (request->kind == REQUEST_READ) {
+        read_room(store, request);
+        request_free(request);
+        return;
+    }
+    request->next = NULL;
+    *store->last = request;
+    store->last = &request->next;
+    store->n_pending++;
+}
+
+/* How long to wait for a request: until the next try, while there is one to make. */
+static int64_t wait_ms(const struct store *store)
+{
+    if (!store->is_failing)
+        return -1;
+    int64_t left_us = store->retry_us - clock_now_us();
+    return left_us > 0 ? left_us / 1000 + 1 : 0;
+}
+
+static bool is_closed(struct request *request)
+{
+    return request->kind == REQUEST_READ && !request->room_id[0];
+}
+
+static void *work(void *context)
+{
+    struct store *store = context;
+    bool ends = false;
+    while (!ends) {
+        struct request *request =
+            store->n_pending < MAX_PENDING || !store->is_failing ? queue_take(store->queue, wait_ms(store)) : NULL;
+        if (!request && store->n_pending >= MAX_PENDING) {
+            struct timespec pause = { .tv_nsec = 50000000 };
+            (void)nanosleep(&pause, NULL);
+        }
+        for (; request; request = store->n_pending < MAX_PENDING ? queue_try_take(store->queue) : NULL) {
+            if (is_closed(request)) {
+                ends = true;
+                request_free(request);
+                break;
+            }
+            take(store, request);
+        }
+        if (ends || (store->is_failing ? clock_now_us() >= store->retry_us : store->n_pending > 0))
+            write_pending(store);
+    }
+    return NULL;
+}
+
+/* ---- life ------------------------------------------------------------------------------------------------------- */
+
+struct store *store_create(const struct store_options *options, struct error *err)
+{
+    struct store *store = mem_new(sizeof *store);
+    struct error found = { 0 };
+    store->options = *options;
+    store->last = &store->first;
+    (void)snprintf(store->path, sizeof store->path, "%s", options->path);
+    store->options.path = store->path;
+    store->queue = queue_create(STORE_QUEUE, request_free);
+    if (!open_database(store, &found)) {
+        if (found.code == ERROR_UNSUPPORTED) {
+            error_set(err, found.code, "%s", found.text);
+            goto fail;
+        }
+        fail(store, &found);
+    }
+    if (pthread_create(&store->thread, NULL, work, store) == 0)
+        return store;
+    error_set(err, ERROR_MEMORY, "no thread could be started for the store");
+fail:
+    database_close(store->db);
+    queue_destroy(store->queue);
+    free(store);
+    return NULL;
+}
+
+static bool put(struct store *store, enum request_kind kind, const char *room_id, struct store_room *room,
+                uint64_t ticket)
+{
+    struct request *request = mem_new(sizeof *request);
+    *request = (struct request){ .kind = kind, .ticket = ticket, .room = room };
+    (void)snprintf(request->room_id, sizeof request->room_id, "%s", room_id);
+    if (queue_try_put(store->queue, request))
+        return true;
+    free(request);
+    return false;
+}
+
+bool store_write(struct store *store, struct store_room *room, uint64_t ticket)
+{
+    return put(store, REQUEST_WRITE, room->id, room, ticket);
+}
+
+bool store_delete(struct store *store, const char *room_id, uint64_t ticket)
+{
+    return put(store, REQUEST_DELETE, room_id, NULL, ticket);
+}
+
+bool store_read(struct store *store, const char *room_id, uint64_t ticket)
+{
+    return put(store, REQUEST_READ, room_id, NULL, ticket);
+}
+
+void store_destroy(struct store *store)
+{
+    if (!store)
+        return;
+    while (!put(store, REQUEST_READ, "", NULL, 0)) { /* the end of all requests: the queue drains soon */
+        struct timespec pause = { .tv_nsec = 1000000 };
+        (void)nanosleep(&pause, NULL);
+    }
+    (void)pthread_join(store->thread, NULL);
+    if (store->n_pending)
+        log_error("%zu changes are lost: %s", store->n_pending, store->failure.text);
+    while (store->first) {
+        struct request *request = store->first;
+        store->first = request->next;
+        request_free(request);
+    }
+    database_close(store->db);
+    queue_destroy(store->queue);
+    free(store);
+}

@@ -1,0 +1,56 @@
+#pragma once
+/* Rooms on disk: an SQLite file with a thread of its own. Others hand it writes and reads, which never wait for the
+ * disk; each is answered. Writes that come together are committed together, each whole or not at all. While the disk
+ * is full or fails, writes stay in memory and are tried again. Knows rows and texts, not what they mean. */
+#include <stdbool.h>
+
+#include "core/base/error.h"
+#include "server/store/store_rows.h"
+
+enum {
+    STORE_QUEUE = 4096,      /* requests that may wait */
+    STORE_MAX_ROOMS = 10000, /* listed; a caller keeps no more */
+    STORE_RETRY_MS = 500,    /* pause after a failed commit; doubled each time up to */
+    STORE_RETRY_AT_MOST_MS = 4000
+};
+
+struct store;
+
+enum store_event {
+    STORE_OPENED,  /* rooms: what is on disk; is_new: an earlier file was damaged and moved aside while it was open */
+    STORE_WRITTEN, /* the write `ticket` is on disk; error.code set: it can never be written, and was dropped */
+    STORE_READ,    /* room, or NULL with error */
+    STORE_FAILING, /* nothing can be written now: error; tried again and again */
+    STORE_FINE     /* it can be written again */
+};
+
+struct store_answer {
+    enum store_event event;
+    uint64_t ticket;
+    struct error error;
+    struct store_room *room;     /* the receiver's */
+    struct store_summary *rooms; /* the receiver's */
+    size_t n_rooms;
+    bool is_new;
+};
+void store_answer_free(struct store_answer *answer);
+
+struct store_options {
+    const char *path;                                             /* of the database; its folder exists */
+    void (*answered)(void *context, struct store_answer *answer); /* takes answer; store's thread, or store_create's */
+    void *context;
+};
+
+/* Opens the database, or says with STORE_FAILING that it is opened later. STORE_OPENED or STORE_FAILING has been
+ * answered before it returns.
+ *   errors ERROR_UNSUPPORTED  a newer program made the database
+ *          ERROR_MEMORY       no thread */
+NODISCARD struct store *store_create(const struct store_options *options, struct error *err);
+/* Writes what was handed over, with one more try where it failed, and closes. */
+void store_destroy(struct store *store);
+
+/* False: too many wait, and room stays the caller's; ask again later. Else takes room. ticket comes back. Any thread.
+ */
+bool store_write(struct store *store, struct store_room *room, uint64_t ticket);
+bool store_delete(struct store *store, const char *room_id, uint64_t ticket);
+bool store_read(struct store *store, const char *room_id, uint64_t ticket);

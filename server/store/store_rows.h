@@ -1,0 +1,45 @@
+#pragma once
+/* What is kept of a room, as plain data: texts of JSON are opaque here. Thread: any. */
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    STORE_HASH_BYTES = 32,
+    STORE_MAX_MEMBERS = 1024,       /* of one room, those that left included */
+    STORE_MAX_ITEMS = 4096,         /* notes and bookmarks of one room */
+    STORE_MAX_TEXT_BYTES = 32 << 20 /* one scene, list of views, or item */
+};
+
+struct store_member {
+    char id[64], name[164], color[8], role[16];
+    unsigned char secret_hash[STORE_HASH_BYTES]; /* of auth/secret.h */
+    bool has_left;                               /* it may come back */
+};
+
+struct store_item { /* a note or a bookmark */
+    char id[64], kind[16], author[64], author_name[164];
+    int64_t version, created_ms, changed_ms; /* ms since 1970 */
+    char *body;                              /* JSON; NULL in a write: the item is deleted */
+};
+
+/* A room as it is on disk, or a write: in a write, what is NULL or absent stays as it is. */
+struct store_room {
+    char id[64], plan[64], presenter[64]; /* presenter "": nobody */
+    int64_t created_ms, used_ms;          /* since 1970; used: when somebody was last in it */
+    uint32_t revision, n_named;           /* of the scene; members ever made */
+    char *scene, *views;                  /* JSON; NULL when read: the plan was never loaded */
+    struct store_member *members;         /* all; NULL in a write: as they are */
+    size_t n_members;
+    struct store_item *items; /* when read: all; in a write: those that changed */
+    size_t n_items;
+};
+
+/* A room in a list. */
+struct store_summary {
+    char id[64], plan[64];
+    int64_t created_ms, used_ms;
+    uint32_t revision, n_members;
+};
+
+void store_room_free(struct store_room *room);

@@ -1,0 +1,190 @@
+// Rooms outlive the daemon: killed at once and started again, put to sleep and woken, deleted, backed up. --stub: grey pictures.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { bin, call, startDaemon, until } from './daemon.mjs';
+import { onDisk } from './on_disk.mjs';
+import { Client } from './ws_client.mjs';
+
+let data;
+const running = new Set(), clients = new Set();
+before(() => { data = mkdtempSync(join(tmpdir(), 'beamroom-kept-')); });
+after(async () => {
+  for (const client of clients) client.cut();
+  for (const daemon of running) await daemon.stop();
+  rmSync(data, { recursive: true, force: true });
+});
+
+async function start(args = [], folder = data) {
+  const daemon = await startDaemon({ data: folder, args: ['--stub', ...args] });
+  daemon.api = `${daemon.url}/api/v1`;
+  running.add(daemon);
+  return daemon;
+}
+async function end(daemon, signal) {
+  running.delete(daemon);
+  if (!signal) return assert.equal(await daemon.stop(), 0, daemon.log());
+  const ended = new Promise((done) => daemon.child.on('exit', done));
+  daemon.child.kill(signal);
+  await ended;
+}
+async function enter(daemon, room, hello = {}) {
+  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  clients.add(client);
+  client.send({ type: 'hello', protocol: 2, ...hello });
+  client.welcome = await client.message('welcome');
+  return client;
+}
+const ready = (client) => client.message('renderer', (m) => m.state === 'ready');
+const newRoom = async (daemon) => (await call(`${daemon.api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
+const rooms = async (daemon) => (await call(`${daemon.api}/rooms`)).json;
+async function patch(client, center) {
+  client.send({ type: 'scene.patch', input: center, patch: { image: { window: { center } } } });
+  return client.message('scene', (m) => m.input === center);
+}
+test('rooms, scenes, revisions, shared views and members are back after the daemon was killed', async () => {
+  let daemon = await start();
+  const [one, two] = [await newRoom(daemon), await newRoom(daemon)];
+  const ann = await enter(daemon, one, { name: 'Ann' });
+  await ready(ann);
+  const ben = await enter(daemon, one, { name: 'Ben' });
+  const before = (await call(`${daemon.api}/rooms/${one}/members`)).json.members;
+  assert.deepEqual(before.map((member) => [member.name, member.role]), [['Ann', 'presenter'], ['Ben', 'reviewer']]);
+  const cem = await enter(daemon, two);
+  await ready(cem);
+  ann.send({ type: 'view.open', view: 1, document: { kind: 'axial', size_px: [320, 240], camera: { height_mm: 123 } }, follow: true });
+  await ann.frame(() => true);
+  await patch(ann, 70);
+  const last = await patch(ann, 71);
+  const other = await patch(cem, 33);
+  await until(() => onDisk(one, data), (room) => room?.revision === last.revision && room.members.length === 2 && room.views.length === 1);
+  await until(() => onDisk(two, data), (room) => room?.revision === other.revision);
+  const kept = JSON.stringify(onDisk(one, data));
+  for (const secret of [ann.welcome.secret, ben.welcome.secret]) assert.ok(!kept.includes(secret), 'a secret is kept as a hash alone');
+  await end(daemon, 'SIGKILL');
+
+  daemon = await start();
+  const list = await rooms(daemon);
+  assert.deepEqual(list.rooms.map((room) => room.id).sort(), [one, two].sort());
+  assert.ok(list.rooms.every((room) => room.asleep && room.plan === 'phantom'), JSON.stringify(list));
+  assert.equal(list.n_asleep, 2);
+
+  const again = await enter(daemon, one, { member: ann.welcome.member, secret: ann.welcome.secret });
+  assert.equal(again.welcome.member, ann.welcome.member);
+  assert.equal(again.welcome.secret, ann.welcome.secret);
+  assert.equal(again.welcome.name, 'Ann');
+  const members = (await again.message('members')).members;
+  assert.deepEqual(members.map(({ id, name, role, color, connected, presenting }) => ({ id, name, role, color, connected, presenting })), before.map(({ id, name, role, color, presenting }) => ({ id, name, role, color, presenting, connected: id === ann.welcome.member })));
+  await ready(again);
+  const scene = await call(`${daemon.api}/rooms/${one}/scene`);
+  assert.equal(scene.json.image.window.center, 71);
+  assert.equal(scene.headers.get('etag'), `"${last.revision}"`);
+
+  const stranger = await enter(daemon, one, { member: ben.welcome.member, secret: 'f'.repeat(32), name: 'Not Ben' });
+  assert.notEqual(stranger.welcome.member, ben.welcome.member, 'a wrong secret makes a new member');
+  stranger.send({ type: 'view.open', view: 1, document: { kind: 'axial', size_px: [200, 200] }, follow: true });
+  const view = await stranger.message('view');
+  assert.equal(view.document.camera.height_mm, 123, 'the shared view is what it was');
+
+  const woken = await call(`${daemon.api}/rooms/${two}`);
+  assert.equal(woken.json.revision, other.revision);
+  assert.equal(woken.json.asleep, false);
+  assert.equal((await until(() => call(`${daemon.api}/rooms/${two}/scene`), ({ status }) => status !== 503)).json.image.window.center, 33, 'it wakes for who asks, too');
+  await end(daemon);
+});
+
+test('an orderly stop keeps the last change, too', async () => {
+  const folder = join(data, 'stop');
+  let daemon = await start([], folder);
+  const room = await newRoom(daemon);
+  const ann = await enter(daemon, room);
+  await ready(ann);
+  let last;
+  for (let n = 1; n <= 20; n++) last = await patch(ann, n);
+  await end(daemon);
+  assert.equal(onDisk(room, folder).revision, last.revision);
+  daemon = await start([], folder);
+  const back = await enter(daemon, room);
+  await ready(back);
+  assert.equal((await call(`${daemon.api}/rooms/${room}/scene`)).json.image.window.center, 20);
+  await end(daemon);
+});
+
+test('an idle room that people used sleeps and wakes; one that nobody entered is closed; a deleted one is gone', async () => {
+  const folder = join(data, 'idle');
+  const daemon = await start(['--room-idle-close', '2'], folder);
+  const used = await newRoom(daemon), ann = await enter(daemon, used);
+  const deleted = await newRoom(daemon), ben = await enter(daemon, deleted);
+  const unused = await newRoom(daemon);
+  await ready(ann);
+  const { revision } = await patch(ann, 44);
+  ann.cut();
+  ben.cut();
+  await until(() => rooms(daemon), (list) => list.n_asleep === 2 && list.rooms.length === 2);
+  assert.equal(onDisk(unused, folder), null);
+  assert.equal((await call(`${daemon.api}/rooms/${deleted}`, 'DELETE')).status, 204);
+  assert.equal((await call(`${daemon.api}/rooms/${deleted}`)).status, 404);
+  assert.equal((await call(`${daemon.api}/rooms/${unused}`)).status, 404);
+  const back = await enter(daemon, used, { member: ann.welcome.member, secret: ann.welcome.secret });
+  assert.equal(back.welcome.member, ann.welcome.member);
+  assert.equal(back.welcome.revision, revision);
+  await until(() => onDisk(deleted, folder), (row) => row === null);
+  await end(daemon);
+});
+
+test('while all rooms are in use no other wakes; an empty one makes place', async () => {
+  const folder = join(data, 'most');
+  let daemon = await start([], folder);
+  const ids = [await newRoom(daemon), await newRoom(daemon)];
+  for (const id of ids) (await enter(daemon, id)).cut();
+  await until(() => ids.map((id) => onDisk(id, folder)?.members.length), (n) => n.every((members) => members === 1));
+  await end(daemon);
+  daemon = await start(['--max-rooms', '1'], folder);
+  const ann = await enter(daemon, ids[0]);
+  const refused = await call(`${daemon.api}/rooms/${ids[1]}`);
+  assert.equal(refused.status, 429, refused.text);
+  assert.match(refused.json.detail, /1 rooms in use, at most 1/);
+  ann.cut();
+  assert.equal((await until(() => call(`${daemon.api}/rooms/${ids[1]}`), ({ status }) => status !== 429)).status, 200);
+  assert.equal((await rooms(daemon)).rooms.find((room) => room.id === ids[0]).asleep, true);
+  await end(daemon);
+});
+
+test('a backup is made while the daemon writes, and a daemon starts from it', async () => {
+  const folder = join(data, 'backup'), other = mkdtempSync(join(data, 'restored-'));
+  let daemon = await start([], folder);
+  const room = await newRoom(daemon), ann = await enter(daemon, room);
+  await ready(ann);
+  const { revision } = await patch(ann, 12);
+  await until(() => onDisk(room, folder), (row) => row?.revision === revision);
+  const run = (file, from = folder) => spawnSync(join(bin, 'beamroomd'), ['--backup', file, '--data', from], { encoding: 'utf8' });
+  const made = run(join(other, 'beamroom.db'));
+  assert.equal(made.status, 0, made.stderr);
+  assert.equal(statSync(join(other, 'beamroom.db')).mode & 0o077, 0, 'nobody else reads it');
+  assert.deepEqual(readdirSync(other), ['beamroom.db']);
+  await patch(ann, 13);
+  await end(daemon);
+  daemon = await start([], other);
+  const back = await enter(daemon, room);
+  assert.equal(back.welcome.revision, revision);
+  await end(daemon);
+  const nothing = run(join(other, 'none'), join(data, 'nowhere'));
+  assert.equal(nothing.status, 1);
+  assert.match(nothing.stderr, /--backup .*none: .*nowhere\/beamroom\.db: No such file/);
+  assert.ok(!existsSync(join(other, 'none')));
+});
+
+test('a damaged database is moved aside, and the daemon starts', async () => {
+  const folder = mkdtempSync(join(data, 'damaged-'));
+  writeFileSync(join(folder, 'beamroom.db'), 'this is no database'.repeat(1000));
+  const daemon = await start([], folder);
+  assert.deepEqual((await rooms(daemon)).rooms, []);
+  assert.match(daemon.log(), /beamroom\.db was damaged; it lies aside as .*beamroom\.db\.damaged-\d{8}-\d{6}, and a new one was begun/);
+  assert.equal(readdirSync(folder).filter((name) => /^beamroom\.db\.damaged-/.test(name)).length, 1);
+  const ann = await enter(daemon, await newRoom(daemon));
+  assert.equal(ann.welcome.plan_id, 'phantom');
+  await end(daemon);
+});
