@@ -39,7 +39,7 @@ const layouts = [
   }],
 ];
 const dock = (name) => [`sheet ${name}`, (page) => page.locator('.dock button', { hasText: name }).click()];
-const parts = ['Images', 'Planes', 'Regions', 'Doses', 'Beams', 'Tracks', 'Clip', 'Saved views'];
+const parts = ['Images', 'Planes', 'Regions', 'Doses', 'Beams', 'Tracks', 'Saved views', 'Clip'];
 const planes = [
   ['a new plane', (page) => page.locator('[data-key="oblique:"] button.name').click()],
   ['an oblique plane', (page) => page.locator('.clip-angles button').click()],
