@@ -102,8 +102,8 @@ void api_permalink(struct api *api, struct call *call)
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
         "<meta name=\"color-scheme\" content=\"dark\"><title>Nothing here – Beamroom</title></head><body><main>"
-        "<h1>Nothing is saved under this link</h1><p>The saved view was deleted, or the link is not complete. Who sent "
-        "it can make a new one.</p><p><a href=\"../\">All plans on this server</a></p></main></body></html>\n";
+        "<h1>Nothing is saved under this link</h1><p>The saved view was deleted, the link is not complete, or its room "
+        "sleeps. Who sent it can enter that room, or make a new one.</p><p><a href=\"../\">All plans on this server</a></p></main></body></html>\n";
     char location[96];
     cJSON *body = api_bookmark_of_token(api, call->ids[0]);
     if (!body) {

@@ -44,7 +44,8 @@ static cJSON *find_saved(struct api *api, const cJSON *token, const char **plan_
     *plan_id = json_text(bookmark, "plan");
     if (!bookmark)
         problem_set(problem, PROBLEM_NOT_FOUND, "/saved", "",
-                    "nothing is saved under this link: the bookmark was deleted, or the link is not complete");
+                    "nothing is saved under this link: the bookmark was deleted, the link is not complete, or its room "
+                    "sleeps (it opens again once somebody has entered that room)");
     return bookmark;
 }
 
