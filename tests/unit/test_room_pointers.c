@@ -1,6 +1,7 @@
 /* Pointers and "look here": who hears of them, how often, and when they end. */
 #include "server/room/look.h"
 #include "server/room/pointers.h"
+#include "server/room/room_state.h"
 #include "tests/unit/room_set_up.h"
 
 static void point(struct fake_page *page, int x)
@@ -103,7 +104,8 @@ static void with_many_who_point_each_is_passed_on_less_often(void **state)
     for (int turn = 0; turn < 100; turn++, fake_pass(&fake, 10)) /* one second */
         for (int i = 0; i < N; i++)
             point(&many[i], turn);
-    /* 32 who point times 33 members are 2.06 of 512: 14.7 a second of each; the first may come at once, the last waits */
+    /* 32 who point times 33 members are 2.06 of 512: 14.7 a second of each; the first may come at once, the last waits
+     */
     assert_in_range(fake_n_heard(&ann, "pointer.at"), 13 * N, 16 * N);
     for (int i = 0; i < N; i++)
         fake_page_end(&many[i]);
@@ -188,6 +190,24 @@ static void a_point_beyond_the_bounds_is_refused_and_the_pointer_stays(void **st
     assert_int_equal(fake_n_heard(&ben, "look"), 0);
 }
 
+static void an_observer_does_not_point_and_does_not_ask_but_comes(void **state)
+{
+    (void)state;
+    meet();
+    fake.room->members[1]->role = WIRE_MEMBER_ROLE_OBSERVER;
+    point(&ben, 1);
+    assert_string_equal(refused(&ben), "403 ");
+    ask(&ben, 1);
+    assert_string_equal(refused(&ben), "403 ");
+    assert_int_equal(fake_n_heard(&ann, "pointer.at") + fake_n_heard(&ann, "look"), 0);
+    point(&ann, 1);
+    assert_float_equal(told_x(&ben, "pointer.at"), 1, 0);
+    ask(&ann, 2);
+    come(&ben, 1);
+    fake_pass(&fake, LOOK_EVERY_MS);
+    assert_string_equal(came(&ann), "m2");
+}
+
 static void who_asks_to_look_sees_who_came(void **state)
 {
     (void)state;
@@ -267,6 +287,7 @@ int main(void)
         ROOM_TEST(a_pointer_ends_when_asked_when_it_rests_and_when_its_member_leaves),
         ROOM_TEST(who_comes_later_is_told_what_others_point_at),
         ROOM_TEST(a_point_beyond_the_bounds_is_refused_and_the_pointer_stays),
+        ROOM_TEST(an_observer_does_not_point_and_does_not_ask_but_comes),
         ROOM_TEST(who_asks_to_look_sees_who_came),
         ROOM_TEST(one_request_stands_at_a_time),
         ROOM_TEST(a_request_ends_after_its_time_and_when_the_asker_leaves),

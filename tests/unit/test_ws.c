@@ -120,6 +120,52 @@ static size_t drain(uint8_t *bytes, size_t size)
     return n;
 }
 
+/* A text as "a17 ": key 0, number 17. */
+static void send_latest(uint32_t key, int number)
+{
+    char text[32];
+    (void)snprintf(text, sizeof text, "%c%d ", (char)('a' + key), number);
+    ws_send_latest(connection, key, text);
+}
+
+static void of_texts_with_a_key_who_does_not_read_is_left_with_the_newest(void **state)
+{
+    (void)state;
+    char *large = mem_new(8192);
+    memset(large, 'x', 8191);
+    for (int i = 0; i < 100; i++) { /* fill what the kernel takes, and leave some to wait */
+        ws_send_text(connection, large);
+        if (i % 10 == 0)
+            serve_a_while();
+    }
+    for (int i = 0; i < 100000; i++) { /* an hour of a pointer */
+        send_latest(0, i);
+        send_latest(1, -i);
+    }
+    ws_send_text(connection, "after");
+    assert_non_null(connection); /* not too slow: nothing of it piled up */
+    struct ws_answer answer = { 0 };
+    do
+        assert_true(ws_client_next(&client, &answer));
+    while (answer.bytes[0] == 'x');
+    assert_memory_equal(answer.bytes, "after", answer.n); /* what is said once goes first, then keys in their turn */
+    ws_client_expect(&client, TEXT, "a99999 ", 7);
+    ws_client_expect(&client, TEXT, "b-99999 ", 8);
+    assert_int_equal(n_closed, 0);
+    free(large);
+}
+
+static void who_closes_is_sent_no_latest_text_any_more(void **state)
+{
+    static uint8_t bytes[4096];
+    (void)state;
+    send_latest(0, 7);
+    ws_close(connection, WS_CLOSE_NORMAL);
+    size_t n = drain(bytes, sizeof bytes - 1);
+    bytes[n] = 0;
+    assert_null(strstr((char *)bytes, "a7 "));
+}
+
 static void who_does_not_read_is_closed_after_256_messages(void **state)
 {
     (void)state;
@@ -422,6 +468,8 @@ int main(void)
 #define T(name) cmocka_unit_test_setup_teardown(name, start, end)
     const struct CMUnitTest tests[] = {
         T(who_does_not_read_is_closed_after_256_messages),
+        T(of_texts_with_a_key_who_does_not_read_is_left_with_the_newest),
+        T(who_closes_is_sent_no_latest_text_any_more),
         T(who_does_not_read_is_closed_after_4_mib),
         T(a_newer_frame_replaces_one_that_has_not_gone_out),
         T(closing_lets_the_last_words_out),
