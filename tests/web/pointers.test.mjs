@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { call, sleep, until as untilTold } from '../api/daemon.mjs';
+import { axe } from './axe.mjs';
 import { full, header, missing, shoot, startWorld } from './browser.mjs';
 
 /** Until this holds; fails with the last value after 60 s. Between the tries `meanwhile` runs. */
@@ -162,6 +163,7 @@ describe('pointers between two pages', { skip: missing && `${missing} is not the
     await until('a mark', () => mark(ben, 2), (at) => at !== null, keptMoving(2, place));
     const toggle = async () => {
       await ben.locator('.point-more').click();
+      if (await mark(ben, 2)) assert.deepEqual(await axe(ben), []);
       await ben.getByLabel('Pointers of the others').click();
       await ben.keyboard.press('Escape');
     };
