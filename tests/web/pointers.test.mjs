@@ -137,7 +137,7 @@ describe('pointers between two pages', { skip: missing && `${missing} is not the
     await ben.keyboard.press('f');
     await until('Ben follows again', () => ben.evaluate(() => document.querySelector('.room-chip').dataset.standing), (word) => word === 'following');
     await allFull();
-    const place = [0.44, 0.36];
+    const place = [0.48, 0.6]; // below the slice that is drawn in space: a surface, which the head hides from behind
     const [px, py] = await pointAt(ann, 1, place);
     const box = await boxOf(ann, 1);
     const document = await ann.evaluate(() => globalThis.beamroom.stats().documents[1]);
