@@ -1,9 +1,12 @@
 /* Bookmarks of rooms: what one shows, its picture, and the permalink that leads to it. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_pictures.h"
+#include "server/wire/bookmark.h"
 
 enum { PICTURE_WIDTH_PX = 240, PICTURE_HEIGHT_PX = 150, PICTURE_QUALITY = 80 };
 
@@ -96,16 +99,47 @@ cJSON *api_bookmark_of_token(struct api *api, const char *token)
     return body;
 }
 
+struct saved_search {
+    struct call *call;
+    void (*handle)(struct api *api, struct call *call);
+};
+
+/* The room of the bookmark was looked for on the disk: it is awake, or there is none. */
+static void saved_awoke(void *context, const char *token, const struct problem *problem)
+{
+    struct saved_search search = *(struct saved_search *)context;
+    (void)token;
+    free(context);
+    search.call->context = search.call; /* looked for already */
+    if (problem && problem->type != PROBLEM_NOT_FOUND)
+        call_answer_problem(search.call, problem);
+    else
+        search.handle(search.call->api, search.call);
+}
+
+bool api_bookmark_sleeps(struct api *api, struct call *call, const char *token,
+                         void (*handle)(struct api *api, struct call *call))
+{
+    if (call->context || !net_n_asleep(api->net) || strlen(token) != BOOKMARK_TOKEN_CHARS)
+        return false;
+    struct saved_search *search = mem_new(sizeof *search);
+    *search = (struct saved_search){ call, handle };
+    net_saved_wake(api->net, token, saved_awoke, search);
+    return true;
+}
+
 void api_permalink(struct api *api, struct call *call)
 {
     static const char nothing[] =
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
         "<meta name=\"color-scheme\" content=\"dark\"><title>Nothing here – Beamroom</title></head><body><main>"
-        "<h1>Nothing is saved under this link</h1><p>The saved view was deleted, the link is not complete, or its room "
-        "sleeps. Who sent it can enter that room, or make a new one.</p><p><a href=\"../\">All plans on this server</a></p></main></body></html>\n";
+        "<h1>Nothing is saved under this link</h1><p>The saved view was deleted, or the link is not complete. Who sent "
+        "it can make a new one.</p><p><a href=\"../\">All plans on this server</a></p></main></body></html>\n";
     char location[96];
     cJSON *body = api_bookmark_of_token(api, call->ids[0]);
+    if (!body && api_bookmark_sleeps(api, call, call->ids[0], api_permalink))
+        return;
     if (!body) {
         call_answer_text(call, 404, "text/html; charset=utf-8", nothing);
         return;

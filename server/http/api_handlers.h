@@ -37,3 +37,6 @@ void api_room_ws(struct api *api, struct call *call);
 
 /* The body of the bookmark with this token, of any room; the caller's. NULL: there is none. */
 NODISCARD cJSON *api_bookmark_of_token(struct api *api, const char *token);
+/* True: the token may be of a room that sleeps; the call's handler runs once more when that has been looked for. */
+NODISCARD bool api_bookmark_sleeps(struct api *api, struct call *call, const char *token,
+                                   void (*handle)(struct api *api, struct call *call));

@@ -44,8 +44,7 @@ static cJSON *find_saved(struct api *api, const cJSON *token, const char **plan_
     *plan_id = json_text(bookmark, "plan");
     if (!bookmark)
         problem_set(problem, PROBLEM_NOT_FOUND, "/saved", "",
-                    "nothing is saved under this link: the bookmark was deleted, the link is not complete, or its room "
-                    "sleeps (it opens again once somebody has entered that room)");
+                    "nothing is saved under this link: the bookmark was deleted, or the link is not complete");
     return bookmark;
 }
 
@@ -84,6 +83,10 @@ void api_room_new(struct api *api, struct call *call)
         problem_set(&problem, PROBLEM_VALIDATION, "/plan", "pattern", "\"plan\" must be the id of a plan");
     else if (saved && problem.type == PROBLEM_NONE)
         bookmark = find_saved(api, saved, &plan_id, &problem);
+    if (problem.type == PROBLEM_NOT_FOUND && api_bookmark_sleeps(api, call, saved->valuestring, api_room_new)) {
+        cJSON_Delete(body);
+        return;
+    }
     struct room *room = problem.type == PROBLEM_NONE ? net_room_create(api->net, plan_id, bookmark, &problem) : NULL;
     cJSON_Delete(bookmark);
     cJSON_Delete(body);

@@ -88,6 +88,29 @@ void asleep_wake(struct net *net, const char *id,
     done(context, id, &problem);
 }
 
+void asleep_wake_saved(struct net *net, const char *token,
+                       void (*done)(void *context, const char *room_id, const struct problem *problem), void *context)
+{
+    struct problem problem;
+    if (!net->store || !net->n_asleep || !store_read(net->store, token, net->n_tickets + 1)) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no bookmark with this token");
+        done(context, token, &problem);
+        return;
+    }
+    struct waiter *waiter = mem_new(sizeof *waiter);
+    *waiter = (struct waiter){ .next = net->waiters, .ticket = ++net->n_tickets, .done = done, .context = context };
+    (void)snprintf(waiter->room, sizeof waiter->room, "%s", token);
+    net->waiters = waiter;
+}
+
+const struct waiter *asleep_waiter_of_answer(const struct net *net, const struct store_answer *answer)
+{
+    const struct waiter *waiter = net->waiters;
+    while (waiter && !(waiter->ticket && waiter->ticket == answer->ticket))
+        waiter = waiter->next;
+    return waiter;
+}
+
 void asleep_tell(struct net *net, const char *id, const struct problem *problem)
 {
     struct waiter *told = NULL, **end = &told;

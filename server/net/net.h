@@ -52,6 +52,9 @@ void net_rooms_delete_of_plan(struct net *net, const char *plan_id);
 bool net_room_is_asleep(const struct net *net, const char *room_id);
 void net_room_wake(struct net *net, const char *room_id,
                    void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
+/* The same for the room that has the bookmark with this token; not-found when there is none. */
+void net_saved_wake(struct net *net, const char *token,
+                    void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
 size_t net_n_asleep(const struct net *net);
 /* As room_document, without members; the one last used is at 0. */
 NODISCARD cJSON *net_asleep_document(const struct net *net, size_t index);

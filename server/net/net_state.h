@@ -68,6 +68,7 @@ struct asleep_room { /* kept on disk alone */
 struct waiter { /* for a room that is being read */
     struct waiter *next;
     char room[64];
+    uint64_t ticket; /* of the read that looks for the room of a bookmark, whose token stands in room; 0: none */
     void (*done)(void *context, const char *room_id, const struct problem *problem);
     void *context;
 };

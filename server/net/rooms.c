@@ -261,6 +261,17 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
 {
     struct problem problem = { 0 };
     struct asleep_room *asleep = asleep_of_answer(net, answer);
+    const struct waiter *saved = asleep ? NULL : asleep_waiter_of_answer(net, answer);
+    char token[64] = "";
+    if (saved) {
+        memcpy(token, saved->room, sizeof token);
+        asleep = answer->room ? asleep_find(net, answer->room->id) : NULL;
+    }
+    if (saved && !asleep) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no bookmark with this token");
+        asleep_tell(net, token, answer->room && rooms_find(net, answer->room->id) ? NULL : &problem);
+        return;
+    }
     if (!asleep)
         return;
     const struct store_summary facts = asleep->facts;
@@ -278,6 +289,14 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
         schedule_room(room);
     }
     asleep_tell(net, facts.id, problem.type == PROBLEM_NONE ? NULL : &problem);
+    if (token[0])
+        asleep_tell(net, token, problem.type == PROBLEM_NONE ? NULL : &problem);
+}
+
+void net_saved_wake(struct net *net, const char *token,
+                    void (*done)(void *context, const char *room_id, const struct problem *problem), void *context)
+{
+    asleep_wake_saved(net, token, done, context);
 }
 
 size_t net_n_rooms(const struct net *net)

@@ -252,6 +252,21 @@ struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err
     return NULL;
 }
 
+struct store_room *rows_read_saved(sqlite3 *db, const char *token, struct error *err)
+{
+    char id[64] = "";
+    sqlite3_stmt *statement =
+        sql_prepare(db, "SELECT room FROM items WHERE kind = 'bookmark' AND instr(body, '\"token\":\"' || ?1 || '\"')",
+                    err);
+    if (!statement)
+        return NULL;
+    sql_bind_text(statement, 1, token);
+    if (sqlite3_step(statement) == SQLITE_ROW)
+        sql_text(statement, 0, id, sizeof id);
+    sqlite3_finalize(statement);
+    return rows_read_room(db, id, err);
+}
+
 struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struct error *err)
 {
     void *list = mem_new(1);

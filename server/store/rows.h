@@ -11,5 +11,7 @@ NODISCARD bool rows_write_room(sqlite3 *db, const struct store_room *room, struc
 NODISCARD bool rows_delete_room(sqlite3 *db, const char *id, struct error *err); /* true when there is none */
 /* NULL: ERROR_NOT_FOUND, ERROR_MEMORY, or of sql_fail. */
 NODISCARD struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err);
+/* The room that has a bookmark with this token; else as rows_read_room. */
+NODISCARD struct store_room *rows_read_saved(sqlite3 *db, const char *token, struct error *err);
 /* All rooms, last used first, at most `most`. NULL with err; *n 0: there is none. */
 NODISCARD struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struct error *err);

@@ -187,10 +187,12 @@ static void write_pending(struct store *store)
 static void read_room(struct store *store, const struct request *request)
 {
     struct store_answer read = { .event = STORE_READ, .ticket = request->ticket };
-    if (store->db)
-        read.room = rows_read_room(store->db, request->room_id, &read.error);
-    else
+    if (!store->db)
         read.error = store->failure;
+    else
+        read.room = rows_read_room(store->db, request->room_id, &read.error);
+    if (store->db && !read.room && read.error.code == ERROR_NOT_FOUND)
+        read.room = rows_read_saved(store->db, request->room_id, &read.error);
     answer(store, &read);
 }
 

@@ -1,6 +1,8 @@
 // Bookmarks over HTTP and WebSocket: what one shows, its picture, and permalinks, which begin rooms of their own.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { call, openPlan, startDaemon, until } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
@@ -19,8 +21,8 @@ const fixture = (name) => JSON.parse(readFileSync(new URL(`../data/bookmarks/${n
 const newRoom = async () => (await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
 const sceneOf = async (room) => (await until(() => call(`${api}/rooms/${room}/scene`), ({ status }) => status === 200)).json;
 
-async function enter(room, name) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+async function enter(room, name, url = daemon.url) {
+  const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
   client.send({ type: 'hello', protocol: 2, name });
   await client.message('welcome');
   return client;
@@ -131,4 +133,32 @@ test('bookmarks of each version open, and what cannot be shown is named', { time
   assert.equal((await call(`${api}/rooms/none/bookmarks/${one.id}/picture`)).status, 404);
   assert.equal((await call(`${api}/rooms/${room}`)).json.revision, revision);
   ann.cut();
+});
+
+test('a permalink opens after a restart, when its room sleeps', { timeout: 120000 }, async (t) => {
+  const data = mkdtempSync(join(tmpdir(), 'beamroom-saved-'));
+  t.after(() => rmSync(data, { recursive: true, force: true }));
+  const start = async () => {
+    const one = await startDaemon({ args: ['--stub'], data });
+    await until(async () => (await call(`${one.url}/api/v1/plans`)).json.plans, (plans) => plans.length === 1 && plans[0].parts.length);
+    await openPlan(one.url, 'phantom');
+    return one;
+  };
+  const first = await start();
+  const room = (await call(`${first.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+  const ann = await enter(room, 'Ann', first.url);
+  ann.send({ type: 'scene.patch', patch: { regions: { scalp: { visible: false } } }, input: 1 });
+  await ann.message('scene', (message) => message.input === 1);
+  const { body } = await put(ann, { name: 'Kept' });
+  ann.cut();
+  await first.stop();
+  const second = await start();
+  t.after(() => second.stop());
+  assert.equal((await fetch(`${second.url}/p/qwe2rty3u4p5asd6fgh7`, { redirect: 'manual' })).status, 404);
+  assert.equal((await fetch(`${second.url}/p/${body.token}`, { redirect: 'manual' })).status, 303);
+  const made = await call(`${second.url}/api/v1/rooms`, 'POST', { saved: body.token });
+  assert.equal(made.status, 201, made.text);
+  assert.notEqual(made.json.id, room);
+  const scene = await until(() => call(`${second.url}/api/v1/rooms/${made.json.id}/scene`), ({ status }) => status === 200);
+  assert.equal(scene.json.regions.scalp.visible, false);
 });

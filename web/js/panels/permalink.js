@@ -38,6 +38,6 @@ export function permalinkPage(host, token, { api, enter }) {
 function refused(problem, again) {
   const isGone = problem.type === '/problems/not-found';
   return html`<section class="card" role="alert">${icon(isGone ? 'bookmark' : 'error', 20)}<div><h1>${isGone ? 'Nothing is saved under this link' : 'The saved view cannot be opened now'}</h1>
-    <p>${isGone ? 'It was deleted, the link is not complete, or its room sleeps. Who sent it can enter that room, or make a new one.' : problem.message}</p>
+    <p>${isGone ? 'It was deleted, or the link is not complete. Who sent it can make a new one.' : problem.message}</p>
     <div class="buttons">${isGone ? '' : html`<button class="primary" @click=${again}>Try again</button>`}<a class="button" href="#/">All plans</a></div></div></section>`;
 }
