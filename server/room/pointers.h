@@ -5,7 +5,7 @@
 #include "server/wire/message.h"
 
 enum {
-    POINTER_EVERY_MS = 33,   /* between two places of a member that are passed on */
+    POINTER_EVERY_MS = 30,   /* between two places of a member that are passed on */
     POINTER_FULL_RATE = 512, /* members who point times members of the room; with more, each is passed on less often */
     POINTER_KEPT_MS = 8000,  /* a pointer that does not move is taken away after this */
 };
