@@ -39,6 +39,7 @@ static const struct api_route api_routes[] = {
     { "GET", "/api/v1/rooms/{room}/bookmarks/{bookmark}", api_room_bookmark },
     { "GET", "/api/v1/rooms/{room}/bookmarks/{bookmark}/picture", api_room_bookmark_picture },
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
+    { "POST", "/api/v1/rooms/{room}/links", api_room_link_new },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
     { "GET", "/p/{saved}", api_permalink },
 };
@@ -91,6 +92,18 @@ static const char *method_word(enum call_method method)
         "GET", "GET", "POST", "PATCH", "DELETE", ""
     }; /* HEAD is GET without the body */
     return words[method];
+}
+
+/* Whether the caller may use this route of a room. */
+static bool has_right(struct api *api, const struct call *call, const struct api_route *route, struct problem *problem)
+{
+    for (const struct wire_room_route *row = wire_room_routes; row->method; row++) {
+        if (strcmp(row->method, route->method) != 0 || strcmp(row->path, route->path) != 0)
+            continue;
+        const struct room *room = net_room_find(api->net, call->ids[0]);
+        return !room || room_call_may(room, call->member, row->right, problem); /* no room: the handler says so */
+    }
+    return true;
 }
 
 bool api_route_at(size_t index, struct api_route *route)
@@ -153,8 +166,13 @@ void api_handle(struct api *api, struct call *call)
                     return;
                 }
             call->route = route.path;
-            if (!wakes_room(api, call, &route))
-                route.handle(api, call);
+            if (wakes_room(api, call, &route))
+                return;
+            if (!has_right(api, call, &route, &problem)) {
+                call_answer_problem(call, &problem);
+                return;
+            }
+            route.handle(api, call);
             return;
         }
         is_known = true;

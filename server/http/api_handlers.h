@@ -33,6 +33,7 @@ void api_room_bookmark(struct api *api, struct call *call);
 void api_room_bookmark_picture(struct api *api, struct call *call);
 void api_permalink(struct api *api, struct call *call);
 void api_room_snapshot(struct api *api, struct call *call);
+void api_room_link_new(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);
 
 /* The body of the bookmark with this token, of any room; the caller's. NULL: there is none. */

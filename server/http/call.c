@@ -35,6 +35,7 @@ void call_destroy(struct call *call)
         free(call->headers[i].value);
     }
     free(call->if_match);
+    free(call->member);
     free(call->if_none_match);
     free(call->content_type);
     free(call->origin);

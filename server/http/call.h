@@ -30,7 +30,7 @@ struct call {
     const char *ids[CALL_MAX_SEGMENTS]; /* the segments that stand for {...} in the route, in order */
     struct call_pair query[CALL_MAX_QUERY];
     size_t n_query;
-    char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site; /* NULL when not sent */
+    char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member; /* NULL when not sent */
     char *body;
     size_t n_body;
     char *upload_path; /* the file that holds the body when it is an archive; removed with the call unless it is set to

@@ -238,6 +238,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);
     call->if_match = copy_header(connection, "If-Match");
+    call->member = copy_header(connection, "Beamroom-Member");
     call->if_none_match = copy_header(connection, "If-None-Match");
     call->content_type = copy_header(connection, "Content-Type");
     call->origin = copy_header(connection, "Origin");

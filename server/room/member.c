@@ -1,44 +1,27 @@
 /* Lets members in and out. */
 #include "server/room/member.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 
 #include "core/base/mem.h"
+#include "server/room/control.h"
 #include "server/room/known.h"
+#include "server/room/links.h"
 #include "server/room/look.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/pointers.h"
 #include "server/room/presenter.h"
 #include "server/room/roles.h"
+#include "server/room/secret.h"
 #include "server/room/send.h"
 
 static const char replaced[] = "this member has come back on another connection";
 static const char room_is_full[] = "the room is full";
 static const char old_page[] = "the page speaks another protocol version: reload it";
 enum { FULL_RETRY_MS = 30000 };
-
-static void make_secret(char hex[2 * SECRET_BYTES + 1])
-{
-    uint8_t bytes[SECRET_BYTES];
-    ssize_t n;
-    do
-        n = getrandom(bytes, sizeof bytes, 0);
-    while (n < 0 && errno == EINTR);
-    if (n != (ssize_t)sizeof bytes)
-        abort(); /* without a random secret anybody could take over the member */
-    for (int i = 0; i < SECRET_BYTES; i++)
-        (void)snprintf(hex + 2 * i, 3, "%02x", bytes[i]);
-}
-
-static bool secret_is(const struct member *member, const char *secret)
-{
-    return strlen(secret) == 2 * SECRET_BYTES && secret_matches(secret, member->secret_hash);
-}
 
 static void member_free(struct room *room, int index)
 {
@@ -94,6 +77,7 @@ void member_disconnected(struct room *room, struct member *member)
     views_close(room, member);
     member->connection = NULL;
     member->away_us = room->now_us;
+    control_left(room, member);
     (void)presenter_settle(room);
     send_members(room);
     pointer_end(room, member);
@@ -126,7 +110,7 @@ static bool make_place(struct room *room)
     return true;
 }
 
-static struct member *member_create(struct room *room, const char *name)
+static struct member *member_create(struct room *room, const char *name, enum wire_member_role role)
 {
     struct member *member = mem_new(sizeof *member);
     member->number = ++room->n_named;
@@ -134,8 +118,8 @@ static struct member *member_create(struct room *room, const char *name)
     (void)snprintf(member->name, sizeof member->name, "%s", name);
     for (int number = 1; member->name[0] == 0 || (name[0] == 0 && name_is_taken(room, member->name)); number++)
         (void)snprintf(member->name, sizeof member->name, "Reviewer %d", number);
-    make_secret(member->secret);
-    member->role = role_of_newcomer(room);
+    secret_make(member->secret);
+    member->role = role;
     member->color = color_of_newcomer(room);
     secret_hash(member->secret, member->secret_hash);
     room->members[room->n_members++] = member;
@@ -150,8 +134,16 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     }
     struct member *member = NULL;
     for (int i = 0; i < room->n_members && hello->member[0]; i++)
-        if (strcmp(room->members[i]->id, hello->member) == 0 && secret_is(room->members[i], hello->secret))
+        if (strcmp(room->members[i]->id, hello->member) == 0 &&
+            secret_matches(hello->secret, room->members[i]->secret_hash))
             member = room->members[i];
+    enum wire_member_role role = role_of_newcomer(room);
+    struct link *link = NULL;
+    const char *refusal = NULL;
+    if (!member && hello->link[0] && (refusal = link_find(room, hello->link, hello->person, &link)) != NULL) {
+        send_bye(room, connection, -1, refusal);
+        return false;
+    }
     if (member) {
         void *old = member->connection; /* half-open: the page notices a lost connection before the server does */
         member->is_lost = false;
@@ -164,7 +156,9 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
         if (member)
             room->members[room->n_members++] = member;
         else
-            member = member_create(room, hello->name);
+            member = member_create(room, hello->name, link ? link->role : role);
+        if (link)
+            link_used(link, hello->person);
     } else {
         send_bye(room, connection, FULL_RETRY_MS, room_is_full);
         return false;
@@ -173,9 +167,11 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
         (void)snprintf(member->name, sizeof member->name, "%s", hello->name);
     if (!member->secret[0]) /* it came back with the secret of which only the hash was kept */
         (void)snprintf(member->secret, sizeof member->secret, "%.32s", hello->secret);
+    (void)snprintf(member->person, sizeof member->person, "%s", hello->person);
     member->connection = connection;
     send_welcome(room, member);
     send_renderer_state(room, member);
+    control_send(room, member);
     (void)presenter_settle(room);
     send_members_to_newcomer(room, member);
     pointers_show(room, member);

@@ -41,6 +41,17 @@ static bool is_blank(const char *text)
     return text[strspn(text, " ")] == 0;
 }
 
+/* Connected members with the same person, this one included. */
+static int n_tabs(const struct room *room, const struct member *member)
+{
+    int n = 1;
+    for (int i = 0; i < room->n_members && member->person[0]; i++) {
+        const struct member *other = room->members[i];
+        n += other != member && other->connection && strcmp(other->person, member->person) == 0;
+    }
+    return n;
+}
+
 cJSON *room_members(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
@@ -56,6 +67,8 @@ cJSON *room_members(const struct room *room)
         cJSON_AddBoolToObject(item, "connected", member->connection != NULL);
         cJSON_AddBoolToObject(item, "following", member_follows(room, member));
         cJSON_AddBoolToObject(item, "presenting", member_presents(room, member));
+        cJSON_AddStringToObject(item, "lag", wire_member_lag_words.words[member->lag]);
+        cJSON_AddNumberToObject(item, "tabs", n_tabs(room, member));
         json_append(list, item);
     }
     return list;

@@ -1,6 +1,7 @@
 /* Gives and takes the presenter's role. */
 #include "server/room/presenter.h"
 
+#include "server/room/control.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/roles.h"
@@ -42,18 +43,23 @@ static bool share(struct room *room, struct member *member, uint32_t input, stru
            views_share(room, member, keep_override, input, problem);
 }
 
-bool presenter_present(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+bool presenter_take_over(struct room *room, struct member *member, uint32_t input, struct problem *problem)
 {
     struct member *before = room->presenter;
     if (before && before != member)
         return refuse_not_presenter(room, problem, "take over");
-    room->presenter = member;
-    if (!share(room, member, (uint32_t)message->present.input, problem)) {
+    control_pass(room, member);
+    if (!share(room, member, input, problem)) {
         room->presenter = before;
         return false;
     }
     send_members(room);
     return true;
+}
+
+bool presenter_present(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    return presenter_take_over(room, member, (uint32_t)message->present.input, problem);
 }
 
 bool presenter_show_everyone(struct room *room, struct member *member, const struct message *message,
@@ -88,11 +94,13 @@ bool presenter_settle(struct room *room)
 {
     const struct member *before = room->presenter;
     if (before && !before->connection && room->now_us >= presenter_due_us(room))
-        room->presenter = NULL;
-    if (!room->presenter && (room->presenter = only_connected(room)) != NULL) {
+        control_pass(room, NULL);
+    struct member *only = room->presenter ? NULL : only_connected(room);
+    if (only) {
         struct problem problem = { 0 };
-        if (!share(room, room->presenter, 0, &problem))
-            room->presenter = NULL; /* tried again */
+        control_pass(room, only);
+        if (!share(room, only, 0, &problem))
+            control_pass(room, NULL); /* tried again */
     }
     return room->presenter != before;
 }

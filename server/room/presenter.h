@@ -10,6 +10,9 @@ bool presenter_present(struct room *room, struct member *member, const struct me
 bool presenter_show_everyone(struct room *room, struct member *member, const struct message *message,
                              struct problem *problem);
 
+/* The member presents a room that has no presenter, with its own views. Returns false with a problem. */
+bool presenter_take_over(struct room *room, struct member *member, uint32_t input, struct problem *problem);
+
 /* Takes the role from a presenter who has been away for ROOM_PRESENTER_KEPT_S, and gives it to the only connected
  * member of a room without presenter. To be called whenever somebody came or went, or time passed. Returns true when
  * the presenter changed: the list of members is to be sent. */

@@ -9,9 +9,12 @@
 
 #include "core/base/mem.h"
 #include "server/room/beginning.h"
+#include "server/room/control.h"
+#include "server/room/handover.h"
 #include "server/room/item_list.h"
 #include "server/room/items.h"
 #include "server/room/kept.h"
+#include "server/room/lag.h"
 #include "server/room/look.h"
 #include "server/room/member.h"
 #include "server/room/member_list.h"
@@ -192,6 +195,11 @@ static const struct {
     { MESSAGE_FOLLOW, member_follow },
     { MESSAGE_PRESENT, presenter_present },
     { MESSAGE_SHOW_EVERYONE, presenter_show_everyone },
+    { MESSAGE_CONTROL_REQUEST, control_request },
+    { MESSAGE_CONTROL_GIVE, control_give },
+    { MESSAGE_CONTROL_REFUSE, control_refuse },
+    { MESSAGE_CONTROL_TAKE, control_take },
+    { MESSAGE_CONTROL_LOCK, control_lock },
     { MESSAGE_SCENE_PATCH, member_scene_patch },
     { MESSAGE_FRAME_SHOWN, member_frame_shown },
     { MESSAGE_ITEM_PUT, items_put },
@@ -251,6 +259,7 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
                 (void)refuse(room, connection, text, n, &problem);
     }
     message_finish(&message);
+    control_tell(room);
     members_close_lost(room);
     (void)streams_request_due(room);
 }
@@ -261,6 +270,7 @@ void room_connection_closed(struct room *room, void *connection, int64_t now_us)
     struct member *member = member_of_connection(room, connection);
     if (member)
         member_disconnected(room, member);
+    control_tell(room);
 }
 
 bool room_has_member(const struct room *room, void *connection)
@@ -273,14 +283,18 @@ int64_t room_tick(struct room *room, int64_t now_us)
     room->now_us = now_us;
     const int64_t pointers_us = pointers_tick(room), look_us = look_tick(room);
     members_close_lost(room);
-    if (presenter_settle(room))
+    bool has_changed = presenter_settle(room);
+    int64_t lags_us = lags_settle(room, &has_changed);
+    if (has_changed)
         send_members(room);
+    control_tell(room);
     const int64_t due_us[] = { members_forget(room),
                                streams_request_due(room),
                                presenter_due_us(room),
                                send_members_due(room),
                                pointers_us,
-                               look_us };
+                               look_us,
+                               lags_us };
     int64_t least_us = INT64_MAX;
     for (size_t i = 0; i < sizeof due_us / sizeof due_us[0]; i++)
         least_us = due_us[i] < least_us ? due_us[i] : least_us;
@@ -307,6 +321,28 @@ bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, str
     if (!scene_apply_patch(room, patch, NULL, 0, problem))
         return false;
     (void)streams_request_due(room);
+    return true;
+}
+
+bool room_call_may(const struct room *room, const char *member, enum wire_right right, struct problem *problem)
+{
+    char id[64];
+    const size_t n = member ? strcspn(member, " ") : 0;
+    (void)snprintf(id, sizeof id, "%.*s", (int)(n < sizeof id ? n : 0), member ? member : "");
+    for (int i = 0; i < room->n_members && member && member[n] == ' '; i++) {
+        const struct member *caller = room->members[i];
+        if (strcmp(caller->id, id) != 0 || !secret_matches(member + n + 1, caller->secret_hash))
+            continue;
+        if (right == WIRE_RIGHT_SCENE && role_has_right(caller->role, right) && !member_presents(room, caller))
+            return refuse_not_presenter(room, problem, "change the scene");
+        return role_check(caller->role, right, problem);
+    }
+    if (member)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "member",
+                           "Beamroom-Member names no member of this room, or not with its secret");
+    if (room->has_links && (right == WIRE_RIGHT_SCENE || !role_has_right(WIRE_MEMBER_ROLE_REVIEWER, right)))
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "role",
+                           "this room has links, so only its members may do this: send Beamroom-Member");
     return true;
 }
 

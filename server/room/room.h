@@ -5,6 +5,7 @@
 
 #include "server/wire/document.h"
 #include "server/wire/frame_header.h"
+#include "wire_gen.h"
 
 enum {
     ROOM_MAX_MEMBERS = 200,
@@ -17,7 +18,11 @@ enum {
     ROOM_MAX_ITEM_BYTES = 61440,    /* of the body of a bookmark, as JSON; a note may have less (note_body.h) */
     ROOM_MAX_ITEM_FRAME = 2048,     /* of a row without its body */
     ROOM_MAX_ITEMS_BYTES = 2 << 20, /* of all rows; they are in every welcome */
-    ROOM_MAX_KNOWN = 256 /* members that left and can come back as the same; beyond, the first who left cannot */
+    ROOM_MAX_KNOWN = 256,      /* members that left and can come back as the same; beyond, the first who left cannot */
+    ROOM_REQUEST_AGAIN_S = 10, /* after a refusal, before control can be requested again */
+    ROOM_MAX_LINKS = 32,       /* valid at once */
+    ROOM_LINK_MIN_S = 60,
+    ROOM_LINK_MAX_S = 30 * 24 * 3600
 };
 
 struct room;
@@ -138,6 +143,14 @@ NODISCARD cJSON *room_document(const struct room *room);
 NODISCARD cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision,
                                   enum wire_renderer_state renderer, int64_t created_at_s);
 NODISCARD cJSON *room_members(const struct room *room);
+/* Whether a call over HTTP has the right in this room. member: "ID SECRET" of the member who makes it; NULL: of nobody
+ * in the room, who then has the rights of a presenter in a room without links, else those of a reviewer who does not
+ * present. False with problem forbidden or not-presenter. */
+NODISCARD bool room_call_may(const struct room *room, const char *member, enum wire_right right,
+                             struct problem *problem);
+/* Makes a link; token gets 32 digits and a final zero. False with problem limit. */
+NODISCARD bool room_link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
+                                int64_t now_us, char token[33], struct problem *problem);
 size_t room_n_connected(const struct room *room);
 
 /* Items: notes with their replies, and bookmarks. [row] of one kind, oldest first, as in the message welcome; NULL: no

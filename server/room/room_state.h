@@ -4,12 +4,12 @@
 #include "server/auth/secret.h"
 #include "server/room/pace.h"
 #include "server/room/room.h"
+#include "server/room/secret.h"
 #include "wire_gen.h"
 
 enum {
     MAX_WAITING_INPUTS =
         32, /* inputs of one view that no sent picture shows yet; beyond these, inputs are reported together */
-    SECRET_BYTES = 16,
     RETRY_US = 100000, /* pause after a failed picture; doubled each time */
     RETRY_AT_MOST_US = 4000000,
     /* In a room of more members, the list of members goes out at most once in so many microseconds for each of them:
@@ -100,8 +100,9 @@ struct look {        /* the request to look at a point */
 };
 
 struct member {
-    char id[64], name[161], secret[2 * SECRET_BYTES + 1]; /* secret "": only its hash is known until it comes back */
+    char id[64], name[161], secret[SECRET_TEXT]; /* secret "": only its hash is known until it comes back */
     unsigned char secret_hash[SECRET_HASH_BYTES];
+    char person[257];
     enum wire_member_role role;
     int color;        /* color_rgb(color) */
     void *connection; /* NULL: away */
@@ -109,7 +110,11 @@ struct member {
     int64_t away_us; /* when the connection was lost */
     uint32_t number; /* counts members from 1, never the same twice */
     struct pointing pointing;
-    uint32_t came_to; /* number of the look this member has come to; 0: none */
+    uint32_t came_to;   /* number of the look this member has come to; 0: none */
+    uint64_t request;   /* for control: the larger, the later; 0: none */
+    int64_t refused_us; /* when the last one was refused; 0: none was */
+    enum wire_member_lag lag;
+    int64_t lag_until_us; /* it is told at least until then */
     struct member_view views[ROOM_MAX_VIEWS];
 };
 
@@ -123,6 +128,13 @@ struct item { /* a note, a reply or a bookmark */
     int64_t created_ms, changed_ms;                     /* since 1970, UTC */
     char parent[16];                                    /* of a reply: the note's id; "": none */
     char *row;                                          /* all of this with the body, as JSON */
+};
+
+struct link {                             /* lets new members in */
+    char token[SECRET_TEXT], person[257]; /* person: who has used it, if it is for one */
+    enum wire_member_role role;
+    int64_t expires_us;
+    bool is_one_use, is_used;
 };
 
 struct room {
@@ -154,6 +166,16 @@ struct room {
     struct look look;
     struct room_kept_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
     int n_known;
+    bool is_locked; /* control is given only, not taken */
+    uint64_t n_control_requests;
+    struct {
+        enum wire_control_act act;
+        char member[64], by[64];
+    } control_act;
+    bool control_is_new; /* not told yet */
+    struct link links[ROOM_MAX_LINKS];
+    int n_links;
+    bool has_links; /* there was one; then those who are no members may do less: room_call_may */
     struct stream *streams;
     int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
     uint64_t n_requests;

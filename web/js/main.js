@@ -26,7 +26,7 @@ const schedule = (callback) => requestAnimationFrame(callback);
 const hooks = new Hooks(clock);
 const api = makeApi((...request) => fetch(...request));
 const enter = (room, plan) => { location.hash = address(room, plan); };
-/** "#/rooms/ID/PLAN": the plan is there for the time after the room, which then can be opened again. */
+/** "#/rooms/ID/PLAN", and "?link=TOKEN" behind it until the link has let this person in: the plan is there for the time after the room, which then can be opened again. */
 const address = (room, plan) => `#/rooms/${room}${plan ? `/${plan}` : ''}`;
 const ownName = new OwnName(storage());
 const thumbnails = new Thumbnails(api, URL);
@@ -42,16 +42,31 @@ function remembered(room) {
   }
 }
 
-function connect(room) {
+/** A random word of this browser, by which the room counts the tabs of one person; '' where the browser keeps nothing. */
+function person() {
+  const key = 'beamroom person';
+  try {
+    const kept = localStorage.getItem(key);
+    if (/^[0-9a-f]{32}$/.test(kept)) return kept;
+    const made = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+    localStorage.setItem(key, made);
+    return made;
+  } catch {
+    return '';
+  }
+}
+
+function connect(room, invitation) {
   const url = new URL(`api/v1/rooms/${room}/ws`, location.href);
   url.protocol = url.protocol.replace('http', 'ws');
   url.hash = '';
-  const { member = '', secret = '' } = remembered(room);
+  const { member = '', secret = '', link: before = '' } = remembered(room);
+  const link = (invitation || before).slice(0, 64);
   const isGone = () => api.room(room).then(() => false, (problem) => problem.type === '/problems/not-found');
-  const connection = new Connection(url.href, { makeSocket: (address) => new WebSocket(address), clock, isGone }, { name: ownName.value.value, member, secret });
+  const connection = new Connection(url.href, { makeSocket: (address) => new WebSocket(address), clock, isGone }, { name: ownName.value.value, member, secret, link, person: person() });
   connection.addEventListener('message', ({ detail }) => {
     if (detail.type !== 'welcome') return;
-    sessionStorage.setItem(`room ${room}`, JSON.stringify({ member: detail.member, secret: detail.secret }));
+    sessionStorage.setItem(`room ${room}`, JSON.stringify({ member: detail.member, secret: detail.secret, link }));
     history.replaceState(null, '', address(room, detail.plan_id));
   });
   return connection;
@@ -61,14 +76,16 @@ let leave = () => {};
 let nRoutes = 0;
 
 async function route() {
-  const [, place, id, plan = ''] = location.hash.split('/');
+  const [path, query = ''] = location.hash.split('?');
+  const [, place, id, plan = ''] = path.split('/');
+  const invitation = new URLSearchParams(query).get('link') ?? new URLSearchParams(location.search).get('link') ?? '';
   if (location.hash.startsWith('#picture-')) return; // the skip link's target, not a page
   leave();
   leave = () => {};
   nRoutes += 1;
   const host = document.querySelector('#page');
   if (place === 'rooms' && isId(id))
-    leave = roomPage(host, id, { api, connect, clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' });
+    leave = roomPage(host, id, { api, connect: (room) => connect(room, invitation), clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' });
   else if (place === 'p' && isId(id)) {
     const n = nRoutes;
     const { permalinkPage } = await import('./panels/permalink.js');

@@ -22,7 +22,7 @@ test('a lost connection is tried again after 0.5, 1, 2, 4 and 4 s, as the same m
   const connection = new Connection('ws://x', { clock, makeSocket: () => { const socket = new Socket(); sockets.push(socket); return socket; } });
   connection.open();
   sockets[0].dispatchEvent(new Event('open'));
-  sockets[0].tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0 });
+  sockets[0].tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0, items: [] });
   const waits = [];
   for (let turn = 0; turn < 5; turn++) {
     timers.length = 0;
@@ -47,7 +47,7 @@ function fakeConnection(more = {}) {
     close() { this.isClosed = true; }
     tell(message) { this.dispatchEvent(Object.assign(new Event('message'), { data: JSON.stringify(message) })); }
     open() { this.dispatchEvent(new Event('open')); }
-    welcome() { this.tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0 }); }
+    welcome() { this.tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0, items: [] }); }
     lose() { waits.length = 0; this.dispatchEvent(new Event('close')); }
   }
   const clock = { now: () => 0, setTimeout: (callback, ms) => { waits.push(ms); timer = callback; }, clearTimeout() {} };
@@ -123,7 +123,7 @@ function runningConnection() {
     send(text) {
       const message = JSON.parse(text);
       if (isSilent) return;
-      if (message.type === 'hello') this.tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0 });
+      if (message.type === 'hello') this.tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0, items: [] });
       if (message.type === 'ping') this.tell({ type: 'pong', time_ms: message.time_ms });
     }
     close() { this.isClosed = true; } // and never says so, as without a network

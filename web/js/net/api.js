@@ -14,13 +14,13 @@ export class Problem extends Error {
 
 /** @param {typeof fetch} fetch @param {string} base */
 export function makeApi(fetch, base = 'api/v1') {
-  async function call(method, path, { body, signal, isPicture = false } = {}) {
+  async function call(method, path, { body, signal, isPicture = false, more = {} } = {}) {
     let response;
     try {
       response = await fetch(`${base}/${path}`, {
         method,
         signal,
-        headers: body === undefined ? {} : { 'Content-Type': 'application/json' },
+        headers: body === undefined ? more : { 'Content-Type': 'application/json', ...more },
         body: body === undefined ? undefined : JSON.stringify(body),
       });
     } catch (error) {
@@ -55,6 +55,8 @@ export function makeApi(fetch, base = 'api/v1') {
     bookmark: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}`),
     bookmarkPicture: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}/picture`, { isPicture: true }),
     room: (room) => call('GET', `rooms/${id(room)}`),
+    /** @param {{member: string, secret: string}} identity of who makes it @param {{role: string, expires_s: number, one_use: boolean}} link @returns {Promise<{token: string}>} */
+    makeLink: (room, { member, secret }, link) => call('POST', `rooms/${id(room)}/links`, { body: link, more: { 'Beamroom-Member': `${member} ${secret}` } }),
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),
     pick: (plan, room, view, px, py, prefer = '') =>
       call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`),

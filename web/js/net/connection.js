@@ -23,7 +23,7 @@ class ConnectionEvent extends Event {
 }
 
 /**
- * Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason}; "quiet"
+ * Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason, isRefused: the server said so}; "quiet"
  * {since: time of the last sign of the server, dueSince} when an answer is overdue, and "heard" when one came after all;
  * "renewing" when a new socket takes the place of one that works.
  */
@@ -31,7 +31,7 @@ export class Connection extends EventTarget {
   #url;
   #makeSocket;
   #clock;
-  #identity = { name: '', member: '', secret: '' };
+  #identity = { name: '', member: '', secret: '', link: '', person: '' };
   #socket = null;
   #replaced = null; // socket that is kept until the new one has its welcome, so that the member is never away
   #isWelcome = false;
@@ -56,7 +56,7 @@ export class Connection extends EventTarget {
    * @param {(url: string) => WebSocket} world.makeSocket
    * @param {{now: () => number, setTimeout: Function, clearTimeout: Function}} world.clock
    * @param {() => Promise<boolean>} [world.isGone] whether the room no longer exists; called when a socket could not be opened
-   * @param {{name?: string, member?: string, secret?: string}} identity name for a new member, or member and secret to come back as
+   * @param {{name?: string, member?: string, secret?: string, link?: string, person?: string}} identity name and link for a new member, member and secret to come back as, person of this browser
    */
   constructor(url, { makeSocket, clock, isGone = async () => false }, identity = {}) {
     super();
@@ -84,8 +84,8 @@ export class Connection extends EventTarget {
       if (socket !== this.#socket) return;
       wasOpen = true;
       this.#heardAt = this.#clock.now();
-      const { name, member, secret } = this.#identity;
-      this.#write({ type: 'hello', protocol, name, ...(member && { member, secret }) });
+      const { name, member, secret, link, person } = this.#identity;
+      this.#write({ type: 'hello', protocol, name, ...(member && { member, secret }), ...(link && { link }), ...(person && { person }) });
     });
     socket.addEventListener('message', (event) => {
       if (socket === this.#socket) this.#receive(event.data);
@@ -171,7 +171,7 @@ export class Connection extends EventTarget {
       this.#isWelcome = true;
       this.#failures = 0;
       this.#dropReplaced();
-      this.#identity = { name: message.name, member: message.member, secret: message.secret };
+      Object.assign(this.#identity, { name: message.name, member: message.member, secret: message.secret });
       this.#tell('up');
       this.#clock.clearTimeout(this.#welcomeTimer);
       this.#beatAt = this.#welcomeAt = this.#clock.now();
@@ -183,7 +183,7 @@ export class Connection extends EventTarget {
       else this.#serverWaitMs = message.retry_ms;
     }
     this.#tell('message', message);
-    if (this.#isEnded) this.#tell('ended', { reason: message.reason });
+    if (this.#isEnded) this.#tell('ended', { reason: message.reason, isRefused: true });
   }
 
   #ping() {

@@ -14,7 +14,7 @@ export function ended({ room, after }) {
   const plan = after.plan.value;
   const rooms = after.rooms.value.slice(0, 3);
   return html`<section class=${classMap({ card: true, ended: true, unknown: !wasIn })} role="alert">${icon('disconnected')}
-    <div>${wasIn ? html`<b>You are no longer in this room</b>` : html`<h1>There is no room at this address</h1>`}<p>${sentence(room.link.value.reason)}</p>
+    <div>${wasIn ? html`<b>You are no longer in this room</b>` : html`<h1>${room.link.value.isRefused ? 'You cannot enter this room' : 'There is no room at this address'}</h1>`}<p>${sentence(room.link.value.reason)}</p>
       ${after.isPlanGone.value ? html`<p>Its plan is no longer on this server.</p>` : nothing}
       ${after.error.value ? html`<p class="err">${icon('error')} ${after.error.value}</p>` : nothing}
       <div class="buttons">${rooms.map((other) => html`<button @click=${() => after.join(other)}>Join ${other.id}: ${whoIn(other)}</button>`)}

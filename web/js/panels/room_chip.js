@@ -1,62 +1,39 @@
 // The room chip: who presents, whether this member follows or is on their own, and what can be done about it.
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect, untracked } from '../../lib/signals-core.js';
-import { maxName } from '../state/own_name.js';
 import { icon } from './icons.js';
-import { initials } from './pane.js';
+import { known, Lazy, styled } from './lazy.js';
 
 const marks = { presenting: 'people', following: 'people', own: 'person', away: 'phase', none: 'warning' };
 
-function words({ following }) {
+function words({ following, control }) {
   const name = following.presenter.value?.name ?? '';
   const n = following.nFollowers.value;
   switch (following.standing.value) {
-    case 'presenting': return { text: 'Presenting', more: n ? `· ${n} follow${n === 1 ? 's' : ''}` : '' };
+    case 'presenting': return { text: control.isLocked.value ? 'Presenting, locked' : 'Presenting', more: n ? `· ${n} follow${n === 1 ? 's' : ''}` : '' };
     case 'own': return { text: 'On my own', act: { word: 'Return', keys: 'F', about: name ? `Return to ${name}` : 'Return to the shared view', do: () => following.return() } };
     case 'away': return { text: `${name} is away` };
-    case 'none': return { text: 'No presenter', act: { word: 'Take over', about: 'Take over: your view becomes the room\'s', do: () => following.present() } };
+    case 'none': return { text: 'No presenter', act: control.may('scene') && { word: 'Take over', about: 'Take over: your view becomes the room\'s', do: () => following.present() } };
     default: return { text: name ? `Following ${name}` : 'Following' };
   }
 }
 
-function doing({ presenting, following, connected }) {
-  if (presenting) return connected === false ? 'presents, is away' : 'presents';
-  if (connected === false) return 'is away';
-  return following ? 'follows' : 'on their own';
-}
+/** The members, what can be done about control, and the own name: no part of what a first visit loads. */
+const roster = new Lazy(async () => (await Promise.all([import('./roster.js'), styled('css/roster.css')]))[0]);
 
-const actions = ({ following }) => [
-  following.isPresenting.value && { word: 'Show everyone', about: 'Everybody follows you again', do: () => following.showEveryone() },
-  !following.presenter.value && { word: 'Take over', about: 'Your view becomes the room\'s', do: () => following.present() },
-  !following.isFollowing.value && { word: 'Return', about: 'Follow with all panes again', do: () => following.return() },
-  following.isFollowing.value && !following.isPresenting.value && { word: 'Look for yourself', about: 'Your panes alone, from what they show now', do: () => following.leave() },
-].filter(Boolean);
+/** Above the toasts: who requests control, for the presenter. */
+export const requestLines = (world) => {
+  const { following, control } = world.room;
+  return following.isPresenting.value && control.requests.value.length ? known(roster)?.requestLines(world) : null;
+};
 
 const places = ['strip', 'banner'];
 const topic = 'following'; // one message about who one is here and whom one follows: two would lie over the letters of a pane
 const chipOf = (place) => `room-${place}`;
 
-/** The own name, which can be given or changed at any time. */
-function nameForm({ room, ui, ownName }) {
-  const save = (event) => {
-    event.preventDefault();
-    const before = ownName.value.value;
-    const name = new FormData(event.target).get('name');
-    if (!name.trim()) return;
-    const main = event.target.closest('.room-chip').querySelector('.chip-main');
-    ownName.set(name);
-    ui.popover.value = '';
-    main.focus();
-    if (ownName.value.value === before && room.identity.name === before) return;
-    room.rename(ownName.value.value);
-    ui.notify('ok', `The others see you as ${ownName.value.value}.`, topic);
-  };
-  return html`<form class="own-name" @submit=${save}><label for="room-name">Your name</label>
-    <input id="room-name" name="name" required maxlength=${maxName} autocomplete="name" placeholder=${room.identity.name} .value=${ownName.value.value}><button>Save</button></form>`;
-}
-
 /** Opens the chip's popover with the focus in the field of the own name. */
-function askName(ui) {
+async function askName(ui) {
+  await roster.load();
   ui.popover.value = chipOf(places[Number(ui.isTouch.value)]);
   queueMicrotask(() => document.querySelector('#room-name')?.focus()); // after it is drawn
 }
@@ -73,21 +50,9 @@ export function offerName({ room, ui, ownName }) {
   });
 }
 
-function popover({ room, ui, ownName }) {
-  const members = room.members.value;
-  const act = (what) => {
-    ui.popover.value = '';
-    what();
-  };
-  return html`<div class="popover room-members" role="dialog" aria-label="Members of this room">
-    <ul>${members.map((member) => html`<li><span class="avatar small" aria-hidden="true">${initials(member.name)}</span>
-      <span class="clipped">${member.name}${member.id === room.member.value ? ' (you)' : ''}</span><span class="dim">${doing(member)}</span></li>`)}</ul>
-    <div class="room-actions">${actions(room).map((action) => html`<button title=${action.about} @click=${() => act(action.do)}>${action.word}</button>`)}</div>
-    ${nameForm({ room, ui, ownName })}</div>`;
-}
-
 /** @param {object} world {room, ui, ownName} @param {'strip'|'banner'} place each has its own chip, one of which the style sheet hides */
-export function roomChip({ room, ui, ownName }, place) {
+export function roomChip(world, place) {
+  const { room, ui } = world;
   if (!room.members.value.length) return nothing;
   const name = chipOf(place);
   const isOpen = ui.popover.value === name;
@@ -97,7 +62,7 @@ export function roomChip({ room, ui, ownName }, place) {
     <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title="Who is in this room" @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
       <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
     ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
-    ${isOpen ? popover({ room, ui, ownName }) : nothing}</span>`;
+    ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label="Members of this room">${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;
 }
 
 /** In the header of each pane: whether it shows the shared view or an own one. Nothing for a member who is alone. */

@@ -19,6 +19,7 @@ export class Following {
     this.#room = room;
     this.#tell = tell;
     const own = () => room.members.value.find(({ id }) => id === room.member.value);
+    this.hasLostControl = false; // this member has presented, and nothing else since then
     this.isFollowing = signal(true); // also true for the presenter, whose views are the shared ones
     this.presenter = computed(() => room.members.value.find(({ presenting }) => presenting) ?? null);
     this.isPresenting = computed(() => own()?.presenting === true);
@@ -54,6 +55,7 @@ export class Following {
       for (const view of views) view.restart(this.#ownDocument(view, plan.value, override, beam));
       this.isFollowing.value = false;
     });
+    this.hasLostControl = false;
     this.#act(false);
     notify('ok', 'On your own.', 'following', { word: 'Return', keys: 'Esc or F', act: () => this.return() });
     return true;
@@ -118,11 +120,13 @@ export class Following {
     this.#room.members.value = members;
     const own = members.find(({ id }) => id === this.#room.member.value);
     if (!own) return false;
+    if (wasPresenting !== own.presenting) this.hasLostControl = wasPresenting;
     if (own.presenting && !wasPresenting) {
       const isAlone = !members.some(({ id, connected }) => id !== own.id && connected !== false);
       if (before || !isAlone) this.#room.notify('ok', isAlone ? 'You are alone here, and present now.' : 'You present: the others follow you.', 'following');
       return true;
     }
+    if (wasPresenting && !own.presenting && this.presenter.value) this.#room.notify('warn', `${this.presenter.value.name} presents now. You follow.`, 'following');
     if (before && !this.presenter.value) this.#room.notify('warn', 'Nobody presents any more. What you see stays.', 'following', { word: 'Take over', act: () => this.present() });
     return false;
   }
@@ -135,6 +139,13 @@ export class Following {
     if (!this.isPresenting.value || this.isFollowing.value) return;
     if (this.#room.views.some((view) => view.isOpen.value)) this.#tell({ type: 'present' });
     else this.#follow();
+  }
+
+  /** This member was given control or took it: they present the room's views from here on, not their own. */
+  gotControl() {
+    if (this.isFollowing.value) return;
+    this.#follow();
+    this.#room.returned();
   }
 
   /** Takes the follow flag of a view message. Returns false if the message is older than this member's last act. */

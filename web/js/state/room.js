@@ -2,6 +2,7 @@
 import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
 import { mergePatch } from '../wire/merge.js';
+import { Control } from './control.js';
 import { Following } from './following.js';
 import { Items } from './items.js';
 import { views as allViews } from './layout.js';
@@ -63,6 +64,7 @@ export class RoomState {
     this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
     this.items = new Items((message) => this.#sending.act(message));
     this.following = new Following(this, (message) => this.#sending.act(message));
+    this.control = new Control(this, (message) => this.#connection.send(message));
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
     this.scene = computed(() => {
       const [scene, override] = [this.#sharedScene.value, this.following.override.value];
@@ -74,7 +76,7 @@ export class RoomState {
     connection.addEventListener('renewing', () => this.#keepChanges());
     connection.addEventListener('quiet', (event) => this.#setLink('open', { quietSince: event.detail.since, dueSince: event.detail.dueSince }));
     connection.addEventListener('heard', () => this.#setLink('open'));
-    connection.addEventListener('ended', (event) => this.#setLink('ended', { reason: event.detail.reason }));
+    connection.addEventListener('ended', (event) => this.#setLink('ended', event.detail));
   }
 
   /** @returns {ViewState} */
@@ -229,6 +231,7 @@ export class RoomState {
       },
       'pointer.at': () => this.pointers.moved(message),
       look: () => this.pointers.looked(message),
+      control: () => this.control.changed(message),
       pong: () => { this.pingMs.value = Math.round(this.#clock.now() - message.time_ms); },
       problem: () => this.#refused(message),
       bye: () => {},
@@ -326,11 +329,15 @@ export class RoomState {
     if (to === 'follow') this.following.refused();
     if (this.scene.value) this.#showScene();
     if (problem?.type === '/problems/not-presenter' && this.following.isOvertaken(to)) {
-      if (to === 'present') this.notify('ok', `${this.following.presenter.value.name} has taken over.`, 'following');
+      const name = this.following.presenter.value?.name ?? 'Nobody';
+      if (to === 'present') this.notify('ok', `${name} has taken over.`, 'following');
+      else if (to === 'scene.patch' || (to === 'view.patch' && this.following.hasLostControl)) this.notify('warn', `${name} presents now: your last change was not made.`, 'following');
       return;
     }
     if (to === '' && this.view(view)) this.view(view).refuseToDraw(problem?.detail || 'The server gave no reason.');
-    this.notify('err', problem?.detail || `The server refused ${to || 'a message'}.`);
+    if (to === 'control.request' && problem?.retry_after_ms)
+      return void this.notify('warn', `${this.following.presenter.value?.name ?? 'The presenter'} keeps control for now. Ask again in ${Math.ceil(problem.retry_after_ms / 1000)} s.`, 'following');
+    this.notify('err', problem?.detail ? this.control.named(problem.detail) : `The server refused ${to || 'a message'}.`);
   }
 
   #lose(retryMs) {

@@ -1,0 +1,92 @@
+/* Makes links to a room. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "server/http/api_handlers.h"
+
+struct wanted {
+    enum wire_member_role role;
+    int64_t expires_s;
+    bool is_one_use;
+};
+
+static bool read_role(const cJSON *json, enum wire_member_role *role, struct problem *problem)
+{
+    for (size_t i = 0; cJSON_IsString(json) && i < wire_member_role_words.n; i++)
+        if (strcmp(json->valuestring, wire_member_role_words.words[i]) == 0) {
+            *role = (enum wire_member_role)i;
+            return true;
+        }
+    if (!json)
+        return problem_set(problem, PROBLEM_VALIDATION, "/role", "required", "which role? \"role\" is missing");
+    return problem_set(problem, PROBLEM_VALIDATION, "/role", "enum", "role must be observer, reviewer or presenter");
+}
+
+static bool read_expires(const cJSON *json, int64_t *expires_s, struct problem *problem)
+{
+    if (!cJSON_IsNumber(json))
+        return problem_set(problem, PROBLEM_VALIDATION, "/expires_s", "type", "expires_s must be a number");
+    if (!(json->valuedouble >= ROOM_LINK_MIN_S && json->valuedouble <= ROOM_LINK_MAX_S) ||
+        floor(json->valuedouble) != json->valuedouble)
+        return problem_set(problem, PROBLEM_VALIDATION, "/expires_s", "range",
+                           "expires_s must be a whole number, %d to %d", ROOM_LINK_MIN_S, ROOM_LINK_MAX_S);
+    *expires_s = (int64_t)json->valuedouble;
+    return true;
+}
+
+static bool read_wanted(const cJSON *body, struct wanted *wanted, struct problem *problem)
+{
+    char pointer[64];
+    *wanted = (struct wanted){ .expires_s = 24 * 3600 };
+    if (!read_role(cJSON_GetObjectItemCaseSensitive(body, "role"), &wanted->role, problem))
+        return false;
+    for (const cJSON *item = body->child; item; item = item->next) {
+        if (strcmp(item->string, "expires_s") == 0) {
+            if (!read_expires(item, &wanted->expires_s, problem))
+                return false;
+        } else if (strcmp(item->string, "one_use") == 0) {
+            if (!cJSON_IsBool(item))
+                return problem_set(problem, PROBLEM_VALIDATION, "/one_use", "type", "one_use must be true or false");
+            wanted->is_one_use = cJSON_IsTrue(item);
+        } else if (strcmp(item->string, "role") != 0) {
+            (void)snprintf(pointer, sizeof pointer, "/%.60s", item->string);
+            return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-field", "%.60s is not a field of a link",
+                               item->string);
+        }
+    }
+    return true;
+}
+
+void api_room_link_new(struct api *api, struct call *call)
+{
+    static const char *const media_types[] = { "application/json", NULL };
+    struct problem problem = { 0 };
+    struct wanted wanted;
+    cJSON *body;
+    char token[33], url[160];
+    struct room *room = net_room_find(api->net, call->ids[0]);
+    if (!room) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!call_read_object(call, media_types, &body))
+        return;
+    bool ok = read_wanted(body, &wanted, &problem) &&
+              room_link_create(room, wanted.role, wanted.expires_s, wanted.is_one_use, clock_now_us(), token, &problem);
+    cJSON_Delete(body);
+    if (!ok) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    (void)snprintf(url, sizeof url, "/#/rooms/%s?link=%s", room_id(room), token);
+    cJSON *answer = cJSON_CreateObject();
+    cJSON_AddStringToObject(answer, "token", token);
+    cJSON_AddStringToObject(answer, "url", url);
+    cJSON_AddStringToObject(answer, "role", wire_member_role_words.words[wanted.role]);
+    cJSON_AddNumberToObject(answer, "expires_s", (double)wanted.expires_s);
+    cJSON_AddBoolToObject(answer, "one_use", wanted.is_one_use);
+    call_answer_json(call, 201, answer);
+}

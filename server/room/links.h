@@ -1,0 +1,8 @@
+#pragma once
+/* Links that let new members in with a role: room_link_create, and finding one for a hello. Internal to server/room. */
+#include "server/room/room_state.h"
+
+/* Finds the link that the token opens for this person. Returns NULL, or the sentence why it opens nothing. */
+const char *link_find(struct room *room, const char *token, const char *person, struct link **found);
+/* Somebody came in by it. */
+void link_used(struct link *link, const char *person);

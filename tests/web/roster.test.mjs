@@ -1,0 +1,118 @@
+// The roster: who is in the room and what they do; control requested, given, taken, locked; links with roles. Screenshots stay
+// in build/test-artifacts/.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { until as ask } from '../api/daemon.mjs';
+import { axe } from './axe.mjs';
+import { full, isDue, missing, shoot, startWorld } from './browser.mjs';
+
+const sizes = [
+  ['1440x900', { viewport: { width: 1440, height: 900 } }],
+  ['390x844-touch', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
+];
+
+const chip = (page) => page.locator('.room-chip:visible');
+const says = (page, words) => ask(async () => (await chip(page).textContent()).replace(/\s+/g, ' ').trim(), (text) => words.test(text));
+const row = (page, name) => page.locator('.room-members li', { has: page.locator('.roster-who > .clipped', { hasText: name }) });
+const words = async (page, name) => (await row(page, name).textContent()).replace(/\s+/g, ' ').trim();
+const toast = (page, text) => page.locator('.toast', { hasText: text }).waitFor();
+const action = (page, word) => page.locator('.room-actions button', { hasText: word });
+const open = async (page) => {
+  if (await page.locator('.room-members .own-name').count()) return;
+  await chip(page).locator('.chip-main').click();
+  await page.locator('.room-members .own-name').waitFor();
+};
+
+describe('the roster', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  before(async () => { world = await startWorld(); });
+  after(async () => { await world?.stop(); });
+
+  const enter = async (address, name, options = {}) => {
+    const page = await world.newPage('#/', options);
+    await page.evaluate((text) => localStorage.setItem('beamroom name', text), name);
+    await page.goto('about:blank'); // the name is read when the page starts
+    await page.goto(`${world.daemon.url}/${address}`);
+    await says(page, /Presenting|Following|No presenter/);
+    return page;
+  };
+
+  for (const [size, options] of sizes.filter(([name]) => isDue(/1440|390/.test(name))))
+    it(`control goes from one to the other at ${size}`, async () => {
+      const room = await world.newRoom();
+      const one = await enter(`#/rooms/${room}`, 'Dr Ann', options);
+      const two = await enter(`#/rooms/${room}`, 'Ben', options);
+      await says(one, /^Presenting/);
+      await Promise.all([full(one), full(two)]);
+      await open(two);
+      assert.match(await words(two, 'Dr Ann'), /Dr Ann presenter · presents/);
+      assert.match(await words(two, 'Ben'), /Ben \(you\) reviewer · follows Dr Ann/);
+      assert.deepEqual(await axe(two), []);
+      assert.equal(await action(two, 'Take').count(), 0, 'a reviewer asks');
+      await action(two, 'Request control').focus();
+      await two.keyboard.press('Enter');
+      await toast(two, 'You have asked Dr Ann for control.');
+
+      const line = one.locator('.request-line', { hasText: 'Ben requests control' });
+      await line.waitFor();
+      assert.deepEqual(await axe(one), []);
+      await shoot(one, `roster-request-${size}`);
+      await line.getByRole('button', { name: 'Refuse' }).click();
+      await toast(two, 'Dr Ann keeps control for now.');
+      await line.waitFor({ state: 'detached' });
+      await open(two);
+      await action(two, 'Request control').click();
+      await toast(two, /Ask again in \d+ s/);
+
+      await open(one);
+      await shoot(one, `roster-presenter-${size}`);
+      await row(one, 'Ben').getByRole('button', { name: 'Give control to Ben' }).click();
+      await says(two, /^Presenting/);
+      await toast(one, 'Ben presents now. You follow.');
+      await open(one);
+      await action(one, 'Take control').click(); // the role of presenter takes it back
+      await says(one, /^Presenting/);
+      await toast(two, 'Dr Ann presents now. You follow.');
+      await open(one);
+      await action(one, 'Lock control').click();
+      await says(one, /^Presenting, locked/);
+      await open(two);
+      await two.locator('.roster-locked').waitFor();
+      await shoot(two, `roster-follower-${size}`);
+      assert.deepEqual(world.errors, []);
+      await Promise.all([one, two].map((page) => page.context().close()));
+    });
+
+  it('a link gives a role; two tabs of a person are told; an observer is offered nothing that is not allowed', async () => {
+    const room = await world.newRoom();
+    const one = await enter(`#/rooms/${room}`, 'Dr Ann', sizes[0][1]);
+    await one.locator('.invite-button').click();
+    await one.locator('#invite-role').selectOption('observer');
+    await one.locator('.invite-form button', { hasText: 'Make link' }).click();
+    const link = await ask(() => one.locator('#invite-made').inputValue(), (text) => text !== '');
+    assert.match(link, new RegExp(`#/rooms/${room}\\?link=[0-9a-f]{32}$`));
+    assert.deepEqual(await axe(one), []);
+    await shoot(one, 'roster-invite');
+    const two = await enter(link.slice(link.indexOf('#')), 'Cem', sizes[0][1]);
+    assert.doesNotMatch(two.url(), /link=/, 'the address does not keep it');
+    await open(two);
+    assert.match(await words(two, 'Cem'), /observer · follows Dr Ann/);
+    assert.equal(await two.locator('.room-actions button', { hasText: /control|Take/ }).count(), 0);
+    await two.reload();
+    await says(two, /^Following/);
+    await open(two);
+    assert.match(await words(two, 'Cem'), /observer/);
+
+    const again = await one.context().newPage();
+    await again.goto(`${world.daemon.url}/#/rooms/${room}`);
+    await says(again, /^Following/);
+    await open(again);
+    await again.locator('.roster-mark', { hasText: 'one of 2 tabs of the same person' }).first().waitFor();
+    await shoot(again, 'roster-tabs');
+
+    const late = await world.newPage(`#/rooms/${room}?link=${'0'.repeat(32)}`);
+    await late.locator('.ended', { hasText: 'You cannot enter this room' }).waitFor();
+    assert.match(await late.locator('.ended').textContent(), /ask for a new one/);
+    assert.deepEqual(world.errors, []);
+  });
+});

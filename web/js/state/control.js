@@ -1,0 +1,90 @@
+// Control of the room: who requests it, whether it is locked, what this member may do about it. Who presents: following.js.
+import { computed, signal } from '../../lib/signals-core.js';
+import { roles } from '../../gen/wire.js';
+
+const topic = 'following';
+
+export class Control {
+  #room;
+  #tell;
+
+  /**
+   * @param {import('./room.js').RoomState} room
+   * @param {(message: object) => boolean} tell sends a message; false without a connection
+   */
+  constructor(room, tell) {
+    this.#room = room;
+    this.#tell = tell;
+    this.isLocked = signal(false);
+    this.requested = signal([]); // ids, the oldest request first
+    /** The members who request control, the oldest request first. */
+    this.requests = computed(() => this.requested.value.map((id) => this.member(id)).filter(Boolean));
+    /** observer | reviewer | presenter: what this member may do; '' until the list of members has come. */
+    this.role = computed(() => this.member(room.member.value)?.role ?? '');
+    this.isRequesting = computed(() => this.requested.value.includes(room.member.value));
+    /** Whether control can be had at once. */
+    this.canTake = computed(() => this.may('scene') && !room.following.isPresenting.value && (!room.following.presenter.value || (this.may('control') && !this.isLocked.value)));
+    this.canRequest = computed(() => this.may('scene') && !this.canTake.value && !room.following.isPresenting.value);
+  }
+
+  member(id) {
+    return this.#room.members.value.find((member) => member.id === id);
+  }
+
+  /** Whether a member with this role may do what needs the right; by default this member. */
+  may(right, role = this.role.value) {
+    return roles[role]?.includes(right) ?? false;
+  }
+
+  // ---- acts of the user -------------------------------------------------------------------------------------------
+
+  request() {
+    if (this.#say({ type: 'control.request' })) this.#room.notify('ok', `You have asked ${this.#presenter()} for control.`, topic, { word: 'Withdraw', act: () => this.withdraw() });
+  }
+
+  withdraw() {
+    this.#say({ type: 'control.request', wanted: false });
+  }
+
+  give(member) {
+    this.#say({ type: 'control.give', member });
+  }
+
+  refuse(member) {
+    this.#say({ type: 'control.refuse', member });
+  }
+
+  take() {
+    if (!this.#room.following.presenter.value) this.#room.following.present();
+    else this.#say({ type: 'control.take' });
+  }
+
+  lock(locked) {
+    this.#say({ type: 'control.lock', locked });
+  }
+
+  #say(message) {
+    if (this.#tell(message)) return true;
+    this.#room.notify('warn', 'Not sent: there is no connection to the server.', topic);
+    return false;
+  }
+
+  #presenter() {
+    return this.#room.following.presenter.value?.name ?? 'the presenter';
+  }
+
+  // ---- messages of the server -------------------------------------------------------------------------------------
+
+  changed({ presenter, locked, requests, act, member }) {
+    const own = this.#room.member.value;
+    this.isLocked.value = locked;
+    if (Array.isArray(requests)) this.requested.value = requests;
+    if (presenter === own && ['given', 'taken'].includes(act)) this.#room.following.gotControl();
+    if (act === 'refused' && member === own) this.#room.notify('warn', `${this.#presenter()} keeps control for now.`, topic);
+  }
+
+  /** Names in place of the ids in a sentence of the server. */
+  named(sentence) {
+    return sentence.replace(/\bm\d+\b/g, (id) => this.member(id)?.name ?? id);
+  }
+}
