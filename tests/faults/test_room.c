@@ -167,6 +167,8 @@ static void leave(void *context, struct outcome *outcome)
     cJSON *members = room_members(room);
     const cJSON *page = cJSON_GetArrayItem(members, 1);
     outcome->is_told |= !json_flag(page, "presenting", false); /* it is tried again and again */
+    for (cJSON *row = members->child; row; row = row->next)
+        cJSON_DeleteItemFromObject(row, "lag"); /* whether the picture is late depends on when it was tried again */
     add_json(outcome, members);
     add_json(outcome, room_scene(room, NULL));
     cJSON_Delete(members);
