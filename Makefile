@@ -211,14 +211,22 @@ RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null &
 # are those that start threads of their own, or the first of those that read plans by the same ones.
 ONE_THREAD := annotate beam_numbers beam_place describe_beam contour_grid dvh_oracle dose_sera_means dicom_numbers dicom_rtplan_opening dicom_rtplan_real dicom_rtdose_dvh \
     isoeffective profile sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtplan \
-    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_data plan_real
+    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_data plan_real \
+    address api_routes beam_angles beam_camera beam_pick beams_drawn bookmark boundary camera clip_planes confine confine_calls contour_fill draw_clip \
+    draw_list draw_volume encode image_values label_places marks mask mask_reduce mesh mesh_export missing nifti_pair nurbs outline packed phantom pick \
+    pick_beams pick_cut pick_tracks pick_volume plane plan_json plan_limits reach recognise recognise_names region report roles room room_bookmarks \
+    room_control room_crowd room_failures room_following room_items room_members room_obliques room_pace room_pointers room_presenter room_scene \
+    shading shape target track_csv track_looks
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
+# and those that draw each kind of thing once
+RENDER_THREADS := caps isodose_pictures pauses pictures shapes soft tracks translucent volume wash
+RENDER_RUN = $(if $(findstring thread,$(SAN)),$(RENDER_THREADS:%=$(B)/render/test_%),$(render_BIN))
 PARALLEL := $(shell nproc)
 .PHONY: test-unit test-render test-faults test-api test-web test-long test-install test test-deep lint
 test-unit: $(UNIT_RUN)
 	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
-test-render: $(render_BIN)
-	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(if $(SAN),$(PARALLEL),1) tests/run_programs.sh "$(call LABEL,render)" $(render_BIN)
+test-render: $(RENDER_RUN)
+	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(if $(SAN),$(PARALLEL),1) tests/run_programs.sh "$(call LABEL,render)" $(RENDER_RUN)
 # FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones
 test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
