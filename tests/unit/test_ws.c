@@ -218,9 +218,14 @@ static void a_newer_frame_replaces_one_that_has_not_gone_out(void **state)
         serve_a_while();
     }
     size_t n = drain(bytes, sizeof bytes);
-    for (size_t at = 0; at < n; n_frames++) { /* FIN + binary, 64 bit length */
+    for (size_t at = 0; at < n;) { /* FIN + binary, 64 bit length */
         struct frame_header header;
         size_t header_bytes;
+        if (bytes[at] == 0x89) { /* a ping: the machine is so busy that the connection was silent for seconds */
+            at += 2 + (size_t)(bytes[at + 1] & 0x7f);
+            continue;
+        }
+        n_frames++;
         assert_int_equal(bytes[at], 0x82);
         assert_int_equal(bytes[at + 1], 127);
         assert_true(at + 10 + 100112 <= n);
