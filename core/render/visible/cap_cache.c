@@ -2,10 +2,12 @@
 #include "core/render/visible/cap_cache.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 #include "core/base/mem.h"
 #include "core/derive/shape_slabs.h"
+#include "core/render/visible/kept.h"
 
 /* Of what is kept: 48 MiB of lines. */
 enum { MAX_ENTRIES = 1024, MAX_LINES = 1 << 20 };
@@ -15,16 +17,15 @@ enum { MIN_INDEXED_TRIANGLES = 4096 };
 static const double rounding_mm = 1e-2;
 
 struct entry {
-    struct cut_lines lines; /* first: a pointer to it is one to the entry */
-    const struct plan *plan;
+    struct kept kept;
+    struct cut_lines lines;
     struct shape_want want;
     struct plane plane;
     int n_uses;
-    struct entry *next;
 };
 
 struct cap_cache {
-    struct entry *first; /* most recently used first */
+    struct kept *first;
 };
 
 struct cap_cache *cap_cache_create(void)
@@ -32,24 +33,29 @@ struct cap_cache *cap_cache_create(void)
     return mem_new(sizeof(struct cap_cache));
 }
 
-static void entry_destroy(struct entry *entry)
+static void entry_destroy(struct kept *kept)
 {
+    struct entry *entry = (struct entry *)kept;
     assert(entry->n_uses == 0);
     cut_lines_finish(&entry->lines);
     free(entry);
 }
 
+static bool entry_is_used(const struct kept *kept)
+{
+    return ((const struct entry *)kept)->n_uses > 0;
+}
+
+static size_t entry_n_lines(const struct kept *kept)
+{
+    return ((const struct entry *)kept)->lines.n;
+}
+
+static const struct kept_type entries = { entry_destroy, entry_is_used, entry_n_lines, MAX_ENTRIES, MAX_LINES };
+
 void cap_cache_forget(struct cap_cache *cache, const struct plan *plan)
 {
-    for (struct entry **at = &cache->first; *at;) {
-        struct entry *entry = *at;
-        if (plan && entry->plan != plan) {
-            at = &entry->next;
-            continue;
-        }
-        *at = entry->next;
-        entry_destroy(entry);
-    }
+    kept_forget(&cache->first, &entries, plan);
 }
 
 void cap_cache_destroy(struct cap_cache *cache)
@@ -62,29 +68,19 @@ void cap_cache_destroy(struct cap_cache *cache)
 
 void cap_cache_trim(struct cap_cache *cache)
 {
-    size_t n = 0, n_lines = 0;
-    for (struct entry **at = &cache->first; *at;) {
-        struct entry *entry = *at;
-        n++;
-        n_lines += entry->lines.n;
-        if (entry->n_uses > 0 || (n <= MAX_ENTRIES && n_lines <= MAX_LINES)) {
-            at = &entry->next;
-            continue;
-        }
-        *at = entry->next;
-        entry_destroy(entry);
-    }
+    kept_trim(&cache->first, &entries);
 }
 
 void cap_cache_release(const struct cut_lines *lines)
 {
-    ((struct entry *)(void *)lines)->n_uses--;
+    struct entry *entry = (struct entry *)(void *)((char *)lines - offsetof(struct entry, lines));
+    entry->n_uses--;
 }
 
 static bool is_same(const struct entry *a, const struct plan *plan, const struct shape_want *want,
                     const struct plane *plane)
 {
-    return a->plan == plan && subject_equal(a->want.subject, want->subject) && a->want.detail == want->detail &&
+    return a->kept.plan == plan && subject_equal(a->want.subject, want->subject) && a->want.detail == want->detail &&
            shape_key_equal(&a->want.key, &want->key) && plane_equal(&a->plane, plane);
 }
 
@@ -118,29 +114,25 @@ static bool fill(struct entry *entry, struct derive *derived, struct error *err)
     return is_good;
 }
 
-static const struct cut_lines *use(struct cap_cache *cache, struct entry *entry)
-{
-    entry->next = cache->first;
-    cache->first = entry;
-    entry->n_uses++;
-    return &entry->lines;
-}
-
 const struct cut_lines *cap_cache_lines(struct cap_cache *cache, struct derive *derived, const struct shape_want *want,
                                         const struct plane *plane, struct error *err)
 {
     const struct plan *plan = derive_plan(derived);
-    for (struct entry **at = &cache->first; *at; at = &(*at)->next)
-        if (is_same(*at, plan, want, plane)) {
-            struct entry *entry = *at;
-            *at = entry->next;
-            return use(cache, entry);
-        }
+    for (struct kept **at = &cache->first; *at; at = &(*at)->next) {
+        struct entry *entry = (struct entry *)*at;
+        if (!is_same(entry, plan, want, plane))
+            continue;
+        kept_use_again(&cache->first, at);
+        entry->n_uses++;
+        return &entry->lines;
+    }
     struct entry *made = mem_new(sizeof *made);
-    *made = (struct entry){ .plan = plan, .want = *want, .plane = *plane };
+    *made = (struct entry){ .kept.plan = plan, .want = *want, .plane = *plane };
     if (!fill(made, derived, err)) {
-        entry_destroy(made);
+        entry_destroy(&made->kept);
         return NULL;
     }
-    return use(cache, made);
+    kept_put_first(&cache->first, &made->kept);
+    made->n_uses++;
+    return &made->lines;
 }

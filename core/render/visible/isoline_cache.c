@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/render/visible/kept.h"
 
 /* Of what is kept: samples and lines of so many planes, and bytes. */
 enum { MAX_ENTRIES = 24, MAX_BYTES = 64 << 20 };
@@ -25,18 +26,17 @@ struct traced {
 
 /* A dose on a plane. */
 struct entry {
-    const struct plan *plan;
+    struct kept kept;
     struct dose_choice choice;
     struct plane plane;
     struct isoline_lattice lattice;
     uint64_t outlines;               /* hash of the outlines that it is limited to; 0: none */
     struct dose_plane *plane_values; /* NULL: the plane misses the dose */
     struct traced *first;
-    struct entry *next;
 };
 
 struct isoline_cache {
-    struct entry *first; /* most recently used first */
+    struct kept *first;
 };
 
 struct isoline_cache *isoline_cache_create(void)
@@ -44,8 +44,9 @@ struct isoline_cache *isoline_cache_create(void)
     return mem_new(sizeof(struct isoline_cache));
 }
 
-static void entry_destroy(struct entry *entry)
+static void entry_destroy(struct kept *kept)
 {
+    struct entry *entry = (struct entry *)kept;
     while (entry->first) {
         struct traced *traced = entry->first;
         assert(traced->n_uses == 0);
@@ -57,17 +58,28 @@ static void entry_destroy(struct entry *entry)
     free(entry);
 }
 
+static bool entry_is_used(const struct kept *kept)
+{
+    for (const struct traced *traced = ((const struct entry *)kept)->first; traced; traced = traced->next)
+        if (traced->n_uses > 0)
+            return true;
+    return false;
+}
+
+static size_t entry_n_bytes(const struct kept *kept)
+{
+    const struct entry *entry = (const struct entry *)kept;
+    size_t n = sizeof *entry + (entry->plane_values ? dose_plane_n_bytes(entry->plane_values) : 0);
+    for (const struct traced *traced = entry->first; traced; traced = traced->next)
+        n += sizeof *traced + traced->lines.capacity * sizeof *traced->lines.ends_lps_mm;
+    return n;
+}
+
+static const struct kept_type entries = { entry_destroy, entry_is_used, entry_n_bytes, MAX_ENTRIES, MAX_BYTES };
+
 void isoline_cache_forget(struct isoline_cache *cache, const struct plan *plan)
 {
-    for (struct entry **at = &cache->first; *at;) {
-        struct entry *entry = *at;
-        if (plan && entry->plan != plan) {
-            at = &entry->next;
-            continue;
-        }
-        *at = entry->next;
-        entry_destroy(entry);
-    }
+    kept_forget(&cache->first, &entries, plan);
 }
 
 void isoline_cache_destroy(struct isoline_cache *cache)
@@ -78,36 +90,9 @@ void isoline_cache_destroy(struct isoline_cache *cache)
     free(cache);
 }
 
-static bool is_used(const struct entry *entry)
-{
-    for (const struct traced *traced = entry->first; traced; traced = traced->next)
-        if (traced->n_uses > 0)
-            return true;
-    return false;
-}
-
-static size_t n_bytes_of(const struct entry *entry)
-{
-    size_t n = sizeof *entry + (entry->plane_values ? dose_plane_n_bytes(entry->plane_values) : 0);
-    for (const struct traced *traced = entry->first; traced; traced = traced->next)
-        n += sizeof *traced + traced->lines.capacity * sizeof *traced->lines.ends_lps_mm;
-    return n;
-}
-
 void isoline_cache_trim(struct isoline_cache *cache)
 {
-    size_t n = 0, n_bytes = 0;
-    for (struct entry **at = &cache->first; *at;) {
-        struct entry *entry = *at;
-        n++;
-        n_bytes += n_bytes_of(entry);
-        if (is_used(entry) || (n <= MAX_ENTRIES && n_bytes <= MAX_BYTES)) {
-            at = &entry->next;
-            continue;
-        }
-        *at = entry->next;
-        entry_destroy(entry);
-    }
+    kept_trim(&cache->first, &entries);
 }
 
 void isoline_cache_release(const struct cut_lines *lines)
@@ -198,21 +183,19 @@ static struct entry *entry_of(struct isoline_cache *cache, const struct isoline_
     const double mm_per_px = (place->is_coarse ? 2 : 1) * place->mm_per_px;
     bool is_met = isoline_lattice_of(grid, &place->plane, &place->window, mm_per_px, &lattice);
     lattice.is_by_slice = place->is_by_slice;
-    for (struct entry **at = &cache->first; *at; at = &(*at)->next) {
-        struct entry *entry = *at;
-        if (entry->plan != place->plan || entry->outlines != outlines || (entry->plane_values != NULL) != is_met ||
+    for (struct kept **at = &cache->first; *at; at = &(*at)->next) {
+        struct entry *entry = (struct entry *)*at;
+        if (entry->kept.plan != place->plan || entry->outlines != outlines || (entry->plane_values != NULL) != is_met ||
             (is_met && !isoline_lattice_holds(&entry->lattice, &lattice)) ||
             !plane_equal(&entry->plane, &place->plane) ||
             memcmp(&entry->choice, &place->dose->choice, sizeof entry->choice) != 0)
             continue;
-        *at = entry->next;
-        entry->next = cache->first;
-        cache->first = entry;
+        kept_use_again(&cache->first, at);
         return entry;
     }
     struct isoline_window window = roomy_window(&place->window);
     struct entry *made = mem_new(sizeof *made);
-    made->plan = place->plan;
+    made->kept.plan = place->plan;
     made->plane = place->plane;
     made->choice = place->dose->choice;
     made->outlines = outlines;
@@ -221,12 +204,11 @@ static struct entry *entry_of(struct isoline_cache *cache, const struct isoline_
         struct dose_lattice samples = isoline_lattice_samples(&made->lattice);
         made->plane_values = dose_plane_create(place->dose->field, &samples, err);
         if (!made->plane_values || (place->outlines && !keep_inside(made->plane_values, place, err))) {
-            entry_destroy(made);
+            entry_destroy(&made->kept);
             return NULL;
         }
     }
-    made->next = cache->first;
-    cache->first = made;
+    kept_put_first(&cache->first, &made->kept);
     return made;
 }
 

@@ -1,6 +1,7 @@
 // A surface shaded by triangle normals, which are computed from the derivatives of the position.
 #include "light.glsl"
 #ifdef TEXTURED
+#include "corners.glsl"
 #include "wash.glsl"
 #include "linear.glsl"
 #include "texture.glsl"

@@ -8,6 +8,7 @@ in vec3 at;
 out vec4 result;
 
 #if LINEAR
+#include "corners.glsl"
 #include "linear.glsl"
 float value_at(sampler3D grid, vec3 place) { return linear_at(grid, place); }
 #else

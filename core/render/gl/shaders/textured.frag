@@ -1,4 +1,5 @@
 // The interpolated colour of the vertices, with the shape's texture.
+#include "corners.glsl"
 #include "wash.glsl"
 #include "linear.glsl"
 #include "texture.glsl"

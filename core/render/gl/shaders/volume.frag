@@ -2,6 +2,7 @@
 // DRAW_VOLUME. Alpha of the result is the share of the picture below that still shows, for blending.
 #include "light.glsl"
 #if WASH
+#include "corners.glsl"
 #include "wash.glsl"
 uniform int is_face_washed; // cut faces; samples of rays and slices
 uniform int is_ray_washed;

@@ -1,4 +1,5 @@
 // A colourwash over what a plane shows.
+#include "corners.glsl"
 #include "wash.glsl"
 in vec3 at;
 out vec4 result;

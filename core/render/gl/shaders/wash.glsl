@@ -34,18 +34,7 @@ vec4 wash_at(vec3 place) {
     int along = int(wash_size.w);
     ivec3 low = ivec3(base) + ivec3(0, int(wash_size.y) * (row / along), int(wash_size.z) * (row % along));
     ivec3 high = low + ivec3(greaterThan(weight, vec3(0.0))); // a corner without a part is not read: it may be no number
-    vec4 near, far;
-    near.x = texelFetch(wash_rows, low, 0).r;
-    far.x = texelFetch(wash_rows, ivec3(high.x, low.yz), 0).r;
-    near.y = texelFetch(wash_rows, ivec3(low.x, high.y, low.z), 0).r;
-    far.y = texelFetch(wash_rows, ivec3(high.xy, low.z), 0).r;
-    near.z = texelFetch(wash_rows, ivec3(low.xy, high.z), 0).r;
-    far.z = texelFetch(wash_rows, ivec3(high.x, low.y, high.z), 0).r;
-    near.w = texelFetch(wash_rows, ivec3(low.x, high.yz), 0).r;
-    far.w = texelFetch(wash_rows, high, 0).r;
-    near += (far - near) * weight.x;
-    vec2 across = near.xz + (near.yw - near.xz) * weight.y;
-    float value = across.x + (across.y - across.x) * weight.z;
+    float value = between_corners(wash_rows, low, high, weight);
     if (!is_number(value)) return vec4(0.0);
     int knot = -1;
     for (int i = 0; i < n_knots && value >= knots[i >> 2][i & 3]; i++) knot = i;
