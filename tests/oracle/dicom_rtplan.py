@@ -2,8 +2,9 @@
 import sys
 
 try:
-    import numpy
     import pydicom
+
+    import rtplan_open
 except ImportError:
     sys.exit(77)
 
@@ -21,22 +22,7 @@ def jaws(point, kinds):
 
 
 def area_cm2(beam, point):
-    """Of the opening that jaws and leaves leave, counted on points half a mm apart."""
-    y, x = numpy.meshgrid(*[numpy.arange(-299.75, 300, 0.5)] * 2, indexing="ij")
-    is_open = numpy.ones(x.shape, bool)
-    bounds = {d.RTBeamLimitingDeviceType: d.get("LeafPositionBoundaries") for d in beam.BeamLimitingDeviceSequence}
-    for device in point.get("BeamLimitingDevicePositionSequence", []):
-        kind, at = device.RTBeamLimitingDeviceType, numpy.array(device.LeafJawPositions, float)
-        along, across = (x, y) if kind.endswith("X") else (y, x)
-        if kind.startswith("MLC"):
-            pair = numpy.searchsorted(numpy.array(bounds[kind], float), across, side="right") - 1
-            n = len(at) // 2
-            held = (pair >= 0) & (pair < n)
-            pair = pair.clip(0, n - 1)
-            is_open &= held & (along >= at[pair]) & (along < at[n + pair])
-        else:
-            is_open &= (along >= at[0]) & (along < at[1])
-    return is_open.sum() / 400
+    return rtplan_open.points_of(beam, point).sum() * rtplan_open.STEP_MM**2 / 100
 
 
 for path in sys.argv[1:]:

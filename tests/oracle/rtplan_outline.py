@@ -6,28 +6,10 @@ import sys
 try:
     import numpy
     import pydicom
+
+    from rtplan_open import X, Y, points_of
 except ImportError:
     sys.exit(77)
-
-Y, X = numpy.meshgrid(*[numpy.arange(-299.75, 300, 0.5)] * 2, indexing="ij")
-
-
-def open_of(beam, point):
-    is_open = numpy.ones(X.shape, bool)
-    bounds = {d.RTBeamLimitingDeviceType: d.get("LeafPositionBoundaries") for d in beam.BeamLimitingDeviceSequence}
-    for device in point.get("BeamLimitingDevicePositionSequence", []):
-        kind, at = device.RTBeamLimitingDeviceType, numpy.array(device.LeafJawPositions, float)
-        along, across = (X, Y) if kind.endswith("X") else (Y, X)
-        if kind.startswith("MLC"):
-            pair = numpy.searchsorted(numpy.array(bounds[kind], float), across, side="right") - 1
-            n = len(at) // 2
-            held = (pair >= 0) & (pair < n)
-            pair = pair.clip(0, n - 1)
-            is_open &= held & (along >= at[pair]) & (along < at[n + pair])
-        else:
-            is_open &= (along >= at[0]) & (along < at[1])
-    return is_open
-
 
 def inside(points):
     """Even-odd rule."""
@@ -43,7 +25,7 @@ for line in open(sys.argv[2]):
     number, *values = line.split()
     polygons.setdefault(int(number), []).append(numpy.array(values, float).reshape(-1, 2))
 for beam in pydicom.dcmread(sys.argv[1], force=True).BeamSequence:
-    expected, found = open_of(beam, beam.ControlPointSequence[0]), numpy.zeros(X.shape, bool)
+    expected, found = points_of(beam, beam.ControlPointSequence[0]), numpy.zeros(X.shape, bool)
     for points in polygons.get(beam.BeamNumber, []):
         found |= inside(points)
     print(beam.BeamNumber, expected.sum(), (expected != found).sum())

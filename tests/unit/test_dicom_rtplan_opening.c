@@ -50,6 +50,20 @@ static size_t n_lines_of(const struct report *report, const char *code)
     return n;
 }
 
+/* A plan of one beam from gantry 0, with these devices and their positions, which may be NULL. */
+static struct rtplan *read_opening(int n_points, void (*devices)(struct made_dicom *made),
+                                   void (*positions)(struct made_dicom *made, int point), struct report *report)
+{
+    struct made_rtplan made = { .position = "HFS",
+                                .sad = "1000",
+                                .iso = "0\\0\\0",
+                                .n_points = n_points,
+                                .gantries = { "0" },
+                                .devices = devices,
+                                .positions = positions };
+    return made_rtplan_read(&made, report);
+}
+
 static void doubts_about_where_a_beam_is_come_before_those_about_its_opening(void **state)
 {
     (void)state;
@@ -88,13 +102,7 @@ static void a_single_boundary_is_too_few_for_any_number_of_leaves(void **state)
 {
     (void)state;
     struct report report = { 0 };
-    struct made_rtplan made = { .position = "HFS",
-                                .sad = "1000",
-                                .iso = "0\\0\\0",
-                                .n_points = 1,
-                                .gantries = { "0" },
-                                .devices = leaves_without_a_number_of_pairs };
-    struct rtplan *plan = made_rtplan_read(&made, &report);
+    struct rtplan *plan = read_opening(1, leaves_without_a_number_of_pairs, NULL, &report);
     char expected[80];
     snprintf(expected, sizeof expected, "MLCX: leaf position boundaries (300A,00BE) are 1, expected 2 to %d.",
              OPENING_MAX_LEAVES + 1);
@@ -106,14 +114,7 @@ static void a_single_boundary_is_too_few_for_any_number_of_leaves(void **state)
 static void the_opening_is_what_jaws_and_leaves_leave(void **state)
 {
     (void)state;
-    struct made_rtplan made = { .position = "HFS",
-                                .sad = "1000",
-                                .iso = "0\\0\\0",
-                                .n_points = 3,
-                                .gantries = { "0" },
-                                .devices = jaws_and_leaves,
-                                .positions = three_steps };
-    struct rtplan *plan = made_rtplan_read(&made, NULL);
+    struct rtplan *plan = read_opening(3, jaws_and_leaves, three_steps, NULL);
     const struct beam_delivery *d = &plan->beams[0].delivery;
     assert_memory_equal(d->jaws_x_mm, ((double[]){ -30, 30 }), sizeof d->jaws_x_mm);
     assert_memory_equal(d->jaws_y_mm, ((double[]){ -15, 40 }), sizeof d->jaws_y_mm);
@@ -153,14 +154,7 @@ static void the_outline_follows_jaws_and_leaves_of_the_first_control_point(void 
         { 30, -15 }, { 30, -10 }, { 5, -10 }, { 5, 0 },    { 10, 0 },    { 10, 10 },
         { -10, 10 }, { -10, 0 },  { -5, 0 },  { -5, -10 }, { -30, -10 }, { -30, -15 }
     };
-    struct made_rtplan made = { .position = "HFS",
-                                .sad = "1000",
-                                .iso = "0\\0\\0",
-                                .n_points = 3,
-                                .gantries = { "0" },
-                                .devices = jaws_and_leaves,
-                                .positions = three_steps };
-    struct rtplan *plan = made_rtplan_read(&made, NULL);
+    struct rtplan *plan = read_opening(3, jaws_and_leaves, three_steps, NULL);
     const struct beam_outline *outline = &plan->beams[0].delivery.outline;
     assert_int_equal(outline->kind, BEAM_OUTLINE_LEAVES);
     assert_int_equal(outline->n_polygons, 1);
@@ -191,14 +185,7 @@ static void openings_that_only_touch_are_polygons_of_their_own(void **state)
                         two[][2] = { { -10, 4 }, { 0, 4 }, { 0, 8 }, { -10, 8 } },
                         three[][2] = { { 10, 0 }, { 20, 0 }, { 20, 1 }, { 30, 1 },
                                        { 30, 6 }, { 20, 6 }, { 20, 5 }, { 10, 5 } };
-    struct made_rtplan made = { .position = "HFS",
-                                .sad = "1000",
-                                .iso = "0\\0\\0",
-                                .n_points = 1,
-                                .gantries = { "0" },
-                                .devices = leaves_along_y,
-                                .positions = apart_and_together };
-    struct rtplan *plan = made_rtplan_read(&made, NULL);
+    struct rtplan *plan = read_opening(1, leaves_along_y, apart_and_together, NULL);
     const struct beam_outline *outline = &plan->beams[0].delivery.outline;
     assert_int_equal(outline->n_polygons, 3);
     assert_polygon(outline, 0, one, 4);
@@ -276,14 +263,7 @@ static void jaws_cut_the_outline_of_a_block(void **state)
     (void)state;
     /* the block's corners are 60 mm from (3, -4) along the axes; the right one is cut off 30 mm from the middle */
     static const double expected[][2] = { { 33, -34 }, { 33, 26 }, { 3, 56 }, { -57, -4 }, { 3, -64 } };
-    struct made_rtplan made = { .position = "HFS",
-                                .sad = "1000",
-                                .iso = "0\\0\\0",
-                                .n_points = 1,
-                                .gantries = { "0" },
-                                .devices = jaws_over_a_diamond,
-                                .positions = nearer_on_the_right };
-    struct rtplan *plan = made_rtplan_read(&made, NULL);
+    struct rtplan *plan = read_opening(1, jaws_over_a_diamond, nearer_on_the_right, NULL);
     const struct beam_outline *outline = &plan->beams[0].delivery.outline;
     assert_int_equal(outline->kind, BEAM_OUTLINE_BLOCKS);
     assert_int_equal(outline->n_polygons, 1);
@@ -300,13 +280,7 @@ static void a_block_of_too_many_points_has_no_outline_and_says_so(void **state)
 {
     (void)state;
     struct report report = { 0 };
-    struct made_rtplan made = { .position = "HFS",
-                                .sad = "1000",
-                                .iso = "0\\0\\0",
-                                .n_points = 1,
-                                .gantries = { "0" },
-                                .devices = block_of_many_points };
-    struct rtplan *plan = made_rtplan_read(&made, &report);
+    struct rtplan *plan = read_opening(1, block_of_many_points, NULL, &report);
     assert_int_equal(plan->beams[0].delivery.outline.n_polygons, 0);
     assert_int_equal(plan->beams[0].delivery.outline.kind, BEAM_OUTLINE_NONE);
     assert_near(plan->beams[0].aperture_mm, 120, 1e-9);
@@ -326,13 +300,7 @@ static void only_a_round_opening_has_a_diameter(void **state)
                   { square_block, NAN, 72 },
                   { round_applicator, 120, NAN } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct made_rtplan made = { .position = "HFS",
-                                    .sad = "1000",
-                                    .iso = "0\\0\\0",
-                                    .n_points = 1,
-                                    .gantries = { "0" },
-                                    .devices = cases[i].devices };
-        struct rtplan *plan = made_rtplan_read(&made, NULL);
+        struct rtplan *plan = read_opening(1, cases[i].devices, NULL, NULL);
         const struct beam *beam = &plan->beams[0];
         if (isnan(cases[i].diameter_mm))
             assert_true(isnan(beam->aperture_mm));
