@@ -45,8 +45,12 @@ export async function stubDose(page, { dose = 42, constraints = {} } = {}) {
   const asked = [];
   const answers = { dvh: ({ regions, quantity }) => dvhAnswer(regions.split(','), quantity), profile: profileAnswer, constraints: () => constraintsAnswer(constraints) };
   await page.route(/\/plans\/[^/]+\/dose\/probe\?/, async (route) => {
-    const response = await route.fetch();
-    return route.fulfill({ response, json: { ...await response.json(), value: dose, unit: 'Gy(w)' } });
+    try {
+      const response = await route.fetch();
+      await route.fulfill({ response, json: { ...await response.json(), value: dose, unit: 'Gy(w)' } });
+    } catch (error) {
+      if (!/disposed|closed/.test(error.message)) throw error; // else the page went away while it asked
+    }
   });
   await page.route(/\/plans\/[^/]+\/(dvh|profile|constraints)\?/, (route) => {
     const url = new URL(route.request().url());
