@@ -240,9 +240,9 @@ test-api: all demo
 	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
 	TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh api $(filter-out $(SLOW_NODE) $(ALONE_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))) && [ $$alone = 0 ]
 test-web: all demo
-	$(Q)tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs))
+	$(Q)TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs))
 test-long: all demo
-	$(Q)LONG_TESTS=$(LONG_TESTS) tests/run_node.sh long $(LONG_NODE)
+	$(Q)LONG_TESTS=$(LONG_TESTS) TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh long $(LONG_NODE)
 test-install: all demo
 	$(Q)tests/install.sh
 lint: $(GEN_STAMP) $(call obj,$(CORE_SRC) $(WIRE_SRC) $(SERVER_SRC) $(DAEMON_SRC) $(RENDERER_SRC) $(CLI_SRC))
