@@ -4,19 +4,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/wire/json.h"
-
-static int64_t wall_ms(void)
-{
-    struct timespec now;
-    (void)clock_gettime(CLOCK_REALTIME, &now);
-    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
-}
 
 /* The room's entry; NULL: rooms are not kept. */
 static struct net_room *find_kept(const struct net *net, const struct room *room)
@@ -150,6 +142,32 @@ static void write_member(const struct room_kept_member *from, struct store_membe
     to->has_left = from->has_left;
 }
 
+static void write_link(const struct room_kept_link *from, struct store_link *to)
+{
+    memcpy(to->token_hash, from->token_hash, sizeof to->token_hash);
+    memcpy(to->role, from->role, sizeof to->role);
+    memcpy(to->person, from->person, sizeof to->person);
+    to->expires_ms = from->expires_ms;
+    to->is_one_use = from->is_one_use;
+    to->is_used = from->is_used;
+}
+
+/* Members and links, as far as they were asked for. False: no memory. */
+static bool make_lists(const struct room_kept *kept, struct store_room *row)
+{
+    if (kept->members && !(row->members = mem_array(kept->n_members, sizeof row->members[0], 1 << 20, NULL)))
+        return false;
+    if (kept->links && !(row->links = mem_array(kept->n_links, sizeof row->links[0], 1 << 20, NULL)))
+        return false;
+    row->n_members = kept->n_members;
+    row->n_links = kept->n_links;
+    for (size_t i = 0; i < row->n_members; i++)
+        write_member(&kept->members[i], &row->members[i]);
+    for (size_t i = 0; i < row->n_links; i++)
+        write_link(&kept->links[i], &row->links[i]);
+    return true;
+}
+
 /* The row with these parts; NULL: no memory. */
 static struct store_room *make_row(const struct net_room *room, unsigned parts)
 {
@@ -161,21 +179,16 @@ static struct store_room *make_row(const struct net_room *room, unsigned parts)
     (void)snprintf(row->plan, sizeof row->plan, "%s", room_plan_id(room->room));
     memcpy(row->presenter, kept.presenter, sizeof row->presenter);
     row->created_ms = kept.created_at_s * 1000;
-    row->used_ms = wall_ms();
+    row->used_ms = clock_wall_ms();
     row->revision = kept.revision;
     row->n_named = kept.n_named;
+    row->has_links = kept.has_links;
     row->scene = kept.scene;
     row->views = kept.views;
     kept.scene = kept.views = NULL;
-    if (kept.members) {
-        row->members = mem_array(kept.n_members, sizeof row->members[0], 1 << 20, NULL);
-        row->n_members = row->members ? kept.n_members : 0;
-        for (size_t i = 0; i < row->n_members; i++)
-            write_member(&kept.members[i], &row->members[i]);
-        if (!row->members) {
-            store_room_free(row);
-            row = NULL;
-        }
+    if (!make_lists(&kept, row)) {
+        store_room_free(row);
+        row = NULL;
     }
     room_kept_finish(&kept);
     return row;
@@ -264,11 +277,22 @@ static void read_member(const struct store_member *from, struct room_kept_member
     to->has_left = from->has_left;
 }
 
+static void read_link(const struct store_link *from, struct room_kept_link *to)
+{
+    memcpy(to->token_hash, from->token_hash, sizeof to->token_hash);
+    memcpy(to->role, from->role, sizeof to->role);
+    memcpy(to->person, from->person, sizeof to->person);
+    to->expires_ms = from->expires_ms;
+    to->is_one_use = from->is_one_use;
+    to->is_used = from->is_used;
+}
+
 void keep_restore(struct net_room *room, const struct store_room *row)
 {
     struct room_kept kept = { .created_at_s = row->created_ms / 1000,
                               .revision = row->revision,
                               .n_named = row->n_named,
+                              .has_links = row->has_links,
                               .scene = row->scene,
                               .views = row->views };
     memcpy(kept.presenter, row->presenter, sizeof kept.presenter);
@@ -276,9 +300,14 @@ void keep_restore(struct net_room *room, const struct store_room *row)
     kept.n_members = kept.members ? row->n_members : 0;
     for (size_t i = 0; i < kept.n_members; i++)
         read_member(&row->members[i], &kept.members[i]);
+    kept.links = mem_array(row->n_links, sizeof kept.links[0], 1 << 20, NULL);
+    kept.n_links = kept.links ? row->n_links : 0;
+    for (size_t i = 0; i < kept.n_links; i++)
+        read_link(&row->links[i], &kept.links[i]);
     restore_items(room->room, row); /* before members */
     room_restore(room->room, &kept, clock_now_us());
     free(kept.members);
+    free(kept.links);
     room->keep.changed = 0; /* it is what was read */
     room->keep.written = row->revision;
 }

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
-#include <time.h>
 
+#include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/room/bookmark_body.h"
 #include "server/room/item_list.h"
@@ -72,13 +72,6 @@ static void make_id(const struct room *room, char id[16])
             abort(); /* as a member's secret */
         (void)snprintf(id, 16, "i-%02x%02x%02x%02x%02x", bytes[0], bytes[1], bytes[2], bytes[3], bytes[4]);
     } while (items_find(room, id));
-}
-
-static int64_t wall_clock_ms(void)
-{
-    struct timespec now;
-    (void)clock_gettime(CLOCK_REALTIME, &now); /* only to be displayed */
-    return now.tv_sec * INT64_C(1000) + now.tv_nsec / 1000000;
 }
 
 /* The text of the row of an item with this body, for free(). NULL: no memory. */
@@ -167,12 +160,12 @@ bool items_put(struct room *room, struct member *member, const struct message *m
         (void)snprintf(next.author, sizeof next.author, "%s", member->id);
         copy_name(next.author_name, member->name);
         (void)snprintf(next.author_color, sizeof next.author_color, "#%06x", color_rgb(member->color) & 0xffffffU);
-        next.created_ms = wall_clock_ms();
+        next.created_ms = clock_wall_ms(); /* only to be displayed */
         const char *parent = json_text(put->body, "parent");
         (void)snprintf(next.parent, sizeof next.parent, "%s", put->kind == WIRE_ITEM_KIND_NOTE && parent ? parent : "");
     }
     next.version++;
-    next.changed_ms = before ? wall_clock_ms() : next.created_ms;
+    next.changed_ms = before ? clock_wall_ms() : next.created_ms;
     copy_name(next.changed_name, member->name);
     char *body = read_body(room, put->kind, put->body, before, false, problem);
     char *row = body ? write_row(&next, body) : NULL;

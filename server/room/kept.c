@@ -9,5 +9,5 @@ void kept_changed(struct room *room, unsigned parts)
 
 bool room_was_used(const struct room *room)
 {
-    return room->n_named > 0 || room->is_changed;
+    return room->n_named > 0 || room->has_links || room->is_changed;
 }

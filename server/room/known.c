@@ -42,6 +42,16 @@ static void known_remove(struct room *room, int index)
     memmove(&room->known[index], &room->known[index + 1], (size_t)(room->n_known - index) * sizeof room->known[0]);
 }
 
+/* Presenters are forgotten last: once none is known, the next stranger in the empty room becomes one. */
+static int first_to_forget(const struct room *room)
+{
+    int first = 0;
+    while (first < room->n_known &&
+           strcmp(room->known[first].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) == 0)
+        first++;
+    return first < room->n_known ? first : 0;
+}
+
 void known_add(struct room *room, const struct room_kept_member *kept)
 {
     if (!room->known)
@@ -49,7 +59,7 @@ void known_add(struct room *room, const struct room_kept_member *kept)
     if (!room->known)
         return; /* then it cannot come back as the same */
     if (room->n_known == ROOM_MAX_KNOWN)
-        known_remove(room, 0);
+        known_remove(room, first_to_forget(room));
     room->known[room->n_known] = *kept;
     room->known[room->n_known++].has_left = true;
 }

@@ -158,7 +158,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
         else
             member = member_create(room, hello->name, link ? link->role : role);
         if (link)
-            link_used(link, hello->person);
+            link_used(room, link, hello->person);
     } else {
         send_bye(room, connection, FULL_RETRY_MS, room_is_full);
         return false;

@@ -6,6 +6,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/room/known.h"
+#include "server/room/links.h"
 #include "server/room/stream.h"
 #include "server/wire/document.h"
 #include "server/wire/json.h"
@@ -45,8 +46,10 @@ static bool write_members(const struct room *room, struct room_kept *kept)
 bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept)
 {
     const cJSON *scene = room->scene ? room->scene : room->restored;
-    *kept =
-        (struct room_kept){ .created_at_s = room->created_at_s, .revision = room->revision, .n_named = room->n_named };
+    *kept = (struct room_kept){ .created_at_s = room->created_at_s,
+                                .revision = room->revision,
+                                .n_named = room->n_named,
+                                .has_links = room->has_links };
     if (room->presenter)
         (void)snprintf(kept->presenter, sizeof kept->presenter, "%s", room->presenter->id);
     bool ok = true;
@@ -56,6 +59,8 @@ bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept)
         ok = (kept->views = write_views(room)) != NULL;
     if (ok && (parts & ROOM_MEMBERS))
         ok = write_members(room, kept);
+    if (ok && (parts & ROOM_LINKS))
+        ok = links_write(room, kept);
     if (!ok)
         room_kept_finish(kept);
     return ok;
@@ -66,6 +71,7 @@ void room_kept_finish(struct room_kept *kept)
     free(kept->scene);
     free(kept->views);
     free(kept->members);
+    free(kept->links);
     *kept = (struct room_kept){ 0 };
 }
 
@@ -137,5 +143,6 @@ void room_restore(struct room *room, const struct room_kept *kept, int64_t now_u
     else
         cJSON_Delete(scene);
     read_members(room, kept);
+    links_read(room, kept);
     read_views(room, kept->views);
 }

@@ -1,6 +1,8 @@
 /* Checks roles against rights, and chooses roles and colours of new members. */
 #include "server/room/roles.h"
 
+#include <string.h>
+
 /* On the page's darkest and lightest panels (--bg0, --bg5) and under dark letters (--ink) each has a contrast of at
  * least 4.5:1, and no two are nearer than 25 in CIE Lab; tests/unit/test_roles.c computes both. */
 static const uint32_t colors[ROLES_N_COLORS] = { 0x56b4e9, 0xe69f00, 0x2fd08f, 0xff7fd1, 0xf0e442, 0xaa93ff,
@@ -28,7 +30,10 @@ bool role_check(enum wire_member_role role, enum wire_right right, struct proble
 
 enum wire_member_role role_of_newcomer(const struct room *room)
 {
-    return room->n_members ? WIRE_MEMBER_ROLE_REVIEWER : WIRE_MEMBER_ROLE_PRESENTER;
+    bool is_first = room->n_members == 0;
+    for (int i = 0; is_first && i < room->n_known; i++)
+        is_first = strcmp(room->known[i].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) != 0;
+    return is_first ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_REVIEWER;
 }
 
 int color_of_newcomer(const struct room *room)

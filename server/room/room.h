@@ -18,7 +18,7 @@ enum {
     ROOM_MAX_ITEM_BYTES = 61440,    /* of the body of a bookmark, as JSON; a note may have less (note_body.h) */
     ROOM_MAX_ITEM_FRAME = 2048,     /* of a row without its body */
     ROOM_MAX_ITEMS_BYTES = 2 << 20, /* of all rows; they are in every welcome */
-    ROOM_MAX_KNOWN = 256,      /* members that left and can come back as the same; beyond, the first who left cannot */
+    ROOM_MAX_KNOWN = 256, /* members that left and can come back as the same; beyond, the first but presenters cannot */
     ROOM_REQUEST_AGAIN_S = 10, /* after a refusal, before control can be requested again */
     ROOM_MAX_LINKS = 32,       /* valid at once */
     ROOM_LINK_MIN_S = 60,
@@ -75,13 +75,20 @@ struct room_callbacks {
 };
 
 /* What of a room is kept on disk. */
-enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4 };
-enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS };
+enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4, ROOM_LINKS = 8 };
+enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS };
 
 struct room_kept_member {
     char id[64], name[164], color[8], role[16];
     unsigned char secret_hash[32]; /* of server/auth/secret.h */
     bool has_left;                 /* it is not in the list of members, but may come back */
+};
+
+struct room_kept_link {
+    unsigned char token_hash[32]; /* as secret_hash */
+    char role[16], person[257];   /* person: who used it, if it is for one use */
+    int64_t expires_ms;           /* since 1970 */
+    bool is_one_use, is_used;
 };
 
 struct room_kept {
@@ -91,6 +98,9 @@ struct room_kept {
     char *scene, *views;              /* JSON; NULL: not asked for, or the plan was never loaded */
     struct room_kept_member *members; /* NULL: not asked for */
     size_t n_members;
+    bool has_links;               /* there is or was one */
+    struct room_kept_link *links; /* NULL: not asked for */
+    size_t n_links;
 };
 
 struct room_limits {
@@ -180,7 +190,7 @@ void room_kept_finish(struct room_kept *kept);
 /* Makes a room that was just created what it was when it was kept; its members are away. The scene counts once the plan
  * is ready, as after a restart of the renderer. What is not readable in kept is left out, and said in the log. */
 void room_restore(struct room *room, const struct room_kept *kept, int64_t now_us);
-/* True once a member has entered, or the scene was changed. */
+/* True once a member has entered, a link was made, or the scene was changed. */
 bool room_was_used(const struct room *room);
 
 /* Counters for /metrics. */

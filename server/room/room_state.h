@@ -130,10 +130,11 @@ struct item { /* a note, a reply or a bookmark */
     char *row;                                          /* all of this with the body, as JSON */
 };
 
-struct link {                             /* lets new members in */
-    char token[SECRET_TEXT], person[257]; /* person: who has used it, if it is for one */
+struct link { /* lets new members in */
+    unsigned char token_hash[SECRET_HASH_BYTES];
+    char person[257]; /* who has used it, if it is for one */
     enum wire_member_role role;
-    int64_t expires_us;
+    int64_t expires_us, expires_ms; /* the same moment on the room's clock and on the wall's */
     bool is_one_use, is_used;
 };
 

@@ -15,6 +15,7 @@ void store_room_free(struct store_room *room)
         free(room->items[i].body);
     free(room->items);
     free(room->members);
+    free(room->links);
     free(room->scene);
     free(room->views);
     free(room);
@@ -26,9 +27,9 @@ static bool write_row(sqlite3 *db, const struct store_room *room, struct error *
 {
     sqlite3_stmt *row = sql_prepare(
         db,
-        "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, presenter, scene, views)"
-        " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9) ON CONFLICT(id) DO UPDATE SET used_ms = ?4, revision = ?5,"
-        " n_named = ?6, presenter = ?7, scene = coalesce(?8, scene), views = coalesce(?9, views)",
+        "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, presenter, scene, views, has_links)"
+        " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(id) DO UPDATE SET used_ms = ?4, revision = ?5,"
+        " n_named = ?6, presenter = ?7, scene = coalesce(?8, scene), views = coalesce(?9, views), has_links = ?10",
         err);
     if (!row)
         return false;
@@ -41,6 +42,7 @@ static bool write_row(sqlite3 *db, const struct store_room *room, struct error *
     sql_bind_text(row, 7, room->presenter);
     sql_bind_text(row, 8, room->scene);
     sql_bind_text(row, 9, room->views);
+    (void)sqlite3_bind_int(row, 10, room->has_links);
     bool ok = sql_step(row, "writing a room", err);
     (void)sqlite3_finalize(row);
     return ok;
@@ -84,6 +86,32 @@ static bool write_members(sqlite3 *db, const struct store_room *room, struct err
     return ok;
 }
 
+static bool write_links(sqlite3 *db, const struct store_room *room, struct error *err)
+{
+    if (!run_for(db, "DELETE FROM links WHERE room = ?1", room->id, NULL, "writing links", err))
+        return false;
+    sqlite3_stmt *row =
+        sql_prepare(db,
+                    "INSERT INTO links(room, place, token_hash, role, expires_ms, is_one_use, is_used, person)"
+                    " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+                    err);
+    bool ok = row != NULL;
+    for (size_t i = 0; ok && i < room->n_links; i++) {
+        const struct store_link *link = &room->links[i];
+        sql_bind_text(row, 1, room->id);
+        (void)sqlite3_bind_int64(row, 2, (sqlite3_int64)i);
+        (void)sqlite3_bind_blob(row, 3, link->token_hash, STORE_HASH_BYTES, SQLITE_TRANSIENT);
+        sql_bind_text(row, 4, link->role);
+        (void)sqlite3_bind_int64(row, 5, link->expires_ms);
+        (void)sqlite3_bind_int(row, 6, link->is_one_use);
+        (void)sqlite3_bind_int(row, 7, link->is_used);
+        sql_bind_text(row, 8, link->person);
+        ok = sql_step(row, "writing links", err);
+    }
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
 static bool write_item(sqlite3 *db, const char *room, const struct store_item *item, struct error *err)
 {
     if (!item->body)
@@ -112,7 +140,8 @@ static bool write_item(sqlite3 *db, const char *room, const struct store_item *i
 
 bool rows_write_room(sqlite3 *db, const struct store_room *room, struct error *err)
 {
-    if (!write_row(db, room, err) || (room->members && !write_members(db, room, err)))
+    if (!write_row(db, room, err) || (room->members && !write_members(db, room, err)) ||
+        (room->links && !write_links(db, room, err)))
         return false;
     for (size_t i = 0; i < room->n_items; i++)
         if (!write_item(db, room->id, &room->items[i], err))
@@ -131,7 +160,7 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
 {
     sqlite3_stmt *row = sql_prepare(db,
                                     "SELECT id, plan, created_ms, used_ms, revision, n_named, presenter, scene,"
-                                    " views FROM rooms WHERE id = ?1",
+                                    " views, has_links FROM rooms WHERE id = ?1",
                                     err);
     if (!row)
         return false;
@@ -148,6 +177,7 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
         sql_text(row, 6, room->presenter, sizeof room->presenter);
         room->scene = sql_copy_text(row, 7);
         room->views = sql_copy_text(row, 8);
+        room->has_links = sqlite3_column_int(row, 9) != 0;
     } else if (step == SQLITE_DONE) {
         error_set(err, ERROR_NOT_FOUND, "there is no room \"%.63s\"", id);
     } else {
@@ -204,6 +234,19 @@ static bool read_member(sqlite3_stmt *row, void *to)
     return true;
 }
 
+static bool read_link(sqlite3_stmt *row, void *to)
+{
+    struct store_link *link = to;
+    if (sqlite3_column_bytes(row, 0) == STORE_HASH_BYTES)
+        memcpy(link->token_hash, sqlite3_column_blob(row, 0), STORE_HASH_BYTES);
+    sql_text(row, 1, link->role, sizeof link->role);
+    link->expires_ms = sqlite3_column_int64(row, 2);
+    link->is_one_use = sqlite3_column_int(row, 3) != 0;
+    link->is_used = sqlite3_column_int(row, 4) != 0;
+    sql_text(row, 5, link->person, sizeof link->person);
+    return true;
+}
+
 static bool read_item(sqlite3_stmt *row, void *to)
 {
     struct store_item *item = to;
@@ -233,7 +276,7 @@ static bool read_summary(sqlite3_stmt *row, void *to)
 struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err)
 {
     struct store_room *room = mem_new(sizeof *room);
-    void *members = NULL, *items = NULL;
+    void *members = NULL, *links = NULL, *items = NULL;
     bool ok =
         read_row(db, id, room, err) &&
         read_list(db,
@@ -241,10 +284,15 @@ struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err
                   " ORDER BY place",
                   id, sizeof(struct store_member), STORE_MAX_MEMBERS, read_member, &members, &room->n_members, err) &&
         read_list(db,
+                  "SELECT token_hash, role, expires_ms, is_one_use, is_used, person FROM links WHERE room = ?1"
+                  " ORDER BY place",
+                  id, sizeof(struct store_link), STORE_MAX_LINKS, read_link, &links, &room->n_links, err) &&
+        read_list(db,
                   "SELECT id, kind, version, author, author_name, created_ms, changed_ms, body FROM items"
                   " WHERE room = ?1 ORDER BY created_ms, rowid",
                   id, sizeof(struct store_item), STORE_MAX_ITEMS, read_item, &items, &room->n_items, err);
     room->members = members;
+    room->links = links;
     room->items = items;
     if (ok)
         return room;

@@ -21,6 +21,11 @@ static const char *const steps[] = {
     "CREATE TABLE items(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, id TEXT NOT NULL,"
     " kind TEXT NOT NULL, version INTEGER NOT NULL, author TEXT NOT NULL, author_name TEXT NOT NULL,"
     " created_ms INTEGER NOT NULL, changed_ms INTEGER NOT NULL, body TEXT NOT NULL, PRIMARY KEY(room, id)) STRICT;",
+    /* 3: links of rooms */
+    "ALTER TABLE rooms ADD COLUMN has_links INTEGER NOT NULL DEFAULT 0;"
+    "CREATE TABLE links(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, place INTEGER NOT NULL,"
+    " token_hash BLOB NOT NULL, role TEXT NOT NULL, expires_ms INTEGER NOT NULL, is_one_use INTEGER NOT NULL,"
+    " is_used INTEGER NOT NULL, person TEXT NOT NULL, PRIMARY KEY(room, place)) STRICT;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

@@ -7,6 +7,7 @@
 enum {
     STORE_HASH_BYTES = 32,
     STORE_MAX_MEMBERS = 1024,       /* of one room, those that left included */
+    STORE_MAX_LINKS = 64,           /* of one room */
     STORE_MAX_ITEMS = 4096,         /* notes and bookmarks of one room */
     STORE_MAX_TEXT_BYTES = 32 << 20 /* one scene, list of views, or item */
 };
@@ -15,6 +16,13 @@ struct store_member {
     char id[64], name[164], color[8], role[16];
     unsigned char secret_hash[STORE_HASH_BYTES]; /* of auth/secret.h */
     bool has_left;                               /* it may come back */
+};
+
+struct store_link {
+    unsigned char token_hash[STORE_HASH_BYTES]; /* of auth/secret.h */
+    char role[16], person[257];                 /* person: who used it, if it is for one use */
+    int64_t expires_ms;                         /* since 1970 */
+    bool is_one_use, is_used;
 };
 
 struct store_item { /* a note or a bookmark */
@@ -28,9 +36,12 @@ struct store_room {
     char id[64], plan[64], presenter[64]; /* presenter "": nobody */
     int64_t created_ms, used_ms;          /* since 1970; used: when somebody was last in it */
     uint32_t revision, n_named;           /* of the scene; members ever made */
+    bool has_links;                       /* there is or was one */
     char *scene, *views;                  /* JSON; NULL when read: the plan was never loaded */
     struct store_member *members;         /* all; NULL in a write: as they are */
     size_t n_members;
+    struct store_link *links; /* as members */
+    size_t n_links;
     struct store_item *items; /* when read: all; in a write: those that changed */
     size_t n_items;
 };

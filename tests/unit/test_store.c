@@ -53,6 +53,17 @@ static struct store_item *made_items(size_t n)
     return items;
 }
 
+static struct store_link *made_links(size_t n)
+{
+    struct store_link *links = mem_array(n, sizeof *links, 1 << 20, NULL);
+    for (size_t i = 0; i < n; i++) {
+        memset(links[i].token_hash, (int)i + 1, STORE_HASH_BYTES);
+        (void)snprintf(links[i].role, sizeof links[i].role, i % 2 ? "observer" : "reviewer");
+        links[i].expires_ms = 1767225600000 + (int64_t)i;
+    }
+    return links;
+}
+
 static void what_was_written_is_read_after_opening_again(void **state)
 {
     (void)state;
@@ -63,6 +74,11 @@ static void what_was_written_is_read_after_opening_again(void **state)
     (void)snprintf(written->presenter, sizeof written->presenter, "m1");
     written->items = made_items(2);
     written->n_items = 2;
+    written->has_links = true;
+    written->links = made_links(2);
+    written->n_links = 2;
+    written->links[1].is_one_use = written->links[1].is_used = true;
+    (void)snprintf(written->links[1].person, sizeof written->links[1].person, "0123abcd");
     store_world_write(&world, written);
     struct store_answer *opened = open_again();
     assert_int_equal(opened->n_rooms, 1);
@@ -93,6 +109,14 @@ static void what_was_written_is_read_after_opening_again(void **state)
     assert_string_equal(read->items[1].id, "note-2");
     assert_string_equal(read->items[1].author_name, "Ann");
     assert_string_equal(read->items[1].body, "{\"text\":\"here\"}");
+    assert_true(read->has_links);
+    assert_int_equal(read->n_links, 2);
+    assert_int_equal(read->links[0].token_hash[31], 1);
+    assert_string_equal(read->links[0].role, "reviewer");
+    assert_false(read->links[0].is_one_use || read->links[0].is_used);
+    assert_int_equal(read->links[1].expires_ms, 1767225600001);
+    assert_true(read->links[1].is_one_use && read->links[1].is_used);
+    assert_string_equal(read->links[1].person, "0123abcd");
     store_room_free(read);
     assert_null(store_world_read(&world, "aaaa-bbbb"));
 }
@@ -103,6 +127,8 @@ static void what_a_write_leaves_out_stays_and_an_item_without_a_body_goes(void *
     struct store_room *whole = store_made_room("7q4k-m2wz", 1, 10, 2), *part = mem_new(sizeof *part);
     whole->items = made_items(3);
     whole->n_items = 3;
+    whole->links = made_links(2);
+    whole->n_links = 2;
     store_world_write(&world, whole);
     (void)snprintf(part->id, sizeof part->id, "7q4k-m2wz");
     part->revision = 1;
@@ -121,6 +147,14 @@ static void what_a_write_leaves_out_stays_and_an_item_without_a_body_goes(void *
     assert_int_equal(read->n_items, 2);
     assert_int_equal(read->items[0].version, 2);
     assert_string_equal(read->items[1].id, "note-3");
+    assert_int_equal(read->n_links, 2);
+    store_room_free(read);
+    part = mem_new(sizeof *part);
+    (void)snprintf(part->id, sizeof part->id, "7q4k-m2wz");
+    part->links = made_links(0); /* none is another thing than not asked for */
+    store_world_write(&world, part);
+    read = store_world_read(&world, "7q4k-m2wz");
+    assert_int_equal(read->n_links, 0);
     store_room_free(read);
 }
 
@@ -130,6 +164,8 @@ static void a_deleted_room_takes_its_members_and_items_along(void **state)
     struct store_room *room = store_made_room("7q4k-m2wz", 1, 10, 2);
     room->items = made_items(1);
     room->n_items = 1;
+    room->links = made_links(1);
+    room->n_links = 1;
     store_world_write(&world, room);
     assert_true(store_delete(world.store, "7q4k-m2wz", 8));
     store_answer_free(store_world_await(&world, STORE_WRITTEN));
@@ -137,6 +173,7 @@ static void a_deleted_room_takes_its_members_and_items_along(void **state)
     store_world_close(&world);
     assert_int_equal(store_file_number(world.path, "SELECT count(*) FROM members"), 0);
     assert_int_equal(store_file_number(world.path, "SELECT count(*) FROM items"), 0);
+    assert_int_equal(store_file_number(world.path, "SELECT count(*) FROM links"), 0);
 }
 
 static void many_writes_that_wait_are_answered_in_their_order(void **state)
@@ -168,17 +205,23 @@ static void what_was_handed_over_is_written_before_it_closes(void **state)
 
 /* ---- older, newer, damaged ---------------------------------------------------------------------------------------- */
 
-static void a_database_of_version_1_is_brought_up_to_date(void **state)
+/* Opens a database made by this file of SQL, in place of the one there is. */
+static struct store_answer *open_made(const char *sql_file)
 {
-    (void)state;
     store_world_close(&world);
     folder_remove(world.folder);
     world.folder[0] = 0;
     folder_make(world.folder);
     (void)snprintf(world.path, sizeof world.path, "%s/beamroom.db", world.folder);
-    store_file_run_file(world.path, "tests/data/store/version1.sql");
+    store_file_run_file(world.path, sql_file);
     store_world_open(&world);
-    struct store_answer *opened = store_world_await(&world, STORE_OPENED);
+    return store_world_await(&world, STORE_OPENED);
+}
+
+static void a_database_of_version_1_is_brought_up_to_date(void **state)
+{
+    (void)state;
+    struct store_answer *opened = open_made("tests/data/store/version1.sql");
     assert_int_equal(opened->n_rooms, 2);
     assert_string_equal(opened->rooms[0].id, "aaaa-bbbb"); /* made later, so last used */
     assert_int_equal(opened->rooms[0].used_ms, 1767225700000);
@@ -200,6 +243,32 @@ static void a_database_of_version_1_is_brought_up_to_date(void **state)
     room->items = made_items(1);
     room->n_items = 1;
     store_world_write(&world, room);
+}
+
+static void a_database_of_version_2_is_brought_up_to_date(void **state)
+{
+    (void)state;
+    struct store_answer *opened = open_made("tests/data/store/version2.sql");
+    assert_int_equal(opened->n_rooms, 2);
+    assert_string_equal(opened->rooms[0].id, "7q4k-m2wz"); /* last used */
+    store_answer_free(opened);
+    struct store_room *read = store_world_read(&world, "7q4k-m2wz");
+    assert_string_equal(read->presenter, "m1");
+    assert_string_equal(read->members[0].role, "presenter");
+    assert_true(read->members[1].has_left);
+    assert_int_equal(read->n_items, 1);
+    assert_int_equal(read->items[0].version, 2);
+    assert_false(read->has_links);
+    assert_int_equal(read->n_links, 0);
+    store_room_free(read);
+    struct store_room *room = store_made_room("7q4k-m2wz", 43, 10, 1); /* and can be written */
+    room->has_links = true;
+    room->links = made_links(1);
+    room->n_links = 1;
+    store_world_write(&world, room);
+    read = store_world_read(&world, "7q4k-m2wz");
+    assert_int_equal(read->n_links, 1);
+    store_room_free(read);
 }
 
 static void a_database_of_a_newer_program_is_left_alone(void **state)
@@ -381,6 +450,7 @@ int main(void)
         TEST(many_writes_that_wait_are_answered_in_their_order),
         TEST(what_was_handed_over_is_written_before_it_closes),
         TEST(a_database_of_version_1_is_brought_up_to_date),
+        TEST(a_database_of_version_2_is_brought_up_to_date),
         TEST(a_database_of_a_newer_program_is_left_alone),
         TEST(a_damaged_database_is_moved_aside),
         TEST(a_file_that_is_no_database_is_moved_aside),

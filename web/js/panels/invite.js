@@ -40,7 +40,6 @@ export function inviteForm(world) {
     <label for="invite-role">Link with a role</label><select id="invite-role" name="role">${kinds.map(([value, text]) => html`<option value=${value}>${text}</option>`)}</select>
     <div class="pair"><label for="invite-expires">Lets people in</label><select id="invite-expires" name="expires">${times.map(([value, text]) => html`<option value=${value} ?selected=${value === 86400}>${text}</option>`)}</select></div>
     <label class="invite-one"><input type="checkbox" name="one"> For one person only</label>
-    <p class="dim">It ends sooner when everybody has left the room, or the server is started again.</p>
     <button class="primary" ?disabled=${isBusy}>Make link</button>
     ${url ? html`<div class="pair"><input id="invite-made" readonly aria-label="Link with a role" .value=${url}><button type="button" @click=${() => copy(url)}>Copy</button></div>` : nothing}
     <p role="status" class="dim">${words}</p>${error ? html`<p role="alert" class="err">${error}</p>` : nothing}</form>`;
