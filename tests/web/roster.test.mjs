@@ -4,40 +4,24 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { until as ask } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, isDue, missing, shoot, startWorld } from './browser.mjs';
+import { full, isDue, missing, once, shoot, startWorld } from './browser.mjs';
+import { action, enter as enterAs, openRoster as open, row, says, toast } from './people.mjs';
 
 const sizes = [
   ['1440x900', { viewport: { width: 1440, height: 900 } }],
   ['390x844-touch', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
 ];
 
-const chip = (page) => page.locator('.room-chip:visible');
-const says = (page, words) => ask(async () => (await chip(page).textContent()).replace(/\s+/g, ' ').trim(), (text) => words.test(text));
-const row = (page, name) => page.locator('.room-members li', { has: page.locator('.roster-who > .clipped', { hasText: name }) });
 const words = async (page, name) => (await row(page, name).textContent()).replace(/\s+/g, ' ').trim();
-const toast = (page, text) => page.locator('.toast', { hasText: text }).waitFor();
-const action = (page, word) => page.locator('.room-actions button', { hasText: word });
-const open = async (page) => {
-  if (await page.locator('.room-members .own-name').count()) return;
-  await chip(page).locator('.chip-main').click();
-  await page.locator('.room-members .own-name').waitFor();
-};
 
 describe('the roster', { skip: missing && `${missing} is not there` }, () => {
   let world;
   before(async () => { world = await startWorld(); });
   after(async () => { await world?.stop(); });
 
-  const enter = async (address, name, options = {}) => {
-    const page = await world.newPage('#/', options);
-    await page.evaluate((text) => localStorage.setItem('beamroom name', text), name);
-    await page.goto('about:blank'); // the name is read when the page starts
-    await page.goto(`${world.daemon.url}/${address}`);
-    await says(page, /Presenting|Following|No presenter/);
-    return page;
-  };
+  const enter = (...how) => enterAs(world, ...how);
 
-  for (const [size, options] of sizes.filter(([name]) => isDue(/1440|390/.test(name))))
+  for (const [size, options] of sizes.filter(([name]) => isDue(/390/.test(name))))
     it(`control goes from one to the other at ${size}`, async () => {
       const room = await world.newRoom();
       const one = await enter(`#/rooms/${room}`, 'Dr Ann', options);
@@ -83,7 +67,7 @@ describe('the roster', { skip: missing && `${missing} is not there` }, () => {
       await Promise.all([one, two].map((page) => page.context().close()));
     });
 
-  it('a link gives a role; two tabs of a person are told; an observer is offered nothing that is not allowed', async () => {
+  once('a link gives a role; two tabs of a person are told; an observer is offered nothing that is not allowed', async () => {
     const room = await world.newRoom();
     const one = await enter(`#/rooms/${room}`, 'Dr Ann', sizes[0][1]);
     await one.locator('.invite-button').click();

@@ -3,7 +3,7 @@ import { maxClientBytes, protocol } from '../../gen/wire.js';
 import { readMessage, readServerMessage } from '../wire/check.js';
 import { readFrame } from '../wire/frame.js';
 
-const backoffMs = [500, 1000, 2000, 4000];
+const backoffMs = [500, 1000, 1500]; // who waits longest is back within 2 s after the server
 const beatMs = 500;
 const pingMs = 1000;
 const hurryMs = 250; // a change is followed by a ping, at most this often, so that an answer is due
