@@ -24,6 +24,7 @@
 #include "server/http/http.h"
 #include "server/net/net.h"
 #include "server/store/backup.h"
+#include "server/store/verify.h"
 
 enum {
     PATH_SIZE = 4096,
@@ -202,6 +203,34 @@ static bool back_up(const struct options *options, struct error *err)
     return store_backup(database, options->backup, err);
 }
 
+static void print_time(const char *what, int64_t time_ms)
+{
+    char text[32];
+    struct tm utc;
+    time_t seconds = (time_t)(time_ms / 1000);
+    gmtime_r(&seconds, &utc);
+    (void)strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    printf("%s %s\n", what, text);
+}
+
+/* --verify-audit: says what the audit holds, or which row of it does not fit. */
+static bool verify_audit(const struct options *options, struct error *err)
+{
+    struct audit_facts facts;
+    const char *head = options->audit_head;
+    if (head && (strlen(head) != STORE_AUDIT_HASH - 1 || strspn(head, "0123456789abcdef") != STORE_AUDIT_HASH - 1))
+        return error_set(err, ERROR_FORMAT, "audit-head is \"%.80s\", expected 64 digits of 0-9 and a-f", head);
+    if (!store_verify_audit(options->verify_audit, head, &facts, err))
+        return false;
+    printf("rows %lld\n", (long long)facts.n_rows);
+    if (facts.n_rows) {
+        print_time("first", facts.first_ms);
+        print_time("last", facts.last_ms);
+    }
+    printf("head %s\n", facts.head);
+    return true;
+}
+
 /* Serves until a signal comes. */
 static bool serve(const struct options *options, struct error *err)
 {
@@ -307,6 +336,13 @@ int main(int argc, char **argv)
         ok = ok && fill_path(&options.data_folder, default_data_folder, &err) && back_up(&options, &err);
         if (!ok)
             fprintf(stderr, "beamroomd: --backup %s: %s\n", options.backup, err.text);
+        options_finish(&options);
+        return ok ? 0 : 1;
+    }
+    if (options.verify_audit) {
+        ok = ok && verify_audit(&options, &err);
+        if (!ok)
+            fprintf(stderr, "beamroomd: --verify-audit %s: %s\n", options.verify_audit, err.text);
         options_finish(&options);
         return ok ? 0 : 1;
     }

@@ -64,6 +64,10 @@ static const struct setting settings[] = {
       KIND_TEXT, AT(user), 0, 0 },
     { "backup", "FILE", "copy the rooms that --data keeps to this file, also while a daemon serves them, and end",
       KIND_TEXT, AT(backup), 0, 0 },
+    { "verify-audit", "FILE", "check the record of what was done in rooms, in this database or copy of one, and end",
+      KIND_TEXT, AT(verify_audit), 0, 0 },
+    { "audit-head", "HEX", "with --verify-audit: a hash from the record of a room, which a row must still have",
+      KIND_TEXT, AT(audit_head), 0, 0 },
     { "log-level", "LEVEL", "debug, info (default), warning or error", KIND_LEVEL, AT(log_level), 0, 0 },
     { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
     { "hang", "THREAD", "let the thread net, http or acceptor hang once it serves; for tests", KIND_TEXT, AT(hang), 0,
@@ -254,6 +258,8 @@ void options_finish(struct options *options)
     free(options->user);
     free(options->hang);
     free(options->backup);
+    free(options->verify_audit);
+    free(options->audit_head);
 }
 
 void options_print_help(void)

@@ -16,8 +16,10 @@ struct options {
     size_t n_public_names;
     struct address_range trusted_proxies[ADDRESS_MAX_RANGES];
     size_t n_trusted_proxies;
-    char *backup; /* the file to copy the database to, instead of serving; NULL: not given */
-    char *hang;   /* for tests: the thread that hangs; NULL: none */
+    char *backup;                    /* the file to copy the database to, instead of serving; NULL: not given */
+    char *verify_audit, *audit_head; /* the database whose audit is checked instead; a hash that it must have; NULL: not
+                                        given */
+    char *hang;                      /* for tests: the thread that hangs; NULL: none */
     char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not given */
     int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members;
     int64_t max_upload_mib, max_unpacked_mib, max_cache_mib, disk_reserve_mib;

@@ -100,8 +100,16 @@ static bool has_right(struct api *api, const struct call *call, const struct api
     for (const struct wire_room_route *row = wire_room_routes; row->method; row++) {
         if (strcmp(row->method, route->method) != 0 || strcmp(row->path, route->path) != 0)
             continue;
-        const struct room *room = net_room_find(api->net, call->ids[0]);
-        return !room || room_call_may(room, call->member, row->right, problem); /* no room: the handler says so */
+        struct room *room = net_room_find(api->net, call->ids[0]);
+        if (!room || room_call_may(room, call->member, row->right, problem)) /* no room: the handler says so */
+            return true;
+        cJSON *detail = cJSON_CreateObject();
+        char what[96];
+        (void)snprintf(what, sizeof what, "%s %s", route->method, route->path);
+        cJSON_AddStringToObject(detail, "what", what);
+        cJSON_AddStringToObject(detail, "why", problem->detail);
+        room_audit_call(room, call->member, "refused", detail, true, clock_now_us());
+        return false;
     }
     return true;
 }

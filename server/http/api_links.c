@@ -88,5 +88,10 @@ void api_room_link_new(struct api *api, struct call *call)
     cJSON_AddStringToObject(answer, "role", wire_member_role_words.words[wanted.role]);
     cJSON_AddNumberToObject(answer, "expires_s", (double)wanted.expires_s);
     cJSON_AddBoolToObject(answer, "one_use", wanted.is_one_use);
+    cJSON *made = cJSON_CreateObject();
+    cJSON_AddStringToObject(made, "role", wire_member_role_words.words[wanted.role]);
+    cJSON_AddNumberToObject(made, "expires_s", (double)wanted.expires_s);
+    cJSON_AddBoolToObject(made, "one_use", wanted.is_one_use);
+    room_audit_call(room, call->member, "link-made", made, false, clock_now_us());
     call_answer_json(call, 201, answer);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_pictures.h"
 #include "server/http/api_queries.h"
@@ -107,6 +108,11 @@ void api_plan_render(struct api *api, struct call *call)
         cJSON_Delete(body);
         problem_set(&problem, PROBLEM_BUSY, "", "", "the plan is not loaded, and only_loaded keeps it so");
         call_answer_problem(call, &problem);
+        return;
+    }
+    if (!json_flag(body, "only_loaded", false) && /* that is for thumbnails */
+        !api_audit_export(api, call, "picture")) {
+        cJSON_Delete(body);
         return;
     }
     struct render_call *request = mem_new(sizeof *request);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_pictures.h"
 #include "server/http/api_queries.h"
@@ -111,6 +112,11 @@ void api_room_delete(struct api *api, struct call *call)
 {
     if (!net_room_is_asleep(api->net, call->ids[0]) && !find_room(api, call))
         return;
+    struct room *room = net_room_find(api->net, call->ids[0]);
+    if (room)
+        room_audit_call(room, call->member, "deleted", NULL, false, clock_now_us());
+    else
+        net_audit(api->net, call->ids[0], "", "deleted", NULL);
     net_room_delete(api->net, call->ids[0]);
     call_answer_nothing(call, 204);
 }
@@ -211,7 +217,7 @@ void api_room_scene_patch(struct api *api, struct call *call)
     }
     if (!call_read_object(call, media_types, &patch))
         return;
-    bool ok = room_patch_scene(room, patch, clock_now_us(), &problem);
+    bool ok = room_patch_scene(room, patch, call->member, clock_now_us(), &problem);
     cJSON_Delete(patch);
     if (!ok) {
         call_answer_problem(call, &problem);
@@ -268,6 +274,10 @@ void api_room_snapshot(struct api *api, struct call *call)
     cJSON *view = api_view_parameter(call);
     if (!view)
         return;
+    if (!api_audit_export(api, call, "snapshot")) {
+        cJSON_Delete(view);
+        return;
+    }
     cJSON *shown = room_scene_for_view(room, view, &problem);
     if (shown) {
         api_picture_request(api, call, plan_id, shown, &revision, view, call_query(call, "format"), quality,

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
 #include "server/http/api_questions.h"
@@ -175,6 +176,10 @@ void api_plan_surface(struct api *api, struct call *call)
         cJSON_Delete(path);
     if (!is_good || !api_question_read(call, PACKET_SURFACE, path, &packet, &problem)) {
         call_answer_problem(call, &problem);
+        return;
+    }
+    if (shape.is_file && !api_audit_export(api, call, "surface")) {
+        packet_finish(&packet);
         return;
     }
     struct shape_call *request = mem_new(sizeof *request);

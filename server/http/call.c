@@ -86,6 +86,8 @@ static void finish(struct call *call, int status, const char *media_type)
 {
     call->status = status;
     (void)snprintf(call->media_type, sizeof call->media_type, "%s", media_type);
+    if (call->answering)
+        call->answering(call);
     call->finished(call);
 }
 

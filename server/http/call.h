@@ -46,8 +46,10 @@ struct call {
     struct call_pair headers[CALL_MAX_HEADERS];
     size_t n_headers;
 
-    void *api;                           /* the struct api that handles the call */
-    void *context;                       /* for the handler, while it waits for the fleet */
+    void *api;                            /* the struct api that handles the call */
+    void *context;                        /* for the handler, while it waits for the fleet */
+    void (*answering)(struct call *call); /* NULL, or called with the answer before finished, on the net thread */
+    const char *exported;                 /* what the answer gives away (api_audit.h); NULL: nothing */
     void (*finished)(struct call *call); /* of the HTTP side: called once, on any thread, when the answer is complete */
     void *connection;                    /* of the HTTP side */
     int64_t started_us;

@@ -28,12 +28,141 @@ void keep_changed(void *context, struct room *room, unsigned parts)
 
 static bool is_changed(const struct net_room *room)
 {
-    return room->keep.changed || room->keep.n_items;
+    return room->keep.changed || room->keep.n_items || room->keep.n_audit;
 }
 
 bool keep_is_written(const struct net_room *room)
 {
     return !is_changed(room) && room->keep.ticket == 0;
+}
+
+/* ---- the audit -------------------------------------------------------------------------------------------------- */
+
+/* Adds a row (taken) that waits already. */
+static void add_row(struct net *net, char ***rows, size_t *n, char *row)
+{
+    if (*n % 16 == 0) {
+        void *more = realloc(*rows, (*n + 16) * sizeof **rows);
+        if (!more) {
+            log_error("a row of the audit is lost: no memory");
+            net->n_audit_waiting--;
+            net->n_audit_lost++;
+            free(row);
+            return;
+        }
+        *rows = more;
+    }
+    (*rows)[(*n)++] = row;
+}
+
+/* The row as JSON, without its number. */
+static cJSON *describe(const char *room, const char *plan, const struct room_audit *row)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddNumberToObject(json, "time_ms", (double)row->time_ms);
+    cJSON_AddStringToObject(json, "room", room);
+    cJSON_AddStringToObject(json, "plan", plan);
+    cJSON_AddStringToObject(json, "member", row->member);
+    cJSON_AddStringToObject(json, "name", row->name);
+    cJSON_AddStringToObject(json, "role", row->role);
+    cJSON_AddStringToObject(json, "action", row->action);
+    json_add(json, "detail", cJSON_CreateRaw(row->detail));
+    json_add(json, "revision_before", row->before < 0 ? cJSON_CreateNull() : cJSON_CreateNumber((double)row->before));
+    json_add(json, "revision_after", row->after < 0 ? cJSON_CreateNull() : cJSON_CreateNumber((double)row->after));
+    cJSON_AddStringToObject(json, "result", row->result);
+    return json;
+}
+
+static void keep_row(struct net *net, char ***rows, size_t *n, cJSON *json)
+{
+    char *text = net->n_audit_waiting < 2 * (size_t)NET_MAX_AUDIT ? json_print(json) : NULL;
+    cJSON_Delete(json);
+    if (!text) {
+        if (net->n_audit_lost++ == 0)
+            log_error("a row of the audit is lost: %zu wait for the disk", net->n_audit_waiting);
+        return;
+    }
+    net->n_audit_waiting++;
+    add_row(net, rows, n, text);
+}
+
+/* Says first how many rows were lost before this one. */
+static void keep_row_and_loss(struct net *net, char ***rows, size_t *n, cJSON *json)
+{
+    char detail[64];
+    const struct room_audit lost = { .time_ms = clock_wall_ms(),
+                                     .action = "lost",
+                                     .member = "",
+                                     .name = "",
+                                     .role = "",
+                                     .detail = detail,
+                                     .result = "done",
+                                     .before = -1,
+                                     .after = -1 };
+    if (net->n_audit_lost && net->n_audit_waiting < NET_MAX_AUDIT) {
+        (void)snprintf(detail, sizeof detail, "{\"rows\":%llu}", (unsigned long long)net->n_audit_lost);
+        net->n_audit_lost = 0;
+        keep_row(net, rows, n, describe("", "", &lost));
+    }
+    keep_row(net, rows, n, json);
+}
+
+void keep_audited(void *context, struct room *room, const struct room_audit *row)
+{
+    struct net_room *entry = find_kept(context, room);
+    if (entry)
+        keep_row_and_loss(context, &entry->keep.audit, &entry->keep.n_audit,
+                          describe(room_id(room), room_plan_id(room), row));
+}
+
+bool keep_audit_has_place(void *context)
+{
+    return net_audit_has_place(context);
+}
+
+bool net_audit_has_place(const struct net *net)
+{
+    return !net->store || net->n_audit_waiting < NET_MAX_AUDIT;
+}
+
+void net_audit(struct net *net, const char *room, const char *plan, const char *action, cJSON *detail)
+{
+    char *text = json_print(detail);
+    const struct room_audit row = { .time_ms = clock_wall_ms(),
+                                    .action = action,
+                                    .member = "",
+                                    .name = "",
+                                    .role = "",
+                                    .detail = text ? text : "{}",
+                                    .result = "done",
+                                    .before = -1,
+                                    .after = -1 };
+    if (net->store)
+        keep_row_and_loss(net, &net->audit, &net->n_audit, describe(room, plan, &row));
+    cJSON_Delete(detail);
+    free(text);
+}
+
+struct net_audit_head net_audit_head(const struct net *net)
+{
+    struct net_audit_head head = net->audit_head;
+    head.n_waiting = net->n_audit_waiting;
+    return head;
+}
+
+/* Hands over the rows of no room. */
+static void write_audit(struct net *net)
+{
+    struct store_room *row = mem_new(sizeof *row);
+    *row = (struct store_room){ .audit = net->audit, .n_audit = net->n_audit };
+    if (store_write(net->store, row, 0)) {
+        net->audit = NULL;
+        net->n_audit = 0;
+        return;
+    }
+    row->audit = NULL;
+    row->n_audit = 0;
+    store_room_free(row);
 }
 
 /* ---- items ------------------------------------------------------------------------------------------------------ */
@@ -128,6 +257,11 @@ void keep_room_finish(struct net_room *room)
     free(room->keep.items);
     room->keep.items = NULL;
     room->keep.n_items = 0;
+    for (size_t i = 0; i < room->keep.n_audit; i++)
+        add_row(room->net, &room->net->audit, &room->net->n_audit, room->keep.audit[i]);
+    free(room->keep.audit);
+    room->keep.audit = NULL;
+    room->keep.n_audit = 0;
 }
 
 /* ---- to the store ----------------------------------------------------------------------------------------------- */
@@ -201,17 +335,21 @@ static void write_room(struct net *net, struct net_room *room)
     if (row) {
         row->items = room->keep.items;
         row->n_items = room->keep.n_items;
+        row->audit = room->keep.audit;
+        row->n_audit = room->keep.n_audit;
     }
     if (!row || !store_write(net->store, row, ticket)) { /* tried again */
         if (row) {
             row->items = NULL;
-            row->n_items = 0;
+            row->audit = NULL;
+            row->n_items = row->n_audit = 0;
         }
         store_room_free(row);
         return;
     }
     room->keep.items = NULL;
-    room->keep.n_items = 0;
+    room->keep.audit = NULL;
+    room->keep.n_items = room->keep.n_audit = 0;
     net->n_tickets = ticket;
     room->keep.ticket = ticket;
     room->keep.changed = 0;
@@ -223,6 +361,8 @@ void keep_write_due(struct net *net, bool is_last)
     int64_t now_us = clock_now_us();
     while (net->store && net->n_undeleted && store_delete(net->store, net->undeleted[net->n_undeleted - 1], 0))
         net->n_undeleted--;
+    if (net->store && net->n_audit)
+        write_audit(net);
     for (size_t i = 0; net->store && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];
         if (!is_changed(room) || (!is_last && (room->keep.ticket || now_us < room->keep.due_us)))
@@ -247,8 +387,18 @@ void keep_delete(struct net *net, const char *id)
 
 /* ---- from the store --------------------------------------------------------------------------------------------- */
 
+void keep_audit_written(struct net *net, const struct store_answer *answer)
+{
+    net->n_audit_waiting -= answer->n_audit;
+    if (answer->error.code != ERROR_NONE && !answer->audit_n)
+        return;
+    net->audit_head.n = answer->audit_n;
+    memcpy(net->audit_head.hash, answer->audit_hash, sizeof net->audit_head.hash);
+}
+
 void keep_written(struct net *net, const struct store_answer *answer)
 {
+    keep_audit_written(net, answer);
     for (size_t i = 0; answer->ticket && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];
         if (room->keep.ticket != answer->ticket)

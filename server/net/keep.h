@@ -7,6 +7,9 @@ enum { KEEP_PAUSE_MS = 200 }; /* between the beginnings of two writes of one roo
 
 /* struct room_callbacks; context is the net */
 void keep_changed(void *context, struct room *room, unsigned parts);
+/* struct room_callbacks */
+void keep_audited(void *context, struct room *room, const struct room_audit *row);
+bool keep_audit_has_place(void *context);
 void keep_item_changed(void *context, struct room *room, const char *row, const char *id);
 /* Hands over what is due. is_last: all that changed, whatever is under way. */
 void keep_write_due(struct net *net, bool is_last);
@@ -14,9 +17,10 @@ void keep_write_due(struct net *net, bool is_last);
 bool keep_is_written(const struct net_room *room);
 /* Answers of the store; borrowed. */
 void keep_written(struct net *net, const struct store_answer *answer);
-void keep_all_again(struct net *net); /* what is on disk was lost */
+void keep_audit_written(struct net *net, const struct store_answer *answer); /* of any that has the audit's head */
+void keep_all_again(struct net *net);                                        /* what is on disk was lost */
 /* The room's row is deleted; at once or when the store has place for it. */
 void keep_delete(struct net *net, const char *room_id);
-void keep_room_finish(struct net_room *room); /* before it is freed */
+void keep_room_finish(struct net_room *room); /* before it is freed; rows for the audit go to the net */
 /* Makes room what was read. */
 void keep_restore(struct net_room *room, const struct store_room *kept);

@@ -196,6 +196,7 @@ static void handle_answer(struct net *net, void *argument)
     struct store_answer *answer = argument;
     switch (answer->event) {
     case STORE_OPENED:
+        keep_audit_written(net, answer);
         asleep_add_all(net, answer->rooms, answer->n_rooms);
         if (answer->is_new)
             keep_all_again(net);
@@ -322,6 +323,8 @@ static void *work(void *context)
     while (!net_is_stopping(net))
         ws_serve(net->ws);
     run_tasks(net);
+    for (size_t i = 0; i < net->n_rooms; i++)
+        room_audit_flush(net->rooms[i]->room, clock_now_us());
     keep_write_due(net, true);
     for (struct visitor *visitor = net->visitors; visitor;
          visitor = visitor->next) /* before room_destroy says bye with another reason */
@@ -330,6 +333,7 @@ static void *work(void *context)
     asleep_tell(net, NULL, &stops);
     while (net->n_rooms)
         rooms_close(net, 0);
+    keep_write_due(net, true); /* what was recorded while rooms were closed */
     store_destroy(net->store); /* writes what it was handed over */
     net->store = NULL;
     int64_t end_us = clock_now_us() + FAREWELL_US;
@@ -391,6 +395,9 @@ void net_destroy(struct net *net)
     ws_destroy(net->ws);
     queue_destroy(net->tasks);
     asleep_finish(net);
+    for (size_t i = 0; i < net->n_audit; i++)
+        free(net->audit[i]);
+    free(net->audit);
     free(net->undeleted);
     free(net->rooms);
     free(net);

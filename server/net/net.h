@@ -9,6 +9,18 @@
 
 struct net;
 
+struct net_audit_head { /* the newest row of the audit on disk */
+    int64_t n;          /* 0: there is none */
+    char hash[65];      /* 64 zeros: there is none; "": nothing is kept */
+    size_t n_waiting;   /* rows that are not on disk yet */
+};
+
+enum {
+    NET_MAX_AUDIT = 8192 /* rows of the audit that may wait for the disk; then what would need another is refused. What
+                            happens all the same (members leave) may make them twice as many; further ones are counted
+                            and the count recorded */
+};
+
 struct net_options {
     struct fleet_options fleet; /* wake, changed and context are the net's own */
     int max_rooms;              /* 0: 200 */
@@ -58,6 +70,11 @@ void net_saved_wake(struct net *net, const char *token,
 size_t net_n_asleep(const struct net *net);
 /* As room_document, without members; the one last used is at 0. */
 NODISCARD cJSON *net_asleep_document(const struct net *net, size_t index);
+/* False: too many rows of the audit wait for the disk. */
+bool net_audit_has_place(const struct net *net);
+/* Records what happened in no room that is in memory. room, plan: "" none; detail is taken. */
+void net_audit(struct net *net, const char *room, const char *plan, const char *action, cJSON *detail);
+struct net_audit_head net_audit_head(const struct net *net);
 size_t net_n_rooms(const struct net *net);
 struct room *net_room_at(const struct net *net, size_t index);
 struct net_counters {

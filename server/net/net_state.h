@@ -7,6 +7,7 @@
 
 #include "core/base/queue.h"
 #include "server/fleet/fleet.h"
+#include "server/net/net.h"
 #include "server/room/room.h"
 #include "server/store/store.h"
 #include "server/ws/ws.h"
@@ -57,6 +58,8 @@ struct net_room { /* a room and what the net thread keeps beside it */
         int64_t due_us;            /* no write begins before */
         struct store_item *items;  /* changed ones that are to be written, each once */
         size_t n_items;
+        char **audit; /* rows that are to be written */
+        size_t n_audit;
     } keep;
 };
 
@@ -90,6 +93,11 @@ struct net {
     char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */
     size_t n_undeleted;
     uint64_t n_tickets;
+    char **audit; /* rows for the audit of no room that is open */
+    size_t n_audit;
+    size_t n_audit_waiting; /* rows that are not on disk yet, of all rooms, those under way included */
+    uint64_t n_audit_lost;  /* rows that found neither disk nor memory since the last row that did */
+    struct net_audit_head audit_head;
     int64_t fleet_tick_us;              /* when fleet_tick is due */
     struct room_counters closed;        /* sum over the rooms that were closed */
     atomic_bool is_listed, is_stopping; /* read by any thread */

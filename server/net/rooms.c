@@ -78,7 +78,9 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .close = close_connection,
                                               .context = net,
                                               .item_changed = keep_item_changed,
-                                              .kept_changed = keep_changed };
+                                              .kept_changed = keep_changed,
+                                              .audited = keep_audited,
+                                              .audit_has_place = keep_audit_has_place };
     struct net_room *room = mem_new(sizeof *room);
     *room = (struct net_room){ .net = net,
                                .room = room_create(id, plan_id, &callbacks, &net->limits),
@@ -90,6 +92,7 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
 void rooms_close(struct net *net, size_t index)
 {
     struct net_room *room = net->rooms[index];
+    room_audit_flush(room->room, clock_now_us());
     net->rooms[index] = net->rooms[--net->n_rooms];
     bridge_close_room(room);
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)

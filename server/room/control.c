@@ -2,7 +2,9 @@
 #include "server/room/control.h"
 
 #include <stdio.h>
+#include <string.h>
 
+#include "server/room/audit.h"
 #include "server/room/send.h"
 #include "server/wire/message.h"
 
@@ -41,6 +43,28 @@ void control_send(struct room *room, struct member *member)
     message_finish(&message);
 }
 
+static const struct member *find(const struct room *room, const char *id)
+{
+    for (int i = 0; i < room->n_members; i++)
+        if (strcmp(room->members[i]->id, id) == 0)
+            return room->members[i];
+    return NULL;
+}
+
+static void record(struct room *room)
+{
+    const char *act = wire_control_act_words.words[room->control_act.act];
+    const struct audit_act row = { .by = find(room, room->control_act.by),
+                                   .action = "control",
+                                   .key = act,
+                                   .detail = cJSON_CreateObject(),
+                                   .before = -1,
+                                   .after = -1 };
+    cJSON_AddStringToObject(row.detail, "act", act);
+    cJSON_AddStringToObject(row.detail, "member", room->control_act.member);
+    audit_tell(room, &row);
+}
+
 void control_tell(struct room *room)
 {
     struct message message;
@@ -51,6 +75,8 @@ void control_tell(struct room *room)
     (void)snprintf(message.control.member, sizeof message.control.member, "%s", room->control_act.member);
     (void)snprintf(message.control.by, sizeof message.control.by, "%s", room->control_act.by);
     room->control_is_new = false;
+    if (room->control_act.act != WIRE_CONTROL_ACT_NONE)
+        record(room);
     send_to_all(room, &message);
     message_finish(&message);
 }

@@ -8,6 +8,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/room/audit.h"
 #include "server/room/kept.h"
 #include "server/room/secret.h"
 
@@ -66,8 +67,25 @@ const char *link_find(struct room *room, const char *token, const char *person, 
     return NULL;
 }
 
-void link_used(struct room *room, struct link *link, const char *person)
+/* Of the token only eight digits of its hash: they tell links apart and let nobody in. */
+static cJSON *describe(const struct link *link)
 {
+    char mark[9];
+    cJSON *detail = cJSON_CreateObject();
+    (void)snprintf(mark, sizeof mark, "%02x%02x%02x%02x", link->token_hash[0], link->token_hash[1], link->token_hash[2],
+                   link->token_hash[3]);
+    cJSON_AddStringToObject(detail, "link", mark);
+    cJSON_AddStringToObject(detail, "role", wire_member_role_words.words[link->role]);
+    cJSON_AddBoolToObject(detail, "one_use", link->is_one_use);
+    return detail;
+}
+
+void link_used(struct room *room, struct link *link, const struct member *member, const char *person)
+{
+    const struct audit_act act = {
+        .by = member, .action = "link", .key = "", .detail = describe(link), .before = -1, .after = -1
+    };
+    audit_tell(room, &act);
     if (!link->is_one_use)
         return;
     link->is_used = true;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/room/audit.h"
 #include "server/room/control.h"
 #include "server/room/known.h"
 #include "server/room/links.h"
@@ -21,7 +22,8 @@
 static const char replaced[] = "this member has come back on another connection";
 static const char room_is_full[] = "the room is full";
 static const char old_page[] = "the page speaks another protocol version: reload it";
-enum { FULL_RETRY_MS = 30000 };
+static const char unrecorded[] = "what happens here is recorded, and the server's disk takes no more records now";
+enum { FULL_RETRY_MS = 30000, UNRECORDED_RETRY_MS = 10000 };
 
 static void member_free(struct room *room, int index)
 {
@@ -78,6 +80,8 @@ void member_disconnected(struct room *room, struct member *member)
     member->connection = NULL;
     member->away_us = room->now_us;
     control_left(room, member);
+    audit_flush(room, member);
+    audit_tell(room, &(struct audit_act){ .by = member, .action = "leave", .key = "", .before = -1, .after = -1 });
     (void)presenter_settle(room);
     send_members(room);
     pointer_end(room, member);
@@ -126,6 +130,31 @@ static struct member *member_create(struct room *room, const char *name, enum wi
     return member;
 }
 
+/* as: "new", "back", or "link" for a new one who came by a link. */
+static void record_entry(struct room *room, const struct member *member, const char *as)
+{
+    const struct audit_act row = {
+        .by = member, .action = "open", .key = as, .detail = cJSON_CreateObject(), .before = -1, .after = room->revision
+    };
+    cJSON_AddStringToObject(row.detail, "as", as);
+    audit_tell(room, &row);
+}
+
+static void refuse_link(struct room *room, void *connection, const char *name, const char *refusal)
+{
+    const struct audit_act row = { .action = "refused",
+                                   .key = "link",
+                                   .detail = cJSON_CreateObject(),
+                                   .is_refused = true,
+                                   .before = -1,
+                                   .after = -1 };
+    cJSON_AddStringToObject(row.detail, "what", "hello");
+    cJSON_AddStringToObject(row.detail, "name", name);
+    cJSON_AddStringToObject(row.detail, "why", refusal);
+    audit_tell(room, &row);
+    send_bye(room, connection, -1, refusal);
+}
+
 bool member_hello(struct room *room, void *connection, const struct message_hello *hello)
 {
     if (hello->protocol != WIRE_PROTOCOL) {
@@ -141,10 +170,16 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     struct link *link = NULL;
     const char *refusal = NULL;
     if (!member && hello->link[0] && (refusal = link_find(room, hello->link, hello->person, &link)) != NULL) {
-        send_bye(room, connection, -1, refusal);
+        refuse_link(room, connection, hello->name, refusal);
         return false;
     }
+    if (!audit_has_place(room, NULL)) {
+        send_bye(room, connection, UNRECORDED_RETRY_MS, unrecorded);
+        return false;
+    }
+    const char *as = link ? "link" : "new";
     if (member) {
+        as = "back";
         void *old = member->connection; /* half-open: the page notices a lost connection before the server does */
         member->is_lost = false;
         member->connection = NULL;
@@ -153,12 +188,13 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
             send_bye(room, old, -1, replaced);
     } else if (make_place(room)) {
         member = known_back(room, hello->member, hello->secret);
+        as = member ? "back" : as;
         if (member)
             room->members[room->n_members++] = member;
         else
             member = member_create(room, hello->name, link ? link->role : role);
         if (link)
-            link_used(room, link, hello->person);
+            link_used(room, link, member, hello->person);
     } else {
         send_bye(room, connection, FULL_RETRY_MS, room_is_full);
         return false;
@@ -169,6 +205,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
         (void)snprintf(member->secret, sizeof member->secret, "%.32s", hello->secret);
     (void)snprintf(member->person, sizeof member->person, "%s", hello->person);
     member->connection = connection;
+    record_entry(room, member, as);
     send_welcome(room, member);
     send_renderer_state(room, member);
     control_send(room, member);

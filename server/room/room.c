@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "core/base/mem.h"
+#include "server/room/audit.h"
 #include "server/room/beginning.h"
 #include "server/room/control.h"
 #include "server/room/handover.h"
@@ -62,6 +63,7 @@ void room_destroy(struct room *room)
     for (int i = 0; i < room->n_members; i++)
         if (room->members[i]->connection)
             send_bye(room, room->members[i]->connection, -1, room_is_closed);
+    audit_free(room);
     members_free(room);
     while (room->streams)
         stream_destroy(room, room->streams);
@@ -216,10 +218,33 @@ static void whole_number(const cJSON *json, const char *name, double most, int64
     *value = number >= 0 && number <= most ? (int64_t)number : 0;
 }
 
+static void record_refusal(struct room *room, const struct member *member, const char *what,
+                           const struct problem *problem)
+{
+    const struct audit_act row = { .by = member,
+                                   .action = "refused",
+                                   .key = what,
+                                   .detail = cJSON_CreateObject(),
+                                   .is_refused = true,
+                                   .before = -1,
+                                   .after = -1 };
+    cJSON_AddStringToObject(row.detail, "what", what);
+    cJSON_AddStringToObject(row.detail, "why", problem->detail);
+    audit_tell(room, &row);
+}
+
+/* Messages whose effect is always recorded: without place for that they are refused. */
+static bool is_recorded(enum message_type type)
+{
+    return type == MESSAGE_PRESENT || type == MESSAGE_CONTROL_REQUEST || type == MESSAGE_CONTROL_GIVE ||
+           type == MESSAGE_CONTROL_REFUSE || type == MESSAGE_CONTROL_TAKE || type == MESSAGE_CONTROL_LOCK;
+}
+
 /* Answers with the problem; type, view and input of the refused text are repeated as far as it can be parsed. False:
  * there was no memory for the answer, and the connection was closed. */
 static bool refuse(struct room *room, void *connection, const char *text, size_t n, const struct problem *problem)
 {
+    const struct member *member = member_of_connection(room, connection);
     char to[41] = "";
     int64_t view = 0, input = 0;
     cJSON *json = n <= WIRE_MAX_CLIENT_BYTES ? json_read(text, n, NULL) : NULL;
@@ -230,6 +255,8 @@ static bool refuse(struct room *room, void *connection, const char *text, size_t
     whole_number(json, "view", ROOM_MAX_VIEWS, &view);
     whole_number(json, "input", UINT32_MAX, &input);
     cJSON_Delete(json);
+    if (problem->type == PROBLEM_FORBIDDEN || problem->type == PROBLEM_NOT_PRESENTER)
+        record_refusal(room, member, to, problem);
     return send_problem(room, connection, to, view, input, problem);
 }
 
@@ -251,7 +278,8 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
         problem_set(&problem, PROBLEM_VALIDATION, "/type", "required", "%s", hello_first);
         if (refuse(room, connection, text, n, &problem))
             send_bye(room, connection, -1, hello_first);
-    } else if (!role_check(member->role, message_descriptions[message.type].right, &problem)) {
+    } else if (!role_check(member->role, message_descriptions[message.type].right, &problem) ||
+               (is_recorded(message.type) && !audit_has_place(room, &problem))) {
         (void)refuse(room, connection, text, n, &problem);
     } else {
         for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++)
@@ -294,7 +322,8 @@ int64_t room_tick(struct room *room, int64_t now_us)
                                send_members_due(room),
                                pointers_us,
                                look_us,
-                               lags_us };
+                               lags_us,
+                               audit_tick(room) };
     int64_t least_us = INT64_MAX;
     for (size_t i = 0; i < sizeof due_us / sizeof due_us[0]; i++)
         least_us = due_us[i] < least_us ? due_us[i] : least_us;
@@ -302,6 +331,18 @@ int64_t room_tick(struct room *room, int64_t now_us)
 }
 
 /* ---- for HTTP --------------------------------------------------------------------------------------------------- */
+
+/* The member who makes a call: member as in room_call_may. NULL: nobody of the room. */
+static struct member *find_caller(const struct room *room, const char *member)
+{
+    char id[64];
+    const size_t n = member ? strcspn(member, " ") : 0;
+    (void)snprintf(id, sizeof id, "%.*s", (int)(n < sizeof id ? n : 0), member ? member : "");
+    for (int i = 0; i < room->n_members && member && member[n] == ' '; i++)
+        if (strcmp(room->members[i]->id, id) == 0 && secret_matches(member + n + 1, room->members[i]->secret_hash))
+            return room->members[i];
+    return NULL;
+}
 
 const cJSON *room_scene(const struct room *room, uint32_t *revision)
 {
@@ -315,24 +356,44 @@ cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct pr
     return scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
 }
 
-bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem)
+bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, int64_t now_us,
+                      struct problem *problem)
 {
     room->now_us = now_us;
-    if (!scene_apply_patch(room, patch, NULL, 0, problem))
+    room->caller = find_caller(room, caller);
+    const bool ok = scene_apply_patch(room, patch, NULL, 0, problem);
+    room->caller = NULL;
+    if (!ok)
         return false;
     (void)streams_request_due(room);
     return true;
 }
 
+void room_audit_call(struct room *room, const char *member, const char *action, cJSON *detail, bool is_refused,
+                     int64_t now_us)
+{
+    const char *what = json_text(detail, "what");
+    const struct audit_act act = { .by = find_caller(room, member),
+                                   .action = action,
+                                   .key = what ? what : "",
+                                   .detail = detail,
+                                   .is_refused = is_refused,
+                                   .before = -1,
+                                   .after = room->revision };
+    room->now_us = now_us;
+    audit_tell(room, &act);
+}
+
+void room_audit_flush(struct room *room, int64_t now_us)
+{
+    room->now_us = now_us;
+    audit_flush(room, NULL);
+}
+
 bool room_call_may(const struct room *room, const char *member, enum wire_right right, struct problem *problem)
 {
-    char id[64];
-    const size_t n = member ? strcspn(member, " ") : 0;
-    (void)snprintf(id, sizeof id, "%.*s", (int)(n < sizeof id ? n : 0), member ? member : "");
-    for (int i = 0; i < room->n_members && member && member[n] == ' '; i++) {
-        const struct member *caller = room->members[i];
-        if (strcmp(caller->id, id) != 0 || !secret_matches(member + n + 1, caller->secret_hash))
-            continue;
+    const struct member *caller = find_caller(room, member);
+    if (caller) {
         if (right == WIRE_RIGHT_SCENE && role_has_right(caller->role, right) && !member_presents(room, caller))
             return refuse_not_presenter(room, problem, "change the scene");
         return role_check(caller->role, right, problem);

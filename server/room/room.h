@@ -22,7 +22,11 @@ enum {
     ROOM_REQUEST_AGAIN_S = 10, /* after a refusal, before control can be requested again */
     ROOM_MAX_LINKS = 32,       /* valid at once */
     ROOM_LINK_MIN_S = 60,
-    ROOM_LINK_MAX_S = 30 * 24 * 3600
+    ROOM_LINK_MAX_S = 30 * 24 * 3600,
+    ROOM_MAX_AUDIT_DETAIL = 1024, /* bytes of the detail of a row for the audit; of a longer one only the length */
+    ROOM_MAX_GATHERED = 32,       /* acts that are being gathered into a row each; the oldest is then recorded */
+    ROOM_AUDIT_QUIET_MS = 1000,   /* acts further apart are rows of their own */
+    ROOM_AUDIT_AT_MOST_MS = 30000 /* no row gathers acts of a longer time */
 };
 
 struct room;
@@ -50,6 +54,19 @@ struct room_picture {
     int references;
 };
 
+/* A row for the audit. Texts are borrowed. Actions: open, leave (a member enters, or its connection ends), link (one
+ * was used), link-made, control, weights (of a dose), draft-made, draft-changed, draft-reset (of the beam), decision,
+ * signature, export (something was given away as a file), refused (a message or call lacked the right), deleted (the
+ * room). */
+struct room_audit {
+    int64_t time_ms; /* since 1970 */
+    const char *action;
+    const char *member, *name, *role; /* "": nobody of the room */
+    const char *detail;               /* a JSON object; where acts were gathered, with times, their number */
+    const char *result;               /* "done" or "refused" */
+    int64_t before, after;            /* revisions of the scene; -1: does not apply */
+};
+
 struct room_callbacks {
     /* requests a picture; answered later by room_picture_came or room_picture_failed with the same request number */
     void (*render)(void *context, struct room *room, const struct room_render *request);
@@ -72,6 +89,11 @@ struct room_callbacks {
     void *context;
     /* NULL, or: parts of the room (enum room_part) that are to be kept have changed; called often */
     void (*kept_changed)(void *context, struct room *room, unsigned parts);
+    /* A row for the audit, to be committed with what else of the room is written, or before. NULL: there is no audit.
+     */
+    void (*audited)(void *context, struct room *room, const struct room_audit *row);
+    /* False: so many rows wait for the disk that the room refuses what would need another. NULL: always true. */
+    bool (*audit_has_place)(void *context);
 };
 
 /* What of a room is kept on disk. */
@@ -146,7 +168,9 @@ const cJSON *room_scene(const struct room *room, uint32_t *revision);
 /* The scene with the override of this view document, which need not belong to a view of the room. room_scene must not
  * be NULL. Returns the caller's document, or NULL with problem. */
 NODISCARD cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem);
-NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, int64_t now_us, struct problem *problem);
+/* caller: as member in room_call_may. */
+NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, int64_t now_us,
+                                struct problem *problem);
 /* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */
 NODISCARD cJSON *room_document(const struct room *room);
 /* The same of a room that is not in memory: without members, and with asleep true. */
@@ -162,6 +186,11 @@ NODISCARD bool room_call_may(const struct room *room, const char *member, enum w
 NODISCARD bool room_link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
                                 int64_t now_us, char token[33], struct problem *problem);
 size_t room_n_connected(const struct room *room);
+/* Records what a call over HTTP does in this room; member as in room_call_may. detail is taken. */
+void room_audit_call(struct room *room, const char *member, const char *action, cJSON *detail, bool is_refused,
+                     int64_t now_us);
+/* Records what is still being gathered. */
+void room_audit_flush(struct room *room, int64_t now_us);
 
 /* Items: notes with their replies, and bookmarks. [row] of one kind, oldest first, as in the message welcome; NULL: no
  * memory. */

@@ -130,6 +130,16 @@ struct item { /* a note, a reply or a bookmark */
     char *row;                                          /* all of this with the body, as JSON */
 };
 
+struct gathered { /* acts for the audit that are one row */
+    char action[24], key[64], member[64], name[161];
+    enum wire_member_role role;
+    bool is_refused;
+    cJSON *detail; /* of the last */
+    int64_t before, after;
+    int64_t first_us, last_us;
+    unsigned n; /* acts that no row was made for yet */
+};
+
 struct link { /* lets new members in */
     unsigned char token_hash[SECRET_HASH_BYTES];
     char person[257]; /* who has used it, if it is for one */
@@ -161,10 +171,13 @@ struct room {
     struct member *members[ROOM_MAX_MEMBERS];
     int n_members;
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
-    uint32_t n_named;         /* members ever made, for ids */
-    struct item *items;       /* oldest first */
+    const struct member *caller;  /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */
+    uint32_t n_named;             /* members ever made, for ids */
+    struct item *items;           /* oldest first */
     size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */
     struct look look;
+    struct gathered gathered[ROOM_MAX_GATHERED];
+    int n_gathered;                 /* the oldest first */
     struct room_kept_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
     int n_known;
     bool is_locked; /* control is given only, not taken */

@@ -1,6 +1,7 @@
 /* Applies patches to the shared scene. */
 #include "server/room/shared_scene.h"
 
+#include "server/room/audit.h"
 #include "server/room/kept.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
@@ -8,6 +9,12 @@
 #include "server/room/stream.h"
 #include "server/wire/json_merge.h"
 #include "server/wire/patch.h"
+
+/* Whether a patch can change what is recorded. */
+static bool may_be_audited(const cJSON *patch)
+{
+    return cJSON_HasObjectItem(patch, "dose") || cJSON_HasObjectItem(patch, "beam");
+}
 
 bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input,
                        struct problem *problem)
@@ -22,6 +29,11 @@ bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by,
     if (!scene)
         return false;
     bool has_changed = !json_equal(scene, room->scene);
+    const bool is_audited = has_changed && may_be_audited(patch) && audit_is_of_scene(room->scene, scene);
+    if (is_audited && !audit_has_place(room, problem)) {
+        cJSON_Delete(scene);
+        return false;
+    }
     cJSON *told = patch_told(room->scene, scene, patch);
     if (!told) {
         cJSON_Delete(scene);
@@ -33,6 +45,8 @@ bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by,
         room->revision++;
         room->is_changed = true;
         kept_changed(room, ROOM_SCENE);
+        if (is_audited)
+            audit_scene(room, before, by ? by : room->caller);
         streams_scene_changed(room, before, patch);
         room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     }

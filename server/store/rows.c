@@ -13,6 +13,9 @@ void store_room_free(struct store_room *room)
         return;
     for (size_t i = 0; i < room->n_items; i++)
         free(room->items[i].body);
+    for (size_t i = 0; i < room->n_audit; i++)
+        free(room->audit[i]);
+    free(room->audit);
     free(room->items);
     free(room->members);
     free(room->links);

@@ -26,6 +26,13 @@ static const char *const steps[] = {
     "CREATE TABLE links(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, place INTEGER NOT NULL,"
     " token_hash BLOB NOT NULL, role TEXT NOT NULL, expires_ms INTEGER NOT NULL, is_one_use INTEGER NOT NULL,"
     " is_used INTEGER NOT NULL, person TEXT NOT NULL, PRIMARY KEY(room, place)) STRICT;",
+    /* 4: the audit, to which rows are only added, in their order; who was in a room and when */
+    "CREATE TABLE audit(n INTEGER PRIMARY KEY, row TEXT NOT NULL, hash TEXT NOT NULL) STRICT;"
+    "CREATE TRIGGER audit_order BEFORE INSERT ON audit WHEN NEW.n IS NOT (SELECT coalesce(max(n), 0) + 1 FROM audit)"
+    " BEGIN SELECT RAISE(ABORT, 'rows of the audit are added at its end'); END;"
+    "CREATE TRIGGER audit_update BEFORE UPDATE ON audit BEGIN SELECT RAISE(ABORT, 'the audit is never changed'); END;"
+    "CREATE TRIGGER audit_delete BEFORE DELETE ON audit BEGIN SELECT RAISE(ABORT, 'the audit is never deleted'); END;"
+    "ALTER TABLE rooms ADD COLUMN presence TEXT;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

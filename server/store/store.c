@@ -12,6 +12,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
+#include "server/store/audit.h"
 #include "server/store/database.h"
 #include "server/store/rows.h"
 #include "server/store/sql.h"
@@ -26,6 +27,7 @@ struct request {
     uint64_t ticket;
     char room_id[64];
     struct store_room *room; /* of a write */
+    struct error refusal;    /* why the room can never be written; its rows for the audit are left */
 };
 
 struct store {
@@ -63,6 +65,17 @@ static void answer(struct store *store, const struct store_answer *said)
     struct store_answer *copy = mem_new(sizeof *copy);
     *copy = *said;
     store->options.answered(store->options.context, copy);
+}
+
+/* The newest row of the audit; without one, or when it cannot be read, none. */
+static void read_head(struct store *store, struct store_answer *said)
+{
+    struct audit_head head;
+    struct error err = { 0 };
+    if (!audit_read_head(store->db, &head, &err))
+        log_error("%s", err.text);
+    said->audit_n = head.n;
+    memcpy(said->audit_hash, head.hash, sizeof said->audit_hash);
 }
 
 /* ---- opening ---------------------------------------------------------------------------------------------------- */
@@ -106,6 +119,7 @@ static bool open_database(struct store *store, struct error *err)
         store->db = NULL;
         return false;
     }
+    read_head(store, &opened);
     opened.is_new = store->was_open && moved[0] != 0;
     store->was_open = true;
     answer(store, &opened);
@@ -118,7 +132,8 @@ static bool apply(struct store *store, const struct request *request, struct err
 {
     if (request->kind == REQUEST_DELETE)
         return rows_delete_room(store->db, request->room_id, err);
-    return rows_write_room(store->db, request->room, err);
+    return (request->room->id[0] == 0 || rows_write_room(store->db, request->room, err)) &&
+           audit_append(store->db, request->room->audit, request->room->n_audit, err);
 }
 
 /* Commits the first n pending writes together. */
@@ -136,18 +151,33 @@ static bool commit(struct store *store, size_t n, struct error *err)
 
 static void finish(struct store *store, size_t n, const struct error *err)
 {
+    struct store_answer head = { 0 };
+    if (!err)
+        read_head(store, &head);
     while (n-- > 0) {
         struct request *request = store->first;
         store->first = request->next;
         store->n_pending--;
         if (!store->first)
             store->last = &store->first;
-        struct store_answer written = { .event = STORE_WRITTEN, .ticket = request->ticket };
-        if (err)
-            written.error = *err;
+        struct store_answer written = { .event = STORE_WRITTEN, .ticket = request->ticket, .audit_n = head.audit_n };
+        memcpy(written.audit_hash, head.audit_hash, sizeof written.audit_hash);
+        written.error = err ? *err : request->refusal;
+        written.n_audit = request->room ? request->room->n_audit : 0;
         answer(store, &written);
         request_free(request);
     }
+}
+
+/* The first pending write can never work: leaves of it what is for the audit. False: there is no such thing. */
+static bool keep_audit_alone(struct store *store, const struct error *err)
+{
+    struct request *request = store->first;
+    if (!request->room || !request->room->n_audit || !request->room->id[0])
+        return false;
+    request->room->id[0] = 0;
+    request->refusal = *err;
+    return true;
 }
 
 /* Brings pending writes to the disk as far as that goes now. */
@@ -171,7 +201,8 @@ static void write_pending(struct store *store)
             finish(store, n, NULL);
         } else if (err.code == ERROR_STATE) {
             log_error("a room cannot be stored: %s", err.text);
-            finish(store, n, &err);
+            if (!keep_audit_alone(store, &err))
+                finish(store, n, &err);
         } else {
             if (err.code == ERROR_FORMAT) { /* damaged: opening moves it aside */
                 database_close(store->db);

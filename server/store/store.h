@@ -32,6 +32,9 @@ struct store_answer {
     struct store_summary *rooms; /* the receiver's */
     size_t n_rooms;
     bool is_new;
+    size_t n_audit;  /* of STORE_WRITTEN: rows of the audit that were in the write */
+    int64_t audit_n; /* of STORE_OPENED and STORE_WRITTEN without error: the newest row of the audit */
+    char audit_hash[STORE_AUDIT_HASH]; /* its hash */
 };
 void store_answer_free(struct store_answer *answer);
 
@@ -49,8 +52,9 @@ NODISCARD struct store *store_create(const struct store_options *options, struct
 /* Writes what was handed over, with one more try where it failed, and closes. */
 void store_destroy(struct store *store);
 
-/* False: too many wait, and room stays the caller's; ask again later. Else takes room. ticket comes back. Any thread.
- */
+/* False: too many wait, and room stays the caller's; ask again later. Else takes room. ticket comes back. Any thread. A
+ * room with an empty id is no room: its rows for the audit alone are written. They are also written when the room they
+ * came with can never be. */
 bool store_write(struct store *store, struct store_room *room, uint64_t ticket);
 bool store_delete(struct store *store, const char *room_id, uint64_t ticket);
 bool store_read(struct store *store, const char *room_id, uint64_t ticket);

@@ -6,10 +6,11 @@
 
 enum {
     STORE_HASH_BYTES = 32,
-    STORE_MAX_MEMBERS = 1024,       /* of one room, those that left included */
-    STORE_MAX_LINKS = 64,           /* of one room */
-    STORE_MAX_ITEMS = 4096,         /* notes and bookmarks of one room */
-    STORE_MAX_TEXT_BYTES = 32 << 20 /* one scene, list of views, or item */
+    STORE_MAX_MEMBERS = 1024,        /* of one room, those that left included */
+    STORE_MAX_LINKS = 64,            /* of one room */
+    STORE_MAX_ITEMS = 4096,          /* notes and bookmarks of one room */
+    STORE_MAX_TEXT_BYTES = 32 << 20, /* one scene, list of views, or item */
+    STORE_AUDIT_HASH = 65            /* a hash of the audit as text */
 };
 
 struct store_member {
@@ -44,6 +45,8 @@ struct store_room {
     size_t n_links;
     struct store_item *items; /* when read: all; in a write: those that changed */
     size_t n_items;
+    char **audit; /* in a write: rows for the audit (audit.h), committed with the rest or not at all; not read */
+    size_t n_audit;
 };
 
 /* A room in a list. */

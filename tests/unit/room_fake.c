@@ -90,10 +90,33 @@ static void item_changed(void *context, struct room *room, const char *row, cons
     (void)snprintf(fake->kept[fake->n_kept++ % 8], sizeof fake->kept[0], "%s", row ? row : "");
 }
 
+static void audited(void *context, struct room *room, const struct room_audit *row)
+{
+    struct fake_room *fake = context;
+    char *text = fake->audit[fake->n_audited++ % 16];
+    (void)room;
+    (void)snprintf(text, sizeof fake->audit[0], "%s %s %s %s %lld %lld", row->action, row->member, row->result,
+                   row->detail, (long long)row->before, (long long)row->after);
+}
+
+static bool audit_has_place(void *context)
+{
+    return !((struct fake_room *)context)->audit_is_full;
+}
+
 void fake_room_start(struct fake_room *fake, int max_members)
 {
-    struct room_callbacks callbacks = { render,     forget,     scene_changed, send_text, send_latest,
-                                        send_frame, close_page, item_changed,  fake,      NULL };
+    struct room_callbacks callbacks = { .render = render,
+                                        .forget = forget,
+                                        .scene_changed = scene_changed,
+                                        .send_text = send_text,
+                                        .send_latest = send_latest,
+                                        .send_frame = send_frame,
+                                        .close = close_page,
+                                        .item_changed = item_changed,
+                                        .context = fake,
+                                        .audited = audited,
+                                        .audit_has_place = audit_has_place };
     struct room_limits limits = { max_members };
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000000000;

@@ -31,8 +31,11 @@ struct fake_room {
     size_t n_requests;
     size_t n_scenes;
     uint32_t told_revision;
-    char kept[8][4096];  /* rows of the newest calls of item_changed, "" for deleted ones; call n at n % 8 */
-    size_t n_kept;       /* such calls */
+    char kept[8][4096];   /* rows of the newest calls of item_changed, "" for deleted ones; call n at n % 8 */
+    size_t n_kept;        /* such calls */
+    char audit[16][1400]; /* "action member result detail before after", row n at n % 16 */
+    size_t n_audited;
+    bool audit_is_full;
     const char *missing; /* of pictures drawn from now on, as JSON; NULL: nothing */
 };
 

@@ -1,0 +1,41 @@
+/* Records exports. */
+#include "server/http/api_audit.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+
+static void record(struct call *call)
+{
+    struct net *net = ((struct api *)call->api)->net;
+    static const char rooms[] = "/api/v1/rooms/";
+    if (call->status >= 300)
+        return;
+    const bool is_of_room = strncmp(call->path, rooms, sizeof rooms - 1) == 0;
+    const char *room_id = is_of_room ? call->ids[0] : call_query(call, "room");
+    struct room *room = room_id ? net_room_find(net, room_id) : NULL;
+    cJSON *detail = cJSON_CreateObject();
+    cJSON_AddStringToObject(detail, "what", call->exported);
+    cJSON_AddStringToObject(detail, "media_type", call->media_type);
+    cJSON_AddNumberToObject(detail, "bytes", (double)call->n_bytes);
+    if (room)
+        room_audit_call(room, call->member, "export", detail, false, clock_now_us());
+    else
+        net_audit(net, "", is_of_room ? "" : call->ids[0], "export", detail);
+}
+
+bool api_audit_export(struct api *api, struct call *call, const char *what)
+{
+    struct problem problem;
+    if (!net_audit_has_place(api->net)) {
+        problem_set(&problem, PROBLEM_STORAGE, "", "audit",
+                    "what is given away is recorded, and the server's disk takes no more records now");
+        problem.retry_after_ms = 10000;
+        call_answer_problem(call, &problem);
+        return false;
+    }
+    call->exported = what;
+    call->answering = record;
+    return true;
+}

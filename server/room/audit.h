@@ -1,0 +1,32 @@
+#pragma once
+/* What members do that is recorded in the audit (room_callbacks.audited). What comes many times in a row, as while
+ * somebody drags, or a program repeats what it was refused, is gathered into one row. Internal to server/room. */
+#include "server/room/room_state.h"
+
+struct audit_act {
+    const struct member *by; /* NULL: nobody of the room */
+    const char *action;      /* a word of room.h's list */
+    const char *key;         /* acts of one member, action, key and result are gathered; "" where there is one kind */
+    cJSON *detail;           /* taken; NULL: {} */
+    bool is_refused;
+    int64_t before, after; /* revisions of the scene; -1: does not apply */
+};
+
+/* Records it at once, and gathers the repetitions that follow. */
+void audit_tell(struct room *room, const struct audit_act *act);
+/* Records it when it is over: nothing of the same came for ROOM_AUDIT_QUIET_MS, or it has lasted for
+ * ROOM_AUDIT_AT_MOST_MS. before is that of the first, after and detail those of the last. */
+void audit_gather(struct room *room, const struct audit_act *act);
+/* Records what is gathered of this member; NULL: of everybody. */
+void audit_flush(struct room *room, const struct member *by);
+/* Records what is over; when the next is due, INT64_MAX: nothing is gathered. */
+int64_t audit_tick(struct room *room);
+void audit_free(struct room *room);
+/* False with problem storage: what is recorded cannot be stored now, so it is refused. */
+bool audit_has_place(const struct room *room, struct problem *problem);
+
+/* What a change of the scene, from before to the room's, has for the audit: weights of doses, the beam's draft. by
+ * NULL: a call of nobody in the room. */
+void audit_scene(struct room *room, const cJSON *before, const struct member *by);
+/* Whether there is anything. */
+bool audit_is_of_scene(const cJSON *before, const cJSON *after);

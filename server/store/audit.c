@@ -1,0 +1,65 @@
+/* Adds rows to the audit, and computes their hashes by libsodium. */
+#include "server/store/audit.h"
+
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "server/store/sql.h"
+
+const char audit_no_hash[STORE_AUDIT_HASH] = "0000000000000000000000000000000000000000000000000000000000000000";
+
+void audit_hash(const char before[STORE_AUDIT_HASH], const char *text, char hash[STORE_AUDIT_HASH])
+{
+    crypto_hash_sha256_state state;
+    unsigned char bytes[crypto_hash_sha256_BYTES];
+    (void)crypto_hash_sha256_init(&state);
+    (void)crypto_hash_sha256_update(&state, (const unsigned char *)before, STORE_AUDIT_HASH - 1);
+    (void)crypto_hash_sha256_update(&state, (const unsigned char *)text, strlen(text));
+    (void)crypto_hash_sha256_final(&state, bytes);
+    (void)sodium_bin2hex(hash, STORE_AUDIT_HASH, bytes, sizeof bytes);
+}
+
+bool audit_read_head(sqlite3 *db, struct audit_head *head, struct error *err)
+{
+    *head = (struct audit_head){ 0 };
+    memcpy(head->hash, audit_no_hash, sizeof head->hash);
+    sqlite3_stmt *row = sql_prepare(db, "SELECT n, hash FROM audit ORDER BY n DESC LIMIT 1", err);
+    if (!row)
+        return false;
+    int step = sqlite3_step(row);
+    if (step == SQLITE_ROW) {
+        head->n = sqlite3_column_int64(row, 0);
+        sql_text(row, 1, head->hash, sizeof head->hash);
+    }
+    bool ok = step == SQLITE_ROW || step == SQLITE_DONE || sql_fail(db, "reading the audit", err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+bool audit_append(sqlite3 *db, char *const *rows, size_t n, struct error *err)
+{
+    struct audit_head head;
+    if (n == 0)
+        return true;
+    if (!audit_read_head(db, &head, err))
+        return false;
+    sqlite3_stmt *row = sql_prepare(db, "INSERT INTO audit(n, row, hash) VALUES(?1, ?2, ?3)", err);
+    bool ok = row != NULL;
+    for (size_t i = 0; ok && i < n; i++) {
+        char *text = mem_new(strlen(rows[i]) + 40), hash[STORE_AUDIT_HASH];
+        head.n++;
+        (void)snprintf(text, strlen(rows[i]) + 40, "{\"n\":%lld,%s", (long long)head.n, rows[i] + 1);
+        audit_hash(head.hash, text, hash);
+        (void)sqlite3_bind_int64(row, 1, head.n);
+        sql_bind_text(row, 2, text);
+        sql_bind_text(row, 3, hash);
+        ok = sql_step(row, "writing the audit", err);
+        memcpy(head.hash, hash, sizeof hash);
+        free(text);
+    }
+    (void)sqlite3_finalize(row);
+    return ok;
+}

@@ -1,0 +1,104 @@
+/* Computes the chain of the audit anew. */
+#include "server/store/verify.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "server/store/audit.h"
+#include "server/store/database.h"
+#include "server/store/sql.h"
+
+/* The number and the time with which a row's text begins; false: it begins otherwise. */
+static bool read_beginning(const char *text, int64_t *n, int64_t *time_ms)
+{
+    long long number, ms;
+    int at = 0;
+    if (sscanf(text, "{\"n\":%lld,\"time_ms\":%lld%n", &number, &ms, &at) != 2 || at == 0 || text[at] != ',')
+        return false;
+    *n = number;
+    *time_ms = ms;
+    return true;
+}
+
+/* Whether a row with this number, text and hash continues the chain that ends with facts->head. */
+static bool check_row(const struct audit_facts *facts, int64_t n, const char *text, const char *hash, int64_t *time_ms,
+                      struct error *err)
+{
+    const long long here = facts->n_rows + 1, found = n;
+    char computed[STORE_AUDIT_HASH];
+    int64_t own = 0;
+    if (found != here)
+        return error_set(err, ERROR_FORMAT, "row %lld is missing: row %lld follows row %lld", here, found, here - 1);
+    if (!read_beginning(text, &own, time_ms))
+        return error_set(err, ERROR_FORMAT, "row %lld: its text does not begin with its number and its time", here);
+    if (own != n)
+        return error_set(err, ERROR_FORMAT, "row %lld has the text of row %lld: the order was changed", here,
+                         (long long)own);
+    audit_hash(facts->head, text, computed);
+    if (strcmp(computed, hash) != 0)
+        return error_set(err, ERROR_FORMAT,
+                         "row %lld does not fit: its hash is %.64s, row %lld and its text give %.64s; its text, its "
+                         "hash or that of row %lld was changed",
+                         here, hash, here - 1, computed, here - 1);
+    return true;
+}
+
+static bool check_rows(sqlite3 *db, const char *head, bool *has_head, struct audit_facts *facts, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db, "SELECT n, row, hash FROM audit ORDER BY n", err);
+    bool ok = row != NULL;
+    for (int step; ok && (step = sqlite3_step(row)) != SQLITE_DONE;) {
+        char hash[STORE_AUDIT_HASH + 8];
+        const char *text = step == SQLITE_ROW ? (const char *)sqlite3_column_text(row, 1) : NULL;
+        int64_t time_ms = 0;
+        if (step != SQLITE_ROW) {
+            ok = sql_fail(db, "reading the audit", err);
+            break;
+        }
+        sql_text(row, 2, hash, sizeof hash);
+        ok = check_row(facts, sqlite3_column_int64(row, 0), text ? text : "", hash, &time_ms, err);
+        if (!ok)
+            break;
+        facts->n_rows++;
+        facts->first_ms = facts->n_rows == 1 ? time_ms : facts->first_ms;
+        facts->last_ms = time_ms;
+        memcpy(facts->head, hash, sizeof facts->head);
+        *has_head = *has_head || (head && strcmp(head, hash) == 0);
+    }
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+static bool has_audit(sqlite3 *db, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = 'audit'", err);
+    int step = row ? sqlite3_step(row) : SQLITE_ERROR;
+    bool ok = step == SQLITE_ROW;
+    if (step == SQLITE_DONE)
+        error_set(err, ERROR_NOT_FOUND, "the database has no audit: it is older, or not the daemon's");
+    else if (row && !ok)
+        (void)sql_fail(db, "reading", err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+bool store_verify_audit(const char *path, const char *head, struct audit_facts *facts, struct error *err)
+{
+    *facts = (struct audit_facts){ 0 };
+    memcpy(facts->head, audit_no_hash, sizeof facts->head);
+    if (access(path, F_OK) != 0)
+        return error_set(err, ERROR_NOT_FOUND, "%.150s: %s", path, strerror(errno));
+    sqlite3 *db = database_open_to_read(path, err);
+    bool has_head = !head || strcmp(head, audit_no_hash) == 0;
+    bool ok = db && has_audit(db, err) && check_rows(db, head, &has_head, facts, err);
+    database_close(db);
+    if (ok && !has_head)
+        ok = error_set(err, ERROR_FORMAT,
+                       "none of the %lld rows has the hash given: rows at the end were removed, or the chain was "
+                       "written anew",
+                       (long long)facts->n_rows);
+    return ok;
+}

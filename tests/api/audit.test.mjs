@@ -1,0 +1,134 @@
+// The audit: what members and calls do is a row each, chained by SHA-256, which node computes here by itself. --stub: grey pictures.
+import assert from 'node:assert/strict';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { copyFileSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { bin, call, startDaemon, until } from './daemon.mjs';
+import { parseStrict } from './strict_json.mjs';
+import { Client } from './ws_client.mjs';
+
+let data, daemon, room;
+const clients = [];
+const database = () => join(data, 'beamroom.db');
+
+const read = `
+import json, sqlite3, sys
+db = sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True, timeout=30)
+print(json.dumps(db.execute('SELECT n, row, hash FROM audit ORDER BY n').fetchall()))
+`;
+/** [{n, ...the row, text, hash}] */
+const onDisk = (file = database()) => JSON.parse(execFileSync('python3', ['-c', read, file], { encoding: 'utf8' })).map(([, text, hash]) => ({ ...parseStrict(text), text, hash }));
+const change = (file, sql) => execFileSync('python3', ['-c', 'import sqlite3, sys; db = sqlite3.connect(sys.argv[1]); db.executescript(sys.argv[2]); db.commit()', file, sql]);
+const verify = (file, ...args) => spawnSync(join(bin, 'beamroomd'), ['--verify-audit', file, ...args], { encoding: 'utf8' });
+const rowWith = (action, matches = () => true) => until(() => onDisk().find((row) => row.action === action && matches(row)), (row) => row);
+
+async function enter(hello = {}) {
+  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  clients.push(client);
+  client.send({ type: 'hello', protocol: 2, ...hello });
+  client.welcome = await client.message('welcome');
+  client.headers = { 'Beamroom-Member': `${client.welcome.member} ${client.welcome.secret}` };
+  return client;
+}
+
+before(async () => {
+  data = mkdtempSync(join(tmpdir(), 'beamroom-audit-'));
+  daemon = await startDaemon({ data, args: ['--stub'] });
+  room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+});
+after(async () => {
+  for (const client of clients) client.cut();
+  await daemon?.stop();
+  rmSync(data, { recursive: true, force: true });
+});
+
+test('what members and calls do is on the disk, who did it, and at which revision', async () => {
+  const api = `${daemon.url}/api/v1/rooms/${room}`;
+  const ann = await enter({ name: 'Ann' });
+  await ann.message('renderer', (m) => m.state === 'ready');
+  const opened = await rowWith('open');
+  assert.deepEqual([opened.room, opened.plan, opened.member, opened.name, opened.role, opened.result, opened.detail], [room, 'phantom', 'm1', 'Ann', 'presenter', 'done', { as: 'new' }]);
+  assert.ok(Math.abs(opened.time_ms - Date.now()) < 120000);
+
+  const link = (await call(`${api}/links`, 'POST', { role: 'observer', one_use: true }, ann.headers)).json;
+  const made = await rowWith('link-made');
+  assert.deepEqual([made.member, made.detail], ['m1', { role: 'observer', expires_s: 86400, one_use: true }]);
+  const eve = await enter({ name: 'Eve', link: link.token });
+  assert.equal((await rowWith('link')).name, 'Eve');
+  assert.ok(!JSON.stringify(onDisk()).includes(link.token));
+
+  eve.send({ type: 'scene.patch', input: 1, patch: {} });
+  const refused = await rowWith('refused');
+  assert.deepEqual([refused.member, refused.role, refused.result, refused.detail.what], ['m2', 'observer', 'refused', 'scene.patch']);
+  await call(`${api}/links`, 'POST', { role: 'presenter' }, eve.headers);
+  assert.equal((await rowWith('refused', ({ detail }) => /^POST /.test(detail.what))).member, 'm2');
+
+  ann.send({ type: 'scene.patch', input: 7, patch: { dose: { blood_ppm: 33 } } });
+  const { revision } = await ann.message('scene', (m) => m.input === 7);
+  const weighed = await rowWith('weights');
+  assert.deepEqual([weighed.detail, weighed.revision_before, weighed.revision_after], [{ blood_ppm: 33 }, revision - 1, revision]);
+  ann.send({ type: 'scene.patch', input: 8, patch: { beam: { draft: { enabled: true, line: { target_mm: [0, 0, 20] } } } } });
+  assert.deepEqual((await rowWith('draft-made')).detail.target_mm, [0, 0, 20]);
+
+  assert.equal((await call(`${api}/snapshot?view=${encodeURIComponent('{"kind":"axial"}')}`, 'GET', undefined, eve.headers)).status, 200);
+  const picture = await rowWith('export');
+  assert.deepEqual([picture.member, picture.room, picture.detail.what], ['m2', room, 'snapshot']);
+  assert.equal((await call(`${daemon.url}/api/v1/plans/phantom/render`, 'POST', {})).status, 200);
+  const outside = await rowWith('export', (row) => row.room === '');
+  assert.deepEqual([outside.plan, outside.member, outside.detail.what], ['phantom', '', 'picture']);
+});
+
+test('the rows of a room outlive it, and a killed daemon', async () => {
+  const other = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+  assert.equal((await call(`${daemon.url}/api/v1/rooms/${other}`, 'DELETE')).status, 204);
+  await rowWith('deleted', (row) => row.room === other);
+  const before = onDisk().length;
+  const ended = new Promise((done) => daemon.child.on('exit', done));
+  daemon.child.kill('SIGKILL');
+  await ended;
+  assert.equal(onDisk().length, before);
+  daemon = await startDaemon({ data, args: ['--stub'] });
+  room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+  await enter({ name: 'Ben' });
+  await rowWith('open', (row) => row.name === 'Ben');
+  await daemon.stop();
+  daemon = null;
+});
+
+test('the chain is what SHA-256 gives, and beamroomd verifies it', () => {
+  const rows = onDisk();
+  let hash = '0'.repeat(64);
+  for (const [i, row] of rows.entries()) {
+    assert.equal(row.n, i + 1);
+    hash = createHash('sha256').update(hash + row.text).digest('hex');
+    assert.equal(row.hash, hash);
+  }
+  const { status, stdout } = verify(database(), '--audit-head', rows[2].hash);
+  assert.equal(status, 0);
+  const time = (row) => new Date(row.time_ms).toISOString().replace(/\.\d+Z/, 'Z');
+  assert.equal(stdout, `rows ${rows.length}\nfirst ${time(rows[0])}\nlast ${time(rows.at(-1))}\nhead ${hash}\n`);
+});
+
+test('a row that was changed, a cut tail and a wrong hash are named', () => {
+  const rows = onDisk(), copy = join(data, 'copy.db');
+  const copied = (sql) => {
+    copyFileSync(database(), copy);
+    change(copy, `DROP TRIGGER audit_update; DROP TRIGGER audit_delete; ${sql}`);
+    return copy;
+  };
+  const said = (...args) => {
+    const { status, stdout, stderr } = verify(...args);
+    assert.deepEqual([status, stdout], [1, '']);
+    return stderr;
+  };
+  assert.match(said(copied("UPDATE audit SET row = replace(row, 'Ann', 'Eve') WHERE n = 1")), /--verify-audit .*copy\.db: row 1 does not fit/);
+  assert.match(said(copied('DELETE FROM audit WHERE n = 3')), /row 3 is missing: row 4 follows row 2/);
+  const cut = copied('DELETE FROM audit WHERE n > 3');
+  assert.equal(verify(cut).status, 0);
+  assert.match(said(cut, '--audit-head', rows.at(-1).hash), /none of the 3 rows has the hash given/);
+  assert.match(said(cut, '--audit-head', 'abc'), /expected 64 digits/);
+  assert.match(said(join(data, 'nowhere.db')), /No such file/);
+});
