@@ -6,6 +6,8 @@ import { Hooks } from './hooks.js';
 import { roomPage } from './panels/room_page.js';
 import { OwnName } from './state/own_name.js';
 import { Thumbnails } from './state/thumbnails.js';
+import { Redraw } from './panels/redraw.js';
+import { Decoder } from './view/decoder.js';
 import { isId } from './wire/check.js';
 
 /** What the browser keeps between visits; null where it keeps nothing. */
@@ -22,7 +24,8 @@ const clock = {
   setTimeout: (callback, ms) => setTimeout(callback, ms),
   clearTimeout: (timer) => clearTimeout(timer),
 };
-const schedule = (callback) => requestAnimationFrame(callback);
+const redraw = new Redraw((callback) => requestAnimationFrame(callback), clock);
+const { decode } = new Decoder({ makeWorker: () => new Worker('js/view/decode_worker.js'), decodeHere: (picture, type) => createImageBitmap(new Blob([picture], { type })) });
 const hooks = new Hooks(clock);
 const api = makeApi((...request) => fetch(...request));
 const enter = (room, plan) => { location.hash = address(room, plan); };
@@ -85,7 +88,7 @@ async function route() {
   nRoutes += 1;
   const host = document.querySelector('#page');
   if (place === 'rooms' && isId(id))
-    leave = roomPage(host, id, { api, connect: (room) => connect(room, invitation), clock, schedule, decode: (blob) => createImageBitmap(blob), hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' });
+    leave = roomPage(host, id, { api, connect: (room) => connect(room, invitation), clock, redraw, decode, hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' });
   else if (place === 'p' && isId(id)) {
     const n = nRoutes;
     const { permalinkPage } = await import('./panels/permalink.js');

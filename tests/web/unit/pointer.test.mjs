@@ -249,3 +249,28 @@ test('a card is no wider than its pane, where the position takes two lines', () 
   assert.equal(narrow.height - wide.height, 16, 'one line of 16 px more');
   assert.ok(cardOf(words, 150, true).height > narrow.height, 'the value is larger for a finger');
 });
+
+test('a drag takes a place as soon as the mouse has it, and no place twice', () => {
+  const { element, told } = reader();
+  element.fire('pointerdown', 10, 10, { at: 0 });
+  element.fire('pointerrawupdate', 30, 10, { at: 2 });
+  assert.deepEqual(told.filter(([name]) => name === 'move'), [], 'a press is a drag once the pointer has moved');
+  element.fire('pointermove', 30, 10, { at: 8 });
+  element.fire('pointerrawupdate', 35, 10, { at: 12 }); // 4 ms later: it waits for the next frame
+  element.fire('pointerrawupdate', 40, 10, { at: 23 });
+  element.fire('pointermove', 40, 10, { at: 23 });
+  element.fire('pointermove', 41, 10, { at: 30 });
+  element.fire('pointerup', 41, 10, { at: 31 });
+  element.fire('pointerrawupdate', 90, 10, { at: 80 });
+  const moves = told.filter(([name]) => name === 'move').map(([, mode, { x, dx, at }]) => [mode, x, dx, at]);
+  assert.deepEqual(moves, [['primary', 30, 20, 8], ['primary', 40, 10, 23], ['primary', 41, 1, 30]]);
+});
+
+test('two fingers pinch by the places of the animation frames alone', () => {
+  const { element, names } = reader();
+  for (const pointerId of [1, 2]) element.fire('pointerdown', 100 * pointerId, 10, { pointerId, pointerType: 'touch' });
+  element.fire('pointerrawupdate', 300, 10, { pointerId: 2, pointerType: 'touch', at: 40 });
+  assert.deepEqual(names(), []);
+  element.fire('pointermove', 300, 10, { pointerId: 2, pointerType: 'touch', at: 40 });
+  assert.deepEqual(names(), ['pinch']);
+});

@@ -10,6 +10,7 @@ const { axisEnds, cubeSides } = await load('view/orientation.js');
 const { edgeLetters, letters } = await load('view/letters.js');
 const { barMm, fromPicture, toPicture } = await load('view/vec.js');
 const { homeCamera } = await load('view/home.js');
+const { Decoder } = await load('view/decoder.js');
 const { Painter } = await load('view/painter.js');
 
 const near = (actual, expected, tolerance = 1e-9) =>
@@ -224,4 +225,53 @@ test('a picture that cannot be decoded is acknowledged and not drawn', async () 
   decodes[0].fail();
   await settle();
   assert.deepEqual(shown, ['passed 7']);
+});
+
+// ---- decoder ------------------------------------------------------------------------------------------------------------
+
+class FakeWorker extends EventTarget {
+  asked = [];
+  isTerminated = false;
+  postMessage(message) { this.asked.push(message); }
+  terminate() { this.isTerminated = true; }
+  tell(data) { this.dispatchEvent(Object.assign(new Event('message'), { data })); }
+}
+
+function decoderWorld() {
+  const worker = new FakeWorker();
+  const here = [];
+  const { decode } = new Decoder({ makeWorker: () => worker, decodeHere: async (picture, type) => { here.push([picture[0], type]); return `here ${picture[0]}`; } });
+  return { worker, here, decode };
+}
+
+test('pictures are decoded here until the worker is ready, then there, in the order of its answers', async () => {
+  const { worker, here, decode } = decoderWorld();
+  assert.equal(await decode(new Uint8Array([1]), 'image/jpeg'), 'here 1');
+  worker.tell({ isReady: true });
+  const two = [decode(new Uint8Array([2]), 'image/jpeg'), decode(new Uint8Array([3]), 'image/png')];
+  assert.deepEqual(worker.asked.map(({ picture, type }) => [picture[0], type]), [[2, 'image/jpeg'], [3, 'image/png']]);
+  worker.tell({ id: worker.asked[1].id, bitmap: 'there 3' });
+  worker.tell({ id: worker.asked[0].id, bitmap: 'there 2' });
+  assert.deepEqual(await Promise.all(two), ['there 2', 'there 3']);
+  assert.deepEqual(here, [[1, 'image/jpeg']]);
+});
+
+test('what the worker cannot decode is decoded here, and all of it once the worker has failed', async () => {
+  const { worker, decode } = decoderWorld();
+  await decode(new Uint8Array([1]), 'image/jpeg');
+  worker.tell({ isReady: true });
+  const broken = decode(new Uint8Array([2]), 'image/jpeg');
+  worker.tell({ id: worker.asked[0].id, bitmap: null });
+  assert.equal(await broken, 'here 2');
+  const waiting = [3, 4].map((n) => decode(new Uint8Array([n]), 'image/jpeg'));
+  worker.dispatchEvent(new Event('error'));
+  assert.deepEqual(await Promise.all(waiting), ['here 3', 'here 4']);
+  assert.equal(worker.isTerminated, true);
+  assert.equal(await decode(new Uint8Array([5]), 'image/jpeg'), 'here 5');
+  assert.equal(worker.asked.length, 3, 'a worker that has failed is asked nothing');
+});
+
+test('a browser that allows no worker decodes here', async () => {
+  const { decode } = new Decoder({ makeWorker: () => { throw new Error('not allowed'); }, decodeHere: async () => 'here' });
+  assert.equal(await decode(new Uint8Array(1), 'image/jpeg'), 'here');
 });

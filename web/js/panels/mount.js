@@ -1,11 +1,17 @@
 // Draws a template into an element, and draws it again whenever a signal that it read changes.
 import { nothing, render } from '../../lib/lit-html.js';
 import { Directive, directive } from '../../lib/directive.js';
-import { effect } from '../../lib/signals-core.js';
+import { effect, signal } from '../../lib/signals-core.js';
 
-/** @param {HTMLElement} host @param {() => unknown} draw @returns {() => void} stops, and empties the element */
-export function mount(host, draw) {
+/** @param {HTMLElement} host @param {() => unknown} draw @param {import('./redraw.js').Redraw|null} redraw may put drawing it again off
+ *  @returns {() => void} stops, and empties the element */
+export function mount(host, draw, redraw = null) {
+  const tick = signal(0);
+  let [isDrawn, isWaiting] = [false, false];
   const stop = effect(() => {
+    isWaiting = isDrawn && !isWaiting && (redraw?.puts(host, tick) ?? false);
+    if (isWaiting) return void tick.value; // nothing else wakes this effect until then
+    isDrawn = true;
     render(draw(), host);
   });
   return () => {

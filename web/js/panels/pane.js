@@ -43,8 +43,8 @@ export class Pane {
   #stops = [];
   #lastCaption = '';
 
-  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, ellipses, doses, decode, schedule, onPainted} */
-  constructor(host, { room, ui, api, refused, probed, histograms, ellipses, doses, decode, schedule, onPainted }, view) {
+  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted} */
+  constructor(host, { room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted }, view) {
     this.#room = room;
     this.#ui = ui;
     this.#view = view;
@@ -65,10 +65,10 @@ export class Pane {
       now: ui.now.value,
       refusal: view.refusal.value,
     }));
-    this.#stops.push(mount(host, () => this.#draw()));
-    this.#stops.push(mount(host.querySelector(`#caption-${view.number}`), () => html`${this.#caption()}`));
+    this.#stops.push(mount(host, () => this.#draw(), redraw));
+    this.#stops.push(mount(host.querySelector(`#caption-${view.number}`), () => html`${this.#caption()}`, redraw));
     const body = host.querySelector('.picture');
-    this.painter = new Painter(host.querySelector('canvas'), { decode, schedule, onPainted });
+    this.painter = new Painter(host.querySelector('canvas'), { decode, schedule: redraw.schedule, onPainted });
     const pointer = new PointerReader(body, this.actions);
     this.#stops.push(...this.#readOut(body.querySelector('.pointed')));
     body.addEventListener('keydown', (event) => {

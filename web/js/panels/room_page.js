@@ -24,6 +24,7 @@ import { figuresDialog } from './figures.js';
 import { ended, watchEnd } from './ended.js';
 import { coverPage, help, toasts } from './float.js';
 import { inspector, selected } from './inspector.js';
+import { soon } from '../net/soon.js';
 import { mount } from './mount.js';
 import { watchNotes } from './notes_lazy.js';
 import { Pane } from './pane.js';
@@ -53,16 +54,16 @@ const frame = () => html`<div class="room">
 
 /**
  * @param {HTMLElement} host @param {string} id of the room
- * @param {object} world {api, connect, clock, schedule, decode, hooks, enter, ownName, storage: of the browser, isBack: this tab was in the room before,
+ * @param {object} world {api, connect, clock, redraw, decode, hooks, enter, ownName, storage: of the browser, isBack: this tab was in the room before,
  *   plan: the room's, as far as the address knows it}
  * @returns {() => void} leaves the room
  */
-export function roomPage(host, id, { api, connect, clock, schedule, decode, hooks, enter, ownName, storage = null, isBack = false, plan = '' }) {
+export function roomPage(host, id, { api, connect, clock, redraw, decode, hooks, enter, ownName, storage = null, isBack = false, plan = '' }) {
   const stops = [mount(host, frame)];
   const part = (name) => host.querySelector(name);
   const ui = new UiState(clock, storage);
   const connection = connect(id);
-  const room = new RoomState(id, { connection, clock, schedule, notify: ui.notify });
+  const room = new RoomState(id, { connection, clock, schedule: redraw.schedule, sendSoon: soon(clock), notify: ui.notify });
   const undo = new Undo(room, { clock, notify: ui.notify });
   const probed = signal({ result: null, error: '', isOld: false });
   const shaped = signal({ region: '', representation: '', result: null, error: '' });
@@ -78,8 +79,8 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
     const answered = room.frameShown(header, isDrawn);
     hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
   };
-  stops.push(loadBeforeClicks(), adapt(ui), effect(() => layOut(host.querySelector('.room'), ui))); // before the panes measure themselves: views open at their sizes
-  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, histograms, ellipses, doses, decode, schedule, onPainted }, view));
+  stops.push(redraw.watch(globalThis), loadBeforeClicks(), adapt(ui), effect(() => layOut(host.querySelector('.room'), ui))); // before the panes measure themselves: views open at their sizes
+  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted }, view));
   connection.addEventListener('frame', ({ detail }) => {
     room.frameCame(detail.header);
     panes[detail.header.view - 1]?.painter.offer(detail);
@@ -90,7 +91,7 @@ export function roomPage(host, id, { api, connect, clock, schedule, decode, hook
   world.charts = new ChartLoader(world);
   stops.push(() => world.charts.stop());
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofDose(room)?.doseBar(world)}${draftBar(world)}${playBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', (shown) => html`${requestLines(shown)}${toasts(shown)}`], ['.floating', floating]])
-    stops.push(mount(part(name), () => draw(world)));
+    stops.push(mount(part(name), () => draw(world), redraw));
   if (!isBack) stops.push(offerName(world));
   stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), doses.start(clock));
   stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), watchNotes(world), leaveBeam(world), startPointers(world), listenSnapshots(world), resumeSnapshot(world), resumeBookmark(world), () => leaveBookmarks(world), coverPage(host, ui));

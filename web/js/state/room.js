@@ -29,9 +29,10 @@ export class RoomState {
    * @param {import('../net/connection.js').Connection} world.connection
    * @param {{now: () => number}} world.clock
    * @param {(callback: () => void) => void} world.schedule calls back before the next paint
+   * @param {(callback: () => void) => void} [world.sendSoon] calls back when changes are to be sent
    * @param {(kind: 'ok'|'warn'|'err', text: string, topic?: string, action?: {word: string, act: () => void}) => void} world.notify
    */
-  constructor(id, { connection, clock, schedule, notify }) {
+  constructor(id, { connection, clock, schedule, sendSoon = schedule, notify }) {
     this.id = id;
     this.#connection = connection;
     this.#clock = clock;
@@ -60,7 +61,7 @@ export class RoomState {
     // Changes made while the connection is lost are kept, and sent when it is back.
     // Before the list of members has come, nobody knows whether a change is the room's or this member's own.
     this.canChange = computed(() => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null && this.members.value.length > 0);
-    this.#sending = new Sending({ connection, clock, schedule, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
+    this.#sending = new Sending({ connection, clock, schedule: sendSoon, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
     this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
     this.items = new Items((message) => this.#sending.act(message));
     this.following = new Following(this, (message) => this.#sending.act(message));

@@ -1,4 +1,4 @@
-// Sends the changes of a room's page: at most one patch of each kind per animation frame, each with an input number.
+// Sends the changes of a room's page, those of some milliseconds in one patch, each with an input number.
 
 export class Sending {
   #connection;
@@ -36,7 +36,7 @@ export class Sending {
     return this.#connection.send({ ...message, input }) ? input : 0;
   }
 
-  /** Sends the queued changes before the next paint. view, sceneView: the pane of the input event, for measurements. */
+  /** Sends the queued changes soon. view, sceneView: the pane of the input event, for measurements. */
   plan({ view = 0, sceneView = 0, at = 0 } = {}) {
     if (view) this.#inputAt.set(view, at);
     if (sceneView) this.#sceneOrigin = { view: sceneView, at };

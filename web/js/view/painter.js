@@ -14,7 +14,7 @@ export class Painter {
   /**
    * @param {HTMLCanvasElement} canvas
    * @param {object} world
-   * @param {(blob: Blob) => Promise<ImageBitmap>} world.decode
+   * @param {(picture: Uint8Array, type: string) => Promise<ImageBitmap>} world.decode
    * @param {(callback: () => void) => void} world.schedule calls back before the next paint
    * @param {(header: import('../wire/frame.js').FrameHeader, isDrawn: boolean) => void} world.onPainted
    */
@@ -43,7 +43,7 @@ export class Painter {
     this.#isDecoding = true;
     let bitmap = null;
     try {
-      bitmap = await this.#decode(new Blob([picture], { type: header.media_type }));
+      bitmap = await this.#decode(picture, header.media_type);
     } catch (error) {
       console.warn(`beamroom: picture ${header.sequence} of view ${header.view} cannot be decoded: ${error.message}`);
     }

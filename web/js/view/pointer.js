@@ -5,6 +5,7 @@ const slopPx = 4; // a press that moves less is a tap
 const doubleMs = { mouse: 250, pen: 300, touch: 300 };
 const doublePx = 24;
 const longMs = 500;
+const earlyMs = 14; // a move that comes this long after the one before is not kept until the next animation frame
 
 /**
  * @typedef {object} PointerHandlers each gets CSS pixels relative to the element, and at: time of the input event
@@ -32,6 +33,7 @@ export class PointerReader {
   #tapTimer = 0;
   #longTimer = 0;
   #wheelRest = 0;
+  #movedAt = -Infinity;
   #abort = new AbortController();
 
   /** @param {HTMLElement} element @param {PointerHandlers} handlers */
@@ -41,6 +43,9 @@ export class PointerReader {
     const on = (type, handler, options) => element.addEventListener(type, handler, { signal: this.#abort.signal, ...options });
     on('pointerdown', (event) => this.#down(event));
     on('pointermove', (event) => this.#move(event));
+    on('pointerrawupdate', (event) => {
+      if (this.#isDrag && this.#fingers.size === 1 && event.timeStamp - this.#movedAt >= earlyMs) this.#move(event);
+    });
     on('pointerup', (event) => this.#up(event));
     on('pointercancel', (event) => this.#up(event, true));
     on('pointerleave', () => this.#fingers.size || this.#handlers.leave());
@@ -120,6 +125,8 @@ export class PointerReader {
     this.#settle();
     if (this.#mode !== 'held') this.#begin(this.#start);
     this.#fingers.set(event.pointerId, point);
+    this.#movedAt = at;
+    if (point.x === before.x && point.y === before.y) return; // as the early one said
     if (this.#mode !== 'held') this.#handlers.move(this.#mode, { ...point, dx: point.x - before.x, dy: point.y - before.y, alt: event.altKey, at });
   }
 
