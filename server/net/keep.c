@@ -165,6 +165,19 @@ static void write_audit(struct net *net)
     store_room_free(row);
 }
 
+void keep_is_saved(void *context, const struct room *room, struct room_saved *saved)
+{
+    const struct net *net = context;
+    const struct net_room *entry = find_kept(net, room);
+    if (!entry)
+        return;
+    const bool fails = net->store_fails || entry->keep.is_refused;
+    *saved = (struct room_saved){ .revision = entry->keep.written, .is_full = net->store_is_full };
+    saved->state = fails                    ? WIRE_SAVED_STATE_FAILING
+                   : keep_is_written(entry) ? WIRE_SAVED_STATE_SAVED
+                                            : WIRE_SAVED_STATE_SAVING;
+}
+
 /* ---- items ------------------------------------------------------------------------------------------------------ */
 
 static void copy_text(char *to, size_t size, const char *from)
@@ -404,8 +417,14 @@ void keep_written(struct net *net, const struct store_answer *answer)
         if (room->keep.ticket != answer->ticket)
             continue;
         room->keep.ticket = 0;
-        if (answer->error.code == ERROR_NONE)
+        room->keep.is_refused = answer->error.code != ERROR_NONE;
+        if (!room->keep.is_refused) {
             room->keep.written = room->keep.writing;
+            continue;
+        }
+        room->keep.changed = ROOM_ALL_PARTS;
+        room->keep.due_us = clock_now_us() + KEEP_REFUSED_PAUSE_MS * INT64_C(1000);
+        all_items_again(room);
     }
 }
 

@@ -3,13 +3,17 @@
  * with each. Internal to server/net; net thread. */
 #include "server/net/net_state.h"
 
-enum { KEEP_PAUSE_MS = 200 }; /* between the beginnings of two writes of one room */
+enum {
+    KEEP_PAUSE_MS = 200,
+    KEEP_REFUSED_PAUSE_MS = 10000
+}; /* between the beginnings of two writes of one room; refused: after one that the store dropped */
 
 /* struct room_callbacks; context is the net */
 void keep_changed(void *context, struct room *room, unsigned parts);
 /* struct room_callbacks */
 void keep_audited(void *context, struct room *room, const struct room_audit *row);
 bool keep_audit_has_place(void *context);
+void keep_is_saved(void *context, const struct room *room, struct room_saved *saved);
 void keep_item_changed(void *context, struct room *room, const char *row, const char *id);
 /* Hands over what is due. is_last: all that changed, whatever is under way. */
 void keep_write_due(struct net *net, bool is_last);

@@ -207,7 +207,10 @@ static void handle_answer(struct net *net, void *argument)
         break;
     case STORE_READ: rooms_was_read(net, answer); break;
     case STORE_FAILING:
-    case STORE_FINE: break;
+    case STORE_FINE:
+        net->store_fails = answer->event == STORE_FAILING;
+        net->store_is_full = net->store_fails && answer->error.code == ERROR_LIMIT;
+        break;
     }
     store_answer_free(answer);
 }

@@ -60,6 +60,7 @@ struct net_room { /* a room and what the net thread keeps beside it */
         size_t n_items;
         char **audit; /* rows that are to be written */
         size_t n_audit;
+        bool is_refused; /* the store dropped a write, which it can never make */
     } keep;
 };
 
@@ -87,6 +88,7 @@ struct net {
     int max_rooms, room_idle_close_s;
     struct room_limits limits;
     struct store *store; /* NULL: rooms are not kept */
+    bool store_fails, store_is_full;
     struct asleep_room *asleep;
     size_t n_asleep;
     struct waiter *waiters;

@@ -80,7 +80,8 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .item_changed = keep_item_changed,
                                               .kept_changed = keep_changed,
                                               .audited = keep_audited,
-                                              .audit_has_place = keep_audit_has_place };
+                                              .audit_has_place = keep_audit_has_place,
+                                              .is_saved = keep_is_saved };
     struct net_room *room = mem_new(sizeof *room);
     *room = (struct net_room){ .net = net,
                                .room = room_create(id, plan_id, &callbacks, &net->limits),

@@ -106,6 +106,7 @@ static void tell(struct room *room, const char *id, const char *row, const struc
     struct message message = { .type = MESSAGE_ITEM, .item = { .item = row ? cJSON_CreateRaw(row) : NULL } };
     (void)snprintf(message.item.id, sizeof message.item.id, "%s", id);
     (void)snprintf(message.item.by, sizeof message.item.by, "%s", by->id);
+    room->saved.n_item_changes++;
     if (room->callbacks.item_changed)
         room->callbacks.item_changed(room->callbacks.context, room, row, id);
     for (int i = 0; i < room->n_members; i++) {

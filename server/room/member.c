@@ -16,6 +16,7 @@
 #include "server/room/pointers.h"
 #include "server/room/presenter.h"
 #include "server/room/roles.h"
+#include "server/room/saved.h"
 #include "server/room/secret.h"
 #include "server/room/send.h"
 
@@ -209,6 +210,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     send_welcome(room, member);
     send_renderer_state(room, member);
     control_send(room, member);
+    saved_show(room, member);
     (void)presenter_settle(room);
     send_members_to_newcomer(room, member);
     pointers_show(room, member);

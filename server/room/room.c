@@ -23,6 +23,7 @@
 #include "server/room/pointers.h"
 #include "server/room/presenter.h"
 #include "server/room/roles.h"
+#include "server/room/saved.h"
 #include "server/room/send.h"
 #include "server/room/shared_scene.h"
 #include "server/room/stream.h"
@@ -309,7 +310,7 @@ bool room_has_member(const struct room *room, void *connection)
 int64_t room_tick(struct room *room, int64_t now_us)
 {
     room->now_us = now_us;
-    const int64_t pointers_us = pointers_tick(room), look_us = look_tick(room);
+    const int64_t pointers_us = pointers_tick(room), look_us = look_tick(room), saved_us = saved_tick(room);
     members_close_lost(room);
     bool has_changed = presenter_settle(room);
     int64_t lags_us = lags_settle(room, &has_changed);
@@ -322,6 +323,7 @@ int64_t room_tick(struct room *room, int64_t now_us)
                                send_members_due(room),
                                pointers_us,
                                look_us,
+                               saved_us,
                                lags_us,
                                audit_tick(room) };
     int64_t least_us = INT64_MAX;

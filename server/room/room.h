@@ -67,6 +67,12 @@ struct room_audit {
     int64_t before, after;            /* revisions of the scene; -1: does not apply */
 };
 
+struct room_saved {
+    enum wire_saved_state state;
+    uint32_t revision; /* of the scene on disk */
+    bool is_full;      /* failing: for want of space */
+};
+
 struct room_callbacks {
     /* requests a picture; answered later by room_picture_came or room_picture_failed with the same request number */
     void (*render)(void *context, struct room *room, const struct room_render *request);
@@ -94,6 +100,8 @@ struct room_callbacks {
     void (*audited)(void *context, struct room *room, const struct room_audit *row);
     /* False: so many rows wait for the disk that the room refuses what would need another. NULL: always true. */
     bool (*audit_has_place)(void *context);
+    /* NULL: rooms are not kept; or: what of the room is on disk at this moment */
+    void (*is_saved)(void *context, const struct room *room, struct room_saved *saved);
 };
 
 /* What of a room is kept on disk. */

@@ -187,6 +187,13 @@ struct room {
         char member[64], by[64];
     } control_act;
     bool control_is_new; /* not told yet */
+    struct {
+        struct room_saved told; /* as all were told last */
+        int64_t told_us;
+        int64_t news_us; /* since when it is another; 0: it is not */
+        uint64_t n_item_changes, n_items_told;
+        bool is_owed; /* somebody who has come was told something else than all */
+    } saved;
     struct link links[ROOM_MAX_LINKS];
     int n_links;
     bool has_links; /* there was one; then those who are no members may do less: room_call_may */

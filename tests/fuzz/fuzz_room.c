@@ -173,8 +173,13 @@ static void check_presenter(const struct room *room)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
-    const struct room_callbacks callbacks = { render,     forget,           scene_changed, send_text, send_latest,
-                                              send_frame, close_connection, NULL,          NULL,      NULL };
+    const struct room_callbacks callbacks = { .render = render,
+                                              .forget = forget,
+                                              .scene_changed = scene_changed,
+                                              .send_text = send_text,
+                                              .send_latest = send_latest,
+                                              .send_frame = send_frame,
+                                              .close = close_connection };
     struct room *room = room_create("7q4k-m2wz", "head", &callbacks, NULL);
     int64_t now_us = 1000000;
     log_start("fuzz", LOG_ERROR); /* failing pictures are normal here */

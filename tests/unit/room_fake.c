@@ -104,6 +104,13 @@ static bool audit_has_place(void *context)
     return !((struct fake_room *)context)->audit_is_full;
 }
 
+static void is_saved(void *context, const struct room *room, struct room_saved *saved)
+{
+    const struct fake_room *fake = context;
+    (void)room;
+    *saved = fake->saved;
+}
+
 void fake_room_start(struct fake_room *fake, int max_members)
 {
     struct room_callbacks callbacks = { .render = render,
@@ -116,7 +123,8 @@ void fake_room_start(struct fake_room *fake, int max_members)
                                         .item_changed = item_changed,
                                         .context = fake,
                                         .audited = audited,
-                                        .audit_has_place = audit_has_place };
+                                        .audit_has_place = audit_has_place,
+                                        .is_saved = is_saved };
     struct room_limits limits = { max_members };
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000000000;

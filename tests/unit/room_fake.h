@@ -36,7 +36,8 @@ struct fake_room {
     char audit[16][1400]; /* "action member result detail before after", row n at n % 16 */
     size_t n_audited;
     bool audit_is_full;
-    const char *missing; /* of pictures drawn from now on, as JSON; NULL: nothing */
+    const char *missing;     /* of pictures drawn from now on, as JSON; NULL: nothing */
+    struct room_saved saved; /* what is on disk; unkept unless a test says otherwise */
 };
 
 void fake_room_start(struct fake_room *fake, int max_members); /* the plan is not ready yet */

@@ -33,6 +33,7 @@ import { paneSwitch } from './pane_switch.js';
 import { startPointers } from './point_lazy.js';
 import { listenSnapshots, otherPlanDialog, resumeSnapshot } from './snapshots.js';
 import { offerName, requestLines } from './room_chip.js';
+import { savedLine } from './saved.js';
 import { sectionOfKind } from './sections.js';
 import { status } from './status.js';
 import { toolStrip } from './tools.js';
@@ -90,7 +91,7 @@ export function roomPage(host, id, { api, connect, clock, redraw, decode, hooks,
   const world = { after, room, ui, api, clock, storage, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
   world.charts = new ChartLoader(world);
   stops.push(() => world.charts.stop());
-  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofDose(room)?.doseBar(world)}${draftBar(world)}${playBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', (shown) => html`${requestLines(shown)}${toasts(shown)}`], ['.floating', floating]])
+  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofDose(room)?.doseBar(world)}${draftBar(world)}${playBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', (shown) => html`${savedLine(shown)}${requestLines(shown)}${toasts(shown)}`], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world), redraw));
   if (!isBack) stops.push(offerName(world));
   stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), doses.start(clock));

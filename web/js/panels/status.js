@@ -5,6 +5,7 @@ import { crosshair } from '../state/plan.js';
 import { ofDose } from './dose_later.js';
 import { number } from './format.js';
 import { icon } from './icons.js';
+import { savedMark } from './saved.js';
 
 export function status({ room, ui, panes, probed, doses }) {
   const shown = ui.visible.value;
@@ -18,6 +19,7 @@ export function status({ room, ui, panes, probed, doses }) {
   return html`
     ${badge ? html`<span class=${`badge ${badge.state}`} id="badge-all" data-badge=${badge.state}>${icon(badge.state, 12)}<span>${badge.text}</span></span>` : nothing}
     ${room.link.value.state === 'lost' ? html`<button class="ghost" @click=${() => room.reconnect()}>Try now</button>` : nothing}
+    ${savedMark(room)}
     <span class="pairing pace" title=${`From an input to its picture, median of the last 20. Ping ${room.pingMs.value === null ? '–' : `${number(room.pingMs.value)} ms`}.`}>Latency <b id="latency">${latency === null ? '–' : `${number(latency)} ms`}</b></span>
     <span class="pairing pace"><b id="fps">${fps ? `${number(fps)} fps` : 'idle'}</b></span>
     <span class="dim wide" id="gl">${room.gl.value}</span>

@@ -10,6 +10,7 @@ import { Latency } from './latency.js';
 import { readPlan } from './plan.js';
 import { Pointers } from './pointers.js';
 import { Replica } from './replica.js';
+import { Saved } from './saved.js';
 import { Sending } from './sending.js';
 import { ViewState } from './view.js';
 
@@ -64,6 +65,7 @@ export class RoomState {
     this.#sending = new Sending({ connection, clock, schedule: sendSoon, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
     this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
     this.items = new Items((message) => this.#sending.act(message));
+    this.saved = new Saved(this);
     this.following = new Following(this, (message) => this.#sending.act(message));
     this.control = new Control(this, (message) => this.#connection.send(message));
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
@@ -212,9 +214,13 @@ export class RoomState {
   #take(message) {
     const handlers = {
       welcome: () => this.#welcome(message),
-      plan: () => this.#loaded(message),
+      plan: () => {
+        if (message.revision !== this.revision.value) this.saved.changed();
+        this.#loaded(message);
+      },
       renderer: () => this.#rendererChanged(message),
       scene: () => {
+        this.saved.changed();
         this.#scene.accept(message.patch, message.input);
         this.#reach(message);
         this.#setRevision(message.revision);
@@ -226,7 +232,11 @@ export class RoomState {
         if (view && Array.isArray(message.regions))
           view.missing.value = { n: message.n, reasons: Object.fromEntries(message.regions.map(({ region, reason }) => [region, reason])) };
       },
-      item: () => this.items.changed(message, this.member.value),
+      item: () => {
+        this.saved.changed();
+        this.items.changed(message, this.member.value);
+      },
+      saved: () => this.saved.told(message),
       members: () => {
         if (Array.isArray(message.members)) this.#membersChanged(message.members);
       },
@@ -244,6 +254,7 @@ export class RoomState {
     this.#setLink('open');
     this.#sending.hold();
     this.pointers.restart();
+    this.saved.restart();
     this.member.value = message.member;
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;
