@@ -15,6 +15,7 @@
 #include "core/base/mem.h"
 #include "core/base/standard_files.h"
 #include "server/daemon/acceptor.h"
+#include "server/daemon/data_lock.h"
 #include "server/daemon/heartbeat.h"
 #include "server/daemon/notify.h"
 #include "server/daemon/options.h"
@@ -351,6 +352,7 @@ int main(int argc, char **argv)
          fill_path(&options.renderer_path, default_renderer, &err) && make_folders(options.data_folder, &err);
     (void)umask(0077); /* what the daemon and its children write is patients' data */
     ok = ok && give_up_root(&options, &err);
+    ok = ok && data_lock(options.data_folder, &err);
     ok = ok && stop_watch(&err); /* starts the first thread; before, a signal simply ends the process */
     if (ok && options.n_plan_folders == 0)
         log_warn("no --plans folder: only uploaded plans can be shown");

@@ -1,7 +1,7 @@
 // Rooms outlive the daemon: killed at once and started again, put to sleep and woken, deleted, backed up. --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readdirSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -175,6 +175,22 @@ test('a backup is made while the daemon writes, and a daemon starts from it', as
   assert.equal(nothing.status, 1);
   assert.match(nothing.stderr, /--backup .*none: .*nowhere\/beamroom\.db: No such file/);
   assert.ok(!existsSync(join(other, 'none')));
+});
+
+test('a second daemon on the same folder is refused by name, and a killed one leaves no lock', async () => {
+  const folder = mkdtempSync(join(data, 'twice-'));
+  let daemon = await start([], folder);
+  const room = await newRoom(daemon), ann = await enter(daemon, room);
+  await ready(ann);
+  await assert.rejects(start([], folder), (error) => error.message.includes('beamroomd ended with 1') && error.message.includes(`--data ${folder}: another beamroomd uses this folder`));
+  symlinkSync(folder, `${folder}-too`);
+  await assert.rejects(start([], `${folder}-too`), /another beamroomd uses this folder/);
+  const { revision } = await patch(ann, 55);
+  await until(() => onDisk(room, folder), (row) => row?.revision === revision);
+  await end(daemon, 'SIGKILL');
+  daemon = await start([], folder);
+  assert.equal((await enter(daemon, room)).welcome.revision, revision);
+  await end(daemon);
 });
 
 test('a damaged database is moved aside, and the daemon starts', async () => {
