@@ -12,6 +12,7 @@
 #include "server/room/bookmark_body.h"
 #include "server/room/item_list.h"
 #include "server/room/note_body.h"
+#include "server/room/recording.h"
 #include "server/room/roles.h"
 #include "server/room/send.h"
 
@@ -107,6 +108,7 @@ static void tell(struct room *room, const char *id, const char *row, const struc
     (void)snprintf(message.item.id, sizeof message.item.id, "%s", id);
     (void)snprintf(message.item.by, sizeof message.item.by, "%s", by->id);
     room->saved.n_item_changes++;
+    recording_item_changed(room, id);
     if (room->callbacks.item_changed)
         room->callbacks.item_changed(room->callbacks.context, room, row, id);
     for (int i = 0; i < room->n_members; i++) {

@@ -3,11 +3,12 @@
 
 void kept_changed(struct room *room, unsigned parts)
 {
-    if (room->callbacks.kept_changed)
+    room->unrecorded |= parts;
+    if (room->callbacks.kept_changed && !room->replay) /* a replay is on disk already */
         room->callbacks.kept_changed(room->callbacks.context, room, parts);
 }
 
 bool room_was_used(const struct room *room)
 {
-    return room->n_named > 0 || room->has_links || room->is_changed;
+    return !room->replay && (room->n_named > 0 || room->has_links || room->is_changed);
 }

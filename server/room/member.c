@@ -15,6 +15,8 @@
 #include "server/room/member_view.h"
 #include "server/room/pointers.h"
 #include "server/room/presenter.h"
+#include "server/room/recording.h"
+#include "server/room/replay.h"
 #include "server/room/roles.h"
 #include "server/room/saved.h"
 #include "server/room/secret.h"
@@ -215,5 +217,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     send_members_to_newcomer(room, member);
     pointers_show(room, member);
     look_show(room, member);
+    recording_show(room, member);
+    replay_show(room, member);
     return true;
 }

@@ -53,6 +53,7 @@ bool pointer_move(struct room *room, struct member *member, const struct message
     pointing->view = to->has_point_mm ? (int)to->view : 0;
     pointing->moved_us = room->now_us;
     pointing->is_due = true;
+    room->unrecorded |= RECORDED_POINTERS;
     (void)pointers_tick(room);
     return true;
 }
@@ -63,6 +64,7 @@ void pointer_end(struct room *room, struct member *member)
         return;
     member->pointing.is_on = false;
     member->pointing.view = 0;
+    room->unrecorded |= RECORDED_POINTERS;
     pass_on(room, member);
 }
 

@@ -93,6 +93,8 @@ static struct member *only_connected(const struct room *room)
 bool presenter_settle(struct room *room)
 {
     const struct member *before = room->presenter;
+    if (room->replay) /* it presents itself */
+        return false;
     if (before && !before->connection && room->now_us >= presenter_due_us(room))
         control_pass(room, NULL);
     struct member *only = room->presenter ? NULL : only_connected(room);
@@ -108,6 +110,8 @@ bool presenter_settle(struct room *room)
 int64_t presenter_due_us(const struct room *room)
 {
     const struct member *presenter = room->presenter;
+    if (room->replay)
+        return INT64_MAX;
     if (presenter)
         return presenter->connection ? INT64_MAX : presenter->away_us + kept_us;
     return only_connected(room) ? room->now_us + RETRY_US : INT64_MAX; /* there was no memory to share the views */

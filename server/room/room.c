@@ -22,6 +22,8 @@
 #include "server/room/member_view.h"
 #include "server/room/pointers.h"
 #include "server/room/presenter.h"
+#include "server/room/recording.h"
+#include "server/room/replay.h"
 #include "server/room/roles.h"
 #include "server/room/saved.h"
 #include "server/room/send.h"
@@ -46,6 +48,7 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
     room->max_members = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS
                             ? limits->max_members
                             : ROOM_MAX_MEMBERS;
+    room->recording_speed = limits ? limits->recording_speed : 0;
     room->created_at_s = (int64_t)time(NULL); /* wall clock, only to be displayed */
     return room;
 }
@@ -61,6 +64,7 @@ void room_destroy(struct room *room)
 {
     if (!room)
         return;
+    recordings_finish(room);
     for (int i = 0; i < room->n_members; i++)
         if (room->members[i]->connection)
             send_bye(room, room->members[i]->connection, -1, room_is_closed);
@@ -71,6 +75,7 @@ void room_destroy(struct room *room)
     forget_plan(room);
     items_free(room);
     beginning_free(room);
+    replay_free(room);
     cJSON_Delete(room->scene);
     cJSON_Delete(room->restored);
     free(room->known);
@@ -114,6 +119,7 @@ static bool replace_plan(struct room *room, const cJSON *plan_document, const cJ
     cJSON_Delete(room->restored);
     room->scene = scene;
     room->restored = NULL;
+    room->unrecorded |= ROOM_ALL_PARTS;
     return true;
 }
 
@@ -148,6 +154,7 @@ bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
     streams_remove_bad_overrides(room);
     send_renderer_state(room, NULL);
     room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+    replay_plan_ready(room);
     (void)streams_request_due(room);
     return true;
 }
@@ -210,6 +217,12 @@ static const struct {
     { MESSAGE_POINTER, pointer_move },
     { MESSAGE_LOOK_HERE, look_here },
     { MESSAGE_LOOK_COME, look_come },
+    { MESSAGE_RECORDING_START, recording_start },
+    { MESSAGE_RECORDING_STOP, recording_stop },
+    { MESSAGE_REPLAY_PLAY, replay_play },
+    { MESSAGE_REPLAY_PAUSE, replay_pause },
+    { MESSAGE_REPLAY_SEEK, replay_seek },
+    { MESSAGE_REPLAY_LEAVE, replay_leave },
     { MESSAGE_PING, handle_ping },
 };
 
@@ -280,6 +293,7 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
         if (refuse(room, connection, text, n, &problem))
             send_bye(room, connection, -1, hello_first);
     } else if (!role_check(member->role, message_descriptions[message.type].right, &problem) ||
+               !replay_allows(room, message.type, &problem) ||
                (is_recorded(message.type) && !audit_has_place(room, &problem))) {
         (void)refuse(room, connection, text, n, &problem);
     } else {
@@ -310,7 +324,8 @@ bool room_has_member(const struct room *room, void *connection)
 int64_t room_tick(struct room *room, int64_t now_us)
 {
     room->now_us = now_us;
-    const int64_t pointers_us = pointers_tick(room), look_us = look_tick(room), saved_us = saved_tick(room);
+    const int64_t pointers_us = pointers_tick(room), look_us = look_tick(room), saved_us = saved_tick(room),
+                  replay_us = replay_tick(room);
     members_close_lost(room);
     bool has_changed = presenter_settle(room);
     int64_t lags_us = lags_settle(room, &has_changed);
@@ -324,6 +339,8 @@ int64_t room_tick(struct room *room, int64_t now_us)
                                pointers_us,
                                look_us,
                                saved_us,
+                               replay_us,
+                               recording_tick(room),
                                lags_us,
                                audit_tick(room) };
     int64_t least_us = INT64_MAX;
@@ -362,6 +379,8 @@ bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller,
                       struct problem *problem)
 {
     room->now_us = now_us;
+    if (!replay_allows(room, MESSAGE_SCENE_PATCH, problem))
+        return false;
     room->caller = find_caller(room, caller);
     const bool ok = scene_apply_patch(room, patch, NULL, 0, problem);
     room->caller = NULL;

@@ -23,13 +23,31 @@ enum {
     ROOM_MAX_LINKS = 32,       /* valid at once */
     ROOM_LINK_MIN_S = 60,
     ROOM_LINK_MAX_S = 30 * 24 * 3600,
-    ROOM_MAX_AUDIT_DETAIL = 1024, /* bytes of the detail of a row for the audit; of a longer one only the length */
-    ROOM_MAX_GATHERED = 32,       /* acts that are being gathered into a row each; the oldest is then recorded */
-    ROOM_AUDIT_QUIET_MS = 1000,   /* acts further apart are rows of their own */
-    ROOM_AUDIT_AT_MOST_MS = 30000 /* no row gathers acts of a longer time */
+    ROOM_MAX_AUDIT_DETAIL = 1024,  /* bytes of the detail of a row for the audit; of a longer one only the length */
+    ROOM_MAX_GATHERED = 32,        /* acts that are being gathered into a row each; the oldest is then recorded */
+    ROOM_AUDIT_QUIET_MS = 1000,    /* acts further apart are rows of their own */
+    ROOM_AUDIT_AT_MOST_MS = 30000, /* no row gathers acts of a longer time */
+    ROOM_MAX_RECORDINGS = 16,      /* of one room, that are kept */
+    ROOM_MAX_RECORDING_BYTES = 64 << 20, /* of one; two hours of a busy meeting take 30 MiB: recording.h */
+    ROOM_MAX_RECORDING_EVENTS = 500000,
+    ROOM_MAX_RECORDING_S = 12 * 3600,
+    ROOM_RECORDING_EMPTY_S = 60, /* nobody there for so long ends it */
+    ROOM_MAX_MARKS = 500         /* of one recording */
 };
 
 struct room;
+struct log_batch; /* meeting_log.h */
+
+/* A recording of a meeting in the room: its facts. The events are on disk alone. */
+struct room_recording {
+    char id[32], by[64], by_name[161]; /* by: the member who began it */
+    char plan_mark[20];                /* of the plan's document then: the same for the same document */
+    int64_t started_ms, length_ms;     /* since 1970; of the meeting */
+    uint32_t n_batches, n_events;
+    uint64_t n_bytes;
+    enum wire_recording_state state;
+    cJSON *marks; /* [[t_ms, kind, name]] of the message replay */
+};
 
 /* A request for one picture. A stream is served by one render: a member's own view, or the shared view of one kind, and
  * of one plane if oblique, for all who follow it. The room never has more than two requests of a stream outstanding. */
@@ -102,6 +120,13 @@ struct room_callbacks {
     bool (*audit_has_place)(void *context);
     /* NULL: rooms are not kept; or: what of the room is on disk at this moment */
     void (*is_saved)(void *context, const struct room *room, struct room_saved *saved);
+    /* The facts of a recording have changed, and, unless batch is NULL, this is to be added to it, under the number
+     * n_batches - 1. Takes batch->text. NULL: there are no recordings. */
+    void (*recorded)(void *context, struct room *room, const struct room_recording *recording, struct log_batch *batch);
+    void (*recording_deleted)(void *context, struct room *room, const char *id);
+    /* The room plays: the batches of the recording from the last one that begins with a state at or before t_ms, up to
+     * the next such one, are to be read; answered by room_replay_came. */
+    void (*replay_read)(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms);
 };
 
 /* What of a room is kept on disk. */
@@ -134,7 +159,8 @@ struct room_kept {
 };
 
 struct room_limits {
-    int max_members; /* at most ROOM_MAX_MEMBERS */
+    int max_members;        /* at most ROOM_MAX_MEMBERS */
+    double recording_speed; /* for tests: how many times as fast the clock of recordings runs; 0: once */
 };
 
 /* id: URL-safe, random, not guessable. The plan and its default scene come with room_plan_ready. */
@@ -229,6 +255,31 @@ void room_kept_finish(struct room_kept *kept);
 void room_restore(struct room *room, const struct room_kept *kept, int64_t now_us);
 /* True once a member has entered, a link was made, or the scene was changed. */
 bool room_was_used(const struct room *room);
+
+/* Recordings. */
+/* [{id, state, started_ms, length_ms, by, by_name, n_events, n_bytes, marks}], the oldest first; NULL: no memory. */
+NODISCARD cJSON *room_recordings(const struct room *room);
+const struct room_recording *room_recording(const struct room *room, const char *id); /* NULL: there is none */
+/* Ends it first where it runs. False: there is none. */
+NODISCARD bool room_recording_delete(struct room *room, const char *id, int64_t now_us);
+/* Gives a room the facts of a recording that was kept; one that ran was cut. Takes recording->marks. Left out beyond
+ * ROOM_MAX_RECORDINGS. */
+void room_restore_recording(struct room *room, struct room_recording *recording);
+void room_recording_finish(struct room_recording *recording); /* frees what it owns */
+/* What was on disk is lost: the recording that runs goes on with a complete state. */
+void room_recording_restart(struct room *room);
+/* What the room of a recording was at t_ms: {t_ms, revision, scene, views: [{document, by}], pointers: [{member, view,
+ * point_mm}], items, members, presenter}. texts: the batches from the last one that begins with a state at or before
+ * t_ms on. NULL with problem. */
+NODISCARD cJSON *room_recorded_state(const char *const *texts, size_t n, int64_t t_ms, struct problem *problem);
+
+/* The room plays this recording of another room from its beginning. Before its first member. */
+void room_replay_begin(struct room *room, const char *of_room, const struct room_recording *recording);
+/* What replay_read asked for: n texts, and the time of the state behind them (INT64_MAX: there is none). n 0: they
+ * cannot be read, and problem says why. */
+void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,
+                      const struct problem *problem, int64_t now_us);
+bool room_replays(const struct room *room);
 
 /* Counters for /metrics. */
 struct room_counters {

@@ -148,6 +148,12 @@ struct link { /* lets new members in */
     bool is_one_use, is_used;
 };
 
+/* Parts of a room that a recording looks at, beside those of enum room_part. */
+enum { RECORDED_POINTERS = 64, RECORDED_ITEMS = 128 };
+
+struct recorder;
+struct replay;
+
 struct room {
     char id[64], plan_id[64];
     struct room_callbacks callbacks;
@@ -196,7 +202,13 @@ struct room {
     } saved;
     struct link links[ROOM_MAX_LINKS];
     int n_links;
-    bool has_links; /* there was one; then those who are no members may do less: room_call_may */
+    struct room_recording recordings[ROOM_MAX_RECORDINGS]; /* the oldest first */
+    int n_recordings;
+    double recording_speed;
+    struct recorder *recorder; /* NULL: no recording runs */
+    unsigned unrecorded;       /* parts that have changed since the recorder looked */
+    struct replay *replay;     /* NULL: the room plays none */
+    bool has_links;            /* there was one; then those who are no members may do less: room_call_may */
     struct stream *streams;
     int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
     uint64_t n_requests;

@@ -7,6 +7,7 @@
 #include "server/room/member_view.h"
 #include "server/room/send.h"
 #include "server/room/stream.h"
+#include "server/wire/bookmark.h"
 #include "server/wire/json_merge.h"
 #include "server/wire/patch.h"
 
@@ -59,6 +60,28 @@ bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by,
     }
     send_scene_patch(room, told, by, input,
                      has_changed); /* a patch that changed nothing is answered to its sender only */
+    return true;
+}
+
+bool scene_show(struct room *room, cJSON *scene)
+{
+    cJSON *told = bookmark_difference(room->scene, scene);
+    if (!told) {
+        cJSON_Delete(scene);
+        return false;
+    }
+    cJSON *before = room->scene;
+    room->scene = scene;
+    if (told->child) {
+        room->revision++;
+        kept_changed(room, ROOM_SCENE);
+        streams_scene_changed(room, before, told);
+        room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+        send_scene_patch(room, told, NULL, 0, true);
+    } else {
+        cJSON_Delete(told);
+    }
+    cJSON_Delete(before);
     return true;
 }
 

@@ -125,7 +125,7 @@ void fake_room_start(struct fake_room *fake, int max_members)
                                         .audited = audited,
                                         .audit_has_place = audit_has_place,
                                         .is_saved = is_saved };
-    struct room_limits limits = { max_members };
+    struct room_limits limits = { .max_members = max_members };
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000000000;
     fake->again_us = INT64_MAX;
