@@ -135,6 +135,7 @@ static void connection_opened(void *context, struct ws_connection *connection, c
 static void message_received(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *text,
                              size_t n)
 {
+    (void)context;
     (void)kind; /* always a text: ws refuses binary messages */
     struct visitor *visitor = ws_owner(connection);
     struct net_room *room = visitor->room;
@@ -143,9 +144,22 @@ static void message_received(void *context, struct ws_connection *connection, en
     if (!room)
         return;
     room_text_came(room->room, connection, text, n, clock_now_us());
-    keep_write_due(context, false);
-    schedule_room(room);
-    schedule_wake(context);
+    room->is_spoken_to = room->net->is_spoken_to = true;
+}
+
+/* Once for all messages that have come together: two hundred members acknowledge each picture. */
+static void settle_messages(struct net *net)
+{
+    if (!net->is_spoken_to)
+        return;
+    net->is_spoken_to = false;
+    keep_write_due(net, false);
+    for (size_t i = 0; i < net->n_rooms; i++)
+        if (net->rooms[i]->is_spoken_to) {
+            net->rooms[i]->is_spoken_to = false;
+            schedule_room(net->rooms[i]);
+        }
+    schedule_wake(net);
 }
 
 static bool is_greeted(void *context, struct ws_connection *connection)
@@ -323,8 +337,10 @@ static void *work(void *context)
     struct problem stops;
     run_tasks(net); /* the rooms that are on disk */
     schedule_wake(net);
-    while (!net_is_stopping(net))
+    while (!net_is_stopping(net)) {
         ws_serve(net->ws);
+        settle_messages(net);
+    }
     run_tasks(net);
     for (size_t i = 0; i < net->n_rooms; i++)
         room_audit_flush(net->rooms[i]->room, clock_now_us());

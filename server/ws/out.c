@@ -5,15 +5,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
+
+#include <linux/sockios.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/wire/message.h"
 
-enum { LOG_EVERY_US = 10000000 };
+enum {
+    LOG_EVERY_US = 10000000,
+    MOST_AT_ONCE = 16 << 10 /* bytes of texts that are begun to be sent together */
+};
 
 /* ---- queues ----------------------------------------------------------------------------------------------------- */
 
@@ -81,6 +87,26 @@ static void end_within(struct ws_connection *connection, int64_t within_us)
     lws_set_timer_usecs(connection->wsi, within_us > 0 ? within_us : 1);
 }
 
+/* Something waits: out_flush sends it once the caller has returned to the loop. */
+static void mark(struct ws_connection *connection)
+{
+    if (connection->is_marked)
+        return;
+    connection->is_marked = true;
+    connection->next_marked = connection->ws->marked;
+    connection->ws->marked = connection;
+}
+
+void out_unmark(struct ws_connection *connection)
+{
+    struct ws_connection **at = &connection->ws->marked;
+    while (connection->is_marked && *at != connection)
+        at = &(*at)->next_marked;
+    if (connection->is_marked)
+        *at = connection->next_marked;
+    connection->is_marked = false;
+}
+
 void out_begin_close(struct ws_connection *connection, uint16_t code, const char *reason)
 {
     uint8_t bytes[2 + WS_MAX_REASON] = { (uint8_t)(code >> 8), (uint8_t)code };
@@ -95,7 +121,7 @@ void out_begin_close(struct ws_connection *connection, uint16_t code, const char
     connection->close = out_message(WS_CLOSE, bytes, code == WS_CLOSE_NO_CODE ? 0 : 2 + n_reason);
     out_drop_frames(connection);
     end_within(connection, WS_CLOSE_WITHIN_S * INT64_C(1000000));
-    lws_callback_on_writable(connection->wsi);
+    mark(connection);
 }
 
 void out_add_pong(struct ws_connection *connection, const void *bytes, size_t n)
@@ -103,7 +129,13 @@ void out_add_pong(struct ws_connection *connection, const void *bytes, size_t n)
     if (connection->pongs.n >= WS_MAX_PONGS)
         free(queue_take_first(&connection->pongs));
     out_queue_add(&connection->pongs, out_message(WS_PONG, bytes, n));
-    lws_callback_on_writable(connection->wsi);
+    mark(connection);
+}
+
+void out_add_ping(struct ws_connection *connection)
+{
+    out_queue_add(&connection->pongs, out_message(WS_PING, NULL, 0));
+    mark(connection);
 }
 
 /* The message, if it may wait on the connection beside what waits already; NULL: the connection is cut. */
@@ -129,7 +161,7 @@ void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, cons
     if (!message)
         return;
     out_queue_add(&connection->texts, message);
-    lws_callback_on_writable(connection->wsi);
+    mark(connection);
 }
 
 void ws_send_latest(struct ws_connection *connection, uint32_t key, const char *text)
@@ -154,23 +186,12 @@ void ws_send_latest(struct ws_connection *connection, uint32_t key, const char *
     } else {
         out_queue_add(queue, message);
     }
-    lws_callback_on_writable(connection->wsi);
+    mark(connection);
 }
 
 void ws_send_text(struct ws_connection *connection, const char *text)
 {
     ws_send_message(connection, WS_TEXT, text, strlen(text));
-}
-
-void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct room_picture *picture)
-{
-    if (connection->state != STATE_OPEN || header->view < 1 || header->view > ROOM_MAX_VIEWS)
-        return;
-    struct frame_slot *slot = &connection->slots[header->view - 1];
-    room_picture_drop(slot->picture);
-    slot->picture = room_picture_hold(picture);
-    frame_header_write(header, slot->header);
-    lws_callback_on_writable(connection->wsi);
 }
 
 void ws_close(struct ws_connection *connection, enum ws_close_code code)
@@ -191,32 +212,47 @@ void ws_bye(struct ws_connection *connection, enum ws_close_code code, const cha
 
 /* ---- sending ---------------------------------------------------------------------------------------------------- */
 
-static void begin_sending_message(struct ws_connection *connection, struct message_out *message)
+void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct room_picture *picture)
 {
-    struct sending *sending = &connection->sending;
-    *sending = (struct sending){ .message = message, .body = message->bytes, .n_body = message->n };
-    sending->n_head = ws_write_head(sending->head, message->opcode, message->n);
+    if (connection->state != STATE_OPEN || header->view < 1 || header->view > ROOM_MAX_VIEWS)
+        return;
+    struct frame_slot *slot = &connection->slots[header->view - 1];
+    room_picture_drop(slot->picture);
+    slot->picture = room_picture_hold(picture);
+    frame_header_write(header, slot->header);
+    mark(connection);
 }
 
-static void begin_sending_frame(struct ws_connection *connection, struct frame_slot *slot)
+static struct sending_part *add_part(struct sending *sending)
 {
-    struct sending *sending = &connection->sending;
-    struct room_picture *picture = slot->picture;
-    *sending = (struct sending){ .picture = picture, .body = picture->bytes, .n_body = picture->n_bytes };
-    sending->n_head = ws_write_head(sending->head, WS_BINARY, FRAME_HEADER_BYTES + picture->n_bytes);
-    memcpy(sending->head + sending->n_head, slot->header, FRAME_HEADER_BYTES);
-    sending->n_head += FRAME_HEADER_BYTES;
+    struct sending_part *part = &sending->parts[sending->n++];
+    memset(part, 0, sizeof *part);
+    return part;
+}
+
+static void begin_message(struct sending *sending, struct message_out *message)
+{
+    struct sending_part *part = add_part(sending);
+    part->message = message;
+    part->body = message->bytes;
+    part->n_body = message->n;
+    part->n_head = ws_write_head(part->head, message->opcode, message->n);
+}
+
+static void begin_frame(struct sending *sending, struct frame_slot *slot)
+{
+    struct sending_part *part = add_part(sending);
+    part->picture = slot->picture;
+    part->body = slot->picture->bytes;
+    part->n_body = slot->picture->n_bytes;
+    part->n_head = ws_write_head(part->head, WS_BINARY, FRAME_HEADER_BYTES + part->n_body);
+    memcpy(part->head + part->n_head, slot->header, FRAME_HEADER_BYTES);
+    part->n_head += FRAME_HEADER_BYTES;
     slot->picture = NULL;
 }
 
-static bool is_sending(const struct ws_connection *connection)
-{
-    return connection->sending.message || connection->sending.picture;
-}
-
-/* Begins to send the next thing: pongs before messages, messages before the close, the close before latest and
- * frames (closing drops those), views in turn. Returns false when nothing waits. */
-static bool begin_next(struct ws_connection *connection)
+/* Pongs before messages, messages before the close. */
+static struct message_out *take_message(struct ws_connection *connection)
 {
     struct message_out *message = queue_take_first(&connection->pongs);
     if (!message)
@@ -225,10 +261,30 @@ static bool begin_next(struct ws_connection *connection)
         message = connection->close;
         connection->close = NULL;
     }
-    if (!message && connection->state == STATE_OPEN)
-        message = queue_take_first(&connection->latest);
-    if (message) {
-        begin_sending_message(connection, message);
+    return message;
+}
+
+/* Begins to send what is next: messages that go together, as long as they are short, and behind them one of the latest
+ * texts or one frame, views in turn: more than one of those is not begun, as newer ones may replace them. The close
+ * goes before these (closing drops them), and last. Returns false when nothing waits. */
+static bool begin_next(struct ws_connection *connection)
+{
+    struct sending *sending = &connection->sending;
+    size_t n_bytes = 0;
+    while (sending->n < OUT_AT_ONCE && n_bytes < MOST_AT_ONCE) {
+        struct message_out *message = take_message(connection);
+        if (!message)
+            break;
+        n_bytes += message->n;
+        begin_message(sending, message);
+        if (message->opcode == WS_CLOSE)
+            return true;
+    }
+    if (sending->n == OUT_AT_ONCE || n_bytes >= MOST_AT_ONCE)
+        return true;
+    struct message_out *latest = connection->state == STATE_OPEN ? queue_take_first(&connection->latest) : NULL;
+    if (latest) {
+        begin_message(sending, latest);
         return true;
     }
     for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
@@ -236,10 +292,15 @@ static bool begin_next(struct ws_connection *connection)
         if (!connection->slots[at].picture)
             continue;
         connection->next_slot = at + 1;
-        begin_sending_frame(connection, &connection->slots[at]);
+        begin_frame(sending, &connection->slots[at]);
         return true;
     }
-    return false;
+    return sending->n > 0;
+}
+
+static bool is_sending(const struct ws_connection *connection)
+{
+    return connection->sending.n > 0;
 }
 
 static bool has_more(const struct ws_connection *connection)
@@ -251,19 +312,26 @@ static bool has_more(const struct ws_connection *connection)
     return has;
 }
 
-static void finish_sending(struct ws_connection *connection)
+void out_drop_sending(struct ws_connection *connection)
 {
     struct sending *sending = &connection->sending;
-    if (sending->message && sending->message->opcode ==
-                                WS_CLOSE) { /* RFC 6455 7.1.1: nothing more is sent; the client closes its direction */
+    for (int i = 0; i < sending->n; i++) {
+        free(sending->parts[i].message);
+        room_picture_drop(sending->parts[i].picture);
+    }
+    sending->n = 0;
+    sending->n_done = 0;
+}
+
+static void finish_sending(struct ws_connection *connection)
+{
+    const struct message_out *last = connection->sending.parts[connection->sending.n - 1].message;
+    if (last && last->opcode == WS_CLOSE) { /* RFC 6455 7.1.1: nothing more is sent; the client closes its direction */
         connection->state = STATE_LINGERING;
         (void)shutdown(lws_get_socket_fd(connection->wsi), SHUT_WR);
         end_within(connection, WS_LINGER_MS * INT64_C(1000));
     }
-    free(sending->message);
-    room_picture_drop(sending->picture);
-    sending->message = NULL;
-    sending->picture = NULL;
+    out_drop_sending(connection);
 }
 
 enum sent { SENT_ALL, SENT_PART, SENT_FAILED };
@@ -271,32 +339,79 @@ enum sent { SENT_ALL, SENT_PART, SENT_FAILED };
 static enum sent send_some(struct ws_connection *connection)
 {
     struct sending *sending = &connection->sending;
-    size_t n_all = sending->n_head + sending->n_body,
-           n_left_head = sending->n_done < sending->n_head ? sending->n_head - sending->n_done : 0;
-    size_t at_body = sending->n_done > sending->n_head ? sending->n_done - sending->n_head : 0;
-    struct iovec parts[2] = { { sending->head + sending->n_head - n_left_head, n_left_head },
-                              { (uint8_t *)(uintptr_t)sending->body + at_body, sending->n_body - at_body } };
-    struct msghdr header = { .msg_iov = parts, .msg_iovlen = 2 };
+    struct iovec pieces[2 * OUT_AT_ONCE];
+    size_t n_left = 0, n_skipped = sending->n_done;
+    int n_pieces = 0;
+    for (int i = 0; i < 2 * sending->n; i++) {
+        struct sending_part *part = &sending->parts[i / 2];
+        const uint8_t *bytes = i % 2 ? part->body : part->head;
+        size_t n = i % 2 ? part->n_body : part->n_head, n_skip = n_skipped < n ? n_skipped : n;
+        n_skipped -= n_skip;
+        if (n > n_skip)
+            pieces[n_pieces++] = (struct iovec){ (uint8_t *)(uintptr_t)bytes + n_skip, n - n_skip };
+        n_left += n - n_skip;
+    }
+    struct msghdr header = { .msg_iov = pieces, .msg_iovlen = (size_t)n_pieces };
     ssize_t n = sendmsg(lws_get_socket_fd(connection->wsi), &header, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n < 0)
         return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS ? SENT_PART : SENT_FAILED;
     sending->n_done += (size_t)n;
-    if (sending->n_done < n_all)
+    if ((size_t)n < n_left)
         return SENT_PART;
     finish_sending(connection);
     return SENT_ALL;
 }
 
+static void arm(struct ws_connection *connection)
+{
+    connection->is_armed = true;
+    lws_callback_on_writable(connection->wsi);
+}
+
 int out_write(struct ws_connection *connection)
 {
+    connection->is_armed = false;
     if (connection->state == STATE_NONE || connection->state == STATE_LINGERING ||
         (!is_sending(connection) && !begin_next(connection)))
         return 0;
     if (send_some(connection) == SENT_FAILED)
         return -1;
     if (has_more(connection))
-        lws_callback_on_writable(connection->wsi);
+        arm(connection);
     return 0;
+}
+
+/* Whether the kernel holds so little that the socket counts as writable. */
+static bool takes_now(const struct ws_connection *connection)
+{
+    int n_unsent = 0;
+    return ioctl(lws_get_socket_fd(connection->wsi), SIOCOUTQNSD, &n_unsent) == 0 && n_unsent < WS_UNSENT_AT_MOST;
+}
+
+static void flush(struct ws_connection *connection)
+{
+    if (connection->is_armed || connection->state == STATE_NONE || connection->state == STATE_LINGERING ||
+        !has_more(connection))
+        return;
+    if (!takes_now(connection) || out_write(connection) == 0) {
+        if (has_more(connection) && !connection->is_armed)
+            arm(connection);
+        return;
+    }
+    connection->state = STATE_CLOSING; /* the client has gone: its timer ends it */
+    out_drop_frames(connection);
+    out_drop_sending(connection);
+    end_within(connection, 0);
+}
+
+void out_flush(struct ws *ws)
+{
+    while (ws->marked) {
+        struct ws_connection *connection = ws->marked;
+        ws->marked = connection->next_marked;
+        connection->is_marked = false;
+        flush(connection);
+    }
 }
 
 int out_answer_now(struct ws_connection *connection)

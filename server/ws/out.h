@@ -11,6 +11,12 @@ void out_queue_add(struct queue_out *queue, struct message_out *message); /* tak
 void out_queue_clear(struct queue_out *queue);
 /* Queues a pong; the oldest is dropped when WS_MAX_PONGS wait. */
 void out_add_pong(struct ws_connection *connection, const void *bytes, size_t n);
+/* Sends what waits on the connections that were given something since the last call, all of one in one go. */
+void out_flush(struct ws *ws);
+void out_unmark(struct ws_connection *connection); /* before it is freed */
+void out_drop_sending(struct ws_connection *connection);
+/* Adds a ping. */
+void out_add_ping(struct ws_connection *connection);
 /* Sends what the socket takes; called again when it takes more. Returns non-zero when the connection is to be cut. */
 int out_write(struct ws_connection *connection);
 /* Sends pongs and a close at once: a client may close its direction right after sending. Returns non-zero when the

@@ -19,8 +19,7 @@
 #include "server/ws/out.h"
 
 enum {
-    SEND_BUFFER = 128 << 10,   /* the kernel's: a frame in it can no longer be replaced by a newer one */
-    UNSENT_AT_MOST = 32 << 10, /* bytes left in it when it takes more */
+    SEND_BUFFER = 128 << 10, /* the kernel's: a frame in it can no longer be replaced by a newer one */
     READ_AT_ONCE = 32 << 10,
     TIMER_US = 1000000,
 };
@@ -138,7 +137,7 @@ static struct lws *adopt_socket(struct ws *ws, int socket, const struct handshak
         return NULL;
     }
     set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-    set_option(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, UNSENT_AT_MOST);
+    set_option(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, WS_UNSENT_AT_MOST);
     set_option(socket, SOL_SOCKET, SO_SNDBUF, SEND_BUFFER);
     if (!skip_head(socket, handshake->n_head) || !answer_handshake(socket, handshake->key)) {
         (void)close(socket); /* the client has gone */
@@ -249,8 +248,7 @@ static int check_connection(struct ws_connection *connection)
     } else if (silent_us >= WS_SILENT_AT_MOST_S * INT64_C(1000000)) {
         ws_bye(connection, WS_CLOSE_NORMAL, "nothing was heard for 30 s", 0);
     } else if (silent_us >= WS_PING_AFTER_S * INT64_C(1000000) && !connection->pongs.first) {
-        out_queue_add(&connection->pongs, out_message(WS_PING, NULL, 0));
-        lws_callback_on_writable(connection->wsi);
+        out_add_ping(connection);
     }
     return 0;
 }
@@ -267,8 +265,8 @@ static void closed(struct ws_connection *connection)
     out_queue_clear(&connection->texts);
     out_queue_clear(&connection->latest);
     free(connection->close);
-    free(connection->sending.message);
-    room_picture_drop(connection->sending.picture);
+    out_drop_sending(connection);
+    out_unmark(connection);
     ws_parser_finish(&connection->parser);
     end_count(&connection->count);
 }
@@ -341,7 +339,9 @@ void ws_destroy(struct ws *ws)
 
 void ws_serve(struct ws *ws)
 {
+    out_flush(ws);
     (void)lws_service(ws->context, 0);
+    out_flush(ws);
 }
 
 void ws_wake(struct ws *ws)

@@ -5,6 +5,8 @@
 
 #include "server/ws/ws.h"
 
+enum { WS_UNSENT_AT_MOST = 32 << 10 }; /* bytes left in the kernel's buffer when it takes more */
+
 struct message_out { /* a message, ping, pong or close that waits to be sent */
     struct message_out *next;
     enum ws_opcode opcode;
@@ -23,13 +25,21 @@ struct frame_slot { /* the newest frame of a view, not begun to be sent */
     struct room_picture *picture; /* NULL: empty */
 };
 
-struct sending { /* the message that is partly sent: nothing else may be sent before its rest */
+enum { OUT_AT_ONCE = 4 }; /* messages that one call sends */
+
+struct sending_part {
     uint8_t head[10 + FRAME_HEADER_BYTES];
-    size_t n_head, n_done; /* n_done: bytes of head and body that were sent */
+    size_t n_head;
     const uint8_t *body;
     size_t n_body;
     struct message_out *message;  /* owner of the body, ... */
-    struct room_picture *picture; /* ... or this one; both NULL: nothing is being sent */
+    struct room_picture *picture; /* ... or this one */
+};
+
+struct sending { /* messages that are partly sent: nothing else may be sent before their rest */
+    struct sending_part parts[OUT_AT_ONCE];
+    int n;         /* 0: nothing is being sent */
+    size_t n_done; /* bytes of heads and bodies that were sent */
 };
 
 enum state {
@@ -54,6 +64,9 @@ struct ws_connection { /* allocated and zeroed by libwebsockets, lives as long a
     struct frame_slot slots[ROOM_MAX_VIEWS];
     int next_slot;
     struct sending sending;
+    bool is_armed;  /* out_write is called when the socket takes more */
+    bool is_marked; /* it is in the list of those that have something to send */
+    struct ws_connection *next_marked;
 };
 
 struct ws {
@@ -64,6 +77,7 @@ struct ws {
     struct ws_limits limits;
     char *allowed_origin;
     lws_sorted_usec_list_t timer;
+    struct ws_connection *marked; /* out_flush sends what waits on these */
     int64_t logged_us;
     struct ws_counters counters;
 };

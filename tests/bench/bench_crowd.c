@@ -6,13 +6,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
 #include "tests/bench/crowd.h"
+#include "tests/bench/floor.h"
 #include "tests/bench/peer.h"
 
-enum { PAINT_US = 8000, TURN_EVERY_US = 30000, N_CROWD = 64, WIDTH = 1024, HEIGHT = 768 };
+enum { PAINT_US = 8000, TURN_EVERY_US = 30000, N_CROWD = 64, WIDTH = 1024, HEIGHT = 768, RATE = 25 };
 #define S INT64_C(1000000)
 
 static struct peer daemon_peer;
@@ -169,6 +171,28 @@ static double measure_us(struct crowd *crowd, int64_t for_us, double *n_bytes, d
     return us / (double)(crowd->clients[0]->n_frames ? crowd->clients[0]->n_frames : 1);
 }
 
+/* Bytes per microsecond of processor time that a server of the same bytes sends to 65. */
+static double rate_of(int pid, int server_port, struct peer *peer, uint32_t n_picture)
+{
+    struct crowd crowd;
+    char question[64], line[64];
+    crowd_init(&crowd, server_port, PAINT_US);
+    for (int i = 0; i <= N_CROWD; i++)
+        (void)crowd_join(&crowd, "/", 2, NULL);
+    (void)snprintf(question, sizeof question, "%u %d\n", n_picture, RATE);
+    if (peer)
+        (void)peer_ask(peer, question, line, sizeof line);
+    (void)crowd_serve(&crowd, clock_now_us() + 2 * S, NULL, NULL); /* compiled by now */
+    crowd_count_from_now(&crowd);
+    int64_t before_us = crowd_cpu_us(pid);
+    (void)crowd_serve(&crowd, clock_now_us() + 6 * S, NULL, NULL);
+    double n_us = (double)(crowd_cpu_us(pid) - before_us), n_bytes = 0;
+    for (size_t i = 0; i < crowd.n_clients; i++)
+        n_bytes += (double)crowd.clients[i]->n_bytes;
+    crowd_finish(&crowd);
+    return n_bytes / n_us;
+}
+
 static void followers(void)
 {
     char path[80], line[64];
@@ -204,29 +228,22 @@ static void followers(void)
     bool has_peer = peer_start(&peer, (const char *const[]){ "node", script, NULL }, line, sizeof line) &&
                     sscanf(line, "%d", &peer_port) == 1;
     if (has_peer) {
-        struct crowd other;
-        char question[64];
-        crowd_init(&other, peer_port, PAINT_US);
-        for (int i = 0; i <= N_CROWD; i++)
-            (void)crowd_join(&other, "/", 2, NULL);
-        (void)snprintf(question, sizeof question, "%u 25\n", n_picture);
-        (void)peer_ask(&peer, question, line, sizeof line);
-        (void)crowd_serve(&other, clock_now_us() + 2 * S, NULL, NULL); /* compiled by now */
-        crowd_count_from_now(&other);
-        int64_t before_us = crowd_cpu_us(peer.pid);
-        (void)crowd_serve(&other, clock_now_us() + 6 * S, NULL, NULL);
-        double theirs_s = (double)(crowd_cpu_us(peer.pid) - before_us) / 1e6, their_bytes = 0;
-        for (size_t i = 0; i < other.n_clients; i++)
-            their_bytes += (double)other.clients[i]->n_bytes;
-        double theirs = their_bytes / theirs_s / 1e6;
+        double theirs = rate_of(peer.pid, peer_port, &peer, n_picture);
         printf(
             "{\"name\":\"the same bytes to 65\",\"value\":%.1f,\"unit\":\"MB per CPU second\",\"peer\":\"npm ws\","
             "\"peer_value\":%.1f,\"ratio\":%.3f,\"note\":\"%u bytes; ours is the whole daemon, with what it reads of "
             "the renderer and of members\"}\n",
             ours, theirs, ours / theirs, n_picture);
-        crowd_finish(&other);
     }
     (void)peer_end(&peer);
+    int floor_port = 0;
+    pid_t floor = floor_start(N_CROWD + 1, n_picture, RATE, &floor_port);
+    if (floor > 0) {
+        print("the same bytes to 65 by a loop of writev", rate_of(floor, floor_port, NULL, n_picture),
+              "MB per CPU second", "reads answers without looking at them: what the kernel takes");
+        (void)kill(floor, SIGKILL);
+        (void)waitpid(floor, NULL, 0);
+    }
 }
 
 /* ---- one who does not read -------------------------------------------------------------------------------------- */

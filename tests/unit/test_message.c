@@ -138,6 +138,57 @@ static void a_text_that_names_nul_is_refused_and_a_backslash_before_u0000_is_not
     cJSON_Delete(json);
 }
 
+/* What the short way of message_read takes and what it leaves to the general reader: the same comes out. */
+static void an_acknowledgement_is_read_alike_however_it_is_written(void **state)
+{
+    static const struct {
+        const char *text;
+        int64_t view, sequence; /* view 0: refused */
+    } cases[] = {
+        { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":0}", 1, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":8,\"sequence\":4294967295}", 8, 4294967295 },
+        { " {\"type\": \"frame.shown\", \"view\": 3, \"sequence\": 77}\n", 3, 77 },
+        { "{\"sequence\":77,\"view\":3,\"type\":\"frame.shown\"}", 3, 77 },
+        { "{\"type\":\"frame.shown\",\"view\":3,\"sequence\":77.0}", 3, 77 },
+        { "{\"type\":\"frame.shown\",\"view\":3,\"sequence\":77} ", 3, 77 },
+        { "{\"type\":\"frame.shown\",\"view\":0,\"sequence\":1}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":9,\"sequence\":1}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":4294967296}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":-1}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":18446744073709551617}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":,\"sequence\":1}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":1", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":1}}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":1,\"more\":1}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":1}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":", 0, 0 },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        /* no byte behind it, so that a checker of memory finds what is read too far */
+        size_t n = strlen(cases[i].text);
+        char *exact = malloc(n);
+        assert_non_null(exact);
+        memcpy(exact, cases[i].text, n);
+        struct message message;
+        struct problem problem = { 0 };
+        bool ok = message_read(exact, n, true, &message, &problem);
+        free(exact);
+        if (ok != (cases[i].view > 0))
+            fail_msg("%s: %s", cases[i].text, ok ? "taken" : problem.detail);
+        if (!ok)
+            continue;
+        assert_int_equal(message.type, MESSAGE_FRAME_SHOWN);
+        assert_int_equal(message.frame_shown.view, cases[i].view);
+        assert_int_equal(message.frame_shown.sequence, cases[i].sequence);
+        message_finish(&message);
+    }
+    struct message message;
+    struct problem problem = { 0 };
+    assert_false(message_read(cases[0].text, strlen(cases[0].text), false, &message, &problem)); /* not the server's */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -145,6 +196,7 @@ int main(void)
         cmocka_unit_test(every_good_message_decodes_and_encodes_to_itself),
         cmocka_unit_test(every_bad_message_is_refused_with_the_error_it_names),
         cmocka_unit_test(bytes_that_are_no_json_are_refused),
+        cmocka_unit_test(an_acknowledgement_is_read_alike_however_it_is_written),
         cmocka_unit_test(a_problem_survives_the_way_through_json),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
