@@ -127,7 +127,7 @@ $(B)/lib%.a:
 $(B)/beamroomd: $(call obj,$(DAEMON_SRC)) $(B)/libserver.a $(B)/libwire.a $(B)/libcore.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(SERVER_LIBS)
 $(B)/beamroom-render: $(call obj,$(RENDERER_SRC)) $(B)/libwire.a $(B)/libcore.a
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS) $(UNPACK_LIBS)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS) $(UNPACK_LIBS) -lsodium
 $(B)/beamroom: $(call obj,$(CLI_SRC)) $(B)/libwire.a $(B)/libcore.a
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(CORE_LIBS)
 

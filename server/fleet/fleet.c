@@ -17,6 +17,7 @@
 #include "server/fleet/openings.h"
 #include "server/fleet/plan_entry.h"
 #include "server/fleet/plan_list.h"
+#include "server/fleet/plan_revision.h"
 #include "server/fleet/plan_scan.h"
 #include "server/fleet/renderer_events.h"
 #include "server/fleet/requests.h"
@@ -78,7 +79,7 @@ static void handle_event(struct fleet *fleet, struct watch_event *event)
         if (uploads_event(fleet, event))
             break;
         cache_quota_end(fleet->cache_quota, event->number);
-        if (!gl_probe_ended(fleet, event) && !plan_scan_ended(fleet, event))
+        if (!gl_probe_ended(fleet, event) && !plan_scan_ended(fleet, event) && !plan_revision_ended(fleet, event))
             renderer_ended(fleet, event);
         break;
     }
@@ -118,6 +119,7 @@ void fleet_handle_events(struct fleet *fleet)
         fleet->options.wake(fleet->options.context);
     update_list(fleet);
     plan_scans_start(fleet);
+    plan_revisions_start(fleet);
     uploads_tick(fleet);
     report_changes(fleet);
 }
@@ -185,6 +187,7 @@ static void describe(const struct fleet *fleet, const struct plan_entry *plan, s
         .memory_bytes = plan->memory_bytes,
         .load_ms = plan->load_ms,
         .pid = plan->pid,
+        .revision = plan->revision.digest,
         .confined = plan->confined,
     };
 }

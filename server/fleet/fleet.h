@@ -99,8 +99,18 @@ struct fleet_plan {
     uint64_t memory_bytes;                  /* resident, of its process; 0: unknown */
     int64_t load_ms;
     int pid;              /* 0: none */
+    const char *revision; /* of its files, as fleet_revision gave it last; "": not known */
     const char *confined; /* of its process: "landlock 3, seccomp, no-new-privs, no capabilities"; "": unknown */
 };
+struct fleet_revision {
+    char digest[65]; /* of the plan's files, as server/renderer/digest.h says; "": not known */
+    uint64_t n_files;
+    const char *reason; /* why it cannot be known; "": it can; borrowed until the next call into the fleet */
+};
+/* The revision of the plan's files, as last looked at; looks again, in a program of its own, when that was some time
+ * ago or the folder has changed. False: it is not known, yet or at all. When it becomes known, or another one,
+ * options.changed is called. */
+bool fleet_revision(struct fleet *fleet, const char *plan_id, struct fleet_revision *revision);
 /* True once the plan folders have been listed. Before that, a plan that is not found gives PROBLEM_BUSY. */
 bool fleet_is_listed(const struct fleet *fleet);
 /* Fills in the problem of a plan that is not found: there is none, or the list is not known yet. Returns false. */

@@ -40,6 +40,16 @@ struct plan_entry {
     bool is_missing; /* no longer in the plan folders */
     bool is_removed; /* deleted: no longer found by id; freed when no process, scan or request refers to it */
 
+    struct {
+        char digest[65], key[65], reason[160]; /* digest "": not known; reason: why it cannot be */
+        uint64_t n_files;
+        uint64_t program;     /* number of the one that computes it; 0: none */
+        uint64_t fingerprint; /* of the folder, when the last one was started */
+        uint32_t generation;  /* likewise */
+        int64_t looked_us;    /* when the last one ended */
+        bool is_wanted;
+    } revision;
+
     /* the renderer */
     uint64_t process; /* process number; 0: none */
     int pid;
@@ -98,6 +108,7 @@ struct fleet {
     uint64_t n_waiting_bytes; /* of requests not yet sent */
     uint64_t last_number;     /* of processes and requests */
     int n_scans;              /* running */
+    int n_revisions;          /* programs that compute one, running */
     uint64_t gl_probe;        /* process number of the running GL probe; 0: none */
     cJSON *gl;
     struct problem gl_problem;

@@ -30,8 +30,8 @@ static void add_plan(struct fleet *fleet, const struct plan_folder *found)
 
 static bool is_at_rest(const struct fleet *fleet, const struct plan_entry *plan)
 {
-    return plan->process == 0 && plan->restart_at_us == 0 && plan->scan == 0 && plan->n_holds == 0 &&
-           !requests_has_any(fleet, plan);
+    return plan->process == 0 && plan->restart_at_us == 0 && plan->scan == 0 && plan->revision.program == 0 &&
+           plan->n_holds == 0 && !requests_has_any(fleet, plan);
 }
 
 static void drop(struct fleet *fleet, size_t index)

@@ -13,6 +13,7 @@ void api_plans(struct api *api, struct call *call);
 void api_plan(struct api *api, struct call *call);
 void api_plan_upload(struct api *api, struct call *call);
 void api_plan_delete(struct api *api, struct call *call);
+void api_plan_revision(struct api *api, struct call *call);
 void api_plan_open(struct api *api, struct call *call);
 void api_plan_close(struct api *api, struct call *call);
 void api_job(struct api *api, struct call *call);
@@ -28,6 +29,7 @@ void api_room_scene(struct api *api, struct call *call);
 void api_room_scene_patch(struct api *api, struct call *call);
 void api_room_members(struct api *api, struct call *call);
 void api_room_notes(struct api *api, struct call *call);
+void api_room_record(struct api *api, struct call *call);
 void api_room_bookmarks(struct api *api, struct call *call);
 void api_room_bookmark(struct api *api, struct call *call);
 void api_room_bookmark_picture(struct api *api, struct call *call);
@@ -36,6 +38,9 @@ void api_room_snapshot(struct api *api, struct call *call);
 void api_room_link_new(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);
 
+/* The revision of the plan's files. False with problem: not known, busy while it is being found out. */
+NODISCARD bool api_plan_revision_known(struct api *api, const char *plan_id, struct fleet_revision *revision,
+                                       struct problem *problem);
 /* The body of the bookmark with this token, of any room; the caller's. NULL: there is none. */
 NODISCARD cJSON *api_bookmark_of_token(struct api *api, const char *token);
 /* True: the token may be of a room that sleeps; the call's handler runs once more when that has been looked for. */

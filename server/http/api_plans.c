@@ -71,6 +71,36 @@ void api_plan(struct api *api, struct call *call)
     call_answer_json(call, 200, answer);
 }
 
+bool api_plan_revision_known(struct api *api, const char *plan_id, struct fleet_revision *revision,
+                             struct problem *problem)
+{
+    if (fleet_revision(net_fleet(api->net), plan_id, revision))
+        return true;
+    if (revision->reason && revision->reason[0])
+        return problem_set(problem, PROBLEM_PLAN_UNREADABLE, "", "", "the plan's files cannot be read: %s",
+                           revision->reason);
+    problem_set(problem, PROBLEM_BUSY, "", "", "the plan's files are being read");
+    problem->retry_after_ms = 500;
+    return false;
+}
+
+void api_plan_revision(struct api *api, struct call *call)
+{
+    struct fleet_plan plan;
+    struct fleet_revision revision;
+    struct problem problem;
+    if (!api_find_plan(api, call, &plan))
+        return;
+    if (!api_plan_revision_known(api, call->ids[0], &revision, &problem)) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    cJSON *answer = cJSON_CreateObject();
+    cJSON_AddStringToObject(answer, "revision", revision.digest);
+    cJSON_AddNumberToObject(answer, "n_files", (double)revision.n_files);
+    call_answer_json(call, 200, answer);
+}
+
 void api_plan_open(struct api *api, struct call *call)
 {
     struct fleet_plan plan;

@@ -222,6 +222,7 @@ void bridge_report_plan(struct net_room *entry)
         room_renderer_state(entry->room, WIRE_RENDERER_STATE_FAILED, "", 0, &gone);
         return;
     }
+    room_plan_revision(entry->room, plan.revision);
     const char *phase = plan.phase ? plan.phase : "";
     bool is_same = plan.state == entry->state && strcmp(phase, entry->phase) == 0 && plan.percent == entry->percent;
     if (plan.state == FLEET_READY ? entry->state == FLEET_READY && entry->generation == plan.generation : is_same)

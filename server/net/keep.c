@@ -332,7 +332,8 @@ static struct store_room *make_row(const struct net_room *room, unsigned parts)
     row->has_links = kept.has_links;
     row->scene = kept.scene;
     row->views = kept.views;
-    kept.scene = kept.views = NULL;
+    row->presence = kept.presence;
+    kept.scene = kept.views = kept.presence = NULL;
     if (!make_lists(&kept, row)) {
         store_room_free(row);
         row = NULL;
@@ -463,7 +464,8 @@ void keep_restore(struct net_room *room, const struct store_room *row)
                               .n_named = row->n_named,
                               .has_links = row->has_links,
                               .scene = row->scene,
-                              .views = row->views };
+                              .views = row->views,
+                              .presence = row->presence };
     memcpy(kept.presenter, row->presenter, sizeof kept.presenter);
     kept.members = mem_array(row->n_members, sizeof kept.members[0], 1 << 20, NULL);
     kept.n_members = kept.members ? row->n_members : 0;

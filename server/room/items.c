@@ -9,10 +9,13 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/room/audit.h"
 #include "server/room/bookmark_body.h"
 #include "server/room/item_list.h"
 #include "server/room/note_body.h"
+#include "server/room/record_body.h"
 #include "server/room/recording.h"
+
 #include "server/room/roles.h"
 #include "server/room/send.h"
 
@@ -26,6 +29,9 @@ static const struct {
 } kinds[] = {
     [WIRE_ITEM_KIND_NOTE] = { NOTE_MAX_BYTES, note_body_read },
     [WIRE_ITEM_KIND_BOOKMARK] = { ROOM_MAX_ITEM_BYTES, bookmark_body_read },
+    [WIRE_ITEM_KIND_CHECK] = { RECORD_MAX_BYTES, record_read_check },
+    [WIRE_ITEM_KIND_DECISION] = { RECORD_MAX_BYTES, record_read_decision },
+    [WIRE_ITEM_KIND_SIGNATURE] = { RECORD_MAX_BYTES, record_read_signature },
 };
 
 static const char *word_of(enum wire_item_kind kind)
@@ -128,7 +134,10 @@ static struct item *find_to_change(const struct room *room, const struct member 
         problem_set(problem, PROBLEM_NOT_FOUND, "/item", "", "there is no item \"%.63s\", or not any more", id);
         return NULL;
     }
-    if (strcmp(item->author, member->id) != 0 && member->role != WIRE_MEMBER_ROLE_PRESENTER) {
+    if (!record_may_change(room, item, problem))
+        return NULL;
+    if (item->kind != WIRE_ITEM_KIND_CHECK && strcmp(item->author, member->id) != 0 &&
+        member->role != WIRE_MEMBER_ROLE_PRESENTER) {
         problem_set(problem, PROBLEM_FORBIDDEN, "/item", "",
                     "this %s is by %.40s: only its author or a member of role presenter changes or deletes it",
                     word_of(item->kind), item->author_name);
@@ -147,6 +156,8 @@ bool items_put(struct room *room, struct member *member, const struct message *m
 {
     const struct message_item_put *put = &message->item_put;
     struct item *before = NULL, next = { .kind = put->kind };
+    if (!record_may_write(room, member, put->kind, problem))
+        return false;
     if (put->item[0]) {
         if (put->version == 0)
             return problem_set(problem, PROBLEM_VALIDATION, "/version", "required",
@@ -170,7 +181,9 @@ bool items_put(struct room *room, struct member *member, const struct message *m
     next.version++;
     next.changed_ms = before ? clock_wall_ms() : next.created_ms;
     copy_name(next.changed_name, member->name);
+    room->writer = member;
     char *body = read_body(room, put->kind, put->body, before, false, problem);
+    room->writer = NULL;
     char *row = body ? write_row(&next, body) : NULL;
     if (body && !row)
         json_no_memory(problem, "an item");
@@ -182,6 +195,7 @@ bool items_put(struct room *room, struct member *member, const struct message *m
     struct item *item = before ? before : mem_new(sizeof *item);
     *item = next;
     items_keep(room, item, row);
+    record_audit(room, item, member);
     tell(room, item->id, item->row, member, (uint32_t)put->input);
     return true;
 }

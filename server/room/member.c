@@ -14,6 +14,7 @@
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/pointers.h"
+#include "server/room/presence.h"
 #include "server/room/presenter.h"
 #include "server/room/recording.h"
 #include "server/room/replay.h"
@@ -84,6 +85,7 @@ void member_disconnected(struct room *room, struct member *member)
     member->away_us = room->now_us;
     control_left(room, member);
     audit_flush(room, member);
+    presence_left(room, member);
     audit_tell(room, &(struct audit_act){ .by = member, .action = "leave", .key = "", .before = -1, .after = -1 });
     (void)presenter_settle(room);
     send_members(room);
@@ -209,6 +211,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     (void)snprintf(member->person, sizeof member->person, "%s", hello->person);
     member->connection = connection;
     record_entry(room, member, as);
+    presence_entered(room, member);
     send_welcome(room, member);
     send_renderer_state(room, member);
     control_send(room, member);

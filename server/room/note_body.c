@@ -5,71 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/room/body_check.h"
 #include "server/room/item_list.h"
-
-/* Where a check is: "/body" and below. */
-static bool refuse_type(struct problem *problem, const char *where, const char *expected)
-{
-    return problem_set(problem, PROBLEM_VALIDATION, where, "type", "%s is not %s", where, expected);
-}
-
-/* Refuses members that are none of these names, or are there twice. */
-static bool names_are(const cJSON *object, const char *const *names, const char *where, struct problem *problem)
-{
-    unsigned seen = 0;
-    const cJSON *member;
-    cJSON_ArrayForEach(member, object)
-    {
-        char pointer[160];
-        unsigned at = 0;
-        (void)snprintf(pointer, sizeof pointer, "%s/%.60s", where, member->string);
-        while (names[at] && strcmp(names[at], member->string) != 0)
-            at++;
-        if (!names[at])
-            return problem_set(problem, PROBLEM_VALIDATION, pointer, "unknown-field", "%.60s is not a field of %s",
-                               member->string, where);
-        if (seen & 1U << at)
-            return problem_set(problem, PROBLEM_VALIDATION, pointer, "duplicate", "%s is there twice", pointer);
-        seen |= 1U << at;
-    }
-    return true;
-}
-
-static size_t n_characters(const char *text)
-{
-    size_t n = 0;
-    for (; *text; text++)
-        n += ((unsigned char)*text & 0xc0) != 0x80;
-    return n;
-}
-
-/* Of 1 to `most` characters, not all of them white; lines may break. */
-static bool check_text(const cJSON *json, const char *where, size_t most, struct problem *problem)
-{
-    if (!json)
-        return problem_set(problem, PROBLEM_VALIDATION, where, "required", "%s is missing", where);
-    if (!cJSON_IsString(json))
-        return refuse_type(problem, where, "text");
-    const char *text = json->valuestring;
-    if (text[strspn(text, " \t\n")] == 0 || n_characters(text) > most)
-        return problem_set(problem, PROBLEM_VALIDATION, where, "length",
-                           "%s has %zu characters, expected 1 to %zu, not all of them spaces", where,
-                           n_characters(text), most);
-    for (const char *c = text; *c; c++)
-        if (((unsigned char)*c < 0x20 && *c != '\n' && *c != '\t') || *c == 0x7f)
-            return problem_set(problem, PROBLEM_VALIDATION, where, "pattern", "%s holds a control character", where);
-    return true;
-}
-
-static bool check_id(const cJSON *json, const char *where, struct problem *problem)
-{
-    if (!cJSON_IsString(json))
-        return refuse_type(problem, where, "an id");
-    if (!id_is_valid(json->valuestring))
-        return problem_set(problem, PROBLEM_VALIDATION, where, "pattern",
-                           "%s is \"%.40s\", expected 1 to 63 of a-z, 0-9 and -", where, json->valuestring);
-    return true;
-}
 
 static bool plan_has_region(const cJSON *plan, const char *id)
 {
@@ -87,14 +24,14 @@ static cJSON *read_point(const cJSON *point, struct problem *problem)
 {
     static const char where[] = "/body/anchor/point_mm";
     if (!cJSON_IsArray(point) || cJSON_GetArraySize(point) != 3) {
-        (void)refuse_type(problem, where, "a list of three numbers");
+        (void)body_refuse_type(problem, where, "a list of three numbers");
         return NULL;
     }
     double at_lps_mm[3];
     for (int k = 0; k < 3; k++) {
         const cJSON *value = cJSON_GetArrayItem(point, k);
         if (!cJSON_IsNumber(value)) {
-            (void)refuse_type(problem, where, "a list of three numbers");
+            (void)body_refuse_type(problem, where, "a list of three numbers");
             return NULL;
         }
         at_lps_mm[k] = value->valuedouble;
@@ -115,10 +52,10 @@ static cJSON *read_anchor(const cJSON *anchor, const cJSON *plan, struct problem
     if (!anchor || cJSON_IsNull(anchor))
         return cJSON_CreateNull();
     if (!cJSON_IsObject(anchor)) {
-        (void)refuse_type(problem, "/body/anchor", "an object");
+        (void)body_refuse_type(problem, "/body/anchor", "an object");
         return NULL;
     }
-    if (!names_are(anchor, names, "/body/anchor", problem))
+    if (!body_names_are(anchor, names, "/body/anchor", problem))
         return NULL;
     const cJSON *point = cJSON_GetObjectItemCaseSensitive(anchor, "point_mm");
     const cJSON *region = cJSON_GetObjectItemCaseSensitive(anchor, "region");
@@ -127,7 +64,7 @@ static cJSON *read_anchor(const cJSON *anchor, const cJSON *plan, struct problem
                     "/body/anchor has neither point_mm nor region");
         return NULL;
     }
-    if (region && !check_id(region, where_region, problem))
+    if (region && !body_check_id(region, where_region, problem))
         return NULL;
     if (region && plan && !plan_has_region(plan, region->valuestring)) {
         problem_set(problem, PROBLEM_VALIDATION, where_region, "unknown-id", "the plan has no region \"%.63s\"",
@@ -152,7 +89,7 @@ static cJSON *read_mentions(const cJSON *mentions, struct problem *problem)
     cJSON *read = cJSON_CreateArray();
     if (!mentions)
         return read;
-    bool is_read = cJSON_IsArray(mentions) || refuse_type(problem, where, "a list");
+    bool is_read = cJSON_IsArray(mentions) || body_refuse_type(problem, where, "a list");
     const int n = cJSON_GetArraySize(mentions);
     if (is_read && n > NOTE_MAX_MENTIONS)
         is_read = problem_set(problem, PROBLEM_VALIDATION, where, "count", "%s has %d entries, at most %d are allowed",
@@ -165,9 +102,9 @@ static cJSON *read_mentions(const cJSON *mentions, struct problem *problem)
         (void)snprintf(of_name, sizeof of_name, "%s/name", pointer);
         const cJSON *member = cJSON_GetObjectItemCaseSensitive(mention, "member");
         const cJSON *name = cJSON_GetObjectItemCaseSensitive(mention, "name");
-        is_read = (cJSON_IsObject(mention) || refuse_type(problem, pointer, "an object")) &&
-                  names_are(mention, names, pointer, problem) && check_id(member, of_member, problem) &&
-                  check_text(name, of_name, NOTE_MAX_NAME, problem);
+        is_read = (cJSON_IsObject(mention) || body_refuse_type(problem, pointer, "an object")) &&
+                  body_names_are(mention, names, pointer, problem) && body_check_id(member, of_member, problem) &&
+                  body_check_text(name, of_name, NOTE_MAX_NAME, problem);
         if (!is_read)
             break;
         cJSON *entry = cJSON_CreateObject();
@@ -187,8 +124,8 @@ static bool check_parent(const struct room *room, const cJSON *parent, const str
     static const char where[] = "/body/parent";
     const char *id = cJSON_IsString(parent) ? parent->valuestring : "";
     if (parent && !cJSON_IsString(parent))
-        return refuse_type(problem, where, "an id");
-    if (id[0] && !check_id(parent, where, problem))
+        return body_refuse_type(problem, where, "an id");
+    if (id[0] && !body_check_id(parent, where, problem))
         return false;
     if (before && strcmp(before->parent, id) != 0)
         return problem_set(problem, PROBLEM_VALIDATION, where, "enum",
@@ -214,12 +151,13 @@ cJSON *note_body_read(const struct room *room, const cJSON *body, const struct i
     const cJSON *anchor = cJSON_GetObjectItemCaseSensitive(body, "anchor");
     const cJSON *resolved = cJSON_GetObjectItemCaseSensitive(body, "resolved");
     const cJSON *parent = cJSON_GetObjectItemCaseSensitive(body, "parent");
-    if (!names_are(body, names, "/body", problem) || !check_text(text, "/body/text", NOTE_MAX_TEXT, problem) ||
+    if (!body_names_are(body, names, "/body", problem) ||
+        !body_check_text(text, "/body/text", NOTE_MAX_TEXT, problem) ||
         !check_parent(room, parent, before, is_restored, problem))
         return NULL;
     const bool is_reply = parent && parent->valuestring[0];
     if (resolved && !cJSON_IsBool(resolved)) {
-        (void)refuse_type(problem, "/body/resolved", "true or false");
+        (void)body_refuse_type(problem, "/body/resolved", "true or false");
         return NULL;
     }
     if (is_reply && (cJSON_IsTrue(resolved) || (anchor && !cJSON_IsNull(anchor)))) {

@@ -7,6 +7,7 @@
 #include "core/base/mem.h"
 #include "server/room/known.h"
 #include "server/room/links.h"
+#include "server/room/presence.h"
 #include "server/room/stream.h"
 #include "server/wire/document.h"
 #include "server/wire/json.h"
@@ -61,6 +62,8 @@ bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept)
         ok = write_members(room, kept);
     if (ok && (parts & ROOM_LINKS))
         ok = links_write(room, kept);
+    if (ok && (parts & ROOM_PRESENCE))
+        ok = (kept->presence = presence_write(room)) != NULL;
     if (!ok)
         room_kept_finish(kept);
     return ok;
@@ -70,6 +73,7 @@ void room_kept_finish(struct room_kept *kept)
 {
     free(kept->scene);
     free(kept->views);
+    free(kept->presence);
     free(kept->members);
     free(kept->links);
     *kept = (struct room_kept){ 0 };
@@ -143,6 +147,7 @@ void room_restore(struct room *room, const struct room_kept *kept, int64_t now_u
     else
         cJSON_Delete(scene);
     read_members(room, kept);
+    presence_read(room, kept->presence);
     links_read(room, kept);
     read_views(room, kept->views);
 }

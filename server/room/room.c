@@ -79,6 +79,7 @@ void room_destroy(struct room *room)
     cJSON_Delete(room->scene);
     cJSON_Delete(room->restored);
     free(room->known);
+    free(room->presences);
     free(room);
 }
 
@@ -403,6 +404,11 @@ void room_audit_call(struct room *room, const char *member, const char *action, 
                                    .after = room->revision };
     room->now_us = now_us;
     audit_tell(room, &act);
+}
+
+void room_plan_revision(struct room *room, const char *revision)
+{
+    (void)snprintf(room->plan_revision, sizeof room->plan_revision, "%s", revision);
 }
 
 void room_audit_flush(struct room *room, int64_t now_us)

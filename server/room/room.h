@@ -23,6 +23,8 @@ enum {
     ROOM_MAX_LINKS = 32,       /* valid at once */
     ROOM_LINK_MIN_S = 60,
     ROOM_LINK_MAX_S = 30 * 24 * 3600,
+    ROOM_MAX_PRESENCE = 1000,      /* stays of members that are kept; of more, the first are counted only */
+    ROOM_SAME_STAY_MS = 60000,     /* who comes back within this goes on with the same stay */
     ROOM_MAX_AUDIT_DETAIL = 1024,  /* bytes of the detail of a row for the audit; of a longer one only the length */
     ROOM_MAX_GATHERED = 32,        /* acts that are being gathered into a row each; the oldest is then recorded */
     ROOM_AUDIT_QUIET_MS = 1000,    /* acts further apart are rows of their own */
@@ -130,8 +132,8 @@ struct room_callbacks {
 };
 
 /* What of a room is kept on disk. */
-enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4, ROOM_LINKS = 8 };
-enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS };
+enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4, ROOM_LINKS = 8, ROOM_PRESENCE = 16 };
+enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS | ROOM_PRESENCE };
 
 struct room_kept_member {
     char id[64], name[164], color[8], role[16];
@@ -151,6 +153,7 @@ struct room_kept {
     uint32_t revision, n_named;
     char presenter[64];               /* "": nobody */
     char *scene, *views;              /* JSON; NULL: not asked for, or the plan was never loaded */
+    char *presence;                   /* JSON: who was here; NULL: not asked for, or unknown */
     struct room_kept_member *members; /* NULL: not asked for */
     size_t n_members;
     bool has_links;               /* there is or was one */
@@ -223,6 +226,12 @@ size_t room_n_connected(const struct room *room);
 /* Records what a call over HTTP does in this room; member as in room_call_may. detail is taken. */
 void room_audit_call(struct room *room, const char *member, const char *action, cJSON *detail, bool is_refused,
                      int64_t now_us);
+/* The revision of the plan's files has become known, or is another one; what is written of the record from then on
+ * stands under it. "": it is not known, and nothing of the record is written. */
+void room_plan_revision(struct room *room, const char *revision);
+/* The record of the review: {format, version, room, plan, plan_revision, revision, made_ms, present, n_present_dropped,
+ * checklist, decisions, signatures, notes, saved_views}; proto/record.json describes it. NULL: no memory. */
+NODISCARD cJSON *room_record(const struct room *room);
 /* Records what is still being gathered. */
 void room_audit_flush(struct room *room, int64_t now_us);
 

@@ -140,6 +140,12 @@ struct gathered { /* acts for the audit that are one row */
     unsigned n; /* acts that no row was made for yet */
 };
 
+struct presence { /* one stay of a member */
+    char member[64], name[161];
+    enum wire_member_role role;
+    int64_t entered_ms, left_ms; /* since 1970; left_ms 0: still here, or the server ended */
+};
+
 struct link { /* lets new members in */
     unsigned char token_hash[SECRET_HASH_BYTES];
     char person[257]; /* who has used it, if it is for one */
@@ -177,6 +183,11 @@ struct room {
     struct member *members[ROOM_MAX_MEMBERS];
     int n_members;
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
+    char plan_revision[65];   /* of the plan's files; "": not known */
+    const struct member *writer; /* while the body of an item is read: who writes it */
+    struct presence *presences;  /* who was here, the first first; room for ROOM_MAX_PRESENCE */
+    int n_presences;
+    unsigned n_presences_dropped;
     const struct member *caller;  /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */
     uint32_t n_named;             /* members ever made, for ids */
     struct item *items;           /* oldest first */

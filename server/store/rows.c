@@ -21,6 +21,7 @@ void store_room_free(struct store_room *room)
     free(room->links);
     free(room->scene);
     free(room->views);
+    free(room->presence);
     free(room);
 }
 
@@ -30,9 +31,10 @@ static bool write_row(sqlite3 *db, const struct store_room *room, struct error *
 {
     sqlite3_stmt *row = sql_prepare(
         db,
-        "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, presenter, scene, views, has_links)"
-        " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) ON CONFLICT(id) DO UPDATE SET used_ms = ?4, revision = ?5,"
-        " n_named = ?6, presenter = ?7, scene = coalesce(?8, scene), views = coalesce(?9, views), has_links = ?10",
+        "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, presenter, scene, views, has_links,"
+        " presence) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) ON CONFLICT(id) DO UPDATE SET used_ms = ?4, revision = ?5,"
+        " n_named = ?6, presenter = ?7, scene = coalesce(?8, scene), views = coalesce(?9, views), has_links = ?10,"
+        " presence = coalesce(?11, presence)",
         err);
     if (!row)
         return false;
@@ -46,6 +48,7 @@ static bool write_row(sqlite3 *db, const struct store_room *room, struct error *
     sql_bind_text(row, 8, room->scene);
     sql_bind_text(row, 9, room->views);
     (void)sqlite3_bind_int(row, 10, room->has_links);
+    sql_bind_text(row, 11, room->presence);
     bool ok = sql_step(row, "writing a room", err);
     (void)sqlite3_finalize(row);
     return ok;
@@ -163,7 +166,7 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
 {
     sqlite3_stmt *row = sql_prepare(db,
                                     "SELECT id, plan, created_ms, used_ms, revision, n_named, presenter, scene,"
-                                    " views, has_links FROM rooms WHERE id = ?1",
+                                    " views, has_links, presence FROM rooms WHERE id = ?1",
                                     err);
     if (!row)
         return false;
@@ -181,6 +184,7 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
         room->scene = sql_copy_text(row, 7);
         room->views = sql_copy_text(row, 8);
         room->has_links = sqlite3_column_int(row, 9) != 0;
+        room->presence = sql_copy_text(row, 10);
     } else if (step == SQLITE_DONE) {
         error_set(err, ERROR_NOT_FOUND, "there is no room \"%.63s\"", id);
     } else {

@@ -39,6 +39,7 @@ struct store_room {
     uint32_t revision, n_named;           /* of the scene; members ever made */
     bool has_links;                       /* there is or was one */
     char *scene, *views;                  /* JSON; NULL when read: the plan was never loaded */
+    char *presence;                       /* JSON; NULL when read: not known */
     struct store_member *members;         /* all; NULL in a write: as they are */
     size_t n_members;
     struct store_link *links; /* as members */

@@ -1,0 +1,52 @@
+/* Puts the record of a review together. */
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "server/room/presence.h"
+#include "server/wire/json.h"
+
+/* The rows of one kind, each as {..., body...}: what a record holds of an item. */
+static cJSON *rows_of(const struct room *room, enum wire_item_kind kind)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (const struct item *item = room->items; item; item = item->next) {
+        if (item->kind != kind)
+            continue;
+        cJSON *row = json_read(item->row, strlen(item->row), NULL);
+        cJSON *body = cJSON_DetachItemFromObjectCaseSensitive(row, "body"), *field;
+        cJSON_DeleteItemFromObjectCaseSensitive(row, "kind");
+        cJSON_DeleteItemFromObjectCaseSensitive(row, "author_color");
+        if (kind == WIRE_ITEM_KIND_BOOKMARK) { /* what it shows is the room's own business */
+            cJSON_AddStringToObject(row, "name", json_text(body, "name") ? json_text(body, "name") : "");
+        } else {
+            while (body && (field = body->child)) {
+                cJSON *taken = cJSON_DetachItemViaPointer(body, field);
+                json_add(row, taken->string, taken);
+            }
+        }
+        cJSON_Delete(body);
+        json_append(list, row);
+    }
+    return list;
+}
+
+cJSON *room_record(const struct room *room)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "format", "beamroom-record");
+    cJSON_AddNumberToObject(json, "version", 1);
+    cJSON_AddStringToObject(json, "room", room->id);
+    cJSON_AddStringToObject(json, "plan", room->plan_id);
+    cJSON_AddStringToObject(json, "plan_revision", room->plan_revision);
+    cJSON_AddNumberToObject(json, "revision", room->revision);
+    cJSON_AddNumberToObject(json, "made_ms", (double)clock_wall_ms());
+    cJSON_AddNumberToObject(json, "created_ms", (double)room->created_at_s * 1000);
+    json_add(json, "present", presence_list(room));
+    cJSON_AddNumberToObject(json, "n_present_dropped", room->n_presences_dropped);
+    json_add(json, "checklist", rows_of(room, WIRE_ITEM_KIND_CHECK));
+    json_add(json, "decisions", rows_of(room, WIRE_ITEM_KIND_DECISION));
+    json_add(json, "signatures", rows_of(room, WIRE_ITEM_KIND_SIGNATURE));
+    json_add(json, "notes", rows_of(room, WIRE_ITEM_KIND_NOTE));
+    json_add(json, "saved_views", rows_of(room, WIRE_ITEM_KIND_BOOKMARK));
+    return json;
+}
