@@ -73,7 +73,8 @@ int64_t saved_tick(struct room *room)
     send_to_all(room, &message);
     message_finish(&message);
     room->saved.told = saved;
-    room->saved.told_us = room->now_us;
+    if (room_n_connected(room)) /* else who comes next would wait for the answer to the first change */
+        room->saved.told_us = room->now_us;
     room->saved.news_us = 0;
     room->saved.is_owed = false;
     room->saved.n_items_told = room->saved.n_item_changes;

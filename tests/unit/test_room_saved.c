@@ -118,6 +118,15 @@ static void who_came_while_it_was_written_is_told_when_it_is_done(void **state)
     assert_string_equal(told(&ben), "saved 1");
 }
 
+static void what_an_empty_room_told_nobody_delays_nothing(void **state)
+{
+    (void)state;
+    disk(WIRE_SAVED_STATE_SAVED, 1); /* news, and nobody hears it */
+    fake_hello(&fake, &ann);
+    disk(WIRE_SAVED_STATE_SAVED, 2);
+    assert_string_equal(told(&ann), "saved 2");
+}
+
 static void a_full_disk_is_told_at_once_and_so_is_its_end(void **state)
 {
     (void)state;
@@ -150,6 +159,7 @@ int main(void)
         ROOM_TEST(a_slow_disk_is_told_as_saving),
         ROOM_TEST(an_item_that_is_on_disk_is_told_though_the_scene_is_the_same),
         ROOM_TEST(who_came_while_it_was_written_is_told_when_it_is_done),
+        ROOM_TEST(what_an_empty_room_told_nobody_delays_nothing),
         ROOM_TEST(a_full_disk_is_told_at_once_and_so_is_its_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

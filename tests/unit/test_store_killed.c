@@ -84,9 +84,11 @@ static void what_was_acknowledged_is_there_after_the_process_was_killed(void **s
     uint32_t told[N_ROOMS] = { 0 };
     const char *faults = getenv("FAULTS");
     const bool is_long = getenv("LONG_TESTS") || (faults && strcmp(faults, "whole") == 0);
+    const char *kills = getenv("KILLS");
+    const long n_kills = kills ? strtol(kills, NULL, 10) : is_long ? N_KILLED_LONG : N_KILLED;
     folder_make(world.folder);
     srand((unsigned)clock_now_us());
-    for (int n = 0; n < (is_long ? N_KILLED_LONG : N_KILLED); n++) {
+    for (long n = 0; n < n_kills; n++) {
         int fds[2];
         struct told one;
         assert_int_equal(pipe(fds), 0);
