@@ -178,7 +178,7 @@ static void connection_closed(void *context, struct ws_connection *connection)
     *at = visitor->next;
     if (visitor->room) {
         bridge_leave(visitor);
-        room_connection_closed(visitor->room->room, connection, clock_now_us());
+        room_connection_lost(visitor->room->room, connection, ws_heard_us(connection), clock_now_us());
         schedule_room(visitor->room);
         schedule_wake(net);
     }

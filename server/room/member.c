@@ -72,17 +72,17 @@ void members_close_lost(struct room *room)
 {
     for (int i = 0; i < room->n_members; i++) /* saying who is there may lose others */
         if (room->members[i]->is_lost) {
-            member_disconnected(room, room->members[i]);
+            member_disconnected(room, room->members[i], room->now_us);
             i = -1;
         }
 }
 
-void member_disconnected(struct room *room, struct member *member)
+void member_disconnected(struct room *room, struct member *member, int64_t heard_us)
 {
     member->is_lost = false;
     views_close(room, member);
     member->connection = NULL;
-    member->away_us = room->now_us;
+    member->away_us = heard_us;
     control_left(room, member);
     audit_flush(room, member);
     presence_left(room, member);

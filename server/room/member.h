@@ -5,7 +5,7 @@
 
 /* Makes the connection a member; returns false when it was refused with bye. */
 bool member_hello(struct room *room, void *connection, const struct message_hello *hello);
-void member_disconnected(struct room *room, struct member *member);
+void member_disconnected(struct room *room, struct member *member, int64_t heard_us); /* away since heard_us */
 /* Drops members that have been away for ROOM_MEMBER_KEPT_S. Returns when the next one is due. */
 int64_t members_forget(struct room *room);
 void members_free(struct room *room);

@@ -308,13 +308,18 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
     (void)streams_request_due(room);
 }
 
-void room_connection_closed(struct room *room, void *connection, int64_t now_us)
+void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us)
 {
     room->now_us = now_us;
     struct member *member = member_of_connection(room, connection);
     if (member)
-        member_disconnected(room, member);
+        member_disconnected(room, member, heard_us < now_us ? heard_us : now_us);
     control_tell(room);
+}
+
+void room_connection_closed(struct room *room, void *connection, int64_t now_us)
+{
+    room_connection_lost(room, connection, now_us, now_us);
 }
 
 bool room_has_member(const struct room *room, void *connection)

@@ -187,6 +187,8 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
 /* Connections: opaque pointers of the caller's. A connection becomes a member with hello. */
 void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us);
 void room_connection_closed(struct room *room, void *connection, int64_t now_us);
+/* The same of a connection that was last heard of at heard_us: the member counts as away since then. */
+void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us);
 bool room_has_member(const struct room *room, void *connection); /* it has said hello */
 
 /* Answers to render. A picture that is no longer wanted (the renderer was restarted, the view closed) is dropped. */

@@ -3,6 +3,7 @@
 
 #include "server/room/audit.h"
 #include "server/room/kept.h"
+#include "server/room/marks.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/send.h"
@@ -17,15 +18,8 @@ static bool may_be_audited(const cJSON *patch)
     return cJSON_HasObjectItem(patch, "dose") || cJSON_HasObjectItem(patch, "beam");
 }
 
-bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input,
-                       struct problem *problem)
+static bool apply(struct room *room, const cJSON *patch, struct member *by, uint32_t input, struct problem *problem)
 {
-    if (!room->scene) {
-        problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
-        if (problem)
-            problem->retry_after_ms = 500;
-        return false;
-    }
     cJSON *scene = scene_document_patch(room->plan, room->defaults, room->scene, patch, problem);
     if (!scene)
         return false;
@@ -85,12 +79,29 @@ bool scene_show(struct room *room, cJSON *scene)
     return true;
 }
 
+bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input,
+                       struct problem *problem)
+{
+    if (!room->scene) {
+        problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
+        if (problem)
+            problem->retry_after_ms = 500;
+        return false;
+    }
+    cJSON *authored = by ? marks_authored(room, by, patch) : NULL;
+    if (by && !authored)
+        return json_no_memory(problem, "a scene");
+    const bool is_done = apply(room, authored ? authored : patch, by, input, problem);
+    cJSON_Delete(authored);
+    return is_done;
+}
+
 bool member_scene_patch(struct room *room, struct member *member, const struct message *message,
                         struct problem *problem)
 {
-    if (!member_presents(room, member))
-        return refuse_not_presenter(room, problem, "change the scene");
     const struct message_scene_patch *patch = &message->scene_patch;
+    if (!member_presents(room, member) && !marks_are_own(room, member, patch->patch, problem))
+        return false;
     struct stream *acted = patch->view > 0 ? member->views[patch->view - 1].stream : NULL;
     if (acted)
         acted->acted_us = room->now_us;

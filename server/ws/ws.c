@@ -246,7 +246,7 @@ static int check_connection(struct ws_connection *connection)
         !ws->callbacks.is_greeted(ws->callbacks.context, connection)) {
         ws_bye(connection, WS_CLOSE_NORMAL, "no hello within 5 s", 1000);
     } else if (silent_us >= WS_SILENT_AT_MOST_S * INT64_C(1000000)) {
-        ws_bye(connection, WS_CLOSE_NORMAL, "nothing was heard for 30 s", 0);
+        ws_bye(connection, WS_CLOSE_NORMAL, "nothing was heard for 15 s", 0);
     } else if (silent_us >= WS_PING_AFTER_S * INT64_C(1000000) && !connection->pongs.first) {
         out_add_ping(connection);
     }
@@ -372,6 +372,11 @@ void ws_count(const struct ws *ws, struct ws_counters *counters)
 void ws_set_owner(struct ws_connection *connection, void *owner)
 {
     connection->owner = owner;
+}
+
+int64_t ws_heard_us(const struct ws_connection *connection)
+{
+    return connection->heard_us;
 }
 
 void *ws_owner(const struct ws_connection *connection)

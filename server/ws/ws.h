@@ -12,8 +12,8 @@
 
 enum {
     WS_HELLO_WITHIN_S = 5,
-    WS_PING_AFTER_S = 10,     /* of silence; a browser answers pings by itself, also for a tab in the background */
-    WS_SILENT_AT_MOST_S = 30, /* of silence, then closed */
+    WS_PING_AFTER_S = 5,      /* of silence; a browser answers pings by itself, also for a tab in the background */
+    WS_SILENT_AT_MOST_S = 15, /* of silence, then closed: a laptop that was shut says nothing */
     WS_CLOSE_WITHIN_S = 2,    /* for waiting messages and the close to be sent */
     WS_LINGER_MS = 1000,      /* after the close, for the client to close its direction */
     WS_MAX_DROPPED = 1 << 20, /* bytes read and dropped meanwhile */
@@ -78,6 +78,7 @@ void ws_count(const struct ws *ws, struct ws_counters *counters);
 
 void ws_set_owner(struct ws_connection *connection, void *owner); /* a pointer of the caller's */
 void *ws_owner(const struct ws_connection *connection);
+int64_t ws_heard_us(const struct ws_connection *connection); /* when bytes came from the client, at last */
 void ws_send_text(struct ws_connection *connection, const char *text);
 /* Replaces a waiting text with the same key of which nothing was sent. Texts of ws_send_text go first. */
 void ws_send_latest(struct ws_connection *connection, uint32_t key, const char *text);

@@ -317,6 +317,24 @@ static void a_presenter_who_is_back_within_30_s_presents_and_nothing_has_moved(v
     assert_close(height_mm(fake_newest(&fake)->view), 99, 0);
 }
 
+static void a_presenter_whose_connection_went_silent_is_away_since_the_last_sign(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, true);
+    fake_join(&fake, &ben, true);
+    fake_join(&fake, &cem, true);
+    fake_settle(&fake, (struct fake_page *const[]){ &ann, &ben, &cem }, 3);
+    const int64_t heard_us = fake.now_us;
+    fake_pass(&fake, 15000);
+    room_connection_lost(fake.room, &ann, heard_us, fake.now_us);
+    fake_pass(&fake, 14999);
+    assert_string_equal(role(&ben, 0), "presents");
+    fake_pass(&fake, 1);
+    assert_string_not_equal(role(&ben, 0), "presents");
+    fake_say(&fake, &ben, "%s", present);
+    assert_string_equal(role(&ben, 1), "presents");
+}
+
 static void after_30_s_nobody_presents_and_anybody_takes_over(void **state)
 {
     (void)state;
@@ -512,6 +530,7 @@ int main(void)
         ROOM_TEST(views_to_leave_with_are_checked_whole_before_any_applies),
         ROOM_TEST(who_has_left_and_says_it_again_keeps_the_own_views),
         ROOM_TEST(a_presenter_who_is_back_within_30_s_presents_and_nothing_has_moved),
+        ROOM_TEST(a_presenter_whose_connection_went_silent_is_away_since_the_last_sign),
         ROOM_TEST(after_30_s_nobody_presents_and_anybody_takes_over),
         ROOM_TEST(who_is_left_alone_presents_with_the_own_views),
         ROOM_TEST(a_full_room_keeps_the_place_of_its_presenter),

@@ -55,6 +55,77 @@ static void a_bad_patch_is_refused_whole_and_only_its_sender_hears_it(void **sta
     assert_int_equal(counters.messages_refused, 5);
 }
 
+/* The author of a mark of the room's scene; "none" where there is no such mark. */
+static const char *author_of(const char *kind, const char *id)
+{
+    uint32_t revision;
+    const cJSON *scene = room_scene(fake.room, &revision);
+    const cJSON *mark = cJSON_GetObjectItem(cJSON_GetObjectItem(scene, kind), id);
+    return mark ? json_text(mark, "author") : "none";
+}
+
+static void who_follows_adds_marks_under_ids_and_a_name_of_their_own(void **state)
+{
+    static const char measure[] = "{\"kind\":\"distance\",\"author\":\"Somebody\",\"points\":[{\"at_mm\":[0,0,0]},"
+                                  "{\"at_mm\":[1,0,0]}]}";
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_join(&fake, &ben, true);
+    settle_two();
+    fake_say(&fake, &ben, "{\"type\":\"scene.patch\",\"input\":7,\"patch\":{\"measures\":{\"m1-m2\":%s}}}", measure);
+    assert_string_equal(author_of("measures", "m1-m2"), "Reviewer 2"); /* not as the page has it */
+    fake_say(&fake, &ben, "{\"type\":\"scene.patch\",\"patch\":{\"probes\":{\"pin-1-m2\":{\"at_mm\":[1,2,3]}}}}");
+    assert_string_equal(author_of("probes", "pin-1-m2"), "Reviewer 2");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m2\":{}}}}");
+    assert_string_equal(author_of("measures", "m2"), "Reviewer 1");
+    cJSON *told = fake_heard(&ben, "scene");
+    assert_string_equal(json_text(cJSON_GetObjectItem(cJSON_GetObjectItem(cJSON_GetObjectItem(told, "patch"), "measures"),
+                                                      "m2"),
+                                  "author"),
+                        "Reviewer 1");
+    cJSON_Delete(told);
+
+    /* the presenter changes all of them, and the author stays; a mark that comes back keeps its author */
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m1-m2\":{\"name\":\"Margin\"}}}}");
+    assert_string_equal(author_of("measures", "m1-m2"), "Reviewer 2");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m1-m2\":null}}}");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m1-m2\":%s}}}", measure);
+    assert_string_equal(author_of("measures", "m1-m2"), "Somebody");
+    fake_say(&fake, &ben, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m1-m2\":null}}}");
+    assert_string_equal(author_of("measures", "m1-m2"), "none");
+}
+
+static void who_follows_changes_nothing_but_their_own_marks(void **state)
+{
+    static const char *const bad[][2] = {
+        { "{\"measures\":{\"m1\":{}}}", "403 /measures/m1" },
+        { "{\"measures\":{\"m1\":null}}", "403 /measures/m1" },
+        { "{\"measures\":{\"m1-m2\":{},\"m1-m1\":{}}}", "403 /measures/m1-m1" },
+        { "{\"measures\":{\"-m2\":{}}}", "403 /measures/-m2" },
+        { "{\"measures\":{\"xm2\":{}}}", "403 /measures/xm2" },
+        { "{\"measures\":{\"m1-m22\":{}}}", "403 /measures/m1-m22" },
+        { "{\"measures\":{\"m1-m2\":{}},\"axes\":{\"visible\":true}}", "403 " },
+        { "{\"measures\":null}", "403 " },
+        { "{\"probes\":[]}", "403 " },
+        { "{}", "403 " },
+        { "{\"constraints\":{\"limit-1-m2\":{\"metric\":\"D95%\",\"limit\":-1}}}", "422 /constraints/limit-1-m2/limit" },
+        { "{\"constraints\":{\"limit-1-m2\":5}}", "422 /constraints/limit-1-m2" },
+    };
+    uint32_t before, after;
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_join(&fake, &ben, true);
+    settle_two();
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m1\":{}}}}");
+    (void)room_scene(fake.room, &before);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        fake_say(&fake, &ben, "{\"type\":\"scene.patch\",\"patch\":%s}", bad[i][0]);
+        assert_string_equal(refused(&ben), bad[i][1]);
+    }
+    (void)room_scene(fake.room, &after);
+    assert_int_equal(after, before);
+}
+
 static void a_message_over_64_kib_is_refused(void **state)
 {
     static char text[WIRE_MAX_CLIENT_BYTES + 2];
@@ -177,6 +248,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         ROOM_TEST(a_change_of_the_scene_reaches_all_and_raises_the_revision_by_one),
         ROOM_TEST(a_bad_patch_is_refused_whole_and_only_its_sender_hears_it),
+        ROOM_TEST(who_follows_adds_marks_under_ids_and_a_name_of_their_own),
+        ROOM_TEST(who_follows_changes_nothing_but_their_own_marks),
         ROOM_TEST(a_message_over_64_kib_is_refused),
         ROOM_TEST(before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change),
         ROOM_TEST(an_override_said_too_early_is_taken_out_and_told_when_the_plan_has_no_such_region),

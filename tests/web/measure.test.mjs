@@ -148,7 +148,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await page.context().close();
   });
 
-  once('who follows and measures is on their own: the room has no such measure; the report to print lists the room\'s', async () => {
+  once('who follows measures for the room, who is on their own for themselves; the report to print lists the room\'s', async () => {
     const { page, room, comes, measures } = await open();
     const [, , S] = crosshairOf(await world.scene(room));
     const other = (await open(sizes.wide, room)).page;
@@ -158,10 +158,16 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await comes(({ m1 }) => m1 && areAt(m1, [[0, 0, S], [50, 0, S]]), 'the presenter\'s');
     await drawn(other, 2, 'm1').waitFor();
     await other.locator('[aria-label="Measure"]').click();
+    await drag(other, 2, [10, 20, S], [10, 30, S]);
+    await drawn(page, 2, 'm2-m2').waitFor();
+    assert.equal(await other.locator('.room-chip:visible').getAttribute('data-standing'), 'following');
+    await page.locator('.image-list', { hasText: /Distance 2.*by Reviewer 2/s }).waitFor();
+    await shoot(page, 'measures-of-two');
+    await other.keyboard.press('f');
     await drag(other, 2, [0, 20, S], [0, 50, S]);
     await drawn(other, 2, 'own1').waitFor();
     assert.match(await drawn(other, 2, 'own1').textContent(), /30\.0 mm/);
-    assert.deepEqual(Object.keys(await measures()), ['m1']);
+    assert.deepEqual(Object.keys(await measures()), ['m1', 'm2-m2']);
     assert.equal(await drawn(page, 2, 'own1').count(), 0);
     await other.getByRole('button', { name: 'Delete Distance 1' }).first().click(); // the presenter's: hidden for oneself only
     await drawn(other, 2, 'm1').waitFor({ state: 'detached' });

@@ -117,10 +117,10 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
   });
 
   /** The presenter, at another size than the two who follow. */
-  const meet = async (options, base) => {
+  const meet = async (options, base, presenterBase) => {
     const room = await world.newRoom();
     const address = `#/rooms/${room}`;
-    const one = await world.newPage(address, { viewport: { width: 1500, height: 700 } });
+    const one = await world.newPage(address, { viewport: { width: 1500, height: 700 }, base: presenterBase });
     await says(one, /^Presenting$/);
     const [two, three] = [await world.newPage(address, options), await world.newPage(address, { ...options, base })];
     await says(one, /^Presenting · 2 follow$/);
@@ -302,12 +302,15 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  if (isDue(false)) it('a presenter who is gone for 30 s presents no more; others keep what they see and take over', async () => {
-    const { one, two, three } = await meet(sizes[0][1]);
-    await one.context().close();
+  if (isDue(false)) it('a presenter whose machine is gone without a word presents no more after 30 s; others keep what they see and take over', async () => {
+    const { one, two, three } = await meet(sizes[0][1], undefined, proxy.url);
+    await allFull(one, two, three);
+    const gone = performance.now();
+    proxy.black(true); // as a laptop that is shut: no end of the connection is ever sent
     await says(two, /^Reviewer 1 is away$/);
     const pictures = [await seen(two), await seen(three)];
     await act(two).waitFor({ timeout: 45000 }); // 30 s, and a busy machine
+    assert.ok(performance.now() - gone > 24000, 'pings and pongs come every 5 s at least'); // 30 s since the last sign
     await says(two, /^No presenter Take over$/);
     await shoot(two, 'meeting-no-presenter');
     assert.deepEqual([await seen(two), await seen(three)], pictures);
@@ -318,8 +321,10 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
     await shows(three, 1, () => matrix(two, 1));
     await drag(two, 2, 30, 10);
     await until('the crosshair of the new presenter', async (now) => now === await place(two, 3), () => place(three, 3));
-    await two.context().close();
-    await three.context().close();
+    proxy.black(false); // who comes back finds somebody presenting, and follows
+    await says(one, /^Following Reviewer 2$/);
+    await shows(one, 1, () => matrix(two, 1));
+    await Promise.all([one, two, three].map((page) => page.context().close()));
   });
 
   it('has had no error', () => assert.deepEqual(world.errors, []));

@@ -60,9 +60,9 @@ function one(world, row, isDisabled, start) {
   const { id, constraint, verdict } = row;
   const [region, words] = limitWords(world, row);
   const remove = (event) => patch(world, { [id]: null }, event);
-  return html`<li class="chart-limit" data-limit=${id}><b title=${region}>${region}</b>${verdictSign(verdict)}<span><button class="icon-button small" title="Edit" aria-label=${`Edit the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${() => start(id, { ...constraint })}>${icon('sliders', 12)}</button><button
+  return html`<li class="chart-limit" data-limit=${id}><b title=${constraint.author ? `${region}, by ${constraint.author}` : region}>${region}</b>${verdictSign(verdict)}<span><button class="icon-button small" title="Edit" aria-label=${`Edit the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${() => start(id, { ...constraint })}>${icon('sliders', 12)}</button><button
       class="icon-button small" title="Remove" aria-label=${`Remove the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${remove}>${icon('trash', 12)}</button></span>
-    <span>${words} <span class="note">${quantityName(constraint.quantity)}</span></span><b class="chart-value">${valueWords(row)}</b>${verdict.reason ? html`<span class="dim">${verdict.reason}</span>` : nothing}</li>`;
+    <span>${words} <span class="note">${quantityName(constraint.quantity)}${constraint.author && constraint.author !== room.identity?.name ? `, by ${constraint.author}` : ''}</span></span><b class="chart-value">${valueWords(row)}</b>${verdict.reason ? html`<span class="dim">${verdict.reason}</span>` : nothing}</li>`;
 }
 
 /** On one's own, a limit of the room is not taken away by leaving it out of the override, but by null there. */
@@ -81,7 +81,7 @@ function form(world, isDisabled) {
     event.preventDefault();
     try {
       const constraint = readConstraint(curves.editing.value.values, plan);
-      patch(world, { [id || freeConstraintId(room.scene.value.constraints)]: constraint }, event);
+      patch(world, { [id || freeConstraintId(room.scene.value.constraints, [], room.markSuffix)]: constraint }, event);
       curves.editing.value = null;
     } catch (problem) {
       curves.editing.value = { ...curves.editing.value, error: problem.message };
@@ -110,7 +110,7 @@ async function read(world, event) {
     const added = found.filter((constraint) => !Object.values(now).some((other) => isSame(other, constraint)));
     if (Object.keys(now).length + added.length > mostConstraints) throw new Error(`With the ${Object.keys(now).length} that are there, there would be ${Object.keys(now).length + added.length} limits; a scene has at most ${mostConstraints}.`);
     const patched = {};
-    for (const constraint of added) patched[freeConstraintId(now, Object.keys(patched))] = constraint;
+    for (const constraint of added) patched[freeConstraintId(now, Object.keys(patched), room.markSuffix)] = constraint;
     if (added.length) patch(world, patched);
     ui.notify('ok', `${count(added.length, 'limit')} added${found.length > added.length ? `, ${found.length - added.length} there already` : ''}.`, 'limits');
   } catch (error) {

@@ -4,7 +4,7 @@ import { crosshair } from '../state/plan.js';
 
 /** Pins the point of the crosshair. */
 export function pinHere({ room, ui }, at) {
-  const pinned = pinnedAt(room.scene.value, crosshair(room.scene.value));
+  const pinned = pinnedAt(room.scene.value, crosshair(room.scene.value), room.markSuffix);
   if (pinned) room.patchScene(pinned.patch, { view: ui.active.value, at });
   else ui.notify('ok', pinsOf(room.scene.value).length >= maxPins ? `There are ${maxPins} pinned probes; remove one first.` : 'This point is pinned already.', 'pin');
 }

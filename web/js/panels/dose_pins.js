@@ -28,7 +28,7 @@ export function pinsBlock(world) {
     <tbody>${pins.map((pin) => {
       const answer = known[pin.id]?.result;
       const found = image && answer?.images.find(({ id }) => id === image.id);
-      return html`<tr><td><button class="link" title=${`Crosshair to ${words(pin.at_mm)}`} ?disabled=${isDisabled} @click=${go(pin)}>${pin.label}</button></td><td class="dose-in" title=${words(pin.at_mm)}>${nameOf(plan, answer) || '–'}</td>
+      return html`<tr><td><button class="link" title=${`Crosshair to ${words(pin.at_mm)}${pin.author ? `, pinned by ${pin.author}` : ''}`} ?disabled=${isDisabled} @click=${go(pin)}>${pin.label}</button></td><td class="dose-in" title=${words(pin.at_mm)}>${nameOf(plan, answer) || '–'}</td>
         ${image ? html`<td>${found && found.value !== null ? imageValue(found.value, '').text : '–'}</td>` : nothing}
         ${plan.doses.length ? html`<td title=${answer?.value_reason ?? nothing}>${answer && Number.isFinite(answer.value) ? significant(answer.value) : '–'}</td><td>${answer && Number.isFinite(answer.percent) ? number(answer.percent, 1) : '–'}</td>` : nothing}
         <td><button class="icon-button small" aria-label=${`Remove pin ${pin.label}`} title="Remove" ?disabled=${isDisabled} @click=${remove(pin)}>${icon('close', 12)}</button></td></tr>`;

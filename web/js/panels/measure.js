@@ -22,7 +22,7 @@ const jump = ({ room, ui }, measure, event) => {
   room.patchScene(crosshairPatch(plan, shownImage(plan, scene), pointsOf(measure)[0], { isFree: true }), { view: ui.active.value, at: event.timeStamp });
 };
 function remove({ room, ui }, id, event) {
-  room.patchScene(removePatch(id, room.following.isPresenting.value), { view: ui.active.value, at: event.timeStamp });
+  room.patchScene(removePatch(id, room.isForRoom({ measures: { [id]: null } })), { view: ui.active.value, at: event.timeStamp });
   ui.select('measures');
 }
 
@@ -49,11 +49,14 @@ function addAtCrosshair({ room, ui }, kind, event) {
   const scene = room.scene.value;
   const active = room.view(ui.active.value);
   const plane = planeOfView(scene, isInSpace(active.kind) ? { kind: 'axial' } : active.document.value, room.plan.value);
-  const id = freeId(scene.measures, room.following.isPresenting.value);
+  const id = freeId(scene.measures, room.sharesMarks, room.markSuffix);
   if (measuresOf(scene).length >= mostMeasures) return void ui.notify('warn', `There are ${mostMeasures} measures already: delete one first.`, 'measures');
   room.patchScene(newMeasure(id, kind, pointsAround(kind, nearestIn(plane, crosshair(scene)), plane), shownImage(room.plan.value, scene)), { view: ui.active.value, at: event.timeStamp });
   ui.select('measure', id);
 }
+
+/** "by Ben", where that is not this person. */
+const byOther = (room, { author }) => (author && author !== room.identity?.name ? html`<span class="dim">by ${author}</span> ` : nothing);
 
 function listBlock(world, isDisabled) {
   const { room, ui } = world;
@@ -61,7 +64,7 @@ function listBlock(world, isDisabled) {
   if (!entries.length) return nothing;
   return html`<section class="block"><h3>Measures <span class="dim">${entries.length}</span></h3><ul class="image-list" aria-label="Measures">${repeat(entries, ([id]) => id, ([id, measure]) => {
     const words = measureName(id, measure);
-    return html`<li><button class="image-measure-name" title=${words} @click=${() => ui.choose('measure', id)}>${icon(kindIcons[measure.kind])}<b>${words}</b><span>${valueTexts(world, id, measure).map((text) => html`<span>${text}</span> `)}</span></button>
+    return html`<li><button class="image-measure-name" title=${words} @click=${() => ui.choose('measure', id)}>${icon(kindIcons[measure.kind])}<b>${words}</b><span>${byOther(room, measure)}${valueTexts(world, id, measure).map((text) => html`<span>${text}</span> `)}</span></button>
       <button class="icon-button small" aria-pressed=${measure.visible} aria-label=${`Show ${words} in the pictures`} title="Show or hide" ?disabled=${isDisabled} @click=${(event) => showMeasure(world, id, !measure.visible, event)}>${icon(measure.visible ? 'eye' : 'eyeOff')}</button>
       <button class="icon-button small" aria-label=${`Crosshair to ${words}`} title="Crosshair there" ?disabled=${isDisabled} @click=${(event) => jump(world, measure, event)}>${icon('target')}</button>
       <button class="icon-button small" aria-label=${`Delete ${words}`} title="Delete" ?disabled=${isDisabled} @click=${(event) => remove(world, id, event)}>${icon('trash')}</button></li>`;
@@ -81,6 +84,7 @@ export function measureBlock(world, isDisabled, changeScene) {
   return html`<section class="block"><h3>${icon(kindIcons[measure.kind])} ${words} <span class="dim">${measure.name ? kindName(measure.kind).toLowerCase() : ''}</span></h3>
       <p class="image-measured" role="status">${valueTexts(world, id, measure).map((text) => html`<b>${text}</b> `)}</p>
       <dl class="image-rows"><dt>Name</dt><dd><input maxlength="40" aria-label="Name of the measure" placeholder=${words} .value=${live(measure.name)} ?disabled=${isDisabled} @change=${(event) => change({ name: event.target.value.trim() }, event)}></dd>
+        ${measure.author ? html`<dt>By</dt><dd>${measure.author}</dd>` : nothing}
         ${isEllipse && plan.images.length > 1 ? html`<dt>Image</dt><dd><select aria-label="Image that is measured" ?disabled=${isDisabled} @change=${(event) => change({ image: event.target.value }, event)}>${plan.images.map((image) =>
           html`<option value=${image.id} .selected=${live(image === imageOf(plan, scene, measure))}>${imageName(plan, image)}</option>`)}</select></dd>` : nothing}</dl>
       ${pointTable(measure, isDisabled, change)}

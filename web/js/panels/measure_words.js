@@ -1,4 +1,5 @@
 // What is said of measures: names, values with their units.
+import { shortId } from '../state/marks.js';
 import { kindName, kinds, pointsOf, valueOf } from '../state/measures.js';
 import { shownImage } from '../state/plan.js';
 import { number, significant, unitText } from './format.js';
@@ -6,7 +7,7 @@ import { number, significant, unitText } from './format.js';
 export const kindIcons = { distance: 'measure', angle: 'angle', polyline: 'polyline', ellipse: 'ellipse' };
 export { kinds };
 
-export const measureName = (id, measure) => measure.name || `${kindName(measure.kind)} ${id.replace(/^(m|own)/, '')}`;
+export const measureName = (id, measure) => measure.name || `${kindName(measure.kind)} ${shortId(id, /^(m|own)/)}`;
 
 /** The image that an ellipse is measured in. */
 export const imageOf = (plan, scene, measure) => plan.images.find(({ id }) => id === measure.image) ?? shownImage(plan, scene);

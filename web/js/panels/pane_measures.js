@@ -194,7 +194,7 @@ export class PaneMeasures {
     const draft = this.#draft;
     this.#set(null);
     if (!draft || draft.points.length < 2) return;
-    const id = freeId(this.#scene.measures, room.following.isPresenting.value);
+    const id = freeId(this.#scene.measures, room.sharesMarks, room.markSuffix);
     if (Object.keys(this.#scene.measures).length >= mostMeasures) return void ui.notify('warn', `There are ${mostMeasures} measures already: delete one first.`, 'measures');
     room.patchScene(newMeasure(id, draft.kind, this.#completed(draft, draft.points), shownImage(room.plan.value, this.#scene)), { view: this.#view.number, at });
     ui.select('measure', id);

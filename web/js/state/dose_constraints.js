@@ -1,6 +1,7 @@
 // Limits on doses, scene.constraints: their checks, their files, and what the server says of them.
 import { enums } from '../../gen/wire.js';
 import { csvRows, csvText } from './dose_csv.js';
+import { freeNumber } from './marks.js';
 
 export const mostConstraints = 64;
 const mostCharacters = 200000;
@@ -37,11 +38,8 @@ export function limitAt({ metric, limit }) {
   return level ? { dose: Number(level), [cc ? 'cm3' : 'percent']: limit } : { dose: limit };
 }
 
-/** An id that none of them has. prefix: of this person, so that two people's do not meet. */
-export function freeConstraintId(constraints, taken = []) {
-  const used = new Set([...Object.keys(constraints ?? {}), ...taken]);
-  for (let n = 1; ; n++) if (!used.has(`limit-${n}`)) return `limit-${n}`;
-}
+/** An id that none of them has. suffix: of the ids of who does not present, so that two people's do not meet. */
+export const freeConstraintId = (constraints, taken = [], suffix = '') => `limit-${freeNumber([...Object.keys(constraints ?? {}), ...taken], 'limit-')}${suffix}`;
 
 /** Checks one by the rules of the scene. Throws an Error with a sentence. @returns {Constraint} */
 export function readConstraint({ region, quantity, metric, side, limit }, plan) {

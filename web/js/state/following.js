@@ -4,6 +4,7 @@ import { batch, computed, signal } from '../../lib/signals-core.js';
 import { asShown, ownBeam, wholeCamera, widen, widening } from '../view/own_camera.js';
 import { mergePatch } from '../wire/merge.js';
 import { beamShown } from './beam_line.js';
+import { leftBehind } from './marks.js';
 
 const usualSize = [1024, 768]; // of a pane that was never shown
 
@@ -64,11 +65,15 @@ export class Following {
   /** Follows again, with all panes. Returns whether anything changed. */
   return() {
     if (this.isFollowing.value || this.isPresenting.value) return false;
+    const { patch, n } = leftBehind(this.override.value, this.#room.sharedScene, this.#room.member.value);
     this.#follow();
     this.#room.returned();
     this.#act(true);
     const name = this.presenter.value?.name;
-    this.#room.notify('ok', name ? `Following ${name}.` : 'Back in the shared view.', 'following');
+    const words = name ? `Following ${name}.` : 'Back in the shared view.';
+    if (n && this.#room.control.may('scene'))
+      this.#room.notify('warn', `${words} What you marked for yourself stays behind.`, 'following', { word: n > 1 ? `Give ${n} marks to the room` : 'Give it to the room', act: () => this.#room.patchScene(patch) });
+    else this.#room.notify('ok', words, 'following');
     return true;
   }
 

@@ -1,5 +1,6 @@
 // Measures in the patient: their lengths, angles and areas, the plane of a pane, and which measures lie in it. Pure; LPS mm.
 import { add, cross, dot, length, scale, subtract, unit } from '../view/vec.js';
+import { freeNumber } from './marks.js';
 import { heightOver } from './obliques.js';
 
 export const mostMeasures = 64; // proto/scene.json
@@ -66,12 +67,11 @@ export const isIn = (points, plane, halfMm) => points.every((point) => Math.abs(
 
 // ---- changes ------------------------------------------------------------------------------------------------------------------
 
-/** The first id that is free: m1, m2 ...; own1, own2 ... for who is on their own, so that it is never the presenter's next one. */
-export function freeId(measures, isShared) {
-  for (let n = 1; ; n++) {
-    const id = `${isShared ? 'm' : 'own'}${n}`;
-    if (!Object.hasOwn(measures ?? {}, id)) return id;
-  }
+/** The first id that is free: m1, m2 ... of the presenter, m1-m3, m2-m3 ... of the member m3 who follows; own1, own2 ... for who is on their own, so that it is never
+ *  the presenter's next one. @param {boolean} isShared @param {string} suffix */
+export function freeId(measures, isShared, suffix = '') {
+  const prefix = isShared ? 'm' : 'own';
+  return `${prefix}${freeNumber(Object.keys(measures ?? {}), prefix)}${isShared ? suffix : ''}`;
 }
 
 /** The patch that takes a measure away; on one's own the presenter's can only be hidden. */

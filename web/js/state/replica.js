@@ -26,6 +26,11 @@ export class Replica {
     return this.#queued !== null || this.#sent.length > 0;
   }
 
+  /** The change that is still to be sent; null: none. */
+  get queued() {
+    return this.#queued;
+  }
+
   /** Applies a change at once and queues it for sending. */
   queue(patch) {
     this.#queued = this.#queued ? joinPatches(this.#queued, patch) : patch;

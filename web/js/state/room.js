@@ -7,6 +7,7 @@ import { Following } from './following.js';
 import { Items } from './items.js';
 import { views as allViews } from './layout.js';
 import { Latency } from './latency.js';
+import { authored, isOfMarks, isOwn, ownPart } from './marks.js';
 import { readPlan } from './plan.js';
 import { Pointers } from './pointers.js';
 import { Replica } from './replica.js';
@@ -38,7 +39,7 @@ export class RoomState {
     this.#connection = connection;
     this.#clock = clock;
     this.notify = notify;
-    /** @type {(of: 'scene'|number, patch: object, document: object) => void} told each change of this person before it is applied */
+    /** @type {(of: 'scene'|number, patch: object, document: object, isMark?: boolean) => void} told each change of this person before it is applied; isMark: of marks of the room */
     this.recorder = () => {};
     /** @type {() => void} told when this member follows again after having been on their own */
     this.returned = () => {};
@@ -82,6 +83,11 @@ export class RoomState {
     connection.addEventListener('ended', (event) => this.#setLink('ended', event.detail));
   }
 
+  /** The room's scene with this member's pending changes, without the override of who is on their own. */
+  get sharedScene() {
+    return this.#sharedScene.value;
+  }
+
   /** @returns {ViewState} */
   view(number) {
     return this.views[number - 1];
@@ -89,15 +95,31 @@ export class RoomState {
 
   // ---- actions of the user ----------------------------------------------------------------------------------------
 
+  /** Whether marks that are made now are the room's: see marks.js. */
+  get sharesMarks() {
+    return this.following.isPresenting.value || (this.following.isFollowing.value && this.control.may('scene'));
+  }
+
+  /** What the ids of this member's marks end with. */
+  get markSuffix() {
+    return this.following.isPresenting.value ? '' : `-${this.member.value}`;
+  }
+
+  /** Whether a change of the scene is the room's: everything of the presenter, of who follows what changes marks of their own. */
+  isForRoom(patch) {
+    return this.following.isPresenting.value || (this.sharesMarks && isOwn(patch, this.member.value));
+  }
+
   /**
-   * Changes the scene: the presenter's change is everybody's, any other member leaves the presenter and sees it alone.
-   * view: the pane it was done in; at: time of the input event, for measurements.
+   * Changes the scene: the presenter's change is everybody's, and so is that of marks of one's own; with any other a member leaves the presenter and sees it alone.
+   * view: the pane it was done in; at: time of the input event, for measurements; isBack: marks of the room change, also for who is on their own meanwhile.
    */
-  patchScene(patch, { view = 0, at = this.#clock.now() } = {}) {
+  patchScene(patch, { view = 0, at = this.#clock.now(), isBack = false } = {}) {
     if (!this.canChange.value) return;
-    if (this.following.isPresenting.value) {
-      this.recorder('scene', patch, this.scene.value);
-      this.#scene.queue(patch);
+    if (this.isForRoom(patch) || (isBack && this.control.may('scene') && isOwn(patch, this.member.value))) {
+      const change = authored(patch, this.#sharedScene.value, this.identity?.name ?? '');
+      this.recorder('scene', change, this.scene.value, isOfMarks(patch));
+      this.#scene.queue(change);
       this.#showScene();
       this.#sending.plan({ sceneView: view, at });
     } else {
@@ -285,8 +307,10 @@ export class RoomState {
 
   /** Somebody else presents since, or nobody: changes that were kept for the room while the connection was lost are lost. */
   #dropKept() {
-    const isLost = this.#scene.isPending || (this.following.isFollowing.value && this.views.some((view) => view.isPending));
+    const marks = this.control.may('scene') ? ownPart(this.#scene.queued, this.member.value) : null;
+    const isLost = (this.#scene.isPending && !isOwn(this.#scene.queued ?? {}, this.member.value)) || (this.following.isFollowing.value && this.views.some((view) => view.isPending));
     this.#scene.reset(this.#scene.base);
+    if (marks) this.#scene.queue(marks);
     if (this.following.isFollowing.value) for (const view of this.views) if (view.isPending) view.drop();
     this.#showScene();
     const { presenter } = this.following;

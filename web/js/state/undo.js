@@ -21,7 +21,7 @@ export class Undo {
   #room;
   #clock;
   #notify;
-  #done = []; // steps {changes: Map<string, Change>, gesture, at, isOwn}, oldest first; isOwn: made on one's own, for nobody else
+  #done = []; // steps {changes: Map<string, Change>, gesture, at, place}, oldest first; place: 'room' by the presenter, 'mark' of one's own in the room, 'own' for nobody else
   #undone = [];
   #gesture = 0; // the press that is held down; 0: none
   #nextGesture = 1;
@@ -38,7 +38,7 @@ export class Undo {
     this.#notify = notify;
     this.next = signal(null); // the changes that undo would take back, Change[]; null: none
     this.nextAgain = signal(null); // the same of redo
-    room.recorder = (of, patch, document) => this.#record(of, patch, document);
+    room.recorder = (of, patch, document, isMark = false) => this.#record(of, patch, document, isMark);
     room.together = (name, run) => this.#runTogether(name, run);
     room.returned = () => this.#dropOwn();
     effect(() => this.#tell());
@@ -73,7 +73,7 @@ export class Undo {
   }
 
   /** Notes a change before it is applied. */
-  #record(of, patch, document) {
+  #record(of, patch, document, isMark) {
     if (this.#isRestoring) return;
     const changes = leaves(patch, document).filter(([path]) => !ignored.includes(path[0])).map(([path, value]) => {
       const before = at(document, path);
@@ -81,7 +81,7 @@ export class Undo {
     }).filter(({ before, after: value }) => !isSame(before, value));
     if (!changes.length) return;
     const now = this.#clock.now();
-    const step = this.#stepFor(changes, now);
+    const step = this.#stepFor(changes, now, isMark ? 'mark' : this.#isOnOwn ? 'own' : 'room');
     step.at = now;
     for (const change of changes) {
       const key = keyOf(change);
@@ -98,13 +98,12 @@ export class Undo {
   }
 
   /** The step that these changes belong to: the last one, or a new one. */
-  #stepFor(changes, now) {
+  #stepFor(changes, now, place) {
     const last = this.#done.at(-1);
-    const isOwn = this.#isOnOwn;
-    const isSamePress = last?.isOwn === isOwn && this.#gesture !== 0 && last.gesture === this.#gesture;
-    const isSameFields = last?.isOwn === isOwn && !this.#reaches(this.#undone.at(-1)) && now - last.at <= joinMs && changes.length === last.changes.size && changes.every((change) => last.changes.has(keyOf(change)));
+    const isSamePress = last?.place === place && this.#gesture !== 0 && last.gesture === this.#gesture;
+    const isSameFields = last?.place === place && !this.#reaches(this.#undone.at(-1)) && now - last.at <= joinMs && changes.length === last.changes.size && changes.every((change) => last.changes.has(keyOf(change)));
     if (isSamePress || isSameFields) return last;
-    const step = { changes: new Map(), gesture: this.#gesture, at: now, isOwn };
+    const step = { changes: new Map(), gesture: this.#gesture, at: now, place };
     this.#done = [...this.#done, step].slice(-maxSteps);
     return step;
   }
@@ -119,14 +118,14 @@ export class Undo {
       open = [...step.changes.values()].filter((change) => !isSame(this.#now(change), change[wanted]));
     }
     const mine = open.filter((change) => isSame(this.#now(change), change[left]));
-    this.#restore(mine, wanted);
-    if (mine.length) to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity, isOwn: step.isOwn });
+    if (mine.length) this.#restore(mine, wanted, step.place === 'mark');
+    if (mine.length) to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity, place: step.place });
     if (mine.length < open.length)
       this.#notify('warn', mine.length ? `Only in part ${word}: the rest was changed by somebody else since.` : `Not ${word}: it was changed by somebody else since.`, 'undo');
     this.#tell();
   }
 
-  #restore(changes, wanted) {
+  #restore(changes, wanted, isBack) {
     const patches = new Map();
     for (const change of changes) {
       const value = change[wanted] === undefined ? null : patchTo(this.#now(change), change[wanted]);
@@ -135,7 +134,7 @@ export class Undo {
     this.#isRestoring = true;
     batch(() => {
       for (const [of, patch] of patches) {
-        if (of === 'scene') this.#room.patchScene(patch);
+        if (of === 'scene') this.#room.patchScene(patch, { isBack });
         else this.#room.patchView(of, patch);
       }
     });
@@ -150,16 +149,21 @@ export class Undo {
     return !this.#room.following.isPresenting.value;
   }
 
-  /** The room's steps are the presenter's: to take one back, anybody else would have to leave. */
+  /** The room's steps are the presenter's: to take one back, anybody else would have to leave. Marks are taken back by whose they are. */
   #reaches(step) {
     const isOnOwn = this.#isOnOwn; // read also without a step: next and nextAgain are told anew when it changes
-    return step !== undefined && (step.isOwn || !isOnOwn);
+    return step !== undefined && (step.place !== 'room' || !isOnOwn) && (step.place !== 'mark' || !isOnOwn || this.#isOfMarksOf(step));
+  }
+
+  /** Whether this member may change these marks without presenting: not those that were made by who presented then. */
+  #isOfMarksOf({ changes }) {
+    return [...changes.values()].every(({ path }) => path[1]?.endsWith(`-${this.#room.member.value}`));
   }
 
   /** After returning to the presenter's views: what was changed on one's own is gone already. */
   #dropOwn() {
-    this.#done = this.#done.filter(({ isOwn }) => !isOwn);
-    this.#undone = this.#undone.filter(({ isOwn }) => !isOwn);
+    this.#done = this.#done.filter(({ place }) => place !== 'own');
+    this.#undone = this.#undone.filter(({ place }) => place !== 'own');
     this.#tell();
   }
 
