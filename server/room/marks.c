@@ -29,10 +29,12 @@ bool marks_are_own(const struct room *room, const struct member *member, const c
     const cJSON *kind, *mark;
     if (!cJSON_IsObject(patch) || !patch->child)
         return refuse_not_presenter(room, problem, "change the scene");
-    cJSON_ArrayForEach(kind, patch) {
+    cJSON_ArrayForEach(kind, patch)
+    {
         if (!is_kind(kind->string) || !cJSON_IsObject(kind))
             return refuse_not_presenter(room, problem, "change the scene");
-        cJSON_ArrayForEach(mark, kind) {
+        cJSON_ArrayForEach(mark, kind)
+        {
             if (is_of(mark->string, member))
                 continue;
             char pointer[96];
@@ -61,13 +63,16 @@ cJSON *marks_authored(const struct room *room, const struct member *member, cons
     const bool presents = member_presents(room, member);
     cJSON *authored = cJSON_Duplicate(patch, true), *kind, *mark;
     bool is_whole = authored != NULL;
-    cJSON_ArrayForEach(kind, authored) {
+    cJSON_ArrayForEach(kind, authored)
+    {
         if (!cJSON_IsObject(authored) || !is_kind(kind->string))
             continue;
         const cJSON *before = cJSON_GetObjectItemCaseSensitive(room->scene, kind->string);
-        cJSON_ArrayForEach(mark, kind) {
+        cJSON_ArrayForEach(mark, kind)
+        {
             if (cJSON_IsObject(kind) && cJSON_IsObject(mark))
-                is_whole = sign(member, presents, cJSON_GetObjectItemCaseSensitive(before, mark->string), mark) && is_whole;
+                is_whole =
+                    sign(member, presents, cJSON_GetObjectItemCaseSensitive(before, mark->string), mark) && is_whole;
         }
     }
     if (is_whole)

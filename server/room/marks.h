@@ -8,5 +8,6 @@
  * forbidden with the code "author" where it would change marks of others. */
 bool marks_are_own(const struct room *room, const struct member *member, const cJSON *patch, struct problem *problem);
 /* The patch with the name of the member in each mark that is new, or whose author the member may not choose: the
- * presenter's patch keeps the author that it gives, as that of a mark that comes back. The caller's; NULL: no memory. */
+ * presenter's patch keeps the author that it gives, as that of a mark that comes back. The caller's; NULL: no memory.
+ */
 NODISCARD cJSON *marks_authored(const struct room *room, const struct member *member, const cJSON *patch);

@@ -88,8 +88,9 @@ bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by,
             problem->retry_after_ms = 500;
         return false;
     }
-    cJSON *authored = by ? marks_authored(room, by, patch) : NULL;
-    if (by && !authored)
+    const struct member *author = by ? by : room->caller;
+    cJSON *authored = author ? marks_authored(room, author, patch) : NULL;
+    if (author && !authored)
         return json_no_memory(problem, "a scene");
     const bool is_done = apply(room, authored ? authored : patch, by, input, problem);
     cJSON_Delete(authored);

@@ -79,7 +79,8 @@ static void who_follows_adds_marks_under_ids_and_a_name_of_their_own(void **stat
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m2\":{}}}}");
     assert_string_equal(author_of("measures", "m2"), "Reviewer 1");
     cJSON *told = fake_heard(&ben, "scene");
-    assert_string_equal(json_text(cJSON_GetObjectItem(cJSON_GetObjectItem(cJSON_GetObjectItem(told, "patch"), "measures"),
+    assert_string_equal(json_text(cJSON_GetObjectItem(cJSON_GetObjectItem(cJSON_GetObjectItem(told, "patch"),
+                                                                          "measures"),
                                                       "m2"),
                                   "author"),
                         "Reviewer 1");
@@ -108,7 +109,8 @@ static void who_follows_changes_nothing_but_their_own_marks(void **state)
         { "{\"measures\":null}", "403 " },
         { "{\"probes\":[]}", "403 " },
         { "{}", "403 " },
-        { "{\"constraints\":{\"limit-1-m2\":{\"metric\":\"D95%\",\"limit\":-1}}}", "422 /constraints/limit-1-m2/limit" },
+        { "{\"constraints\":{\"limit-1-m2\":{\"metric\":\"D95%\",\"limit\":-1}}}",
+          "422 /constraints/limit-1-m2/limit" },
         { "{\"constraints\":{\"limit-1-m2\":5}}", "422 /constraints/limit-1-m2" },
     };
     uint32_t before, after;

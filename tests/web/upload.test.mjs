@@ -1,6 +1,6 @@
 // Plans that go up by being dropped on the page, while others look at the list, and go again.
 import assert from 'node:assert/strict';
-import { cpSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
@@ -63,6 +63,11 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     await two.locator('[data-plan="kopf-1"]').waitFor(); // its list finds it by itself
     await two.locator('[data-plan="kopf-1"] button', { hasText: 'Open' }).click();
     await full(two);
+    await two.locator('#picture-2').focus();
+    await two.keyboard.press('n');
+    await two.locator('#note-field-new').fill('Look at the rim again');
+    await two.keyboard.press('Control+Enter');
+    await two.locator('.notes > li', { hasText: 'Look at the rim' }).waitFor();
     await one.locator('[data-plan="kopf-1"] [aria-label^="Delete"]').click();
     await one.locator('dialog', { hasText: '1 person is looking at it' }).waitFor();
     await shoot(one, 'drop-delete');
@@ -72,6 +77,8 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     await note.waitFor();
     await note.locator('text=no longer on this server').waitFor();
     await shoot(two, 'drop-ended');
+    const [file] = await Promise.all([two.waitForEvent('download'), note.getByRole('button', { name: 'Save its notes as a file' }).click()]);
+    assert.match(readFileSync(await file.path(), 'utf8'), /^Notes of the room \S+ on .*\n\n1\. Reviewer 1, .*\n   Look at the rim again\n$/);
     await note.locator('a', { hasText: 'All plans' }).click();
     await two.locator('.plans').waitFor();
     assert.deepEqual(await uploaded(), []);

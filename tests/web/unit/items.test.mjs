@@ -5,6 +5,7 @@ import { roomWorld } from './fake_room.mjs';
 import { load } from './page.mjs';
 
 const { authorsOf, completion, filtered, mentionsIn, noFilter, partsOf, pinStrength, pointOf, threadsOf, whenWords } = await load('state/notes.js');
+const { notesText } = await load('state/notes_file.js');
 
 const body = (text, more = {}) => ({ text, anchor: null, resolved: false, mentions: [], parent: '', ...more });
 const row = (id, text, more = {}, of = {}) => ({ id, kind: 'note', version: 1, author: 'm1', author_name: 'Ann', author_color: '#4a90d9', changed_name: 'Ann', created_ms: 1000, changed_ms: 1000, body: body(text, of), ...more });
@@ -113,6 +114,13 @@ test('a pin is whole in its slice, faint beside it, and gone 20 mm on', () => {
   assert.equal(pinStrength(0.4, 0.5), 1);
   assert.ok(pinStrength(5, 0.5) > pinStrength(15, 0.5) && pinStrength(15, 0.5) > 0);
   assert.equal(pinStrength(20.5, 0.5), 0);
+});
+
+test('notes as a file: numbered, with place, author, replies, and whether they are resolved', () => {
+  const at = Date.UTC(2026, 10, 23, 9, 5);
+  const rows = [{ ...row('a', 'Edge?\nOr not', {}, { anchor: { point_mm: [1, -2.25, 3], region: 'r1' }, resolved: true }), author_name: 'Ann', created_ms: at }, { ...row('b', 'Yes', {}, { parent: 'a' }), author_name: 'Ben', created_ms: at + 60000 }];
+  assert.equal(notesText({ id: 'room-1', planId: 'p', plan: { name: 'Head', regions: [{ id: 'r1', name: 'brain' }] }, rows }),
+    'Notes of the room room-1 on Head\n\n1. Ann, 2026-11-23 09:05 UTC, at brain, L 1.0  P -2.3  S 3.0 mm, resolved\n   Edge?\n   Or not\n   Ben, 2026-11-23 09:06 UTC\n      Yes\n');
 });
 
 test('times are local: of today without the date, of another year with it', () => {

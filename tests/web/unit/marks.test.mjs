@@ -157,6 +157,20 @@ test('a mark that was made while the connection was lost is sent when it is back
   assert.deepEqual(told.filter(([kind]) => kind === 'err'), []);
 });
 
+test('a room that ends refuses what it has not answered, and says that changes are lost', async () => {
+  const { room, connection, lose } = pageOf('m1');
+  lose();
+  const note = room.items.put('note', { text: 'Kept?', anchor: null });
+  room.patchScene({ axes: { visible: true } });
+  connection.tell('ended', { reason: 'the plan was deleted', isRefused: true });
+  assert.equal(room.lostAtEnd.value, true);
+  assert.equal(room.items.nPending.value, 0);
+  await assert.rejects(note, ({ detail }) => /not saved/.test(detail));
+  const quiet = pageOf('m2');
+  quiet.connection.tell('ended', { reason: 'the plan was deleted', isRefused: true });
+  assert.equal(quiet.room.lostAtEnd.value, false);
+});
+
 test('which patches are of marks, and whose', () => {
   const own = { measures: { 'm1-m2': null } };
   for (const [patch, is] of [[own, true], [{ measures: { m1: null } }, false], [{ measures: { '-m2': {} } }, false], [{ ...own, probes: { 'pin-1': {} } }, false], [{ ...own, axes: { visible: true } }, false], [{}, false], [{ measures: {} }, false], [{ measures: null }, false]])

@@ -7,6 +7,13 @@ import { whoIn } from './lobby.js';
 
 const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : 'The server gave no reason.');
 
+/** The notes are in this page alone by now, when the room was deleted. */
+async function saveNotes(room) {
+  const [{ notesText }, { saveFile }] = await Promise.all([import('../state/notes_file.js'), import('../state/dose_csv.js')]);
+  const text = notesText({ id: room.id, planId: room.planId.peek(), plan: room.plan.peek(), rows: room.items.notes.peek() });
+  saveFile(`${room.planId.peek()}-notes.txt`, text, 'text/plain');
+}
+
 /** After a room that this tab was in, the last pictures stay visible. */
 export function ended({ room, after }) {
   if (room.link.value.state !== 'ended') return nothing;
@@ -17,7 +24,8 @@ export function ended({ room, after }) {
     <div>${wasIn ? html`<b>You are no longer in this room</b>` : html`<h1>${room.link.value.isRefused ? 'You cannot enter this room' : 'There is no room at this address'}</h1>`}<p>${sentence(room.link.value.reason)}</p>
       ${after.isPlanGone.value ? html`<p>Its plan is no longer on this server.</p>` : nothing}
       ${after.error.value ? html`<p class="err">${icon('error')} ${after.error.value}</p>` : nothing}
-      <div class="buttons">${rooms.map((other) => html`<button @click=${() => after.join(other)}>Join ${other.id}: ${whoIn(other)}</button>`)}
+      ${wasIn && room.lostAtEnd.value ? html`<p class="err">${icon('error')} Your last changes did not reach it.</p>` : nothing}
+      <div class="buttons">${wasIn && room.items.notes.value.length ? html`<button @click=${() => void saveNotes(room)}>Save its notes as a file</button>` : nothing}${rooms.map((other) => html`<button @click=${() => after.join(other)}>Join ${other.id}: ${whoIn(other)}</button>`)}
         ${plan ? html`<button class="primary" ?disabled=${after.isBusy.value} @click=${() => after.reopen()}>Open ${plan.name} in a new room</button>` : nothing}
         <a class="button" href="#/">All plans</a></div></div></section>`;
 }

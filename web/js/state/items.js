@@ -75,6 +75,14 @@ export class Items {
     return Boolean(command);
   }
 
+  /** The room has ended: what waits for an answer is refused. Returns whether anything did. */
+  end() {
+    const left = this.#own;
+    this.#keep([]);
+    for (const { failed } of left) failed({ detail: 'The room has ended: this was not saved. Copy it if you need it.' });
+    return left.length > 0;
+  }
+
   /** The connection was lost: what was sent may have arrived or not. */
   recall() {
     for (const command of this.#own) command.input = 0;

@@ -48,6 +48,7 @@ export class RoomState {
 
     // connecting | open | lost | ended; when an answer is overdue, quietSince: time of the last sign of the server; dueSince: of the answer
     this.link = signal({ state: 'connecting', retryAt: 0, quietSince: 0, dueSince: 0, reason: '' });
+    this.lostAtEnd = signal(false); // changes and notes were not answered when the room ended
     this.member = signal('');
     this.members = signal([]);
     this.planId = signal('');
@@ -80,7 +81,11 @@ export class RoomState {
     connection.addEventListener('renewing', () => this.#keepChanges());
     connection.addEventListener('quiet', (event) => this.#setLink('open', { quietSince: event.detail.since, dueSince: event.detail.dueSince }));
     connection.addEventListener('heard', () => this.#setLink('open'));
-    connection.addEventListener('ended', (event) => this.#setLink('ended', event.detail));
+    connection.addEventListener('ended', (event) => batch(() => {
+      const isLost = this.#scene.isPending || this.views.some((view) => view.isOpen.value && view.isPending);
+      this.lostAtEnd.value = this.items.end() || isLost;
+      this.#setLink('ended', event.detail);
+    }));
   }
 
   /** The room's scene with this member's pending changes, without the override of who is on their own. */
