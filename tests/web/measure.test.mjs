@@ -56,7 +56,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await drag(page, 2, [-60, 10, S], [30, -30, S]); // 90 and 40: 98.5 mm
     const { m1 } = await comes(({ m1: made }) => made && areAt(made, [[-60, 10, S], [30, -30, S]]), 'distance');
     assert.ok(Math.abs(away(...places(m1)) - Math.hypot(90, 40)) < 0.1);
-    assert.deepEqual({ ...m1, points: [] }, { kind: 'distance', name: '', visible: true, image: 'ct', points: [] });
+    assert.deepEqual({ ...m1, points: [] }, { kind: 'distance', name: '', author: 'Reviewer 1', visible: true, image: 'ct', points: [] });
     assert.match(await drawn(page, 2, 'm1').textContent(), /98\.5 mm/);
     assert.deepEqual(await Promise.all([1, 3, 4].map((view) => drawn(page, view, 'm1').count())), [1, 0, 0], 'faintly in 3-D, not in planes that it crosses');
 

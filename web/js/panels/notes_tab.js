@@ -40,7 +40,7 @@ export function notesTab(world) {
 
 function head(world) {
   const { room, ui } = world;
-  if (!mayWrite(room)) return html`<section class="block"><p class="note">As an observer you read notes; presenters and reviewers write them.</p></section>`;
+  if (!mayWrite(room)) return html`<section class="block"><p class="note">${room.link.value.state === 'ended' ? 'The room has ended: its notes can be read here until you leave this page.' : 'As an observer you read notes; presenters and reviewers write them.'}</p></section>`;
   const region = ui.region.value;
   const anchor = ui.newNote.value;
   if (!anchor)
