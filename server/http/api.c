@@ -42,6 +42,7 @@ static const struct api_route api_routes[] = {
     { "GET", "/api/v1/rooms/{room}/bookmarks/{bookmark}/picture", api_room_bookmark_picture },
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
     { "POST", "/api/v1/rooms/{room}/links", api_room_link_new },
+    { "GET", "/api/v1/rooms/{room}/stream", api_room_stream },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
     { "GET", "/p/{saved}", api_permalink },
 };
@@ -141,8 +142,9 @@ static bool wakes_room(struct api *api, struct call *call, const struct api_rout
 {
     static const char in_room[] = "/api/v1/rooms/{room}";
     const char *room = call_query(call, "room");
+    bool is_for_awake = call->method == CALL_DELETE || route->handle == api_room_ws || route->handle == api_room_stream;
     if (strncmp(route->path, in_room, sizeof in_room - 1) == 0)
-        room = call->method != CALL_DELETE && route->handle != api_room_ws ? call->ids[0] : NULL;
+        room = is_for_awake ? NULL : call->ids[0];
     if (!room || !net_room_is_asleep(api->net, room))
         return false;
     net_room_wake(api->net, room, room_awoke, call);

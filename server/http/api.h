@@ -19,5 +19,8 @@ bool api_route_at(size_t index, struct api_route *route);
 /* Finds the route, checks the ids and runs the handler. The call is answered now or later, exactly once. */
 void api_handle(struct api *api, struct call *call);
 
+/* The screen of a feed (call_answer_feed) has left. Takes the reader's side of the feed. */
+void api_display_left(struct api *api, struct feed *feed);
+
 /* Counts an answer for /metrics. Any thread. */
 void api_count(struct api *api, int status, int64_t took_us);

@@ -31,6 +31,7 @@ struct api {
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
     struct api_picture *pictures; /* requested and not yet answered */
+    struct api_display *displays; /* screens that look at rooms */
     size_t n_files, n_timings;    /* under way */
     size_t n_jobs;                /* ever made; job n is at index n % API_MAX_JOBS */
     _Atomic uint64_t n_calls[6],

@@ -146,6 +146,12 @@ void call_answer_text(struct call *call, int status, const char *media_type, con
     finish(call, status, media_type);
 }
 
+void call_answer_feed(struct call *call, const char *media_type, struct feed *feed)
+{
+    call->feed = feed;
+    finish(call, 200, media_type);
+}
+
 void call_answer_nothing(struct call *call, int status)
 {
     finish(call, status, "");

@@ -21,6 +21,8 @@ struct call_pair {
     char *name, *value;
 };
 
+struct feed;
+
 struct call {
     /* the request */
     enum call_method method;
@@ -41,6 +43,7 @@ struct call {
     /* the answer */
     int status;
     char media_type[64];
+    struct feed *feed; /* NULL, or the reader's side of the feed that the answer is made of, without an end */
     uint8_t *bytes;
     size_t n_bytes;
     struct call_pair headers[CALL_MAX_HEADERS];
@@ -52,6 +55,8 @@ struct call {
     const char *exported;                 /* what the answer gives away (api_audit.h); NULL: nothing */
     void (*finished)(struct call *call); /* of the HTTP side: called once, on any thread, when the answer is complete */
     void *connection;                    /* of the HTTP side */
+    void (*wake)(void *context);         /* for feed_create */
+    void *wake_context;
     int64_t started_us;
     const char *route; /* "GET /api/v1/plans/{plan}", for metrics; never an id */
 };
@@ -67,6 +72,7 @@ void call_answer_problem(struct call *call, const struct problem *problem);
 void call_answer_bytes(struct call *call, int status, const char *media_type, uint8_t *bytes,
                        size_t n); /* takes bytes */
 void call_answer_text(struct call *call, int status, const char *media_type, const char *text);
+void call_answer_feed(struct call *call, const char *media_type, struct feed *feed); /* takes its reader's side */
 void call_answer_nothing(struct call *call, int status);
 void call_add_header(struct call *call, const char *name, const char *value); /* before the answer */
 

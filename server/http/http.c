@@ -17,12 +17,15 @@
 #include "core/base/queue.h"
 #include "server/http/api.h"
 #include "server/http/etag.h"
+#include "server/http/feed.h"
 #include "server/http/files.h"
 #include "server/http/intake.h"
 #include "server/http/relay.h"
 
 /* Never reached: the relay's limit is lower, also with connections whose end the library has not noticed. */
 static const unsigned LIBRARY_LIMIT = 1000000;
+
+enum { FEED_BLOCK = 64 << 10 }; /* bytes of an answer without an end that are made at once */
 
 enum {
     MAX_ANSWERED = 1 << 16
@@ -37,7 +40,8 @@ struct http {
     struct MHD_Daemon *daemon;
     struct queue *
         answered; /* answered requests, whose connections the HTTP thread resumes: the library allows no other thread */
-    struct gate *posting; /* passed by each net_post; closed by http_stop_posting */
+    struct request *feeding; /* requests whose answers have no end */
+    struct gate *posting;    /* passed by each net_post; closed by http_stop_posting */
     size_t
         max_archive_dropped; /* bytes of a refused archive that are read, so that its sender comes to read the answer */
 };
@@ -49,7 +53,9 @@ struct request {
     struct MHD_Connection *connection;
     struct relay_link *link;
     bool is_posted, is_answered, is_archive;
-    struct intake_file *archive; /* while it is received */
+    struct request *next_feeding; /* call->feed is set */
+    bool is_suspended;            /* the feed has nothing for the screen */
+    struct intake_file *archive;  /* while it is received */
 };
 
 /* The page runs only its own scripts and styles, and may not be framed. */
@@ -89,11 +95,62 @@ static enum MHD_Result send_file(struct MHD_Connection *connection, const struct
     return send_response(connection, is_fresh ? 304 : 200, response);
 }
 
+/* Called by libmicrohttpd for more bytes of an answer without an end. */
+static ssize_t read_feed(void *context, uint64_t at, char *bytes, size_t size)
+{
+    struct request *request = context;
+    struct feed *feed = request->call->feed;
+    (void)at;
+    if (relay_link_is_gone(request->link))
+        return MHD_CONTENT_READER_END_WITH_ERROR;
+    if (feed_is_ended(feed) && !feed_is_inside(feed))
+        return MHD_CONTENT_READER_END_OF_STREAM;
+    size_t n = feed_read(feed, bytes, size, relay_link_is_free(request->link), clock_now_us());
+    request->is_suspended = n == 0;
+    if (request->is_suspended)
+        MHD_suspend_connection(request->connection);
+    return (ssize_t)n;
+}
+
+static void resume_feeds(struct http *http, bool all)
+{
+    int64_t now_us = clock_now_us();
+    for (struct request *request = http->feeding; request; request = request->next_feeding) {
+        const struct feed *feed = request->call->feed;
+        if (!request->is_suspended || !(all || feed_is_ended(feed) || relay_link_is_gone(request->link) ||
+                                        (feed_is_due(feed, now_us) && relay_link_is_free(request->link))))
+            continue;
+        request->is_suspended = false;
+        MHD_resume_connection(request->connection);
+    }
+}
+
+static void remove_feeding(struct request *request)
+{
+    struct request **at = &request->http->feeding;
+    while (*at && *at != request)
+        at = &(*at)->next_feeding;
+    if (*at)
+        *at = request->next_feeding;
+}
+
+static struct MHD_Response *make_response(struct request *request)
+{
+    struct call *call = request->call;
+    if (call->feed) {
+        request->next_feeding = request->http->feeding;
+        request->http->feeding = request;
+        return MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, FEED_BLOCK, read_feed, request, NULL);
+    }
+    struct MHD_Response *response = MHD_create_response_from_buffer(call->n_bytes, call->bytes, MHD_RESPMEM_MUST_FREE);
+    call->bytes = NULL;
+    return response;
+}
+
 static enum MHD_Result send_answer(struct MHD_Connection *connection, struct request *request)
 {
     struct call *call = request->call;
-    struct MHD_Response *response = MHD_create_response_from_buffer(call->n_bytes, call->bytes, MHD_RESPMEM_MUST_FREE);
-    call->bytes = NULL;
+    struct MHD_Response *response = make_response(request);
     if (call->media_type[0])
         MHD_add_response_header(response, "Content-Type", call->media_type);
     MHD_add_response_header(response, "Cache-Control", "no-store");
@@ -101,6 +158,11 @@ static enum MHD_Result send_answer(struct MHD_Connection *connection, struct req
         MHD_add_response_header(response, call->headers[i].name, call->headers[i].value);
     api_count(request->http->api, call->status, clock_now_us() - call->started_us);
     return send_response(connection, (unsigned)call->status, response);
+}
+
+static void wake_reader(void *relay)
+{
+    relay_wake(relay);
 }
 
 /* Called on the thread that completed the answer. */
@@ -234,6 +296,8 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     request->link = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context;
     call->connection = request;
     call->finished = call_finished;
+    call->wake = wake_reader;
+    call->wake_context = http->relay;
     call->method = method_of(method);
     call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);
@@ -310,6 +374,21 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
     return MHD_YES;
 }
 
+static void request_destroy(struct request *request)
+{
+    call_destroy(request->call);
+    free(request);
+}
+
+/* The net thread's. */
+static void screen_left(struct net *net, void *argument)
+{
+    struct request *request = argument;
+    (void)net;
+    api_display_left(request->http->api, request->call->feed);
+    request_destroy(request);
+}
+
 static void completed(void *context, struct MHD_Connection *connection, void **state,
                       enum MHD_RequestTerminationCode code)
 {
@@ -321,9 +400,15 @@ static void completed(void *context, struct MHD_Connection *connection, void **s
     if (code == MHD_REQUEST_TERMINATED_COMPLETED_OK)
         relay_request_ended(request->link);
     intake_drop(request->archive);
-    call_destroy(request->call);
-    free(request);
     *state = NULL;
+    remove_feeding(request);
+    if (request->call->feed && gate_enter(request->http->posting)) {
+        net_post(request->http->net, screen_left, request);
+        gate_leave(request->http->posting);
+        return;
+    }
+    feed_leave(request->call->feed); /* the net thread has left it, or is about to */
+    request_destroy(request);
 }
 
 static void connection_changed(void *context, struct MHD_Connection *connection, void **link,
@@ -358,6 +443,7 @@ static bool run_library(void *context)
     struct http *http = context;
     unsigned MHD_LONG_LONG wait_ms;
     resume_answered(http);
+    resume_feeds(http, false);
     (void)MHD_run(http->daemon);
     return MHD_get_timeout(http->daemon, &wait_ms) == MHD_YES && wait_ms == 0;
 }
@@ -419,6 +505,7 @@ void http_destroy(struct http *http)
         return;
     relay_stop(http->relay);
     resume_answered(http);
+    resume_feeds(http, true);
     if (http->daemon)
         MHD_stop_daemon(http->daemon);
     relay_destroy(http->relay);

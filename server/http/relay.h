@@ -66,8 +66,12 @@ void relay_hang(struct relay *relay); /* for tests: the thread hangs */
 /* The connection that was added with this socket; NULL: none. Valid until relay_link_closed, which the library must
  * then call. */
 struct relay_link *relay_find(struct relay *relay, int socket);
-void relay_link_closed(struct relay_link *link);   /* the library closed its end */
-void relay_request_ended(struct relay_link *link); /* the answer was written completely */
+void relay_link_closed(struct relay_link *link); /* the library closed its end */
+/* Whether all bytes of the answer so far are on their way to the client. False: some wait for the client to take them.
+ */
+bool relay_link_is_free(const struct relay_link *link);
+bool relay_link_is_gone(const struct relay_link *link); /* the client's side has ended */
+void relay_request_ended(struct relay_link *link);      /* the answer was written completely */
 /* Answers the request that is being received with a problem and ends the connection, which no longer counts. Up to
  * max_dropped bytes more are read from it. */
 void relay_refuse(struct relay_link *link, const struct problem *problem, uint64_t max_dropped);

@@ -5,9 +5,11 @@
 #include "server/http/relay_link.h"
 
 #include <errno.h>
+#include <linux/sockios.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include "core/base/clock.h"
@@ -408,6 +410,21 @@ void relay_link_closed(struct relay_link *link)
     link->relay->has_dead = true;
     if (link->state == LINK_DEAD || link->state == LINK_LINGER)
         relay_uncount(link);
+}
+
+bool relay_link_is_free(const struct relay_link *link)
+{
+    int n_inner = 0, n_unsent = 0;
+    if (link->state == LINK_DEAD || link->n_out > 0)
+        return false;
+    (void)ioctl(link->inner, FIONREAD, &n_inner);
+    (void)ioctl(link->client, SIOCOUTQNSD, &n_unsent);
+    return n_inner == 0 && n_unsent == 0;
+}
+
+bool relay_link_is_gone(const struct relay_link *link)
+{
+    return link->state == LINK_DEAD;
 }
 
 void relay_request_ended(struct relay_link *link)

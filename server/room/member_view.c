@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "server/room/beginning.h"
+#include "server/room/kept.h"
 #include "server/room/member_list.h"
 #include "server/room/own_view.h"
 #include "server/room/send.h"
@@ -55,6 +56,9 @@ static void view_join(struct room *room, struct member *member, struct member_vi
 {
     if (view->stream != stream) {
         view_leave(room, view);
+        if (stream->is_of_display)
+            kept_changed(room, ROOM_VIEWS);
+        stream->is_of_display = false;
         view->member = member;
         stream_add_viewer(stream, view);
     }
@@ -124,8 +128,12 @@ static cJSON *document_to_share(const struct room *room, const struct member *me
 static void join_shared(struct room *room, struct member *member, struct member_view *view, cJSON *document)
 {
     struct stream *stream = stream_shared(room, document);
-    if (!stream) {
-        stream = stream_create(room, beginning_view(room, document), true);
+    if (!stream || stream->is_of_display) {
+        document = beginning_view(room, document);
+        if (stream)
+            (void)stream_set_view(room, stream, document);
+        else
+            stream = stream_create(room, document, true);
         if (member_presents(room, member))
             (void)snprintf(stream->mover, sizeof stream->mover, "%s", member->id);
     } else {

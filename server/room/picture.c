@@ -5,13 +5,13 @@
 
 struct room_picture *room_picture_hold(struct room_picture *picture)
 {
-    picture->references++;
+    atomic_fetch_add(&picture->references, 1);
     return picture;
 }
 
 void room_picture_drop(struct room_picture *picture)
 {
-    if (!picture || --picture->references > 0)
+    if (!picture || atomic_fetch_sub(&picture->references, 1) > 1)
         return;
     free(picture->bytes);
     cJSON_Delete(picture->missing);

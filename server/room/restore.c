@@ -19,7 +19,7 @@ static char *write_views(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
     for (const struct stream *stream = room->streams; stream; stream = stream->next) {
-        if (!stream->is_shared)
+        if (!stream->is_shared || stream->is_of_display)
             continue;
         cJSON *item = cJSON_CreateObject();
         json_add(item, "view", cJSON_Duplicate(stream->view, true));

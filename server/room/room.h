@@ -1,6 +1,7 @@
 #pragma once
 /* Rooms: members, their views, the shared scene; who sees what, and when a picture is requested. No sockets, no
  * renderer (callbacks), no clock of its own (now_us is passed in). One thread. */
+#include <stdatomic.h>
 #include <stdint.h>
 
 #include "server/wire/document.h"
@@ -34,7 +35,9 @@ enum {
     ROOM_MAX_RECORDING_EVENTS = 500000,
     ROOM_MAX_RECORDING_S = 12 * 3600,
     ROOM_RECORDING_EMPTY_S = 60, /* nobody there for so long ends it */
-    ROOM_MAX_MARKS = 500         /* of one recording */
+    ROOM_MAX_MARKS = 500,        /* of one recording */
+    ROOM_MAX_DISPLAYS = 8,
+    ROOM_DISPLAY_RETRY_MS = 5000
 };
 
 struct room;
@@ -64,14 +67,15 @@ struct room_render {
     const char *member;                /* id of the member whose own view it is; NULL: a shared view */
 };
 
-/* A picture that was drawn; reference-counted, as all followers are sent the same. */
+/* A picture that was drawn; reference-counted, as all followers are sent the same. Unchanged once it is given to the
+ * room; held and dropped by any thread. */
 struct room_picture {
     struct frame_header header; /* view, sequence, input_id, flags SHARED are filled per member by the room */
     uint8_t *bytes;
     size_t n_bytes;
     cJSON *missing; /* {n, regions: [{region, reason}]}: the regions that it leaves out because they cannot be drawn;
                        NULL: none */
-    int references;
+    atomic_int references;
 };
 
 /* A row for the audit. Texts are borrowed. Actions: open, leave (a member enters, or its connection ends), link (one
@@ -197,6 +201,23 @@ void room_picture_came(struct room *room, uint64_t request, struct room_picture 
 void room_picture_failed(struct room *room, uint64_t request, const struct problem *problem, int64_t now_us);
 struct room_picture *room_picture_hold(struct room_picture *picture);
 void room_picture_drop(struct room_picture *picture);
+
+/* Displays: screens that show a shared view and are no members. view: its kind; NULL: 3d. Of several views of the kind,
+ * the presenter's first, else that with the lowest number; one that nobody has shown yet begins as for a member. A
+ * display neither keeps a room awake nor counts as its use. NULL with problem: limit, validation, not-found. */
+struct room_display;
+struct room_display_callbacks {
+    /* a newer picture; keeping it takes room_picture_hold */
+    void (*picture)(void *context, struct room_picture *picture);
+    bool (*has_room)(void *context); /* the screen has taken the last one */
+    void (*ended)(void *context);    /* with the room: the display is gone */
+    void *context;
+};
+NODISCARD struct room_display *room_display_add(struct room *room, const char *view,
+                                                const struct room_display_callbacks *callbacks, int64_t now_us,
+                                                struct problem *problem);
+void room_display_remove(struct room_display *display);
+const char *room_display_kind(const struct room_display *display); /* a word of the view's field kind */
 
 /* Time-driven work: stills, dropping members that are away. Returns when it is due again; INT64_MAX: only after another
  * call. */

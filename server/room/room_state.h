@@ -50,8 +50,10 @@ struct stream {
     bool latest_is_still;
     struct pace pace;
     struct member_view *viewers; /* the views that show it */
-    struct {                     /* the message view as it was written last: most viewers are sent the same text */
-        char *text;              /* NULL: none, or the view has changed since */
+    struct room_display *displays;
+    bool is_of_display; /* made for a display: no member has shown it, and it is not kept */
+    struct {            /* the message view as it was written last: most viewers are sent the same text */
+        char *text;     /* NULL: none, or the view has changed since */
         int index;
         bool is_following;
         char by[64];

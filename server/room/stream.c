@@ -7,6 +7,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/room/display.h"
 #include "server/room/kept.h"
 #include "server/room/reach.h"
 #include "server/room/send.h"
@@ -18,23 +19,6 @@ static const int64_t still_after_us = ROOM_STILL_AFTER_MS * INT64_C(1000);
 static const int64_t acted_for_us = 500000;
 
 /* ---- streams ---------------------------------------------------------------------------------------------------- */
-
-int view_kind(const cJSON *view)
-{
-    const char *word = json_text(view, "kind");
-    for (size_t i = 0; word && i < scene_kind_words.n; i++)
-        if (strcmp(word, scene_kind_words.words[i]) == 0)
-            return (int)i;
-    return SCENE_KIND_3D;
-}
-
-bool views_are_alike(const cJSON *a, const cJSON *b)
-{
-    const char *plane_a = json_text(a, "plane"), *plane_b = json_text(b, "plane");
-    if (view_kind(a) != view_kind(b) || json_number(a, "number", 1) != json_number(b, "number", 1))
-        return false;
-    return view_kind(a) != SCENE_KIND_OBLIQUE || strcmp(plane_a ? plane_a : "", plane_b ? plane_b : "") == 0;
-}
 
 struct stream *stream_shared(const struct room *room, const cJSON *view)
 {
@@ -74,7 +58,7 @@ static void destroy_unseen_obliques(struct room *room)
 {
     for (struct stream *stream = room->streams, *next; stream; stream = next) {
         next = stream->next;
-        if (stream->is_shared && stream->kind == SCENE_KIND_OBLIQUE && !stream->viewers)
+        if (stream->is_shared && stream->kind == SCENE_KIND_OBLIQUE && !stream->viewers && !stream->displays)
             stream_destroy(room, stream);
     }
 }
@@ -139,13 +123,22 @@ void stream_remove_viewer(struct room *room, struct member_view *view)
         view->next_viewer->previous_viewer = view->previous_viewer;
     view->stream = NULL;
     view->next_viewer = view->previous_viewer = NULL;
-    if (!stream->is_shared)
+    stream_left(room, stream);
+}
+
+void stream_left(struct room *room, struct stream *stream)
+{
+    if (stream->viewers || stream->displays)
+        return;
+    if (!stream->is_shared || stream->is_of_display)
         stream_destroy(room, stream);
-    else if (!stream->viewers)
+    else
         forget_unseen(room, stream);
 }
+
 void stream_destroy(struct room *room, struct stream *stream)
 {
+    displays_end(stream);
     (void)forget_requests(room, stream);
     struct stream **at = &room->streams;
     while (*at != stream)
@@ -260,13 +253,13 @@ static uint32_t n_unshown(const struct member_view *view)
 }
 
 /* True if any viewer of the stream still has credit beyond the requests in flight. */
-static bool has_credit(const struct stream *stream)
+static bool has_credit(const struct room *room, const struct stream *stream)
 {
     uint32_t coming = (uint32_t)n_outstanding(stream);
     for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
         if (n_unshown(view) + coming < ROOM_MAX_UNSHOWN)
             return true;
-    return false;
+    return displays_have_credit(stream, coming, room->now_us);
 }
 
 /* False: no memory for the scene with the view's override, and without that nothing is drawn. */
@@ -344,8 +337,10 @@ static int64_t request_due(struct room *room, struct stream *stream)
     for (;;) {
         bool wants_still = stream->still_requested_version < stream->version,
              wants_moving = stream->requested_version < stream->version;
-        if ((!wants_still && !wants_moving) || !has_credit(stream))
+        if (!wants_still && !wants_moving)
             return INT64_MAX;
+        if (!has_credit(room, stream))
+            return stream->displays ? room->now_us + DISPLAY_AGAIN_US : INT64_MAX;
         if (room->now_us < stream->retry_us)
             return stream->retry_us;
         if (n_outstanding(stream) >= 2)
@@ -449,6 +444,7 @@ static void send_to_subscribers(struct room *room, struct stream *stream)
             room->counters.frames_skipped++; /* the viewer gets the newest picture when its credit returns */
         stream_send_picture(room, view->member, view);
     }
+    displays_send(stream);
 }
 
 /* The viewer with the best link decides: one slow member must not make the picture worse for others. */

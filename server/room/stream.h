@@ -14,6 +14,8 @@ void stream_add_viewer(struct stream *stream, struct member_view *view);
 /* The view shows its stream no longer: an own stream ends; of a shared one without any other viewer the requests are
  * forgotten. */
 void stream_remove_viewer(struct room *room, struct member_view *view);
+/* A viewer or a display is gone: what nobody shows any more ends, or its requests are forgotten. */
+void stream_left(struct room *room, struct stream *stream);
 /* Takes view. Returns true when it differs from the present one. */
 bool stream_set_view(struct room *room, struct stream *stream, cJSON *view);
 /* Raises the version of every stream; scene_is_new: overrides are applied anew. */

@@ -1,6 +1,6 @@
 // Starts the real daemon for a test, on a port of its own, with its own state folder.
 import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { createInterface } from 'node:readline';
@@ -69,4 +69,11 @@ export async function openPlan(url, plan) {
   const opened = await call(`${url}/api/v1/plans/${plan}/open`, 'POST');
   if (opened.status !== 202) throw new Error(`open ${plan}: ${opened.text}`);
   return until(async () => (await call(`${url}/api/v1/jobs/${opened.json.id}`)).json, (job) => job.state !== 'running');
+}
+
+/** Process ids of the renderers a daemon has. */
+export function renderersOf(parent) {
+  const look = (pid, name) => { try { return readFileSync(`/proc/${pid}/${name}`, 'latin1'); } catch { return ''; } };
+  return readdirSync('/proc').filter((pid) => /^\d+$/.test(pid) && look(pid, 'status').includes(`\nPPid:\t${parent}\n`)
+    && /beamroom-render/.test(look(pid, 'cmdline')) && !/--(scan|probe-gl)/.test(look(pid, 'cmdline'))).map(Number);
 }

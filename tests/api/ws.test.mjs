@@ -1,8 +1,7 @@
 // The WebSocket of the real daemon with one and several clients. --stub: grey pictures, everything else is real.
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
 import { after, afterEach, before, describe, test } from 'node:test';
-import { call, sleep, startDaemon, until } from './daemon.mjs';
+import { call, renderersOf, sleep, startDaemon, until } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
 
 let daemon, api;
@@ -59,13 +58,6 @@ async function move(client, from, input = 0) {
   return input;
 }
 const rendered = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)?.[1]);
-
-/** Process ids of the renderers a daemon has. */
-function renderersOf(parent) {
-  const look = (pid, name) => { try { return readFileSync(`/proc/${pid}/${name}`, 'latin1'); } catch { return ''; } };
-  return readdirSync('/proc').filter((pid) => /^\d+$/.test(pid) && look(pid, 'status').includes(`\nPPid:\t${parent}\n`)
-    && /beamroom-render/.test(look(pid, 'cmdline')) && !/--(scan|probe-gl)/.test(look(pid, 'cmdline'))).map(Number);
-}
 
 describe('the handshake', () => {
   test('is refused for a room that does not exist', async () => assert.equal((await connectTo('aaaa-aaaa')).status, 404));

@@ -1,0 +1,87 @@
+/* Shows a room's view to displays, as a stream of pictures without an end. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+#include "server/http/api_handlers.h"
+#include "server/http/feed.h"
+
+struct api_display { /* a screen that looks at a room */
+    struct api_display *next;
+    struct api *api;
+    struct feed *feed;
+    struct room_display *display;
+    char plan_id[64];
+    bool holds_plan;
+};
+
+static void put_picture(void *context, struct room_picture *picture)
+{
+    const struct api_display *display = context;
+    feed_put(display->feed, picture);
+}
+
+static bool has_room(void *context)
+{
+    const struct api_display *display = context;
+    return feed_has_room(display->feed);
+}
+
+/* The room has removed its display, or has ended. */
+static void end_display(void *context)
+{
+    struct api_display *display = context, **at = &display->api->displays;
+    while (*at != display)
+        at = &(*at)->next;
+    *at = display->next;
+    if (display->holds_plan)
+        fleet_release(net_fleet(display->api->net), display->plan_id);
+    feed_end(display->feed);
+    free(display);
+}
+
+void api_display_left(struct api *api, struct feed *feed)
+{
+    struct api_display *display = api->displays;
+    while (display && display->feed != feed)
+        display = display->next;
+    if (display) {
+        room_display_remove(display->display);
+        end_display(display);
+    }
+    feed_leave(feed);
+}
+
+void api_room_stream(struct api *api, struct call *call)
+{
+    struct problem problem = { 0 };
+    struct room *room = net_room_find(api->net, call->ids[0]);
+    if (!room && net_room_is_asleep(api->net, call->ids[0])) {
+        problem_set(&problem, PROBLEM_BUSY, "", "", "the room sleeps: it is shown when somebody enters");
+        problem.retry_after_ms = ROOM_DISPLAY_RETRY_MS;
+    } else if (!room) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
+    }
+    if (!room) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    struct api_display *display = mem_new(sizeof *display);
+    *display =
+        (struct api_display){ .next = api->displays, .api = api, .feed = feed_create(call->wake, call->wake_context) };
+    (void)snprintf(display->plan_id, sizeof display->plan_id, "%s", room_plan_id(room));
+    api->displays = display;
+    const struct room_display_callbacks callbacks = { put_picture, has_room, end_display, display };
+    display->display = room_display_add(room, call_query(call, "view"), &callbacks, clock_now_us(), &problem);
+    if (!display->display) {
+        struct feed *feed = display->feed;
+        end_display(display);
+        feed_leave(feed);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    display->holds_plan = fleet_hold(net_fleet(api->net), display->plan_id);
+    call_add_header(call, "Beamroom-View", room_display_kind(display->display));
+    call_answer_feed(call, feed_media_type, display->feed);
+}

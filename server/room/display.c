@@ -1,0 +1,41 @@
+/* Gives pictures to displays. */
+#include "server/room/display.h"
+
+#include <stdlib.h>
+
+/* A member who takes pictures acknowledges within this time; beyond it, all who look have stalled. */
+static const int64_t DISPLAY_ALONE_US = 2000000;
+
+static bool is_alone(const struct stream *stream, int64_t now_us)
+{
+    for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
+        if (now_us - view->sent[view->sent_sequence % ROOM_MAX_UNSHOWN].sent_us < DISPLAY_ALONE_US)
+            return false;
+    return true;
+}
+
+bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_t now_us)
+{
+    if (n_coming >= ROOM_MAX_UNSHOWN || !is_alone(stream, now_us))
+        return false;
+    for (const struct room_display *display = stream->displays; display; display = display->next)
+        if (display->callbacks.has_room(display->callbacks.context))
+            return true;
+    return false;
+}
+
+void displays_send(const struct stream *stream)
+{
+    for (const struct room_display *display = stream->displays; display; display = display->next)
+        display->callbacks.picture(display->callbacks.context, stream->latest);
+}
+
+void displays_end(struct stream *stream)
+{
+    while (stream->displays) {
+        struct room_display *display = stream->displays;
+        stream->displays = display->next;
+        display->callbacks.ended(display->callbacks.context);
+        free(display);
+    }
+}

@@ -1,0 +1,24 @@
+#pragma once
+/* Displays: screens that show a shared view and are no members. A display is a viewer of the stream without credit: it
+ * is sent the pictures that the members who look are sent, and nothing is drawn for it beside them. Only where nobody
+ * else looks, or none of those who look takes pictures, are pictures requested for displays. Internal to server/room.
+ * room_display_add and room_display_remove (room.h) are in display_join.c. */
+#include "server/room/room_state.h"
+
+struct room_display {
+    struct room_display *next; /* of the same stream */
+    struct room *room;
+    struct stream *stream;
+    struct room_display_callbacks callbacks;
+};
+
+/* How soon to look again whether a display has taken its picture: it makes no event. */
+enum { DISPLAY_AGAIN_US = 50000 };
+
+/* True if a picture may be requested for the stream's displays: one of them has taken its picture, and no member who
+ * looks was sent one in the last DISPLAY_ALONE_US. n_coming: requests of the stream outstanding. */
+bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_t now_us);
+/* Gives the stream's latest picture to its displays. */
+void displays_send(const struct stream *stream);
+/* Ends them: the stream does. */
+void displays_end(struct stream *stream);
