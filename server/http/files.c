@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "core/base/mem.h"
+#include "server/wire/fields.h"
 
 struct files {
     struct file *files;
@@ -155,6 +156,8 @@ const struct file *files_find(const struct files *files, const char *path)
 {
     if (strcmp(path, "/") == 0)
         path = "/index.html";
+    else if (strncmp(path, "/display/", strlen("/display/")) == 0 && id_is_valid(path + strlen("/display/")))
+        path = "/display.html";
     for (size_t i = 0; i < files->n; i++)
         if (strcmp(files->files[i].path, path) == 0)
             return &files->files[i];

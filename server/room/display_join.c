@@ -63,7 +63,7 @@ static struct stream *choose(struct room *room, const char *word, struct problem
         }
     if (word) {
         problem_set(problem, PROBLEM_VALIDATION, "/view", "enum",
-                    "view is \"%.20s\", expected 3d, axial, coronal, sagittal, oblique or beam", word);
+                    "view is \"%.20s\", expected 3d, axial, coronal, sagittal, oblique, beam or beam-slice", word);
         return NULL;
     }
     struct stream *stream = presented(room, kind);

@@ -55,11 +55,14 @@ export async function until(ask, suits, ms = 60000) {
   }
 }
 
-/** fetch with JSON in and out; throws when an answer of type JSON is none, or has a name twice in an object. */
+/** fetch with JSON in and out; of an answer without an end it takes the head alone; throws when an answer of type JSON is none, or has a name twice in an object. */
 export async function call(url, method = 'GET', body, headers = {}) {
   const answer = await fetch(url, { method, headers: { ...(body !== undefined && { 'Content-Type': 'application/json' }), ...headers },
     body: body === undefined || typeof body === 'string' ? body : JSON.stringify(body) });
-  const text = await answer.text(), type = answer.headers.get('content-type') ?? '';
+  const type = answer.headers.get('content-type') ?? '';
+  const isEndless = type.startsWith('multipart/x-mixed-replace');
+  if (isEndless) await answer.body.cancel();
+  const text = isEndless ? '' : await answer.text();
   const json = /^application\/(.*\+)?json\b/.test(type) && text ? parseStrict(text) : undefined;
   return { status: answer.status, headers: answer.headers, type, text, json };
 }

@@ -160,7 +160,7 @@ describe('displays', () => {
     screen.pause();
     const shown = presenter.frames.length;
     let input = 2; // a socket that nobody reads takes a few hundred kilobytes at first
-    for (; presenter.frames.slice(shown).reduce((sum, { picture }) => sum + picture.length, 0) < 1.2e6; input++) {
+    for (; presenter.frames.slice(shown).reduce((sum, { picture }) => sum + picture.length, 0) < 0.6e6; input++) {
       turn(presenter, input, (input % 40) * 15);
       await presenter.frame(({ input: of }) => of >= input);
     }

@@ -1,0 +1,82 @@
+// The page of a display: the presenter's picture on the screen of a meeting room.
+import { after, before, describe, it } from 'node:test';
+import assert from 'node:assert/strict';
+import { until } from '../api/daemon.mjs';
+import { axe } from './axe.mjs';
+import { full, missing, startWorld } from './browser.mjs';
+
+/** Size and pixels of a canvas, as one text. */
+const pixels = (page, selector) => page.evaluate((of) => {
+  const canvas = document.querySelector(of);
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let hash = 2166136261;
+  for (const byte of data) hash = Math.imul(hash ^ byte, 16777619);
+  return `${canvas.width} x ${canvas.height}: ${hash}`;
+}, selector);
+const letters = (page) => page.evaluate(() => ['left', 'right', 'top', 'bottom'].map((edge) => document.querySelector(`.letter.${edge}`).textContent));
+const says = (page, words) => page.waitForFunction((start) => document.querySelector('.age').textContent.startsWith(start), words);
+const stateOf = (page) => page.locator('.age').getAttribute('data-state');
+
+describe('the page of a display', { skip: missing && `${missing} is missing` }, () => {
+  let world, room, presenter, display;
+  before(async () => {
+    world = await startWorld();
+    room = await world.newRoom();
+    presenter = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1440, height: 900 } });
+    await full(presenter);
+    display = await world.newPage(`display/${room}`, { viewport: { width: 1100, height: 700 } });
+    await says(display, 'Live');
+  });
+  after(async () => {
+    if (world) world.daemon.child.kill('SIGCONT');
+    await world?.stop();
+  });
+  const shared = () => pixels(presenter, '[data-view="1"] canvas');
+  const same = () => until(async () => [await pixels(display, 'canvas'), await shared()], ([shown, sent]) => shown === sent);
+
+  it('shows what the presenter sees, with the letters of that picture, and follows', async () => {
+    await same();
+    const before = await letters(display);
+    assert.deepEqual(before, ['RA', 'LP', 'S', 'I'], 'three quarters from the left: anterior and right are on the left');
+    const old = await shared();
+    await presenter.getByRole('button', { name: 'Look from anterior' }).first().click();
+    await until(shared, (now) => now !== old);
+    await until(() => letters(display), (now) => now.join() === 'R,L,S,I');
+    await full(presenter);
+    await same();
+  });
+
+  it('lies whole on the screen, with no words over it but the letters', async () => {
+    for (const [width, height] of [[1100, 700], [1920, 1080], [700, 900]]) {
+      await display.setViewportSize({ width, height });
+      const box = await until(() => display.evaluate(() => {
+        const { left, top, right, bottom } = document.querySelector('canvas').getBoundingClientRect();
+        return { left, top, right, bottom, head: document.querySelector('header').getBoundingClientRect().bottom, ratio: (right - left) / (bottom - top), own: document.querySelector('canvas').width / document.querySelector('canvas').height };
+      }), ({ right, bottom }) => right <= width && bottom <= height);
+      assert.ok(box.left >= 0 && box.top >= box.head, JSON.stringify(box));
+      assert.ok(Math.abs(box.ratio / box.own - 1) < 0.01, `not stretched: ${JSON.stringify(box)}`);
+      assert.ok(box.right - box.left > width - 3 || box.bottom - box.top > height - box.head - 3, 'as large as it can be');
+    }
+    assert.match(await display.locator('h1').textContent(), new RegExp(`Snyder head · Room ${room} · 3-D`));
+    assert.deepEqual(await axe(display), []);
+  });
+
+  it('says when the connection is lost, and goes on when it is back', async () => {
+    world.daemon.child.kill('SIGSTOP');
+    await says(display, 'Connection lost');
+    assert.equal(await stateOf(display), 'lost');
+    assert.match(await display.locator('.notice').textContent(), /^Connection lost\. The picture is of \d\d:\d\d:\d\d\.$/);
+    assert.deepEqual(await axe(display), []);
+    world.daemon.child.kill('SIGCONT');
+    await says(display, 'Live');
+    await until(() => display.locator('.notice').textContent(), (text) => text === '');
+    await same();
+  });
+
+  it('names what it cannot show', async () => {
+    const nowhere = await world.newPage('display/aaaa-aaaa');
+    await until(() => nowhere.locator('.notice').textContent(), (text) => /no room "aaaa-aaaa"/.test(text));
+    assert.equal(await nowhere.locator('figure').isVisible(), false);
+    assert.deepEqual(world.errors, []);
+  });
+});

@@ -1,0 +1,146 @@
+// The page of a display: shows the stream of a room's view, and says at once when it is not what the room shows now.
+import { Problem, makeApi } from './net/api.js';
+import { Parts, pictureHeader } from './net/parts.js';
+import { edgeLetters } from './view/letters.js';
+import { Painter } from './view/painter.js';
+import { isId } from './wire/check.js';
+
+const lostMs = 5000; // without a part; the server sends one every 2 s
+const lateMs = 3500;
+const retryMs = 2000;
+const tickMs = 250;
+const factsMs = 5000;
+const viewNames = { '3d': '3-D', axial: 'Axial', coronal: 'Coronal', sagittal: 'Sagittal', oblique: 'Oblique', beam: 'Beam\'s eye', 'beam-slice': 'Beam slice' };
+const rendererWords = { starting: 'The plan is being opened.', loading: 'The plan is being opened.', restarting: 'The renderer is being started again: the picture may be old.', failed: 'The plan cannot be drawn: the picture may be old.', closed: 'The plan is closed: the picture may be old.' };
+
+const base = new URL('../api/v1', location.href).pathname;
+const api = makeApi((...request) => fetch(...request), base);
+const room = location.pathname.split('/').pop();
+const $ = (selector) => document.querySelector(selector);
+const figure = $('figure');
+
+const state = {
+  heardAt: 0, // when the last part came; 0: none has
+  changedAt: 0, // when the newest picture came, ms since 1970
+  number: 0,
+  header: null, // of the picture on the screen
+  problem: null, // why there is no stream
+  facts: null, // of GET /rooms/{room}
+  plan: '',
+  kind: '',
+};
+
+const painter = new Painter($('canvas'), {
+  decode: (picture, type) => createImageBitmap(new Blob([picture], { type })),
+  schedule: (callback) => requestAnimationFrame(callback),
+  onPainted: (header, isDrawn) => {
+    if (!isDrawn) return;
+    state.header = header;
+    state.changedAt = Date.now();
+    draw();
+  },
+});
+
+/** The picture as large as the screen allows, whole. */
+function place() {
+  const { clientWidth, clientHeight } = $('main');
+  const { width_px, height_px } = state.header;
+  const scale = Math.min(clientWidth / width_px, clientHeight / height_px);
+  Object.assign(figure.style, { width: `${Math.floor(width_px * scale)}px`, height: `${Math.floor(height_px * scale)}px` });
+}
+
+const time = (ms) => new Date(ms).toLocaleTimeString('en-GB');
+
+function words(silentMs) {
+  const { facts, header, problem } = state;
+  if (problem && silentMs > lateMs) return { notice: problem, kind: header ? 'lost' : 'waiting' };
+  if (header && silentMs > lostMs) return { notice: `Connection lost. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
+  if (!header) return { notice: rendererWords[facts?.renderer] ?? 'Waiting for the first picture …', kind: 'waiting' };
+  return { notice: facts && facts.renderer !== 'ready' ? rendererWords[facts.renderer] ?? '' : '', kind: 'lost' };
+}
+
+function draw() {
+  const silentMs = state.heardAt ? performance.now() - state.heardAt : Infinity;
+  const { facts, header, plan, kind } = state;
+  const presenter = facts?.members.find(({ presenting }) => presenting);
+  const isLost = header && silentMs > lostMs;
+  const late = isLost ? 'lost' : silentMs > lateMs ? 'late' : 'live';
+  $('h1').textContent = [plan, `Room ${room}`, viewNames[kind]].filter(Boolean).join(' · ');
+  document.title = [plan, 'Beamroom display'].filter(Boolean).join(' – ');
+  $('.who').textContent = [presenter ? `Presenter: ${presenter.name}` : facts ? 'Nobody presents' : '', header?.missing ? `Not drawn: ${header.missing}` : ''].filter(Boolean).join(' · ');
+  $('.clock').textContent = time(Date.now());
+  const age = $('.age');
+  age.dataset.state = figure.dataset.state = header ? late : '';
+  const said = !header ? '' : isLost ? 'Connection lost' : late === 'late' ? 'Link?' : `Live · picture of ${time(state.changedAt)}`;
+  if (age.textContent !== said) age.textContent = said; // a live region: only what is new
+  const { notice, kind: how } = words(silentMs);
+  const line = $('.notice');
+  line.dataset.state = how;
+  if (line.textContent !== notice) line.textContent = notice;
+  figure.hidden = !header;
+  if (!header) return;
+  place();
+  const letters = edgeLetters(header.clip_from_lps_mm);
+  for (const edge of ['top', 'bottom', 'left', 'right']) $(`.letter.${edge}`).textContent = letters[edge];
+  $('canvas').setAttribute('aria-label', `${viewNames[kind] ?? 'Shared'} view; left ${letters.left}, right ${letters.right}, top ${letters.top}, bottom ${letters.bottom}`);
+}
+
+function take({ fields, body }) {
+  const header = pictureHeader(fields);
+  state.heardAt = performance.now();
+  state.problem = null;
+  if (header.sequence === state.number) return; // the same picture once more
+  state.number = header.sequence;
+  painter.offer({ header, picture: body });
+}
+
+/** Shows the stream until it ends. */
+async function show(abort) {
+  state.number = 0;
+  const answer = await fetch(`${base}/rooms/${room}/stream${location.search}`, { signal: abort.signal });
+  if (!answer.ok) throw new Problem({ status: answer.status, ...(await answer.json().catch(() => ({}))) });
+  state.kind = answer.headers.get('Beamroom-View') ?? '';
+  tellFacts().catch(() => {}); // asked again soon
+  const parts = new Parts();
+  const reader = answer.body.getReader();
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) throw new Problem({ detail: 'The room has ended or sleeps.' });
+    parts.push(value).forEach(take);
+  }
+}
+
+/** Who presents and how the renderer is. Asked only while there is a stream: the question would wake a room that sleeps. */
+async function tellFacts() {
+  state.facts = await api.room(room);
+  state.plan ||= (await api.plan(state.facts.plan)).name;
+  draw();
+}
+
+async function run() {
+  for (;;) {
+    const abort = new AbortController();
+    // a connection that was cut without a word
+    const watch = setInterval(() => { if (state.number && performance.now() - state.heardAt > 2 * lostMs) abort.abort(); }, tickMs);
+    const facts = setInterval(() => { tellFacts().catch(() => {}); }, factsMs);
+    await show(abort).catch((error) => {
+      abort.abort();
+      state.facts = null;
+      if (error instanceof Problem) state.problem = error.message;
+    });
+    clearInterval(watch);
+    clearInterval(facts);
+    draw();
+    await new Promise((done) => { setTimeout(done, retryMs); });
+  }
+}
+
+if (isId(room)) {
+  setInterval(draw, tickMs);
+  addEventListener('resize', draw);
+  draw();
+  run();
+} else {
+  state.problem = 'The address names no room.';
+  draw();
+}
