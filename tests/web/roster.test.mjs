@@ -75,6 +75,7 @@ describe('the roster', { skip: missing && `${missing} is not there` }, () => {
     await one.locator('.invite-form button', { hasText: 'Make link' }).click();
     const link = await ask(() => one.locator('#invite-made').inputValue(), (text) => text !== '');
     assert.match(link, new RegExp(`#/rooms/${room}\\?link=[0-9a-f]{32}$`));
+    assert.equal(await one.locator('.invite-form a').getAttribute('href'), `${world.daemon.url}/display/${room}`);
     assert.deepEqual(await axe(one), []);
     await shoot(one, 'roster-invite');
     const two = await enter(link.slice(link.indexOf('#')), 'Cem', sizes[0][1]);

@@ -9,6 +9,9 @@ const made = signal({ url: '', words: '', error: '', isBusy: false });
 /** The page's address of this room with the link in it. */
 const addressOf = (room, token) => Object.assign(new URL(location.href), { search: '', hash: `#/rooms/${room.id}?link=${token}` }).href;
 
+/** The address of this room for a screen that everybody looks at: short, as somebody types it there. */
+const displayOf = (room) => new URL(`display/${room.id}`, Object.assign(new URL(location.href), { search: '', hash: '' })).href;
+
 async function copy(text) {
   const field = document.querySelector('#invite-made');
   field?.select();
@@ -42,5 +45,6 @@ export function inviteForm(world) {
     <label class="invite-one"><input type="checkbox" name="one"> For one person only</label>
     <button class="primary" ?disabled=${isBusy}>Make link</button>
     ${url ? html`<div class="pair"><input id="invite-made" readonly aria-label="Link with a role" .value=${url}><button type="button" @click=${() => copy(url)}>Copy</button></div>` : nothing}
+    <p class="dim">On the screen of a meeting room open <a href=${displayOf(world.room)} target="_blank" rel="noopener">${displayOf(world.room).replace(/^https?:\/\//, '')}</a>: the presenter's 3-D view, for whoever knows this address.</p>
     <p role="status" class="dim">${words}</p>${error ? html`<p role="alert" class="err">${error}</p>` : nothing}</form>`;
 }
