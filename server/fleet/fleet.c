@@ -28,7 +28,7 @@
 
 enum {
     EVENTS_A_TURN = 256,
-    LONGEST_STEP_US = 1000000 /* longest time counted between two ticks: beyond it the thread did not run */
+    LONGEST_STEP_US = 2000000 /* longest time counted between two ticks: beyond it the thread did not run */
 };
 
 static const struct fleet_times default_times = { .ping = 2000,

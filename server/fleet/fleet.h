@@ -76,7 +76,8 @@ struct fleet_options {
 NODISCARD struct fleet *fleet_create(const struct fleet_options *options, struct error *err);
 void fleet_destroy(struct fleet *fleet); /* ends every renderer; kills those that have not ended within 2 s */
 void fleet_handle_events(struct fleet *fleet);
-/* Time-driven work: idle close, restarts, time limits. To be called about every 250 ms. */
+/* Time-driven work: idle close, restarts, time limits. To be called about every 250 ms, every second
+ * while nobody asks for anything. */
 void fleet_tick(struct fleet *fleet);
 
 /* A plan of the list. Strings and documents are borrowed until the next call into the fleet. */

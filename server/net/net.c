@@ -21,6 +21,8 @@
 enum {
     MAX_TASKS = 4096, /* tasks that may wait; one more makes net_post wait */
     FLEET_TICK_US = 250000,
+    CALM_AFTER_US = 5000000, /* without a call and a message */
+    CALM_TICK_US = 1000000,
     FAREWELL_US = 1000000,      /* at the end, for the byes to be sent */
     RESTART_RETRY_MS = 2000,    /* when pages reconnect after a stop: about the time of a restart */
     MAX_EARLY_BYTES = 256 << 10 /* what a connection may say while its room is being read from the disk */
@@ -45,7 +47,7 @@ static void timer_fired(void *context)
     struct net *net = context;
     int64_t now_us = clock_now_us();
     if (now_us >= net->fleet_tick_us) {
-        net->fleet_tick_us = now_us + FLEET_TICK_US;
+        net->fleet_tick_us = now_us + (now_us < net->calm_from_us ? FLEET_TICK_US : CALM_TICK_US);
         fleet_tick(net->fleet);
         rooms_close_idle(net);
         keep_write_due(net, false);
@@ -147,12 +149,22 @@ static void message_received(void *context, struct ws_connection *connection, en
     room->is_spoken_to = room->net->is_spoken_to = true;
 }
 
+/* Somebody does something: what depends on time is looked at often again. */
+static void leave_calm(struct net *net)
+{
+    int64_t now_us = clock_now_us();
+    net->calm_from_us = now_us + CALM_AFTER_US;
+    if (net->fleet_tick_us > now_us + FLEET_TICK_US)
+        net->fleet_tick_us = now_us + FLEET_TICK_US;
+}
+
 /* Once for all messages that have come together: two hundred members acknowledge each picture. */
 static void settle_messages(struct net *net)
 {
     if (!net->is_spoken_to)
         return;
     net->is_spoken_to = false;
+    leave_calm(net);
     keep_write_due(net, false);
     for (size_t i = 0; i < net->n_rooms; i++)
         if (net->rooms[i]->is_spoken_to) {
@@ -263,6 +275,7 @@ static void woken(void *context)
     struct net *net = context;
     fleet_handle_events(net->fleet);
     if (run_tasks(net)) { /* a task may have changed any room */
+        leave_calm(net);
         keep_write_due(net, false);
         schedule_all(net);
     }

@@ -102,6 +102,7 @@ struct net {
     uint64_t n_audit_lost;  /* rows that found neither disk nor memory since the last row that did */
     struct net_audit_head audit_head;
     int64_t fleet_tick_us;              /* when fleet_tick is due */
+    int64_t calm_from_us;               /* unless somebody does something before, fleet_tick is rare from then on */
     bool is_spoken_to;                  /* a room is */
     struct room_counters closed;        /* sum over the rooms that were closed */
     atomic_bool is_listed, is_stopping; /* read by any thread */

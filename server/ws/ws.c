@@ -9,6 +9,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/socket.h>
+#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
@@ -102,11 +103,17 @@ static void set_option(int socket, int level, int name, int value)
     }
 }
 
-/* All connections are checked at the same times, so that the thread wakes up once a second and not once for each. */
-static void check_later(struct ws_connection *connection)
+/* When the connection could next be late: with its hello, or silent for so long that a ping is due. In whole seconds,
+ * so that the thread wakes up once for all connections that are checked in the same second. */
+static void check_later(struct ws_connection *connection, bool is_greeted)
 {
-    int64_t left_us = TIMER_US - clock_now_us() % TIMER_US;
-    lws_set_timer_usecs(connection->wsi, left_us < TIMER_US / 4 ? left_us + TIMER_US : left_us);
+    const int64_t now_us = clock_now_us(), ping_us = WS_PING_AFTER_S * INT64_C(1000000);
+    const int64_t n_pings = (now_us - connection->heard_us) / ping_us;
+    int64_t due_us = connection->heard_us + (n_pings + 1) * ping_us;
+    if (!is_greeted && due_us > connection->opened_us + WS_HELLO_WITHIN_S * INT64_C(1000000))
+        due_us = connection->opened_us + WS_HELLO_WITHIN_S * INT64_C(1000000);
+    due_us = (due_us > now_us ? due_us : now_us) / TIMER_US * TIMER_US + TIMER_US;
+    lws_set_timer_usecs(connection->wsi, due_us - now_us);
 }
 
 static void start(struct ws *ws, struct lws *wsi, const char *room_id, const struct ws_count *count)
@@ -121,7 +128,7 @@ static void start(struct ws *ws, struct lws *wsi, const char *room_id, const str
     ws->counters.opened++;
     ws->counters.n_connections++;
     lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); /* time limits are checked in check_connection */
-    check_later(connection);
+    check_later(connection, false);
     ws->callbacks.opened(ws->callbacks.context, connection, room_id);
 }
 
@@ -241,9 +248,9 @@ static int check_connection(struct ws_connection *connection)
             lws_set_timer_usecs(connection->wsi, left_us);
         return left_us > 0 ? 0 : -1;
     }
-    check_later(connection);
-    if (now_us - connection->opened_us >= WS_HELLO_WITHIN_S * INT64_C(1000000) &&
-        !ws->callbacks.is_greeted(ws->callbacks.context, connection)) {
+    const bool is_greeted = ws->callbacks.is_greeted(ws->callbacks.context, connection);
+    check_later(connection, is_greeted);
+    if (now_us - connection->opened_us >= WS_HELLO_WITHIN_S * INT64_C(1000000) && !is_greeted) {
         ws_bye(connection, WS_CLOSE_NORMAL, "no hello within 5 s", 1000);
     } else if (silent_us >= WS_SILENT_AT_MOST_S * INT64_C(1000000)) {
         ws_bye(connection, WS_CLOSE_NORMAL, "nothing was heard for 15 s", 0);
@@ -271,6 +278,15 @@ static void closed(struct ws_connection *connection)
     end_count(&connection->count);
 }
 
+static void timer_fired(struct ws *ws)
+{
+    uint64_t n_times;
+    if (read(ws->timer_fd, &n_times, sizeof n_times) != (ssize_t)sizeof n_times)
+        return; /* set anew meanwhile */
+    ws->timer_us = INT64_MAX;
+    ws->callbacks.timer_fired(ws->callbacks.context);
+}
+
 static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t n)
 {
     struct ws *ws = lws_context_user(lws_get_context(wsi));
@@ -278,6 +294,7 @@ static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     switch (reason) {
     case LWS_CALLBACK_RAW_RX: return receive(connection, in, n);
     case LWS_CALLBACK_RAW_WRITEABLE: return out_write(connection);
+    case LWS_CALLBACK_RAW_RX_FILE: timer_fired(ws); return 0;
     case LWS_CALLBACK_TIMER: return connection && connection->state != STATE_NONE ? check_connection(connection) : 0;
     case LWS_CALLBACK_RAW_CLOSE:
         if (connection)
@@ -293,6 +310,16 @@ static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user,
 static void log_library(int level, const char *line)
 {
     log_line(level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "libwebsockets: %s", line); /* its errors are caused by clients */
+}
+
+/* The library's own timers end their waits up to 1 ms early, and it polls without a pause until they are due. */
+static bool start_timer(struct ws *ws)
+{
+    ws->timer_us = INT64_MAX;
+    ws->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    lws_sock_file_fd_type descriptor = { .filefd = ws->timer_fd };
+    return ws->timer_fd >= 0 && lws_adopt_descriptor_vhost(ws->vhost, LWS_ADOPT_RAW_FILE_DESC, descriptor,
+                                                           ws->protocols[0].name, NULL) != NULL;
 }
 
 struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limits *limits, const char *allowed_origin,
@@ -317,7 +344,7 @@ struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limit
                                               .user = ws };
     ws->context = lws_create_context(&info);
     ws->vhost = ws->context ? lws_create_vhost(ws->context, &info) : NULL;
-    if (!ws->vhost) {
+    if (!ws->vhost || !start_timer(ws)) {
         error_set(err, ERROR_IO, "libwebsockets could not be started");
         ws_destroy(ws);
         return NULL;
@@ -329,10 +356,8 @@ void ws_destroy(struct ws *ws)
 {
     if (!ws)
         return;
-    if (ws->context) {
-        ws_wake_at(ws, INT64_MAX);
-        lws_context_destroy(ws->context);
-    }
+    if (ws->context)
+        lws_context_destroy(ws->context); /* closes timer_fd */
     free(ws->allowed_origin);
     free(ws);
 }
@@ -349,19 +374,17 @@ void ws_wake(struct ws *ws)
     lws_cancel_service(ws->context);
 }
 
-static void timer_fired(lws_sorted_usec_list_t *timer)
-{
-    struct ws *ws = lws_container_of(timer, struct ws, timer);
-    ws->callbacks.timer_fired(ws->callbacks.context);
-}
-
 void ws_wake_at(struct ws *ws, int64_t time_us)
 {
-    int64_t wait_us = time_us - clock_now_us();
-    lws_sul_schedule(ws->context, 0, &ws->timer, timer_fired,
-                     time_us == INT64_MAX ? LWS_SET_TIMER_USEC_CANCEL
-                     : wait_us > 0        ? wait_us
-                                          : 1);
+    struct itimerspec when = { 0 }; /* never */
+    if (time_us == ws->timer_us)
+        return;
+    ws->timer_us = time_us;
+    if (time_us < INT64_MAX) {
+        int64_t at_us = time_us > 1 ? time_us : 1;
+        when.it_value = (struct timespec){ at_us / 1000000, at_us % 1000000 * 1000 };
+    }
+    (void)timerfd_settime(ws->timer_fd, TFD_TIMER_ABSTIME, &when, NULL);
 }
 
 void ws_count(const struct ws *ws, struct ws_counters *counters)

@@ -76,7 +76,8 @@ struct ws {
     struct ws_callbacks callbacks;
     struct ws_limits limits;
     char *allowed_origin;
-    lws_sorted_usec_list_t timer;
+    int timer_fd;
+    int64_t timer_us;             /* when it fires; INT64_MAX: never */
     struct ws_connection *marked; /* out_flush sends what waits on these */
     int64_t logged_us;
     struct ws_counters counters;

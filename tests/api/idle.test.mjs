@@ -1,6 +1,6 @@
 // Plans without use: they are closed, and loaded again when somebody enters their room. --stub: grey pictures, everything else is real.
 import assert from 'node:assert/strict';
-import { chmodSync, cpSync, existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { chmodSync, cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -166,4 +166,31 @@ test('a daemon that was stopped for a while finds its renderers alive', () => wi
   ann.send({ type: 'view.patch', view: 1, input: 7, patch: { camera: { position_mm: [9, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } } });
   await ann.frame((f) => f.isStill && f.input === 7);
   assert.doesNotMatch(daemon.log(), /did not|starting it again/);
+}));
+
+/** Milliseconds of processor time, and how often a thread began to run. */
+function ran(pid) {
+  const sum = { ms: 0, times: 0 };
+  for (const task of readdirSync(`/proc/${pid}/task`)) {
+    const [ns, , times] = readFileSync(`/proc/${pid}/task/${task}/schedstat`, 'utf8').split(' ').map(Number);
+    sum.ms += ns / 1e6;
+    sum.times += times;
+  }
+  return sum;
+}
+
+test('rooms at rest take next to no processor time, however many there are', () => withDaemon([], async ({ daemon, enter, newRoom }) => {
+  const nRooms = 80, seconds = 3;
+  for (let n = 0; n < nRooms; n++) {
+    const room = await newRoom('head-1');
+    if (n % 4 === 0) await picture(await enter(room));
+  }
+  await sleep(5500); // from then on the daemon is calm
+  const before = ran(daemon.child.pid);
+  await sleep(seconds * 1000);
+  const after = ran(daemon.child.pid);
+  const [msPerMinute, perSecond] = [((after.ms - before.ms) * 60) / seconds, (after.times - before.times) / seconds];
+  // The folders of plans once a second, the renderer's pings four times, everything that depends on time once; pings of the members in one go.
+  assert.ok(perSecond <= 25, `${perSecond} times a second a thread began to run`); // a timer for each room would be 80
+  assert.ok(msPerMinute <= 1500, `${msPerMinute.toFixed(0)} ms a minute`); // about 100 on a fast machine
 }));
