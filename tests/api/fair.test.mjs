@@ -85,6 +85,27 @@ for (const where of ['the same room', 'another room']) {
   });
 }
 
+test('of eight members of a room who turn views of their own none gets less than a third of the mean rate', async () => {
+  const room = await newRoom();
+  const people = [];
+  for (let n = 0; n < 8; n++) {
+    const client = await join(room);
+    client.send({ type: 'view.open', view: 1, document: { size_px: [640, 480], ...at(n) }, follow: false });
+    people.push(client);
+  }
+  people.slice(1).forEach((client) => client.send({ type: 'follow', follow: false })); // the first presents
+  await Promise.all(people.map((client) => client.frame()));
+  const from = people.map((client) => client.frames.length), total = () => people.reduce((sum, client, n) => sum + client.frames.length - from[n], 0);
+  const end = Date.now() + 60000;
+  for (let input = 1; total() < 160; input++) {
+    assert.ok(Date.now() < end, `${total()} pictures within a minute`);
+    people.forEach((client, n) => client.send({ type: 'view.patch', view: 1, input, patch: at(n + input / 40) }));
+    await sleep(20);
+  }
+  const drawn = people.map((client, n) => client.frames.length - from[n]);
+  assert.ok(Math.min(...drawn) * 3 >= total() / 8, `pictures of each: ${drawn.join(', ')}`);
+});
+
 test('eight scripts that ask for pictures leave a member its share', async () => {
   const alone = await rateAlone();
   const room = await newRoom();
