@@ -7,11 +7,12 @@ import { Lazy } from './lazy.js';
 import { drawNotes } from './notes_lazy.js';
 import { planTab } from './plan_tab.js';
 import { probe } from './probe.js';
+import { drawRecord } from './record_lazy.js';
 import { roving } from './roving.js';
 
 export const selected = new Lazy(() => import('./selection.js'));
 const selection = (world) => selected.draw((module) => module.selection(world));
-const tabs = [['probe', 'Probe', probe], ['selection', 'Selection', selection], ['plan', 'Plan', planTab], ['notes', 'Notes', drawNotes]];
+const tabs = [['probe', 'Probe', probe], ['selection', 'Selection', selection], ['plan', 'Plan', planTab], ['notes', 'Notes', drawNotes], ['record', 'Record', drawRecord]];
 
 /** In a sheet, which has the place of the drawer. */
 const dvhTab = ['dvh', 'DVH', (world) => world.charts.draw('sheet')];

@@ -3,7 +3,7 @@ import { computed, signal } from '../../lib/signals-core.js';
 
 const mostUntold = 20;
 
-/** @typedef {{id: string, kind: 'note'|'bookmark', version: number, author: string, author_name: string, author_color: string, changed_name: string, created_ms: number, changed_ms: number, body: object}} Item */
+/** @typedef {{id: string, kind: 'note'|'bookmark'|'check'|'decision'|'signature', version: number, author: string, author_name: string, author_color: string, changed_name: string, created_ms: number, changed_ms: number, body: object}} Item */
 
 export class Items {
   #send;
@@ -29,7 +29,7 @@ export class Items {
     return () => { this.#told = () => {}; };
   }
 
-  /** Writes a new item, or another body of one. Resolves with the row once the server has it; rejects with its problem. @param {'note'|'bookmark'} kind @param {object} body @param {{id: string, version: number}|null} of what is changed, in the version that was seen */
+  /** Writes a new item, or another body of one. Resolves with the row once the server has it; rejects with its problem. @param {Item['kind']} kind @param {object} body @param {{id: string, version: number}|null} of what is changed, in the version that was seen */
   put(kind, body, of = null) {
     return this.#give({ type: 'item.put', item: of?.id ?? '', version: of?.version ?? 0, kind, body });
   }
