@@ -7,6 +7,7 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_pictures.h"
 #include "server/http/api_queries.h"
+#include "server/http/api_recordings.h"
 #include "server/http/etag.h"
 
 enum { MAX_ASLEEP = 100 }; /* rooms that sleep, in the list of rooms */
@@ -54,7 +55,38 @@ static cJSON *document_of(const struct room *room)
 {
     cJSON *document = room_document(room);
     json_add(document, "saved", room_beginning(room));
+    if (room_replays(room))
+        cJSON_AddTrueToObject(document, "replay");
     return document;
+}
+
+static void answer_new(struct call *call, const struct room *room)
+{
+    char location[96];
+    (void)snprintf(location, sizeof location, "/api/v1/rooms/%s", room_id(room));
+    call_add_header(call, "Location", location);
+    call_answer_json(call, 201, document_of(room));
+}
+
+/* The body has a recording. Takes body. */
+static void new_replay(struct api *api, struct call *call, cJSON *body)
+{
+    struct problem problem = { 0 };
+    const cJSON *asked = cJSON_GetObjectItemCaseSensitive(body, "recording"), *item;
+    cJSON_ArrayForEach(item, body) if (strcmp(item->string, "plan") != 0 && strcmp(item->string, "recording") != 0)
+        problem_set(&problem, PROBLEM_VALIDATION, "/recording", "unknown-field",
+                    "%.60s is not a field of a room that plays a recording", item->string);
+    if (problem.type == PROBLEM_NONE && api_recording_sleeps(api, call, asked, api_room_new)) {
+        cJSON_Delete(body);
+        return;
+    }
+    const struct room *room =
+        problem.type == PROBLEM_NONE ? api_replay_new(api, call, asked, json_text(body, "plan"), &problem) : NULL;
+    cJSON_Delete(body);
+    if (room)
+        answer_new(call, room);
+    else
+        call_answer_problem(call, &problem);
 }
 
 void api_room_new(struct api *api, struct call *call)
@@ -64,6 +96,10 @@ void api_room_new(struct api *api, struct call *call)
     cJSON *body;
     if (!call_read_object(call, media_types, &body))
         return;
+    if (cJSON_GetObjectItemCaseSensitive(body, "recording")) {
+        new_replay(api, call, body);
+        return;
+    }
     const cJSON *plan = cJSON_GetObjectItemCaseSensitive(body, "plan"),
                 *saved = cJSON_GetObjectItemCaseSensitive(body, "saved");
     const cJSON *item;
@@ -95,10 +131,7 @@ void api_room_new(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    char location[96];
-    (void)snprintf(location, sizeof location, "/api/v1/rooms/%s", room_id(room));
-    call_add_header(call, "Location", location);
-    call_answer_json(call, 201, document_of(room));
+    answer_new(call, room);
 }
 
 void api_room(struct api *api, struct call *call)

@@ -8,6 +8,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/net/keep_recordings.h"
 #include "server/wire/json.h"
 
 /* The room's entry; NULL: rooms are not kept. */
@@ -28,7 +29,7 @@ void keep_changed(void *context, struct room *room, unsigned parts)
 
 static bool is_changed(const struct net_room *room)
 {
-    return room->keep.changed || room->keep.n_items || room->keep.n_audit;
+    return room->keep.changed || room->keep.n_recordings || room->keep.n_items || room->keep.n_audit;
 }
 
 bool keep_is_written(const struct net_room *room)
@@ -265,6 +266,7 @@ static void restore_items(struct room *room, const struct store_room *row)
 
 void keep_room_finish(struct net_room *room)
 {
+    keep_recordings_finish(room);
     for (size_t i = 0; i < room->keep.n_items; i++)
         free(room->keep.items[i].body);
     free(room->keep.items);
@@ -351,19 +353,23 @@ static void write_room(struct net *net, struct net_room *room)
         row->n_items = room->keep.n_items;
         row->audit = room->keep.audit;
         row->n_audit = room->keep.n_audit;
+        row->recordings = room->keep.recordings;
+        row->n_recordings = room->keep.n_recordings;
     }
     if (!row || !store_write(net->store, row, ticket)) { /* tried again */
         if (row) {
             row->items = NULL;
             row->audit = NULL;
-            row->n_items = row->n_audit = 0;
+            row->recordings = NULL;
+            row->n_items = row->n_audit = row->n_recordings = 0;
         }
         store_room_free(row);
         return;
     }
     room->keep.items = NULL;
     room->keep.audit = NULL;
-    room->keep.n_items = room->keep.n_audit = 0;
+    room->keep.recordings = NULL;
+    room->keep.n_items = room->keep.n_audit = room->keep.n_recordings = 0;
     net->n_tickets = ticket;
     room->keep.ticket = ticket;
     room->keep.changed = 0;
@@ -433,8 +439,10 @@ void keep_all_again(struct net *net)
 {
     for (size_t i = 0; i < net->n_rooms; i++)
         net->rooms[i]->keep.changed = ROOM_ALL_PARTS;
-    for (size_t i = 0; i < net->n_rooms; i++)
+    for (size_t i = 0; i < net->n_rooms; i++) {
         all_items_again(net->rooms[i]);
+        room_recording_restart(net->rooms[i]->room);
+    }
 }
 
 static void read_member(const struct store_member *from, struct room_kept_member *to)
@@ -475,6 +483,7 @@ void keep_restore(struct net_room *room, const struct store_room *row)
     kept.n_links = kept.links ? row->n_links : 0;
     for (size_t i = 0; i < kept.n_links; i++)
         read_link(&row->links[i], &kept.links[i]);
+    keep_recordings_restore(room->room, row);
     restore_items(room->room, row); /* before members */
     room_restore(room->room, &kept, clock_now_us());
     free(kept.members);

@@ -14,6 +14,7 @@
 #include "server/net/asleep.h"
 #include "server/net/bridge.h"
 #include "server/net/keep.h"
+#include "server/net/keep_recordings.h"
 #include "server/net/net_state.h"
 #include "server/net/rooms.h"
 #include "server/net/schedule.h"
@@ -232,6 +233,7 @@ static void handle_answer(struct net *net, void *argument)
         keep_write_due(net, false);
         break;
     case STORE_READ: rooms_was_read(net, answer); break;
+    case STORE_PART: keep_part_was_read(net, answer); break;
     case STORE_FAILING:
     case STORE_FINE:
         net->store_fails = answer->event == STORE_FAILING;
@@ -355,14 +357,17 @@ static void *work(void *context)
         settle_messages(net);
     }
     run_tasks(net);
-    for (size_t i = 0; i < net->n_rooms; i++)
+    for (size_t i = 0; i < net->n_rooms; i++) {
+        room_recording_cut(net->rooms[i]->room, clock_now_us());
         room_audit_flush(net->rooms[i]->room, clock_now_us());
+    }
     keep_write_due(net, true);
     for (struct visitor *visitor = net->visitors; visitor;
          visitor = visitor->next) /* before room_destroy says bye with another reason */
         ws_bye(visitor->connection, WS_CLOSE_GOING_AWAY, "the server is being stopped", RESTART_RETRY_MS);
     problem_set(&stops, PROBLEM_BUSY, "", "", "the server is stopping");
     asleep_tell(net, NULL, &stops);
+    keep_readers_finish(net);
     while (net->n_rooms)
         rooms_close(net, 0);
     keep_write_due(net, true); /* what was recorded while rooms were closed */

@@ -59,6 +59,8 @@ struct net_room { /* a room and what the net thread keeps beside it */
         int64_t due_us;            /* no write begins before */
         struct store_item *items;  /* changed ones that are to be written, each once */
         size_t n_items;
+        struct store_recording *recordings; /* changed ones, with batches that are to be written */
+        size_t n_recordings;
         char **audit; /* rows that are to be written */
         size_t n_audit;
         bool is_refused; /* the store dropped a write, which it can never make */
@@ -78,6 +80,13 @@ struct waiter { /* for a room that is being read */
     void *context;
 };
 
+struct part_reader { /* waits for a part of a recording */
+    struct part_reader *next;
+    uint64_t ticket;
+    void (*done)(void *context, const char *const *texts, size_t n, int64_t next_ms, const struct problem *problem);
+    void *context;
+};
+
 struct net {
     pthread_t thread;
     struct ws *ws;
@@ -93,6 +102,7 @@ struct net {
     struct asleep_room *asleep;
     size_t n_asleep;
     struct waiter *waiters;
+    struct part_reader *readers;
     char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */
     size_t n_undeleted;
     uint64_t n_tickets;

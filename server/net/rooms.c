@@ -13,6 +13,7 @@
 #include "server/net/asleep.h"
 #include "server/net/bridge.h"
 #include "server/net/keep.h"
+#include "server/net/keep_recordings.h"
 #include "server/net/net.h"
 #include "server/net/schedule.h"
 
@@ -81,7 +82,10 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .kept_changed = keep_changed,
                                               .audited = keep_audited,
                                               .audit_has_place = keep_audit_has_place,
-                                              .is_saved = keep_is_saved };
+                                              .is_saved = keep_is_saved,
+                                              .recorded = net->store ? keep_recorded : NULL,
+                                              .recording_deleted = keep_recording_deleted,
+                                              .replay_read = keep_replay_read };
     struct net_room *room = mem_new(sizeof *room);
     *room = (struct net_room){ .net = net,
                                .room = room_create(id, plan_id, &callbacks, &net->limits),
@@ -115,6 +119,8 @@ static bool put_to_sleep(struct net *net, size_t index)
 {
     const struct net_room *room = net->rooms[index];
     struct room_kept kept;
+    if (room->empty_since_us)
+        room_recording_cut(room->room, clock_now_us()); /* written first */
     if (!net->store || !room->empty_since_us || !room_was_used(room->room) || !keep_is_written(room) ||
         !room_keep(room->room, ROOM_MEMBERS, &kept))
         return false;
@@ -200,6 +206,32 @@ struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *
     schedule_room(room);
     schedule_wake(net);
     return room->room;
+}
+
+struct room *net_replay_create(struct net *net, const struct room *of_room, const char *recording,
+                               struct problem *problem)
+{
+    char plan_id[64], room_of[64];
+    const struct room_recording *facts = room_recording(of_room, recording);
+    if (!facts) {
+        problem_set(problem, PROBLEM_NOT_FOUND, "/recording/id", "", "the room has no recording \"%.63s\"", recording);
+        return NULL;
+    }
+    if (facts->state == WIRE_RECORDING_STATE_RUNNING) {
+        problem_set(problem, PROBLEM_CONFLICT, "/recording/id", "", "the recording still runs: end it first");
+        return NULL;
+    }
+    struct room_recording copy = *facts; /* making a room may put the other one to sleep */
+    copy.marks = facts->marks ? cJSON_Duplicate(facts->marks, true) : NULL;
+    (void)snprintf(plan_id, sizeof plan_id, "%s", room_plan_id(of_room));
+    (void)snprintf(room_of, sizeof room_of, "%s", room_id(of_room));
+    struct room *room = net_room_create(net, plan_id, NULL, problem);
+    if (room) {
+        rooms_find(net, room_id(room))->keep.changed = 0; /* it is on disk already, as a recording */
+        room_replay_begin(room, room_of, &copy, clock_now_us());
+    }
+    room_recording_finish(&copy);
+    return room;
 }
 
 struct room *net_room_find(struct net *net, const char *id)

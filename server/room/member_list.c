@@ -73,3 +73,11 @@ cJSON *room_members(const struct room *room)
     }
     return list;
 }
+
+size_t room_n_connected(const struct room *room)
+{
+    size_t n = 0;
+    for (int i = 0; i < room->n_members; i++)
+        n += room->members[i]->connection != NULL;
+    return n;
+}

@@ -239,20 +239,12 @@ static bool write_all(struct room *room)
     return room->recorder != NULL;
 }
 
-static bool is_empty(const struct room *room)
-{
-    for (int i = 0; i < room->n_members; i++)
-        if (room->members[i]->connection)
-            return false;
-    return true;
-}
-
 int64_t recording_tick(struct room *room)
 {
     struct recorder *recorder = room->recorder;
     if (!recorder)
         return INT64_MAX;
-    if (!is_empty(room))
+    if (room_n_connected(room))
         recorder->empty_since_us = 0;
     else if (!recorder->empty_since_us)
         recorder->empty_since_us = room->now_us;
@@ -398,10 +390,18 @@ void room_recording_restart(struct room *room)
     room->recorder->has_events = true;
 }
 
+void room_recording_cut(struct room *room, int64_t now_us)
+{
+    if (!room->recorder)
+        return;
+    room->now_us = now_us;
+    if (write_all(room))
+        end(room, WIRE_RECORDING_STATE_CUT);
+}
+
 void recordings_finish(struct room *room)
 {
-    if (room->recorder && write_all(room))
-        end(room, WIRE_RECORDING_STATE_CUT);
+    room_recording_cut(room, room->now_us);
     for (int i = 0; i < room->n_recordings; i++)
         room_recording_finish(&room->recordings[i]);
     room->n_recordings = 0;

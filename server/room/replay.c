@@ -408,15 +408,6 @@ bool replay_allows(const struct room *room, enum message_type type, struct probl
 
 /* ---- beginning and end ------------------------------------------------------------------------------------------ */
 
-void room_replay_begin(struct room *room, const char *of_room, const struct room_recording *recording)
-{
-    struct replay *replay = mem_new(sizeof *replay);
-    *replay = (struct replay){ .facts = *recording, .rate = 1, .told = WIRE_REPLAY_STATE_WAITING };
-    (void)snprintf(replay->of_room, sizeof replay->of_room, "%s", of_room);
-    replay->facts.marks = recording->marks ? cJSON_Duplicate(recording->marks, true) : NULL;
-    room->replay = replay;
-}
-
 void replay_plan_ready(struct room *room)
 {
     struct replay *replay = room->replay;
@@ -432,6 +423,18 @@ void replay_plan_ready(struct room *room)
     replay->shown_us = 0;
     tell_what(room, NULL);
     (void)replay_tick(room);
+}
+
+void room_replay_begin(struct room *room, const char *of_room, const struct room_recording *recording, int64_t now_us)
+{
+    struct replay *replay = mem_new(sizeof *replay);
+    *replay = (struct replay){ .facts = *recording, .rate = 1, .told = WIRE_REPLAY_STATE_WAITING };
+    (void)snprintf(replay->of_room, sizeof replay->of_room, "%s", of_room);
+    replay->facts.marks = recording->marks ? cJSON_Duplicate(recording->marks, true) : NULL;
+    room->now_us = now_us;
+    room->replay = replay;
+    if (room->scene)
+        replay_plan_ready(room);
 }
 
 void replay_free(struct room *room)

@@ -470,14 +470,6 @@ cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision, 
     return make_document(id, plan_id, revision, renderer, created_at_s, true, cJSON_CreateArray());
 }
 
-size_t room_n_connected(const struct room *room)
-{
-    size_t n = 0;
-    for (int i = 0; i < room->n_members; i++)
-        n += room->members[i]->connection != NULL;
-    return n;
-}
-
 void room_count(const struct room *room, struct room_counters *sum)
 {
     sum->pictures_requested += room->counters.pictures_requested;

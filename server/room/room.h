@@ -298,6 +298,8 @@ NODISCARD bool room_recording_delete(struct room *room, const char *id, int64_t 
  * ROOM_MAX_RECORDINGS. */
 void room_restore_recording(struct room *room, struct room_recording *recording);
 void room_recording_finish(struct room_recording *recording); /* frees what it owns */
+/* Ends the recording that runs: the server stops, or the room falls asleep. */
+void room_recording_cut(struct room *room, int64_t now_us);
 /* What was on disk is lost: the recording that runs goes on with a complete state. */
 void room_recording_restart(struct room *room);
 /* What the room of a recording was at t_ms: {t_ms, revision, scene, views: [{document, by}], pointers: [{member, view,
@@ -306,7 +308,7 @@ void room_recording_restart(struct room *room);
 NODISCARD cJSON *room_recorded_state(const char *const *texts, size_t n, int64_t t_ms, struct problem *problem);
 
 /* The room plays this recording of another room from its beginning. Before its first member. */
-void room_replay_begin(struct room *room, const char *of_room, const struct room_recording *recording);
+void room_replay_begin(struct room *room, const char *of_room, const struct room_recording *recording, int64_t now_us);
 /* What replay_read asked for: n texts, and the time of the state behind them (INT64_MAX: there is none). n 0: they
  * cannot be read, and problem says why. */
 void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,

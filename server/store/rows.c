@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/store/recordings.h"
 #include "server/store/sql.h"
 
 void store_room_free(struct store_room *room)
@@ -13,6 +14,9 @@ void store_room_free(struct store_room *room)
         return;
     for (size_t i = 0; i < room->n_items; i++)
         free(room->items[i].body);
+    for (size_t i = 0; i < room->n_recordings; i++)
+        store_recording_finish(&room->recordings[i]);
+    free(room->recordings);
     for (size_t i = 0; i < room->n_audit; i++)
         free(room->audit[i]);
     free(room->audit);
@@ -152,7 +156,7 @@ bool rows_write_room(sqlite3 *db, const struct store_room *room, struct error *e
     for (size_t i = 0; i < room->n_items; i++)
         if (!write_item(db, room->id, &room->items[i], err))
             return false;
-    return true;
+    return recordings_write(db, room, err);
 }
 
 bool rows_delete_room(sqlite3 *db, const char *id, struct error *err)
@@ -268,6 +272,14 @@ static bool read_item(sqlite3_stmt *row, void *to)
     return item->body != NULL;
 }
 
+static bool read_recording(sqlite3_stmt *row, void *to)
+{
+    struct store_recording *recording = to;
+    sql_text(row, 0, recording->id, sizeof recording->id);
+    recording->facts = sql_copy_text(row, 1);
+    return recording->facts != NULL;
+}
+
 static bool read_summary(sqlite3_stmt *row, void *to)
 {
     struct store_summary *room = to;
@@ -283,7 +295,7 @@ static bool read_summary(sqlite3_stmt *row, void *to)
 struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err)
 {
     struct store_room *room = mem_new(sizeof *room);
-    void *members = NULL, *links = NULL, *items = NULL;
+    void *members = NULL, *links = NULL, *items = NULL, *recordings = NULL;
     bool ok =
         read_row(db, id, room, err) &&
         read_list(db,
@@ -297,10 +309,14 @@ struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err
         read_list(db,
                   "SELECT id, kind, version, author, author_name, created_ms, changed_ms, body FROM items"
                   " WHERE room = ?1 ORDER BY created_ms, rowid",
-                  id, sizeof(struct store_item), STORE_MAX_ITEMS, read_item, &items, &room->n_items, err);
+                  id, sizeof(struct store_item), STORE_MAX_ITEMS, read_item, &items, &room->n_items, err) &&
+        read_list(db, "SELECT id, facts FROM recordings WHERE room = ?1 ORDER BY rowid", id,
+                  sizeof(struct store_recording), STORE_MAX_RECORDINGS, read_recording, &recordings,
+                  &room->n_recordings, err);
     room->members = members;
     room->links = links;
     room->items = items;
+    room->recordings = recordings;
     if (ok)
         return room;
     store_room_free(room);

@@ -33,6 +33,12 @@ static const char *const steps[] = {
     "CREATE TRIGGER audit_update BEFORE UPDATE ON audit BEGIN SELECT RAISE(ABORT, 'the audit is never changed'); END;"
     "CREATE TRIGGER audit_delete BEFORE DELETE ON audit BEGIN SELECT RAISE(ABORT, 'the audit is never deleted'); END;"
     "ALTER TABLE rooms ADD COLUMN presence TEXT;",
+    /* 5: recordings of meetings */
+    "CREATE TABLE recordings(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, id TEXT NOT NULL,"
+    " facts TEXT NOT NULL, PRIMARY KEY(room, id)) STRICT;"
+    "CREATE TABLE recording_batches(room TEXT NOT NULL, recording TEXT NOT NULL, place INTEGER NOT NULL,"
+    " t_ms INTEGER NOT NULL, is_state INTEGER NOT NULL, body TEXT NOT NULL, PRIMARY KEY(room, recording, place),"
+    " FOREIGN KEY(room, recording) REFERENCES recordings(room, id) ON DELETE CASCADE) STRICT;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

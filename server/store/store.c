@@ -14,12 +14,13 @@
 #include "core/base/queue.h"
 #include "server/store/audit.h"
 #include "server/store/database.h"
+#include "server/store/recordings.h"
 #include "server/store/rows.h"
 #include "server/store/sql.h"
 
 enum { MAX_BATCH = 256, MAX_PENDING = STORE_QUEUE };
 
-enum request_kind { REQUEST_WRITE, REQUEST_DELETE, REQUEST_READ };
+enum request_kind { REQUEST_WRITE, REQUEST_DELETE, REQUEST_READ, REQUEST_READ_PART };
 
 struct request {
     struct request *next; /* in the list of writes that are not yet on disk */
@@ -27,7 +28,9 @@ struct request {
     uint64_t ticket;
     char room_id[64];
     struct store_room *room; /* of a write */
-    struct error refusal;    /* why the room can never be written; its rows for the audit are left */
+    char recording[64];      /* of a part that is read */
+    int64_t t_ms;
+    struct error refusal; /* why the room can never be written; its rows for the audit are left */
 };
 
 struct store {
@@ -49,6 +52,7 @@ void store_answer_free(struct store_answer *answer)
     if (!answer)
         return;
     store_room_free(answer->room);
+    store_part_free(answer->part);
     free(answer->rooms);
     free(answer);
 }
@@ -227,10 +231,23 @@ static void read_room(struct store *store, const struct request *request)
     answer(store, &read);
 }
 
+static void read_part(struct store *store, const struct request *request)
+{
+    struct store_answer read = { .event = STORE_PART, .ticket = request->ticket };
+    if (!store->db)
+        read.error = store->failure;
+    else
+        read.part = recordings_read_part(store->db, request->room_id, request->recording, request->t_ms, &read.error);
+    answer(store, &read);
+}
+
 static void take(struct store *store, struct request *request)
 {
-    if (request->kind == REQUEST_READ) {
-        read_room(store, request);
+    if (request->kind == REQUEST_READ || request->kind == REQUEST_READ_PART) {
+        if (request->kind == REQUEST_READ)
+            read_room(store, request);
+        else
+            read_part(store, request);
         request_free(request);
         return;
     }
@@ -332,6 +349,18 @@ bool store_delete(struct store *store, const char *room_id, uint64_t ticket)
 bool store_read(struct store *store, const char *room_id, uint64_t ticket)
 {
     return put(store, REQUEST_READ, room_id, NULL, ticket);
+}
+
+bool store_read_part(struct store *store, const char *room_id, const char *recording, int64_t t_ms, uint64_t ticket)
+{
+    struct request *request = mem_new(sizeof *request);
+    *request = (struct request){ .kind = REQUEST_READ_PART, .ticket = ticket, .t_ms = t_ms };
+    (void)snprintf(request->room_id, sizeof request->room_id, "%s", room_id);
+    (void)snprintf(request->recording, sizeof request->recording, "%s", recording);
+    if (queue_try_put(store->queue, request))
+        return true;
+    free(request);
+    return false;
 }
 
 void store_destroy(struct store *store)

@@ -20,6 +20,7 @@ enum store_event {
     STORE_OPENED,  /* rooms: what is on disk; is_new: an earlier file was damaged and moved aside while it was open */
     STORE_WRITTEN, /* the write `ticket` is on disk; error.code set: it can never be written, and was dropped */
     STORE_READ,    /* room, or NULL with error */
+    STORE_PART,    /* part, or NULL with error */
     STORE_FAILING, /* nothing can be written now: error; tried again and again */
     STORE_FINE     /* it can be written again */
 };
@@ -29,6 +30,7 @@ struct store_answer {
     uint64_t ticket;
     struct error error;
     struct store_room *room;     /* the receiver's */
+    struct store_part *part;     /* the receiver's */
     struct store_summary *rooms; /* the receiver's */
     size_t n_rooms;
     bool is_new;
@@ -58,3 +60,5 @@ void store_destroy(struct store *store);
 bool store_write(struct store *store, struct store_room *room, uint64_t ticket);
 bool store_delete(struct store *store, const char *room_id, uint64_t ticket);
 bool store_read(struct store *store, const char *room_id, uint64_t ticket);
+/* A part of a recording: the batches from the last one with a state at or before t_ms on, up to the next such one. */
+bool store_read_part(struct store *store, const char *room_id, const char *recording, int64_t t_ms, uint64_t ticket);

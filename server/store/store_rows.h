@@ -10,6 +10,8 @@ enum {
     STORE_MAX_LINKS = 64,            /* of one room */
     STORE_MAX_ITEMS = 4096,          /* notes and bookmarks of one room */
     STORE_MAX_TEXT_BYTES = 32 << 20, /* one scene, list of views, or item */
+    STORE_MAX_RECORDINGS = 64,       /* of one room */
+    STORE_MAX_PART_BYTES = 64 << 20, /* of a recording, that are read at once */
     STORE_AUDIT_HASH = 65            /* a hash of the audit as text */
 };
 
@@ -32,6 +34,29 @@ struct store_item { /* a note or a bookmark */
     char *body;                              /* JSON; NULL in a write: the item is deleted */
 };
 
+struct store_batch { /* of the events of a recording */
+    uint32_t place;
+    int64_t t_ms;
+    bool is_state; /* it begins with a complete state */
+    char *text;
+};
+
+struct store_recording {
+    char id[64];
+    char *facts;                 /* JSON; NULL in a write: the recording is deleted */
+    struct store_batch *batches; /* in a write: to be added; not read with the room */
+    size_t n_batches;
+};
+void store_recording_finish(struct store_recording *recording);
+
+/* Batches of a recording that were read. */
+struct store_part {
+    char **texts;
+    size_t n;
+    int64_t next_ms; /* time of the state behind them; INT64_MAX: there is none */
+};
+void store_part_free(struct store_part *part);
+
 /* A room as it is on disk, or a write: in a write, what is NULL or absent stays as it is. */
 struct store_room {
     char id[64], plan[64], presenter[64]; /* presenter "": nobody */
@@ -46,6 +71,8 @@ struct store_room {
     size_t n_links;
     struct store_item *items; /* when read: all; in a write: those that changed */
     size_t n_items;
+    struct store_recording *recordings; /* as items */
+    size_t n_recordings;
     char **audit; /* in a write: rows for the audit (audit.h), committed with the rest or not at all; not read */
     size_t n_audit;
 };

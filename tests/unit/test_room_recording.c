@@ -418,7 +418,7 @@ static void start_replay(void)
     fake_room_start(&replay, 3);
     replay.room->callbacks.replay_read = is_asked;
     asked_ms = -1;
-    room_replay_begin(replay.room, "7q4k-m2wz", &disk.facts);
+    room_replay_begin(replay.room, "7q4k-m2wz", &disk.facts, replay.now_us);
     fake_plan_ready(&replay, true);
     answer();
 }
