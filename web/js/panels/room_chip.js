@@ -6,7 +6,8 @@ import { known, Lazy, styled } from './lazy.js';
 
 const marks = { presenting: 'people', following: 'people', own: 'person', away: 'phase', none: 'warning' };
 
-function words({ following, control }) {
+function words({ following, control, recording }) {
+  if (recording.isReplay.value) return { text: `Replay of a meeting of ${recording.date.value}`, more: following.standing.value === 'own' ? '· on my own' : '', act: following.standing.value === 'own' ? { word: 'Return', keys: 'F', about: 'Return to the replay', do: () => following.return() } : null };
   const name = following.presenter.value?.name ?? '';
   const n = following.nFollowers.value;
   switch (following.standing.value) {
@@ -60,6 +61,7 @@ export function roomChip(world, place) {
   const keep = (event) => event.stopPropagation(); // the arrow keys of the tool bar stay out of the chip
   return html`<span class="anchor room-chip in-${place}" role="group" aria-label="Room" data-standing=${room.following.standing.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
     <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title="Who is in this room" @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
+      ${room.recording.running.value ? html`<span class="chip-recorded" role="img" aria-label="Recorded" title=${`${room.recording.running.value.by_name} records this meeting`}>● Recorded</span>` : nothing}
       <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
     ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
     ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label="Members of this room">${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;

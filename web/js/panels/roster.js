@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { maxName } from '../state/own_name.js';
 import { icon } from './icons.js';
+import { recordings } from './recordings.js';
 import { variables } from './mount.js';
 import { initials } from './pane.js';
 
@@ -75,7 +76,7 @@ function nameForm({ room, ui, ownName }) {
 }
 
 /** What the popover of the room chip shows. @param {object} world {room, ui, ownName} */
-export function roster({ room, ui, ownName }) {
+export function roster({ room, ui, ownName, api }) {
   const act = (event, what) => {
     const main = event.target.closest('.room-chip').querySelector('.chip-main');
     ui.popover.value = '';
@@ -86,6 +87,7 @@ export function roster({ room, ui, ownName }) {
   return html`<ul>${repeat(room.members.value, ({ id }) => id, (member) => row(member, room))}</ul>
     ${locked ? html`<p class="dim roster-locked">Control is locked: it can only be given.</p>` : nothing}
     <div class="room-actions">${actions(room).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
+    ${recordings({ room, ui, api })}
     ${nameForm({ room, ui, ownName })}`;
 }
 

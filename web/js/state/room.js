@@ -3,6 +3,7 @@ import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
 import { mergePatch } from '../wire/merge.js';
 import { Control } from './control.js';
+import { Recording } from './recording.js';
 import { Following } from './following.js';
 import { Items } from './items.js';
 import { views as allViews } from './layout.js';
@@ -70,6 +71,7 @@ export class RoomState {
     this.saved = new Saved(this);
     this.following = new Following(this, (message) => this.#sending.act(message));
     this.control = new Control(this, (message) => this.#connection.send(message));
+    this.recording = new Recording(this, (message) => this.#connection.send(message));
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
     this.scene = computed(() => {
       const [scene, override] = [this.#sharedScene.value, this.following.override.value];
@@ -270,6 +272,10 @@ export class RoomState {
       'pointer.at': () => this.pointers.moved(message),
       look: () => this.pointers.looked(message),
       control: () => this.control.changed(message),
+      recording: () => this.recording.changed(message),
+      replay: () => this.recording.plays(message),
+      'replay.at': () => this.recording.movedTo(message),
+      'replay.members': () => { if (Array.isArray(message.members)) this.recording.members.value = message.members; },
       pong: () => { this.pingMs.value = Math.round(this.#clock.now() - message.time_ms); },
       problem: () => this.#refused(message),
       bye: () => {},
@@ -282,6 +288,7 @@ export class RoomState {
     this.#sending.hold();
     this.pointers.restart();
     this.saved.restart();
+    this.recording.welcome();
     this.member.value = message.member;
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;

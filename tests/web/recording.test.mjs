@@ -1,0 +1,39 @@
+// A recorded meeting: everybody sees that it is recorded, and its replay says that it is one. Screenshots stay in build/test-artifacts/.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { axe } from './axe.mjs';
+import { full, missing, shoot, startWorld } from './browser.mjs';
+import { action, enter as enterAs, openRoster as open } from './people.mjs';
+
+describe('a recorded meeting', { skip: missing && `${missing} is not there` }, () => {
+  let world;
+  before(async () => { world = await startWorld(); });
+  after(async () => { await world?.stop(); });
+
+  it('is said to everybody while it runs, and its replay is no live meeting', async () => {
+    const room = await world.newRoom();
+    const ann = await enterAs(world, `#/rooms/${room}`, 'Dr Ann');
+    const ben = await enterAs(world, `#/rooms/${room}`, 'Ben');
+    await Promise.all([full(ann), full(ben)]);
+    await open(ann);
+    await action(ann, 'Record meeting').click();
+    for (const page of [ann, ben]) await page.locator('.chip-recorded:visible').waitFor();
+    await open(ann);
+    await action(ann, 'End recording').click();
+    await ben.locator('.chip-recorded').first().waitFor({ state: 'detached' });
+    await open(ann);
+    const play = ann.getByRole('button', { name: /^Play the recording/ }).locator('visible=true');
+    await play.waitFor();
+    assert.deepEqual(await axe(ann), []);
+    await shoot(ann, 'recordings');
+    const opened = ann.context().waitForEvent('page');
+    await play.click();
+    const replay = await opened;
+    await replay.locator('.room-chip:visible', { hasText: 'Replay of a meeting of' }).waitFor();
+    await full(replay);
+    await open(replay);
+    await replay.locator('.replay-transport:visible').waitFor();
+    assert.deepEqual(await axe(replay), []);
+    await shoot(replay, 'replay');
+  });
+});

@@ -1,0 +1,81 @@
+// Recording the meeting, the list of recordings, and how a replay is moved: part of the popover of the room chip.
+import { html, nothing } from '../../lib/lit-html.js';
+import { effect, signal } from '../../lib/signals-core.js';
+
+const rates = [1, 2, 4, 8];
+const lists = new WeakMap(); // of each room: signal of the rows of GET recordings; null: not known yet
+
+const two = (n) => String(n).padStart(2, '0');
+/** @param {number} ms as h:mm:ss */
+export const timeOf = (ms) => `${Math.floor(ms / 3600000)}:${two(Math.floor(ms / 60000) % 60)}:${two(Math.floor(ms / 1000) % 60)}`;
+
+function listOf(room, api, ui) {
+  if (lists.has(room)) return lists.get(room);
+  const list = signal(null);
+  lists.set(room, list);
+  let newest = 0;
+  list.ask = async () => {
+    const number = ++newest;
+    try {
+      const answer = await api.recordings(room.id);
+      if (number === newest) list.value = answer.recordings;
+    } catch (problem) { ui.notify('err', problem.message); }
+  };
+  effect(() => {
+    void room.recording.running.value; // one has begun or ended
+    void list.ask();
+  });
+  return list;
+}
+
+async function play(room, api, ui, id) {
+  try {
+    const made = await api.makeReplay(room.id, id);
+    window.open(`#/rooms/${made.id}`, '_blank');
+  } catch (problem) { ui.notify('err', problem.message); }
+}
+
+async function remove(room, api, ui, list, id) {
+  try {
+    await api.removeRecording(room.id, id, room.identity);
+  } catch (problem) { ui.notify('err', problem.message); }
+  void list.ask();
+}
+
+const row = ({ id, state, started_ms, length_ms, by_name }, { room, api, ui, list }) => {
+  const name = `the recording of ${new Date(started_ms).toLocaleString()}`;
+  return html`<li><span></span><span class="roster-who"><span class="clipped">${new Date(started_ms).toLocaleString()}</span>
+    <span class="dim">${[timeOf(length_ms), `by ${by_name}`, state === 'cut' ? 'cut off' : state === 'full' ? 'ended full' : ''].filter(Boolean).join(' · ')}</span></span>
+    <span class="roster-buttons"><button aria-label=${`Play ${name}`} title="In a room of its own, in a new tab" @click=${() => play(room, api, ui, id)}>Play</button>
+    ${room.control.may('control') ? html`<button aria-label=${`Delete ${name}`} @click=${() => remove(room, api, ui, list, id)}>Delete</button>` : nothing}</span></li>`;
+};
+
+/** In a room that plays a recording. */
+function transport({ recording, control }) {
+  const { length_ms, marks } = recording.replay.value;
+  const at = recording.at.value ?? { state: 'waiting', t_ms: 0, rate: 1 };
+  const isPlaying = at.state === 'playing';
+  if (!control.may('scene')) return html`<p class="dim">${timeOf(at.t_ms)} of ${timeOf(length_ms)}</p>`;
+  return html`<div class="replay-transport" role="group" aria-label="Replay">
+    <button @click=${() => (isPlaying ? recording.pause() : recording.play(at.rate))}>${isPlaying ? 'Pause' : 'Play'}</button>
+    <input type="range" min="0" max=${length_ms} step="1000" .value=${String(Math.round(at.t_ms))} list="replay-marks" aria-label="Time of the meeting" aria-valuetext=${`${timeOf(at.t_ms)} of ${timeOf(length_ms)}`} @change=${(event) => recording.seek(Number(event.target.value))}>
+    <datalist id="replay-marks">${marks.map(([t_ms, kind, name]) => html`<option value=${t_ms} label=${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}></option>`)}</datalist>
+    <span>${timeOf(at.t_ms)} / ${timeOf(length_ms)}</span>
+    <label>Rate <select @change=${(event) => recording.play(Number(event.target.value))}>${rates.map((rate) => html`<option value=${rate} ?selected=${rate === at.rate}>${rate}×</option>`)}</select></label>
+    <button title="The room becomes an ordinary one, from what it shows now" @click=${() => recording.leave()}>Leave the replay</button></div>
+    ${marks.length ? html`<details><summary>${marks.length} marks</summary><ul>${marks.map(([t_ms, kind, name]) => html`<li><button @click=${() => recording.seek(t_ms)}>${timeOf(t_ms)}</button><span>${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}</span></li>`)}</ul></details>` : nothing}`;
+}
+
+/** @param {object} world {room, ui, api} */
+export function recordings({ room, ui, api }) {
+  const { recording, following } = room;
+  if (recording.isReplay.value) return transport(room);
+  if (!api) return nothing;
+  const list = listOf(room, api, ui);
+  const rows = (list.value ?? []).filter(({ state }) => state !== 'running');
+  const isOurs = following.isPresenting.value;
+  return html`<div class="room-actions">${recording.running.value
+    ? (isOurs || room.control.may('control') ? html`<button title="Everybody is told" @click=${() => recording.stop()}>End recording</button>` : nothing)
+    : isOurs ? html`<button title="Scene, shared views, pointers and notes can be replayed later; everybody sees that it is recorded" @click=${() => recording.start()}>Record meeting</button>` : nothing}</div>
+    ${rows.length ? html`<h3 class="dim">Recordings</h3><ul aria-label="Recordings">${rows.map((one) => row(one, { room, api, ui, list }))}</ul>` : nothing}`;
+}
