@@ -50,16 +50,13 @@ export function makeApi(fetch, base = 'api/v1') {
     thumbnail: (plan) => call('POST', `plans/${id(plan)}/render`, { isPicture: true, body: { view: { kind: '3d', size_px: thumbnailPx }, format: 'jpeg', quality: 85, only_loaded: true } }),
     rooms: (signal) => call('GET', 'rooms', { signal }),
     makeRoom: (plan) => call('POST', 'rooms', { body: { plan } }),
+    /** Any other call, of parts that are loaded later. */
+    call,
     /** A room of its own that begins with a saved view. @param {string} token of its link */
     makeRoomOfSaved: (token) => call('POST', 'rooms', { body: { saved: token } }),
     bookmark: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}`),
     bookmarkPicture: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}/picture`, { isPicture: true }),
     room: (room) => call('GET', `rooms/${id(room)}`),
-    recordings: (room) => call('GET', `rooms/${id(room)}/recordings`),
-    /** A room of its own that plays a recording. */
-    makeReplay: (room, recording) => call('POST', 'rooms', { body: { recording: { room, id: recording } } }),
-    /** @param {{member: string, secret: string}} identity of who deletes it */
-    removeRecording: (room, recording, { member, secret }) => call('DELETE', `rooms/${id(room)}/recordings/${id(recording)}`, { more: { 'Beamroom-Member': `${member} ${secret}` } }),
     /** @param {{member: string, secret: string}} identity of who makes it @param {{role: string, expires_s: number, one_use: boolean}} link @returns {Promise<{token: string}>} */
     makeLink: (room, { member, secret }, link) => call('POST', `rooms/${id(room)}/links`, { body: link, more: { 'Beamroom-Member': `${member} ${secret}` } }),
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),

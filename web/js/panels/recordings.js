@@ -17,7 +17,7 @@ function listOf(room, api, ui) {
   list.ask = async () => {
     const number = ++newest;
     try {
-      const answer = await api.recordings(room.id);
+      const answer = await api.call('GET', `rooms/${room.id}/recordings`);
       if (number === newest) list.value = answer.recordings;
     } catch (problem) { ui.notify('err', problem.message); }
   };
@@ -30,14 +30,14 @@ function listOf(room, api, ui) {
 
 async function play(room, api, ui, id) {
   try {
-    const made = await api.makeReplay(room.id, id);
+    const made = await api.call('POST', 'rooms', { body: { recording: { room: room.id, id } } });
     window.open(`#/rooms/${made.id}`, '_blank');
   } catch (problem) { ui.notify('err', problem.message); }
 }
 
 async function remove(room, api, ui, list, id) {
   try {
-    await api.removeRecording(room.id, id, room.identity);
+    await api.call('DELETE', `rooms/${room.id}/recordings/${id}`, { more: { 'Beamroom-Member': `${room.identity.member} ${room.identity.secret}` } });
   } catch (problem) { ui.notify('err', problem.message); }
   void list.ask();
 }
@@ -52,30 +52,30 @@ const row = ({ id, state, started_ms, length_ms, by_name }, { room, api, ui, lis
 
 /** In a room that plays a recording. */
 function transport({ recording, control }) {
-  const { length_ms, marks } = recording.replay.value;
+  const { length_ms, marks, plan_changed, report } = recording.replay.value;
   const at = recording.at.value ?? { state: 'waiting', t_ms: 0, rate: 1 };
   const isPlaying = at.state === 'playing';
   if (!control.may('scene')) return html`<p class="dim">${timeOf(at.t_ms)} of ${timeOf(length_ms)}</p>`;
-  return html`<div class="replay-transport" role="group" aria-label="Replay">
-    <button @click=${() => (isPlaying ? recording.pause() : recording.play(at.rate))}>${isPlaying ? 'Pause' : 'Play'}</button>
-    <input type="range" min="0" max=${length_ms} step="1000" .value=${String(Math.round(at.t_ms))} list="replay-marks" aria-label="Time of the meeting" aria-valuetext=${`${timeOf(at.t_ms)} of ${timeOf(length_ms)}`} @change=${(event) => recording.seek(Number(event.target.value))}>
+  return html`${plan_changed ? html`<p class="warn">The plan has changed since the meeting: pictures and numbers may differ.</p>${report.map(({ detail }) => html`<p class="dim">${detail}</p>`)}` : nothing}<div class="replay-transport" role="group" aria-label="Replay">
+    <button @click=${() => (isPlaying ? recording.say('replay.pause') : recording.say('replay.play', { rate: at.rate }))}>${isPlaying ? 'Pause' : 'Play'}</button>
+    <input type="range" min="0" max=${length_ms} step="1000" .value=${String(Math.round(at.t_ms))} list="replay-marks" aria-label="Time of the meeting" aria-valuetext=${`${timeOf(at.t_ms)} of ${timeOf(length_ms)}`} @change=${(event) => recording.say('replay.seek', { t_ms: Number(event.target.value) })}>
     <datalist id="replay-marks">${marks.map(([t_ms, kind, name]) => html`<option value=${t_ms} label=${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}></option>`)}</datalist>
     <span>${timeOf(at.t_ms)} / ${timeOf(length_ms)}</span>
-    <label>Rate <select @change=${(event) => recording.play(Number(event.target.value))}>${rates.map((rate) => html`<option value=${rate} ?selected=${rate === at.rate}>${rate}×</option>`)}</select></label>
-    <button title="The room becomes an ordinary one, from what it shows now" @click=${() => recording.leave()}>Leave the replay</button></div>
-    ${marks.length ? html`<details><summary>${marks.length} marks</summary><ul>${marks.map(([t_ms, kind, name]) => html`<li><button @click=${() => recording.seek(t_ms)}>${timeOf(t_ms)}</button><span>${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}</span></li>`)}</ul></details>` : nothing}`;
+    <label>Rate <select @change=${(event) => recording.say('replay.play', { rate: Number(event.target.value) })}>${rates.map((rate) => html`<option value=${rate} ?selected=${rate === at.rate}>${rate}×</option>`)}</select></label>
+    <button title="The room becomes an ordinary one, from what it shows now" @click=${() => recording.say('replay.leave')}>Leave the replay</button></div>
+    ${marks.length ? html`<details><summary>${marks.length} marks</summary><ul>${marks.map(([t_ms, kind, name]) => html`<li><button @click=${() => recording.say('replay.seek', { t_ms })}>${timeOf(t_ms)}</button><span>${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}</span></li>`)}</ul></details>` : nothing}`;
 }
 
 /** @param {object} world {room, ui, api} */
 export function recordings({ room, ui, api }) {
   const { recording, following } = room;
-  if (recording.isReplay.value) return transport(room);
+  if (recording.replay.value) return transport(room);
   if (!api) return nothing;
   const list = listOf(room, api, ui);
   const rows = (list.value ?? []).filter(({ state }) => state !== 'running');
   const isOurs = following.isPresenting.value;
   return html`<div class="room-actions">${recording.running.value
-    ? (isOurs || room.control.may('control') ? html`<button title="Everybody is told" @click=${() => recording.stop()}>End recording</button>` : nothing)
-    : isOurs ? html`<button title="Scene, shared views, pointers and notes can be replayed later; everybody sees that it is recorded" @click=${() => recording.start()}>Record meeting</button>` : nothing}</div>
+    ? (isOurs || room.control.may('control') ? html`<button title="Everybody is told" @click=${() => recording.say('recording.stop')}>End recording</button>` : nothing)
+    : isOurs ? html`<button title="Scene, shared views, pointers and notes can be replayed later; everybody sees that it is recorded" @click=${() => recording.say('recording.start')}>Record meeting</button>` : nothing}</div>
     ${rows.length ? html`<h3 class="dim">Recordings</h3><ul aria-label="Recordings">${rows.map((one) => row(one, { room, api, ui, list }))}</ul>` : nothing}`;
 }

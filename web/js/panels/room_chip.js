@@ -7,15 +7,16 @@ import { known, Lazy, styled } from './lazy.js';
 const marks = { presenting: 'people', following: 'people', own: 'person', away: 'phase', none: 'warning' };
 
 function words({ following, control, recording }) {
-  if (recording.isReplay.value) return { text: `Replay of a meeting of ${recording.date.value}`, more: following.standing.value === 'own' ? '· on my own' : '', act: following.standing.value === 'own' ? { word: 'Return', keys: 'F', about: 'Return to the replay', do: () => following.return() } : null };
+  const { started_ms, plan_changed } = recording.replay.value ?? {};
+  const replay = started_ms && `Replay of a meeting of ${new Date(started_ms).toLocaleString()}${plan_changed ? ', plan changed' : ''}`;
   const name = following.presenter.value?.name ?? '';
   const n = following.nFollowers.value;
   switch (following.standing.value) {
     case 'presenting': return { text: control.isLocked.value ? 'Presenting, locked' : 'Presenting', more: n ? `· ${n} follow${n === 1 ? 's' : ''}` : '' };
-    case 'own': return { text: 'On my own', act: { word: 'Return', keys: 'F', about: name ? `Return to ${name}` : 'Return to the shared view', do: () => following.return() } };
+    case 'own': return { text: replay ?? 'On my own', act: { word: 'Return', keys: 'F', about: name ? `Return to ${name}` : 'Return to the shared view', do: () => following.return() } };
     case 'away': return { text: `${name} is away` };
-    case 'none': return { text: 'No presenter', act: control.may('scene') && { word: 'Take over', about: 'Take over: your view becomes the room\'s', do: () => following.present() } };
-    default: return { text: name ? `Following ${name}` : 'Following' };
+    case 'none': return { text: replay ?? 'No presenter', act: !replay && control.may('scene') && { word: 'Take over', about: 'Take over: your view becomes the room\'s', do: () => following.present() } };
+    default: return { text: replay ?? (name ? `Following ${name}` : 'Following') };
   }
 }
 
@@ -59,9 +60,9 @@ export function roomChip(world, place) {
   const isOpen = ui.popover.value === name;
   const { text, more, act } = words(room);
   const keep = (event) => event.stopPropagation(); // the arrow keys of the tool bar stay out of the chip
-  return html`<span class="anchor room-chip in-${place}" role="group" aria-label="Room" data-standing=${room.following.standing.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
+  return html`<span class="anchor room-chip in-${place}" role="group" aria-label="Room" data-standing=${room.following.standing.value} ?data-replay=${room.recording.replay.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
     <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title="Who is in this room" @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
-      ${room.recording.running.value ? html`<span class="chip-recorded" role="img" aria-label="Recorded" title=${`${room.recording.running.value.by_name} records this meeting`}>● Recorded</span>` : nothing}
+      ${room.recording.running.value ? html`<b class="chip-recorded">● Recorded</b>` : nothing}
       <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
     ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
     ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label="Members of this room">${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;

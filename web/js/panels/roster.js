@@ -43,12 +43,12 @@ function row(member, room) {
     ${buttonsFor(member, room)}</li>`;
 }
 
-const actions = ({ following, control }) => [
+const actions = ({ following, control, recording: { replay } }) => [
   following.isPresenting.value && { word: 'Show everyone', about: 'Everybody follows you again', do: () => following.showEveryone() },
   following.isPresenting.value && control.may('control') && (control.isLocked.value
     ? { word: 'Unlock', about: 'Presenters may take control again', do: () => control.lock(false) }
     : { word: 'Lock control', about: 'Nobody takes control: you can only give it', do: () => control.lock(true) }),
-  control.canTake.value && { word: following.presenter.value ? 'Take control' : 'Take over', about: following.presenter.value ? 'You present what the room shows now' : 'Your view becomes the room\'s', do: () => control.take() },
+  !replay.value && control.canTake.value && { word: following.presenter.value ? 'Take control' : 'Take over', about: following.presenter.value ? 'You present what the room shows now' : 'Your view becomes the room\'s', do: () => control.take() },
   control.canRequest.value && (control.isRequesting.value
     ? { word: 'Withdraw request', about: 'You do not want control any more', do: () => control.withdraw() }
     : { word: 'Request control', about: 'The presenter is asked to give you control', do: () => control.request() }),

@@ -3,7 +3,6 @@ import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
 import { mergePatch } from '../wire/merge.js';
 import { Control } from './control.js';
-import { Recording } from './recording.js';
 import { Following } from './following.js';
 import { Items } from './items.js';
 import { views as allViews } from './layout.js';
@@ -71,7 +70,8 @@ export class RoomState {
     this.saved = new Saved(this);
     this.following = new Following(this, (message) => this.#sending.act(message));
     this.control = new Control(this, (message) => this.#connection.send(message));
-    this.recording = new Recording(this, (message) => this.#connection.send(message));
+    /** The newest of the messages recording (while one runs), replay and replay.at; null: none. Acts: panels/recordings.js. */
+    this.recording = { running: signal(null), replay: signal(null), at: signal(null), say: (type, more) => this.#connection.send({ type, ...more }) };
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
     this.scene = computed(() => {
       const [scene, override] = [this.#sharedScene.value, this.following.override.value];
@@ -272,10 +272,12 @@ export class RoomState {
       'pointer.at': () => this.pointers.moved(message),
       look: () => this.pointers.looked(message),
       control: () => this.control.changed(message),
-      recording: () => this.recording.changed(message),
-      replay: () => this.recording.plays(message),
-      'replay.at': () => this.recording.movedTo(message),
-      'replay.members': () => { if (Array.isArray(message.members)) this.recording.members.value = message.members; },
+      recording: () => { this.recording.running.value = message.state === 'running' ? message : null; },
+      replay: () => { this.recording.replay.value = message; },
+      'replay.at': () => {
+        this.recording.at.value = message;
+        if (message.state === 'left') this.recording.replay.value = null;
+      },
       pong: () => { this.pingMs.value = Math.round(this.#clock.now() - message.time_ms); },
       problem: () => this.#refused(message),
       bye: () => {},
@@ -288,7 +290,7 @@ export class RoomState {
     this.#sending.hold();
     this.pointers.restart();
     this.saved.restart();
-    this.recording.welcome();
+    this.recording.running.value = this.recording.replay.value = null;
     this.member.value = message.member;
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;
