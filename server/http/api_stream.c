@@ -28,6 +28,12 @@ static bool has_room(void *context)
     return feed_has_room(display->feed);
 }
 
+static void tell_late(void *context, bool is_late)
+{
+    const struct api_display *display = context;
+    feed_late(display->feed, is_late);
+}
+
 /* The room has removed its display, or has ended. */
 static void end_display(void *context)
 {
@@ -72,7 +78,7 @@ void api_room_stream(struct api *api, struct call *call)
         (struct api_display){ .next = api->displays, .api = api, .feed = feed_create(call->wake, call->wake_context) };
     (void)snprintf(display->plan_id, sizeof display->plan_id, "%s", room_plan_id(room));
     api->displays = display;
-    const struct room_display_callbacks callbacks = { put_picture, has_room, end_display, display };
+    const struct room_display_callbacks callbacks = { put_picture, has_room, tell_late, end_display, display };
     display->display = room_display_add(room, call_query(call, "view"), &callbacks, clock_now_us(), &problem);
     if (!display->display) {
         struct feed *feed = display->feed;

@@ -18,12 +18,13 @@ struct feed {
     void (*wake)(void *context);
     void *context;
     struct mailbox *box;
-    atomic_bool is_full, is_ended;
+    atomic_bool is_full, is_late, is_ended;
     atomic_int sides; /* that have not left */
     /* the reader's */
     struct room_picture *picture; /* of the part; NULL: none came yet */
     int64_t begun_us;             /* the part */
     unsigned long n_pictures;
+    bool said_late; /* in the part */
     char head[1024 + MISSING_MAX_REGIONS * 66];
     size_t n_head, at, n_part; /* at: of n_part bytes read */
 };
@@ -40,6 +41,7 @@ struct feed *feed_create(void (*wake)(void *context), void *context)
     feed->context = context;
     feed->box = mailbox_create(drop);
     atomic_init(&feed->is_full, false);
+    atomic_init(&feed->is_late, false);
     atomic_init(&feed->is_ended, false);
     atomic_init(&feed->sides, 2);
     memcpy(feed->head, BOUNDARY, strlen(BOUNDARY));
@@ -70,6 +72,12 @@ bool feed_has_room(const struct feed *feed)
     return !atomic_load(&feed->is_full);
 }
 
+void feed_late(struct feed *feed, bool is_late)
+{
+    atomic_store(&feed->is_late, is_late);
+    feed->wake(feed->context);
+}
+
 void feed_end(struct feed *feed)
 {
     atomic_store(&feed->is_ended, true);
@@ -94,12 +102,13 @@ static void begin_part(struct feed *feed, int64_t now_us)
     char matrix[16 * 24], missing[MISSING_MAX_REGIONS * 66 + 32];
     (void)write_matrix(matrix, sizeof matrix, header->clip_from_lps_mm);
     missing_words(picture->missing, missing, sizeof missing);
+    feed->said_late = atomic_load(&feed->is_late);
     int n = snprintf(feed->head, sizeof feed->head,
                      "Content-Type: image/jpeg\r\nContent-Length: %zu\r\nBeamroom-Picture: %lu\r\n"
-                     "Beamroom-Revision: %u\r\nBeamroom-Size: %ux%u\r\nBeamroom-Clip-From-Lps: %s\r\n%s%s%s\r\n",
+                     "Beamroom-Revision: %u\r\nBeamroom-Size: %ux%u\r\nBeamroom-Clip-From-Lps: %s\r\n%s%s%s%s\r\n",
                      picture->n_bytes, feed->n_pictures, header->scene_revision, header->width_px, header->height_px,
                      matrix, picture->missing ? "Beamroom-Missing: " : "", picture->missing ? missing : "",
-                     picture->missing ? "\r\n" : "");
+                     picture->missing ? "\r\n" : "", feed->said_late ? "Beamroom-Late: true\r\n" : "");
     feed->n_head = (size_t)n; /* the buffer holds the longest numbers and all of missing */
     feed->at = 0;
     feed->n_part = feed->n_head + picture->n_bytes + strlen(part_end);
@@ -134,7 +143,8 @@ bool feed_is_inside(const struct feed *feed)
 bool feed_is_due(const struct feed *feed, int64_t now_us)
 {
     return feed_is_inside(feed) || atomic_load(&feed->is_full) ||
-           (feed->picture && now_us - feed->begun_us >= FEED_REPEAT_MS * INT64_C(1000));
+           (feed->picture && (now_us - feed->begun_us >= FEED_REPEAT_MS * INT64_C(1000) ||
+                              feed->said_late != atomic_load(&feed->is_late)));
 }
 
 bool feed_is_ended(const struct feed *feed)

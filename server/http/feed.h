@@ -18,6 +18,7 @@ struct feed *feed_create(void (*wake)(void *context), void *context);
 /* The writer's: */
 void feed_put(struct feed *feed, struct room_picture *picture); /* holds it */
 bool feed_has_room(const struct feed *feed);                    /* the last picture was taken */
+void feed_late(struct feed *feed, bool is_late);                /* what is shown is not the newest state */
 void feed_end(struct feed *feed);                               /* the writer leaves: there will be nothing more */
 
 /* The reader's: */

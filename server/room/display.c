@@ -30,6 +30,29 @@ void displays_send(const struct stream *stream)
         display->callbacks.picture(display->callbacks.context, stream->latest);
 }
 
+static void tell_late(const struct stream *stream, bool is_late)
+{
+    for (struct room_display *display = stream->displays; display; display = display->next)
+        if (display->is_late != is_late) {
+            display->is_late = is_late;
+            display->callbacks.late(display->callbacks.context, is_late);
+        }
+}
+
+int64_t displays_tick(struct room *room)
+{
+    int64_t due_us = INT64_MAX;
+    for (const struct stream *stream = room->streams; stream; stream = stream->next) {
+        if (!stream->displays)
+            continue;
+        const int64_t late_us = stream->behind_us ? stream->behind_us + DISPLAY_LATE_US : INT64_MAX;
+        tell_late(stream, late_us <= room->now_us);
+        if (late_us > room->now_us && late_us < due_us)
+            due_us = late_us;
+    }
+    return due_us;
+}
+
 void displays_end(struct stream *stream)
 {
     while (stream->displays) {

@@ -10,15 +10,20 @@ struct room_display {
     struct room *room;
     struct stream *stream;
     struct room_display_callbacks callbacks;
+    bool is_late; /* as the display was told */
 };
 
 /* How soon to look again whether a display has taken its picture: it makes no event. */
 enum { DISPLAY_AGAIN_US = 50000 };
+/* A picture is late when for so long it has not shown the newest state, and no newer one came. */
+enum { DISPLAY_LATE_US = 1000000 };
 
 /* True if a picture may be requested for the stream's displays: one of them has taken its picture, and no member who
  * looks was sent one in the last DISPLAY_ALONE_US. n_coming: requests of the stream outstanding. */
 bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_t now_us);
 /* Gives the stream's latest picture to its displays. */
 void displays_send(const struct stream *stream);
+/* Tells displays whether their picture is late; when the next may be. */
+int64_t displays_tick(struct room *room);
 /* Ends them: the stream does. */
 void displays_end(struct stream *stream);

@@ -11,6 +11,7 @@
 #include "server/room/audit.h"
 #include "server/room/beginning.h"
 #include "server/room/control.h"
+#include "server/room/display.h"
 #include "server/room/handover.h"
 #include "server/room/item_list.h"
 #include "server/room/items.h"
@@ -331,7 +332,7 @@ int64_t room_tick(struct room *room, int64_t now_us)
 {
     room->now_us = now_us;
     const int64_t pointers_us = pointers_tick(room), look_us = look_tick(room), saved_us = saved_tick(room),
-                  replay_us = replay_tick(room);
+                  replay_us = replay_tick(room), displays_us = displays_tick(room);
     members_close_lost(room);
     bool has_changed = presenter_settle(room);
     int64_t lags_us = lags_settle(room, &has_changed);
@@ -346,6 +347,7 @@ int64_t room_tick(struct room *room, int64_t now_us)
                                look_us,
                                saved_us,
                                replay_us,
+                               displays_us,
                                recording_tick(room),
                                lags_us,
                                audit_tick(room) };

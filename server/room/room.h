@@ -210,7 +210,10 @@ struct room_display_callbacks {
     /* a newer picture; keeping it takes room_picture_hold */
     void (*picture)(void *context, struct room_picture *picture);
     bool (*has_room)(void *context); /* the screen has taken the last one */
-    void (*ended)(void *context);    /* with the room: the display is gone */
+    /* The picture does not show what the room shows now: the newest state is slow to be drawn, or cannot be. False at
+     * first, and again when it does. */
+    void (*late)(void *context, bool is_late);
+    void (*ended)(void *context); /* with the room: the display is gone */
     void *context;
 };
 NODISCARD struct room_display *room_display_add(struct room *room, const char *view,

@@ -41,9 +41,10 @@ struct stream {
     uint64_t refused_version;    /* newest version that cannot be drawn; 0: none */
     struct problem refusal;      /* why it cannot */
     int64_t changed_us;          /* when version last went up */
-    int64_t acted_us;            /* when a member last acted in a view of it; 0: never */
-    int64_t retry_us;            /* nothing is requested before */
-    int n_failed;                /* pictures that failed in a row */
+    int64_t behind_us; /* since when latest is not of version and no newer one came; 0: latest is of version */
+    int64_t acted_us;  /* when a member last acted in a view of it; 0: never */
+    int64_t retry_us;  /* nothing is requested before */
+    int n_failed;      /* pictures that failed in a row */
     struct request requests[2];
     struct room_picture *latest;
     uint64_t latest_number, latest_version; /* latest's request, and the version it shows; 0: none */

@@ -52,6 +52,8 @@ static void stream_changed(struct room *room, struct stream *stream)
 {
     stream->version++;
     stream->changed_us = room->now_us;
+    if (!stream->behind_us)
+        stream->behind_us = room->now_us;
 }
 
 static void destroy_unseen_obliques(struct room *room)
@@ -525,6 +527,7 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
         stream->latest_number = request.number;
         stream->latest_version = request.version;
         stream->latest_is_still = request.is_still;
+        stream->behind_us = request.version < stream->version ? now_us : 0;
         send_to_subscribers(room, stream);
     } else {
         room_picture_drop(picture);

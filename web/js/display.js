@@ -24,6 +24,7 @@ const state = {
   changedAt: 0, // when the newest picture came, ms since 1970
   number: 0,
   header: null, // of the picture on the screen
+  isOld: false, // the server says that the room shows something newer
   problem: null, // why there is no stream
   facts: null, // of GET /rooms/{room}
   plan: '',
@@ -56,6 +57,7 @@ function words(silentMs) {
   if (problem && silentMs > lateMs) return { notice: problem, kind: header ? 'lost' : 'waiting' };
   if (header && silentMs > lostMs) return { notice: `Connection lost. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
   if (!header) return { notice: rendererWords[facts?.renderer] ?? 'Waiting for the first picture …', kind: 'waiting' };
+  if (state.isOld && (!facts || facts.renderer === 'ready')) return { notice: `The room shows something newer, which is not drawn yet. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
   return { notice: facts && facts.renderer !== 'ready' ? rendererWords[facts.renderer] ?? '' : '', kind: 'lost' };
 }
 
@@ -64,14 +66,15 @@ function draw() {
   const { facts, header, plan, kind } = state;
   const presenter = facts?.members.find(({ presenting }) => presenting);
   const isLost = header && silentMs > lostMs;
-  const late = isLost ? 'lost' : silentMs > lateMs ? 'late' : 'live';
+  const isSilent = silentMs > lateMs;
+  const late = isLost ? 'lost' : isSilent || state.isOld ? 'late' : 'live';
   $('h1').textContent = [plan, `Room ${room}`, viewNames[kind]].filter(Boolean).join(' · ');
   document.title = [plan, 'Beamroom display'].filter(Boolean).join(' – ');
   $('.who').textContent = [presenter ? `Presenter: ${presenter.name}` : facts ? 'Nobody presents' : '', header?.missing ? `Not drawn: ${header.missing}` : ''].filter(Boolean).join(' · ');
   $('.clock').textContent = time(Date.now());
   const age = $('.age');
   age.dataset.state = figure.dataset.state = header ? late : '';
-  const said = !header ? '' : isLost ? 'Connection lost' : late === 'late' ? 'Link?' : `Live · picture of ${time(state.changedAt)}`;
+  const said = !header ? '' : isLost ? 'Connection lost' : isSilent ? 'Link?' : state.isOld ? `Old · picture of ${time(state.changedAt)}` : `Live · picture of ${time(state.changedAt)}`;
   if (age.textContent !== said) age.textContent = said; // a live region: only what is new
   const { notice, kind: how } = words(silentMs);
   const line = $('.notice');
@@ -89,6 +92,7 @@ function take({ fields, body }) {
   const header = pictureHeader(fields);
   state.heardAt = performance.now();
   state.problem = null;
+  state.isOld = fields['beamroom-late'] === 'true';
   if (header.sequence === state.number) return; // the same picture once more
   state.number = header.sequence;
   painter.offer({ header, picture: body });

@@ -1,0 +1,128 @@
+/* Screens that show a shared view: which pictures they are given, and that they are told when theirs is old. */
+#include "tests/unit/room_set_up.h"
+
+struct screen {
+    size_t n_pictures, n_ended;
+    bool is_full, is_late;
+};
+
+static void take_picture(void *context, struct room_picture *picture)
+{
+    (void)picture;
+    ((struct screen *)context)->n_pictures++;
+}
+
+static bool has_room(void *context)
+{
+    return !((const struct screen *)context)->is_full;
+}
+
+static void hear_late(void *context, bool is_late)
+{
+    ((struct screen *)context)->is_late = is_late;
+}
+
+static void hear_end(void *context)
+{
+    ((struct screen *)context)->n_ended++;
+}
+
+static struct room_display *add_screen(struct screen *screen)
+{
+    const struct room_display_callbacks callbacks = { take_picture, has_room, hear_late, hear_end, screen };
+    struct problem problem = { 0 };
+    struct room_display *display = room_display_add(fake.room, NULL, &callbacks, fake.now_us, &problem);
+    assert_non_null(display);
+    fake.again_us = fake.now_us; /* whoever calls a room lets it tick */
+    return display;
+}
+
+static void a_screen_is_told_when_its_picture_is_old_and_when_it_is_new_again(void **state)
+{
+    (void)state;
+    struct screen screen = { 0 };
+    fake_join(&fake, &ann, true);
+    settle_one();
+    struct room_display *display = add_screen(&screen);
+    assert_int_equal(screen.n_pictures, 1);
+    fake_pass(&fake, 60000);
+    assert_false(screen.is_late); /* nothing has changed */
+
+    fake_turn(&fake, &ann, 8, 21);
+    fake_pass(&fake, 900);
+    assert_false(screen.is_late);
+    fake_pass(&fake, 200);
+    assert_true(screen.is_late);
+    const size_t n_pictures = screen.n_pictures;
+    settle_one();
+    fake_pass(&fake, 1);
+    assert_false(screen.is_late);
+    assert_true(screen.n_pictures > n_pictures);
+
+    fake_turn(&fake, &ann, 16, 22); /* this cannot be drawn: it stays old for as long as that is so */
+    fake_refuse(&fake, fake_oldest(&fake));
+    fake_pass(&fake, 60000);
+    assert_true(screen.is_late);
+    fake_turn(&fake, &ann, 24, 23);
+    settle_one();
+    fake_pass(&fake, 1);
+    assert_false(screen.is_late);
+    room_display_remove(display);
+}
+
+static void pictures_that_follow_each_other_are_not_old(void **state)
+{
+    (void)state;
+    struct screen screen = { 0 };
+    fake_join(&fake, &ann, true);
+    settle_one();
+    struct room_display *display = add_screen(&screen);
+    for (int i = 0; i < 20; i++) { /* each picture shows a state that has passed when it comes */
+        fake_turn(&fake, &ann, i + 1, 30 + (unsigned)i);
+        fake_pass(&fake, 400);
+        fake_draw(&fake, fake_oldest(&fake));
+        fake_shown(&fake, &ann);
+        fake_turn(&fake, &ann, i + 2, 60 + (unsigned)i);
+        assert_false(screen.is_late);
+    }
+    room_display_remove(display);
+}
+
+static void nothing_is_drawn_for_a_screen_while_a_member_takes_pictures(void **state)
+{
+    (void)state;
+    struct screen screen = { 0 };
+    fake_join(&fake, &ann, true);
+    settle_one();
+    const size_t n_requests = fake.n_requests;
+    struct room_display *display = add_screen(&screen);
+    fake_pass(&fake, 10000);
+    assert_int_equal(fake.n_requests, n_requests);
+    room_display_remove(display);
+}
+
+static void a_screen_alone_is_drawn_for_when_it_has_taken_its_picture(void **state)
+{
+    (void)state;
+    struct screen screen = { .is_full = true };
+    struct room_display *display = add_screen(&screen);
+    fake_pass(&fake, 1000);
+    assert_int_equal(fake.n_requests, 0);
+    screen.is_full = false;
+    fake_pass(&fake, 100);
+    assert_int_equal(fake_outstanding(&fake), 1);
+    fake_draw(&fake, fake_oldest(&fake));
+    assert_int_equal(screen.n_pictures, 1);
+    room_display_remove(display);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        ROOM_TEST(a_screen_is_told_when_its_picture_is_old_and_when_it_is_new_again),
+        ROOM_TEST(pictures_that_follow_each_other_are_not_old),
+        ROOM_TEST(nothing_is_drawn_for_a_screen_while_a_member_takes_pictures),
+        ROOM_TEST(a_screen_alone_is_drawn_for_when_it_has_taken_its_picture),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
