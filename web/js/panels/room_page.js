@@ -20,7 +20,6 @@ import { draftBar } from './beam_lazy.js';
 import { leaveBookmarks, playBar, resumeBookmark } from './bookmark_lazy.js';
 import { ChartLoader } from './chart_loader.js';
 import { ofDose } from './dose_later.js';
-import { figuresDialog } from './figures.js';
 import { ended, watchEnd } from './ended.js';
 import { coverPage, help, toasts } from './float.js';
 import { inspector, selected } from './inspector.js';
@@ -44,7 +43,7 @@ const tickMs = 250;
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
 const drawer = (world) => (world.ui.arrangement.value.drawer ? world.charts.draw('drawer') : nothing);
-const floating = (world) => html`${help(world)}${figuresDialog(world)}${ended(world)}${otherPlanDialog(world)}${world.printoutDialog.value?.(world) ?? nothing}`;
+const floating = (world) => html`${help(world)}${selected.loaded.value?.figuresDialog(world) ?? nothing}${ended(world)}${otherPlanDialog(world)}${world.printoutDialog.value?.(world) ?? nothing}`;
 
 const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>

@@ -14,6 +14,8 @@ import { regionBlock } from './region.js';
 import { drawTracks } from './track_lazy.js';
 import { volumeBlock } from './volume.js';
 
+export { figuresDialog } from './figures.js'; // which a region's block opens
+
 const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose: doseBlock, quantity: doseBlock, dosing: doseBlock, level: levelBlock, beam: (...args) => drawBeam(({ beamBlock }) => beamBlock(...args)), kept: (...args) => drawBeam(({ keptBlock }) => keptBlock(...args)), curve, tracks: (...args) => drawTracks(({ trackBlock }) => trackBlock(...args)), track: (...args) => drawTracks(({ segmentBlock }) => segmentBlock(...args)), clip: clipBlock, oblique: obliqueBlock, measure: measureBlock, measures: measuresBlock, bookmark: (...args) => drawBookmark(({ bookmarkBlock }) => bookmarkBlock(...args)) };
 
 export function selection(world) {
