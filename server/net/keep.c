@@ -170,7 +170,7 @@ void keep_is_saved(void *context, const struct room *room, struct room_saved *sa
 {
     const struct net *net = context;
     const struct net_room *entry = find_kept(net, room);
-    if (!entry)
+    if (!entry || room_replays(room))
         return;
     const bool fails = net->store_fails || entry->keep.is_refused;
     *saved = (struct room_saved){ .revision = entry->keep.written, .is_full = net->store_is_full };

@@ -29,10 +29,12 @@ describe('a recorded meeting', { skip: missing && `${missing} is not there` }, (
     const opened = ann.context().waitForEvent('page');
     await play.click();
     const replay = await opened;
-    await replay.locator('.room-chip:visible', { hasText: 'Replay of a meeting of' }).waitFor();
+    await replay.locator('.room-chip:visible .chip-words', { hasText: /^Replay \d{4}-\d\d-\d\d \d\d:\d\d$/ }).waitFor();
     await full(replay);
     await open(replay);
     await replay.locator('.replay-transport:visible').waitFor();
+    await replay.getByText('Replay of a meeting of').locator('visible=true').waitFor();
+    assert.equal(await replay.locator('#saved').textContent(), 'Not kept');
     assert.deepEqual(await axe(replay), []);
     await shoot(replay, 'replay');
   });

@@ -52,6 +52,8 @@ export function volume(cm3) {
   return `${number(cm3, cm3 < 9.995 ? 2 : cm3 < 99.95 ? 1 : 0)} cm³`;
 }
 
+/** 2026-11-23 13:46, by the clock of this browser: no order of day and month to be mistaken. */
+export const dayTime = (ms) => new Date(ms).toLocaleString('sv', { dateStyle: 'short', timeStyle: 'short' });
 export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 1000, 1)} s`);
 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;

@@ -1,6 +1,7 @@
 // Recording the meeting, the list of recordings, and how a replay is moved: part of the popover of the room chip.
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect, signal } from '../../lib/signals-core.js';
+import { dayTime } from './format.js';
 
 const rates = [1, 2, 4, 8];
 const lists = new WeakMap(); // of each room: signal of the rows of GET recordings; null: not known yet
@@ -43,8 +44,8 @@ async function remove(room, api, ui, list, id) {
 }
 
 const row = ({ id, state, started_ms, length_ms, by_name }, { room, api, ui, list }) => {
-  const name = `the recording of ${new Date(started_ms).toLocaleString()}`;
-  return html`<li><span></span><span class="roster-who"><span class="clipped">${new Date(started_ms).toLocaleString()}</span>
+  const name = `the recording of ${dayTime(started_ms)}`;
+  return html`<li><span></span><span class="roster-who"><span class="clipped">${dayTime(started_ms)}</span>
     <span class="dim">${[timeOf(length_ms), `by ${by_name}`, state === 'cut' ? 'cut off' : state === 'full' ? 'ended full' : ''].filter(Boolean).join(' · ')}</span></span>
     <span class="roster-buttons"><button aria-label=${`Play ${name}`} title="In a room of its own, in a new tab" @click=${() => play(room, api, ui, id)}>Play</button>
     ${room.control.may('control') ? html`<button aria-label=${`Delete ${name}`} @click=${() => remove(room, api, ui, list, id)}>Delete</button>` : nothing}</span></li>`;
@@ -52,11 +53,12 @@ const row = ({ id, state, started_ms, length_ms, by_name }, { room, api, ui, lis
 
 /** In a room that plays a recording. */
 function transport({ recording, control }) {
-  const { length_ms, marks, plan_changed, report } = recording.replay.value;
+  const { started_ms, length_ms, marks, plan_changed, report } = recording.replay.value;
   const at = recording.at.value ?? { state: 'waiting', t_ms: 0, rate: 1 };
   const isPlaying = at.state === 'playing';
-  if (!control.may('scene')) return html`<p class="dim">${timeOf(at.t_ms)} of ${timeOf(length_ms)}</p>`;
-  return html`${plan_changed ? html`<p class="warn">The plan has changed since the meeting: pictures and numbers may differ.</p>${report.map(({ detail }) => html`<p class="dim">${detail}</p>`)}` : nothing}<div class="replay-transport" role="group" aria-label="Replay">
+  const title = html`<h3 class="replay-title">Replay of a meeting of ${dayTime(started_ms)}</h3>`;
+  if (!control.may('scene')) return html`${title}<p class="dim">${timeOf(at.t_ms)} of ${timeOf(length_ms)}</p>`;
+  return html`${title}${plan_changed ? html`<p class="warn">The plan has changed since the meeting: pictures and numbers may differ.</p>${report.map(({ detail }) => html`<p class="dim">${detail}</p>`)}` : nothing}<div class="replay-transport" role="group" aria-label="Replay">
     <button @click=${() => (isPlaying ? recording.say('replay.pause') : recording.say('replay.play', { rate: at.rate }))}>${isPlaying ? 'Pause' : 'Play'}</button>
     <input type="range" min="0" max=${length_ms} step="1000" .value=${String(Math.round(at.t_ms))} list="replay-marks" aria-label="Time of the meeting" aria-valuetext=${`${timeOf(at.t_ms)} of ${timeOf(length_ms)}`} @change=${(event) => recording.say('replay.seek', { t_ms: Number(event.target.value) })}>
     <datalist id="replay-marks">${marks.map(([t_ms, kind, name]) => html`<option value=${t_ms} label=${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}></option>`)}</datalist>

@@ -1,6 +1,7 @@
 // The room chip: who presents, whether this member follows or is on their own, and what can be done about it.
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect, untracked } from '../../lib/signals-core.js';
+import { dayTime } from './format.js';
 import { icon } from './icons.js';
 import { known, Lazy, styled } from './lazy.js';
 
@@ -8,7 +9,7 @@ const marks = { presenting: 'people', following: 'people', own: 'person', away: 
 
 function words({ following, control, recording }) {
   const { started_ms, plan_changed } = recording.replay.value ?? {};
-  const replay = started_ms && `Replay of a meeting of ${new Date(started_ms).toLocaleString()}${plan_changed ? ', plan changed' : ''}`;
+  const replay = started_ms && `Replay ${dayTime(started_ms)}${plan_changed ? ', plan changed' : ''}`;
   const name = following.presenter.value?.name ?? '';
   const n = following.nFollowers.value;
   switch (following.standing.value) {
