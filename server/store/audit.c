@@ -49,9 +49,14 @@ bool audit_append(sqlite3 *db, char *const *rows, size_t n, struct error *err)
     sqlite3_stmt *row = sql_prepare(db, "INSERT INTO audit(n, row, hash) VALUES(?1, ?2, ?3)", err);
     bool ok = row != NULL;
     for (size_t i = 0; ok && i < n; i++) {
-        char *text = mem_new(strlen(rows[i]) + 40), hash[STORE_AUDIT_HASH];
+        const size_t size = strlen(rows[i]) + 40;
+        char *text = mem_array(size, 1, 1 << 16, err), hash[STORE_AUDIT_HASH];
+        if (!text) {
+            ok = false;
+            break;
+        }
         head.n++;
-        (void)snprintf(text, strlen(rows[i]) + 40, "{\"n\":%lld,%s", (long long)head.n, rows[i] + 1);
+        (void)snprintf(text, size, "{\"n\":%lld,%s", (long long)head.n, rows[i] + 1);
         audit_hash(head.hash, text, hash);
         (void)sqlite3_bind_int64(row, 1, head.n);
         sql_bind_text(row, 2, text);
