@@ -22,7 +22,7 @@ function renderersOf(parent) {
 }
 
 describe('a whole meeting', { skip: missing && `${missing} is not there` }, () => {
-  let world, data, room, ann, ben, cem, permalink, entryMs;
+  let world, data, room, ann, ben, cem, permalink, entryMs, recorded;
   const all = () => [ann, ben, cem];
   const meeting = () => call(`${world.daemon.url}/api/v1/rooms/${room}`).then(({ json }) => json);
   const items = (kind) => call(`${world.daemon.url}/api/v1/rooms/${room}/${kind}`).then(({ json }) => json[kind]);
@@ -256,6 +256,60 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     await says(ann, /^Presenting · 2 follow$/);
     for (const page of all()) assert.equal(await matrix(page, 1), shown);
     await shoot(ann, 'whole-7-back');
+  });
+
+  it('a part of it is recorded, decided, signed and exported; the record has all of it', async () => {
+    recorded = [await matrix(ann, 1)];
+    await openRoster(ann);
+    await action(ann, 'Record meeting').click();
+    for (const page of all()) await page.locator('.chip-recorded:visible').waitFor();
+    await ann.keyboard.press('Escape');
+    await turn(ann);
+    recorded.push(await matrix(ann, 1));
+    await Promise.all([ben, cem].map((page) => showsAs(page, ann)));
+    for (const page of [ann, ben]) {
+      await page.getByRole('tab', { name: 'Record' }).click();
+      await page.getByRole('heading', { name: 'Checklist' }).waitFor();
+    }
+    await ann.getByRole('combobox', { name: 'Decision' }).selectOption('accept');
+    await ann.getByLabel('In words').fill('As shown');
+    await ann.getByRole('button', { name: 'Write down' }).click();
+    await ben.locator('.record-lines').getByText('As shown').waitFor();
+    await ben.getByRole('textbox', { name: 'Name' }).fill('B. Example');
+    await ben.getByRole('button', { name: 'Sign' }).click();
+    await ann.locator('.record-lines').getByText('B. Example').waitFor();
+    const [download] = await Promise.all([ann.waitForEvent('download'), ann.getByRole('button', { name: 'JSON' }).click()]);
+    const { decisions, signatures, notes, saved_views, present } = JSON.parse(readFileSync(await download.path(), 'utf8'));
+    assert.deepEqual([decisions.map(({ decision, text }) => [decision, text]), signatures.map(({ name }) => name)], [[['accept', 'As shown']], ['B. Example']]);
+    assert.deepEqual([notes.length, saved_views.length], [(await items('notes')).length, 1]);
+    for (const name of ['Dr Ann', 'Ben', 'Cem']) assert.ok(present.some((stay) => stay.name === name), `${name} was present`);
+    await shoot(ann, 'whole-8-record');
+    await openRoster(ann);
+    await action(ann, 'End recording').click();
+    for (const page of all()) await page.locator('.chip-recorded').first().waitFor({ state: 'detached' });
+  });
+
+  it('its replay shows at its beginning and at its end what was shown then, and leaves the meeting as it is', async () => {
+    const before = await meeting();
+    await openRoster(ann);
+    const opened = ann.context().waitForEvent('page');
+    await ann.getByRole('button', { name: /^Play the recording/ }).locator('visible=true').click();
+    const replay = await opened;
+    await full(replay);
+    await openRoster(replay);
+    const slider = replay.locator('.replay-transport:visible input');
+    const seek = (toEnd) => slider.evaluate((range, isEnd) => {
+      range.value = isEnd ? range.max : range.min;
+      range.dispatchEvent(new Event('change', { bubbles: true }));
+    }, toEnd);
+    for (const isEnd of [true, false, true]) {
+      await seek(isEnd);
+      await until(() => matrix(replay, 1), (shown) => shown === recorded[Number(isEnd)]);
+    }
+    await shoot(replay, 'whole-9-replay');
+    const later = await meeting();
+    assert.deepEqual([later.revision, later.members.length], [before.revision, before.members.length]);
+    assert.equal(await matrix(ann, 1), recorded[1]);
   });
 
   it('it has had no error', () => assert.deepEqual(world.errors, []));
