@@ -41,10 +41,15 @@ void api_room_recording_delete(struct api *api, struct call *call)
     struct room *room = find_room(api, call);
     if (!room)
         return;
-    if (room_recording_delete(room, call->ids[1], clock_now_us()))
-        call_answer_nothing(call, 204);
-    else
+    if (!room_recording_delete(room, call->ids[1], clock_now_us())) {
         answer_missing(call);
+        return;
+    }
+    cJSON *detail = cJSON_CreateObject();
+    cJSON_AddStringToObject(detail, "id", call->ids[1]);
+    cJSON_AddStringToObject(detail, "state", wire_recording_state_words.words[WIRE_RECORDING_STATE_DELETED]);
+    room_audit_call(room, call->member, "recording", detail, false, clock_now_us());
+    call_answer_nothing(call, 204);
 }
 
 struct asked_state {

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "core/base/mem.h"
+#include "server/room/audit.h"
 #include "server/room/item_list.h"
 #include "server/room/meeting_log.h"
 #include "server/room/member_list.h"
@@ -191,7 +192,19 @@ static void sample(struct room *room)
 
 /* ---- batches ---------------------------------------------------------------------------------------------------- */
 
-static void end(struct room *room, enum wire_recording_state state)
+static void audit(struct room *room, const struct room_recording *facts, const struct member *by)
+{
+    const char *state = wire_recording_state_words.words[facts->state];
+    const struct audit_act act = {
+        .by = by, .action = "recording", .key = state, .detail = cJSON_CreateObject(), .before = -1, .after = -1
+    };
+    cJSON_AddStringToObject(act.detail, "id", facts->id);
+    cJSON_AddStringToObject(act.detail, "state", state);
+    audit_tell(room, &act);
+}
+
+/* by: who ended it; NULL: nobody did. */
+static void end(struct room *room, enum wire_recording_state state, const struct member *by)
 {
     struct recorder *recorder = room->recorder;
     struct room_recording *facts = recorder->facts;
@@ -202,6 +215,7 @@ static void end(struct room *room, enum wire_recording_state state)
     free(recorder);
     if (room->callbacks.recorded)
         room->callbacks.recorded(room->callbacks.context, room, facts, NULL);
+    audit(room, facts, by);
     tell(room, facts);
 }
 
@@ -220,7 +234,7 @@ static void write_batch(struct room *room)
     if (facts->n_bytes + n > ROOM_MAX_RECORDING_BYTES || facts->n_events + batch.n_events > ROOM_MAX_RECORDING_EVENTS ||
         t_ms > ROOM_MAX_RECORDING_S * INT64_C(1000)) {
         free(batch.text);
-        end(room, WIRE_RECORDING_STATE_FULL);
+        end(room, WIRE_RECORDING_STATE_FULL, NULL);
         return;
     }
     facts->length_ms = t_ms;
@@ -250,7 +264,7 @@ int64_t recording_tick(struct room *room)
         recorder->empty_since_us = room->now_us;
     if (recorder->empty_since_us && room->now_us >= recorder->empty_since_us + empty_us) {
         if (write_all(room))
-            end(room, WIRE_RECORDING_STATE_EMPTY);
+            end(room, WIRE_RECORDING_STATE_EMPTY, NULL);
         return INT64_MAX;
     }
     if ((room->unrecorded || recorder->n_items) && room->now_us >= recorder->sampled_us + every_us)
@@ -324,6 +338,7 @@ bool recording_start(struct room *room, struct member *member, const struct mess
         (struct recorder){ .log = log, .facts = facts, .start_us = room->now_us, .written_us = room->now_us };
     room->unrecorded = ALL_PARTS;
     (void)snprintf(room->recorder->presenter, sizeof room->recorder->presenter, "%s", member->id);
+    audit(room, facts, member);
     sample(room);
     write_batch(room);
     if (room->recorder)
@@ -341,7 +356,7 @@ bool recording_stop(struct room *room, struct member *member, const struct messa
         return refuse_not_presenter(room, problem, "end a recording that another member began");
     if (write_all(room)) {
         room->recorder->facts->length_ms = recorded_ms(room, room->recorder);
-        end(room, WIRE_RECORDING_STATE_STOPPED);
+        end(room, WIRE_RECORDING_STATE_STOPPED, member);
     }
     return true;
 }
@@ -356,7 +371,7 @@ bool room_recording_delete(struct room *room, const char *id, int64_t now_us)
         return false;
     struct room_recording *facts = &room->recordings[index];
     if (room->recorder && room->recorder->facts == facts)
-        end(room, WIRE_RECORDING_STATE_STOPPED);
+        end(room, WIRE_RECORDING_STATE_STOPPED, NULL);
     facts->state = WIRE_RECORDING_STATE_DELETED;
     tell(room, facts);
     if (room->callbacks.recording_deleted)
@@ -396,7 +411,7 @@ void room_recording_cut(struct room *room, int64_t now_us)
         return;
     room->now_us = now_us;
     if (write_all(room))
-        end(room, WIRE_RECORDING_STATE_CUT);
+        end(room, WIRE_RECORDING_STATE_CUT, NULL);
 }
 
 void recordings_finish(struct room *room)

@@ -80,7 +80,8 @@ struct room_picture {
 
 /* A row for the audit. Texts are borrowed. Actions: open, leave (a member enters, or its connection ends), link (one
  * was used), link-made, control, weights (of a dose), draft-made, draft-changed, draft-reset (of the beam), decision,
- * signature, export (something was given away as a file), refused (a message or call lacked the right), deleted (the
+ * signature, recording (of the meeting: running, stopped, cut, ..., deleted), export (something was given away as a
+ * file), refused (a message or call lacked the right), deleted (the
  * room). */
 struct room_audit {
     int64_t time_ms; /* since 1970 */

@@ -66,6 +66,14 @@ test('what members and calls do is on the disk, who did it, and at which revisio
   await call(`${api}/links`, 'POST', { role: 'presenter' }, eve.headers);
   assert.equal((await rowWith('refused', ({ detail }) => /^POST /.test(detail.what))).member, 'm2');
 
+  ann.send({ type: 'recording.start' });
+  const running = await rowWith('recording');
+  assert.deepEqual([running.member, running.detail.state], ['m1', 'running']);
+  ann.send({ type: 'recording.stop' });
+  assert.equal((await rowWith('recording', ({ detail }) => detail.state === 'stopped')).member, 'm1');
+  assert.equal((await call(`${api}/recordings/${running.detail.id}`, 'DELETE', undefined, ann.headers)).status, 204);
+  assert.equal((await rowWith('recording', ({ detail }) => detail.state === 'deleted' && detail.id === running.detail.id)).member, 'm1');
+
   ann.send({ type: 'scene.patch', input: 7, patch: { dose: { blood_ppm: 33 } } });
   const { revision } = await ann.message('scene', (m) => m.input === 7);
   const weighed = await rowWith('weights');
