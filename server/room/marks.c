@@ -50,8 +50,7 @@ bool marks_are_own(const struct room *room, const struct member *member, const c
 /* Writes the member's name into a mark of the patch where it belongs. */
 static bool sign(const struct member *member, bool presents, const cJSON *before, cJSON *mark)
 {
-    const char *given = json_text(mark, "author");
-    if (presents && (before || (given && *given)))
+    if (presents && (before || json_text(mark, "author"))) /* "" is given, too: a mark that nobody has signed */
         return true;
     while (cJSON_HasObjectItem(mark, "author")) /* also one that is there twice */
         cJSON_DeleteItemFromObject(mark, "author");

@@ -94,6 +94,10 @@ static void who_follows_adds_marks_under_ids_and_a_name_of_their_own(void **stat
     assert_string_equal(author_of("measures", "m1-m2"), "Somebody");
     fake_say(&fake, &ben, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m1-m2\":null}}}");
     assert_string_equal(author_of("measures", "m1-m2"), "none");
+    /* so does one that nobody had signed, as when a saved view is shown */
+    fake_say(&fake, &ann,
+             "{\"type\":\"scene.patch\",\"patch\":{\"probes\":{\"old\":{\"author\":\"\",\"at_mm\":[1,2,3]}}}}");
+    assert_string_equal(author_of("probes", "old"), "");
 }
 
 static void who_follows_changes_nothing_but_their_own_marks(void **state)

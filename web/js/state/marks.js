@@ -38,7 +38,7 @@ export function authored(patch, scene, name) {
   const signed = { ...patch };
   for (const kind of kinds)
     if (isObject(patch[kind]))
-      signed[kind] = Object.fromEntries(Object.entries(patch[kind]).map(([id, mark]) => [id, isObject(mark) && !mark.author && !scene?.[kind]?.[id] ? { ...mark, author: name } : mark]));
+      signed[kind] = Object.fromEntries(Object.entries(patch[kind]).map(([id, mark]) => [id, isObject(mark) && mark.author === undefined && !scene?.[kind]?.[id] ? { ...mark, author: name } : mark]));
   return signed;
 }
 
