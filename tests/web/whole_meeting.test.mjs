@@ -1,11 +1,11 @@
 // A meeting from the first link to the last view: three people in three browsers, through the crash of a renderer and the death of the
 // daemon. Screenshots stay in build/test-artifacts/.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { call, startDaemon, until } from '../api/daemon.mjs';
+import { call, renderersOf, startDaemon, until } from '../api/daemon.mjs';
 import { onDisk } from '../api/on_disk.mjs';
 import { full, missing, newer, header, shoot, startWorld } from './browser.mjs';
 import { action, chip, enter, matrix, openRoster, row, says, showsAs, toast, turn } from './people.mjs';
@@ -13,13 +13,6 @@ import { axialPoint, boxOf, mark, near, pointAt, project } from './places.mjs';
 
 const wide = { viewport: { width: 1440, height: 900 } }, small = { viewport: { width: 1100, height: 760 } };
 const comesBackMs = 2000;
-
-/** Process ids of the daemon's renderers that draw a plan. */
-function renderersOf(parent) {
-  const look = (pid, name) => { try { return readFileSync(`/proc/${pid}/${name}`, 'latin1'); } catch { return ''; } };
-  return readdirSync('/proc').filter((pid) => /^\d+$/.test(pid) && look(pid, 'status').includes(`\nPPid:\t${parent}\n`)
-    && /beamroom-render/.test(look(pid, 'cmdline')) && !/--(scan|probe-gl)/.test(look(pid, 'cmdline'))).map(Number);
-}
 
 describe('a whole meeting', { skip: missing && `${missing} is not there` }, () => {
   let world, data, room, ann, ben, cem, permalink, entryMs, recorded;
