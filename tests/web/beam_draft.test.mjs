@@ -42,6 +42,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await page.mouse.move(x0, y0);
     await page.mouse.down();
     for (let step = 1; step <= 4; step++) await page.mouse.move(x0 + (dx * step) / 4, y0 + (dy * step) / 4);
+    await page.locator('.room > [data-pending]').first().waitFor(); // panels wait for the pictures, though the press took the focus from a button
     await page.mouse.up();
   };
   const matrixOf = async (view) => {

@@ -42,7 +42,11 @@ function world() {
   const redraw = new Redraw((callback) => frames.push(callback), clock);
   const target = new EventTarget();
   const stop = redraw.watch(target);
-  const fire = (type, more = {}) => target.dispatchEvent(Object.assign(new Event(type), { buttons: 1, ...more }));
+  const fire = (type, more = {}, of = null) => {
+    const event = Object.assign(new Event(type), { buttons: 1, ...more });
+    if (of) Object.defineProperty(event, 'target', { value: of }); // an element in the window
+    target.dispatchEvent(event);
+  };
   const value = signal(0);
   /** As mount() does: what was drawn, in order. */
   const part = (host) => {
@@ -149,6 +153,18 @@ test('a drag whose end was not seen ends with the next move, or with the window 
     fire(...end);
     assert.deepEqual(drawn, [0, 1], end[0]);
   }
+});
+
+test('a focus that moves within the page, as it does at a press, ends no drag', () => {
+  const { fire, value, part } = world();
+  const drawn = part(new FakePart({ hidden: false }));
+  const loseFocus = () => fire('blur', {}, new FakePart());
+  fire('pointerdown');
+  loseFocus();
+  fire('pointermove');
+  value.value = 1;
+  loseFocus();
+  assert.deepEqual(drawn, [0]);
 });
 
 test('changes go at once, those within 14 ms together after them', async () => {

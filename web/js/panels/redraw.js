@@ -51,7 +51,8 @@ export class Redraw {
       if (!buttons) this.#end();
       else if (this.#pressed) this.#isDragging = true;
     });
-    for (const type of ['pointerup', 'pointercancel', 'blur']) on(type, () => this.#end());
+    for (const type of ['pointerup', 'pointercancel']) on(type, () => this.#end());
+    on('blur', (event) => { if (event.target === target) this.#end(); }); // not when the focus moves within the page, as it does at a press
     return () => {
       abort.abort();
       this.#end();
