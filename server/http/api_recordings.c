@@ -95,7 +95,10 @@ void api_room_recording_state(struct api *api, struct call *call)
     }
     struct asked_state *asked = mem_new(sizeof *asked);
     *asked = (struct asked_state){ call, (int64_t)t_ms };
-    net_recording_read(api->net, room_id(room), recording->id, asked->t_ms, part_was_read, asked);
+    if (net_recording_read(api->net, room_id(room), recording->id, asked->t_ms, part_was_read, asked, &problem))
+        return;
+    free(asked);
+    call_answer_problem(call, &problem);
 }
 
 /* ---- rooms that play -------------------------------------------------------------------------------------------- */

@@ -163,20 +163,20 @@ void keep_recordings_restore(struct room *room, const struct store_room *row)
 
 /* ---- parts ------------------------------------------------------------------------------------------------------ */
 
-void net_recording_read(struct net *net, const char *room, const char *recording, int64_t t_ms, net_part_read *done,
-                        void *context)
+bool net_recording_read(struct net *net, const char *room, const char *recording, int64_t t_ms, net_part_read *done,
+                        void *context, struct problem *problem)
 {
-    struct problem problem;
     if (net->store && store_read_part(net->store, room, recording, t_ms, net->n_tickets + 1)) {
         struct part_reader *reader = mem_new(sizeof *reader);
         *reader =
             (struct part_reader){ .next = net->readers, .ticket = ++net->n_tickets, .done = done, .context = context };
         net->readers = reader;
-        return;
+        return true;
     }
-    problem_set(&problem, PROBLEM_BUSY, "", "", "the disk has too much to do to read the recording now");
-    problem.retry_after_ms = 1000;
-    done(context, NULL, 0, INT64_MAX, &problem);
+    problem_set(problem, PROBLEM_BUSY, "", "", "the disk has too much to do to read the recording now");
+    if (problem)
+        problem->retry_after_ms = 1000;
+    return false;
 }
 
 void keep_part_was_read(struct net *net, const struct store_answer *answer)
@@ -234,10 +234,14 @@ static void give_to_room(void *context, const char *const *texts, size_t n, int6
     free(asking);
 }
 
-void keep_replay_read(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms)
+bool keep_replay_read(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms,
+                      struct problem *problem)
 {
     struct asking_room *asking = mem_new(sizeof *asking);
     asking->net = context;
     (void)snprintf(asking->id, sizeof asking->id, "%s", room_id(room));
-    net_recording_read(context, of_room, recording, t_ms, give_to_room, asking);
+    if (net_recording_read(context, of_room, recording, t_ms, give_to_room, asking, problem))
+        return true;
+    free(asking);
+    return false;
 }

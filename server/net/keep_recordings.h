@@ -7,7 +7,8 @@ struct log_batch;
 /* struct room_callbacks; context is the net */
 void keep_recorded(void *context, struct room *room, const struct room_recording *recording, struct log_batch *batch);
 void keep_recording_deleted(void *context, struct room *room, const char *id);
-void keep_replay_read(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms);
+bool keep_replay_read(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms,
+                      struct problem *problem);
 void keep_recordings_finish(struct net_room *room); /* before it is freed */
 void keep_recordings_restore(struct room *room, const struct store_room *row);
 /* A part of a recording was read, or cannot be. */

@@ -68,11 +68,12 @@ void net_room_wake(struct net *net, const char *room_id,
 void net_saved_wake(struct net *net, const char *token,
                     void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
 /* Reads a part of a recording: the batches from the last one with a state at or before t_ms on, up to the next such
- * one, at next_ms. done is called once; n 0: they cannot be read, and problem says why. */
+ * one, at next_ms. done is called once, later; n 0: they cannot be read, and problem says why. False with problem: the
+ * disk has too much to do, and done is not called. */
 typedef void net_part_read(void *context, const char *const *texts, size_t n, int64_t next_ms,
                            const struct problem *problem);
-void net_recording_read(struct net *net, const char *room, const char *recording, int64_t t_ms, net_part_read *done,
-                        void *context);
+NODISCARD bool net_recording_read(struct net *net, const char *room, const char *recording, int64_t t_ms,
+                                  net_part_read *done, void *context, struct problem *problem);
 /* A new room on the plan of that room, which plays this recording of it. NULL with problem. */
 struct room *net_replay_create(struct net *net, const struct room *of_room, const char *recording,
                                struct problem *problem);

@@ -161,7 +161,7 @@ void meeting_log_put(struct meeting_log *log, int64_t t_ms, enum log_part part, 
 
 void meeting_log_put_all(struct meeting_log *log, int64_t t_ms, enum log_part part, cJSON *entries)
 {
-    for (cJSON *entry = log_state_part(log->state, part)->child, *next; entry; entry = next) {
+    for (cJSON *entry = entries ? log_state_part(log->state, part)->child : NULL, *next; entry; entry = next) {
         next = entry->next;
         if (!cJSON_GetObjectItemCaseSensitive(entries, entry->string))
             meeting_log_put(log, t_ms, part, entry->string, NULL);
@@ -235,6 +235,11 @@ static int part_of(const cJSON *event)
         if (strcmp(word, log_part_words[part]) == 0)
             return part;
     return word && strcmp(word, state_word) == 0 ? LOG_N_PARTS : -1;
+}
+
+bool log_event_is_state(const cJSON *event)
+{
+    return part_of(event) == LOG_N_PARTS;
 }
 
 static bool check_state(const cJSON *whole, struct problem *problem)

@@ -41,7 +41,8 @@ struct meeting_log *meeting_log_create(void);
 void meeting_log_destroy(struct meeting_log *log);
 /* At t_ms, which never goes back, the document of this id is this one (taken); NULL: there is none any more. */
 void meeting_log_put(struct meeting_log *log, int64_t t_ms, enum log_part part, const char *id, cJSON *document);
-/* The same for all documents of the part: entries (taken) is an object of them in any order. */
+/* The same for all documents of the part: entries (taken) is an object of them in any order; NULL: there was no
+ * memory for it, and all stays as it is. */
 void meeting_log_put_all(struct meeting_log *log, int64_t t_ms, enum log_part part, cJSON *entries);
 /* The events since the last call. False: there are none, or there was no memory; then the next batch begins with a
  * state, and what was between is lost. */
@@ -57,6 +58,7 @@ const cJSON *meeting_log_state(const struct meeting_log *log);
  * problem. */
 NODISCARD cJSON *meeting_log_read(const char *text, size_t n, struct problem *problem);
 int64_t log_event_ms(const cJSON *event);
+bool log_event_is_state(const cJSON *event);
 /* The state after the event, in the stead of *state (NULL: none yet, and only a complete state can be applied).
  * False with problem: *state is as it was. */
 NODISCARD bool meeting_log_apply(cJSON **state, const cJSON *event, struct problem *problem);

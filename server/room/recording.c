@@ -7,6 +7,7 @@
 #include <sys/random.h>
 #include <time.h>
 
+#include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/room/audit.h"
 #include "server/room/item_list.h"
@@ -25,6 +26,7 @@ struct recorder {
     struct room_recording *facts;
     int64_t start_us, sampled_us, written_us, empty_since_us; /* empty_since_us 0: somebody is there */
     bool has_events;                                          /* perhaps; since the last batch */
+    bool is_unsure;                                           /* there was no memory to look at what has changed */
     char (*items)[16];                                        /* that changed */
     size_t n_items;
     char presenter[64];
@@ -103,14 +105,17 @@ void recording_show(struct room *room, struct member *member)
     send_to_member(room, member, &message);
 }
 
-void recording_plan_mark(const struct room *room, char mark[20])
+bool recording_plan_mark(const struct room *room, char mark[20])
 {
+    (void)json_no_memory(NULL, "what came before");
     char *text = room->plan ? json_print(room->plan) : NULL;
     uint64_t sum = UINT64_C(0xcbf29ce484222325); /* FNV-1a, 64 bits */
     for (const char *at = text; at && *at; at++)
         sum = (sum ^ (uint8_t)*at) * UINT64_C(0x100000001b3);
     (void)snprintf(mark, 20, "%016llx", (unsigned long long)sum);
+    const bool ok = text != NULL;
     free(text);
+    return ok;
 }
 
 /* ---- what has changed ------------------------------------------------------------------------------------------- */
@@ -170,6 +175,7 @@ static void sample(struct room *room)
     struct meeting_log *log = recorder->log;
     const int64_t t_ms = recorded_ms(room, recorder);
     const unsigned dirty = room->unrecorded;
+    const size_t n_refused = mem_n_refused();
     if (dirty & ROOM_MEMBERS) {
         meeting_log_put_all(log, t_ms, LOG_MEMBERS, recorded_members(room));
         mark_presenter(room, recorder, t_ms);
@@ -185,9 +191,14 @@ static void sample(struct room *room)
     for (size_t i = 0; i < recorder->n_items; i++)
         put_item(room, recorder, t_ms, recorder->items[i]);
     recorder->n_items = 0;
-    room->unrecorded = 0;
+    recorder->is_unsure = mem_n_refused() != n_refused;
+    if (recorder->is_unsure) {
+        log_error("room %s: a part of a recording is lost: no memory", room->id);
+        meeting_log_restart(log);
+    }
+    room->unrecorded = recorder->is_unsure ? ALL_PARTS : 0;
     recorder->sampled_us = room->now_us;
-    recorder->has_events = true;
+    recorder->has_events = !recorder->is_unsure;
 }
 
 /* ---- batches ---------------------------------------------------------------------------------------------------- */
@@ -224,12 +235,15 @@ static void write_batch(struct room *room)
 {
     struct recorder *recorder = room->recorder;
     struct room_recording *facts = recorder->facts;
-    struct log_batch batch;
+    struct log_batch batch = { 0 };
     const int64_t t_ms = recorded_ms(room, recorder);
     recorder->has_events = false;
     recorder->written_us = room->now_us;
-    if (!meeting_log_take(recorder->log, t_ms, &batch))
+    if (recorder->is_unsure || !meeting_log_take(recorder->log, t_ms, &batch)) {
+        if (batch.n_events) /* they are lost */
+            room->unrecorded = ALL_PARTS;
         return;
+    }
     const size_t n = strlen(batch.text);
     if (facts->n_bytes + n > ROOM_MAX_RECORDING_BYTES || facts->n_events + batch.n_events > ROOM_MAX_RECORDING_EVENTS ||
         t_ms > ROOM_MAX_RECORDING_S * INT64_C(1000)) {
@@ -326,11 +340,14 @@ bool recording_start(struct room *room, struct member *member, const struct mess
         return json_no_memory(problem, "a recording");
     struct room_recording *facts = &room->recordings[room->n_recordings];
     *facts = (struct room_recording){ .state = WIRE_RECORDING_STATE_RUNNING };
+    if (!recording_plan_mark(room, facts->plan_mark)) {
+        meeting_log_destroy(log);
+        return json_no_memory(problem, "a recording");
+    }
     make_id(room, facts->id);
     room->n_recordings++;
     (void)snprintf(facts->by, sizeof facts->by, "%s", member->id);
     (void)snprintf(facts->by_name, sizeof facts->by_name, "%s", member->name);
-    recording_plan_mark(room, facts->plan_mark);
     (void)clock_gettime(CLOCK_REALTIME, &now); /* only to be displayed */
     facts->started_ms = now.tv_sec * INT64_C(1000) + now.tv_nsec / 1000000;
     room->recorder = mem_new(sizeof *room->recorder);

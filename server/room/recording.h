@@ -23,5 +23,5 @@ void recording_show(struct room *room, struct member *member); /* tells a member
 int64_t recording_tick(struct room *room);
 /* Ends the recording that runs, and frees the facts of all: the room is destroyed. */
 void recordings_finish(struct room *room);
-/* Tells the same plan document from another one. */
-void recording_plan_mark(const struct room *room, char mark[20]);
+/* Tells the same plan document from another one. False: no memory. */
+NODISCARD bool recording_plan_mark(const struct room *room, char mark[20]);

@@ -30,7 +30,9 @@ struct replay {
     const cJSON *next; /* event that was not applied yet */
     int64_t from_ms, next_ms;
     bool is_reading, has_failed;
+    int64_t asked_ms; /* the time that was asked for last */
     int64_t retry_us;
+    int n_failed; /* in a row */
     /* the state at_ms, and what of it is shown */
     cJSON *state, *shown;
     int64_t at_ms;
@@ -163,6 +165,11 @@ static void show(struct room *room)
     replay->shown_us = room->now_us;
 }
 
+static int64_t least(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 
 static void forget_part(struct replay *replay)
@@ -177,7 +184,10 @@ static void fail(struct room *room, const struct problem *problem)
     struct replay *replay = room->replay;
     log_error("room %s: the recording cannot be read: %s", room->id, problem->detail);
     replay->has_failed = true;
-    replay->retry_us = room->now_us + REPLAY_RETRY_MS * INT64_C(1000);
+    replay->is_reading = false;
+    const int64_t pause_ms = (int64_t)REPLAY_RETRY_MS << (replay->n_failed < 5 ? replay->n_failed : 5);
+    replay->retry_us = room->now_us + pause_ms * 1000;
+    replay->n_failed++;
     set_time(room, time_ms(room), replay->is_playing);
     forget_part(replay);
     tell_time(room, NULL);
@@ -185,7 +195,7 @@ static void fail(struct room *room, const struct problem *problem)
 
 static bool has_part_for(const struct replay *replay, int64_t t_ms)
 {
-    return replay->events && (t_ms >= replay->from_ms || replay->from_ms == 0) && t_ms < replay->next_ms;
+    return replay->events && t_ms >= replay->from_ms && t_ms < replay->next_ms;
 }
 
 /* Brings the state to this time. False: the part of the log is not there; it is being read. */
@@ -196,7 +206,10 @@ static bool reach(struct room *room, int64_t t_ms)
     if (!has_part_for(replay, t_ms)) {
         if (!replay->is_reading && room->now_us >= replay->retry_us && room->callbacks.replay_read) {
             replay->is_reading = true;
-            room->callbacks.replay_read(room->callbacks.context, room, replay->of_room, replay->facts.id, t_ms);
+            replay->asked_ms = t_ms;
+            if (!room->callbacks.replay_read(room->callbacks.context, room, replay->of_room, replay->facts.id, t_ms,
+                                             &problem))
+                fail(room, &problem);
         }
         return false;
     }
@@ -245,6 +258,17 @@ static cJSON *read_texts(const char *const *texts, size_t n, struct problem *pro
     return NULL;
 }
 
+/* A part of the log begins with a complete state, and holds the time it was asked for: what begins later is the first
+ * that there is. False with problem: it would be read for ever, or be applied to another state. */
+static bool fits(const struct replay *replay, const cJSON *events, int64_t next_ms, struct problem *problem)
+{
+    if (!log_event_is_state(events->child))
+        return problem_set(problem, PROBLEM_STORAGE, "", "", "it does not begin with a state");
+    if (next_ms <= replay->asked_ms || next_ms <= log_event_ms(events->child))
+        return problem_set(problem, PROBLEM_STORAGE, "", "", "its parts are not in order");
+    return true;
+}
+
 void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,
                       const struct problem *problem, int64_t now_us)
 {
@@ -255,7 +279,8 @@ void room_replay_came(struct room *room, const char *const *texts, size_t n, int
         return;
     replay->is_reading = false;
     cJSON *events = read_texts(texts, n, &found);
-    if (!events) {
+    if (!events || !fits(replay, events, next_ms, &found)) {
+        cJSON_Delete(events);
         fail(room, &found);
         return;
     }
@@ -263,7 +288,7 @@ void room_replay_came(struct room *room, const char *const *texts, size_t n, int
     replay->has_failed = false;
     replay->events = events;
     replay->next = events->child;
-    replay->from_ms = log_event_ms(events->child);
+    replay->from_ms = least(log_event_ms(events->child), replay->asked_ms);
     replay->next_ms = next_ms;
     replay->at_ms = replay->from_ms;
 }
@@ -275,11 +300,6 @@ static int64_t due_us(const struct replay *replay, double t_ms)
 {
     const double wait_us = (t_ms - replay->t_ms) * 1000 / replay->rate;
     return replay->since_us + (wait_us > 0 ? (int64_t)wait_us + 1 : 0);
-}
-
-static int64_t least(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
 }
 
 int64_t replay_tick(struct room *room)
@@ -303,7 +323,7 @@ int64_t replay_tick(struct room *room)
         (replay->is_playing && room->now_us >= replay->told_us + REPLAY_TELL_MS * INT64_C(1000)))
         tell_time(room, NULL);
     if (!is_there)
-        return replay->has_failed ? replay->retry_us : INT64_MAX; /* room_replay_came follows */
+        return replay->has_failed && !replay->is_reading ? replay->retry_us : INT64_MAX; /* room_replay_came follows */
     int64_t again_us = INT64_MAX;
     if (replay->shown_us < room->now_us && !json_equal(replay->shown, replay->state))
         again_us = replay->shown_us + REPLAY_EVERY_MS * INT64_C(1000);
@@ -362,6 +382,8 @@ bool replay_seek(struct room *room, struct member *member, const struct message 
     if (!room->replay)
         return refuse_ordinary(problem);
     set_time(room, message->replay_seek.t_ms, room->replay->is_playing);
+    room->replay->n_failed = 0; /* what is there may be readable */
+    room->replay->retry_us = 0;
     return moved(room);
 }
 
@@ -414,8 +436,7 @@ void replay_plan_ready(struct room *room)
     char mark[20];
     if (!replay)
         return;
-    recording_plan_mark(room, mark);
-    replay->plan_changed = strcmp(mark, replay->facts.plan_mark) != 0;
+    replay->plan_changed = !recording_plan_mark(room, mark) || strcmp(mark, replay->facts.plan_mark) != 0;
     cJSON_Delete(replay->report);
     replay->report = NULL;
     cJSON_Delete(replay->shown); /* all of it is shown anew */

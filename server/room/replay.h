@@ -9,7 +9,7 @@
 enum {
     REPLAY_EVERY_MS = 50,        /* between two states that are shown; what lies between is shown as one change */
     REPLAY_TELL_MS = 1000,       /* how often members are told the time while it plays */
-    REPLAY_RETRY_MS = 2000,      /* after it could not be read from the disk */
+    REPLAY_RETRY_MS = 2000,      /* after it could not be read from the disk; doubled each time, up to 32 times */
     REPLAY_PAGE_EVENTS = 1 << 20 /* of one part of the log */
 };
 

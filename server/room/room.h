@@ -132,8 +132,9 @@ struct room_callbacks {
     void (*recorded)(void *context, struct room *room, const struct room_recording *recording, struct log_batch *batch);
     void (*recording_deleted)(void *context, struct room *room, const char *id);
     /* The room plays: the batches of the recording from the last one that begins with a state at or before t_ms, up to
-     * the next such one, are to be read; answered by room_replay_came. */
-    void (*replay_read)(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms);
+     * the next such one, are to be read; answered by room_replay_came, later. False with problem: not now. */
+    bool (*replay_read)(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms,
+                        struct problem *problem);
 };
 
 /* What of a room is kept on disk. */

@@ -106,13 +106,15 @@ static size_t find_part(int64_t t_ms, const char **texts, int64_t *next_ms)
 static int64_t asked_ms = -1; /* by the replay; -1: nothing */
 static size_t n_asked;
 
-static void is_asked(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms)
+static bool is_asked(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms,
+                     struct problem *problem)
 {
-    (void)context, (void)room;
+    (void)context, (void)room, (void)problem;
     assert_string_equal(of_room, "7q4k-m2wz");
     assert_string_equal(recording, disk.facts.id);
     asked_ms = t_ms;
     n_asked++;
+    return true;
 }
 
 static void answer(void)
