@@ -18,14 +18,13 @@ sources() { git ls-files -co --exclude-standard -- "$@" | while read -r file; do
 
 # The check itself is checked: in a copy with one planted include it has to find exactly that.
 planted() { # planted FILE INCLUDE EXPECTED-WORDS
-    local copy out
-    copy=$(mktemp -d)
-    cp -r --parents core server tests/layers.txt "$copy" 2>/dev/null || cp -r --parents core tests/layers.txt "$copy"
-    mkdir -p "$copy/$(dirname "$1")"
-    echo "#include $2" >>"$copy/$1"
+    local file=$copy/$1 out status
+    mkdir -p "$(dirname "$file")"
+    [ ! -e "$file" ] || { echo "$1 is there already"; return 1; }
+    echo "#include $2" >"$file"
     out=$(tests/layers.sh "$copy")
-    local status=$?
-    rm -rf "$copy"
+    status=$?
+    rm "$file"
     [ $status = 1 ] && grep -q "^$1:.*$3" <<<"$out" && [ "$(grep -c "^$1:" <<<"$out")" = 1 ] && return 0
     echo "planted $2 in $1; the check said (exit $status):"
     echo "$out"
@@ -56,28 +55,31 @@ no_calls() {
 }
 locks_in_base() { ! grep -nE 'pthread_(mutex|cond|rwlock|spin)' $(sources 'core/*.[ch]' 'core/*.cc' 'server/*.[ch]' | grep -v '^core/base/'); }
 no_flags() { ! grep -nE -e '-f(fast-math|unsafe-math-optimizations)' Makefile; }
-headers_stand_alone() {
-    local header status=0
-    for header in $(sources '*.h'); do
-        "${CC:-gcc}" -std=c17 -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -I. -Ibuild/gen -Wall -Wextra -Werror -fsyntax-only \
-            -include "$header" -x c /dev/null || status=1
-        grep -q '^#pragma once' "$header" || { echo "$header: no #pragma once"; status=1; }
-    done
-    return $status
+header_stands_alone() {
+    "${CC:-gcc}" -std=c17 -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -I. -Ibuild/gen -Wall -Wextra -Werror -fsyntax-only -include "$1" -x c /dev/null || return 1
+    grep -q '^#pragma once' "$1" || { echo "$1: no #pragma once"; return 1; }
 }
+export -f header_stands_alone
+on_all_cores() { xargs -P "$(nproc)" "$@"; }
+headers_stand_alone() { sources '*.h' | on_all_cores -I{} bash -c 'header_stands_alone {}'; }
 scripts_parse() {
-    local script status=0
+    local script bad status=0
     for script in $(sources deploy tests .ci | xargs -r grep -lE '^#!/bin/(ba)?sh'); do
         bash -n "$script" || status=1
         [ -x "$script" ] || { echo "$script: not executable"; status=1; }
     done
-    for script in $(sources '*.js' '*.mjs'); do "${NODE:-node}" --check "$script" || status=1; done
+    # one process for all of them; what is wrong with one is said by --check
+    bad=$("${NODE:-node}" --experimental-vm-modules --no-warnings tests/parse.mjs $(sources '*.js' '*.mjs')) || status=1
+    for script in $bad; do "${NODE:-node}" --check "$script"; done
     return $status
 }
 json_parses() { "${NODE:-node}" tests/api/strict_json.mjs $(sources '*.json' | grep -v '/fixtures/bad/') build/gen/openapi.json; }
-laid_out() { sources '*.c' '*.h' '*.cc' '*.hh' '*.inc' | xargs clang-format --dry-run -Werror; }
+laid_out() { sources '*.c' '*.h' '*.cc' '*.hh' '*.inc' | on_all_cores -n 50 clang-format --dry-run -Werror; }
 no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json; }
 
+copy=$(mktemp -d)
+trap 'rm -rf "$copy"' EXIT
+cp -r --parents core server tests/layers.txt "$copy"
 check "includes follow tests/layers.txt" tests/layers.sh
 check "a core file that includes a server header is found" planted core/base/planted.c '"server/wire/json.h"' 'not a path\|may not include'
 check "an edge against the direction is found" planted core/math/planted.c '"core/volume/volume.h"' 'core/math may not include'
