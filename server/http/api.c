@@ -44,6 +44,7 @@ static const struct api_route api_routes[] = {
     { "DELETE", "/api/v1/rooms/{room}/recordings/{recording}", api_room_recording_delete },
     { "GET", "/api/v1/rooms/{room}/recordings/{recording}/state", api_room_recording_state },
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
+    { "POST", "/api/v1/rooms/{room}/exports", api_room_export },
     { "POST", "/api/v1/rooms/{room}/links", api_room_link_new },
     { "GET", "/api/v1/rooms/{room}/stream", api_room_stream },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },

@@ -25,13 +25,20 @@ static void record(struct call *call)
         net_audit(net, "", is_of_room ? "" : call->ids[0], "export", detail);
 }
 
+bool api_audit_has_place(const struct api *api, struct problem *problem)
+{
+    if (net_audit_has_place(api->net))
+        return true;
+    problem_set(problem, PROBLEM_STORAGE, "", "audit",
+                "what is given away is recorded, and the server's disk takes no more records now");
+    problem->retry_after_ms = 10000;
+    return false;
+}
+
 bool api_audit_export(struct api *api, struct call *call, const char *what)
 {
     struct problem problem;
-    if (!net_audit_has_place(api->net)) {
-        problem_set(&problem, PROBLEM_STORAGE, "", "audit",
-                    "what is given away is recorded, and the server's disk takes no more records now");
-        problem.retry_after_ms = 10000;
+    if (!api_audit_has_place(api, &problem)) {
         call_answer_problem(call, &problem);
         return false;
     }

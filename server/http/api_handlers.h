@@ -39,6 +39,7 @@ void api_room_bookmark_picture(struct api *api, struct call *call);
 void api_permalink(struct api *api, struct call *call);
 void api_room_snapshot(struct api *api, struct call *call);
 void api_room_stream(struct api *api, struct call *call);
+void api_room_export(struct api *api, struct call *call);
 void api_room_link_new(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);
 

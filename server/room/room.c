@@ -401,10 +401,15 @@ bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller,
 void room_audit_call(struct room *room, const char *member, const char *action, cJSON *detail, bool is_refused,
                      int64_t now_us)
 {
-    const char *what = json_text(detail, "what");
+    const char *what = json_text(detail, "what"), *name = json_text(detail, "name");
+    const size_t n_name = name ? strlen(name) : 0, n_left_out = n_name > 40 ? n_name - 40 : 0;
+    char key[64];
+    (void)snprintf(key, sizeof key, "%s%s", name ? name + n_left_out : "", what ? what : "");
+    if (strcmp(action, "export") == 0 && room->plan_revision[0])
+        cJSON_AddStringToObject(detail, "plan_revision", room->plan_revision);
     const struct audit_act act = { .by = find_caller(room, member),
                                    .action = action,
-                                   .key = what ? what : "",
+                                   .key = key,
                                    .detail = detail,
                                    .is_refused = is_refused,
                                    .before = -1,

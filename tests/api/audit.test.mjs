@@ -89,6 +89,34 @@ test('what members and calls do is on the disk, who did it, and at which revisio
   assert.deepEqual([outside.plan, outside.member, outside.detail.what], ['phantom', '', 'picture']);
 });
 
+test('what the page makes by itself is recorded before it is made: who, what, its name, and the revision of the files', async () => {
+  const api = `${daemon.url}/api/v1/rooms/${room}`;
+  const eve = await enter({ name: 'Eva' });
+  const told = (body, headers = eve.headers, of = api) => call(`${of}/exports`, 'POST', body, headers);
+  const { json: { revision } } = await until(() => call(`${daemon.url}/api/v1/plans/phantom/revision`), ({ status }) => status === 200);
+  const kinds = ['dvh', 'profile', 'limits', 'probes', 'methods', 'beam', 'beam-card', 'notes', 'printed-report', 'printed-record'];
+  for (const what of kinds) assert.equal((await told({ what, name: `phantom-${what}.csv` })).status, 204, what);
+  assert.equal((await told({ what: 'dvh', name: 'phantom-dvh.json' })).status, 204);
+  assert.equal((await told({ what: 'dvh', name: `${'Ä'.repeat(99)}.c` }, {})).status, 204); // 200 bytes, of nobody in the room
+  const rows = await until(() => onDisk().filter(({ action, detail }) => action === 'export' && detail.name), (list) => list.length >= kinds.length + 2);
+  assert.deepEqual(rows.map(({ detail }) => detail), [...kinds.map((what) => ({ what, name: `phantom-${what}.csv`, plan_revision: revision })),
+    { what: 'dvh', name: 'phantom-dvh.json', plan_revision: revision }, { what: 'dvh', name: `${'Ä'.repeat(99)}.c`, plan_revision: revision }]);
+  for (const row of rows.slice(0, -1)) assert.deepEqual([row.room, row.plan, row.member, row.name, row.result], [room, 'phantom', eve.welcome.member, 'Eva', 'done']);
+  assert.equal(rows.at(-1).member, '');
+
+  for (const [body, pointer] of [[{ name: 'a.csv' }, '/what'], [{ what: 'plan', name: 'a.csv' }, '/what'], [{ what: 7, name: 'a.csv' }, '/what'], [{ what: 'dvh' }, '/name'], [{ what: 'dvh', name: '' }, '/name'],
+    [{ what: 'dvh', name: 'Ä'.repeat(101) }, '/name'], [{ what: 'dvh', name: 'a\nb' }, '/name'], [{ what: 'dvh', name: 'a.csv', member: 'm1' }, '/member']]) {
+    const { status, json } = await told(body);
+    assert.deepEqual([status, json.pointer], [422, pointer], JSON.stringify(body));
+  }
+  const gone = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+  assert.equal((await call(`${daemon.url}/api/v1/rooms/${gone}`, 'DELETE')).status, 204);
+  const ofGone = `${daemon.url}/api/v1/rooms/${gone}`;
+  assert.equal((await told({ what: 'dvh', name: 'a.csv' }, {}, ofGone)).status, 404);
+  assert.equal((await told({ what: 'notes', name: 'notes.txt' }, {}, ofGone)).status, 204);
+  assert.deepEqual((await rowWith('export', (row) => row.room === gone)).detail, { what: 'notes', name: 'notes.txt' });
+});
+
 test('the rows of a room outlive it, and a killed daemon', async () => {
   const other = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
   assert.equal((await call(`${daemon.url}/api/v1/rooms/${other}`, 'DELETE')).status, 204);

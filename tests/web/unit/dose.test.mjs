@@ -7,7 +7,7 @@ const { acceptedWords, basisWords, choosePatch, dependsOnBlood, isAccepted, miss
 const { addedLevel, convertedLevel, doseOf, levelsOf, percentOf } = await load('state/dose_levels.js');
 const { levelTables, tableOf, tablePatch } = await load('state/dose_tables.js');
 const { choosePresetPatch, editPatch, isEdited, presetOf, presetsFor, tissueFor, weightPresets, weightsOf } = await load('state/dose_weights.js');
-const { csv, pinnedAt } = await load('state/pins.js');
+const { pinnedAt } = await load('state/pins.js');
 const { Asker } = await load('state/asker.js');
 const { mergePatch } = await load('wire/merge.js');
 
@@ -138,10 +138,6 @@ test('a point is pinned once', () => {
   const scene = { probes: { 'pin-1': { at_mm: [1, 2, 3], name: '' } } };
   assert.equal(pinnedAt(scene, [1.01, 2, 3]), null);
   assert.deepEqual(pinnedAt(scene, [1, 2, 4]), { id: 'pin-2', patch: { probes: { 'pin-2': { at_mm: [1, 2, 4], name: '' } } } });
-});
-
-test('fields of a CSV file are quoted as RFC 4180 says', () => {
-  assert.equal(csv([['a', 'b, c', 'say "x"'], [1.5, null, '']]), 'a,"b, c","say ""x"""\r\n1.5,,\r\n');
 });
 
 test('one question at a time, and what changed meanwhile is one more', async () => {

@@ -3,7 +3,8 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-const { figuresCsv, isExportable, methods, representations, shapeQuery, volumeDifference } = await load('state/shapes.js');
+const { csvText } = await load('state/dose_csv.js');
+const { figureRows, isExportable, methods, representations, shapeQuery, volumeDifference } = await load('state/shapes.js');
 const { Comparison } = await load('state/comparison.js');
 const { Refusals, inQuestion, nameSome } = await load('state/refusals.js');
 const { signal } = await load('../lib/signals-core.js');
@@ -34,10 +35,10 @@ test('the difference to the univels is in per cent of theirs', () => {
 });
 
 test('the table for a spreadsheet keeps a name with a comma in one cell, and a refusal as its reason', () => {
-  const [head, one, two] = figuresCsv([
+  const [head, one, two] = csvText(figureRows([
     { region: 'brain', name: 'Surface, smooth', result: { triangles: 12, ms: 3.5, area_mm2: null } },
     { region: 'brain', name: 'Fan', error: 'too "many" points' },
-  ]).split('\n');
+  ])).split('\r\n');
   assert.equal(head.split(',').length, 15);
   assert.match(one, /^brain,"Surface, smooth",12,,,,3\.5,/);
   assert.match(two, /^brain,Fan,,{11},"too ""many"" points"$/);

@@ -91,6 +91,7 @@ test('a picture is shown again by one change of the scene and one of the view of
   const calls = [];
   const ui = { active: { value: 1 }, maximised: { value: 3 }, visible: { value: [3] }, showInPlaceOf: (from, to) => calls.push(['instead', from, to]) };
   const room = {
+    member: { value: 'm1' },
     scene: { value: mergePatch(scene, { regions: { brain: { opacity: 1 } } }) },
     views: ['3d', 'axial', 'sagittal', 'coronal', 'oblique', '3d'].map((kind, at) => ({ number: at + 1, kind, ofKind: at === 5 ? 2 : 1 })),
     patchScene: (patch) => calls.push(['scene', patch]),
@@ -131,7 +132,7 @@ const plan = { regions: [{ id: 'brain', voxels: 5 }, { id: 'skull', voxels: 7 },
 const probed = [];
 const asked = [];
 const api = {
-  snapshot: async () => ({ blob: file(record), revision: 12 }),
+  snapshot: async () => file(record),
   probe: async (_, point) => { probed.push(point); return { regions: [] }; },
   surface: async (_, region, query) => { asked.push([region, query]); if (region === 'skull') throw new Error('too many triangles'); return { triangles: 8 }; },
 };

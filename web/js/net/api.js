@@ -12,6 +12,9 @@ export class Problem extends Error {
   }
 }
 
+/** The header that says who makes a call. */
+export const ofMember = ({ member, secret }) => ({ 'Beamroom-Member': `${member} ${secret}` });
+
 /** @param {typeof fetch} fetch @param {string} base */
 export function makeApi(fetch, base = 'api/v1') {
   async function call(method, path, { body, signal, isPicture = false, more = {} } = {}) {
@@ -31,11 +34,6 @@ export function makeApi(fetch, base = 'api/v1') {
     const answer = isJson ? await response.json().catch(() => null) : null;
     if (!response.ok) throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
     return isPicture ? response.blob() : answer;
-  }
-  async function picture(path) {
-    const response = await fetch(`${base}/${path}`).catch(() => { throw new Problem({ detail: 'The server does not answer.' }); });
-    if (!response.ok) throw new Problem({ status: response.status, ...(await response.json().catch(() => ({ detail: `The server answered ${response.status}.` }))) });
-    return { blob: await response.blob(), revision: Number(response.headers.get('Beamroom-Revision')) };
   }
   const id = encodeURIComponent;
   return {
@@ -58,7 +56,7 @@ export function makeApi(fetch, base = 'api/v1') {
     bookmarkPicture: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}/picture`, { isPicture: true }),
     room: (room) => call('GET', `rooms/${id(room)}`),
     /** @param {{member: string, secret: string}} identity of who makes it @param {{role: string, expires_s: number, one_use: boolean}} link @returns {Promise<{token: string}>} */
-    makeLink: (room, { member, secret }, link) => call('POST', `rooms/${id(room)}/links`, { body: link, more: { 'Beamroom-Member': `${member} ${secret}` } }),
+    makeLink: (room, identity, link) => call('POST', `rooms/${id(room)}/links`, { body: link, more: ofMember(identity) }),
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),
     pick: (plan, room, view, px, py, prefer = '') =>
       call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`),
@@ -71,7 +69,7 @@ export function makeApi(fetch, base = 'api/v1') {
     ellipse: (plan, image, [centre, a, b]) => call('GET', `plans/${id(plan)}/images/${id(image)}/ellipse?center=${centre}&a=${a}&b=${b}`),
     surface: (plan, region, query, signal) => call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),
     surfaceUrl: (plan, region, query) => `${base}/plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`,
-    /** The annotated picture as a PNG, with the revision of the scene it shows. @returns {Promise<{blob: Blob, revision: number}>} */
-    snapshot: (room, view) => picture(`rooms/${id(room)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true`),
+    /** The annotated picture as a PNG. @returns {Promise<Blob>} */
+    snapshot: (room, view) => call('GET', `rooms/${id(room.id)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true`, { isPicture: true, more: ofMember(room.identity) }),
   };
 }

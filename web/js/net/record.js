@@ -1,9 +1,9 @@
 // The record of a room's review, from the HTTP API; apart from api.js, as a first visit does not need it.
-import { Problem } from './api.js';
+import { ofMember, Problem } from './api.js';
 
 /** As an export it is recorded as one. @param {string} room its id @param {{member: string, secret: string}} identity of who asks */
-export async function fetchRecord(room, { member, secret }, isExport = false) {
-  const response = await fetch(`api/v1/rooms/${room}/record?export=${isExport}`, { headers: { 'Beamroom-Member': `${member} ${secret}` } }).catch(() => { throw new Problem({ detail: 'The server does not answer.' }); });
+export async function fetchRecord(room, identity, isExport = false) {
+  const response = await fetch(`api/v1/rooms/${room}/record?export=${isExport}`, { headers: ofMember(identity) }).catch(() => { throw new Problem({ detail: 'The server does not answer.' }); });
   const answer = await response.json().catch(() => null);
   if (!response.ok || !answer) throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
   return answer;

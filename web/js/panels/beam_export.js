@@ -3,15 +3,8 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { draftDocument } from '../state/beam_export.js';
 import { beamFacts } from '../state/beam_facts.js';
 import { endCompare } from '../state/beam_ui.js';
+import { exportFile } from './exports.js';
 import { icon } from './icons.js';
-
-export function download(name, text, type) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([text], { type }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60000); // a browser may begin to save it later
-}
 
 /** The answer of the draft as it is; null while it is still to come, or there is none. */
 const fresh = (world) => {
@@ -29,8 +22,8 @@ export function exportMenu(world) {
     endCompare(room);
     make();
   };
-  const json = () => download(`${room.planId.value}-draft-beam.json`, `${JSON.stringify(draftDocument(room.plan.value, room.scene.value, room.planId.value, answer), null, 2)}\n`, 'application/json');
-  const card = () => download(`${room.planId.value}-draft-beam.txt`, answer.card, 'text/plain');
+  const json = () => exportFile(world, 'beam', `${room.planId.value}-draft-beam.json`, `${JSON.stringify(draftDocument(room.plan.value, room.scene.value, room.planId.value, answer), null, 2)}\n`, 'application/json');
+  const card = () => exportFile(world, 'beam-card', `${room.planId.value}-draft-beam.txt`, answer.card, 'text/plain');
   return html`<span class="anchor"><button aria-haspopup="menu" aria-expanded=${isOpen} title="Save the draft as a file" @click=${() => ui.toggle('beam-export')}>Export</button>
     ${isOpen ? html`<div class="popover beam-export"><div class="menu" role="menu" aria-label="Export the draft">
       <button role="menuitem" @click=${save(json)}>${icon('download')}<span>JSON: planned and draft geometry</span></button>

@@ -4,8 +4,8 @@ import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { enums } from '../../gen/wire.js';
 import { constraintsCsv, constraintsFromCsv, freeConstraintId, measureOf, metricWords, mostConstraints, readConstraint, verdictOf } from '../state/dose_constraints.js';
-import { saveFile } from '../state/dose_csv.js';
 import { quantityName, regionName } from './chart_words.js';
+import { exportFile } from './exports.js';
 import { count, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 
@@ -51,7 +51,7 @@ export function limitsBlock(world) {
     ${rows.length ? html`<ul>${repeat(rows, ({ id }) => id, (row) => one(world, row, isDisabled, start))}</ul>` : html`<p class="empty">None. A limit says, for example, that the brain may have at most 10 Gy(w).</p>`}
     ${editing ? form(world, isDisabled) : html`<div class="buttons"><button ?disabled=${isDisabled || rows.length >= mostConstraints || !plan.regions.length} @click=${() => start('', { region: plan.regions[0].id, quantity: room.scene.value.dose.quantity, metric: 'D95%', side: 'at-least', limit: '' })}>Add a limit</button>
       <button ?disabled=${isDisabled} title="Columns: region, quantity, metric, side, limit" @click=${(event) => event.currentTarget.nextElementSibling.click()}>${icon('upload', 12)}<span>Import CSV</span></button><input class="hidden" type="file" accept=".csv,text/csv" tabindex="-1" aria-hidden="true" @change=${(event) => read(world, event)}>
-      <button ?disabled=${!rows.length} @click=${() => saveFile(`${room.planId.value}-limits.csv`, constraintsCsv(rows, plan), 'text/csv')}>${icon('download', 12)}<span>CSV</span></button></div>`}
+      <button ?disabled=${!rows.length} @click=${() => exportFile(world, 'limits', `${room.planId.value}-limits.csv`, constraintsCsv(rows, plan), 'text/csv')}>${icon('download', 12)}<span>CSV</span></button></div>`}
     ${curves.importError.value ? html`<div class="refusal" role="alert">${icon('error', 16)}<p>${curves.importError.value}</p><button class="icon-button small" aria-label="Dismiss" @click=${() => { curves.importError.value = ''; }}>${icon('close', 12)}</button></div>` : nothing}</section>`;
 }
 

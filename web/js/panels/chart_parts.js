@@ -1,14 +1,14 @@
 // Parts that both plots of dose have: head, what is said instead of a plot, buttons for files.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
-import { saveFile } from '../state/dose_csv.js';
+import { exportFile } from './exports.js';
 import { icon } from './icons.js';
 
 /** @param {'dvh'|'profile'} id @param {{csv: () => string, json: () => string}|null} files null: there is nothing to save */
-export function downloads({ room }, id, files) {
-  const name = `${room.planId.value}-${id}`;
-  return html`<div class="chart-files" role="group" aria-label="Save as a file"><button class="small" ?disabled=${!files} title="Save as comma-separated values" @click=${() => saveFile(`${name}.csv`, files.csv(), 'text/csv')}>${icon('download', 12)} CSV</button>
-    <button class="small" ?disabled=${!files} title="Save as JSON" @click=${() => saveFile(`${name}.json`, files.json(), 'application/json')}>${icon('download', 12)} JSON</button></div>`;
+export function downloads(world, id, files) {
+  const name = `${world.room.planId.value}-${id}`;
+  return html`<div class="chart-files" role="group" aria-label="Save as a file"><button class="small" ?disabled=${!files} title="Save as comma-separated values" @click=${() => exportFile(world, id, `${name}.csv`, files.csv(), 'text/csv')}>${icon('download', 12)} CSV</button>
+    <button class="small" ?disabled=${!files} title="Save as JSON" @click=${() => exportFile(world, id, `${name}.json`, files.json(), 'application/json')}>${icon('download', 12)} JSON</button></div>`;
 }
 
 /** A button that opens the choices of a plot above its head. */

@@ -2,9 +2,10 @@
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { basisWords, quantityName } from '../state/dose.js';
 import { heightOver } from '../state/obliques.js';
-import { csv, pinsOf } from '../state/pins.js';
+import { pinsOf } from '../state/pins.js';
 import { crosshairPatch, shownImage } from '../state/plan.js';
 import { toPicture } from '../view/vec.js';
+import { exportRows } from './exports.js';
 import { imageValue, number, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 
@@ -23,7 +24,7 @@ export function pinsBlock(world) {
   const unit = Object.values(known).find(({ result }) => result)?.result.unit;
   const go = ({ at_mm: at }) => (event) => room.patchScene(crosshairPatch(plan, image, at, { isFree: true }), how(ui, event));
   const remove = ({ id }) => (event) => room.patchScene({ probes: { [id]: null } }, how(ui, event));
-  return html`<section class="block"><h3 class="dose-head">Pinned <span class="dim">${plan.doses.length ? quantityName(scene.dose.quantity).toLowerCase() : ''}</span><span class="grow"></span><button class="dose-small" @click=${() => save(world)}>CSV</button></h3>
+  return html`<section class="block"><h3 class="dose-head">Pinned <span class="dim">${plan.doses.length ? quantityName(scene.dose.quantity).toLowerCase() : ''}</span><span class="grow"></span><button class="dose-small" @click=${() => exportRows(world, 'probes', `${room.planId.value}-probes.csv`, pinRows(plan, scene, known))}>CSV</button></h3>
     <table class="dose-pins"><thead><tr><th scope="col">Pin</th><th scope="col">in</th>${image ? html`<th scope="col">${image.modality}</th>` : nothing}${plan.doses.length ? html`<th scope="col">${unitText(unit ?? '')}</th><th scope="col">%</th>` : nothing}<th scope="col"><span class="hidden">Remove</span></th></tr></thead>
     <tbody>${pins.map((pin) => {
       const answer = known[pin.id]?.result;
@@ -53,14 +54,6 @@ export function pinRows(plan, scene, known) {
         ...(first ? [answer?.value ?? null, answer?.percent ?? null, answer?.reference ? `${answer.reference.words} ${answer.reference.value ?? ''}`.trim() : null, plan.regions.find(({ id }) => id === answer?.weighted_by)?.name ?? null, answer?.value_reason ?? null] : []),
         ...quantities.map((quantity) => partOf(answer, quantity)?.value ?? null), basisWords(plan, scene)];
     })];
-}
-
-function save({ room, doses }) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([csv(pinRows(room.plan.value, room.scene.value, doses.pins.value))], { type: 'text/csv' }));
-  link.download = `${room.planId.value}-probes.csv`;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60000); // a browser may begin to save it later
 }
 
 /** The marks over a picture: of pins that lie in its plane, in 3-D of all. */

@@ -8,14 +8,16 @@ import { whoIn } from './lobby.js';
 const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : 'The server gave no reason.');
 
 /** The notes are in this page alone by now, when the room was deleted. */
-async function saveNotes(room) {
-  const [{ notesText }, { saveFile }] = await Promise.all([import('../state/notes_file.js'), import('../state/dose_csv.js')]);
+async function saveNotes(world) {
+  const { room } = world;
+  const [{ notesText }, { exportFile }] = await Promise.all([import('../state/notes_file.js'), import('./exports.js')]);
   const text = notesText({ id: room.id, planId: room.planId.peek(), plan: room.plan.peek(), rows: room.items.notes.peek() });
-  saveFile(`${room.planId.peek()}-notes.txt`, text, 'text/plain');
+  await exportFile(world, 'notes', `${room.planId.peek()}-notes.txt`, text, 'text/plain');
 }
 
 /** After a room that this tab was in, the last pictures stay visible. */
-export function ended({ room, after }) {
+export function ended(world) {
+  const { room, after } = world;
   if (room.link.value.state !== 'ended') return nothing;
   const wasIn = room.member.value !== '';
   const plan = after.plan.value;
@@ -25,7 +27,7 @@ export function ended({ room, after }) {
       ${after.isPlanGone.value ? html`<p>Its plan is no longer on this server.</p>` : nothing}
       ${after.error.value ? html`<p class="err">${icon('error')} ${after.error.value}</p>` : nothing}
       ${wasIn && room.lostAtEnd.value ? html`<p class="err">${icon('error')} Your last changes did not reach it.</p>` : nothing}
-      <div class="buttons">${wasIn && room.items.notes.value.length ? html`<button @click=${() => void saveNotes(room)}>Save its notes as a file</button>` : nothing}${rooms.map((other) => html`<button @click=${() => after.join(other)}>Join ${other.id}: ${whoIn(other)}</button>`)}
+      <div class="buttons">${wasIn && room.items.notes.value.length ? html`<button @click=${() => void saveNotes(world)}>Save its notes as a file</button>` : nothing}${rooms.map((other) => html`<button @click=${() => after.join(other)}>Join ${other.id}: ${whoIn(other)}</button>`)}
         ${plan ? html`<button class="primary" ?disabled=${after.isBusy.value} @click=${() => after.reopen()}>Open ${plan.name} in a new room</button>` : nothing}
         <a class="button" href="#/">All plans</a></div></div></section>`;
 }

@@ -1,6 +1,7 @@
 // The dialog that compares the representations of a region by their figures.
 import { html, nothing } from '../../lib/lit-html.js';
-import { figuresCsv, volumeDifference } from '../state/shapes.js';
+import { figureRows, volumeDifference } from '../state/shapes.js';
+import { exportRows } from './exports.js';
 import { number, signed } from './format.js';
 import { icon } from './icons.js';
 
@@ -15,22 +16,15 @@ const columns = [
   ['Off at most', ({ distance_max_mm: distance }) => (Number.isFinite(distance) ? `${number(distance, 2)} mm` : '–')],
 ];
 
-function save(rows, name) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([figuresCsv(rows)], { type: 'text/csv' }));
-  link.download = name;
-  link.click();
-  URL.revokeObjectURL(link.href);
-}
-
-export function figuresDialog({ room, ui, comparison }) {
+export function figuresDialog(world) {
+  const { room, ui, comparison } = world;
   const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
   if (ui.popover.value !== 'figures' || !region) return nothing;
   const rows = comparison.rows.value;
   const n = rows.filter((row) => row.result || row.error).length;
   return html`<section class="card compare" role="dialog" tabindex="-1" aria-label="Methods compared">
     <div class="card-head"><h2>${region.name}: methods compared</h2><span class="grow"></span>
-      <button ?disabled=${!rows.length || n < rows.length} @click=${() => save(rows, `${room.planId.value}-${region.id}-methods.csv`)}>CSV</button>
+      <button ?disabled=${!rows.length || n < rows.length} @click=${() => exportRows(world, 'methods', `${room.planId.value}-${region.id}-methods.csv`, figureRows(rows))}>CSV</button>
       <button class="icon-button" aria-label="Close" @click=${() => { ui.popover.value = ''; }}>${icon('close')}</button></div>
     <p class="note">${n < rows.length ? html`<span role="status">Working out ${n + 1} of ${rows.length} …</span>` : html`${number(region.volume_cm3, 2)} cm³ in ${number(region.voxels)} univels of its own.`}
       With all regions inside it. Drawn alone, 650 × 650 pixels, moving picture.</p>

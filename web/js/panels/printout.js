@@ -8,6 +8,7 @@ import { beamWords, crosshair, doseWords, reportSummary, shownImage } from '../s
 import { volumeDifference } from '../state/shapes.js';
 import { draftBelongs, draftWords } from './beam_words.js';
 import { hasCharts } from './chart_loader.js';
+import { printable } from './exports.js';
 import { count, number, signed, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 import { measureName, valueText } from './measure_words.js';
@@ -33,7 +34,7 @@ export function printoutDialog(world) {
   const close = () => { ui.popover.value = ''; };
   return html`<section class="printout" role="dialog" aria-modal="true" tabindex="-1" aria-label="Report to print">
     <div class="printout-bar"><b>Report to print</b><span class="note" role="status">${printout.isComplete.value ? '' : 'Measuring surfaces …'}</span><span class="grow"></span>
-      <button class="primary" ?disabled=${!plan || !printout.isComplete.value} @click=${() => globalThis.print()}>${icon('print')}<span>Print or save as PDF</span></button>
+      <button class="primary" ?disabled=${!plan || !printout.isComplete.value} @click=${printable(world, 'printed-report', `report on plan ${room.planId.value}`)}>${icon('print')}<span>Print or save as PDF</span></button>
       <button class="icon-button" aria-label="Close" @click=${close}>${icon('close')}</button></div>
     ${printout.isKept.value ? nothing : html`<p class="note bar-note">These pictures are too large to be kept when the page is loaded again: print before that.</p>`}
     ${plan ? sheet(world, plan) : html`<p class="empty">The plan is being loaded.</p>`}</section>`;

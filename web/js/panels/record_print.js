@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
 import { fetchRecord } from '../net/record.js';
 import { decisions, entriesOf, legal, linesOf, meanings, states, wordOf } from '../state/checklist.js';
+import { printable } from './exports.js';
 import { number } from './format.js';
 import { icon } from './icons.js';
 
@@ -28,7 +29,7 @@ function recordDialog(world) {
     shown.value = null;
   };
   return html`<section class="printout record-print" role="dialog" aria-modal="true" tabindex="-1" aria-label="Record to print">
-    <div class="printout-bar"><b>Record to print</b><span class="grow"></span><button class="primary" @click=${() => globalThis.print()}>${icon('print')}<span>Print or save as PDF</span></button>
+    <div class="printout-bar"><b>Record to print</b><span class="grow"></span><button class="primary" @click=${printable(world, 'printed-record', `record of room ${shown.value.record.room}`)}>${icon('print')}<span>Print or save as PDF</span></button>
       <button class="icon-button" aria-label="Close" @click=${close}>${icon('close')}</button></div>${sheet(world, shown.value)}</section>`;
 }
 

@@ -4,9 +4,9 @@ import { repeat } from '../../lib/directives/repeat.js';
 import { signal } from '../../lib/signals-core.js';
 import { fetchRecord } from '../net/record.js';
 import { decisions, earlierRevisions, entriesOf, legal, linesOf, meanings, states, wordOf } from '../state/checklist.js';
-import { saveFile } from '../state/dose_csv.js';
 import { whenWords } from '../state/notes.js';
 import { Record } from '../state/record.js';
+import { saveBlob } from './exports.js';
 import { icon } from './icons.js';
 import { mayWrite, meIn } from './note_words.js';
 
@@ -148,7 +148,7 @@ function exports(world) {
   const { room, ui } = world;
   const save = async () => {
     try {
-      saveFile(`record-${room.id}.json`, JSON.stringify(await fetchRecord(room.id, room.identity, true), null, 1), 'application/json');
+      saveBlob(`record-${room.id}.json`, new Blob([JSON.stringify(await fetchRecord(room.id, room.identity, true), null, 1)], { type: 'application/json' }));
     } catch (problem) {
       ui.notify('err', `No record: ${problem.message}`, 'record');
     }

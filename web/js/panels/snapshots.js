@@ -15,17 +15,13 @@ function viewDocument(view) {
   return { ...view.document.value, size_px: [Math.round(width * factor), Math.round(height * factor)] };
 }
 
-async function save({ room, ui, api }) {
-  const view = room.view(ui.active.value);
+async function save(world) {
+  const view = world.room.view(world.ui.active.value);
+  const document = viewDocument(view);
   try {
-    const { blob } = await api.snapshot(room.id, viewDocument(view));
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(blob);
-    link.download = `${room.planId.value}-${view.kind}.png`;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 60000); // a browser may begin to save it later
-  } catch (error) {
-    ui.notify('err', `No snapshot: ${error.message}`, 'snapshot');
+    await (await import('./exports.js')).savePicture(world, view, document);
+  } catch {
+    world.ui.notify('err', 'No snapshot: the server does not answer.', 'snapshot');
   }
 }
 

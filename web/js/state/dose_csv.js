@@ -1,4 +1,4 @@
-// Comma-separated values as of RFC 4180, and files that the browser saves.
+// Comma-separated values as of RFC 4180.
 
 /** A text that a spreadsheet would take for a formula gets an apostrophe in front. */
 const guarded = (text) => (/^[=+@\t]/.test(text) ? `'${text}` : text);
@@ -44,13 +44,4 @@ export function csvRows(text) {
   if (isQuoted) throw new Error(`Line ${start}: a quotation mark is not closed.`);
   endRow();
   return rows;
-}
-
-/** Lets the browser save a text as a file. */
-export function saveFile(name, text, type) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([text], { type }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60000); // a browser may begin to save it later
 }

@@ -16,9 +16,3 @@ export function pinnedAt(scene, point, suffix = '') {
   const at = point.map((value) => Math.round(value * 1e4) / 1e4 || 0);
   return { id, patch: { probes: { [id]: { at_mm: at, name: '' } } } };
 }
-
-/** Comma-separated values, as RFC 4180: a field is quoted where it has to be. @param {(string|number|null)[][]} rows */
-export const csv = (rows) => rows.map((row) => row.map((field) => {
-  const text = field === null || field === undefined ? '' : String(field);
-  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-}).join(',')).join('\r\n').concat('\r\n');

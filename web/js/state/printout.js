@@ -44,7 +44,7 @@ export class Printout {
 
   /** Adds a snapshot of this view, with the values at its crosshair. Throws when there is no picture. */
   async add(room, document) {
-    const { blob } = await this.#api.snapshot(room.id, document);
+    const blob = await this.#api.snapshot(room, document);
     const record = await recordOfFile(blob);
     const probe = await this.#api.probe(room.planId.value, crosshair(record.scene)).catch(() => null);
     this.#set([...this.entries.value, { key: this.#nextKey++, url: await dataUrl(blob), caption: '', record, probe }]);

@@ -57,12 +57,8 @@ export function volumeDifference({ volume_mm3: volume, univel_volume_mm3: univel
   return Number.isFinite(volume) && univels > 0 ? (100 * (volume - univels)) / univels : NaN;
 }
 
-const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-
-/** The table of figures as CSV; units are in the heading. */
-export function figuresCsv(rows) {
+/** The table of figures; units are in the heading. */
+export function figureRows(rows) {
   const columns = ['triangles', 'vertices', 'lines', 'points', 'ms', 'draw_ms', 'frames_per_second', 'area_mm2', 'volume_mm3', 'univel_volume_mm3', 'distance_mean_mm', 'distance_max_mm'];
-  const head = ['region', 'method', ...columns, 'refused'].join(',');
-  return `${[head, ...rows.map(({ region, name, result, error }) =>
-    [quoted(region), quoted(name), ...columns.map((column) => result?.[column] ?? ''), quoted(error ?? '')].join(','))].join('\n')}\n`;
+  return [['region', 'method', ...columns, 'refused'], ...rows.map(({ region, name, result, error }) => [region, name, ...columns.map((column) => result?.[column]), error])];
 }
