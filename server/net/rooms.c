@@ -212,6 +212,7 @@ struct room *net_replay_create(struct net *net, const struct room *of_room, cons
                                struct problem *problem)
 {
     char plan_id[64], room_of[64];
+    const uint32_t n_named = room_n_named(of_room);
     const struct room_recording *facts = room_recording(of_room, recording);
     if (!facts) {
         problem_set(problem, PROBLEM_NOT_FOUND, "/recording/id", "", "the room has no recording \"%.63s\"", recording);
@@ -228,7 +229,7 @@ struct room *net_replay_create(struct net *net, const struct room *of_room, cons
     struct room *room = net_room_create(net, plan_id, NULL, problem);
     if (room) {
         rooms_find(net, room_id(room))->keep.changed = 0; /* it is on disk already, as a recording */
-        room_replay_begin(room, room_of, &copy, clock_now_us());
+        room_replay_begin(room, room_of, n_named, &copy, clock_now_us());
     }
     room_recording_finish(&copy);
     return room;

@@ -2,12 +2,16 @@
 #include "server/room/marks.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "server/room/member_list.h"
 
 static const char *const kinds[] = { "measures", "probes", "constraints" };
-enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
+enum {
+    N_KINDS = sizeof kinds / sizeof kinds[0],
+    MAX_NUMBER = 500000 /* an id that ends with a greater one is no reason to count from there */
+};
 
 static bool is_kind(const char *name)
 {
@@ -45,6 +49,32 @@ bool marks_are_own(const struct room *room, const struct member *member, const c
         }
     }
     return true;
+}
+
+/* The number of the member that an id ends with; 0: it ends with none. */
+static uint32_t number_of(const char *id)
+{
+    const char *end = strrchr(id, '-');
+    if (!end || end[1] != 'm' || end[2] < '1' || end[2] > '9' || strlen(end) > 9)
+        return 0;
+    char *rest;
+    const unsigned long number = strtoul(end + 2, &rest, 10);
+    return *rest || number > MAX_NUMBER ? 0 : (uint32_t)number;
+}
+
+uint32_t marks_next_number(const struct room *room)
+{
+    const cJSON *scene = room->scene ? room->scene : room->restored, *mark;
+    uint32_t greatest = room->n_named;
+    if (!scene)
+        scene = cJSON_GetObjectItemCaseSensitive(room->begins_with, "scene");
+    for (int i = 0; i < N_KINDS; i++)
+        cJSON_ArrayForEach(mark, cJSON_GetObjectItemCaseSensitive(scene, kinds[i]))
+        {
+            const uint32_t number = number_of(mark->string ? mark->string : "");
+            greatest = number > greatest ? number : greatest;
+        }
+    return greatest + 1;
 }
 
 /* Writes the member's name into a mark of the patch where it belongs. */

@@ -11,6 +11,7 @@
 #include "server/room/known.h"
 #include "server/room/links.h"
 #include "server/room/look.h"
+#include "server/room/marks.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
 #include "server/room/pointers.h"
@@ -122,7 +123,7 @@ static bool make_place(struct room *room)
 static struct member *member_create(struct room *room, const char *name, enum wire_member_role role)
 {
     struct member *member = mem_new(sizeof *member);
-    member->number = ++room->n_named;
+    member->number = room->n_named = marks_next_number(room);
     (void)snprintf(member->id, sizeof member->id, "m%u", member->number);
     (void)snprintf(member->name, sizeof member->name, "%s", name);
     for (int number = 1; member->name[0] == 0 || (name[0] == 0 && name_is_taken(room, member->name)); number++)

@@ -446,13 +446,15 @@ void replay_plan_ready(struct room *room)
     (void)replay_tick(room);
 }
 
-void room_replay_begin(struct room *room, const char *of_room, const struct room_recording *recording, int64_t now_us)
+void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named, const struct room_recording *recording,
+                       int64_t now_us)
 {
     struct replay *replay = mem_new(sizeof *replay);
     *replay = (struct replay){ .facts = *recording, .rate = 1, .told = WIRE_REPLAY_STATE_WAITING };
     (void)snprintf(replay->of_room, sizeof replay->of_room, "%s", of_room);
     replay->facts.marks = recording->marks ? cJSON_Duplicate(recording->marks, true) : NULL;
     room->now_us = now_us;
+    room->n_named = n_named;
     room->replay = replay;
     if (room->scene)
         replay_plan_ready(room);

@@ -371,6 +371,11 @@ static struct member *find_caller(const struct room *room, const char *member)
     return NULL;
 }
 
+uint32_t room_n_named(const struct room *room)
+{
+    return room->n_named;
+}
+
 const cJSON *room_scene(const struct room *room, uint32_t *revision)
 {
     if (revision)

@@ -312,8 +312,12 @@ void room_recording_restart(struct room *room);
  * t_ms on. NULL with problem. */
 NODISCARD cJSON *room_recorded_state(const char *const *texts, size_t n, int64_t t_ms, struct problem *problem);
 
-/* The room plays this recording of another room from its beginning. Before its first member. */
-void room_replay_begin(struct room *room, const char *of_room, const struct room_recording *recording, int64_t now_us);
+/* How many members the room has ever had. */
+uint32_t room_n_named(const struct room *room);
+/* The room plays this recording of another room from its beginning. Before its first member. n_named: of that room;
+ * marks and notes of its members are nobody's here, as members of this room have later numbers. */
+void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named, const struct room_recording *recording,
+                       int64_t now_us);
 /* What replay_read asked for: n texts, and the time of the state behind them (INT64_MAX: there is none). n 0: they
  * cannot be read, and problem says why. */
 void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,

@@ -172,6 +172,39 @@ static void a_room_begins_with_a_bookmark_and_says_what_of_it_is_lost(void **sta
     fake_page_end(&second);
 }
 
+/* Ben would be m2 here; in the room of the bookmark somebody else was. */
+static void marks_of_a_bookmark_from_another_room_are_nobodys_but_the_presenters(void **state)
+{
+    static const char text[] =
+        "{\"format\":\"beamroom-bookmark\",\"version\":1,\"name\":\"measured\",\"plan\":\"head\",\"scene\":{"
+        "\"measures\":{\"m1-m2\":{\"author\":\"Eve\",\"points\":[{\"at_mm\":[0,0,0]},{\"at_mm\":[1,0,0]}]}},"
+        "\"probes\":{\"pin-1-m4\":{\"at_mm\":[1,2,3]},\"pin-2-m500001\":{\"at_mm\":[1,2,3]},"
+        "\"pin-m\":{\"at_mm\":[1,2,3]},\"pin-m07\":{\"at_mm\":[1,2,3]},\"pin-m4294967297\":{\"at_mm\":[1,2,3]}}}}";
+    struct fake_room own;
+    struct fake_page first = { 0 }, second = { 0 };
+    struct problem problem = { 0 };
+    (void)state;
+    cJSON *bookmark = cJSON_Parse(text);
+    fake_room_start(&own, 3);
+    assert_true(room_begin_with(own.room, bookmark, &problem));
+    cJSON_Delete(bookmark);
+    assert_false(room_was_used(own.room));
+    fake_hello(&own, &first); /* while the plan is being loaded */
+    assert_string_equal(heard(&first, "welcome", "member"), "m5");
+    fake_plan_ready(&own, true);
+    fake_hello(&own, &second);
+    assert_string_equal(heard(&second, "welcome", "member"), "m6");
+    fake_say(&own, &second, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m1-m2\":null}}}");
+    assert_string_equal(refused(&second), "403 /measures/m1-m2");
+    fake_say(&own, &second, "{\"type\":\"scene.patch\",\"patch\":{\"probes\":{\"pin-1-m4\":{\"name\":\"x\"}}}}");
+    assert_string_equal(refused(&second), "403 /probes/pin-1-m4");
+    fake_say(&own, &first, "{\"type\":\"scene.patch\",\"patch\":{\"measures\":{\"m1-m2\":null}}}");
+    assert_null(at(room_scene(own.room, NULL), "measures.m1-m2"));
+    fake_room_end(&own);
+    fake_page_end(&first);
+    fake_page_end(&second);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -180,6 +213,7 @@ int main(void)
         ROOM_TEST(a_token_is_given_once_and_stays),
         ROOM_TEST(a_bookmark_of_another_plan_or_form_is_refused),
         ROOM_TEST(a_room_begins_with_a_bookmark_and_says_what_of_it_is_lost),
+        ROOM_TEST(marks_of_a_bookmark_from_another_room_are_nobodys_but_the_presenters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

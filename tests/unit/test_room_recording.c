@@ -420,7 +420,7 @@ static void start_replay(void)
     fake_room_start(&replay, 3);
     replay.room->callbacks.replay_read = is_asked;
     asked_ms = -1;
-    room_replay_begin(replay.room, "7q4k-m2wz", &disk.facts, replay.now_us);
+    room_replay_begin(replay.room, "7q4k-m2wz", room_n_named(meeting.room), &disk.facts, replay.now_us);
     fake_plan_ready(&replay, true);
     answer();
 }
@@ -457,6 +457,20 @@ static void a_room_that_plays_it_shows_it_forwards_and_backwards(void **state)
     end_replay();
 }
 
+/* The rows of the meeting name their authors by number: it is nobody's here. */
+static void who_leaves_a_replay_owns_nothing_of_the_meeting(void **state)
+{
+    (void)state;
+    start_replay();
+    fake_hello(&replay, &viewer);
+    cJSON *welcome = fake_heard(&viewer, "welcome");
+    unsigned number = 0;
+    assert_int_equal(sscanf(json_text(welcome, "member"), "m%u", &number), 1);
+    cJSON_Delete(welcome);
+    assert_true(number > room_n_named(meeting.room));
+    end_replay();
+}
+
 static int two_hours(void **state)
 {
     (void)state;
@@ -477,6 +491,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(at_any_time_the_log_gives_what_the_room_was),
         cmocka_unit_test(a_room_that_plays_it_shows_it_forwards_and_backwards),
+        cmocka_unit_test(who_leaves_a_replay_owns_nothing_of_the_meeting),
     };
     return cmocka_run_group_tests(tests, two_hours, end);
 }

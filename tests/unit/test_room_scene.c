@@ -100,6 +100,21 @@ static void who_follows_adds_marks_under_ids_and_a_name_of_their_own(void **stat
     assert_string_equal(author_of("probes", "old"), "");
 }
 
+/* As those of a picture from another room that the presenter shows. */
+static void nobody_who_comes_gets_the_number_that_a_mark_ends_with(void **state)
+{
+    (void)state;
+    fake_join(&fake, &ann, false);
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"probes\":{\"pin-1-m2\":{\"at_mm\":[1,2,3]}}}}");
+    fake_join(&fake, &ben, true);
+    assert_string_equal(heard(&ben, "welcome", "member"), "m3");
+    fake_say(&fake, &ben, "{\"type\":\"scene.patch\",\"patch\":{\"probes\":{\"pin-1-m2\":null}}}");
+    assert_string_equal(refused(&ben), "403 /probes/pin-1-m2");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"probes\":{\"pin-1-m2\":null}}}");
+    fake_join(&fake, &cem, true);
+    assert_string_equal(heard(&cem, "welcome", "member"), "m4"); /* numbers are never given twice */
+}
+
 static void who_follows_changes_nothing_but_their_own_marks(void **state)
 {
     static const char *const bad[][2] = {
@@ -255,6 +270,7 @@ int main(void)
         ROOM_TEST(a_change_of_the_scene_reaches_all_and_raises_the_revision_by_one),
         ROOM_TEST(a_bad_patch_is_refused_whole_and_only_its_sender_hears_it),
         ROOM_TEST(who_follows_adds_marks_under_ids_and_a_name_of_their_own),
+        ROOM_TEST(nobody_who_comes_gets_the_number_that_a_mark_ends_with),
         ROOM_TEST(who_follows_changes_nothing_but_their_own_marks),
         ROOM_TEST(a_message_over_64_kib_is_refused),
         ROOM_TEST(before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change),

@@ -179,3 +179,12 @@ test('which patches are of marks, and whose', () => {
   assert.equal(marks.freeNumber(['m1', 'm2-m3', 'm4', 'own3'], 'm'), 3);
   assert.equal(marks.shortId('pin-3-m12', /^pin-/), '3');
 });
+
+test('marks that a picture brings from another room come under ids of who shows it, once; numbers there are other people’s', () => {
+  const scene = { ...whole, measures: { 'm1-m2': line(1) }, probes: { 'pin-1': { at_mm: [0, 0, 0] } } };
+  const patch = () => ({ regions: { brain: { visible: false } }, measures: { 'm1-m2': { name: 'here, too' }, 'm4-m2': line(4), 'm2-m7': line(7), m3: line(3), 'm5-m1': line(5) }, probes: { 'pin-1-m3': { at_mm: [1, 1, 1] } } });
+  const adopted = marks.adopted(patch(), scene, 'm1');
+  assert.deepEqual(adopted, { regions: { brain: { visible: false } }, measures: { 'm1-m2': { name: 'here, too' }, m3: line(3), 'm5-m1': line(5), 'm4-m1': line(4), 'm2-m1': line(7) }, probes: { 'pin-2-m1': { at_mm: [1, 1, 1] } } });
+  const again = marks.adopted(patch(), mergePatch(scene, adopted), 'm1');
+  assert.deepEqual([Object.keys(again.measures), again.probes], [['m1-m2', 'm3', 'm5-m1'], undefined]);
+});

@@ -15,6 +15,11 @@ export function freeNumber(ids, prefix) {
   return n;
 }
 
+const prefixes = { measures: 'm', probes: 'pin-', constraints: 'limit-' };
+
+/** An id for a new mark of this member, beside all of these. */
+const ownId = (kind, ids, member) => `${prefixes[kind]}${freeNumber(ids, prefixes[kind])}-${member}`;
+
 const isOf = (id, member) => id.endsWith(`-${member}`) && id.length > member.length + 1;
 
 /** Of a patch what this member may change in the room without presenting; null: nothing of it. */
@@ -49,10 +54,23 @@ export function leftBehind(override, scene, member) {
   for (const kind of kinds)
     for (const [id, mark] of Object.entries(override?.[kind] ?? {})) {
       if (!isObject(mark) || scene[kind]?.[id]) continue;
-      const prefix = { measures: 'm', probes: 'pin-', constraints: 'limit-' }[kind];
       patch[kind] ??= {};
-      patch[kind][`${prefix}${freeNumber([...Object.keys(scene[kind] ?? {}), ...Object.keys(patch[kind])], prefix)}-${member}`] = mark;
+      patch[kind][ownId(kind, [...Object.keys(scene[kind] ?? {}), ...Object.keys(patch[kind])], member)] = mark;
       n += 1;
     }
   return { patch, n };
+}
+
+/** The patch with marks that the room does not have, and that others made, under ids of this member: in a picture from another room the numbers are other people's.
+ *  Those that the room has under another id are left out. */
+export function adopted(patch, scene, member) {
+  for (const kind of kinds)
+    for (const [id, mark] of Object.entries(patch[kind] ?? {})) {
+      if (!/-m\d+$/.test(id) || isOf(id, member) || scene[kind]?.[id]) continue;
+      delete patch[kind][id];
+      const text = JSON.stringify(mark);
+      if (!Object.values(scene[kind] ?? {}).some((other) => JSON.stringify(other) === text)) patch[kind][ownId(kind, [...Object.keys(scene[kind] ?? {}), ...Object.keys(patch[kind])], member)] = mark;
+      if (!Object.keys(patch[kind]).length) delete patch[kind];
+    }
+  return patch;
 }

@@ -3,6 +3,7 @@
 import { isPng, maxFileBytes, textOfPng } from '../net/png.js';
 import { isId, readDocument } from '../wire/check.js';
 import { isObject } from '../wire/merge.js';
+import { adopted } from './marks.js';
 
 const keyword = 'beamroom';
 const version = 1;
@@ -71,7 +72,7 @@ export function difference(now, wanted) {
 export function restore({ room, ui, undo }, record) {
   const { kind, number, plane, camera, beam } = record.view;
   const view = room.views.find((other) => other.kind === kind && other.ofKind === number) ?? room.views.find((other) => other.kind === kind);
-  const scene = difference(room.scene.value, record.scene);
+  const scene = adopted(difference(room.scene.value, record.scene), room.scene.value, room.member.value);
   undo?.press();
   if (Object.keys(scene).length) room.patchScene(scene, { view: view.number });
   room.patchView(view.number, kind === 'oblique' ? { camera, plane } : kind === 'beam' ? { camera, beam } : { camera });
