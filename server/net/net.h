@@ -1,5 +1,5 @@
 #pragma once
-/* The net thread: libwebsockets' loop, rooms, the fleet. Everything about rooms and renderers happens on it; other
+/* The net thread: the loop of connections, rooms, the fleet. Everything about rooms and renderers happens on it; other
  * threads hand it tasks. The only folder that uses room, fleet and ws. */
 #include <stdint.h>
 

@@ -84,7 +84,7 @@ void out_log_cut(struct ws *ws, const char *reason)
 static void end_within(struct ws_connection *connection, int64_t within_us)
 {
     connection->close_by_us = clock_now_us() + within_us;
-    lws_set_timer_usecs(connection->wsi, within_us > 0 ? within_us : 1);
+    ws_check_at(connection, connection->close_by_us);
 }
 
 /* Something waits: out_flush sends it once the caller has returned to the loop. */
@@ -328,7 +328,7 @@ static void finish_sending(struct ws_connection *connection)
     const struct message_out *last = connection->sending.parts[connection->sending.n - 1].message;
     if (last && last->opcode == WS_CLOSE) { /* RFC 6455 7.1.1: nothing more is sent; the client closes its direction */
         connection->state = STATE_LINGERING;
-        (void)shutdown(lws_get_socket_fd(connection->wsi), SHUT_WR);
+        (void)shutdown(connection->fd, SHUT_WR);
         end_within(connection, WS_LINGER_MS * INT64_C(1000));
     }
     out_drop_sending(connection);
@@ -352,7 +352,7 @@ static enum sent send_some(struct ws_connection *connection)
         n_left += n - n_skip;
     }
     struct msghdr header = { .msg_iov = pieces, .msg_iovlen = (size_t)n_pieces };
-    ssize_t n = sendmsg(lws_get_socket_fd(connection->wsi), &header, MSG_NOSIGNAL | MSG_DONTWAIT);
+    ssize_t n = sendmsg(connection->fd, &header, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n < 0)
         return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS ? SENT_PART : SENT_FAILED;
     sending->n_done += (size_t)n;
@@ -364,20 +364,27 @@ static enum sent send_some(struct ws_connection *connection)
 
 static void arm(struct ws_connection *connection)
 {
+    if (!connection->is_armed)
+        loop_set_wants_room(&connection->ws->loop, connection->fd, connection, true);
     connection->is_armed = true;
-    lws_callback_on_writable(connection->wsi);
+}
+
+static void disarm(struct ws_connection *connection)
+{
+    if (connection->is_armed)
+        loop_set_wants_room(&connection->ws->loop, connection->fd, connection, false);
+    connection->is_armed = false;
 }
 
 int out_write(struct ws_connection *connection)
 {
-    connection->is_armed = false;
-    if (connection->state == STATE_NONE || connection->state == STATE_LINGERING ||
-        (!is_sending(connection) && !begin_next(connection)))
-        return 0;
-    if (send_some(connection) == SENT_FAILED)
+    const bool may_send = connection->state == STATE_OPEN || connection->state == STATE_CLOSING;
+    if (may_send && (is_sending(connection) || begin_next(connection)) && send_some(connection) == SENT_FAILED)
         return -1;
-    if (has_more(connection))
+    if (may_send && has_more(connection))
         arm(connection);
+    else
+        disarm(connection);
     return 0;
 }
 
@@ -385,7 +392,7 @@ int out_write(struct ws_connection *connection)
 static bool takes_now(const struct ws_connection *connection)
 {
     int n_unsent = 0;
-    return ioctl(lws_get_socket_fd(connection->wsi), SIOCOUTQNSD, &n_unsent) == 0 && n_unsent < WS_UNSENT_AT_MOST;
+    return ioctl(connection->fd, SIOCOUTQNSD, &n_unsent) == 0 && n_unsent < WS_UNSENT_AT_MOST;
 }
 
 static void flush(struct ws_connection *connection)
@@ -393,11 +400,12 @@ static void flush(struct ws_connection *connection)
     if (connection->is_armed || connection->state == STATE_NONE || connection->state == STATE_LINGERING ||
         !has_more(connection))
         return;
-    if (!takes_now(connection) || out_write(connection) == 0) {
-        if (has_more(connection) && !connection->is_armed)
-            arm(connection);
+    if (!takes_now(connection)) {
+        arm(connection);
         return;
     }
+    if (out_write(connection) == 0)
+        return;
     connection->state = STATE_CLOSING; /* the client has gone: its timer ends it */
     out_drop_frames(connection);
     out_drop_sending(connection);

@@ -1,6 +1,7 @@
 /* The event loop, the handshake of a connection, and incoming messages with their limits. */
 #include "server/ws/ws.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -9,7 +10,6 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/socket.h>
-#include <sys/timerfd.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
@@ -17,12 +17,12 @@
 #include "core/base/mem.h"
 #include "server/wire/origin.h"
 #include "server/wire/refusal.h"
+#include "server/ws/accept.h"
 #include "server/ws/out.h"
 
 enum {
     SEND_BUFFER = 128 << 10, /* the kernel's: a frame in it can no longer be replaced by a newer one */
-    READ_AT_ONCE = 32 << 10,
-    TIMER_US = 1000000,
+    CHECK_EVERY_US = 1000000,
 };
 
 const struct ws_limits ws_limits_default = {
@@ -76,12 +76,10 @@ static bool may_open(const struct ws *ws, const struct handshake *handshake, str
 /* Sends the answer of RFC 6455 4.2.2. It is the first thing sent on this socket, so it fits into its buffer. */
 static bool answer_handshake(int socket, const char *key)
 {
-    char bytes[128], accept[64], answer[256];
-    unsigned char hash[20];
-    int n_bytes = snprintf(bytes, sizeof bytes, "%s258EAFA5-E914-47DA-95CA-C5AB0DC85B11", key);
-    lws_SHA1((const unsigned char *)bytes, (size_t)n_bytes, hash);
-    if (lws_b64_encode_string((const char *)hash, sizeof hash, accept, sizeof accept) < 0)
+    char accept[WS_ACCEPT_SIZE], answer[256];
+    if (strlen(key) != WS_KEY_CHARACTERS)
         return false;
+    ws_accept_of(key, accept);
     int n = snprintf(
         answer, sizeof answer,
         "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: %s\r\n\r\n",
@@ -112,28 +110,32 @@ static void check_later(struct ws_connection *connection, bool is_greeted)
     int64_t due_us = connection->heard_us + (n_pings + 1) * ping_us;
     if (!is_greeted && due_us > connection->opened_us + WS_HELLO_WITHIN_S * INT64_C(1000000))
         due_us = connection->opened_us + WS_HELLO_WITHIN_S * INT64_C(1000000);
-    due_us = (due_us > now_us ? due_us : now_us) / TIMER_US * TIMER_US + TIMER_US;
-    lws_set_timer_usecs(connection->wsi, due_us - now_us);
+    ws_check_at(connection, (due_us > now_us ? due_us : now_us) / CHECK_EVERY_US * CHECK_EVERY_US + CHECK_EVERY_US);
 }
 
-static void start(struct ws *ws, struct lws *wsi, const char *room_id, const struct ws_count *count)
+static void start(struct ws_connection *connection, int socket, const char *room_id, const struct ws_count *count)
 {
-    struct ws_connection *connection = lws_wsi_user(wsi);
-    *connection = (struct ws_connection){ .ws = ws, .wsi = wsi, .count = *count, .state = STATE_OPEN };
+    struct ws *ws = connection->ws;
+    connection->fd = socket;
+    connection->count = *count;
+    connection->state = STATE_OPEN;
     connection->pongs.last = &connection->pongs.first;
     connection->texts.last = &connection->texts.first;
     connection->latest.last = &connection->latest.first;
     connection->opened_us = connection->heard_us = clock_now_us();
     ws_parser_init(&connection->parser, ws->limits.max_message_bytes, ws->limits.takes_binary);
+    connection->next = ws->connections;
+    if (ws->connections)
+        ws->connections->previous = connection;
+    ws->connections = connection;
     ws->counters.opened++;
     ws->counters.n_connections++;
-    lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); /* time limits are checked in check_connection */
     check_later(connection, false);
     ws->callbacks.opened(ws->callbacks.context, connection, room_id);
 }
 
-/* Answers the handshake and gives the socket to libwebsockets. NULL: it could not, the socket is closed. */
-static struct lws *adopt_socket(struct ws *ws, int socket, const struct handshake *handshake)
+/* Answers the handshake. False: the socket cannot be served, and is closed. */
+static bool open_socket(struct ws *ws, int socket, const struct handshake *handshake)
 {
     struct problem problem;
     int flags = fcntl(socket, F_GETFL);
@@ -141,20 +143,15 @@ static struct lws *adopt_socket(struct ws *ws, int socket, const struct handshak
         (void)fcntl(socket, F_SETFL, flags | O_NONBLOCK);
     if (!may_open(ws, handshake, &problem)) {
         refuse(ws, socket, &problem);
-        return NULL;
+        return false;
     }
     set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
     set_option(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, WS_UNSENT_AT_MOST);
     set_option(socket, SOL_SOCKET, SO_SNDBUF, SEND_BUFFER);
-    if (!skip_head(socket, handshake->n_head) || !answer_handshake(socket, handshake->key)) {
-        (void)close(socket); /* the client has gone */
-        return NULL;
-    }
-    lws_sock_file_fd_type descriptor = { .sockfd = socket };
-    struct lws *wsi = lws_adopt_descriptor_vhost(ws->vhost, LWS_ADOPT_SOCKET, descriptor, ws->protocols[0].name, NULL);
-    if (!wsi)
-        log_warn("a connection could not be taken over: no memory"); /* libwebsockets has closed the socket */
-    return wsi;
+    if (skip_head(socket, handshake->n_head) && answer_handshake(socket, handshake->key))
+        return true;
+    (void)close(socket); /* the client has gone */
+    return false;
 }
 
 static void end_count(const struct ws_count *count)
@@ -165,11 +162,20 @@ static void end_count(const struct ws_count *count)
 
 void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake, const struct ws_count *count)
 {
-    struct lws *wsi = adopt_socket(ws, socket, handshake);
-    if (wsi)
-        start(ws, wsi, handshake->room_id, count);
-    else
+    if (!open_socket(ws, socket, handshake)) {
         end_count(count);
+        return;
+    }
+    struct ws_connection *connection = calloc(1, sizeof *connection);
+    if (!connection || !loop_add(&ws->loop, socket, connection)) {
+        log_warn("a connection could not be taken over: no memory");
+        free(connection);
+        (void)close(socket);
+        end_count(count);
+        return;
+    }
+    connection->ws = ws;
+    start(connection, socket, handshake->room_id, count);
 }
 
 void ws_refuse_as_stopping(struct ws *ws, int socket)
@@ -243,10 +249,8 @@ static int check_connection(struct ws_connection *connection)
     struct ws *ws = connection->ws;
     int64_t now_us = clock_now_us(), silent_us = now_us - connection->heard_us;
     if (connection->state != STATE_OPEN) {
-        int64_t left_us = connection->close_by_us - now_us;
-        if (left_us > 0)
-            lws_set_timer_usecs(connection->wsi, left_us);
-        return left_us > 0 ? 0 : -1;
+        ws_check_at(connection, connection->close_by_us);
+        return now_us < connection->close_by_us ? 0 : -1;
     }
     const bool is_greeted = ws->callbacks.is_greeted(ws->callbacks.context, connection);
     check_later(connection, is_greeted);
@@ -260,13 +264,13 @@ static int check_connection(struct ws_connection *connection)
     return 0;
 }
 
-static void closed(struct ws_connection *connection)
+/* Ends and frees it. */
+static void cut(struct ws_connection *connection)
 {
-    if (connection->state == STATE_NONE)
-        return;
+    struct ws *ws = connection->ws;
     connection->state = STATE_NONE; /* from here on nothing is queued */
-    connection->ws->counters.n_connections--;
-    connection->ws->callbacks.closed(connection->ws->callbacks.context, connection);
+    ws->counters.n_connections--;
+    ws->callbacks.closed(ws->callbacks.context, connection);
     out_drop_frames(connection);
     out_queue_clear(&connection->pongs);
     out_queue_clear(&connection->texts);
@@ -275,52 +279,53 @@ static void closed(struct ws_connection *connection)
     out_drop_sending(connection);
     out_unmark(connection);
     ws_parser_finish(&connection->parser);
-    end_count(&connection->count);
+    loop_remove(&ws->loop, connection->fd);
+    (void)close(connection->fd);
+    if (connection->previous)
+        connection->previous->next = connection->next;
+    else
+        ws->connections = connection->next;
+    if (connection->next)
+        connection->next->previous = connection->previous;
+    const struct ws_count count = connection->count;
+    free(connection);
+    end_count(&count);
 }
 
-static void timer_fired(struct ws *ws)
+/* Returns non-zero when the connection has ended. */
+static int read_some(struct ws_connection *connection, bool has_ended)
 {
-    uint64_t n_times;
-    if (read(ws->timer_fd, &n_times, sizeof n_times) != (ssize_t)sizeof n_times)
-        return; /* set anew meanwhile */
-    ws->timer_us = INT64_MAX;
-    ws->callbacks.timer_fired(ws->callbacks.context);
+    struct ws *ws = connection->ws;
+    ssize_t n = recv(connection->fd, ws->received, sizeof ws->received, MSG_DONTWAIT);
+    if (n > 0)
+        return receive(connection, ws->received, (size_t)n);
+    return n < 0 && !has_ended && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
 }
 
-static int handle(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t n)
+static void handle_socket(const struct loop_event *event)
 {
-    struct ws *ws = lws_context_user(lws_get_context(wsi));
-    struct ws_connection *connection = user;
-    switch (reason) {
-    case LWS_CALLBACK_RAW_RX: return receive(connection, in, n);
-    case LWS_CALLBACK_RAW_WRITEABLE: return out_write(connection);
-    case LWS_CALLBACK_RAW_RX_FILE: timer_fired(ws); return 0;
-    case LWS_CALLBACK_TIMER: return connection && connection->state != STATE_NONE ? check_connection(connection) : 0;
-    case LWS_CALLBACK_RAW_CLOSE:
-        if (connection)
-            closed(connection);
-        return 0;
-    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: ws->callbacks.woken(ws->callbacks.context); return 0;
-    default: return 0;
+    struct ws_connection *connection = event->owner;
+    if (((event->is_readable || event->has_ended) && read_some(connection, event->has_ended) != 0) ||
+        (event->takes_more && out_write(connection) != 0))
+        cut(connection);
+}
+
+static void check_connections(struct ws *ws)
+{
+    const int64_t now_us = clock_now_us();
+    if (now_us < ws->check_us)
+        return;
+    ws->check_us = INT64_MAX;
+    for (struct ws_connection *connection = ws->connections, *next; connection; connection = next) {
+        next = connection->next;
+        if (now_us < connection->check_us)
+            ws_check_at(connection, connection->check_us);
+        else if (check_connection(connection) != 0)
+            cut(connection);
     }
 }
 
 /* ---- life ------------------------------------------------------------------------------------------------------- */
-
-static void log_library(int level, const char *line)
-{
-    log_line(level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "libwebsockets: %s", line); /* its errors are caused by clients */
-}
-
-/* The library's own timers end their waits up to 1 ms early, and it polls without a pause until they are due. */
-static bool start_timer(struct ws *ws)
-{
-    ws->timer_us = INT64_MAX;
-    ws->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    lws_sock_file_fd_type descriptor = { .filefd = ws->timer_fd };
-    return ws->timer_fd >= 0 && lws_adopt_descriptor_vhost(ws->vhost, LWS_ADOPT_RAW_FILE_DESC, descriptor,
-                                                           ws->protocols[0].name, NULL) != NULL;
-}
 
 struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limits *limits, const char *allowed_origin,
                      struct error *err)
@@ -329,62 +334,49 @@ struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limit
     ws->callbacks = *callbacks;
     ws->limits = *limits;
     ws->allowed_origin = allowed_origin ? mem_copy_text(allowed_origin) : NULL;
-    ws->protocols[0] = (struct lws_protocols){ .name = "beamroom",
-                                               .callback = handle,
-                                               .per_session_data_size = sizeof(struct ws_connection) };
-    lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
-    struct lws_context_creation_info info = { .port = CONTEXT_PORT_NO_LISTEN_SERVER,
-                                              .protocols = ws->protocols,
-                                              .vhost_name = "rooms",
-                                              .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS,
-                                              .pt_serv_buf_size = READ_AT_ONCE,
-                                              .fd_limit_per_thread =
-                                                  WS_MAX_CONNECTIONS + 16, /* plus the library's own */
-                                              .count_threads = 1,
-                                              .user = ws };
-    ws->context = lws_create_context(&info);
-    ws->vhost = ws->context ? lws_create_vhost(ws->context, &info) : NULL;
-    if (!ws->vhost || !start_timer(ws)) {
-        error_set(err, ERROR_IO, "libwebsockets could not be started");
-        ws_destroy(ws);
-        return NULL;
-    }
-    return ws;
+    ws->timer_us = ws->check_us = INT64_MAX;
+    if (loop_init(&ws->loop, err))
+        return ws;
+    ws_destroy(ws);
+    return NULL;
 }
 
 void ws_destroy(struct ws *ws)
 {
     if (!ws)
         return;
-    if (ws->context)
-        lws_context_destroy(ws->context); /* closes timer_fd */
+    while (ws->connections)
+        cut(ws->connections);
+    loop_finish(&ws->loop);
     free(ws->allowed_origin);
     free(ws);
 }
 
 void ws_serve(struct ws *ws)
 {
+    struct loop_events events;
     out_flush(ws);
-    (void)lws_service(ws->context, 0);
+    loop_wait(&ws->loop, ws->timer_us < ws->check_us ? ws->timer_us : ws->check_us, &events);
+    for (int i = 0; i < events.n; i++)
+        handle_socket(&events.of[i]);
+    check_connections(ws);
+    if (events.is_woken)
+        ws->callbacks.woken(ws->callbacks.context);
+    if (clock_now_us() >= ws->timer_us) {
+        ws->timer_us = INT64_MAX;
+        ws->callbacks.timer_fired(ws->callbacks.context);
+    }
     out_flush(ws);
 }
 
 void ws_wake(struct ws *ws)
 {
-    lws_cancel_service(ws->context);
+    loop_wake(&ws->loop);
 }
 
 void ws_wake_at(struct ws *ws, int64_t time_us)
 {
-    struct itimerspec when = { 0 }; /* never */
-    if (time_us == ws->timer_us)
-        return;
     ws->timer_us = time_us;
-    if (time_us < INT64_MAX) {
-        int64_t at_us = time_us > 1 ? time_us : 1;
-        when.it_value = (struct timespec){ at_us / 1000000, at_us % 1000000 * 1000 };
-    }
-    (void)timerfd_settime(ws->timer_fd, TFD_TIMER_ABSTIME, &when, NULL);
 }
 
 void ws_count(const struct ws *ws, struct ws_counters *counters)

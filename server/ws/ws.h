@@ -1,8 +1,7 @@
 #pragma once
 /* WebSocket connections on sockets from the acceptor: the answer to the handshake, Origin, limits, the order of what is
- * sent, and how a connection ends. RFC 6455 is implemented here (parser.h parses it); libwebsockets only gives the
- * loop, its timers and the wake-up, and polls the sockets. The only folder with that library. Knows messages, frames
- * and ids of rooms, but not the messages' contents. Net thread, but for ws_wake. */
+ * sent, and how a connection ends. RFC 6455 is implemented here (parser.h parses it, loop.h waits). Knows messages,
+ * frames and ids of rooms, but not the messages' contents. Net thread, but for ws_wake. */
 #include <stdint.h>
 
 #include "server/room/room.h"

@@ -1,11 +1,13 @@
 #pragma once
 /* The state of the WebSocket side and of its connections, shared by the files of server/ws. Internal to server/ws; net
  * thread. */
-#include <libwebsockets.h>
-
+#include "server/ws/loop.h"
 #include "server/ws/ws.h"
 
-enum { WS_UNSENT_AT_MOST = 32 << 10 }; /* bytes left in the kernel's buffer when it takes more */
+enum {
+    WS_UNSENT_AT_MOST = 32 << 10, /* bytes left in the kernel's buffer when it takes more */
+    WS_READ_AT_ONCE = 32 << 10
+};
 
 struct message_out { /* a message, ping, pong or close that waits to be sent */
     struct message_out *next;
@@ -49,13 +51,15 @@ enum state {
     STATE_LINGERING /* the close was sent; waits for the client to close */
 };
 
-struct ws_connection { /* allocated and zeroed by libwebsockets, lives as long as its socket */
+struct ws_connection { /* lives as long as its socket */
     struct ws *ws;
-    struct lws *wsi;
+    struct ws_connection *next, *previous;
+    int fd;
     void *owner;
     struct ws_count count;
     enum state state;
     int64_t opened_us, heard_us, close_by_us;
+    int64_t check_us; /* when it could be late next */
     struct ws_parser parser;
     struct rate messages, controls, bytes;
     size_t n_dropped;
@@ -70,15 +74,23 @@ struct ws_connection { /* allocated and zeroed by libwebsockets, lives as long a
 };
 
 struct ws {
-    struct lws_context *context;
-    struct lws_vhost *vhost;
-    struct lws_protocols protocols[2];
+    struct loop loop;
     struct ws_callbacks callbacks;
     struct ws_limits limits;
     char *allowed_origin;
-    int timer_fd;
-    int64_t timer_us;             /* when it fires; INT64_MAX: never */
-    struct ws_connection *marked; /* out_flush sends what waits on these */
+    int64_t timer_us;                  /* when timer_fired is called; INT64_MAX: never */
+    struct ws_connection *connections; /* all of them */
+    int64_t check_us;                  /* not after the earliest check_us of a connection */
+    struct ws_connection *marked;      /* out_flush sends what waits on these */
     int64_t logged_us;
     struct ws_counters counters;
+    uint8_t received[WS_READ_AT_ONCE];
 };
+
+/* Has the connection looked at at this time, which replaces the last one. */
+static inline void ws_check_at(struct ws_connection *connection, int64_t time_us)
+{
+    connection->check_us = time_us;
+    if (time_us < connection->ws->check_us)
+        connection->ws->check_us = time_us;
+}
