@@ -72,7 +72,6 @@ static void picture_answered(void *context, struct packet *answer, const struct 
     }
     free(request);
     schedule_room(entry);
-    schedule_wake(entry->net);
 }
 
 static struct net_room *find_entry(struct net *net, const struct room *room)
@@ -274,7 +273,6 @@ void bridge_fleet_changed(void *context, const char *plan_id)
     for (size_t i = 0; i < net->n_rooms; i++)
         if (strcmp(room_plan_id(net->rooms[i]->room), id) == 0)
             bridge_report_plan(net->rooms[i]);
-    schedule_wake(net);
 }
 
 void bridge_close_room(struct net_room *entry)

@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/net/keep_recordings.h"
+#include "server/net/schedule.h"
 #include "server/wire/json.h"
 
 /* The room's entry; NULL: rooms are not kept. */
@@ -23,8 +24,10 @@ static struct net_room *find_kept(const struct net *net, const struct room *room
 void keep_changed(void *context, struct room *room, unsigned parts)
 {
     struct net_room *entry = find_kept(context, room);
-    if (entry)
-        entry->keep.changed |= parts;
+    if (!entry)
+        return;
+    entry->keep.changed |= parts;
+    schedule_at(entry->net, 0);
 }
 
 static bool is_changed(const struct net_room *room)
@@ -85,6 +88,7 @@ static void keep_row(struct net *net, char ***rows, size_t *n, cJSON *json)
     }
     net->n_audit_waiting++;
     add_row(net, rows, n, text);
+    schedule_at(net, 0);
 }
 
 /* Says first how many rows were lost before this one. */
@@ -210,6 +214,7 @@ static struct store_item *item_place(struct net_room *room, const char *id)
         return NULL;
     room->keep.items = more;
     struct store_item *item = &room->keep.items[room->keep.n_items++];
+    schedule_at(room->net, 0);
     *item = (struct store_item){ 0 };
     return item;
 }
@@ -378,18 +383,24 @@ static void write_room(struct net *net, struct net_room *room)
 
 void keep_write_due(struct net *net, bool is_last)
 {
-    int64_t now_us = clock_now_us();
+    const int64_t now_us = clock_now_us(), again_us = now_us + KEEP_PAUSE_MS * INT64_C(1000);
     while (net->store && net->n_undeleted && store_delete(net->store, net->undeleted[net->n_undeleted - 1], 0))
         net->n_undeleted--;
     if (net->store && net->n_audit)
         write_audit(net);
     for (size_t i = 0; net->store && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];
-        if (!is_changed(room) || (!is_last && (room->keep.ticket || now_us < room->keep.due_us)))
+        if (!is_changed(room) || (!is_last && room->keep.ticket))
             continue;
-        room->keep.due_us = now_us + KEEP_PAUSE_MS * INT64_C(1000);
-        write_room(net, room);
+        if (is_last || now_us >= room->keep.due_us) {
+            room->keep.due_us = again_us;
+            write_room(net, room);
+        }
+        if (is_changed(room)) /* too early, or the store takes nothing now */
+            schedule_room_at(room, room->keep.due_us);
     }
+    if (net->store && (net->n_undeleted || net->n_audit))
+        schedule_at(net, again_us);
 }
 
 void keep_delete(struct net *net, const char *id)
@@ -439,6 +450,7 @@ void keep_all_again(struct net *net)
 {
     for (size_t i = 0; i < net->n_rooms; i++)
         net->rooms[i]->keep.changed = ROOM_ALL_PARTS;
+    schedule_at(net, 0);
     for (size_t i = 0; i < net->n_rooms; i++) {
         all_items_again(net->rooms[i]);
         room_recording_restart(net->rooms[i]->room);

@@ -53,6 +53,7 @@ static struct store_recording *place_of(struct net_room *room, const char *id)
         return NULL;
     room->keep.recordings = more;
     struct store_recording *recording = &room->keep.recordings[room->keep.n_recordings++];
+    schedule_at(room->net, 0);
     *recording = (struct store_recording){ 0 };
     (void)snprintf(recording->id, sizeof recording->id, "%s", id);
     return recording;
@@ -229,7 +230,6 @@ static void give_to_room(void *context, const char *const *texts, size_t n, int6
     if (entry) {
         room_replay_came(entry->room, texts, n, next_ms, problem, clock_now_us());
         schedule_room(entry);
-        schedule_wake(asking->net);
     }
     free(asking);
 }

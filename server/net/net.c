@@ -40,7 +40,15 @@ static void schedule_all(struct net *net)
 {
     for (size_t i = 0; i < net->n_rooms; i++)
         schedule_room(net->rooms[i]);
-    schedule_wake(net);
+}
+
+/* What is due of rooms, and what is to be kept of them. */
+static void handle_due(struct net *net)
+{
+    if (!schedule_is_due(net))
+        return;
+    schedule_due_rooms(net);
+    keep_write_due(net, false);
 }
 
 static void timer_fired(void *context)
@@ -53,10 +61,7 @@ static void timer_fired(void *context)
         rooms_close_idle(net);
         keep_write_due(net, false);
     }
-    for (size_t i = 0; i < net->n_rooms; i++)
-        if (net->rooms[i]->wake_us <= now_us)
-            schedule_room(net->rooms[i]);
-    schedule_wake(net);
+    handle_due(net);
 }
 
 /* ---- connections ------------------------------------------------------------------------------------------------ */
@@ -146,8 +151,8 @@ static void message_received(void *context, struct ws_connection *connection, en
         keep_early(visitor, text, n);
     if (!room)
         return;
-    room_text_came(room->room, connection, text, n, clock_now_us());
-    room->is_spoken_to = room->net->is_spoken_to = true;
+    schedule_room_at(room, room_text_came(room->room, connection, text, n, clock_now_us()));
+    room->net->is_spoken_to = true;
 }
 
 /* Somebody does something: what depends on time is looked at often again. */
@@ -166,13 +171,7 @@ static void settle_messages(struct net *net)
         return;
     net->is_spoken_to = false;
     leave_calm(net);
-    keep_write_due(net, false);
-    for (size_t i = 0; i < net->n_rooms; i++)
-        if (net->rooms[i]->is_spoken_to) {
-            net->rooms[i]->is_spoken_to = false;
-            schedule_room(net->rooms[i]);
-        }
-    schedule_wake(net);
+    handle_due(net);
 }
 
 static bool is_greeted(void *context, struct ws_connection *connection)
@@ -193,7 +192,6 @@ static void connection_closed(void *context, struct ws_connection *connection)
         bridge_leave(visitor);
         room_connection_lost(visitor->room->room, connection, ws_heard_us(connection), clock_now_us());
         schedule_room(visitor->room);
-        schedule_wake(net);
     }
     free_early(visitor);
     free(visitor);
@@ -351,8 +349,8 @@ static void *work(void *context)
     struct net *net = context;
     struct problem stops;
     run_tasks(net); /* the rooms that are on disk */
-    schedule_wake(net);
     while (!net_is_stopping(net)) {
+        schedule_wake(net);
         ws_serve(net->ws);
         settle_messages(net);
     }

@@ -50,7 +50,6 @@ struct net_room { /* a room and what the net thread keeps beside it */
     char phase[200];
     double percent;
     int64_t wake_us;        /* when room_tick is due */
-    bool is_spoken_to;      /* a message came since room_tick ran */
     int64_t empty_since_us; /* 0: a member is connected */
     struct {
         unsigned changed;          /* parts (enum room_part) that are to be written */
@@ -113,6 +112,7 @@ struct net {
     struct net_audit_head audit_head;
     int64_t fleet_tick_us;              /* when fleet_tick is due */
     int64_t calm_from_us;               /* unless somebody does something before, fleet_tick is rare from then on */
+    int64_t due_us;                     /* not after the earliest time that a room is due: schedule.h */
     bool is_spoken_to;                  /* a room is */
     struct room_counters closed;        /* sum over the rooms that were closed */
     atomic_bool is_listed, is_stopping; /* read by any thread */

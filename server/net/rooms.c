@@ -111,7 +111,6 @@ void rooms_close(struct net *net, size_t index)
     room_destroy(room->room);
     keep_room_finish(room);
     free(room);
-    schedule_wake(net);
 }
 
 /* Puts the room to sleep: it was used, nobody is connected, and it is on disk as it is. False: not now. */
@@ -198,13 +197,13 @@ struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *
         return NULL;
     struct net_room *room = add_room(net, id, plan_id);
     room->keep.changed = net->store ? ROOM_ALL_PARTS : 0;
+    schedule_at(net, 0);
     if (bookmark && !room_begin_with(room->room, bookmark, problem)) {
         rooms_close(net, net->n_rooms - 1);
         return NULL;
     }
     bridge_report_plan(room);
     schedule_room(room);
-    schedule_wake(net);
     return room->room;
 }
 

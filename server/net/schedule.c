@@ -3,21 +3,48 @@
 
 #include "core/base/clock.h"
 
+/* net->due_us only moves to earlier times here; schedule_due_rooms, once it is reached, finds the true one. */
+void schedule_at(struct net *net, int64_t time_us)
+{
+    if (time_us < net->due_us)
+        net->due_us = time_us;
+}
+
 void schedule_wake(struct net *net)
 {
-    int64_t next_us = net->fleet_tick_us;
-    for (size_t i = 0; i < net->n_rooms; i++)
-        if (net->rooms[i]->wake_us < next_us)
-            next_us = net->rooms[i]->wake_us;
-    ws_wake_at(net->ws, next_us);
+    ws_wake_at(net->ws, net->due_us < net->fleet_tick_us ? net->due_us : net->fleet_tick_us);
 }
 
 void schedule_room(struct net_room *room)
 {
     int64_t now_us = clock_now_us();
     room->wake_us = room_tick(room->room, now_us);
+    schedule_at(room->net, room->wake_us);
     if (room_n_connected(room->room))
         room->empty_since_us = 0;
     else if (room->empty_since_us == 0)
         room->empty_since_us = now_us;
+}
+
+void schedule_room_at(struct net_room *room, int64_t time_us)
+{
+    if (time_us < room->wake_us)
+        room->wake_us = time_us;
+    schedule_at(room->net, time_us);
+}
+
+bool schedule_is_due(const struct net *net)
+{
+    return net->due_us <= clock_now_us();
+}
+
+void schedule_due_rooms(struct net *net)
+{
+    const int64_t now_us = clock_now_us();
+    net->due_us = INT64_MAX;
+    for (size_t i = 0; i < net->n_rooms; i++)
+        if (net->rooms[i]->wake_us <= now_us)
+            schedule_room(net->rooms[i]);
+        else
+            schedule_at(net, net->rooms[i]->wake_us);
 }

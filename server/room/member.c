@@ -71,11 +71,14 @@ int64_t members_forget(struct room *room)
 
 void members_close_lost(struct room *room)
 {
+    if (!room->has_lost)
+        return;
     for (int i = 0; i < room->n_members; i++) /* saying who is there may lose others */
         if (room->members[i]->is_lost) {
             member_disconnected(room, room->members[i], room->now_us);
             i = -1;
         }
+    room->has_lost = false;
 }
 
 void member_disconnected(struct room *room, struct member *member, int64_t heard_us)

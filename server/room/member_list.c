@@ -14,6 +14,18 @@ struct member *member_of_connection(const struct room *room, const void *connect
     return NULL;
 }
 
+struct member *member_who_speaks(struct room *room, const void *connection)
+{
+    for (int i = 0, at = room->spoke; connection && i < room->n_members; i++) {
+        at = at + 1 < room->n_members ? at + 1 : 0;
+        if (room->members[at]->connection != connection)
+            continue;
+        room->spoke = at;
+        return room->members[at];
+    }
+    return NULL;
+}
+
 bool member_presents(const struct room *room, const struct member *member)
 {
     return room->presenter == member;

@@ -93,7 +93,7 @@ static void note_mover(struct stream *stream, const struct member_view *mover_vi
         if (view == mover_view)
             continue;
         view->has_moved = true;
-        (void)snprintf(view->moved_by, sizeof view->moved_by, "%s", by->id);
+        memcpy(view->moved_by, by->id, sizeof view->moved_by);
     }
 }
 

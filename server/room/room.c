@@ -276,17 +276,17 @@ static bool refuse(struct room *room, void *connection, const char *text, size_t
     return send_problem(room, connection, to, view, input, problem);
 }
 
-void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us)
+int64_t room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us)
 {
     struct message message;
     struct problem problem = { 0 };
     room->now_us = now_us;
-    struct member *member = member_of_connection(room, connection);
+    struct member *member = member_who_speaks(room, connection);
     if (!message_read(text, n, true, &message, &problem)) {
         if (refuse(room, connection, text, n, &problem) && !member)
             send_bye(room, connection, -1, hello_first);
         members_close_lost(room);
-        return;
+        return now_us;
     }
     if (!member && message.type == MESSAGE_HELLO) {
         (void)member_hello(room, connection, &message.hello);
@@ -303,10 +303,13 @@ void room_text_came(struct room *room, void *connection, const char *text, size_
             if (handlers[i].type == message.type && !handlers[i].handle(room, member, &message, &problem))
                 (void)refuse(room, connection, text, n, &problem);
     }
+    /* An acknowledgement lets the next picture be requested, or one be sent that may be late: no more. */
+    const bool is_shown = message.type == MESSAGE_FRAME_SHOWN && problem.type == PROBLEM_NONE && !room->has_lost;
     message_finish(&message);
     control_tell(room);
     members_close_lost(room);
-    (void)streams_request_due(room);
+    const int64_t request_us = streams_request_due(room), late_us = now_us + LAG_AFTER_US;
+    return !is_shown ? now_us : request_us < late_us ? request_us : late_us;
 }
 
 void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us)

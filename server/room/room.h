@@ -191,7 +191,9 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
                          const struct problem *problem);
 
 /* Connections: opaque pointers of the caller's. A connection becomes a member with hello. */
-void room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us);
+/* Returns when room_tick is due because of the text: at once, but for the acknowledgement of a frame, of which there is
+ * one for each frame and member. */
+int64_t room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us);
 void room_connection_closed(struct room *room, void *connection, int64_t now_us);
 /* The same of a connection that was last heard of at heard_us: the member counts as away since then. */
 void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us);

@@ -50,7 +50,8 @@ struct stream {
     uint64_t latest_number, latest_version; /* latest's request, and the version it shows; 0: none */
     bool latest_is_still;
     struct pace pace;
-    struct member_view *viewers; /* the views that show it */
+    struct member_view *viewers;       /* the views that show it */
+    struct member_view *least_lagging; /* of them, the one whose lag_excess_us is least; NULL: not known */
     struct room_display *displays;
     bool is_of_display; /* made for a display: no member has shown it, and it is not kept */
     struct {            /* the message view as it was written last: most viewers are sent the same text */
@@ -185,6 +186,8 @@ struct room {
 
     struct member *members[ROOM_MAX_MEMBERS];
     int n_members;
+    int spoke;                /* index of the one that member_who_speaks found last */
+    bool has_lost;            /* some is_lost */
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
     char plan_revision[65];   /* of the plan's files; "": not known */
     const struct member *writer; /* while the body of an item is read: who writes it */

@@ -20,14 +20,14 @@ static void copy_text(char *to, size_t size, const char *from)
  * connection is closed: it connects again and is sent everything. */
 static bool send_text(struct room *room, void *connection, const char *text)
 {
-    struct member *member = member_of_connection(room, connection);
     if (text) {
         room->callbacks.send_text(room->callbacks.context, connection, text);
         return true;
     }
+    struct member *member = member_of_connection(room, connection);
     if (member) {
         member->connection = NULL;
-        member->is_lost = true;
+        member->is_lost = room->has_lost = true;
         member->away_us = room->now_us;
     }
     room->callbacks.close(room->callbacks.context, connection);
@@ -205,27 +205,29 @@ void send_view_forget(struct stream *stream)
     stream->told.text = NULL;
 }
 
-void send_view(struct room *room, struct member *member, int index, const char *by)
+static void write_view(struct stream *stream, int index, bool is_following, const char *by)
 {
-    const struct member_view *view = &member->views[index];
-    struct stream *stream = view->stream;
     struct message message = { .type = MESSAGE_VIEW };
-    if (!member->connection)
-        return;
-    if (stream->told.text && stream->told.index == index && stream->told.is_following == view->is_following &&
-        strcmp(stream->told.by, by) == 0) {
-        (void)send_text(room, member->connection, stream->told.text);
-        return;
-    }
     message.view.view = index + 1;
-    message.view.document = view->stream->view;
-    message.view.follow = view->is_following;
+    message.view.document = stream->view;
+    message.view.follow = is_following;
     copy_text(message.view.by, sizeof message.view.by, by);
     send_view_forget(stream);
     stream->told.text = message_write(&message);
     stream->told.index = index;
-    stream->told.is_following = view->is_following;
+    stream->told.is_following = is_following;
     copy_text(stream->told.by, sizeof stream->told.by, by);
+}
+
+void send_view(struct room *room, struct member *member, int index, const char *by)
+{
+    const struct member_view *view = &member->views[index];
+    struct stream *stream = view->stream;
+    if (!member->connection)
+        return;
+    if (!stream->told.text || stream->told.index != index || stream->told.is_following != view->is_following ||
+        strcmp(stream->told.by, by) != 0)
+        write_view(stream, index, view->is_following, by);
     (void)send_text(room, member->connection, stream->told.text);
 }
 

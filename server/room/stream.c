@@ -117,6 +117,8 @@ void stream_add_viewer(struct stream *stream, struct member_view *view)
 void stream_remove_viewer(struct room *room, struct member_view *view)
 {
     struct stream *stream = view->stream;
+    if (stream->least_lagging == view)
+        stream->least_lagging = NULL;
     if (view->previous_viewer)
         view->previous_viewer->next_viewer = view->next_viewer;
     else
@@ -449,15 +451,25 @@ static void send_to_subscribers(struct room *room, struct stream *stream)
     displays_send(stream);
 }
 
-/* The viewer with the best link decides: one slow member must not make the picture worse for others. */
-static void measure_lag(struct stream *stream)
+static struct member_view *find_least_lagging(const struct stream *stream)
 {
-    int64_t least = INT64_MAX;
-    for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
-        if (view->lag_least_us && view->lag_excess_us < least)
-            least = view->lag_excess_us;
-    if (least != INT64_MAX)
-        pace_lagged(&stream->pace, least);
+    struct member_view *least = NULL;
+    for (struct member_view *view = stream->viewers; view; view = view->next_viewer)
+        if (view->lag_least_us && (!least || view->lag_excess_us < least->lag_excess_us))
+            least = view;
+    return least;
+}
+
+/* The viewer with the best link decides: one slow member must not make the picture worse for others. All are looked at
+ * only when that one's own lag was measured anew, in view. */
+static void measure_lag(struct stream *stream, struct member_view *view)
+{
+    if (!stream->least_lagging || stream->least_lagging == view)
+        stream->least_lagging = find_least_lagging(stream);
+    else if (view->lag_excess_us < stream->least_lagging->lag_excess_us)
+        stream->least_lagging = view;
+    if (stream->least_lagging)
+        pace_lagged(&stream->pace, stream->least_lagging->lag_excess_us);
 }
 
 void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence)
@@ -473,7 +485,7 @@ void stream_acknowledged(struct room *room, struct member_view *view, uint32_t s
     else
         view->lag_least_us += (lag_us - view->lag_least_us) / 256; /* follows a link that became slower */
     view->lag_excess_us = lag_us - view->lag_least_us;
-    measure_lag(view->stream);
+    measure_lag(view->stream, view);
 }
 
 /* ---- answers ---------------------------------------------------------------------------------------------------- */

@@ -5,11 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
-
-#include <linux/sockios.h>
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
@@ -248,6 +245,7 @@ static void begin_frame(struct sending *sending, struct frame_slot *slot)
     part->n_head = ws_write_head(part->head, WS_BINARY, FRAME_HEADER_BYTES + part->n_body);
     memcpy(part->head + part->n_head, slot->header, FRAME_HEADER_BYTES);
     part->n_head += FRAME_HEADER_BYTES;
+    part->slot = slot;
     slot->picture = NULL;
 }
 
@@ -285,6 +283,7 @@ static bool begin_next(struct ws_connection *connection)
     struct message_out *latest = connection->state == STATE_OPEN ? queue_take_first(&connection->latest) : NULL;
     if (latest) {
         begin_message(sending, latest);
+        sending->parts[sending->n - 1].is_latest = true;
         return true;
     }
     for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
@@ -296,6 +295,27 @@ static bool begin_next(struct ws_connection *connection)
         return true;
     }
     return sending->n > 0;
+}
+
+/* The socket takes nothing now: what newer ones may replace waits again. To be called before anything is queued. */
+static void put_back(struct ws_connection *connection)
+{
+    struct sending *sending = &connection->sending;
+    struct sending_part *last = &sending->parts[sending->n - 1];
+    struct queue_out *latest = &connection->latest;
+    if (last->slot) {
+        last->slot->picture = last->picture;
+        connection->next_slot = (int)(last->slot - connection->slots);
+        sending->n--;
+    } else if (last->is_latest) {
+        last->message->next = latest->first;
+        if (!latest->first)
+            latest->last = &last->message->next;
+        latest->first = last->message;
+        latest->n++;
+        latest->n_bytes += last->message->n;
+        sending->n--;
+    }
 }
 
 static bool is_sending(const struct ws_connection *connection)
@@ -353,8 +373,13 @@ static enum sent send_some(struct ws_connection *connection)
     }
     struct msghdr header = { .msg_iov = pieces, .msg_iovlen = (size_t)n_pieces };
     ssize_t n = sendmsg(connection->fd, &header, MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (n < 0)
-        return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS ? SENT_PART : SENT_FAILED;
+    if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR && errno != ENOBUFS)
+        return SENT_FAILED;
+    if (n < 0) {
+        if (sending->n_done == 0)
+            put_back(connection);
+        return SENT_PART;
+    }
     sending->n_done += (size_t)n;
     if ((size_t)n < n_left)
         return SENT_PART;
@@ -388,22 +413,11 @@ int out_write(struct ws_connection *connection)
     return 0;
 }
 
-/* Whether the kernel holds so little that the socket counts as writable. */
-static bool takes_now(const struct ws_connection *connection)
-{
-    int n_unsent = 0;
-    return ioctl(connection->fd, SIOCOUTQNSD, &n_unsent) == 0 && n_unsent < WS_UNSENT_AT_MOST;
-}
-
 static void flush(struct ws_connection *connection)
 {
     if (connection->is_armed || connection->state == STATE_NONE || connection->state == STATE_LINGERING ||
         !has_more(connection))
         return;
-    if (!takes_now(connection)) {
-        arm(connection);
-        return;
-    }
     if (out_write(connection) == 0)
         return;
     connection->state = STATE_CLOSING; /* the client has gone: its timer ends it */

@@ -36,6 +36,8 @@ struct sending_part {
     size_t n_body;
     struct message_out *message;  /* owner of the body, ... */
     struct room_picture *picture; /* ... or this one */
+    struct frame_slot *slot;      /* where the picture waited; NULL: it is a message */
+    bool is_latest;               /* the message waited in latest */
 };
 
 struct sending { /* messages that are partly sent: nothing else may be sent before their rest */
