@@ -18,6 +18,14 @@ class FakePart {
   toggleAttribute(name, isOn) { this.marks[isOn ? 'add' : 'delete'](name); }
 }
 
+class FakePane extends FakePart {
+  constructor({ hidden = false, pressed = null } = {}) {
+    super(null, pressed ? [pressed] : []);
+    this.pane = this;
+    this.hidden = hidden;
+  }
+}
+
 function fakeClock() {
   let now = 1000;
   const timers = [];
@@ -48,8 +56,9 @@ function world() {
     target.dispatchEvent(event);
   };
   const value = signal(0);
+  const pressed = {}; // an element
   /** As mount() does: what was drawn, in order. */
-  const part = (host) => {
+  const part = (host, costMs = 0) => {
     const [drawn, tick] = [[], signal(0)];
     let [isDrawn, isWaiting] = [false, false];
     effect(() => {
@@ -57,15 +66,16 @@ function world() {
       if (isWaiting) return void tick.value;
       isDrawn = true;
       drawn.push(value.value);
+      if (costMs) clock.pass(costMs);
     });
     return drawn;
   };
   const frame = () => frames.splice(0).forEach((callback) => callback());
   const drag = () => {
-    fire('pointerdown');
+    fire('pointerdown', {}, pressed);
     fire('pointermove');
   };
-  return { clock, frames, redraw, fire, value, part, frame, drag, stop };
+  return { clock, frames, redraw, fire, value, part, frame, drag, pressed, stop };
 }
 
 test('at rest, and while a mouse only moves, everything is drawn at once', () => {
@@ -79,9 +89,9 @@ test('at rest, and while a mouse only moves, everything is drawn at once', () =>
   assert.equal(frames.length, 0);
 });
 
-test('while something is dragged a pane is drawn once for each frame, after the pictures of that frame', () => {
-  const { redraw, value, part, frame, drag } = world();
-  const drawn = part(new FakePart({ hidden: false }));
+test('the pane in which something is dragged is drawn once for each frame, after the pictures of that frame', () => {
+  const { redraw, value, part, frame, drag, pressed } = world();
+  const drawn = part(new FakePane({ pressed }));
   drag();
   value.value = 1;
   value.value = 2;
@@ -94,10 +104,39 @@ test('while something is dragged a pane is drawn once for each frame, after the 
   assert.deepEqual(drawn, [0, 3, 4]);
 });
 
+test('another pane is drawn with its picture, also when that brings the change, or within 40 ms', () => {
+  const { clock, redraw, frames, value, part, frame, drag } = world();
+  const pane = new FakePane();
+  const drawn = part(pane);
+  const paint = (of, more = () => {}) => redraw.schedule(() => {
+    redraw.painted(of);
+    more();
+  });
+  drag();
+  value.value = 1;
+  assert.equal(frames.length, 0, 'no frame for it alone');
+  paint(new FakePane());
+  frame();
+  assert.deepEqual(drawn, [0], 'the picture of another one');
+  paint(pane);
+  frame();
+  assert.deepEqual(drawn, [0, 1]);
+  paint(pane, () => { value.value = 2; });
+  frame();
+  assert.deepEqual(drawn, [0, 1, 2]);
+  value.value = 3;
+  clock.pass(39);
+  frame();
+  assert.deepEqual(drawn, [0, 1, 2]);
+  clock.pass(1);
+  frame();
+  assert.deepEqual(drawn, [0, 1, 2, 3]);
+});
+
 test('what is around the panes is drawn ten times a second, marked, and at once when the drag ends; a hidden pane only then', () => {
   const { clock, fire, value, part, frame, drag } = world();
   const host = new FakePart();
-  const [around, hidden] = [part(host), part(new FakePart({ hidden: true }))];
+  const [around, hidden] = [part(host), part(new FakePane({ hidden: true }))];
   drag();
   for (let n = 1; n <= 50; n++) {
     value.value = n;
@@ -113,6 +152,38 @@ test('what is around the panes is drawn ten times a second, marked, and at once 
   assert.deepEqual([...host.marks], []);
   value.value = 78;
   assert.deepEqual([around.at(-1), hidden.at(-1)], [78, 78]);
+});
+
+test('what is around the panes is drawn sooner in a frame without pictures, so that pictures need not wait for it', () => {
+  const { clock, redraw, value, part, frame, drag, pressed } = world();
+  part(new FakePane({ pressed })); // has a frame for each change
+  const [one, other] = [part(new FakePart()), part(new FakePart())];
+  drag();
+  value.value = 1;
+  frame();
+  assert.deepEqual([one, other], [[0, 1], [0, 1]]);
+  clock.pass(70);
+  value.value = 2;
+  redraw.schedule(() => {});
+  frame();
+  assert.deepEqual([one, other], [[0, 1], [0, 1]], 'with a picture, and not due yet');
+  value.value = 3;
+  frame();
+  assert.deepEqual([one, other], [[0, 1, 3], [0, 1, 3]]);
+});
+
+test('a frame is not filled with panels around the panes', () => {
+  const { clock, value, part, frame, drag } = world();
+  const all = [new FakePart(), new FakePart(), new FakePart()].map((host) => part(host, 1.5));
+  const last = () => all.map((drawn) => drawn.at(-1));
+  drag();
+  value.value = 1;
+  clock.pass(0);
+  frame();
+  assert.deepEqual(last(), [1, 1, 0]);
+  clock.pass(0);
+  frame();
+  assert.deepEqual(last(), [1, 1, 1]);
 });
 
 test('the last change is drawn though no other follows and the button stays pressed', () => {
@@ -146,7 +217,7 @@ test('the panel in which something is dragged is drawn in every frame', () => {
 test('a drag whose end was not seen ends with the next move, or with the window out of sight', () => {
   for (const end of [['pointermove', { buttons: 0 }], ['blur'], ['pointercancel']]) {
     const { fire, value, part, drag } = world();
-    const drawn = part(new FakePart({ hidden: false }));
+    const drawn = part(new FakePane());
     drag();
     value.value = 1;
     assert.deepEqual(drawn, [0]);
@@ -157,7 +228,7 @@ test('a drag whose end was not seen ends with the next move, or with the window 
 
 test('a focus that moves within the page, as it does at a press, ends no drag', () => {
   const { fire, value, part } = world();
-  const drawn = part(new FakePart({ hidden: false }));
+  const drawn = part(new FakePane());
   const loseFocus = () => fire('blur', {}, new FakePart());
   fire('pointerdown');
   loseFocus();

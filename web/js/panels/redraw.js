@@ -1,8 +1,12 @@
-// When panels are drawn again while something is dragged: a pane once per animation frame, after the pictures that are painted in it; what is around
-// the panes ten times a second, and marked as pending (css/room.css); a hidden pane afterwards. At rest everything is drawn at once.
+// When panels are drawn again while something is dragged: the pane in which it is, once per animation frame, after the pictures that are painted in it;
+// any other pane with its next picture, or soon without one; what is around the panes ten times a second, and marked as pending (css/room.css); a hidden
+// pane afterwards. At rest everything is drawn at once.
 import { batch } from '../../lib/signals-core.js';
 
+const pictureMs = 40; // another pane waits at most this long for its picture
 const slowMs = 100;
+const earlyMs = 30; // by how much what is around the panes may be drawn sooner, in a frame without pictures: those are not to wait for it
+const enoughMs = 2; // of drawing in a frame, after which no further panel around the panes is begun in it
 
 export class Redraw {
   #requestFrame;
@@ -10,11 +14,14 @@ export class Redraw {
   #callbacks = [];
   #isRequested = false;
   #inFrame = new Set(); // ticks to be set in the next frame
+  #withPicture = new Map(); // tick -> {pane, at: time from which it is set without a picture}
+  #painted = new Set(); // panes with a new picture in this frame
   #slow = new Map(); // tick -> time from which it may be set
   #atRest = new Set();
   #pending = new Set(); // elements marked as pending
   #lastAt = new WeakMap(); // tick of a slow panel -> when it was drawn last
   #timer = 0;
+  #timerAt = 0;
   #pressed = null; // element
   #isDragging = false;
 
@@ -35,11 +42,21 @@ export class Redraw {
     if (!this.#isDragging) return false;
     const pane = host.closest('.pane');
     if (pane?.hidden) this.#atRest.add(tick);
-    else if (pane || host.contains(this.#pressed)) {
+    else if (this.#painted.has(pane) || (pane ?? host).contains(this.#pressed)) {
       this.#inFrame.add(tick);
       this.#request();
+    } else if (pane) {
+      this.#withPicture.set(tick, { pane, at: this.#clock.now() + pictureMs });
+      this.#wake();
     } else this.#putSlow(host, tick);
     return true;
+  }
+
+  /** To be called when a picture is painted in a pane, in a callback of schedule(). */
+  painted(pane) {
+    if (!this.#isDragging) return;
+    this.#painted.add(pane);
+    for (const [tick, { pane: of }] of this.#withPicture) if (of === pane) this.#inFrame.add(tick);
   }
 
   /** Reads from the page when something is dragged in it. @param {EventTarget} target the window @returns {() => void} stops */
@@ -63,8 +80,8 @@ export class Redraw {
     this.#pressed = null;
     if (!this.#isDragging) return;
     this.#isDragging = false;
-    const ticks = [...this.#inFrame, ...this.#slow.keys(), ...this.#atRest];
-    for (const all of [this.#inFrame, this.#slow, this.#atRest]) all.clear();
+    const ticks = new Set([...this.#inFrame, ...this.#withPicture.keys(), ...this.#slow.keys(), ...this.#atRest]);
+    for (const all of [this.#inFrame, this.#withPicture, this.#slow, this.#atRest]) all.clear();
     this.#set(ticks);
     for (const host of this.#pending) host.toggleAttribute('data-pending', false);
     this.#pending.clear();
@@ -79,14 +96,19 @@ export class Redraw {
     this.#wake();
   }
 
-  /** Asks for a frame when the first slow panel is due. */
+  /** Asks for a frame when the first of the panels that wait is due. */
   #wake() {
-    if (this.#timer || !this.#slow.size) return;
-    const waitMs = Math.max(0, Math.min(...this.#slow.values()) - this.#clock.now());
+    const at = Math.min(...this.#slow.values(), ...[...this.#withPicture.values()].map((other) => other.at));
+    if (at === Infinity || (this.#timer && this.#timerAt <= at)) return;
+    this.#clock.clearTimeout(this.#timer);
+    this.#timerAt = at;
     this.#timer = this.#clock.setTimeout(() => {
       this.#timer = 0;
-      this.#request();
-    }, waitMs);
+      const now = this.#clock.now();
+      const isDue = [...this.#slow.values()].some((other) => other <= now) || [...this.#withPicture.values()].some((other) => other.at <= now);
+      if (isDue) this.#request();
+      else this.#wake(); // those for which the timer was set were drawn with a picture
+    }, Math.max(0, at - this.#clock.now()));
   }
 
   #request() {
@@ -106,17 +128,25 @@ export class Redraw {
         queueMicrotask(() => { throw error; }); // the others are called, and the browser tells it
       }
     }
-    const ticks = [...this.#inFrame];
-    this.#inFrame.clear();
     const now = this.#clock.now();
-    const due = [...this.#slow].find(([, at]) => at <= now)?.[0]; // one for each frame, so that none takes long
-    if (due) {
-      this.#slow.delete(due);
-      this.#lastAt.set(due, now);
-      ticks.push(due);
-    }
+    for (const [tick, { at }] of this.#withPicture) if (at <= now) this.#inFrame.add(tick);
+    const ticks = [...this.#inFrame];
+    for (const tick of ticks) this.#withPicture.delete(tick);
+    this.#inFrame.clear();
+    this.#painted.clear();
     this.#set(ticks);
+    this.#drawSlow(now, callbacks.length ? now : now + earlyMs);
     this.#wake();
+  }
+
+  #drawSlow(now, to) {
+    for (const [tick, at] of [...this.#slow]) {
+      if (at > to) continue;
+      this.#slow.delete(tick);
+      this.#lastAt.set(tick, now);
+      this.#set([tick]);
+      if (this.#clock.now() - now >= enoughMs) return;
+    }
   }
 
   #set(ticks) {
