@@ -1,11 +1,11 @@
-// The plots of dose, loaded when they are first wanted: their code and uPlot are no part of what a first visit loads.
-import { Lazy } from './lazy.js';
+// The plots of dose, loaded when they are first wanted: their code, their style and uPlot are no part of what a first visit loads.
+import { Lazy, styled } from './lazy.js';
 
 export class ChartLoader {
   #parts;
 
   constructor(world) {
-    this.#parts = new Lazy(async () => (await import('./charts.js')).makeCharts(world));
+    this.#parts = new Lazy(async () => (await Promise.all([import('./charts.js'), styled('lib/uplot.css'), styled('css/chart.css')]))[0].makeCharts(world));
   }
 
   /** One part of the plots as a template. @param {'drawer'|'sheet'|'limits'|'printed'} name */
