@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
 #include "core/pipeline/turns.h"
@@ -103,6 +104,8 @@ static void picture_destroy(struct picture *picture)
     pipeline_annotation_destroy(picture->request.annotation);
     image_destroy(picture->image);
     free(picture->frame.picture.bytes);
+    for (int i = 0; i < IMAGE_N_REDUCED; i++)
+        free(picture->frame.reduced[i].bytes);
     free(picture);
 }
 
@@ -145,7 +148,10 @@ static uint64_t image_bytes(const struct picture *picture)
     uint64_t width = options->width_px > 0 ? (uint64_t)options->width_px : 0,
              height = options->height_px > 0 ? (uint64_t)options->height_px : 0;
     /* an annotated picture is copied, and has a caption with masks for its text */
-    return picture->request.annotation ? width * (2 * height + 2 * ANNOTATE_MAX_CAPTION_PX) * 4 : width * height * 4;
+    if (picture->request.annotation)
+        return width * (2 * height + 2 * ANNOTATE_MAX_CAPTION_PX) * 4;
+    uint64_t n = width * height * 4;
+    return picture->request.is_reduced[0] || picture->request.is_reduced[1] ? n + n / 2 : n;
 }
 
 /* A picture is held while its encode thread has enough drawn ones, while there is no memory for it, and while another
@@ -441,12 +447,28 @@ static bool compress(struct encoder *encoder, struct picture *picture)
                : encode_image(encoder, picture->image, &request->encode, &frame->picture, &frame->error);
 }
 
+/* A reduced picture for which there is no memory is left out: the picture itself will do. */
+static void compress_reduced(struct encoder *encoder, struct picture *picture)
+{
+    const struct pipeline_request *request = &picture->request;
+    for (int i = 0; i < IMAGE_N_REDUCED; i++) {
+        if (!request->is_reduced[i] || request->annotation)
+            continue;
+        struct error err = { 0 };
+        struct image *image = image_reduce(picture->image, image_divisor(i), &err);
+        if (!image || !encode_image(encoder, image, &request->encode, &picture->frame.reduced[i], &err))
+            log_warn("a picture is not made smaller: %s", err.text);
+        image_destroy(image);
+    }
+}
+
 static void encode(struct pipeline *pipeline, struct encoder *encoder, struct picture *picture)
 {
     struct pipeline_frame *frame = &picture->frame;
     if (picture->image) {
         int64_t start_us = clock_now_us();
-        (void)!compress(encoder, picture);
+        if (compress(encoder, picture))
+            compress_reduced(encoder, picture);
         frame->encode_us = clock_now_us() - start_us;
     }
     image_destroy(picture->image);
@@ -459,6 +481,7 @@ static void encode(struct pipeline *pipeline, struct encoder *encoder, struct pi
         return;
     pipeline->callbacks.deliver(pipeline->callbacks.context, frame);
     frame->picture = (struct encoded){ 0 }; /* the receiver's now */
+    memset(frame->reduced, 0, sizeof frame->reduced);
 }
 
 static void *encode_main(void *argument)

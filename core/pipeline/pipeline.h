@@ -4,6 +4,7 @@
  * (turns.h); a picture that takes long is left between its parts for others. All pictures are of plans that outlive the
  * pipeline. Knows no sockets and no JSON. */
 #include "core/annotate/describe.h"
+#include "core/base/image_reduce.h"
 #include "core/encode/encode.h"
 #include "core/render/render.h"
 
@@ -23,18 +24,20 @@ struct pipeline_request {
     bool is_acted;             /* of the view in which a person acts: goes before other moving ones of its source */
     struct snapshot *snapshot; /* one reference, taken */
     struct render_options render;
-    struct encode_options encode;
+    struct encode_options encode;           /* of the reduced pictures, too */
+    bool is_reduced[IMAGE_N_REDUCED];       /* the reduced pictures that are wanted; of an annotated one none is made */
     struct pipeline_annotation *annotation; /* owned, taken with the snapshot; NULL: a plain picture */
 };
 
 struct pipeline_frame {
     uint64_t id;
-    struct error error;      /* ERROR_NONE: there is a picture */
-    struct encoded picture;  /* the receiver's to free */
-    int width_px, height_px; /* as drawn; the caption of an annotated picture comes below */
+    struct error error;                      /* ERROR_NONE: there is a picture */
+    struct encoded picture;                  /* the receiver's to free */
+    struct encoded reduced[IMAGE_N_REDUCED]; /* likewise; without bytes: not wanted, or no memory beside the picture */
+    int width_px, height_px;                 /* as drawn; the caption of an annotated picture comes below */
     struct camera camera;
     struct render_timing timing;
-    int64_t encode_us;
+    int64_t encode_us; /* with the reduced ones */
     bool is_still;
 };
 

@@ -23,6 +23,8 @@ void inbox_event_destroy(struct inbox_event *event)
     derive_destroy(event->derived);
     plan_destroy(event->plan);
     free(event->frame.picture.bytes);
+    for (int i = 0; i < IMAGE_N_REDUCED; i++)
+        free(event->frame.reduced[i].bytes);
     cJSON_Delete(event->body);
     free(event->blob);
     waiting_request_destroy(event->waiting);
