@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "core/base/log.h"
@@ -159,6 +160,7 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
         .render = { width > 1 ? width : 1, height > 1 ? height : 1, is_coarse ? SURFACE_COARSE : SURFACE_FULL,
                     render->still },
         .encode = { is_png ? ENCODE_PNG : ENCODE_JPEG, (int)render->quality, render->full_color },
+        .is_reduced = { render->half, render->quarter },
     };
     struct picture_request *request = find_request(pictures, NO_REQUEST);
     if (!request) {
@@ -225,6 +227,39 @@ static cJSON *missing_of(const struct picture_request *request)
     return json;
 }
 
+/* The picture and the reduced ones behind each other. NULL: no memory, or there is none reduced. The caller's. */
+static uint8_t *join_reduced(const struct pipeline_frame *frame, size_t *n_bytes)
+{
+    struct error err = { 0 };
+    size_t n = frame->picture.n_bytes;
+    for (int i = 0; i < IMAGE_N_REDUCED; i++)
+        n += frame->reduced[i].n_bytes;
+    uint8_t *bytes = n > frame->picture.n_bytes ? mem_array(n, 1, UINT64_MAX, &err) : NULL;
+    if (!bytes)
+        return NULL;
+    memcpy(bytes, frame->picture.bytes, frame->picture.n_bytes);
+    *n_bytes = frame->picture.n_bytes;
+    for (int i = 0; i < IMAGE_N_REDUCED; *n_bytes += frame->reduced[i++].n_bytes)
+        if (frame->reduced[i].n_bytes)
+            memcpy(bytes + *n_bytes, frame->reduced[i].bytes, frame->reduced[i].n_bytes);
+    return bytes;
+}
+
+static void send_with_reduced(const struct pictures *pictures, struct packet *packet,
+                              const struct pipeline_frame *frame)
+{
+    size_t n_bytes = 0;
+    uint8_t *bytes = join_reduced(frame, &n_bytes);
+    if (bytes) {
+        packet->frame.half_bytes = (int64_t)frame->reduced[0].n_bytes;
+        packet->frame.quarter_bytes = (int64_t)frame->reduced[1].n_bytes;
+        link_send(pictures->options.link, packet, bytes, n_bytes);
+    } else {
+        link_send(pictures->options.link, packet, frame->picture.bytes, frame->picture.n_bytes);
+    }
+    free(bytes);
+}
+
 void pictures_send_frame(struct pictures *pictures, const struct pipeline_frame *frame)
 {
     struct picture_request *request = find_request(pictures, frame->id);
@@ -254,6 +289,6 @@ void pictures_send_frame(struct pictures *pictures, const struct pipeline_frame 
     fields->n_triangles = (int64_t)frame->timing.n_triangles;
     fields->missing = missing;
     end_request(request);
-    link_send(pictures->options.link, &packet, frame->picture.bytes, frame->picture.n_bytes);
+    send_with_reduced(pictures, &packet, frame);
     cJSON_Delete(missing);
 }

@@ -13,6 +13,8 @@ void room_picture_drop(struct room_picture *picture)
 {
     if (!picture || atomic_fetch_sub(&picture->references, 1) > 1)
         return;
+    for (int i = 0; i < IMAGE_N_REDUCED; i++)
+        room_picture_drop(picture->reduced[i]); /* these have none */
     free(picture->bytes);
     cJSON_Delete(picture->missing);
     free(picture);

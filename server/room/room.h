@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <stdint.h>
 
+#include "core/base/image_reduce.h"
 #include "server/wire/document.h"
 #include "server/wire/frame_header.h"
 #include "wire_gen.h"
@@ -64,6 +65,7 @@ struct room_render {
     int scale_percent, quality;
     bool is_still, full_color, coarse; /* coarse: coarse surfaces are good enough */
     bool is_acted;                     /* of the view in which a member acts: its pictures go first */
+    bool is_reduced[IMAGE_N_REDUCED];  /* the reduced pictures that are wanted beside it (size_class.h) */
     const char *member;                /* id of the member whose own view it is; NULL: a shared view */
 };
 
@@ -75,6 +77,8 @@ struct room_picture {
     size_t n_bytes;
     cJSON *missing; /* {n, regions: [{region, reason}]}: the regions that it leaves out because they cannot be drawn;
                        NULL: none */
+    struct room_picture *reduced[IMAGE_N_REDUCED]; /* owned: the same of a half and of a quarter of the size, without
+                                                      missing; NULL: not made */
     atomic_int references;
 };
 

@@ -67,13 +67,15 @@ struct member_view {                                   /* a pane of a member; it
     struct member *member;                             /* whose it is, while it is open */
     struct member_view *next_viewer, *previous_viewer; /* of the same stream */
     bool is_following, was_open;
-    int size_px[2];                         /* this member's own, as sent last; a shared view has the presenter's */
+    int size_px[2]; /* this member's own, as sent last; a shared view has the presenter's, and is
+                       sent in the size class that this one needs */
     uint32_t sent_sequence, shown_sequence; /* they differ by at most ROOM_MAX_UNSHOWN */
     struct {
         int64_t sent_us;
         bool is_still;
     } sent[ROOM_MAX_UNSHOWN]; /* by sequence % ROOM_MAX_UNSHOWN */
     uint64_t sent_number;     /* request number of the newest picture sent */
+    uint16_t sent_width_px;   /* of that picture as sent, perhaps reduced */
     int64_t lag_least_us,
         lag_excess_us; /* time from sending to acknowledgement: the least seen, and the newest beyond it; 0: none yet */
     struct {

@@ -11,6 +11,7 @@
 #include "server/room/kept.h"
 #include "server/room/reach.h"
 #include "server/room/send.h"
+#include "server/room/size_class.h"
 #include "server/wire/json_merge.h"
 
 enum { STILL_QUALITY = 92 };
@@ -328,6 +329,7 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
                                   .coarse = choice.coarse,
                                   .is_acted = stream->acted_us > 0 && room->now_us - stream->acted_us < acted_for_us,
                                   .member = owner_of(stream) };
+    size_classes_needed(room, stream, choice.scale_percent, is_still, render.is_reduced);
     room->counters.pictures_requested++;
     room->callbacks.render(room->callbacks.context, room, &render);
     return true;
@@ -412,7 +414,9 @@ void stream_send_picture(struct room *room, struct member *member, struct member
         return;
     if (is_refused(stream)) /* texts overtake pictures, and viewers take a picture as the end of a refusal */
         return;
-    if (view->sent_number == stream->latest_number && !shows_waiting_input(stream, view))
+    struct room_picture *picture = size_class_picture(room, view, stream->latest, stream->latest_is_still);
+    if (view->sent_number == stream->latest_number && view->sent_width_px >= picture->header.width_px &&
+        !shows_waiting_input(stream, view))
         return;
     int index = (int)(view - member->views);
     if (view->has_moved) {
@@ -426,19 +430,20 @@ void stream_send_picture(struct room *room, struct member *member, struct member
     }
     mark_inputs_shown(view, stream->latest_version);
     view->sent_number = stream->latest_number;
+    view->sent_width_px = picture->header.width_px;
     view->sent_sequence++;
     view->sent[view->sent_sequence % ROOM_MAX_UNSHOWN].sent_us = room->now_us;
     view->sent[view->sent_sequence % ROOM_MAX_UNSHOWN].is_still = stream->latest_is_still;
-    struct frame_header header = stream->latest->header;
+    struct frame_header header = picture->header;
     header.view = (uint32_t)index + 1;
     header.sequence = view->sent_sequence;
     header.input_id = view->input;
     if (stream->is_shared)
         header.flags |= FRAME_SHARED;
     room->counters.frames_sent++;
-    room->counters.frame_bytes += stream->latest->n_bytes;
+    room->counters.frame_bytes += picture->n_bytes;
     room->counters.stills_sent += stream->latest_is_still;
-    room->callbacks.send_frame(room->callbacks.context, member->connection, &header, stream->latest);
+    room->callbacks.send_frame(room->callbacks.context, member->connection, &header, picture);
 }
 
 static void send_to_subscribers(struct room *room, struct stream *stream)

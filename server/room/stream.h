@@ -5,10 +5,8 @@
  *   - A picture older than the newest one is never sent.
  *   - Moving pictures are followed by a still.
  *   - A shared stream has one size, that of the presenter's view, for all who follow; a pane of another size or shape
- * shows the whole picture, with bars. A member who wants one of their own size leaves. A smaller size for small panes
- * would be one more picture to draw of each change, on the one thread that draws; measured in 3-D on the demo plan, a
- * picture of 1400 x 1000 has 30 kB while it moves, at 75 % (84 kB as a still), of 700 x 500 17 kB (28 kB), of 350 x 250
- * 6 kB (10 kB). 25 moving ones a second are 6, 3 and 1 Mbit/s, and who has less is sent fewer, by credit. */
+ * shows the whole picture, with bars. Small panes are sent it reduced: size_class.h. A member who wants one of their
+ * own size leaves. */
 #include "server/room/room_state.h"
 
 /* Takes view, a complete and checked document. The shared stream of an oblique plane ends once it has no viewer and the

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/image_reduce.h"
+
 static void put16(uint8_t *at, uint16_t value)
 {
     at[0] = (uint8_t)value;
@@ -24,6 +26,23 @@ static uint16_t get16(const uint8_t *at)
 static uint32_t get32(const uint8_t *at)
 {
     return (uint32_t)get16(at) | (uint32_t)get16(at + 2) << 16;
+}
+
+struct frame_header frame_header_reduced(const struct frame_header *header, int divisor)
+{
+    struct frame_header reduced = *header;
+    reduced.width_px = (uint16_t)image_reduced_side(header->width_px, divisor);
+    reduced.height_px = (uint16_t)image_reduced_side(header->height_px, divisor);
+    reduced.flags |= divisor == 2 ? FRAME_HALF : FRAME_QUARTER;
+    /* the view's share of the reduced picture; it begins at the left and at the top, where clip space has -1 and 1 */
+    const double across = (double)header->width_px / (divisor * reduced.width_px),
+                 down = (double)header->height_px / (divisor * reduced.height_px);
+    for (float *column = reduced.clip_from_lps_mm; column < reduced.clip_from_lps_mm + 16; column += 4) {
+        const double w = (double)column[3];
+        column[0] = (float)(across * (double)column[0] + (across - 1) * w);
+        column[1] = (float)(down * (double)column[1] + (1 - down) * w);
+    }
+    return reduced;
 }
 
 void frame_header_write(const struct frame_header *header, uint8_t bytes[FRAME_HEADER_BYTES])

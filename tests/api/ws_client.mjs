@@ -11,10 +11,10 @@ export function readFrame(bytes) {
   const flags = at.getUint8(9);
   return {
     magic: at.getUint32(0, true), version: at.getUint16(4, true), headerBytes: at.getUint16(6, true), codec: at.getUint8(8),
-    isStill: !!(flags & 1), isFullColor: !!(flags & 4), isShared: !!(flags & 8), isCoarse: !!(flags & 16),
+    isStill: !!(flags & 1), isFullColor: !!(flags & 4), isShared: !!(flags & 8), isCoarse: !!(flags & 16), divisor: flags & 64 ? 4 : flags & 32 ? 2 : 1,
     quality: at.getUint8(10), scale: at.getUint8(11), view: at.getUint32(12, true), sequence: at.getUint32(16, true),
     revision: at.getUint32(20, true), input: at.getUint32(24, true), width: at.getUint16(28, true), height: at.getUint16(30, true),
-    payloadBytes: at.getUint32(40, true), matrix: Array.from({ length: 16 }, (_, i) => at.getFloat32(48 + 4 * i, true)),
+    renderUs: at.getUint32(32, true), payloadBytes: at.getUint32(40, true), matrix: Array.from({ length: 16 }, (_, i) => at.getFloat32(48 + 4 * i, true)),
     picture: bytes.subarray(at.getUint16(6, true)), at: performance.now(),
   };
 }

@@ -1,6 +1,8 @@
 /* The callbacks of a fake room: they record what the room requests and sends. */
 #include "tests/unit/room_fake.h"
 
+#include <math.h>
+
 #include "core/base/mem.h"
 
 static void render(void *context, struct room *room, const struct room_render *request)
@@ -18,7 +20,8 @@ static void render(void *context, struct room *room, const struct room_render *r
                                .is_still = request->is_still,
                                .full_color = request->full_color,
                                .coarse = request->coarse,
-                               .is_acted = request->is_acted };
+                               .is_acted = request->is_acted,
+                               .is_reduced = { request->is_reduced[0], request->is_reduced[1] } };
 }
 
 static void forget(void *context, struct room *room, uint64_t request)
@@ -74,6 +77,7 @@ static void send_frame(void *context, void *connection, const struct frame_heade
     page->frames[page->n_frames++] = *header;
     page->n_bytes_last = picture->n_bytes;
     page->first_byte_last = picture->bytes[0];
+    page->last_bytes = picture->bytes;
 }
 
 static void close_page(void *context, void *connection)
@@ -265,6 +269,29 @@ struct fake_request *fake_newest(struct fake_room *fake)
     return NULL;
 }
 
+static int side_px(const struct fake_request *request, int i)
+{
+    const cJSON *size = cJSON_GetObjectItem(request->view, "size_px");
+    return (int)lround(cJSON_GetArrayItem(size, i)->valuedouble * request->scale_percent / 100);
+}
+
+/* As the renderer makes them; of 100 / 2 or 100 / 4 bytes. */
+static void add_reduced(struct room_picture *picture, const struct fake_request *request)
+{
+    for (int i = 0; i < IMAGE_N_REDUCED; i++) {
+        if (!request->is_reduced[i])
+            continue;
+        struct room_picture *reduced = mem_new(sizeof *reduced);
+        reduced->references = 1;
+        reduced->n_bytes = 100 / (size_t)image_divisor(i);
+        reduced->bytes = mem_new(reduced->n_bytes);
+        reduced->bytes[0] = (uint8_t)request->request;
+        reduced->header = frame_header_reduced(&picture->header, image_divisor(i));
+        reduced->header.payload_bytes = (uint32_t)reduced->n_bytes;
+        picture->reduced[i] = reduced;
+    }
+}
+
 void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32_t render_us)
 {
     assert_non_null(request);
@@ -282,9 +309,12 @@ void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32
                                              .quality = (uint8_t)request->quality,
                                              .scale_percent = (uint8_t)request->scale_percent,
                                              .scene_revision = request->scene_revision,
+                                             .width_px = (uint16_t)side_px(request, 0),
+                                             .height_px = (uint16_t)side_px(request, 1),
                                              .render_us = render_us,
                                              .encode_us = 2000,
                                              .payload_bytes = 100 };
+    add_reduced(picture, request);
     room_picture_came(fake->room, request->request, picture, fake->now_us);
     tick(fake);
 }

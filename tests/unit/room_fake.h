@@ -12,6 +12,7 @@ struct fake_page { /* one browser */
     struct frame_header frames[512];
     size_t n_frames, n_bytes_last;
     uint8_t first_byte_last;
+    const void *last_bytes; /* of the newest frame, only to be compared */
     bool is_closed;
 };
 
@@ -21,6 +22,7 @@ struct fake_request {
     uint32_t scene_revision;
     int scale_percent, quality;
     bool is_still, full_color, coarse, is_acted, is_answered, is_forgotten;
+    bool is_reduced[IMAGE_N_REDUCED];
 };
 
 struct fake_room {

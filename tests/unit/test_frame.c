@@ -45,6 +45,49 @@ static void a_header_has_the_bytes_the_description_says(void **state)
     assert_memory_equal(&header, &back, sizeof header);
 }
 
+/* Where a point lies in a header's picture, in pixels from its left and top. */
+static void place(const struct frame_header *header, const double point[3], double px[2])
+{
+    const float *m = header->clip_from_lps_mm;
+    double clip[4];
+    for (int row = 0; row < 4; row++)
+        clip[row] = (double)m[row] * point[0] + (double)m[4 + row] * point[1] + (double)m[8 + row] * point[2] +
+                    (double)m[12 + row];
+    px[0] = (clip[0] / clip[3] + 1) / 2 * header->width_px;
+    px[1] = (1 - clip[1] / clip[3]) / 2 * header->height_px;
+}
+
+/* A pixel of a picture reduced by d covers d pixels of the whole one, from the left and from the top on. */
+static void a_point_lies_in_a_reduced_picture_where_it_lies_in_the_whole(void **state)
+{
+    (void)state;
+    static const int sides[][2] = { { 1024, 768 }, { 1441, 901 }, { 803, 17 }, { 5, 3 } };
+    static const float perspective[16] = { 1.5f, 0.1f, 0.2f, 0.3f, 0.2f, 2.0f,  0.1f, 0.4f,
+                                           0.0f, 0.3f, 1.0f, 0.1f, 3.0f, -5.0f, 2.0f, 90.0f };
+    const double points[][3] = { { 0, 0, 0 }, { 20, -30, 10 }, { -25, 12, 40 } };
+    for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++)
+        for (int divisor = 2; divisor <= 4; divisor += 2) {
+            struct frame_header whole = sample();
+            whole.width_px = (uint16_t)sides[i][0];
+            whole.height_px = (uint16_t)sides[i][1];
+            memcpy(whole.clip_from_lps_mm, perspective, sizeof perspective);
+            const struct frame_header reduced = frame_header_reduced(&whole, divisor);
+            assert_int_equal(reduced.width_px, ceil(sides[i][0] / (double)divisor));
+            assert_int_equal(reduced.height_px, ceil(sides[i][1] / (double)divisor));
+            assert_int_equal(reduced.flags, whole.flags | (divisor == 2 ? 32 : 64));
+            assert_int_equal(reduced.scale_percent, whole.scale_percent);
+            for (size_t p = 0; p < 3; p++) {
+                double expected[2], is[2];
+                place(&whole, points[p], expected);
+                place(&reduced, points[p], is);
+                assert_close(is[0] * divisor, expected[0], 1e-3); /* floats of pictures of a thousand pixels */
+                assert_close(is[1] * divisor, expected[1], 1e-3);
+            }
+            if (sides[i][0] % divisor == 0 && sides[i][1] % divisor == 0)
+                assert_memory_equal(reduced.clip_from_lps_mm, whole.clip_from_lps_mm, sizeof perspective);
+        }
+}
+
 static void expect_refused(size_t at, uint8_t value, size_t n)
 {
     uint8_t bytes[FRAME_HEADER_BYTES + 5] = { 0 };
@@ -89,6 +132,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_header_has_the_bytes_the_description_says),
+        cmocka_unit_test(a_point_lies_in_a_reduced_picture_where_it_lies_in_the_whole),
         cmocka_unit_test(a_header_that_lies_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

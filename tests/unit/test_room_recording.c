@@ -471,6 +471,26 @@ static void who_leaves_a_replay_owns_nothing_of_the_meeting(void **state)
     end_replay();
 }
 
+/* However small the pane: pictures of a replay are to be the same for all. */
+static void a_room_that_plays_it_sends_whole_pictures(void **state)
+{
+    static struct fake_page other;
+    (void)state;
+    start_replay();
+    fake_join(&replay, &viewer, true);
+    fake_hello(&replay, &other);
+    fake_say(&replay, &other, "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"size_px\":[99,99]}}");
+    fake_settle(&replay, (struct fake_page *const[]){ &viewer, &other }, 2);
+    fake_turn(&replay, &viewer, 5, 0);
+    fake_settle(&replay, (struct fake_page *const[]){ &viewer, &other }, 2);
+    assert_true(other.n_frames > 0);
+    assert_int_equal(other.frames[other.n_frames - 1].width_px, viewer.frames[viewer.n_frames - 1].width_px);
+    for (size_t i = 0; i < replay.n_requests; i++)
+        assert_false(replay.requests[i].is_reduced[0] || replay.requests[i].is_reduced[1]);
+    fake_page_end(&other);
+    end_replay();
+}
+
 static int two_hours(void **state)
 {
     (void)state;
@@ -492,6 +512,7 @@ int main(void)
         cmocka_unit_test(at_any_time_the_log_gives_what_the_room_was),
         cmocka_unit_test(a_room_that_plays_it_shows_it_forwards_and_backwards),
         cmocka_unit_test(who_leaves_a_replay_owns_nothing_of_the_meeting),
+        cmocka_unit_test(a_room_that_plays_it_sends_whole_pictures),
     };
     return cmocka_run_group_tests(tests, two_hours, end);
 }

@@ -98,9 +98,9 @@ const smallTargets = (page, places = ['.banner', '.switch', '.toast']) => page.e
 
 /** Px of the screen per mm, as a picture is shown in its pane. */
 async function scaleOf(page, view) {
-  const { width_px, height_px, scale_percent, pixels_per_mm } = await header(page, view);
+  const { full_px, pixels_per_mm } = await header(page, view);
   const [width, height] = await paneSize(page, view);
-  return pixels_per_mm * Math.min((width * scale_percent) / (width_px * 100), (height * scale_percent) / (height_px * 100));
+  return pixels_per_mm * Math.min(width / full_px[0], height / full_px[1]);
 }
 
 describe('a meeting of three', { skip: missing && `${missing} is not there` }, () => {

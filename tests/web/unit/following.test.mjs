@@ -319,7 +319,7 @@ test('who comes back on their own to a server that still loads the plan presents
 // ---- scale ------------------------------------------------------------------------------------------------------------------
 
 test('the own view shows a mm on as many px as the shared picture in the own pane', () => {
-  const header = { width_px: 450, height_px: 300, scale_percent: 50, pixels_per_mm: 2 }; // 900 x 600 at full size
+  const header = { full_px: [900, 600], pixels_per_mm: 2 };
   // shown at 1/3 in 300 x 300: 2/3 px a mm, so 450 mm across
   assert.ok(Math.abs(widening(camera, 'axial', [900, 600], header, [300, 300]) * 300 - 450) < 1e-9);
   assert.equal(widening(camera, 'axial', [900, 600], header, [900, 600]), 1);

@@ -135,10 +135,17 @@ test('a frame header is read field by field', () => {
   assert.deepEqual({ ...header, clip_from_lps_mm: [...header.clip_from_lps_mm] }, {
     media_type: 'image/jpeg', is_still: true, is_lossless: false, is_full_color: true, is_shared: false, is_coarse: true,
     quality: 95, scale_percent: 50, view: 3, sequence: 77, scene_revision: 12, input_id: 4000000001,
-    width_px: 640, height_px: 480, render_us: 12345, encode_us: 678, pixels_per_mm: 2.5,
+    width_px: 640, height_px: 480, full_px: [1280, 960], render_us: 12345, encode_us: 678, pixels_per_mm: 2.5,
     clip_from_lps_mm: Array.from({ length: 16 }, (_, i) => i + 0.5),
   });
   assert.deepEqual([...picture], [1, 2, 3, 4, 5]);
+});
+
+test('a reduced picture stands for a view of its size times the divisor', () => {
+  const of = (flags, scale) => readFrame(frameBytes((data) => { data.setUint8(9, flags); data.setUint8(11, scale); })).header.full_px;
+  assert.deepEqual(of(8, 100), [640, 480]);
+  assert.deepEqual(of(8 | 32, 100), [1280, 960]);
+  assert.deepEqual(of(8 | 64, 50), [5120, 3840]);
 });
 
 test('a longer header of a later version of the same format is skipped', () => {

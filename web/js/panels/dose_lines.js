@@ -13,8 +13,7 @@ const leastLuminance = 0.3; // of the letters, on their dark halo
 export function lineLabels({ doses, view, host, header, box }) {
   const levels = doses.labels.of(view);
   if (!levels.length || host.clientWidth < narrowest) return '';
-  const fullWidth = (header.width_px * 100) / header.scale_percent;
-  const k = box.width / fullWidth;
+  const k = box.width / header.full_px[0];
   const taken = takenIn(host);
   return svg`<g class="dose-labels">${levels.map(({ id, color, text, labels }) => labels.map(({ x_px: px, y_px: py, angle_deg: angle, width_px: width, height_px: height }) => {
     const [x, y] = [box.x + px * k, box.y + py * k];

@@ -197,7 +197,6 @@ export class Pane {
     const pane = this.#size.value;
     if (!header || !scene || pane[0] < 2) return nothing;
     const box = this.#box;
-    const fullWidth = (header.width_px * 100) / header.scale_percent;
     const plan = this.#room.plan.value;
     const image = shownImage(plan, scene);
     const plane = isInSpace(view.kind) ? null : this.actions.plane;
@@ -207,7 +206,7 @@ export class Pane {
       isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
       axes: scene.axes?.visible ? plan?.bounds : null,
       point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
-      pxPerMm: (header.pixels_per_mm * box.width) / fullWidth,
+      pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
       windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? 'No image: regions' : '',
     })}`;
   }

@@ -24,6 +24,16 @@ export class PanePick {
     return [(x - box.x) / box.width, (y - box.y) / box.height];
   }
 
+  /** Pixels of the view in its full size; null beside the picture. A reduced picture may reach beyond the view. */
+  #pixelAt(x, y) {
+    const { size_px: size } = this.#view.document.value;
+    const header = this.#view.painted.value;
+    if (!header || !size) return null;
+    const scale = header.scale_percent / 100;
+    const at = this.#fraction(x, y).map((part, i) => (part * header.full_px[i] * scale * size[i]) / Math.round(size[i] * scale));
+    return at.every((px, i) => px >= 0 && px < size[i]) ? at : null;
+  }
+
   /** In a slice pane: the patient point at a place, on the slice shown; null before the first picture. */
   pointAt(x, y) {
     const header = this.#view.painted.value;
@@ -44,20 +54,18 @@ export class PanePick {
   }
 
   async #hit(x, y, prefer = '') {
-    const { size_px: size } = this.#view.document.value;
-    const [u, v] = this.#fraction(x, y);
-    if (!this.#view.painted.value || !size || u < 0 || v < 0 || u >= 1 || v >= 1) return null;
-    const { hits } = await this.#api.pick(this.#room.planId.value, this.#room.id, this.#view.document.value, u * size[0], v * size[1], prefer);
+    const at = this.#pixelAt(x, y);
+    if (!at) return null;
+    const { hits } = await this.#api.pick(this.#room.planId.value, this.#room.id, this.#view.document.value, ...at, prefer);
     return hits.find(({ seen }) => seen) ?? null;
   }
 
   /** The particle track that is seen at a place; null: none, or a newer question has been asked. */
   async trackAt(x, y) {
-    const { size_px: size } = this.#view.document.value;
-    const [u, v] = this.#fraction(x, y);
-    if (!this.#view.painted.value || !size || u < 0 || v < 0 || u >= 1 || v >= 1) return null;
+    const at = this.#pixelAt(x, y);
+    if (!at) return null;
     const number = ++this.#newest;
-    const track = await this.#api.ofScene(this.#room.planId.value, 'track', this.#room.id, this.#view.document.value, { px: u * size[0], py: v * size[1] });
+    const track = await this.#api.ofScene(this.#room.planId.value, 'track', this.#room.id, this.#view.document.value, { px: at[0], py: at[1] });
     return number === this.#newest && track.segment !== null ? track : null;
   }
 

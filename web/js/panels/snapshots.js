@@ -10,7 +10,7 @@ const mostPx = 4096;
 
 /** The view as it is on the screen, as large as a report needs it. */
 function viewDocument(view) {
-  const { width_px: width, height_px: height } = view.painted.value;
+  const [width, height] = view.document.value.size_px;
   const factor = Math.min(Math.max(1, leastWidthPx / width), mostPx / Math.max(width, height));
   return { ...view.document.value, size_px: [Math.round(width * factor), Math.round(height * factor)] };
 }

@@ -22,7 +22,7 @@ const extentMm = (camera, kind) => {
  * @param {[number, number]} ownSize in px
  */
 export function widening(camera, kind, sharedSize, header, ownSize) {
-  const full = header ? [header.width_px, header.height_px].map((side) => (side * 100) / header.scale_percent) : sharedSize;
+  const full = header?.full_px ?? sharedSize;
   const shrunk = Math.min(ownSize[0] / full[0], ownSize[1] / full[1]); // own px per px of the shared view
   const own = Math.min(...ownSize);
   if (header?.pixels_per_mm > 0) return own / (header.pixels_per_mm * shrunk) / extentMm(camera, kind);

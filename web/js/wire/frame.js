@@ -10,10 +10,11 @@ const mediaTypes = { 1: 'image/jpeg', 2: 'image/png' };
  * @property {string} media_type
  * @property {boolean} is_still @property {boolean} is_lossless @property {boolean} is_full_color
  * @property {boolean} is_shared @property {boolean} is_coarse
- * @property {number} quality @property {number} scale_percent
+ * @property {number} quality @property {number} scale_percent as drawn
  * @property {number} view @property {number} sequence @property {number} scene_revision @property {number} input_id
  * @property {number} width_px @property {number} height_px @property {number} render_us @property {number} encode_us
  * @property {number} pixels_per_mm 0 in perspective; of the view's full size
+ * @property {number[]} full_px of the view's full size
  * @property {Float32Array} clip_from_lps_mm column-major
  */
 
@@ -41,6 +42,7 @@ export function readFrame(message) {
   const matrix = Float32Array.from({ length: 16 }, (_, index) => data.getFloat32(48 + 4 * index, true));
   if (!matrix.every(Number.isFinite)) throw new RangeError('frame matrix is not finite');
   const flags = u8(9);
+  const divisor = flags & 64 ? 4 : flags & 32 ? 2 : 1;
   return {
     header: {
       media_type: mediaType,
@@ -57,6 +59,7 @@ export function readFrame(message) {
       input_id: u32(24),
       width_px: u16(28),
       height_px: u16(30),
+      full_px: [28, 30].map((at) => (u16(at) * divisor * 100) / u8(11)),
       render_us: u32(32),
       encode_us: u32(36),
       pixels_per_mm: u32(44) / 1000,
