@@ -136,7 +136,8 @@ static void tick_plan(struct fleet *fleet, struct plan_entry *plan, int64_t now_
 
 void fleet_tick(struct fleet *fleet)
 {
-    run_clock_step(&fleet->clock, LONGEST_STEP_US);
+    run_clock_step(&fleet->clock, fleet->rest_us + LONGEST_STEP_US);
+    fleet->rest_us = 0;
     int64_t now_us = fleet_now_us(fleet);
     plan_list_drop_removed(fleet);
     for (size_t i = 0; i < fleet->n_plans; i++)
@@ -145,6 +146,28 @@ void fleet_tick(struct fleet *fleet)
     plan_scans_start(fleet);
     uploads_tick(fleet);
     report_changes(fleet);
+}
+
+static bool rests(const struct plan_entry *plan)
+{
+    const bool is_steady = plan->state == FLEET_READY || plan->state == FLEET_CLOSED || plan->state == FLEET_FAILED ||
+                           plan->state == FLEET_UNREADABLE;
+    return is_steady && !plan->wants_scan && !plan->scan && !plan->revision.program && !plan->revision.is_wanted &&
+           !plan->restart_at_us && !plan->is_removed && !plan->is_awaited && !plan->has_changed && !plan->room_updates;
+}
+
+int64_t fleet_rest_us(struct fleet *fleet, int64_t longest_us)
+{
+    const int64_t now_us = fleet_now_us(fleet);
+    bool is_at_rest =
+        !fleet->requests && fleet->is_listed && !fleet->is_listing && !fleet->list_has_changed && uploads_rest(fleet);
+    for (size_t i = 0; is_at_rest && i < fleet->n_plans; i++) {
+        int64_t left_us = opening_left_us(fleet, fleet->plans[i], now_us);
+        longest_us = left_us < longest_us ? left_us : longest_us;
+        is_at_rest = rests(fleet->plans[i]) && longest_us > 0;
+    }
+    fleet->rest_us = is_at_rest ? longest_us : 0;
+    return fleet->rest_us;
 }
 
 /* ---- descriptions ----------------------------------------------------------------------------------------------- */

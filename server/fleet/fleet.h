@@ -79,6 +79,9 @@ void fleet_handle_events(struct fleet *fleet);
 /* Time-driven work: idle close, restarts, time limits. To be called about every 250 ms, every second
  * while nobody asks for anything. */
 void fleet_tick(struct fleet *fleet);
+/* How long the next tick may be put off when nothing happens meanwhile, at most longest_us; 0: not at all, something is
+ * under way. */
+int64_t fleet_rest_us(struct fleet *fleet, int64_t longest_us);
 
 /* A plan of the list. Strings and documents are borrowed until the next call into the fleet. */
 struct fleet_plan {

@@ -115,6 +115,15 @@ void fleet_release(struct fleet *fleet, const char *plan_id)
         renderer_close(fleet, plan, "nobody is there any more");
 }
 
+int64_t opening_left_us(const struct fleet *fleet, const struct plan_entry *plan, int64_t now_us)
+{
+    if (plan->waits_for_slot)
+        return plan->slot_retry_at_us - now_us;
+    if (fleet->options.idle_close_s > 0 && is_unused(fleet, plan))
+        return plan->used_us + fleet->options.idle_close_s * 1000000LL - now_us;
+    return INT64_MAX;
+}
+
 void opening_tick(struct fleet *fleet, struct plan_entry *plan, int64_t now_us)
 {
     if (plan->waits_for_slot && now_us >= plan->slot_retry_at_us)

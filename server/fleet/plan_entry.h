@@ -97,6 +97,7 @@ struct fleet {
     bool is_listing, is_listed;
     struct lister *lister;
     struct run_clock clock; /* stepped by fleet_tick */
+    int64_t rest_us;        /* how long the next tick may be put off, as fleet_rest_us said last */
     struct remover *remover;
     struct cache_quota *cache_quota;
     struct root_finder *root_finder;

@@ -41,6 +41,7 @@ struct process {
     size_t n_output;
     uint64_t n_since_packet; /* bytes received since the last whole packet */
     int64_t heard_us;        /* when bytes last came */
+    int64_t spoke_us;        /* when a packet last went either way, but for pings */
     int64_t kill_at_us;      /* when it is killed after its socket was closed; INT64_MAX: not planned */
     int64_t limit_at_us;     /* when a program's time is over */
     int64_t memory_at_us;    /* when its memory is measured next */
@@ -71,7 +72,7 @@ struct process *process_create(uint64_t number, char *const argv[], int limit_ms
     process->limit_ms = limit_ms;
     process->events = *events;
     process->last = &process->outgoing;
-    process->heard_us = now_us;
+    process->heard_us = process->spoke_us = now_us;
     process->memory_at_us = now_us;
     process->limit_at_us = limit_ms > 0 ? now_us + (int64_t)limit_ms * 1000 : INT64_MAX;
     process->kill_at_us = INT64_MAX;
@@ -150,7 +151,19 @@ void process_stop(struct process *process, bool at_once, const char *reason, int
     }
 }
 
-void process_send(struct process *process, uint8_t *bytes, size_t n_bytes, int64_t now_us)
+static bool is_resting(const struct process *process, int64_t now_us)
+{
+    return !process->is_program && !process->has_ended && !process->is_stopping && process->child.channel >= 0 &&
+           !process->outgoing && !process->pinged_us && !process->is_awaited && !process_is_throttled(process) &&
+           now_us - process->spoke_us >= PROCESS_RESTS_AFTER_MS * 1000LL;
+}
+
+int64_t process_rests_until_us(const struct process *process, int64_t now_us)
+{
+    return is_resting(process, now_us) ? process->heard_us + PROCESS_REST_MS * 1000LL : 0;
+}
+
+static void queue_bytes(struct process *process, uint8_t *bytes, size_t n_bytes, int64_t now_us)
 {
     if (process->child.channel < 0 || process->is_program) {
         free(bytes);
@@ -167,6 +180,12 @@ void process_send(struct process *process, uint8_t *bytes, size_t n_bytes, int64
     *process->last = chunk;
     process->last = &chunk->next;
     process->n_outgoing += n_bytes;
+}
+
+void process_send(struct process *process, uint8_t *bytes, size_t n_bytes, int64_t now_us)
+{
+    process->spoke_us = now_us;
+    queue_bytes(process, bytes, n_bytes, now_us);
 }
 
 void process_await(struct process *process, bool is_awaited)
@@ -244,6 +263,7 @@ static void put_packets(struct process *process, int64_t now_us)
             packet_finish(&packet);
             continue;
         }
+        process->spoke_us = now_us;
         struct watch_event *event = event_new(process, WATCH_PACKET);
         event->packet = packet;
         event_backlog_add(process->backlog, event, sizeof *event + packet.n_blob + JSON_WEIGHT * n_text);
@@ -354,7 +374,7 @@ static void check_end(struct process *process, int64_t now_us)
 
 static void report_memory(struct process *process, int64_t now_us)
 {
-    if (process->has_ended || process->is_program || now_us < process->memory_at_us)
+    if (process->has_ended || process->is_program || now_us < process->memory_at_us || is_resting(process, now_us))
         return;
     process->memory_at_us = now_us + MEMORY_EVERY_US;
     char path[64], text[128];
@@ -401,7 +421,7 @@ static void send_ping(struct process *process, int64_t now_us)
     packet_init(&ping, PACKET_PING);
     uint8_t *bytes = packet_encode(&ping, NULL, 0, &n, NULL);
     if (bytes)
-        process_send(process, bytes, n, now_us);
+        queue_bytes(process, bytes, n, now_us);
 }
 
 static void check_silence(struct process *process, const struct silence_limits *limits, int64_t now_us)
@@ -411,7 +431,9 @@ static void check_silence(struct process *process, const struct silence_limits *
         process->pinged_us = 0;
         return;
     }
-    int64_t ping_ms = process->is_awaited ? limits->awaited_ping_ms : limits->ping_ms;
+    int64_t ping_ms = process->is_awaited           ? limits->awaited_ping_ms
+                      : is_resting(process, now_us) ? PROCESS_REST_MS
+                                                    : limits->ping_ms;
     if (!process->pinged_us) {
         if ((now_us - process->heard_us) / 1000 >= ping_ms)
             send_ping(process, now_us);

@@ -7,10 +7,12 @@
 #include "server/fleet/watch_event.h"
 
 enum {
-    PROCESS_MAX_OUTPUT = 256 << 10,  /* bytes a program may print; with progress: in one line */
-    PROCESS_MAX_OUTGOING = 64 << 20, /* bytes one renderer may leave unread before it counts as hung */
-    PROCESS_MAX_BACKLOG = 256 << 20, /* memory of one renderer's packets not yet handled; then it is not read from */
-    PROCESS_MAX_PROGRESS = 128 << 10 /* the same of a program's lines: some hundred */
+    PROCESS_MAX_OUTPUT = 256 << 10,   /* bytes a program may print; with progress: in one line */
+    PROCESS_MAX_OUTGOING = 64 << 20,  /* bytes one renderer may leave unread before it counts as hung */
+    PROCESS_MAX_BACKLOG = 256 << 20,  /* memory of one renderer's packets not yet handled; then it is not read from */
+    PROCESS_MAX_PROGRESS = 128 << 10, /* the same of a program's lines: some hundred */
+    PROCESS_RESTS_AFTER_MS = 5000, /* without a packet either way but pings; from then on a renderer is looked at ... */
+    PROCESS_REST_MS = 60000        /* ... so rarely: nobody waits for it, and its end is reported by itself */
 };
 
 /* A renderer's silence counts from the first ping that is not answered, and only while the watch itself runs. */
@@ -43,6 +45,8 @@ void process_send(struct process *process, uint8_t *bytes, size_t n_bytes, int64
 void process_stop(struct process *process, bool at_once, const char *reason, int64_t now_us);
 void process_await(struct process *process, bool is_awaited);
 bool process_is_awaited(const struct process *process);
+/* When it is to be stepped at the latest if nothing happens to it, and it rests; 0: it does not rest. */
+int64_t process_rests_until_us(const struct process *process, int64_t now_us);
 /* True while its backlog is full: it is not read from. */
 bool process_is_throttled(const struct process *process);
 

@@ -348,6 +348,14 @@ static void scan_found(struct fleet *fleet)
     }
 }
 
+bool uploads_rest(const struct fleet *fleet)
+{
+    for (const struct upload *upload = fleet->uploads; upload; upload = upload->next)
+        if (!has_ended(upload))
+            return false;
+    return true;
+}
+
 void uploads_tick(struct fleet *fleet)
 {
     int64_t now_us = fleet_now_us(fleet);

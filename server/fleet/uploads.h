@@ -9,4 +9,5 @@ struct watch_event;
 void uploads_tick(struct fleet *fleet);
 /* A line or the end of a process. Returns true when the process was an upload's. */
 bool uploads_event(struct fleet *fleet, const struct watch_event *event);
+bool uploads_rest(const struct fleet *fleet); /* all have ended */
 void uploads_destroy(struct fleet *fleet);

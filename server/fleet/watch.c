@@ -23,7 +23,7 @@ enum {
     BUSY_POLL_MS = 20,     /* while an event or a throttled process waits for the net thread */
     AWAITED_POLL_MS = 100, /* while an answer is awaited */
     CALM_POLL_MS = 250,    /* while there are processes: pings, memory, limits */
-    LONGEST_STEP_MS = 500, /* between two steps; of a longer time the rest does not count, the thread did not run */
+    LONGEST_STEP_MS = 500, /* beyond what it meant to wait; the rest does not count, the thread did not run */
     BLIND_POLL_MS = 50,    /* where the kernel has no pidfd to poll */
     STOP_ALL_US = 2000000
 };
@@ -59,6 +59,7 @@ struct watch {
     bool is_quitting;
     int64_t quit_at_us;
     struct run_clock clock;
+    int64_t planned_us; /* how long it meant to wait at most */
 };
 
 static void free_texts(char **texts)
@@ -240,6 +241,19 @@ static void carry_out(struct watch *watch, struct order *order, int64_t now_us)
     order_destroy(order);
 }
 
+/* While all renderers rest: until one of them is to be looked at; else CALM_POLL_MS. */
+static int calm_ms(const struct watch *watch)
+{
+    const int64_t now_us = run_clock_us(&watch->clock);
+    int64_t until_us = INT64_MAX;
+    for (size_t i = 0; i < watch->n_processes; i++) {
+        int64_t rests_us = process_rests_until_us(watch->processes[i], now_us);
+        until_us = rests_us < until_us ? rests_us : until_us;
+    }
+    int64_t ms = (until_us - now_us) / 1000;
+    return ms <= CALM_POLL_MS ? CALM_POLL_MS : ms < PROCESS_REST_MS ? (int)ms : PROCESS_REST_MS;
+}
+
 static int poll_ms(const struct watch *watch)
 {
     bool is_busy = watch->held || watch->is_quitting;
@@ -253,7 +267,7 @@ static int poll_ms(const struct watch *watch)
     }
     if (watch->n_processes == 0 && !is_busy)
         return -1;
-    return is_busy ? BUSY_POLL_MS : is_blind ? BLIND_POLL_MS : is_awaited ? AWAITED_POLL_MS : CALM_POLL_MS;
+    return is_busy ? BUSY_POLL_MS : is_blind ? BLIND_POLL_MS : is_awaited ? AWAITED_POLL_MS : calm_ms(watch);
 }
 
 static void wait_for_something(struct watch *watch)
@@ -263,7 +277,9 @@ static void wait_for_something(struct watch *watch)
     size_t n = 1;
     for (size_t i = 0; i < watch->n_processes && !watch->held; i++)
         n += process_poll(watch->processes[i], polled + n);
-    (void)poll(polled, (nfds_t)n, poll_ms(watch));
+    const int ms = poll_ms(watch);
+    watch->planned_us = ms > 0 ? ms * 1000LL : 0;
+    (void)poll(polled, (nfds_t)n, ms);
     uint64_t count;
     if (read(watch->wake_fd, &count, sizeof count) < 0)
         return; /* nothing was ordered */
@@ -290,7 +306,7 @@ static void *watch_main(void *argument)
     struct watch *watch = argument;
     while (!watch->is_quitting || watch->n_processes > 0) {
         wait_for_something(watch);
-        run_clock_step(&watch->clock, LONGEST_STEP_MS * 1000LL);
+        run_clock_step(&watch->clock, watch->planned_us + LONGEST_STEP_MS * 1000LL);
         int64_t now_us = run_clock_us(&watch->clock);
         for (struct order *order; (order = queue_try_take(watch->orders));)
             carry_out(watch, order, now_us);

@@ -24,6 +24,7 @@ enum {
     FLEET_TICK_US = 250000,
     CALM_AFTER_US = 5000000, /* without a call and a message */
     CALM_TICK_US = 1000000,
+    REST_TICK_US = 60000000,    /* while nothing is under way that depends on time */
     FAREWELL_US = 1000000,      /* at the end, for the byes to be sent */
     RESTART_RETRY_MS = 2000,    /* when pages reconnect after a stop: about the time of a restart */
     MAX_EARLY_BYTES = 256 << 10 /* what a connection may say while its room is being read from the disk */
@@ -51,15 +52,31 @@ static void handle_due(struct net *net)
     keep_write_due(net, false);
 }
 
+/* Time until the next tick while nobody does anything. */
+static int64_t calm_tick_us(struct net *net, int64_t now_us)
+{
+    const int64_t room_us = rooms_idle_left_us(net, now_us),
+                  rest_us = fleet_rest_us(net->fleet, room_us < REST_TICK_US ? room_us : REST_TICK_US);
+    return rest_us > CALM_TICK_US ? rest_us : CALM_TICK_US;
+}
+
+/* What came may have begun something that depends on time. */
+static void tick_within(struct net *net, int64_t within_us)
+{
+    const int64_t at_us = clock_now_us() + within_us;
+    if (net->fleet_tick_us > at_us)
+        net->fleet_tick_us = at_us;
+}
+
 static void timer_fired(void *context)
 {
     struct net *net = context;
     int64_t now_us = clock_now_us();
     if (now_us >= net->fleet_tick_us) {
-        net->fleet_tick_us = now_us + (now_us < net->calm_from_us ? FLEET_TICK_US : CALM_TICK_US);
         fleet_tick(net->fleet);
         rooms_close_idle(net);
         keep_write_due(net, false);
+        net->fleet_tick_us = now_us + (now_us < net->calm_from_us ? FLEET_TICK_US : calm_tick_us(net, now_us));
     }
     handle_due(net);
 }
@@ -158,10 +175,8 @@ static void message_received(void *context, struct ws_connection *connection, en
 /* Somebody does something: what depends on time is looked at often again. */
 static void leave_calm(struct net *net)
 {
-    int64_t now_us = clock_now_us();
-    net->calm_from_us = now_us + CALM_AFTER_US;
-    if (net->fleet_tick_us > now_us + FLEET_TICK_US)
-        net->fleet_tick_us = now_us + FLEET_TICK_US;
+    net->calm_from_us = clock_now_us() + CALM_AFTER_US;
+    tick_within(net, FLEET_TICK_US);
 }
 
 /* Once for all messages that have come together: two hundred members acknowledge each picture. */
@@ -274,6 +289,7 @@ static void woken(void *context)
 {
     struct net *net = context;
     fleet_handle_events(net->fleet);
+    tick_within(net, CALM_TICK_US);
     if (run_tasks(net)) { /* a task may have changed any room */
         leave_calm(net);
         keep_write_due(net, false);
@@ -372,8 +388,10 @@ static void *work(void *context)
     store_destroy(net->store); /* writes what it was handed over */
     net->store = NULL;
     int64_t end_us = clock_now_us() + FAREWELL_US;
-    while (n_connections(net) && clock_now_us() < end_us)
-        ws_serve(net->ws);     /* fleet_tick wakes it four times a second */
+    while (n_connections(net) && clock_now_us() < end_us) {
+        ws_wake_at(net->ws, end_us);
+        ws_serve(net->ws);
+    }
     fleet_destroy(net->fleet); /* calls every outstanding reply, which may post tasks */
     net->fleet = NULL;
     run_tasks(net);

@@ -136,6 +136,18 @@ static bool put_to_sleep(struct net *net, size_t index)
     return true;
 }
 
+int64_t rooms_idle_left_us(const struct net *net, int64_t now_us)
+{
+    int64_t least_us = INT64_MAX;
+    for (size_t i = 0; net->room_idle_close_s > 0 && i < net->n_rooms; i++) {
+        const int64_t since_us = net->rooms[i]->empty_since_us,
+                      left_us = since_us + net->room_idle_close_s * INT64_C(1000000) - now_us;
+        if (since_us && left_us < least_us)
+            least_us = left_us;
+    }
+    return least_us > 0 ? least_us : 0;
+}
+
 void rooms_close_idle(struct net *net)
 {
     int64_t now_us = clock_now_us(), after_us = net->room_idle_close_s * INT64_C(1000000);

@@ -7,5 +7,7 @@ struct net_room *rooms_find(const struct net *net, const char *id);
 void rooms_close(struct net *net, size_t index);
 /* Puts rooms to sleep that nobody was in for a while; deletes those that nobody ever used. */
 void rooms_close_idle(struct net *net);
+/* Time until the next one is due for that; INT64_MAX: none will be. */
+int64_t rooms_idle_left_us(const struct net *net, int64_t now_us);
 /* A room that sleeps was read from the disk, or cannot be. */
 void rooms_was_read(struct net *net, const struct store_answer *answer);

@@ -101,8 +101,13 @@ static void set_option(int socket, int level, int name, int value)
     }
 }
 
-/* When the connection could next be late: with its hello, or silent for so long that a ping is due. In whole seconds,
- * so that the thread wakes up once for all connections that are checked in the same second. */
+/* The next whole second: the thread wakes up once for all connections that are checked in it. */
+static int64_t whole_second_after(int64_t time_us)
+{
+    return time_us / CHECK_EVERY_US * CHECK_EVERY_US + CHECK_EVERY_US;
+}
+
+/* When the connection could next be late: with its hello, or silent for so long that a ping is due. */
 static void check_later(struct ws_connection *connection, bool is_greeted)
 {
     const int64_t now_us = clock_now_us(), ping_us = WS_PING_AFTER_S * INT64_C(1000000);
@@ -110,7 +115,7 @@ static void check_later(struct ws_connection *connection, bool is_greeted)
     int64_t due_us = connection->heard_us + (n_pings + 1) * ping_us;
     if (!is_greeted && due_us > connection->opened_us + WS_HELLO_WITHIN_S * INT64_C(1000000))
         due_us = connection->opened_us + WS_HELLO_WITHIN_S * INT64_C(1000000);
-    ws_check_at(connection, (due_us > now_us ? due_us : now_us) / CHECK_EVERY_US * CHECK_EVERY_US + CHECK_EVERY_US);
+    ws_check_at(connection, whole_second_after(due_us > now_us ? due_us : now_us));
 }
 
 static void start(struct ws_connection *connection, int socket, const char *room_id, const struct ws_count *count)
@@ -244,6 +249,19 @@ static int receive(struct ws_connection *connection, const uint8_t *bytes, size_
     return out_answer_now(connection);
 }
 
+/* Pings a connection that is silent for half of the time to its next ping, when the thread is awake for another one's:
+ * so all members that keep still are pinged in one wake-up. */
+static void ping_early(struct ws_connection *connection, int64_t now_us)
+{
+    struct ws *ws = connection->ws;
+    const int64_t ping_us = WS_PING_AFTER_S * INT64_C(1000000), silent_us = now_us - connection->heard_us;
+    if (connection->state != STATE_OPEN || connection->pongs.first || silent_us < ping_us / 2 || silent_us >= ping_us ||
+        !ws->callbacks.is_greeted(ws->callbacks.context, connection))
+        return;
+    out_add_ping(connection);
+    connection->check_us = whole_second_after(connection->heard_us + 2 * ping_us);
+}
+
 static int check_connection(struct ws_connection *connection)
 {
     struct ws *ws = connection->ws;
@@ -318,10 +336,13 @@ static void check_connections(struct ws *ws)
     ws->check_us = INT64_MAX;
     for (struct ws_connection *connection = ws->connections, *next; connection; connection = next) {
         next = connection->next;
-        if (now_us < connection->check_us)
-            ws_check_at(connection, connection->check_us);
-        else if (check_connection(connection) != 0)
-            cut(connection);
+        if (now_us >= connection->check_us) {
+            if (check_connection(connection) != 0)
+                cut(connection);
+            continue;
+        }
+        ping_early(connection, now_us);
+        ws_check_at(connection, connection->check_us);
     }
 }
 
