@@ -95,7 +95,7 @@ static void begin(const char *const *batches)
 {
     const struct room_recording facts = { .id = "rec-1", .length_ms = 10000, .state = WIRE_RECORDING_STATE_STOPPED };
     disk = batches;
-    room_replay_begin(fake.room, "k3rw-8vxa", &facts, fake.now_us);
+    room_replay_begin(fake.room, "k3rw-8vxa", 0, &facts, fake.now_us);
     fake_plan_ready(&fake, true);
     fake_hello(&fake, &page);
 }
