@@ -70,6 +70,7 @@ void api_room_bookmark_picture(struct api *api, struct call *call)
     struct fleet_plan plan;
     struct room *room;
     uint32_t version;
+    char shared_as[API_SHARED_AS_SIZE];
     cJSON *body = find_bookmark(api, call, &room, &version);
     if (!body)
         return;
@@ -81,9 +82,10 @@ void api_room_bookmark_picture(struct api *api, struct call *call)
         opened = room_bookmark_open(room, body, &problem);
         view = opened ? pictured(opened, &problem) : NULL;
     }
+    (void)snprintf(shared_as, sizeof shared_as, "bookmark %.63s %.63s %u", call->ids[0], call->ids[1], version);
     if (view)
         api_picture_request(api, call, room_plan_id(room), cJSON_GetObjectItemCaseSensitive(opened, "scene"), NULL,
-                            view, "jpeg", PICTURE_QUALITY, false);
+                            view, "jpeg", PICTURE_QUALITY, false, shared_as);
     else
         call_answer_problem(call, &problem);
     cJSON_Delete(view);

@@ -8,10 +8,16 @@
 #include "core/base/mem.h"
 #include "server/wire/missing.h"
 
+struct sharer {
+    struct sharer *next;
+    struct call *call;
+};
+
 struct api_picture {
     struct api_picture *next;
-    struct call *call;
-    char plan_id[64];
+    struct api *api;
+    struct sharer *sharers; /* the calls that it answers, the first of them first */
+    char plan_id[64], shared_as[API_SHARED_AS_SIZE];
     double n_pixels;
     bool has_revision; /* the picture shows a room's scene: its revision is sent along */
 };
@@ -22,9 +28,31 @@ static double pixels_of(const cJSON *view)
     return cJSON_GetNumberValue(cJSON_GetArrayItem(size, 0)) * cJSON_GetNumberValue(cJSON_GetArrayItem(size, 1));
 }
 
-/* Notes a picture under way; answers the call with 503 and returns false when the plan has too many. Scripts and rooms
+/* The call waits for the picture, too. */
+static void add_sharer(struct api_picture *picture, struct call *call)
+{
+    struct sharer *sharer = mem_new(sizeof *sharer), **at = &picture->sharers;
+    *sharer = (struct sharer){ .call = call };
+    while (*at)
+        at = &(*at)->next;
+    *at = sharer;
+    picture->api->n_waiting_for_pictures++;
+}
+
+/* True: the same picture is being drawn already, and answers this call, too. */
+static bool is_shared(struct api *api, struct call *call, const char *plan_id, const char *shared_as)
+{
+    for (struct api_picture *picture = api->pictures; picture && shared_as; picture = picture->next)
+        if (strcmp(picture->plan_id, plan_id) == 0 && strcmp(picture->shared_as, shared_as) == 0) {
+            add_sharer(picture, call);
+            return true;
+        }
+    return false;
+}
+
+/* Notes a picture under way; answers the call with 503 and returns NULL when the plan has too many. Scripts and rooms
  * share a plan's renderer: without a limit a script could keep it from the rooms. */
-static bool start_picture(struct api *api, struct call *call, const char *plan_id, const cJSON *view, bool has_revision)
+static struct api_picture *start_picture(struct api *api, struct call *call, const char *plan_id, const cJSON *view)
 {
     size_t n = 0;
     double n_pixels = pixels_of(view), n_before = 0;
@@ -39,46 +67,20 @@ static bool start_picture(struct api *api, struct call *call, const char *plan_i
                     "%zu pictures of this plan are being made already, of %.0f million pixels", n, n_before / 1e6);
         problem.retry_after_ms = 1000;
         call_answer_problem(call, &problem);
-        return false;
+        return NULL;
     }
     struct api_picture *picture = mem_new(sizeof *picture);
-    picture->next = api->pictures;
-    picture->call = call;
-    picture->n_pixels = n_pixels;
-    picture->has_revision = has_revision;
+    *picture = (struct api_picture){ .next = api->pictures, .api = api, .n_pixels = n_pixels };
     (void)snprintf(picture->plan_id, sizeof picture->plan_id, "%s", plan_id);
+    add_sharer(picture, call);
     api->pictures = picture;
-    return true;
+    api->n_pictures++;
+    return picture;
 }
 
-/* The picture is answered. Returns true when it showed a room's scene. */
-static bool end_picture(struct api *api, const struct call *call)
+/* Answers with the bytes, which are taken. */
+static void answer_picture(struct call *call, const struct packet *answer, bool has_revision, uint8_t *bytes)
 {
-    for (struct api_picture **at = &api->pictures; *at; at = &(*at)->next)
-        if ((*at)->call == call) {
-            struct api_picture *picture = *at;
-            bool has_revision = picture->has_revision;
-            *at = picture->next;
-            free(picture);
-            return has_revision;
-        }
-    return false;
-}
-
-static void picture_came(void *context, struct packet *answer, const struct problem *problem)
-{
-    struct call *call = context;
-    struct problem broken;
-    bool has_revision = end_picture(call->api, call);
-    if (problem) {
-        call_answer_problem(call, problem);
-        return;
-    }
-    if (!answer->blob || answer->n_blob < 4) {
-        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no picture");
-        call_answer_problem(call, &broken);
-        return;
-    }
     char timing[96], revision[24];
     (void)snprintf(timing, sizeof timing, "render;dur=%.1f, encode;dur=%.1f", (double)answer->frame.render_us / 1000,
                    (double)answer->frame.encode_us / 1000);
@@ -92,14 +94,46 @@ static void picture_came(void *context, struct packet *answer, const struct prob
     if (missing)
         call_add_header(call, "Beamroom-Missing", words);
     cJSON_Delete(missing);
-    uint8_t *bytes = answer->blob;
-    answer->blob = NULL;
     call_answer_bytes(call, 200, bytes[0] == 0xff ? "image/jpeg" : "image/png", bytes, answer->n_blob);
+}
+
+static void picture_came(void *context, struct packet *answer, const struct problem *problem)
+{
+    struct api_picture *picture = context, **at = &picture->api->pictures;
+    struct problem broken;
+    while (*at != picture)
+        at = &(*at)->next;
+    *at = picture->next;
+    if (!problem && (!answer->blob || answer->n_blob < 4)) {
+        problem_set(&broken, PROBLEM_RENDERER, "", "", "the renderer's answer has no picture");
+        problem = &broken;
+    }
+    while (picture->sharers) {
+        struct sharer *sharer = picture->sharers;
+        uint8_t *bytes = !problem && sharer->next ? malloc(answer->n_blob) : NULL;
+        picture->sharers = sharer->next;
+        picture->api->n_waiting_for_pictures--;
+        if (bytes) {
+            memcpy(bytes, answer->blob, answer->n_blob);
+        } else if (!problem && !sharer->next) {
+            bytes = answer->blob;
+            answer->blob = NULL;
+        }
+        if (bytes) {
+            answer_picture(sharer->call, answer, picture->has_revision, bytes);
+        } else {
+            struct problem memory;
+            problem_set(&memory, PROBLEM_MEMORY, "", "", "there is no memory for the picture");
+            call_answer_problem(sharer->call, problem ? problem : &memory);
+        }
+        free(sharer);
+    }
+    free(picture);
 }
 
 void api_picture_request(struct api *api, struct call *call, const char *plan_id, const cJSON *scene,
                          const uint32_t *revision, const cJSON *view, const char *format, double quality,
-                         bool annotations)
+                         bool annotations, const char *shared_as)
 {
     struct problem problem;
     bool is_jpeg = format && strcmp(format, "jpeg") == 0;
@@ -115,8 +149,13 @@ void api_picture_request(struct api *api, struct call *call, const char *plan_id
         call_answer_problem(call, &problem);
         return;
     }
-    if (!start_picture(api, call, plan_id, view, revision != NULL))
+    if (is_shared(api, call, plan_id, shared_as))
         return;
+    struct api_picture *picture = start_picture(api, call, plan_id, view);
+    if (!picture)
+        return;
+    picture->has_revision = revision != NULL;
+    (void)snprintf(picture->shared_as, sizeof picture->shared_as, "%s", shared_as ? shared_as : "");
     struct packet packet;
     packet_init(&packet, PACKET_RENDER);
     packet.render.shown.scene = scene;
@@ -128,7 +167,7 @@ void api_picture_request(struct api *api, struct call *call, const char *plan_id
     packet.render.full_color = true;
     packet.render.still = true;
     packet.render.annotations = annotations;
-    (void)fleet_request(net_fleet(api->net), plan_id, &packet, picture_came, call);
+    (void)fleet_request(net_fleet(api->net), plan_id, &packet, picture_came, picture);
 }
 
 cJSON *api_view_parameter(struct call *call)

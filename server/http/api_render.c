@@ -79,7 +79,8 @@ static void render_when_ready(void *context, struct packet *answer, const struct
         goto refuse;
     }
     api_picture_request(api, call, request->plan_id, shown, NULL, view, json_text(request->body, "format"),
-                        json_number(request->body, "quality", 92), json_flag(request->body, "annotations", false));
+                        json_number(request->body, "quality", 92), json_flag(request->body, "annotations", false),
+                        NULL);
     goto done;
 refuse:
     call_answer_problem(call, &problem);

@@ -7,6 +7,7 @@ enum {
     API_MAX_JOBS = 500,        /* kept; the oldest is forgotten */
     API_MAX_PICTURES = 32,     /* requested by calls of one plan's renderer and not yet answered; then 503 */
     API_MAX_PIXELS = 32 << 20, /* of these together; a single picture may be larger */
+    API_SHARED_AS_SIZE = 160,  /* bytes of what tells shared pictures apart, with the final zero */
     API_MAX_FILES = 4,         /* surfaces requested as files, of all plans: each may have PACKET_MAX_BLOB bytes */
     API_MAX_TIMINGS = 2        /* shapes being timed, of all plans */
 };
@@ -30,10 +31,12 @@ struct api {
     uint64_t max_upload_bytes;
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
-    struct api_picture *pictures; /* requested and not yet answered */
-    struct api_display *displays; /* screens that look at rooms */
-    size_t n_files, n_timings;    /* under way */
-    size_t n_jobs;                /* ever made; job n is at index n % API_MAX_JOBS */
+    struct api_picture *pictures;  /* requested and not yet answered */
+    size_t n_waiting_for_pictures; /* calls that these answer */
+    uint64_t n_pictures;           /* ever requested */
+    struct api_display *displays;  /* screens that look at rooms */
+    size_t n_files, n_timings;     /* under way */
+    size_t n_jobs;                 /* ever made; job n is at index n % API_MAX_JOBS */
     _Atomic uint64_t n_calls[6],
         n_calls_us; /* by status / 100, and time spent; counted by the HTTP thread, read by /metrics */
 };

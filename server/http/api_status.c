@@ -129,6 +129,9 @@ void api_metrics(struct api *api, struct call *call)
         "# HELP beamroom_http_requests_total Requests by class of status.\n# TYPE beamroom_http_requests_total counter\n");
     for (int class = 1; class < 6; class ++)
         text_add(&text, "beamroom_http_requests_total{code=\"%dxx\"} %" PRIu64 "\n", class, api->n_calls[class]);
+    add_metric(&text, "http_pictures_total", "counter", "Pictures asked for by them.", (double)api->n_pictures);
+    add_metric(&text, "http_pictures_waiting", "gauge", "Requests that wait for a picture.",
+               (double)api->n_waiting_for_pictures);
     add_metric(&text, "http_seconds_total", "counter", "Time spent on them.", (double)api->n_calls_us / 1e6);
     const struct problem *problem = NULL;
     const cJSON *gl = fleet_gl(fleet, &problem);

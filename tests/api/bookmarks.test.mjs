@@ -4,7 +4,7 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { call, openPlan, startDaemon, until } from './daemon.mjs';
+import { call, openPlan, renderersOf, startDaemon, until } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
 
 let daemon;
@@ -97,6 +97,35 @@ test('what makes no room says why', async () => {
   }
   assert.equal((await fetch(`${daemon.url}/p/none`, { redirect: 'manual' })).status, 404);
   assert.equal((await fetch(`${daemon.url}/p/..%2f`, { redirect: 'manual' })).status, 404);
+});
+
+test('who asks for the picture of a bookmark while it is drawn for somebody else shares the drawing', { timeout: 120000 }, async () => {
+  const room = await newRoom();
+  const ann = await enter(room, 'Ann');
+  await sceneOf(room);
+  const row = await put(ann, { name: 'One' });
+  const other = await put(ann, { name: 'Two' });
+  const metric = async (name) => Number(new RegExp(`^beamroom_http_pictures_${name} (\\d+)$`, 'm').exec(await (await fetch(`${daemon.url}/metrics`)).text())[1]);
+  let before, pictures;
+  for (let n = 1; n <= 5; n++) { // a renderer that stands for some seconds, as on a busy machine, is replaced
+    before = await metric('total');
+    const [renderer] = renderersOf(daemon.child.pid);
+    process.kill(renderer, 'SIGSTOP'); // the pictures are under way until all have asked
+    const asked = [row, row, row, other].map(({ id }) => fetch(`${api}/rooms/${room}/bookmarks/${id}/picture`));
+    await until(async () => [await metric('total') - before, await metric('waiting')], ([drawn, waiting]) => drawn === 2 && (waiting === asked.length || waiting === 0), 20000).catch(() => {});
+    try {
+      process.kill(renderer, 'SIGCONT');
+    } catch { /* it was replaced */ }
+    pictures = await Promise.all(asked.map(async (one) => [(await one).status, Buffer.from(await (await one).arrayBuffer()).toString('base64')]));
+    if (pictures.every(([status]) => status === 200)) break;
+    await openPlan(daemon.url, 'phantom');
+  }
+  assert.deepEqual(pictures.map(([status]) => status), [200, 200, 200, 200]);
+  assert.equal(new Set(pictures.slice(0, 3).map(([, bytes]) => bytes)).size, 1);
+  assert.deepEqual([await metric('total') - before, await metric('waiting')], [2, 0]);
+  assert.equal((await fetch(`${api}/rooms/${room}/bookmarks/${row.id}/picture`)).status, 200);
+  assert.equal(await metric('total') - before, 3, 'one that comes later is drawn anew');
+  ann.cut();
 });
 
 test('bookmarks of each version open, and what cannot be shown is named', { timeout: 120000 }, async () => {
