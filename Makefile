@@ -234,7 +234,7 @@ test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
 # Long ones: what waits for a minute, and what looks at every size of window (LONG_TESTS=rest: at those that test-web leaves out)
 LONG_TESTS ?= 1
-SLOW_NODE := tests/api/slow.test.mjs
+SLOW_NODE := tests/api/slow.test.mjs tests/api/slow_disk.test.mjs
 LONG_NODE := $(SLOW_NODE) tests/api/kills.test.mjs tests/web/charts.test.mjs tests/web/dose.test.mjs tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs tests/web/image.test.mjs tests/web/measure.test.mjs tests/web/axe.test.mjs tests/web/layout.test.mjs tests/web/roster.test.mjs tests/web/start.test.mjs
 # What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest waits for most of its time.
 ALONE_NODE := tests/api/burst.test.mjs tests/api/fair.test.mjs

@@ -50,6 +50,7 @@ static const struct api_route api_routes[] = {
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
     { "GET", "/p/{saved}", api_permalink },
 };
+static const char in_room[] = "/api/v1/rooms/{room}";
 static const size_t api_n_routes = sizeof api_routes / sizeof api_routes[0];
 
 struct api *api_create(struct net *net, uint64_t max_upload_bytes)
@@ -144,15 +145,24 @@ static void room_awoke(void *context, const char *room_id, const struct problem 
 /* True: the call needs a room that sleeps, and waits for it. */
 static bool wakes_room(struct api *api, struct call *call, const struct api_route *route)
 {
-    static const char in_room[] = "/api/v1/rooms/{room}";
     const char *room = call_query(call, "room");
     bool is_for_awake = call->method == CALL_DELETE || route->handle == api_room_ws || route->handle == api_room_stream;
-    if (strncmp(route->path, in_room, sizeof in_room - 1) == 0)
+    if (strncmp(route->path, in_room, strlen(in_room)) == 0)
         room = is_for_awake ? NULL : call->ids[0];
     if (!room || !net_room_is_asleep(api->net, room))
         return false;
     net_room_wake(api->net, room, room_awoke, call);
     return true;
+}
+
+/* False with problem: the call is about a room or a bookmark that may be on the disk, which cannot be read yet. */
+static bool room_can_be_looked_for(struct api *api, const struct call *call, const struct api_route *route,
+                                   struct problem *problem)
+{
+    const bool is_of_room = strncmp(route->path, in_room, strlen(in_room)) == 0;
+    if (is_of_room ? net_room_find(api->net, call->ids[0]) != NULL : route->handle != api_permalink)
+        return true;
+    return net_rooms_are_known(api->net, problem);
 }
 
 void api_handle(struct api *api, struct call *call)
@@ -184,7 +194,7 @@ void api_handle(struct api *api, struct call *call)
             call->route = route.path;
             if (wakes_room(api, call, &route))
                 return;
-            if (!has_right(api, call, &route, &problem)) {
+            if (!room_can_be_looked_for(api, call, &route, &problem) || !has_right(api, call, &route, &problem)) {
                 call_answer_problem(call, &problem);
                 return;
             }

@@ -120,7 +120,8 @@ void api_room_new(struct api *api, struct call *call)
         problem_set(&problem, PROBLEM_VALIDATION, "/plan", "pattern", "\"plan\" must be the id of a plan");
     else if (saved && problem.type == PROBLEM_NONE)
         bookmark = find_saved(api, saved, &plan_id, &problem);
-    if (problem.type == PROBLEM_NOT_FOUND && api_bookmark_sleeps(api, call, saved->valuestring, api_room_new)) {
+    if (problem.type == PROBLEM_NOT_FOUND && net_rooms_are_known(api->net, &problem) &&
+        api_bookmark_sleeps(api, call, saved->valuestring, api_room_new)) {
         cJSON_Delete(body);
         return;
     }

@@ -81,11 +81,21 @@ static void timer_fired(void *context)
     handle_due(net);
 }
 
+bool net_rooms_are_known(const struct net *net, struct problem *problem)
+{
+    if (!net->store || net->store_was_open)
+        return true;
+    problem_set(problem, PROBLEM_BUSY, "", "", "the rooms on the server's disk cannot be read yet");
+    problem->retry_after_ms = 1000;
+    return false;
+}
+
 /* ---- connections ------------------------------------------------------------------------------------------------ */
 
 static bool has_room(void *context, const char *id)
 {
-    return rooms_find(context, id) != NULL || asleep_find(context, id) != NULL;
+    struct problem problem;
+    return rooms_find(context, id) || asleep_find(context, id) || !net_rooms_are_known(context, &problem);
 }
 
 static void free_early(struct visitor *visitor)
@@ -144,6 +154,7 @@ static void keep_early(struct visitor *visitor, const char *text, size_t n)
 static void connection_opened(void *context, struct ws_connection *connection, const char *id)
 {
     struct net *net = context;
+    struct problem problem;
     struct visitor *visitor = mem_new(sizeof *visitor);
     *visitor = (struct visitor){ .next = net->visitors, .connection = connection, .room = rooms_find(net, id) };
     net->visitors = visitor;
@@ -153,8 +164,10 @@ static void connection_opened(void *context, struct ws_connection *connection, c
         asleep_wake(net, id, let_in, net);
     } else if (visitor->room)
         bridge_enter(visitor);
-    else
+    else if (net_rooms_are_known(net, &problem))
         ws_bye(connection, WS_CLOSE_NORMAL, "the room is closed", -1);
+    else
+        ws_bye(connection, WS_CLOSE_NORMAL, problem.detail, problem.retry_after_ms);
 }
 
 static void message_received(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *text,
@@ -193,6 +206,8 @@ static bool is_greeted(void *context, struct ws_connection *connection)
 {
     const struct visitor *visitor = ws_owner(connection);
     (void)context;
+    if (visitor->asleep[0]) /* it has said something, and the disk is slow to give the room */
+        return visitor->early != NULL;
     return visitor->room && room_has_member(visitor->room->room, connection);
 }
 
@@ -236,6 +251,7 @@ static void handle_answer(struct net *net, void *argument)
     struct store_answer *answer = argument;
     switch (answer->event) {
     case STORE_OPENED:
+        net->store_was_open = true;
         keep_audit_written(net, answer);
         asleep_add_all(net, answer->rooms, answer->n_rooms);
         if (answer->is_new)

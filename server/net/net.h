@@ -80,6 +80,9 @@ struct room *net_replay_create(struct net *net, const struct room *of_room, cons
 size_t net_n_asleep(const struct net *net);
 /* As room_document, without members; the one last used is at 0. */
 NODISCARD cJSON *net_asleep_document(const struct net *net, size_t index);
+/* False with problem busy: the database could not be opened since the start, so a room that is not found may be there.
+ */
+NODISCARD bool net_rooms_are_known(const struct net *net, struct problem *problem);
 /* False: too many rows of the audit wait for the disk. */
 bool net_audit_has_place(const struct net *net);
 /* Records what happened in no room that is in memory. room, plan: "" none; detail is taken. */

@@ -110,6 +110,7 @@ struct net {
     size_t n_audit_waiting; /* rows that are not on disk yet, of all rooms, those under way included */
     uint64_t n_audit_lost;  /* rows that found neither disk nor memory since the last row that did */
     struct net_audit_head audit_head;
+    bool store_was_open;                /* so the rooms that sleep are known */
     int64_t fleet_tick_us;              /* when fleet_tick is due */
     int64_t calm_from_us;               /* unless somebody does something before, fleet_tick is rare from then on */
     int64_t due_us;                     /* not after the earliest time that a room is due: schedule.h */

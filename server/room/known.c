@@ -71,15 +71,27 @@ void known_add_member(struct room *room, const struct member *member)
     known_add(room, &kept);
 }
 
+/* -1: there is none. */
+static int find(const struct room *room, const char *id, const char *secret)
+{
+    for (int i = 0; i < room->n_known && id[0]; i++)
+        if (strcmp(room->known[i].id, id) == 0 && secret_matches(secret, room->known[i].secret_hash))
+            return i;
+    return -1;
+}
+
+bool known_has(const struct room *room, const char *id, const char *secret)
+{
+    return find(room, id, secret) >= 0;
+}
+
 struct member *known_back(struct room *room, const char *id, const char *secret)
 {
-    for (int i = 0; i < room->n_known && id[0]; i++) {
-        if (strcmp(room->known[i].id, id) != 0 || !secret_matches(secret, room->known[i].secret_hash))
-            continue;
-        struct member *member = mem_new(sizeof *member);
-        known_read(&room->known[i], member);
-        known_remove(room, i);
-        return member;
-    }
-    return NULL;
+    const int index = find(room, id, secret);
+    if (index < 0)
+        return NULL;
+    struct member *member = mem_new(sizeof *member);
+    known_read(&room->known[index], member);
+    known_remove(room, index);
+    return member;
 }

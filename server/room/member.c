@@ -178,7 +178,8 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     enum wire_member_role role = role_of_newcomer(room);
     struct link *link = NULL;
     const char *refusal = NULL;
-    if (!member && hello->link[0] && (refusal = link_find(room, hello->link, hello->person, &link)) != NULL) {
+    const bool is_known = member || known_has(room, hello->member, hello->secret); /* whatever became of their link */
+    if (!is_known && hello->link[0] && (refusal = link_find(room, hello->link, hello->person, &link)) != NULL) {
         refuse_link(room, connection, hello->name, refusal);
         return false;
     }

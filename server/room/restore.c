@@ -139,7 +139,7 @@ void room_restore(struct room *room, const struct room_kept *kept, int64_t now_u
     room->now_us = now_us;
     room->created_at_s = kept->created_at_s;
     room->revision = kept->revision;
-    room->n_named = kept->n_named;
+    room->n_named = kept->n_named > room->n_named ? kept->n_named : room->n_named; /* items were restored before */
     room->is_changed = true;
     cJSON *scene = read_json(room, kept->scene, "the scene");
     if (cJSON_IsObject(scene))

@@ -1,7 +1,7 @@
 // Rooms outlive the daemon: killed at once and started again, put to sleep and woken, deleted, backed up. --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readdirSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, renameSync, rmdirSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -93,6 +93,36 @@ test('rooms, scenes, revisions, shared views and members are back after the daem
   assert.equal(woken.json.revision, other.revision);
   assert.equal(woken.json.asleep, false);
   assert.equal((await until(() => call(`${daemon.api}/rooms/${two}/scene`), ({ status }) => status !== 503)).json.image.window.center, 33, 'it wakes for who asks, too');
+  await end(daemon);
+});
+
+test('while the database cannot be opened at the start no room is said to be gone; it is there as soon as it can', async () => {
+  const folder = join(data, 'later'), database = join(folder, 'beamroom.db');
+  let daemon = await start([], folder);
+  const room = await newRoom(daemon);
+  const ann = await enter(daemon, room);
+  await ready(ann);
+  const { revision } = await patch(ann, 12);
+  ann.send({ type: 'item.put', kind: 'bookmark', body: { name: 'One' }, input: 5 });
+  const { token } = (await ann.message('item', (m) => m.input === 5)).item.body;
+  await end(daemon);
+  renameSync(database, `${database}.away`);
+  mkdirSync(database);
+  daemon = await start([], folder);
+  for (const [path, method, body] of [[`/rooms/${room}`], [`/rooms/${room}/scene`], [`/rooms/${room}`, 'DELETE'], ['/rooms', 'POST', { saved: token }]]) {
+    const { status, json, headers } = await call(`${daemon.api}${path}`, method, body);
+    assert.deepEqual([status, json.type, headers.get('retry-after')], [503, '/problems/busy', '1'], `${method ?? 'GET'} ${path}`);
+  }
+  assert.equal((await fetch(`${daemon.url}/p/${token}`, { redirect: 'manual' })).status, 503);
+  const early = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  const bye = await early.message('bye');
+  assert.deepEqual([bye.reason, bye.retry_ms], ["the rooms on the server's disk cannot be read yet", 1000]);
+  early.cut();
+  rmdirSync(database);
+  renameSync(`${database}.away`, database);
+  assert.equal((await until(() => call(`${daemon.api}/rooms/${room}`), ({ status }) => status === 200)).json.revision, revision);
+  assert.equal((await enter(daemon, room, { member: ann.welcome.member, secret: ann.welcome.secret })).welcome.member, ann.welcome.member);
+  assert.equal((await call(`${daemon.api}/rooms/none`)).status, 404);
   await end(daemon);
 });
 

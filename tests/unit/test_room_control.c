@@ -304,6 +304,24 @@ static void a_link_for_one_person_lets_that_person_in_again(void **state)
     assert_string_equal(of_member(&ann, 0, "tabs"), "1");
 }
 
+static void who_came_by_a_link_comes_back_when_it_has_expired_long_ago(void **state)
+{
+    char token[33], secret[64];
+    (void)state;
+    fake_hello(&fake, &ann);
+    make_link(WIRE_MEMBER_ROLE_OBSERVER, 60, false, token);
+    enter(&ben, token, "");
+    (void)snprintf(secret, sizeof secret, "%s", heard(&ben, "welcome", "secret"));
+    room_connection_closed(fake.room, &ben, fake.now_us);
+    fake_pass(&fake, ROOM_MEMBER_KEPT_S * 1000 + 1000); /* no longer in the list of members */
+    fake_say(&fake, &ben, "{\"type\":\"hello\",\"protocol\":2,\"member\":\"m2\",\"secret\":\"%s\",\"link\":\"%s\"}",
+             secret, token);
+    assert_false(ben.is_closed);
+    assert_int_equal(fake_n_heard(&ben, "welcome"), 2);
+    assert_string_equal(heard(&ben, "welcome", "member"), "m2");
+    assert_string_equal(of_member(&ann, 1, "role"), "observer");
+}
+
 static void links_are_bounded_and_expired_ones_make_room(void **state)
 {
     char token[33];
@@ -400,6 +418,7 @@ int main(void)
         ROOM_TEST(an_observer_who_is_left_alone_does_not_present),
         ROOM_TEST(links_that_are_unknown_expired_or_used_are_refused_with_a_sentence),
         ROOM_TEST(a_link_for_one_person_lets_that_person_in_again),
+        ROOM_TEST(who_came_by_a_link_comes_back_when_it_has_expired_long_ago),
         ROOM_TEST(links_are_bounded_and_expired_ones_make_room),
         ROOM_TEST(calls_of_nobody_may_less_once_the_room_has_a_link),
         ROOM_TEST(a_call_of_a_member_has_its_rights),

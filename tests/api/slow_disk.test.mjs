@@ -1,0 +1,65 @@
+// A disk that gives nothing for a while: who comes back into a room that sleeps waits, and is let in. One thread of the daemon, that of the store, is
+// stopped as a debugger does it; skipped where that is not allowed. --stub: grey pictures.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { call, sleep, startDaemon, until } from './daemon.mjs';
+import { Client } from './ws_client.mjs';
+
+const helloMs = 5000; // WS_HELLO_WITHIN_S: the daemon does not wait longer for a hello
+
+const hold = `
+import ctypes, os, sys
+libc = ctypes.CDLL(None)
+libc.ptrace.argtypes = [ctypes.c_ulong, ctypes.c_ulong, ctypes.c_void_p, ctypes.c_void_p]
+tid = int(sys.argv[1])
+if libc.ptrace(0x4206, tid, None, None) or libc.ptrace(0x4207, tid, None, None): sys.exit(77) # PTRACE_SEIZE, PTRACE_INTERRUPT
+os.waitpid(tid, 0x40000000)
+print('held', flush=True)
+sys.stdin.readline()
+libc.ptrace(17, tid, None, None) # PTRACE_DETACH
+`;
+
+/** Bytes that each thread has written. */
+const written = (pid) => new Map(readdirSync(`/proc/${pid}/task`).map((tid) => [tid, Number(/^wchar: (\d+)/m.exec(readFileSync(`/proc/${pid}/task/${tid}/io`, 'utf8'))[1])]));
+
+async function enter(daemon, room, hello) {
+  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  client.send({ type: 'hello', protocol: 2, ...hello });
+  return client;
+}
+
+test('who comes back while the disk is slow to give the room is let in, and is not told to say hello', { timeout: 180000 }, async (t) => {
+  const data = mkdtempSync(join(tmpdir(), 'beamroom-slow-'));
+  let daemon = await startDaemon({ data, args: ['--stub'] });
+  t.after(async () => {
+    await daemon.stop();
+    rmSync(data, { recursive: true, force: true });
+  });
+  const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
+  const ann = await enter(daemon, room, { name: 'Ann' });
+  const { member, secret } = await ann.message('welcome');
+  await ann.message('saved', ({ state }) => state === 'saved');
+  ann.cut();
+  await daemon.stop();
+  daemon = await startDaemon({ data, args: ['--stub'] });
+  const before = written(daemon.child.pid);
+  const other = await enter(daemon, (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id, { name: 'Ben' });
+  await other.message('saved', ({ state }) => state === 'saved');
+  const database = ([tid, bytes]) => bytes - (before.get(tid) ?? 0);
+  const [[tid]] = [...written(daemon.child.pid)].sort((a, b) => database(b) - database(a)); // rooms are larger than what is said about them
+  const holder = spawn('python3', ['-c', hold, tid]);
+  const isHeld = await new Promise((done) => { holder.stdout.once('data', () => done(true)); holder.once('exit', () => done(false)); });
+  if (!isHeld) return void t.skip('a thread of another program may not be stopped here');
+  const back = await enter(daemon, room, { member, secret });
+  await sleep(helloMs + 1500);
+  assert.deepEqual(back.messages, []);
+  holder.stdin.write('\n');
+  assert.equal((await back.until(() => back.messages[0], 'an answer')).type, 'welcome');
+  assert.equal(back.messages[0].member, member);
+  back.cut();
+  other.cut();
+});
