@@ -14,6 +14,8 @@ const charPx = 5.8; // of a caption, on average
 const diagonal = Math.SQRT1_2;
 const range = { low: 0.1, high: 2000 };
 const tidy = (mm) => Math.round(mm * 2) / 2; // a drag goes in halves of a millimetre
+/** A place on the screen, px, without the digits in which the matrices of pictures differ though they show the same place: those would be set out anew. */
+const placed = (px) => Math.round(px * 10) / 10;
 
 /** The target and the ends of 1 mm to the right and upwards, px in the pane; null where the target lies behind the eye. */
 function frameOf({ header, box, beam }) {
@@ -37,7 +39,7 @@ export function ringNumbers(place, hasCrosshair) {
   const isIn = (px, py) => px > edgePx && py > edgePx && px < width - edgePx && py < height - edgePx;
   const isNear = 20 * pxPerMm > Math.min(width, height) / 2 - edgePx;
   const shown = (isNear ? nearMm : numbersMm).reduce((kept, mm) => ((mm - (kept.at(-1) ?? 0)) * pxPerMm >= (kept.length ? leastPx : firstPx) ? [...kept, mm] : kept), []);
-  const text = (px, py, mm, anchor) => (isIn(px, py) ? svg`<text class="halo caption beam-number" x=${px} y=${py} text-anchor=${anchor}>${mm}</text>` : nothing);
+  const text = (px, py, mm, anchor) => (isIn(px, py) ? svg`<text class="halo caption beam-number" x=${placed(px)} y=${placed(py)} text-anchor=${anchor}>${mm}</text>` : nothing);
   return svg`${hasCrosshair ? shown.map((mm) => {
     const r = mm * pxPerMm;
     return svg`${text(x + r, y + 20, mm, 'middle')}${text(x - r, y + 20, mm, 'middle')}${text(x + 13, y - r + 4, mm, 'start')}${text(x + 13, y + r + 4, mm, 'start')}`;
@@ -53,8 +55,8 @@ function ringWords(frame, ring, aperture, width) {
   const isPlanned = aperture && Math.abs(ring - aperture) < 0.05;
   const below = !aperture ? 'this beam has no round one' : isPlanned ? 'drag to change' : `the beam’s is ${number(aperture, aperture % 1 ? 1 : 0)} mm`;
   const isLeft = x + 20 + Math.max(18, below.length) * charPx > width;
-  const at = isLeft ? x - 14 : x + 14;
-  return svg`<g text-anchor=${isLeft ? 'end' : 'start'}><text class="halo beam-aperture" x=${at} y=${y - 4}>${aperture ? 'aperture' : 'ring'} ${number(ring, ring % 1 ? 1 : 0)} mm</text><text class="halo caption" x=${at} y=${y + 10}>${below}</text></g>`;
+  const at = placed(isLeft ? x - 14 : x + 14);
+  return svg`<g text-anchor=${isLeft ? 'end' : 'start'}><text class="halo beam-aperture" x=${at} y=${placed(y - 4)}>${aperture ? 'aperture' : 'ring'} ${number(ring, ring % 1 ? 1 : 0)} mm</text><text class="halo caption" x=${at} y=${placed(y + 10)}>${below}</text></g>`;
 }
 
 /** The round handle on the ring, up and to the right. @param {(mm: number, at: number) => void} set */
@@ -87,5 +89,5 @@ export function ringHandle(place, isOff, set) {
     set(mm, event.timeStamp);
   };
   return html`<div class="clip-handles"><i class="beam-handle" role="slider" tabindex="0" aria-label="Aperture ring" aria-valuemin=${range.low} aria-valuemax=${range.high} aria-valuenow=${ring} aria-valuetext=${words} aria-disabled=${isOff}
-    title=${`${words} (drag, arrow keys)`} ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @pointerdown=${onDown} @pointermove=${onMove} @keydown=${onKey}></i></div>`;
+    title=${`${words} (drag, arrow keys)`} ${variables({ '--x': `${placed(x)}px`, '--y': `${placed(y)}px` })} @pointerdown=${onDown} @pointermove=${onMove} @keydown=${onKey}></i></div>`;
 }

@@ -21,13 +21,19 @@ export function mount(host, draw, redraw = null) {
 }
 
 class Variables extends Directive {
+  #last = {};
+
   render() {
     return nothing;
   }
 
   // By the object model: the content security policy forbids style attributes.
   update({ element }, [values]) {
-    for (const [name, value] of Object.entries(values)) element.style.setProperty(name, value);
+    for (const [name, value] of Object.entries(values)) {
+      if (this.#last[name] === value) continue; // set again, even the same value would have the browser compute styles
+      this.#last[name] = value;
+      element.style.setProperty(name, value);
+    }
     return this.render();
   }
 }
