@@ -8,6 +8,7 @@ import { whenWords } from '../state/notes.js';
 import { Record } from '../state/record.js';
 import { saveBlob } from './exports.js';
 import { icon } from './icons.js';
+import { styled } from './lazy.js';
 import { mayWrite, meIn } from './note_words.js';
 
 const records = new WeakMap(); // by room
@@ -155,7 +156,7 @@ function exports(world) {
   };
   const print = async () => {
     try {
-      const { openRecordPrint } = await import('./record_print.js');
+      const [{ openRecordPrint }] = await Promise.all([import('./record_print.js'), styled('css/printout.css')]);
       await openRecordPrint(world);
     } catch (problem) {
       ui.notify('err', `The page to print could not be made: ${problem.message}`, 'record');

@@ -4,6 +4,7 @@ import { effect } from '../../lib/signals-core.js';
 import { filesOfDrop } from '../net/dropped.js';
 import { recordOfFile, restore } from '../state/snapshot_record.js';
 import { icon } from './icons.js';
+import { styled } from './lazy.js';
 
 const leastWidthPx = 1200; // enough for a column of a printed page
 const mostPx = 4096;
@@ -39,7 +40,7 @@ async function add({ room, ui, printout }) {
 /** The dialog is loaded when it is first opened. */
 async function openPrintout({ ui, printoutDialog }) {
   try {
-    ({ printoutDialog: printoutDialog.value } = await import('./printout.js'));
+    [{ printoutDialog: printoutDialog.value }] = await Promise.all([import('./printout.js'), styled('css/printout.css')]);
     ui.popover.value = 'printout';
   } catch {
     ui.notify('err', 'The report to print could not be loaded: the server does not answer.', 'snapshot');
