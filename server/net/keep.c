@@ -381,8 +381,15 @@ static void write_room(struct net *net, struct net_room *room)
     (void)room_scene(room->room, &room->keep.writing);
 }
 
+/* Of what is to be written, only shared views have changed. */
+static bool only_views(const struct net_room *room)
+{
+    return room->keep.changed == ROOM_VIEWS && !room->keep.n_items && !room->keep.n_audit && !room->keep.n_recordings;
+}
+
 void keep_write_due(struct net *net, bool is_last)
 {
+    const int64_t longer_us = (KEEP_VIEWS_PAUSE_MS - KEEP_PAUSE_MS) * INT64_C(1000);
     const int64_t now_us = clock_now_us(), again_us = now_us + KEEP_PAUSE_MS * INT64_C(1000);
     while (net->store && net->n_undeleted && store_delete(net->store, net->undeleted[net->n_undeleted - 1], 0))
         net->n_undeleted--;
@@ -392,12 +399,13 @@ void keep_write_due(struct net *net, bool is_last)
         struct net_room *room = net->rooms[i];
         if (!is_changed(room) || (!is_last && room->keep.ticket))
             continue;
-        if (is_last || now_us >= room->keep.due_us) {
+        const int64_t due_us = room->keep.due_us + (only_views(room) ? longer_us : 0);
+        if (is_last || now_us >= due_us) {
             room->keep.due_us = again_us;
             write_room(net, room);
         }
         if (is_changed(room)) /* too early, or the store takes nothing now */
-            schedule_room_at(room, room->keep.due_us);
+            schedule_room_at(room, due_us > now_us ? due_us : again_us);
     }
     if (net->store && (net->n_undeleted || net->n_audit))
         schedule_at(net, again_us);

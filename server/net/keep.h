@@ -3,10 +3,11 @@
  * with each. Internal to server/net; net thread. */
 #include "server/net/net_state.h"
 
-enum {
-    KEEP_PAUSE_MS = 200,
-    KEEP_REFUSED_PAUSE_MS = 10000
-}; /* between the beginnings of two writes of one room; refused: after one that the store dropped */
+enum { /* between the beginnings of two writes of one room */
+       KEEP_PAUSE_MS = 200,
+       KEEP_VIEWS_PAUSE_MS = 1000,   /* while only shared views have changed: a drag changes them with each picture */
+       KEEP_REFUSED_PAUSE_MS = 10000 /* after one that the store dropped */
+};
 
 /* struct room_callbacks; context is the net */
 void keep_changed(void *context, struct room *room, unsigned parts);

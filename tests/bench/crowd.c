@@ -155,6 +155,7 @@ static void take_frame(struct crowd_client *client, const uint8_t *bytes, size_t
 static void take_text(struct crowd_client *client, const uint8_t *bytes, size_t n)
 {
     char text[CROWD_MAX_TEXT + 1];
+    client->n_bytes += n;
     n = n < CROWD_MAX_TEXT ? n : CROWD_MAX_TEXT;
     memcpy(text, bytes, n);
     text[n] = 0;
