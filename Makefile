@@ -224,6 +224,7 @@ UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/uni
 RENDER_THREADS := caps isodose_pictures pauses pictures shapes soft tracks translucent volume wash
 RENDER_RUN = $(if $(findstring thread,$(SAN)),$(RENDER_THREADS:%=$(B)/render/test_%),$(render_BIN))
 PARALLEL := $(shell nproc)
+TWICE := $(shell echo $$((2 * $(PARALLEL))))
 .PHONY: test-unit test-render test-faults test-api test-web test-long test-install test test-deep lint
 test-unit: $(UNIT_RUN)
 	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
@@ -232,19 +233,21 @@ test-render: $(RENDER_RUN)
 # FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones
 test-faults: $(faults_BIN)
 	$(Q)FAULTS=$(FAULTS) PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,faults)" $(faults_BIN)
-# Long ones: what waits for a minute, and what looks at every size of window (LONG_TESTS=rest: at those that test-web leaves out)
+# Long ones: LONG_NODE has files of which test-api and test-web run a part (LONG_TESTS=rest: what they leave out), DEEP_NODE those that they leave
+# out whole. Each part of the page and of the interface has tests in what they run: whole_meeting.test.mjs has one of each thing that people do together.
 LONG_TESTS ?= 1
-SLOW_NODE := tests/api/slow.test.mjs tests/api/slow_disk.test.mjs
-LONG_NODE := $(SLOW_NODE) tests/api/kills.test.mjs tests/web/charts.test.mjs tests/web/dose.test.mjs tests/web/meeting.test.mjs tests/web/planner_hour.test.mjs tests/web/image.test.mjs tests/web/measure.test.mjs tests/web/axe.test.mjs tests/web/layout.test.mjs tests/web/roster.test.mjs tests/web/start.test.mjs
-# What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest waits for most of its time.
+DEEP_NODE := tests/api/slow.test.mjs tests/api/slow_disk.test.mjs $(patsubst %,tests/web/%.test.mjs,meeting notes planner_hour pointers record recording restart roster saved)
+LONG_NODE := tests/api/kills.test.mjs $(patsubst %,tests/web/%.test.mjs,axe beam_eye bookmarks charts clip dose greys image layout measure page pointed \
+    regions snapshot start touch tracks upload views)
+# What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest of the api tests wait for most of their time.
 ALONE_NODE := tests/api/burst.test.mjs tests/api/fair.test.mjs
 test-api: all demo
 	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
-	TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh api $(filter-out $(SLOW_NODE) $(ALONE_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))) && [ $$alone = 0 ]
+	TEST_CONCURRENCY=$(TWICE) tests/run_node.sh api $(filter-out $(DEEP_NODE) $(ALONE_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))) && [ $$alone = 0 ]
 test-web: all demo
-	$(Q)TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh web $(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs))
+	$(Q)TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh web $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs)))
 test-long: all demo
-	$(Q)LONG_TESTS=$(LONG_TESTS) TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh long $(LONG_NODE)
+	$(Q)LONG_TESTS=$(LONG_TESTS) TEST_CONCURRENCY=$(PARALLEL) SUITE_SECONDS=2400 tests/run_node.sh long $(DEEP_NODE) $(LONG_NODE)
 test-install: all demo
 	$(Q)tests/install.sh
 lint: $(GEN_STAMP) $(call obj,$(CORE_SRC) $(WIRE_SRC) $(SERVER_SRC) $(DAEMON_SRC) $(RENDERER_SRC) $(CLI_SRC))

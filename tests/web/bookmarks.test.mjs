@@ -1,9 +1,9 @@
 // Saved views in the browser: saved, renamed, shown, presented; their links in a second browser.
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
+import { after, before, describe } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
 import { axe as findings } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
+import { full, later, missing, once, shoot, startWorld } from './browser.mjs';
 
 describe('saved views', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -37,7 +37,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
     return cameraOf(page);
   }
 
-  it('are saved, shown, renamed, moved, updated and deleted; a link opens a room of its own in another browser', async () => {
+  later('are saved, shown, renamed, moved, updated and deleted; a link opens a room of its own in another browser', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`);
     await full(page);
@@ -108,7 +108,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('are shown to the room by the presenter, to themselves by others, and presented by Page down and Page up', async () => {
+  later('are shown to the room by the presenter, to themselves by others, and presented by Page down and Page up', async () => {
     const room = await world.newRoom();
     const ann = await world.newPage(`#/rooms/${room}`);
     await full(ann);
@@ -164,7 +164,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
     await ben.context().close();
   });
 
-  it('are within reach on a telephone', async () => {
+  once('are within reach on a telephone', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
     await full(page);

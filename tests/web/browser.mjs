@@ -9,12 +9,14 @@ const artifacts = 'build/test-artifacts';
 const flags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync'];
 
-/** LONG_TESTS: nothing: of what is tested at many sizes of windows, one; 1: all of everything; rest: only what the first leaves out. */
+/** LONG_TESTS: nothing: the short ones, and of what is tested at many sizes of windows, one; 1: all of everything; rest: only what the first leaves out. */
 const long = process.env.LONG_TESTS ?? '';
 /** Whether a case is to be run now. @param {boolean} isQuick it is one of those without LONG_TESTS */
 export const isDue = (isQuick) => long === '1' || isQuick === (long !== 'rest');
 /** A test that is run without LONG_TESTS. */
 export const once = long === 'rest' ? () => {} : it;
+/** A test that is run with LONG_TESTS alone. */
+export const later = long ? it : () => {};
 
 /** What these tests need and is not there: they skip then. */
 export const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));
@@ -26,9 +28,11 @@ export async function startWorld({ plans = [], args = [], data } = {}) {
   const { chromium } = await import('playwright-core');
   const browser = await chromium.launch({ executablePath: chromiumPath, headless: true, args: flags });
   const errors = [];
+  const refused = []; // what the content security policy refused
   return {
     daemon,
     errors,
+    refused,
     async newRoom(plan = 'phantom') {
       await openPlan(daemon.url, plan);
       return (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan })).json.id;
@@ -39,6 +43,7 @@ export async function startWorld({ plans = [], args = [], data } = {}) {
       context.setDefaultTimeout(60000); // waits for states, however busy the machine
       const page = await context.newPage();
       page.on('pageerror', (error) => errors.push(error.message));
+      page.on('console', (message) => /Content Security Policy/.test(message.text()) && refused.push(message.text()));
       await page.goto(`${base}/${address}`);
       return page;
     },

@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 import { after, before, describe, it } from 'node:test';
 import { call } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, isDue, missing, once, shoot, startWorld } from './browser.mjs';
+import { full, isDue, later, missing, once, shoot, startWorld } from './browser.mjs';
 import { evenly, stubDose } from './dose_stub.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
@@ -85,7 +85,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     await page.context().close();
   });
 
-  once('beside the panes two of 420 px and more stay; files say what their numbers depend on; clicks move the crosshair and the coverage', async () => {
+  later('beside the panes two of 420 px and more stay; files say what their numbers depend on; clicks move the crosshair and the coverage', async () => {
     const { page, room } = await open({ viewport: { width: 1400, height: 900 } });
     await page.locator(plots).click();
     await page.locator('[aria-label="Plots beside the panes"]').click();
@@ -120,7 +120,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     await page.context().close();
   });
 
-  once('the pointer over a histogram highlights in the own views alone, and leaves nothing behind', async () => {
+  later('the pointer over a histogram highlights in the own views alone, and leaves nothing behind', async () => {
     const { page, room } = await open();
     await page.locator(plots).click();
     await page.locator('.chart-dvh canvas').waitFor();
@@ -135,7 +135,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     await page.context().close();
   });
 
-  once('another weight asks again, and hidden plots ask nothing', async () => {
+  later('another weight asks again, and hidden plots ask nothing', async () => {
     const { page, room, asked } = await open();
     const n = (question) => asked.filter((one) => one.question === question).length;
     const patch = (blood_ppm) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { dose: { blood_ppm } }, { 'If-Match': '*' });
@@ -199,7 +199,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     await page.context().close();
   });
 
-  once('the report to print has plots and tables', async () => {
+  later('the report to print has plots and tables', async () => {
     const { page } = await open();
     await page.locator('[aria-label="Snapshot"]').click();
     await page.getByRole('menuitem', { name: /Report to print/ }).click();

@@ -3,10 +3,10 @@ import assert from 'node:assert/strict';
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, describe, it } from 'node:test';
+import { after, before, describe } from 'node:test';
 import { call, demo } from '../api/daemon.mjs';
 import { readPng } from '../api/png.mjs';
-import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
 
 describe('greys on the page', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -35,7 +35,7 @@ describe('greys on the page', { skip: missing && `${missing} is not there` }, ()
     return Array.from({ length: 200 * 200 }, (_, at) => picture.at(at % 200, Math.floor(at / 200))[0]);
   };
 
-  it('a plan says of each image which it is, and a picture of it is the other way round', async () => {
+  once('a plan says of each image which it is, and a picture of it is the other way round', async () => {
     await world.newRoom('film');
     const { json } = await call(`${world.daemon.url}/api/v1/plans/film`);
     assert.deepEqual(json.images.map((image) => image.is_inverted), [true, false]);
@@ -48,7 +48,7 @@ describe('greys on the page', { skip: missing && `${missing} is not there` }, ()
     assert.ok(differ > own.length / 3, `${differ} of ${own.length} pixels are the other way round`); /* the rest lies beside the image */
   });
 
-  it('the page shows which it is, switches it, and follows the next image', async () => {
+  later('the page shows which it is, switches it, and follows the next image', async () => {
     const room = await world.newRoom('film');
     const page = await world.newPage(`#/rooms/${room}`);
     await full(page);

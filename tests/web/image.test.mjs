@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, isDue, missing, once, shoot, startWorld } from './browser.mjs';
+import { full, isDue, later, missing, once, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
 import { histogram, percentiles, windows, writeThreeImages } from './three_images.mjs';
@@ -196,7 +196,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  once('every point is chosen, moved, added, removed and coloured by keys, and in a table', async () => {
+  later('every point is chosen, moved, added, removed and coloured by keys, and in a table', async () => {
     const { page, plot, changed } = await openVolume();
     await plot.focus();
     await page.keyboard.press('Home');
@@ -227,7 +227,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await page.locator('[data-key="volume:"] button.name').tap();
   };
 
-  once('a finger drags a point, also when it comes down 20 px beside it', async () => {
+  later('a finger drags a point, also when it comes down 20 px beside it', async () => {
     const { page, centre, valueAt, changed } = await openVolume(sizes.tablet, toVolume);
     const devtools = await page.context().newCDPSession(page);
     const touch = (type, places) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, header, isDue, missing, once, shoot, startWorld } from './browser.mjs';
+import { full, header, isDue, later, missing, once, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
 
@@ -148,7 +148,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     await page.context().close();
   });
 
-  once('who follows measures for the room, who is on their own for themselves; the report to print lists the room\'s', async () => {
+  later('who follows measures for the room, who is on their own for themselves; the report to print lists the room\'s', async () => {
     const { page, room, comes, measures } = await open();
     const [, , S] = crosshairOf(await world.scene(room));
     const other = (await open(sizes.wide, room)).page;

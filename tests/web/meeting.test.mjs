@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { sleep } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, header, isDue, missing, once, shoot, startWorld } from './browser.mjs';
+import { full, header, missing, shoot, startWorld } from './browser.mjs';
 import { startProxy } from './proxy.mjs';
 
 const sizes = [
@@ -12,7 +12,6 @@ const sizes = [
   ['1180x820-touch', { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true }],
   ['390x844-touch', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
 ];
-const played = sizes.filter(([size]) => isDue(/1600/.test(size)));
 
 /** Until this holds; fails with the last value after 30 s. */
 async function until(what, holds, of = async () => undefined) {
@@ -129,7 +128,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
     return { room, one, two, three, stop: () => Promise.all([one, two, three].map((page) => page.context().close())) };
   };
 
-  for (const [name, options] of played)
+  for (const [name, options] of sizes)
     it(`present, follow, leave, return, show everyone at ${name}`, async () => {
       const { room, one, two, three, stop } = await meet(options);
       const before = await matrix(two, 1);
@@ -193,7 +192,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
       await stop();
     });
 
-  for (const [name, options] of sizes.filter(([size]) => /1280|touch/.test(size) && isDue(/390/.test(size))))
+  for (const [name, options] of sizes.filter(([size]) => /1280|touch/.test(size)))
     it(`who came by the link gives a name, and changes it, at ${name}`, async () => {
       const { one, two, stop } = await meet(options);
       /** All words of chip and badges from now on. */
@@ -256,7 +255,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
       await stop();
     });
 
-  once('a link that swallows everything shows, what is done meanwhile is kept, and it comes back', async () => {
+  it('a link that swallows everything shows, what is done meanwhile is kept, and it comes back', async () => {
     const { one, two, three, stop } = await meet(sizes[0][1], proxy.url);
     const before = await place(three, 2);
     proxy.black(true);
@@ -283,7 +282,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
     await stop();
   });
 
-  once('what the presenter changes while the link is dead is sent when it is back', async () => {
+  it('what the presenter changes while the link is dead is sent when it is back', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`, { base: proxy.url });
     await allFull(page);
@@ -302,7 +301,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
     await page.context().close();
   });
 
-  if (isDue(false)) it('a presenter whose machine is gone without a word presents no more after 30 s; others keep what they see and take over', async () => {
+  it('a presenter whose machine is gone without a word presents no more after 30 s; others keep what they see and take over', async () => {
     const { one, two, three } = await meet(sizes[0][1], undefined, proxy.url);
     await allFull(one, two, three);
     const gone = performance.now();

@@ -1,16 +1,11 @@
 // The page in a real browser against the real daemon. Screenshots stay in build/test-artifacts/.
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { bin, call, demo, openPlan, sleep, startDaemon } from '../api/daemon.mjs';
-
-const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const artifacts = 'build/test-artifacts';
-const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));
-const flags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-  '--disable-component-update', '--disable-sync'];
+import { call, demo, sleep } from '../api/daemon.mjs';
+import { full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
 
 /** In the browser: mean and spread of grey over a pane's picture, and a fingerprint of it. */
 const look = (page, view) => page.evaluate((n) => {
@@ -27,12 +22,9 @@ const look = (page, view) => page.evaluate((n) => {
   return { mean: sum / (data.length / 4), lit: lit / (data.length / 4), print };
 }, view);
 
-const full = (page, view = 1) => page.waitForFunction((n) => globalThis.beamroom?.stats().badges[n] === 'full', view, { timeout: 60000 });
 const letters = (page, view) => page.locator(`[data-view="${view}"] [data-letters]`).getAttribute('data-letters');
 /** Until the first pane has these letters. */
 const turned = (page, expected) => page.waitForFunction((text) => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === text, expected);
-const header = (page, view) => page.evaluate((n) => globalThis.beamroom.stats().headers[n], view);
-const shoot = (page, name) => page.screenshot({ path: `${artifacts}/${name}.png` });
 
 /** The daemon's renderer for the one plan that is open. */
 function rendererOf({ pid }) {
@@ -42,41 +34,22 @@ function rendererOf({ pid }) {
 }
 
 describe('the page', { skip: missing && `${missing} is not there` }, () => {
-  let daemon;
-  let browser;
+  let world;
   let folder;
-  const errors = [];
 
   before(async () => {
-    mkdirSync(artifacts, { recursive: true });
     folder = mkdtempSync(join(tmpdir(), 'beamroom-page-'));
     mkdirSync(join(folder, 'plans/broken-head'), { recursive: true });
     writeFileSync(join(folder, 'plans/broken-head/plan.json'),
       JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Broken head', images: [{ id: 'ct', path: 'ct.nii' }] }));
     writeFileSync(join(folder, 'plans/broken-head/ct.nii'), 'no image at all');
-    daemon = await startDaemon({ plans: [demo, join(folder, 'plans')] });
-    const { chromium } = await import('playwright-core');
-    browser = await chromium.launch({ executablePath: chromiumPath, headless: true, args: flags });
+    world = await startWorld({ plans: [join(folder, 'plans')] });
   });
   after(async () => {
-    await browser?.close();
-    await daemon?.stop();
+    await world?.stop();
     if (folder) rmSync(folder, { recursive: true, force: true });
   });
 
-  const newPage = async (address = '', viewport = { width: 1600, height: 1000 }) => {
-    const context = await browser.newContext({ viewport });
-    context.setDefaultTimeout(60000);
-    const page = await context.newPage();
-    page.on('pageerror', (error) => errors.push(error.message));
-    page.on('console', (message) => /Content Security Policy/.test(message.text()) && errors.push(message.text()));
-    await page.goto(`${daemon.url}/${address}`);
-    return page;
-  };
-  const newRoom = async () => {
-    await openPlan(daemon.url, 'phantom');
-    return (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
-  };
   const drag = async (page, view, dx, dy, { release = true } = {}) => {
     const box = await page.locator(`#picture-${view}`).boundingBox();
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
@@ -89,8 +62,8 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     if (release) await page.mouse.up();
   };
 
-  it('says why a plan is refused and loads nothing of it', async () => {
-    const page = await newPage();
+  once('says why a plan is refused and loads nothing of it', async () => {
+    const page = await world.newPage();
     const refusal = page.locator('[data-plan="broken-head"] .refusal');
     await refusal.waitFor();
     assert.match(await refusal.textContent(), /ct\.nii/);
@@ -99,8 +72,8 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('opens a plan from the list: four pictures, each with the right letters', async () => {
-    const page = await newPage();
+  once('opens a plan from the list: four pictures, each with the right letters', async () => {
+    const page = await world.newPage();
     await page.locator('[data-plan="phantom"] button', { hasText: 'Open' }).click();
     await page.waitForURL(/#\/rooms\/[a-z0-9-]+\/phantom$/);
     for (const view of [1, 2, 3, 4]) await full(page, view);
@@ -119,8 +92,8 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('turns by dragging, and ends with a full picture and turned letters', async () => {
-    const page = await newPage(`#/rooms/${await newRoom()}`);
+  once('turns by dragging, and ends with a full picture and turned letters', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
     await full(page);
     const before = await look(page, 1);
     await drag(page, 1, 225, 0); // 90 degrees at 0.4 degrees a pixel: the front turns to screen right, the eye from 30 degrees left to 60 right
@@ -135,16 +108,16 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('hides a region through the tree and changes the window by a key', async () => {
-    const room = await newRoom();
-    const page = await newPage(`#/rooms/${room}`);
+  once('hides a region through the tree and changes the window by a key', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`);
     await full(page);
     const before = await look(page, 1);
     await page.locator('[data-region="scalp"] .eye').click();
     await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].scene_revision > 1);
     await full(page);
     assert.notEqual((await look(page, 1)).print, before.print);
-    const scene = (await call(`${daemon.url}/api/v1/rooms/${room}/scene`)).json;
+    const scene = (await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`)).json;
     assert.equal((scene.scene ?? scene).regions.scalp.visible, false);
     const slice = await look(page, 2);
     await page.locator('#picture-2').focus();
@@ -156,8 +129,8 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('takes a plan that is dropped or chosen, shows it, and deletes it after a second question', async () => {
-    const page = await newPage();
+  once('takes a plan that is dropped or chosen, shows it, and deletes it after a second question', async () => {
+    const page = await world.newPage();
     await page.locator('[aria-label="Folder of a plan"]').setInputFiles(join(demo, 'phantom'));
     const naming = page.locator('.upload form');
     await naming.waitFor();
@@ -173,19 +146,19 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await row.locator('button', { hasText: 'Open' }).click();
     await full(page);
     assert.ok((await look(page, 1)).lit > 0.02);
-    await page.goto(`${daemon.url}/#/`);
+    await page.goto(`${world.daemon.url}/#/`);
     await page.locator(`[data-plan="${id}"] [aria-label^="Delete"]`).click();
     await page.locator('button', { hasText: 'Keep' }).click();
     await page.locator(`[data-plan="${id}"] [aria-label^="Delete"]`).click();
     await shoot(page, 'start-delete');
     await page.locator('button', { hasText: 'Delete for good' }).click();
     await page.locator(`[data-plan="${id}"]`).waitFor({ state: 'detached' });
-    assert.equal((await call(`${daemon.url}/api/v1/plans/${id}`)).status, 404);
+    assert.equal((await call(`${world.daemon.url}/api/v1/plans/${id}`)).status, 404);
     await page.context().close();
   });
 
-  it('says why an archive was refused, and keeps nothing of it', async () => {
-    const page = await newPage();
+  once('says why an archive was refused, and keeps nothing of it', async () => {
+    const page = await world.newPage();
     await page.locator('[aria-label="Files of a plan"]').setInputFiles([{ name: 'notes.zip', mimeType: 'application/zip', buffer: Buffer.from('no archive at all') }]);
     await page.locator('.upload input[name="name"]').press('Enter');
     const refusal = page.locator('.upload [role="alert"]');
@@ -197,9 +170,9 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('shows the box of a dose\'s grid', async () => {
-    const room = await newRoom();
-    const page = await newPage(`#/rooms/${room}`);
+  later('shows the box of a dose\'s grid', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`);
     await full(page);
     const before = await look(page, 1);
     await page.locator('[data-dose="goorley"] button.name').click();
@@ -207,13 +180,13 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].scene_revision > 1);
     await full(page);
     assert.notEqual((await look(page, 1)).print, before.print);
-    const { json } = await call(`${daemon.url}/api/v1/rooms/${room}/scene`);
+    const { json } = await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`);
     assert.deepEqual([(json.scene ?? json).dose.id, (json.scene ?? json).dose.grid], ['goorley', true]);
     await page.context().close();
   });
 
-  it('downloads the surface of the chosen region in three formats', async () => {
-    const page = await newPage(`#/rooms/${await newRoom()}`);
+  once('downloads the surface of the chosen region in three formats', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
     const links = page.locator('[aria-label="Download the surface"] a');
@@ -228,9 +201,9 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('draws the surfaces by the algorithm chosen below a region', async () => {
-    const room = await newRoom();
-    const page = await newPage(`#/rooms/${room}`);
+  later('draws the surfaces by the algorithm chosen below a region', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`);
     await full(page);
     const before = await look(page, 1);
     await page.locator('[data-region="tumour"] button.name').click();
@@ -238,15 +211,15 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.waitForFunction(() => globalThis.beamroom.stats().headers[1].scene_revision > 1);
     await full(page);
     assert.notEqual((await look(page, 1)).print, before.print);
-    const scene = (await call(`${daemon.url}/api/v1/rooms/${room}/scene`)).json;
+    const scene = (await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`)).json;
     assert.equal((scene.scene ?? scene).surface.algorithm, 'eight-cell');
     await shoot(page, 'room-eight-cell');
     await page.context().close();
   });
 
-  it('shows a region in every way there is, each picture new and soon, with its figures', async () => {
-    const room = await newRoom();
-    const page = await newPage(`#/rooms/${room}`);
+  later('shows a region in every way there is, each picture new and soon, with its figures', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`#/rooms/${room}`);
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
     const { scene_revision: before } = await header(page, 1);
@@ -269,8 +242,8 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('compares the methods on one region, and gives the table as CSV', async () => {
-    const page = await newPage(`#/rooms/${await newRoom()}`);
+  later('compares the methods on one region, and gives the table as CSV', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
     await page.locator('button', { hasText: 'Compare methods' }).click();
@@ -287,11 +260,11 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('lives through the death of the renderer in the middle of a drag', async () => {
-    const page = await newPage(`#/rooms/${await newRoom()}`);
+  later('lives through the death of the renderer in the middle of a drag', async () => {
+    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
     await full(page);
     await drag(page, 1, 100, 0, { release: false });
-    process.kill(rendererOf(daemon.child), 'SIGKILL');
+    process.kill(rendererOf(world.daemon.child), 'SIGKILL');
     await page.locator('.toast >> text=Renderer restarting').waitFor({ timeout: 60000 });
     await shoot(page, 'room-restarting');
     await page.mouse.up();
@@ -303,5 +276,5 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('has had no error and nothing against the content security policy', () => assert.deepEqual(errors, []));
+  it('has had no error and nothing against the content security policy', () => assert.deepEqual([world.errors, world.refused], [[], []]));
 });

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { textOfPng } from '../../web/js/net/png.js';
 import { call, realData, until } from '../api/daemon.mjs';
-import { full, header, isDue, missing, newer, shoot, startWorld } from './browser.mjs';
+import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
 
 const sizes = {
   '1600x1000': { viewport: { width: 1600, height: 1000 } },
@@ -14,7 +14,6 @@ const sizes = {
   '1180x820': { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true },
   '390x844': { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
 };
-const played = Object.entries(sizes).filter(([size]) => isDue(/1280/.test(size)));
 const kinds = ['3-D', 'Axial', 'Sagittal', 'Coronal'];
 const head = realData && existsSync(join(realData, 'sera-head')) ? join(realData, 'sera-head') : '';
 // Volume and centre of the tumour as the data state them: ../shared/data/sera-head/README.md, there (PA, RL, IS) in cm. Of the phantom the plan is asked.
@@ -85,7 +84,7 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
     return needed > room ? [`${field.placeholder}: ${needed} px in ${room}`] : [];
   }));
 
-  for (const [size, options] of played) {
+  for (const [size, options] of Object.entries(sizes)) {
     it(`at ${size}${options.hasTouch ? ' with fingers' : ''}`, async () => {
       const page = await world.newPage('', options);
       const { press, drag, rest } = await handsOn(page, options.hasTouch);

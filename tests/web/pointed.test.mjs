@@ -1,8 +1,8 @@
 // What the pointer does to pictures: clicks select, rests show facts, double clicks move nothing; mouse and finger in the browser.
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
+import { after, before, describe } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
-import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
 
 const tablet = { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true };
 
@@ -43,7 +43,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
   const card = (view) => page.locator(`[data-view="${view}"] .read-out`);
   const isNear = (a, b, mm) => a.every((value, at) => Math.abs(value - b[at]) <= mm);
 
-  it('a click in 3-D selects the region that is seen through those before it, and moves no crosshair', async () => {
+  once('a click in 3-D selects the region that is seen through those before it, and moves no crosshair', async () => {
     const before = await crosshairOf();
     const { regions } = await planOf();
     const tumour = regions.find(({ name }) => name === 'tumour');
@@ -53,7 +53,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     assert.deepEqual(await crosshairOf(), before);
   });
 
-  it('a click in a slice moves the crosshair and selects; a double click maximises and moves nothing', async () => {
+  once('a click in a slice moves the crosshair and selects; a double click maximises and moves nothing', async () => {
     const before = await crosshairOf();
     const [x, y] = await placeOf(2, before);
     await page.mouse.dblclick(x + 40, y + 30);
@@ -73,7 +73,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     assert.ok(isNear(found, target, 2), `${found}, expected ${target}`);
   });
 
-  it('at rest over a slice the pointer shows region, value with unit and position; none while dragging', async () => {
+  once('at rest over a slice the pointer shows region, value with unit and position; none while dragging', async () => {
     const point = await crosshairOf();
     const [x, y] = await placeOf(2, [point[0] - 15, point[1] + 10, point[2]]);
     await page.mouse.move(x - 30, y);
@@ -101,7 +101,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     await card(2).waitFor({ state: 'detached' });
   });
 
-  it('over 3-D it shows what is seen there, and nothing beside the patient', async () => {
+  once('over 3-D it shows what is seen there, and nothing beside the patient', async () => {
     const { regions } = await planOf();
     const [x, y] = await placeOf(1, regions.find(({ name }) => name === 'tumour').center_mm);
     await page.mouse.move(x + 5, y);
@@ -118,7 +118,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     }
   });
 
-  it('goes with the picture it is about, and comes back for the next', async () => {
+  once('goes with the picture it is about, and comes back for the next', async () => {
     const point = await crosshairOf();
     const [x, y] = await placeOf(2, point);
     await page.mouse.move(x + 30, y);
@@ -132,7 +132,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     }, before);
   });
 
-  it('Shift and the pointer move the crosshair, in 3-D to what is seen', async () => {
+  once('Shift and the pointer move the crosshair, in 3-D to what is seen', async () => {
     const before = await crosshairOf();
     const target = [before[0] - 12, before[1] + 9, before[2]];
     const [x, y] = await placeOf(2, target);
@@ -152,7 +152,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     assert.ok(isNear(found, tumour.center_mm, 40), `${found} at ${tumour.center_mm}`);
   });
 
-  it('Ctrl and arrows move the picture', async () => {
+  once('Ctrl and arrows move the picture', async () => {
     await page.locator('#picture-1').focus();
     const before = Object.values((await header(page, 1)).clip_from_lps_mm);
     const letters = () => page.locator('[data-view="1"] [data-letters]').getAttribute('data-letters');
@@ -163,13 +163,13 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     assert.equal(await letters(), looking, 'not turned');
   });
 
-  it('says without a pointer what lies at the crosshair of the pane with the focus', async () => {
+  once('says without a pointer what lies at the crosshair of the pane with the focus', async () => {
     await page.locator('#picture-2').focus();
     await page.waitForFunction(() => /^Axial, S \S+ mm, (tumour|target|brain|cranium|scalp), CT \S+ HU(, \S+ Gy\(w\))?$/.test(document.querySelector('#caption-2').textContent));
     await page.waitForFunction(() => /^Sagittal, L \S+ mm$/.test(document.querySelector('#caption-3').textContent));
   });
 
-  it('a long press shows the values beside the finger, away from letters', async () => {
+  later('a long press shows the values beside the finger, away from letters', async () => {
     await open(tablet);
     const devtools = await page.context().newCDPSession(page);
     const touch = (type, points) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });

@@ -7,7 +7,7 @@ import { after, before, describe, it } from 'node:test';
 import { call } from '../api/daemon.mjs';
 import { writeFoamPlan } from '../api/foam_plan.mjs';
 import { Client } from '../api/ws_client.mjs';
-import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
 import { writeLabels } from './labels.mjs';
 
 describe('regions on the page', { skip: missing && `${missing} is not there` }, () => {
@@ -32,7 +32,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await newer(page, 1, revision);
   };
 
-  it('a region that degree bins cannot show is named in the picture and in the tree, with the reason, and is no file', async () => {
+  once('a region that degree bins cannot show is named in the picture and in the tree, with the reason, and is no file', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
     await full(page);
     await page.locator('[data-region="pair"] button.name').click();
@@ -59,7 +59,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
 
   const patch = (room, body) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', body, { 'If-Match': '*' });
 
-  it('a region beyond the limit of triangles is named in the picture and in the tree, with the reason, until it is shown in another way', async () => {
+  later('a region beyond the limit of triangles is named in the picture and in the tree, with the reason, until it is shown in another way', async () => {
     const room = await world.newRoom('foam');
     await patch(room, { regions: { foam: { visible: false } } });
     const page = await world.newPage(`#/rooms/${room}`);
@@ -79,7 +79,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await page.context().close();
   });
 
-  it('a view that cannot be drawn says so in its place, also to who comes later, until it can be', async () => {
+  once('a view that cannot be drawn says so in its place, also to who comes later, until it can be', async () => {
     const room = await world.newRoom('balls');
     const other = await Client.open(world.daemon.url, `/api/v1/rooms/${room}/ws`); // the first one presents
     const look = (position_mm) => other.send({ type: 'view.patch', view: 1, patch: { camera: { position_mm, target_mm: [0, 0, 0], up: [0, 0, 1] } } });
@@ -104,7 +104,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await late.context().close();
   });
 
-  it('the tree shows every region\'s volume; the slider takes its place under the pointer and the focus', async () => {
+  once('the tree shows every region\'s volume; the slider takes its place under the pointer and the focus', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
     await full(page);
     const volume = page.locator('[data-region="ball"] .volume');
@@ -122,7 +122,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await page.context().close();
   });
 
-  it('the colours of the check have a legend in every slice pane', async () => {
+  later('the colours of the check have a legend in every slice pane', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
     await full(page);
     await page.locator('[data-region="ball"] button.name').click();
@@ -134,7 +134,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await page.context().close();
   });
 
-  it('a dialog takes the focus and gives it back', async () => {
+  once('a dialog takes the focus and gives it back', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
     await full(page);
     await page.locator('[data-region="ball"] button.name').click();

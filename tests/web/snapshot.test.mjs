@@ -4,9 +4,9 @@ import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, describe, it } from 'node:test';
+import { after, before, describe } from 'node:test';
 import { bin, call } from '../api/daemon.mjs';
-import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
 import { textOfPages } from './pdf_text.mjs';
 
 describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
@@ -41,7 +41,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
   /** The picture that the server draws of the room's scene with the first view's camera. */
   const drawn = async (room, view) => Buffer.from(await (await fetch(`${world.daemon.url}/api/v1/rooms/${room}/snapshot?view=${encodeURIComponent(JSON.stringify(view))}`)).arrayBuffer());
 
-  it('are saved with a caption and, dropped on the page, bring scene and view back', async () => {
+  once('are saved with a caption and, dropped on the page, bring scene and view back', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`);
     await full(page, 1);
@@ -72,7 +72,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('of another plan are said to be, and open that plan as it was in them', async () => {
+  later('of another plan are said to be, and open that plan as it was in them', async () => {
     const other = await world.newRoom('other');
     await patch(other, { regions: { scalp: { visible: false } } });
     const page = await world.newPage(`#/rooms/${other}`);
@@ -109,7 +109,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('that say nothing, or nonsense, change nothing and say why', async () => {
+  once('that say nothing, or nonsense, change nothing and say why', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`);
     await full(page, 1);
@@ -127,7 +127,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('become a report to print, with captions, figures and the research line on every page', async () => {
+  later('become a report to print, with captions, figures and the research line on every page', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`);
     for (const view of [1, 2, 3]) {

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { until } from '../api/daemon.mjs';
-import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
 
 const tablet = { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true };
 
@@ -59,7 +59,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     assert.ok(isNear(found), `${words}: ${found}, expected ${expected}`);
   };
 
-  it('one finger turns the 3-D picture as a mouse does: 225 px are 90 degrees', async () => {
+  once('one finger turns the 3-D picture as a mouse does: 225 px are 90 degrees', async () => {
     await open();
     const [x, y] = await middle(1);
     const before = await matrixOf(1);
@@ -69,7 +69,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('two fingers move the 3-D picture with them and zoom it, and turn nothing', async () => {
+  once('two fingers move the 3-D picture with them and zoom it, and turn nothing', async () => {
     await open();
     const [x, y] = await middle(1);
     const before = await matrixOf(1);
@@ -84,7 +84,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('one finger on a slice takes the crosshair along, in all panes', async () => {
+  once('one finger on a slice takes the crosshair along, in all panes', async () => {
     await open();
     const box = await page.locator('#picture-2').boundingBox();
     const [x, y] = await middle(2);
@@ -97,7 +97,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('two fingers on a slice move and zoom it about the point between them; the crosshair stays in the patient', async () => {
+  later('two fingers on a slice move and zoom it about the point between them; the crosshair stays in the patient', async () => {
     await open();
     const box = await page.locator('#picture-2').boundingBox();
     const [x, y] = await middle(2);
@@ -114,7 +114,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('a finger that is left of two does nothing', async () => {
+  later('a finger that is left of two does nothing', async () => {
     await open();
     const [x, y] = await middle(1);
     const before = await matrixOf(1);
@@ -131,7 +131,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('a finger that rests sets the crosshair there and shows the probe', async () => {
+  later('a finger that rests sets the crosshair there and shows the probe', async () => {
     await open();
     const box = await page.locator('#picture-2').boundingBox();
     const [x, y] = [box.x + box.width / 2 + 20, box.y + box.height / 2 + 10];
@@ -143,7 +143,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  it('every control is large enough for a finger', async () => {
+  once('every control is large enough for a finger', async () => {
     await open();
     const small = () => page.evaluate(() => [...document.querySelectorAll('.room button, .room a.button')].filter((button) => button.checkVisibility())
       .map((button) => ({ name: button.getAttribute('aria-label') ?? button.textContent.trim(), height: button.getBoundingClientRect().height }))

@@ -3,10 +3,10 @@ import assert from 'node:assert/strict';
 import { cpSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, describe, it } from 'node:test';
+import { after, before, describe } from 'node:test';
 import { call, demo, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
 import { sizes } from './room_states.mjs';
 
 describe('particle tracks', { skip: missing && `${missing} is not there` }, () => {
@@ -48,7 +48,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     return [x + ((at(0) / at(3) + 1) / 2) * width, y + ((1 - at(1) / at(3)) / 2) * height];
   };
 
-  it('key T shows them, and the rows have the counts of the plan and a check-box for each class', async () => {
+  once('key T shows them, and the rows have the counts of the plan and a check-box for each class', async () => {
     await open();
     await page.locator('#picture-1').focus();
     const revision = (await header(page, 1)).scene_revision;
@@ -69,7 +69,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     assert.equal((await scene()).tracks.visible, true);
   });
 
-  it('by keyboard alone a class is found and hidden, and shown again', async () => {
+  once('by keyboard alone a class is found and hidden, and shown again', async () => {
     const tree = page.locator('.tree [role="tree"]');
     await tree.focus();
     for (let i = 0; i < 60 && !await row('lost').evaluate((item) => item.classList.contains('current')); i++) await page.keyboard.press('ArrowDown');
@@ -79,7 +79,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     await comes((now) => now.tracks.classes.lost, (on) => on === true, 'shown');
   });
 
-  it('playing draws more and more segments in the order of the file, and pauses where it is', async () => {
+  once('playing draws more and more segments in the order of the file, and pauses where it is', async () => {
     await page.getByRole('button', { name: 'Play', exact: true }).click();
     await comes((now) => now.tracks.count, (n) => n > 20 && n < 1000, 'while playing');
     await page.getByRole('button', { name: 'Pause', exact: true }).click();
@@ -91,7 +91,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     await comes((now) => now.tracks.count, (n) => n === null, 'all');
   });
 
-  it('width, depth cue and clipping are those of the scene', async () => {
+  once('width, depth cue and clipping are those of the scene', async () => {
     await page.getByLabel('Width of the lines in pixels').fill('3');
     await page.keyboard.press('Enter');
     await page.getByLabel('Darker far away').uncheck();
@@ -99,7 +99,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     await comes((now) => [now.tracks.width_px, now.tracks.depth_cue, now.tracks.clipped].join(), (all) => all === '3,false,false', 'drawing');
   });
 
-  it('a click on the beam line alone picks it, with its data and a mark in the picture', async () => {
+  once('a click on the beam line alone picks it, with its data and a mark in the picture', async () => {
     for (const id of ['neutron-high', 'neutron-medium', 'neutron-low', 'gamma-medium', 'gamma-low', 'lost']) await row(id).locator('input').uncheck();
     await comes((now) => Object.values(now.tracks.classes).filter(Boolean).length, (n) => n === 1, 'only the beam line');
     await full(page, 1);
@@ -114,7 +114,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     await page.close();
   });
 
-  it('lost particles are listed with their region, and "Fly to" centres 3-D there, in the same direction', async () => {
+  later('lost particles are listed with their region, and "Fly to" centres 3-D there, in the same direction', async () => {
     await open('energies');
     await row('lost').locator('button.name').click();
     const list = page.locator('.track-lost li');
@@ -134,7 +134,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     assert.ok(Math.hypot(...a.map((value, i) => value - b[i])) < 1e-5, `${a} and ${b}`);
   });
 
-  it('limits of energy are there for a file that has energies, and count with those that have none', async () => {
+  later('limits of energy are there for a file that has energies, and count with those that have none', async () => {
     await page.getByLabel('Lowest energy in MeV').fill('0.1');
     await page.keyboard.press('Enter');
     await comes((now) => now.tracks.energy_low_mev, (mev) => mev === 0.1, 'lowest');
@@ -149,7 +149,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     await page.close();
   });
 
-  it('on a tablet rows and Selection are in sheets, with targets for fingers inside the window', async () => {
+  later('on a tablet rows and Selection are in sheets, with targets for fingers inside the window', async () => {
     await open('phantom', sizes.tablet);
     await page.getByRole('button', { name: 'Parts' }).tap();
     await page.getByRole('tab', { name: 'Tracks' }).tap();
