@@ -4,6 +4,7 @@ import { after, before, test } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
 import { full, missing, shoot, startWorld } from './browser.mjs';
+import { enter as enterAs } from './people.mjs';
 
 let world;
 let room;
@@ -16,10 +17,8 @@ before(async () => {
 });
 after(() => world?.stop());
 
-const enter = async (name, options = {}) => {
-  const page = await world.newPage('', options);
-  await page.evaluate((own) => localStorage.setItem('beamroom name', own), name);
-  await page.goto(`${world.daemon.url}/#/rooms/${room}`);
+const enter = async (name, options) => {
+  const page = await enterAs(world, `#/rooms/${room}`, name, options);
   await full(page, 1);
   return page;
 };

@@ -6,6 +6,7 @@ import { call, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
 import { full, missing, shoot, startWorld } from './browser.mjs';
 import { textOfPages } from './pdf_text.mjs';
+import { enter as enterAs } from './people.mjs';
 
 let world;
 let room;
@@ -16,10 +17,8 @@ before(async () => {
 });
 after(() => world?.stop());
 
-const enter = async (name, options = {}) => {
-  const page = await world.newPage('', options);
-  await page.evaluate((own) => localStorage.setItem('beamroom name', own), name);
-  await page.goto(`${world.daemon.url}/#/rooms/${room}`);
+const enter = async (name, options) => {
+  const page = await enterAs(world, `#/rooms/${room}`, name, options);
   await full(page, 1);
   return page;
 };
@@ -40,7 +39,7 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   // by keyboard; the other sees it
   await check(ann, 'treated side').getByRole('button', { name: 'OK' }).focus();
   await ann.keyboard.press('Enter');
-  await check(ben, 'treated side').filter({ has: ben.getByRole('button', { name: 'OK', pressed: true }) }).locator('.check-by').waitFor();
+  await check(ben, 'treated side').filter({ has: ben.getByRole('button', { name: 'OK', pressed: true }) }).locator('.check-by', { hasText: 'Ann' }).waitFor();
   await check(ben, 'Constraints').getByRole('button', { name: 'Issue' }).click();
   await ben.getByLabel(/What is wrong: Constraints/).fill('Mucosa above 10 Gy(w)');
   await ben.keyboard.press('Tab');
