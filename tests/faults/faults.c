@@ -450,31 +450,20 @@ static mode_t mode_of(int flags, va_list args)
     return flags & (O_CREAT | O_TMPFILE) ? va_arg(args, mode_t) : 0;
 }
 
-#define OPEN(name) \
-    int name(const char *path, int flags, ...) \
+#define OPEN(name, parameters, ...) \
+    int name parameters \
     { \
         NEXT(name); \
         va_list args; \
         va_start(args, flags); \
         mode_t mode = mode_of(flags, args); \
         va_end(args); \
-        return fails_with(FAULT_OPEN, EMFILE) ? -1 : next(path, flags, mode); \
+        return fails_with(FAULT_OPEN, EMFILE) ? -1 : next(__VA_ARGS__, mode); \
     }
-OPEN(open)
-OPEN(open64)
-
-#define OPENAT(name) \
-    int name(int folder, const char *path, int flags, ...) \
-    { \
-        NEXT(name); \
-        va_list args; \
-        va_start(args, flags); \
-        mode_t mode = mode_of(flags, args); \
-        va_end(args); \
-        return fails_with(FAULT_OPEN, EMFILE) ? -1 : next(folder, path, flags, mode); \
-    }
-OPENAT(openat)
-OPENAT(openat64)
+OPEN(open, (const char *path, int flags, ...), path, flags)
+OPEN(open64, (const char *path, int flags, ...), path, flags)
+OPEN(openat, (int folder, const char *path, int flags, ...), folder, path, flags)
+OPEN(openat64, (int folder, const char *path, int flags, ...), folder, path, flags)
 
 /* openat2, which libc has no function for */
 long syscall(long number, ...)
