@@ -1,0 +1,302 @@
+/* Words of a snapshot: what letters, caption and chips of a picture say. */
+#include "core/annotate/describe.h"
+#include "core/base/mem.h"
+#include "tests/check.h"
+#include "tests/derived_of.h"
+#include "tests/made_plan.h"
+
+static double low_and_high(struct vec3 p)
+{
+    return p.z < 0 ? 1 : 2;
+}
+static double height(struct vec3 p)
+{
+    return p.z;
+}
+
+/* The text of a row's items, separated by "|". */
+static const char *row_text(const struct annotations *annotations, enum annotation_row row)
+{
+    static char text[2048];
+    text[0] = '\0';
+    for (size_t i = 0; i < annotations->n_items; i++)
+        if (annotations->items[i].row == row)
+            snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s", text[0] ? "|" : "",
+                     annotations->items[i].text);
+    return text;
+}
+
+static struct plan *made_plan_in_hu(void)
+{
+    static const struct made_region two[] = { { "low", -1, 0x804020 }, { "high", -1, 0x204080 } };
+    struct grid grid = made_cube_grid(20);
+    struct plan *plan = made_plan(&grid, low_and_high, two, 2);
+    made_plan_add_image(plan, &grid, VOXEL_I16, height);
+    snprintf(plan->name, sizeof plan->name, "Made plan");
+    snprintf(plan->images[0].name, sizeof plan->images[0].name, "Planning");
+    snprintf(plan->images[0].modality, sizeof plan->images[0].modality, "CT");
+    snprintf(plan->images[0].unit, sizeof plan->images[0].unit, "HU");
+    return plan;
+}
+
+static void a_snapshot_is_described(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    plan->n_doses = 1;
+    plan->doses[0] = (struct dose){ .id = "run-1", .name = "Run 1", .unit = "cGy", .per = "per fraction" };
+    char date[ANNOTATE_DATE_SIZE], field[128];
+    annotate_date(1782898200, date); /* 2026-07-01 09:30:00 UTC, by `date` */
+    for (int pane = 0; pane < 2; pane++) {
+        struct scene scene;
+        struct error err = { 0 };
+        scene_for_plan(plan, &scene);
+        scene.image.window = (struct scene_window){ 40, 400 };
+        scene.image.slices.axial.position_mm = -4;
+        scene.image.slices.axial.visible = false;
+        scene.regions[1].value.opacity = 0.35;
+        scene.regions[0].value.representation = SCENE_REPRESENTATION_UNIVELS;
+        scene.dose.grid = pane;
+        struct view view = view_default;
+        view.kind = pane ? SCENE_KIND_AXIAL : SCENE_KIND_3D;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, date, &err));
+        assert_string_equal(row_text(&words, ANNOTATION_TITLE), "Made plan");
+        assert_string_equal(row_text(&words, ANNOTATION_PANE),
+                            pane ? "Axial|S \u22124.0 mm|Planning, CT|C 40  W 400 HU" : "3-D|perspective, no scale");
+        /* the upper region does not reach the slice */
+        assert_string_equal(row_text(&words, ANNOTATION_REGIONS), pane ? "low" : "low, univels|high 35 %");
+        assert_string_equal(row_text(&words, ANNOTATION_METHODS),
+                            pane ? "Outlines: of the surfaces|Grid of the dose Run 1, cGy per fraction"
+                                 : "Surfaces: smooth");
+        assert_string_equal(row_text(&words, ANNOTATION_ORIGIN),
+                            "2026-07-01 09:30 UTC|revision 12|Beamroom " BEAMROOM_VERSION);
+        assert_string_equal(row_text(&words, ANNOTATION_USE), "For research and plan review.|Not a medical device.");
+        assert_string_equal(row_text(&words, ANNOTATION_MISSING), "");
+        struct camera camera;
+        camera_resolve(snapshot, &camera);
+        assert_close(words.pixels_per_mm, pane ? camera.pixels_per_mm / 2 : 0, 1e-9); /* the view is 1024 px wide */
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
+static double ten(struct vec3 p)
+{
+    return 10 + 0 * p.x;
+}
+
+static void a_dose_is_described_with_what_it_lacks_and_its_levels(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    struct dose *dose = &plan->doses[plan->n_doses++];
+    const struct grid *grid = &plan->images[0].volume->grid;
+    *dose = (struct dose){ .id = "run-1", .name = "Run 1", .unit = "Gy", .per = "per fraction", .has_frame = true };
+    dose->frame = DOSE_FRAME_DIFFERS;
+    dose->components[dose->n_components++] =
+        (struct dose_component){ .quantity = DOSE_BORON, .values = made_volume(grid, VOXEL_F32, ten) };
+    dose->components[dose->n_components++] =
+        (struct dose_component){ .quantity = DOSE_GAMMA, .values = made_volume(grid, VOXEL_F32, ten) };
+    for (int is_accepted = 0; is_accepted < 2; is_accepted++) {
+        struct scene scene;
+        struct error err = { 0 };
+        char field[128];
+        scene_for_plan(plan, &scene);
+        scene.dose.quantity = SCENE_DOSE_QUANTITY_WEIGHTED;
+        scene.dose.lines.visible = true;
+        scene.dose.factor = 30;
+        snprintf(scene.dose.weights_name, sizeof scene.dose.weights_name, "Set A");
+        scene.dose.reference = (struct scene_dose_reference){ .kind = SCENE_DOSE_REFERENCE_KIND_VALUE, .value = 40 };
+        free(scene.dose.levels);
+        scene.dose.levels = mem_new(3 * sizeof *scene.dose.levels);
+        scene.dose.n_levels = 3;
+        for (int i = 0; i < 3; i++) {
+            snprintf(scene.dose.levels[i].id, sizeof scene.dose.levels[i].id, "l%d", i);
+            scene.dose.levels[i].value = scene_dose_level_default;
+        }
+        scene.dose.levels[0].value.value = 90;
+        scene.dose.levels[0].value.color_rgb = 0x010203;
+        scene.dose.levels[1].value.value = 10;
+        scene.dose.levels[1].value.unit = SCENE_DOSE_UNIT_DOSE;
+        scene.dose.levels[2].value.value = 50;
+        scene.dose.levels[2].value.visible = false;
+        if (is_accepted) {
+            scene.dose.accepted = mem_new(sizeof *scene.dose.accepted);
+            scene.dose.n_accepted = 1;
+            snprintf(scene.dose.accepted[0].id, sizeof scene.dose.accepted[0].id, "run-1");
+            scene.dose.accepted[0].value.accepted = true;
+        }
+        struct view view = view_default;
+        view.kind = SCENE_KIND_AXIAL;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, "", &err));
+        const char *said = row_text(&words, ANNOTATION_DOSE);
+        if (is_accepted) {
+            assert_string_equal(said, "Dose Run 1 \u00d7 30|weighted dose in Gy(w) per fraction|"
+                                      "100 % = 40.0 Gy(w), prescription|weights: Set A|without nitrogen|without fast|"
+                                      "Dose from another frame of reference");
+            assert_string_equal(row_text(&words, ANNOTATION_LEVELS), "90 % = 36.0 Gy(w)|25.0 % = 10.0 Gy(w)");
+        } else {
+            assert_non_null(strstr(said, "Dose not drawn: The dose was computed in another frame of reference"));
+            assert_string_equal(row_text(&words, ANNOTATION_LEVELS), "");
+        }
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
+static void a_window_stands_in_the_caption_as_on_the_page(void **state)
+{
+    (void)state;
+    /* the page rounds what lies exactly between two numbers up, and gives a narrow window three digits of its width */
+    static const struct {
+        struct scene_window window;
+        const char *words;
+    } cases[] = { { { 134.5, 269 }, "C 135  W 269 HU" },
+                  { { -134.5, 268.5 }, "C \u2212135  W 269 HU" },
+                  { { 1.45, 1000 }, "C 1  W 1000 HU" },
+                  { { 0.5, 2.125 }, "C 0.50  W 2.13 HU" },
+                  { { 0.0213, 0.045 }, "C 0.0213  W 0.0450 HU" } };
+    struct plan *plan = made_plan_in_hu();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct scene scene;
+        struct error err = { 0 };
+        char date[ANNOTATE_DATE_SIZE] = "", field[128];
+        scene_for_plan(plan, &scene);
+        scene.image.window = cases[i].window;
+        scene.image.slices.axial.position_mm = -4.25;
+        struct view view = view_default;
+        view.kind = SCENE_KIND_AXIAL;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, date, &err));
+        char expected[128];
+        snprintf(expected, sizeof expected, "Axial|S \u22124.3 mm|Planning, CT|%s", cases[i].words);
+        assert_string_equal(row_text(&words, ANNOTATION_PANE), expected);
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
+static void an_oblique_pane_and_a_blended_image_are_described(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    struct grid grid = plan->images[0].volume->grid;
+    struct scene scene;
+    struct error err = { 0 };
+    char date[ANNOTATE_DATE_SIZE] = "", field[128];
+    made_plan_add_image(plan, &grid, VOXEL_I16, height);
+    (void)snprintf(plan->images[1].name, sizeof plan->images[1].name, "Uptake");
+    (void)snprintf(plan->images[1].modality, sizeof plan->images[1].modality, "PT");
+    (void)snprintf(plan->images[1].unit, sizeof plan->images[1].unit, "SUV");
+    plan->images[1].window_center = 5;
+    plan->images[1].window_width = 10;
+    for (int is_named = 0; is_named < 2; is_named++)
+        for (int is_pane = 0; is_pane < 2; is_pane++) {
+            scene_for_plan(plan, &scene);
+            scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = false;
+            scene.image.window = (struct scene_window){ 40, 400 };
+            scene.image.slices.axial.position_mm = 3;
+            scene.image.obliques = mem_new(sizeof *scene.image.obliques);
+            scene.image.n_obliques = 1;
+            scene.image.obliques[0] = (struct scene_oblique_entry){ .id = "a", .value = scene_oblique_default };
+            struct scene_oblique *oblique = &scene.image.obliques[0].value;
+            (void)snprintf(oblique->name, sizeof oblique->name, "%s", is_named ? "Along the beam" : "");
+            oblique->visible = true;
+            oblique->origin_mm = vec3(1, -2.25, 3);
+            oblique->normal = vec3(0, 3, -4); /* turned to the side of the nearest slice's normal, that of axial */
+            (void)snprintf(scene.image.blend.id, sizeof scene.image.blend.id, "%s", plan->images[1].id);
+            scene.image.blend.opacity = 0.4;
+            scene.image.color_map = SCENE_COLOR_MAP_RAINBOW;
+            scene.image.looks = mem_new(sizeof *scene.image.looks);
+            scene.image.n_looks = is_named ? 1 : 0;
+            scene.image.looks[0].value = (struct scene_image_look){ { 3, 6 }, SCENE_COLOR_MAP_HOT_IRON };
+            (void)snprintf(scene.image.looks[0].id, sizeof scene.image.looks[0].id, "%s", plan->images[1].id);
+            struct view view = view_default;
+            view.kind = is_pane ? SCENE_KIND_OBLIQUE : SCENE_KIND_3D;
+            (void)snprintf(view.plane, sizeof view.plane, "a");
+            struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
+            assert_non_null(snapshot);
+            struct annotations words;
+            char expected[512];
+            assert_true(annotations_describe(&words, snapshot, 512, date, &err));
+            snprintf(expected, sizeof expected,
+                     "%s%s|through L 1.0  P \u22122.3  S 3.0 mm|normal L 0.00  P \u22120.60  S 0.80|"
+                     "Planning, CT|C 40  W 400 HU|in rainbow colours|40 %% Uptake, PT over it: %s",
+                     is_pane ? "Oblique|" : "3-D|perspective, no scale|slice S 3.0 mm|slice ",
+                     is_named ? "Along the beam" : "a", is_named ? "C 3.00  W 6.00 SUV, in hot iron" : "C 5  W 10 SUV");
+            assert_string_equal(row_text(&words, ANNOTATION_PANE), expected);
+            assert_string_equal(words.letters.left, is_pane ? "R" : words.letters.left);
+            if (is_pane) { /* up: anterior as far as it lies in the plane, (0, -0.8, -0.6) */
+                assert_string_equal(words.letters.top, "AI");
+                assert_string_equal(words.letters.bottom, "PS");
+            }
+            annotations_finish(&words);
+            snapshot_unref(snapshot);
+        }
+    plan_and_derived_destroy(plan);
+}
+
+static void cuts_caps_and_the_volume_are_described(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    char date[ANNOTATE_DATE_SIZE] = "", field[128];
+    for (int is_pane = 0; is_pane < 2; is_pane++) {
+        struct scene scene;
+        struct error err = { 0 };
+        scene_for_plan(plan, &scene);
+        scene.image.window = (struct scene_window){ 40, 400 };
+        scene.image.slices.axial.visible = false;
+        scene.regions[1].value.clipped = false;
+        scene.clip.axial_high = (struct scene_clip_axis){ true, 12, true };
+        scene.clip.coronal_low = (struct scene_clip_axis){ true, -3.5, false };
+        scene.clip.sagittal_low = (struct scene_clip_axis){ true, 7, true };
+        scene.clip.free = (struct scene_clip_free){ true, vec3(1, 2, 3), vec3(0, -3, -4), true };
+        scene.clip.cap.outlines = true;
+        scene.image.volume.visible = true;
+        scene.image.volume.method = SCENE_VOLUME_METHOD_MIP;
+        scene.image.volume.clipped = false;
+        struct view view = view_default;
+        view.kind = is_pane ? SCENE_KIND_AXIAL : SCENE_KIND_3D;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 12, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, date, &err));
+        /* only the 3-D picture is cut */
+        assert_string_equal(row_text(&words, ANNOTATION_METHODS),
+                            is_pane ? "Outlines: of the surfaces"
+                                    : "Surfaces: smooth|Volume: largest value along each ray|"
+                                      "Cut off: superior to S 12.0 mm|anterior to P \u22123.5 mm, without cap|"
+                                      "right of L 7.0 mm|above the plane through L 1.0  P 2.0  S 3.0 mm, "
+                                      "normal L 0.00  P \u22120.60  S \u22120.80|Not cut: high|volume|"
+                                      "Caps: image, outlines");
+        /* the volume and the caps show the image */
+        assert_non_null(strstr(row_text(&words, ANNOTATION_PANE), "Planning, CT|C 40  W 400 HU"));
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_snapshot_is_described),
+        cmocka_unit_test(a_dose_is_described_with_what_it_lacks_and_its_levels),
+        cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),
+        cmocka_unit_test(an_oblique_pane_and_a_blended_image_are_described),
+        cmocka_unit_test(cuts_caps_and_the_volume_are_described),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
