@@ -33,10 +33,10 @@ suite() { # suite NAME MAKE-ARGUMENT...
     total_passed=$((total_passed + passed)) total_failed=$((total_failed + failed)) total_skipped=$((total_skipped + skipped))
 }
 
-programs="unit-programs render-programs faults-programs bench-programs"
+programs="unit-programs render-programs faults-programs"
 case $group in
 test)
-    suite build-gcc "$jobs" WERROR=1 all $programs
+    suite build-gcc "$jobs" WERROR=1 all $programs bench-objects
     suite lint lint
     suite unit "$jobs" test-unit
     suite render "$jobs" test-render
@@ -47,7 +47,7 @@ test)
     ;;
 deep)
     # clang's warnings do not depend on how it optimises
-    suite build-clang "$jobs" CC=clang WERROR=1 OPTIMIZE="-O1 -g0" programs ${programs//-programs/-objects}
+    suite build-clang "$jobs" CC=clang WERROR=1 OPTIMIZE="-O1 -g0" programs ${programs//-programs/-objects} bench-programs
     suite unit-address-undefined "$jobs" SAN=address,undefined test-unit
     suite unit-thread "$jobs" SAN=thread test-unit
     suite render-address-undefined "$jobs" SAN=address,undefined test-render
