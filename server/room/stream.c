@@ -29,21 +29,6 @@ struct stream *stream_shared(const struct room *room, const cJSON *view)
     return NULL;
 }
 
-static bool has_override(const cJSON *view)
-{
-    const cJSON *override = cJSON_GetObjectItemCaseSensitive(view, "override");
-    return cJSON_IsObject(override) && override->child;
-}
-
-bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem)
-{
-    if (!room->scene || !has_override(view))
-        return true; /* not known before the plan is; checked then by streams_remove_bad_overrides */
-    cJSON *shown = scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
-    cJSON_Delete(shown);
-    return shown != NULL;
-}
-
 static void start_pace(struct room *room, struct stream *stream)
 {
     pace_start(&stream->pace, room->is_software);
@@ -188,7 +173,8 @@ void streams_changed(struct room *room, bool scene_is_new)
 void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *patch)
 {
     for (struct stream *stream = room->streams; stream; stream = stream->next) {
-        stream->is_reached = has_override(stream->view) || change_reaches(stream->view, before, room->scene, patch);
+        stream->is_reached =
+            view_has_override(stream->view) || change_reaches(stream->view, before, room->scene, patch);
         stream->scene_is_stale = true;
         if (stream->is_reached)
             stream_changed(room, stream);
@@ -267,32 +253,6 @@ static bool has_credit(const struct room *room, const struct stream *stream)
     return displays_have_credit(stream, coming, room->now_us);
 }
 
-/* False: no memory for the scene with the view's override, and without that nothing is drawn. */
-static bool make_scene(struct room *room, struct stream *stream)
-{
-    if (!stream->scene_is_stale)
-        return true;
-    struct problem problem = { 0 };
-    cJSON *scene = has_override(stream->view)
-                       ? scene_document_for_view(room->plan, room->defaults, room->scene, stream->view, &problem)
-                       : NULL;
-    if (problem.type == PROBLEM_INTERNAL)
-        return false;
-    if (problem.type != PROBLEM_NONE) /* a bug: overrides are checked when they are set and when a plan is loaded */
-        log_error("room %s: a view's override does not apply: %s", room->id, problem.detail);
-    cJSON_Delete(stream->scene);
-    stream->scene = scene;
-    stream->scene_is_stale = false;
-    return true;
-}
-
-const cJSON *stream_scene(struct room *room, struct stream *stream)
-{
-    if (!room->scene || !make_scene(room, stream))
-        return NULL;
-    return stream->scene ? stream->scene : room->scene;
-}
-
 /* Id of the member whose own view it is; NULL: shared, or without a viewer. */
 static const char *owner_of(const struct stream *stream)
 {
@@ -302,7 +262,7 @@ static const char *owner_of(const struct stream *stream)
 /* False: not now, but at retry_us. */
 static bool request_picture(struct room *room, struct stream *stream, bool is_still)
 {
-    if (!make_scene(room, stream)) {
+    if (!stream_scene(room, stream)) {
         stream->retry_us = room->now_us + RETRY_US;
         return false;
     }

@@ -36,6 +36,7 @@ void stream_send_refusal(struct room *room, struct member *member, const struct 
 void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence);
 /* Requests the pictures that are due; returns when to call again. */
 int64_t streams_request_due(struct room *room);
+bool view_has_override(const cJSON *view);
 /* True if the view's override fits the plan, or the plan is not known yet. */
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem);
 /* After a plan was loaded: removes overrides that do not fit it from their views, and tells their members. */

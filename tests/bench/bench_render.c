@@ -2,17 +2,21 @@
  * slice. The camera goes round it, with coarse surfaces at 100, 75, 60 and 50 % of 1024 x 768 as while moving, and with
  * full anti-aliased surfaces as in a still; then the axial pane, a new slice with each picture, with the outlines where
  * it cuts the surfaces; then cuts with caps, as in a room that cuts the head open. Our own rasteriser and the OpenGL of
- * this machine draw each picture in turn; the picture is compressed as JPEG and as PNG. */
+ * this machine draw each picture in turn; the picture is compressed as JPEG and as PNG. Last the size classes that
+ * followers are sent, of a picture of 1440 x 900. */
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "core/base/clock.h"
+#include "core/base/image_reduce.h"
 #include "core/encode/encode.h"
 #include "core/load/load.h"
 #include "core/render/render.h"
 #include "core/scene/camera.h"
 
-enum { REPEATS = 15, WIDTH = 1024, HEIGHT = 768 };
+enum { REPEATS = 15 };
+
+static int full_width = 1024, full_height = 768;
 
 static struct renderer *soft, *gl; /* gl: NULL where there is none */
 static struct plan *plan;
@@ -86,7 +90,7 @@ static struct image *draw(struct renderer *renderer, enum scene_kind kind, int s
     } else
         scene.image.slices.axial.position_mm += step;
     struct snapshot *snapshot = snapshot_create(derived, &scene, &view, 1, field, &err);
-    struct render_options options = { (int)(WIDTH * scale), (int)(HEIGHT * scale), detail, is_still };
+    struct render_options options = { (int)(full_width * scale), (int)(full_height * scale), detail, is_still };
     struct camera camera;
     struct image *image = snapshot ? render_snapshot(renderer, snapshot, &options, &camera, timing, &err) : NULL;
     if (!image)
@@ -121,8 +125,9 @@ static void bench_cut(const char *name, enum scene_kind kind, double scale, enum
     if (gl)
         printf("\"peer\":\"%s, %s\",\"peer_value\":%.2f,\"ratio\":%.2f,",
                render_back_end_word(renderer_facts(gl)->back_end), renderer_facts(gl)->renderer, peer, peer / ours);
-    printf("\"note\":\"%d x %d, %zu triangles%s; %s; median of %d\"}\n", (int)(WIDTH * scale), (int)(HEIGHT * scale),
-           timing.n_triangles, is_still ? ", anti-aliased" : "", renderer_facts(soft)->renderer, REPEATS);
+    printf("\"note\":\"%d x %d, %zu triangles%s; %s; median of %d\"}\n", (int)(full_width * scale),
+           (int)(full_height * scale), timing.n_triangles, is_still ? ", anti-aliased" : "",
+           renderer_facts(soft)->renderer, REPEATS);
 }
 
 static void bench_drawing(const char *name, enum scene_kind kind, double scale, enum surface_detail detail,
@@ -149,9 +154,49 @@ static void bench_encoding(const char *name, struct encode_options options)
         free(out.bytes);
     }
     printf("{\"name\":\"encode, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%d x %d, %zu bytes; median of %d\"}\n",
-           name, median(ms), WIDTH, HEIGHT, n_bytes, REPEATS);
+           name, median(ms), full_width, full_height, n_bytes, REPEATS);
     image_destroy(image);
     encoder_destroy(encoder);
+}
+
+/* What followers with small windows add to a picture of 1440 x 900: each size class reduced and compressed, beside the
+ * whole picture drawn and compressed. divisor 1: the whole one. */
+static void bench_class(const char *name, const struct image *image, double draw_ms, int divisor,
+                        struct encode_options options)
+{
+    struct encoder *encoder = encoder_create();
+    double ms[REPEATS], reduce_ms[REPEATS];
+    size_t n_bytes = 0;
+    for (int i = 0; i < REPEATS; i++) {
+        struct error err = { 0 };
+        struct encoded out;
+        int64_t began_us = clock_now_us();
+        struct image *reduced = divisor > 1 ? image_reduce(image, divisor, &err) : NULL;
+        reduce_ms[i] = (double)(clock_now_us() - began_us) / 1e3;
+        if ((divisor > 1 && !reduced) || !encode_image(encoder, reduced ? reduced : image, &options, &out, &err))
+            stop(&err);
+        ms[i] = (double)(clock_now_us() - began_us) / 1e3;
+        n_bytes = out.n_bytes;
+        free(out.bytes);
+        image_destroy(reduced);
+    }
+    printf("{\"name\":\"size class 1/%d, %s\",\"value\":%.2f,\"unit\":\"ms\",\"note\":\"%zu bytes; reducing alone %.2f "
+           "ms; the whole picture is drawn in %.1f ms; median of %d\"}\n",
+           divisor, name, median(ms), n_bytes, median(reduce_ms), draw_ms, REPEATS);
+    encoder_destroy(encoder);
+}
+
+static void bench_classes(const char *name, enum scene_kind kind, bool is_still)
+{
+    const struct encode_options options = { ENCODE_JPEG, is_still ? 92 : 80, is_still };
+    struct render_timing timing;
+    full_width = 1440;
+    full_height = 900;
+    image_destroy(draw(soft, kind, 2, 1, is_still ? SURFACE_FULL : SURFACE_COARSE, is_still, CUT_NONE, &timing));
+    struct image *image = draw(soft, kind, 3, 1, is_still ? SURFACE_FULL : SURFACE_COARSE, is_still, CUT_NONE, &timing);
+    for (int divisor = 1; divisor <= 4; divisor *= 2)
+        bench_class(name, image, (double)(timing.draw_us + timing.read_us) / 1e3, divisor, options);
+    image_destroy(image);
 }
 
 static struct renderer *start(enum render_back_end back_end)
@@ -195,6 +240,10 @@ int main(void)
     bench_encoding("JPEG quality 80 4:2:0", (struct encode_options){ ENCODE_JPEG, 80, false });
     bench_encoding("JPEG quality 92 4:4:4", (struct encode_options){ ENCODE_JPEG, 92, true });
     bench_encoding("PNG", (struct encode_options){ ENCODE_PNG, 0, false });
+    bench_classes("3-D, moving", SCENE_KIND_3D, false);
+    bench_classes("3-D, still", SCENE_KIND_3D, true);
+    bench_classes("axial pane, moving", SCENE_KIND_AXIAL, false);
+    bench_classes("axial pane, still", SCENE_KIND_AXIAL, true);
 
     renderer_forget(soft, plan);
     renderer_destroy(soft);
