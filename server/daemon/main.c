@@ -253,7 +253,7 @@ static bool serve(const struct options *options, struct error *err)
                    .idle_close_s = (int)options->plan_idle_close_s },
         .max_rooms = (int)options->max_rooms,
         .room_idle_close_s = (int)options->room_idle_close_s,
-        .room = { .max_members = (int)options->max_members },
+        .room = { .max_members = (int)options->max_members, .recording_speed = (double)options->recording_speed },
         .allowed_origin = options->allowed_origin,
         .database = database,
     };

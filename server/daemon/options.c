@@ -70,6 +70,8 @@ static const struct setting settings[] = {
       KIND_TEXT, AT(audit_head), 0, 0 },
     { "log-level", "LEVEL", "debug, info (default), warning or error", KIND_LEVEL, AT(log_level), 0, 0 },
     { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
+    { "recording-speed", "N", "the clock of recordings and replays runs N times as fast; for tests and rehearsals",
+      KIND_COUNT, AT(recording_speed), 1, 1000 },
     { "hang", "THREAD", "let the thread net, http or acceptor hang once it serves; for tests", KIND_TEXT, AT(hang), 0,
       0 },
 };
@@ -203,6 +205,7 @@ bool options_read(struct options *options, int argc, char **argv, struct error *
                                  .room_idle_close_s = 86400,
                                  .max_rooms = 200,
                                  .max_members = 100,
+                                 .recording_speed = 1,
                                  .max_upload_mib = 2048,
                                  .max_unpacked_mib = 8192,
                                  .max_cache_mib = 16384,

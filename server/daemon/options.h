@@ -21,7 +21,8 @@ struct options {
                                         given */
     char *hang;                      /* for tests: the thread that hangs; NULL: none */
     char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not given */
-    int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members;
+    int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members,
+        recording_speed;
     int64_t max_upload_mib, max_unpacked_mib, max_cache_mib, disk_reserve_mib;
     bool stub_renderer;
     enum log_level log_level;

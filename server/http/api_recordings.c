@@ -32,7 +32,7 @@ void api_room_recordings(struct api *api, struct call *call)
     if (!room)
         return;
     cJSON *answer = cJSON_CreateObject();
-    json_add(answer, "recordings", room_recordings(room));
+    json_add(answer, "recordings", room_recordings(room, clock_now_us()));
     call_answer_json(call, 200, answer);
 }
 

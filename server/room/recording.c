@@ -50,12 +50,12 @@ void room_recording_finish(struct room_recording *recording)
 
 static int64_t recorded_ms(const struct room *room, const struct recorder *recorder)
 {
-    const double speed = room->recording_speed > 0 ? room->recording_speed : 1;
-    return (int64_t)((double)(room->now_us - recorder->start_us) * speed / 1000);
+    return (int64_t)((double)(room->now_us - recorder->start_us) * room->recording_speed / 1000);
 }
 
-cJSON *room_recordings(const struct room *room)
+cJSON *room_recordings(struct room *room, int64_t now_us)
 {
+    room->now_us = now_us;
     cJSON *list = cJSON_CreateArray();
     for (int i = 0; i < room->n_recordings; i++) {
         const struct room_recording *facts = &room->recordings[i];

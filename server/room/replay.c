@@ -21,7 +21,7 @@ struct replay {
     struct room_recording facts;
     /* the clock */
     bool is_playing;
-    double t_ms, rate; /* t_ms: at since_us */
+    double t_ms, rate, speed; /* t_ms: at since_us; speed: the room's, how often as fast all of it goes */
     int64_t since_us;
     enum wire_replay_state told;
     int64_t told_us, shown_us;
@@ -55,7 +55,7 @@ static double time_ms(const struct room *room)
     const struct replay *replay = room->replay;
     double t_ms = replay->t_ms;
     if (replay->is_playing)
-        t_ms += (double)(room->now_us - replay->since_us) * replay->rate / 1000;
+        t_ms += (double)(room->now_us - replay->since_us) * replay->rate * replay->speed / 1000;
     return t_ms < length_ms(replay) ? t_ms : length_ms(replay);
 }
 
@@ -298,7 +298,7 @@ void room_replay_came(struct room *room, const char *const *texts, size_t n, int
 /* When the clock has come to this time of the recording. */
 static int64_t due_us(const struct replay *replay, double t_ms)
 {
-    const double wait_us = (t_ms - replay->t_ms) * 1000 / replay->rate;
+    const double wait_us = (t_ms - replay->t_ms) * 1000 / (replay->rate * replay->speed);
     return replay->since_us + (wait_us > 0 ? (int64_t)wait_us + 1 : 0);
 }
 
@@ -450,7 +450,9 @@ void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named,
                        int64_t now_us)
 {
     struct replay *replay = mem_new(sizeof *replay);
-    *replay = (struct replay){ .facts = *recording, .rate = 1, .told = WIRE_REPLAY_STATE_WAITING };
+    *replay = (struct replay){
+        .facts = *recording, .rate = 1, .speed = room->recording_speed, .told = WIRE_REPLAY_STATE_WAITING
+    };
     (void)snprintf(replay->of_room, sizeof replay->of_room, "%s", of_room);
     replay->facts.marks = recording->marks ? cJSON_Duplicate(recording->marks, true) : NULL;
     room->now_us = now_us;

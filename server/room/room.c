@@ -49,7 +49,7 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
     room->max_members = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS
                             ? limits->max_members
                             : ROOM_MAX_MEMBERS;
-    room->recording_speed = limits ? limits->recording_speed : 0;
+    room->recording_speed = limits && limits->recording_speed > 0 ? limits->recording_speed : 1;
     room->created_at_s = (int64_t)time(NULL); /* wall clock, only to be displayed */
     return room;
 }

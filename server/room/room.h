@@ -173,7 +173,7 @@ struct room_kept {
 
 struct room_limits {
     int max_members;        /* at most ROOM_MAX_MEMBERS */
-    double recording_speed; /* for tests: how many times as fast the clock of recordings runs; 0: once */
+    double recording_speed; /* how many times as fast the clock of recordings and replays runs; 0: once */
 };
 
 /* id: URL-safe, random, not guessable. The plan and its default scene come with room_plan_ready. */
@@ -301,7 +301,7 @@ bool room_was_used(const struct room *room);
 
 /* Recordings. */
 /* [{id, state, started_ms, length_ms, by, by_name, n_events, n_bytes, marks}], the oldest first; NULL: no memory. */
-NODISCARD cJSON *room_recordings(const struct room *room);
+NODISCARD cJSON *room_recordings(struct room *room, int64_t now_us);
 const struct room_recording *room_recording(const struct room *room, const char *id); /* NULL: there is none */
 /* Ends it first where it runs. False: there is none. */
 NODISCARD bool room_recording_delete(struct room *room, const char *id, int64_t now_us);
