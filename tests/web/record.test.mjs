@@ -29,6 +29,7 @@ const openTab = async (page) => {
   await page.getByRole('heading', { name: 'Checklist' }).waitFor();
 };
 const check = (page, text) => page.locator('.checks > li').filter({ hasText: text });
+const mucosa = `Mucosa above 10 Gy(w)${'; as was said, above what the protocol allows'.repeat(40)}`;
 const record = async () => (await call(`${world.daemon.url}/api/v1/rooms/${room}/record`)).json;
 
 test('two people check entries, decide and sign; it is there after a reload, in an export and on paper', { skip: missing }, async () => {
@@ -41,9 +42,9 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   await ann.keyboard.press('Enter');
   await check(ben, 'treated side').filter({ has: ben.getByRole('button', { name: 'OK', pressed: true }) }).locator('.check-by', { hasText: 'Ann' }).waitFor();
   await check(ben, 'Constraints').getByRole('button', { name: 'Issue' }).click();
-  await ben.getByLabel(/What is wrong: Constraints/).fill('Mucosa above 10 Gy(w)');
+  await ben.getByLabel(/What is wrong: Constraints/).fill(mucosa);
   await ben.keyboard.press('Tab');
-  await until(record, ({ checklist }) => checklist.some(({ state, comment }) => state === 'issue' && comment === 'Mucosa above 10 Gy(w)'));
+  await until(record, ({ checklist }) => checklist.some(({ state, comment }) => state === 'issue' && comment === mucosa));
   await ben.getByLabel('Another entry').fill('Blood samples are in');
   await ben.keyboard.press('Enter');
   await check(ann, 'Blood samples are in').waitFor();
@@ -82,7 +83,12 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   const squeezed = (text) => text.replace(/\s/g, '');
   const pages = textOfPages(await ann.pdf({ preferCSSPageSize: true, path: 'build/test-artifacts/record.pdf' })).map(squeezed);
   assert.ok(pages.length >= 1);
-  for (const text of pages) assert.match(text, /Researchuseonly/);
+  for (const [at, text] of pages.entries()) {
+    assert.match(text, /Researchuseonly/);
+    assert.ok(text.includes(`Page${at + 1}of${pages.length}`), text);
+  }
+  const narrow = await ann.locator('.record-table th, .record-table td').evaluateAll((cells) => cells.map((cell) => [cell.textContent, cell.offsetWidth / cell.closest('table').offsetWidth]).filter(([, part]) => part < 0.085));
+  assert.deepEqual(narrow, [], 'no column is squeezed by a long text beside it');
   const all = pages.join('');
   for (const words of [saved.plan_revision, 'Accept with changes', 'Less gap', 'Mucosa above 10 Gy(w)', 'B. Example', 'Blood samples are in', 'not electronic signatures']) assert.ok(all.includes(squeezed(words)), words);
   await ann.getByRole('button', { name: 'Close' }).click();

@@ -66,18 +66,19 @@ function under(rows, revision, isEarlier) {
   const checks = entriesOf(rows, revision).filter((entry) => entry.row || !isEarlier);
   const [decided, signed] = [linesOf(rows, 'decision', revision), linesOf(rows, 'signature', revision)];
   const by = ({ row: { changed_name: name, changed_ms: ms } }) => `${name}, ${time(ms)}`;
-  return html`<h2>Decision</h2>${decided.length ? table(['Decision', 'In words', 'By, at (UTC)'], decided.map((line) => [html`${wordOf(decisions, line.row.body.decision)}${line.isCorrected ? ' (corrected below)' : ''}`, line.row.body.text, by(line)])) : html`<p class="values">None.</p>`}
-    <h2>Checklist</h2>${table(['Entry', 'State', 'What is wrong', 'By, at (UTC)'], checks.map((entry) => [entry.text, wordOf(states, entry.row?.body.state ?? 'open'), entry.row?.body.comment ?? '', entry.row ? by(entry) : '']))}
-    <h2>Signatures</h2>${signed.length ? table(['Name', 'Meaning', 'Role', 'By, at (UTC)'], signed.map((line) => [html`${line.row.body.name}${line.isCorrected ? ' (corrected below)' : ''}`, wordOf(meanings, line.row.body.meaning), line.row.body.role, by(line)])) : html`<p class="values">None.</p>`}<p class="values">${legal}</p>`;
+  return html`<h2>Decision</h2>${decided.length ? table(['Decision', 'In words', 'By, at (UTC)'], [20, 50, 30], decided.map((line) => [html`${wordOf(decisions, line.row.body.decision)}${line.isCorrected ? ' (corrected below)' : ''}`, line.row.body.text, by(line)])) : html`<p class="values">None.</p>`}
+    <h2>Checklist</h2>${table(['Entry', 'State', 'What is wrong', 'By, at (UTC)'], [32, 9, 34, 25], checks.map((entry) => [entry.text, wordOf(states, entry.row?.body.state ?? 'open'), entry.row?.body.comment ?? '', entry.row ? by(entry) : '']))}
+    <h2>Signatures</h2>${signed.length ? table(['Name', 'Meaning', 'Role', 'By, at (UTC)'], [38, 16, 16, 30], signed.map((line) => [html`${line.row.body.name}${line.isCorrected ? ' (corrected below)' : ''}`, wordOf(meanings, line.row.body.meaning), line.row.body.role, by(line)])) : html`<p class="values">None.</p>`}<p class="values">${legal}</p>`;
 }
 
-const table = (names, rows) => html`<table class="record-table"><thead><tr>${names.map((name) => html`<th scope="col">${name}</th>`)}</tr></thead><tbody>${rows.map(([first, ...rest]) => html`<tr><th scope="row">${first}</th>${rest.map((value) => html`<td>${value}</td>`)}</tr>`)}</tbody></table>`;
+/** @param {number[]} widths of the columns, in per cent: by their contents a long text would leave a few letters for a name */
+const table = (names, widths, rows) => html`<table class="record-table"><colgroup>${widths.map((width) => html`<col width=${`${width}%`}>`)}</colgroup><thead><tr>${names.map((name) => html`<th scope="col">${name}</th>`)}</tr></thead><tbody>${rows.map(([first, ...rest]) => html`<tr><th scope="row">${first}</th>${rest.map((value) => html`<td>${value}</td>`)}</tr>`)}</tbody></table>`;
 
-const present = ({ present: stays, n_present_dropped: nDropped }) => html`<h2>Present</h2>${table(['Name', 'Role', 'From (UTC)', 'To'], stays.map(({ name, role, entered_ms: from, left_ms: to, here }) => [name, role, time(from), to ? time(to) : here ? 'still there' : 'until the server ended']))}
+const present = ({ present: stays, n_present_dropped: nDropped }) => html`<h2>Present</h2>${table(['Name', 'Role', 'From (UTC)', 'To'], [40, 16, 22, 22], stays.map(({ name, role, entered_ms: from, left_ms: to, here }) => [name, role, time(from), to ? time(to) : here ? 'still there' : 'until the server ended']))}
   ${nDropped ? html`<p class="values">${nDropped} earlier stays are not kept.</p>` : nothing}`;
 
 function notes({ notes: list }) {
   if (!list.length) return nothing;
   const place = ({ anchor, parent }) => (parent ? 'reply' : [anchor?.region, anchor?.point_mm && `(${anchor.point_mm.map((mm) => number(mm, 1)).join(', ')})`].filter(Boolean).join(' ') || 'plan');
-  return html`<h2>Notes</h2>${table(['Note', 'Place, LPS mm', 'By, at (UTC)', 'Resolved'], list.map((note) => [note.text, place(note), `${note.author_name}, ${time(note.created_ms)}`, note.parent ? '' : note.resolved ? 'yes' : 'no']))}`;
+  return html`<h2>Notes</h2>${table(['Note', 'Place, LPS mm', 'By, at (UTC)', 'Resolved'], [42, 20, 26, 12], list.map((note) => [note.text, place(note), `${note.author_name}, ${time(note.created_ms)}`, note.parent ? '' : note.resolved ? 'yes' : 'no']))}`;
 }
