@@ -11,10 +11,12 @@
  *   - Of moving pictures, a member whose link is slow (lag.h) gets those of the next smaller class; stills are as sharp
  * as for others.
  *   - A room that plays a recording sends whole pictures only.
- * Measured on the demo plan, 1440 x 900 (bench_render): in 3-D 49, 16 and 5 kB while it moves, 84, 27 and 9 kB as a
- * still; as an axial pane 61, 19 and 6 kB, 108, 36 and 10 kB. While it moves, in 3-D, on two busy cores: drawn by our
- * own rasteriser in 56 ms, compressed whole in 11 ms, reduced and compressed to the half in 1.0 ms, to the quarter in
- * 0.4 ms. Internal to server/room. */
+ *
+ * Measured on the demo plan, 1440 x 900, two cores (bench_render): in 3-D 49, 16 and 5 kB while it moves, 84, 27 and 9
+ * kB as a still; as an axial pane 61, 19 and 6 kB, 108, 36 and 10 kB. A moving one in 3-D is drawn by our own
+ * rasteriser in 3.8 ms and compressed in 2.1; the half of it is reduced and compressed in 0.9 ms, the quarter in 0.4.
+ *
+ * Internal to server/room. */
 #include "server/room/room_state.h"
 
 /* Fills in the reduced pictures that viewers of the stream need of a picture at scale_percent of the view's size. */
