@@ -86,7 +86,7 @@ static bool check_corrects(const struct room *room, const cJSON *body, enum wire
 
 /* ---- kinds ------------------------------------------------------------------------------------------------------ */
 
-/* Another check of the same entry under the same revision; NULL: there is none. */
+/* Whether another check of the same entry stands under the same revision. */
 static bool entry_is_there(const struct room *room, const char *entry, const struct item *before)
 {
     bool is_there = false;
