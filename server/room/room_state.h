@@ -223,7 +223,7 @@ struct room {
     int n_links;
     struct room_recording recordings[ROOM_MAX_RECORDINGS]; /* the oldest first */
     int n_recordings;
-    double recording_speed; /* > 0 */
+    double recording_speed;    /* > 0 */
     struct recorder *recorder; /* NULL: no recording runs */
     unsigned unrecorded;       /* parts that have changed since the recorder looked */
     struct replay *replay;     /* NULL: the room plays none */
