@@ -4,6 +4,7 @@
 
 #include "core/base/log.h"
 #include "server/room/meeting_log.h"
+#include "server/room/recording.h"
 #include "server/room/replay.h"
 #include "server/room/room_state.h"
 #include "tests/unit/room_fake.h"
@@ -240,6 +241,32 @@ static void a_disk_that_has_too_much_to_do_is_asked_again_after_pauses(void **st
     assert_string_equal(state_told(), "paused");
 }
 
+static bool is_told_that_the_plan_changed(void)
+{
+    cJSON *message = fake_heard(&page, "replay");
+    const bool has_changed = json_flag(message, "plan_changed", false);
+    cJSON_Delete(message);
+    return has_changed;
+}
+
+static void another_plan_than_the_recorded_one_is_said(void **state)
+{
+    static const char *const batches[] = { STATE(0, "a"), NULL };
+    struct room_recording facts = { .id = "rec-1", .length_ms = 10000, .state = WIRE_RECORDING_STATE_STOPPED };
+    (void)state;
+    disk = batches;
+    fake_plan_ready(&fake, true);
+    assert_true(recording_plan_mark(fake.room, facts.plan_mark));
+    room_replay_begin(fake.room, "k3rw-8vxa", 0, &facts, fake.now_us);
+    fake_hello(&fake, &page);
+    answer();
+    assert_false(is_told_that_the_plan_changed());
+    fake_other_plan_ready(&fake);
+    assert_true(is_told_that_the_plan_changed());
+    fake_plan_ready(&fake, true);
+    assert_false(is_told_that_the_plan_changed());
+}
+
 /* ---- what is written --------------------------------------------------------------------------------------------- */
 
 static cJSON *member(const char *name)
@@ -275,6 +302,7 @@ int main(void)
         TEST(each_time_shows_what_was_then),
         TEST(where_the_beginning_is_lost_the_first_there_is_is_shown),
         TEST(what_cannot_be_played_is_read_again_after_growing_pauses),
+        TEST(another_plan_than_the_recorded_one_is_said),
         TEST(a_disk_that_has_too_much_to_do_is_asked_again_after_pauses),
         cmocka_unit_test(a_part_that_there_was_no_memory_for_stays_as_it_was),
     };
