@@ -40,7 +40,7 @@ export function initializer(field, prefix, objects) {
     case 'color': return `0x${value.slice(1)}`;
     case 'id': case 'text': return JSON.stringify(value ?? '');
     case 'vec3': case 'direction': return `{ ${(value ?? [0, 0, 0]).join(', ')} }`;
-    case 'size': return `{ ${value[0]}, ${value[1]} }`;
+    case 'size': return `{ ${(value ?? [0, 0]).join(', ')} }`;
     case 'object': return objectInitializer(objects[field.object], prefix, objects);
     case 'list': case 'map': case 'patch': case 'json': return 'NULL';
     default: throw new Error(field.type);

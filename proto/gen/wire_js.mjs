@@ -13,7 +13,7 @@ export function wireScript(scene, messages) {
   const { enums, objects } = tables(scene);
   Object.assign(enums, wordsOf(messages.enums));
   const table = {};
-  for (const message of messages.messages) table[message.name] = { from: message.from, ...(message.right && { right: message.right }), fields: message.fields };
+  for (const message of messages.messages) table[message.name] = { from: message.from, fields: message.fields };
   return '// Generated from proto/; change it there.\n' +
     `export const protocol = ${messages.version};\n` +
     `export const maxClientBytes = ${messages.max_client_bytes};\n` +

@@ -16,10 +16,10 @@ struct api_display { /* a screen that looks at a room */
     bool holds_plan;
 };
 
-static void put_picture(void *context, struct room_picture *picture)
+static void put_picture(void *context, struct room_picture *picture, const char *kind)
 {
     const struct api_display *display = context;
-    feed_put(display->feed, picture);
+    feed_put(display->feed, picture, kind);
 }
 
 static bool has_room(void *context)

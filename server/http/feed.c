@@ -21,17 +21,24 @@ struct feed {
     atomic_bool is_full, is_late, is_ended;
     atomic_int sides; /* that have not left */
     /* the reader's */
-    struct room_picture *picture; /* of the part; NULL: none came yet */
-    int64_t begun_us;             /* the part */
+    struct letter *letter; /* of the part; NULL: none came yet */
+    int64_t begun_us;      /* the part */
     unsigned long n_pictures;
     bool said_late; /* in the part */
     char head[1024 + MISSING_MAX_REGIONS * 66];
     size_t n_head, at, n_part; /* at: of n_part bytes read */
 };
 
+struct letter {
+    struct room_picture *picture;
+    const char *kind; /* of its view */
+};
+
 static void drop(void *letter)
 {
-    room_picture_drop(letter);
+    if (letter)
+        room_picture_drop(((struct letter *)letter)->picture);
+    free(letter);
 }
 
 struct feed *feed_create(void (*wake)(void *context), void *context)
@@ -54,16 +61,18 @@ static void side_left(struct feed *feed)
     if (atomic_fetch_sub(&feed->sides, 1) > 1)
         return;
     mailbox_destroy(feed->box);
-    room_picture_drop(feed->picture);
+    drop(feed->letter);
     free(feed);
 }
 
 /* ---- the writer ------------------------------------------------------------------------------------------------- */
 
-void feed_put(struct feed *feed, struct room_picture *picture)
+void feed_put(struct feed *feed, struct room_picture *picture, const char *kind)
 {
+    struct letter *letter = mem_new(sizeof *letter);
+    *letter = (struct letter){ room_picture_hold(picture), kind };
     atomic_store(&feed->is_full, true); /* before the letter: the reader clears it when it has taken one */
-    mailbox_put(feed->box, room_picture_hold(picture));
+    mailbox_put(feed->box, letter);
     feed->wake(feed->context);
 }
 
@@ -97,18 +106,21 @@ static int write_matrix(char *text, size_t size, const float matrix[16])
 
 static void begin_part(struct feed *feed, int64_t now_us)
 {
-    const struct room_picture *picture = feed->picture;
+    const struct room_picture *picture = feed->letter->picture;
     const struct frame_header *header = &picture->header;
     char matrix[16 * 24], missing[MISSING_MAX_REGIONS * 66 + 32];
     (void)write_matrix(matrix, sizeof matrix, header->clip_from_lps_mm);
     missing_words(picture->missing, missing, sizeof missing);
     feed->said_late = atomic_load(&feed->is_late);
-    int n = snprintf(feed->head, sizeof feed->head,
-                     "Content-Type: image/jpeg\r\nContent-Length: %zu\r\nBeamroom-Picture: %lu\r\n"
-                     "Beamroom-Revision: %u\r\nBeamroom-Size: %ux%u\r\nBeamroom-Clip-From-Lps: %s\r\n%s%s%s%s\r\n",
-                     picture->n_bytes, feed->n_pictures, header->scene_revision, header->width_px, header->height_px,
-                     matrix, picture->missing ? "Beamroom-Missing: " : "", picture->missing ? missing : "",
-                     picture->missing ? "\r\n" : "", feed->said_late ? "Beamroom-Late: true\r\n" : "");
+    int n =
+        snprintf(feed->head, sizeof feed->head,
+                 "Content-Type: image/jpeg\r\nContent-Length: %zu\r\nBeamroom-Picture: %lu\r\n"
+                 "Beamroom-View: %s\r\nBeamroom-Revision: %u\r\nBeamroom-Size: %ux%u\r\nBeamroom-Clip-From-Lps: %s\r\n"
+                 "%s%s%s%s\r\n",
+                 picture->n_bytes, feed->n_pictures, feed->letter->kind, header->scene_revision, header->width_px,
+                 header->height_px, matrix, picture->missing ? "Beamroom-Missing: " : "",
+                 picture->missing ? missing : "", picture->missing ? "\r\n" : "",
+                 feed->said_late ? "Beamroom-Late: true\r\n" : "");
     feed->n_head = (size_t)n; /* the buffer holds the longest numbers and all of missing */
     feed->at = 0;
     feed->n_part = feed->n_head + picture->n_bytes + strlen(part_end);
@@ -117,11 +129,12 @@ static void begin_part(struct feed *feed, int64_t now_us)
 
 static void copy(const struct feed *feed, char *bytes, size_t n)
 {
+    const struct room_picture *picture = feed->letter ? feed->letter->picture : NULL;
     const struct {
         const void *bytes;
         size_t n;
     } pieces[] = { { feed->head, feed->n_head },
-                   { feed->picture ? feed->picture->bytes : NULL, feed->picture ? feed->picture->n_bytes : 0 },
+                   { picture ? picture->bytes : NULL, picture ? picture->n_bytes : 0 },
                    { part_end, strlen(part_end) } };
     size_t start = 0;
     for (size_t i = 0; i < sizeof pieces / sizeof pieces[0] && n > 0; start += pieces[i++].n) {
@@ -143,8 +156,8 @@ bool feed_is_inside(const struct feed *feed)
 bool feed_is_due(const struct feed *feed, int64_t now_us)
 {
     return feed_is_inside(feed) || atomic_load(&feed->is_full) ||
-           (feed->picture && (now_us - feed->begun_us >= FEED_REPEAT_MS * INT64_C(1000) ||
-                              feed->said_late != atomic_load(&feed->is_late)));
+           (feed->letter && (now_us - feed->begun_us >= FEED_REPEAT_MS * INT64_C(1000) ||
+                             feed->said_late != atomic_load(&feed->is_late)));
 }
 
 bool feed_is_ended(const struct feed *feed)
@@ -157,14 +170,14 @@ size_t feed_read(struct feed *feed, char *bytes, size_t size, bool is_free, int6
     if (!feed_is_inside(feed)) {
         if (!is_free || !feed_is_due(feed, now_us))
             return 0;
-        struct room_picture *newer = mailbox_take(feed->box);
+        struct letter *newer = mailbox_take(feed->box);
         atomic_store(&feed->is_full, false);
         if (newer) {
-            room_picture_drop(feed->picture);
-            feed->picture = newer;
+            drop(feed->letter);
+            feed->letter = newer;
             feed->n_pictures++;
         }
-        if (!feed->picture)
+        if (!feed->letter)
             return 0;
         begin_part(feed, now_us);
     }

@@ -16,10 +16,11 @@ extern const char feed_media_type[];
 struct feed *feed_create(void (*wake)(void *context), void *context);
 
 /* The writer's: */
-void feed_put(struct feed *feed, struct room_picture *picture); /* holds it */
-bool feed_has_room(const struct feed *feed);                    /* the last picture was taken */
-void feed_late(struct feed *feed, bool is_late);                /* what is shown is not the newest state */
-void feed_end(struct feed *feed);                               /* the writer leaves: there will be nothing more */
+/* Holds picture; kind: that of its view, a constant word. */
+void feed_put(struct feed *feed, struct room_picture *picture, const char *kind);
+bool feed_has_room(const struct feed *feed);     /* the last picture was taken */
+void feed_late(struct feed *feed, bool is_late); /* what is shown is not the newest state */
+void feed_end(struct feed *feed);                /* the writer leaves: there will be nothing more */
 
 /* The reader's: */
 /* Copies at most size bytes. 0: nothing now. At the end of a part the next one is begun only if is_free: the screen has

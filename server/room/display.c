@@ -6,17 +6,20 @@
 /* A member who takes pictures acknowledges within this time; beyond it, all who look have stalled. */
 static const int64_t DISPLAY_ALONE_US = 2000000;
 
-static bool is_alone(const struct stream *stream, int64_t now_us)
+int64_t display_alone_us(const struct stream *stream)
 {
-    for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
-        if (now_us - view->sent[view->sent_sequence % ROOM_MAX_UNSHOWN].sent_us < DISPLAY_ALONE_US)
-            return false;
-    return true;
+    int64_t alone_us = INT64_MIN;
+    for (const struct member_view *view = stream->viewers; view; view = view->next_viewer) {
+        const int64_t stalled_us = view->sent[view->sent_sequence % ROOM_MAX_UNSHOWN].sent_us + DISPLAY_ALONE_US;
+        if (!view_is_watch(view) && stalled_us > alone_us)
+            alone_us = stalled_us;
+    }
+    return alone_us;
 }
 
 bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_t now_us)
 {
-    if (n_coming >= ROOM_MAX_UNSHOWN || !is_alone(stream, now_us))
+    if (n_coming >= ROOM_MAX_UNSHOWN || now_us < display_alone_us(stream))
         return false;
     for (const struct room_display *display = stream->displays; display; display = display->next)
         if (display->callbacks.has_room(display->callbacks.context))
@@ -27,7 +30,7 @@ bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_
 void displays_send(const struct stream *stream)
 {
     for (const struct room_display *display = stream->displays; display; display = display->next)
-        display->callbacks.picture(display->callbacks.context, stream->latest);
+        display->callbacks.picture(display->callbacks.context, stream->latest, scene_kind_words.words[stream->kind]);
 }
 
 static void tell_late(const struct stream *stream, bool is_late)

@@ -11,6 +11,7 @@ struct room_display {
     struct stream *stream;
     struct room_display_callbacks callbacks;
     bool is_late; /* as the display was told */
+    bool is_main; /* it shows the room's main view */
 };
 
 /* How soon to look again whether a display has taken its picture: it makes no event. */
@@ -21,9 +22,13 @@ enum { DISPLAY_LATE_US = 1000000 };
 /* True if a picture may be requested for the stream's displays: one of them has taken its picture, and no member who
  * looks was sent one in the last DISPLAY_ALONE_US. n_coming: requests of the stream outstanding. */
 bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_t now_us);
+/* When all members who look will have stalled, if they take no more pictures; INT64_MIN: nobody looks. */
+int64_t display_alone_us(const struct stream *stream);
 /* Gives the stream's latest picture to its displays. */
 void displays_send(const struct stream *stream);
 /* Tells displays whether their picture is late; when the next may be. */
 int64_t displays_tick(struct room *room);
+/* The room's main view is another one: the displays that show it go over. */
+void displays_follow(struct room *room);
 /* Ends them: the stream does. */
 void displays_end(struct stream *stream);

@@ -32,6 +32,39 @@ static struct stream *shared_of_kind(const struct room *room, int kind)
     return first;
 }
 
+static struct room_display **find_main(struct stream *stream)
+{
+    struct room_display **at = &stream->displays;
+    while (*at && !(*at)->is_main)
+        at = &(*at)->next;
+    return at;
+}
+
+static void show(struct room_display *display, struct stream *stream)
+{
+    display->next = stream->displays;
+    display->stream = stream;
+    stream->displays = display;
+    if (stream->latest)
+        display->callbacks.picture(display->callbacks.context, stream->latest, scene_kind_words.words[stream->kind]);
+}
+
+void displays_follow(struct room *room)
+{
+    struct stream *stream = room->streams;
+    while (room->main && stream) {
+        struct room_display **at = stream == room->main ? NULL : find_main(stream), *display = at ? *at : NULL;
+        if (!display) {
+            stream = stream->next;
+            continue;
+        }
+        *at = display->next;
+        show(display, room->main);
+        stream_left(room, stream);
+        stream = room->streams; /* that one may be gone */
+    }
+}
+
 /* A stream that no member has shown: what the room began with, or the home camera. The first member to show the view
  * still decides about its camera and size (is_of_display), as if no display had looked. */
 static struct stream *make_shared(struct room *room, int kind, struct problem *problem)
@@ -56,6 +89,8 @@ static struct stream *make_shared(struct room *room, int kind, struct problem *p
 static struct stream *choose(struct room *room, const char *word, struct problem *problem)
 {
     int kind = SCENE_KIND_3D;
+    if (!word && room->main)
+        return room->main;
     for (size_t i = 0; word && i < scene_kind_words.n; i++)
         if (strcmp(word, scene_kind_words.words[i]) == 0) {
             kind = (int)i;
@@ -90,11 +125,8 @@ struct room_display *room_display_add(struct room *room, const char *view,
     if (!stream)
         return NULL;
     struct room_display *display = mem_new(sizeof *display);
-    *display =
-        (struct room_display){ .next = stream->displays, .room = room, .stream = stream, .callbacks = *callbacks };
-    stream->displays = display;
-    if (stream->latest)
-        callbacks->picture(callbacks->context, stream->latest);
+    *display = (struct room_display){ .room = room, .callbacks = *callbacks, .is_main = !view };
+    show(display, stream);
     (void)streams_request_due(room);
     return display;
 }

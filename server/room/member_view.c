@@ -6,6 +6,7 @@
 
 #include "server/room/beginning.h"
 #include "server/room/kept.h"
+#include "server/room/main_view.h"
 #include "server/room/member_list.h"
 #include "server/room/own_view.h"
 #include "server/room/send.h"
@@ -33,10 +34,11 @@ static void view_close(struct room *room, struct member_view *view)
 
 void views_close(struct room *room, struct member *member)
 {
-    for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
+    for (int i = 0; i < ROOM_WATCH; i++) {
         view_close(room, &member->views[i]);
         member->views[i] = (struct member_view){ 0 }; /* frames are counted from 1 on each connection */
     }
+    member->watch.is_wanted = member->watch.is_late = false;
 }
 
 void view_add_input(struct member_view *view, uint32_t input)
@@ -232,6 +234,7 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
     cJSON *document = view_document_patch(stream->view, patch->patch, problem);
     if (!document)
         return false;
+    main_view_patched(member, (int)patch->view, patch->patch);
     if (view->is_following && !member_presents(room, member)) {
         bool is_kept = patch_of_follower(room, view, patch->patch, document, problem);
         cJSON_Delete(document);

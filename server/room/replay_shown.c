@@ -48,25 +48,26 @@ bool shown_scene(struct room *room, const cJSON *state, cJSON **report)
 
 /* ---- views ------------------------------------------------------------------------------------------------------ */
 
-/* Takes document. */
-static void show_view(struct room *room, cJSON *document)
+/* Takes document. Returns its stream when that has changed, else NULL. */
+static struct stream *show_view(struct room *room, cJSON *document)
 {
     struct stream *stream = stream_shared(room, document);
-    if (!stream) {
-        (void)stream_create(room, document, true);
-        return;
-    }
+    if (!stream)
+        return stream_create(room, document, true);
     if (!stream_set_view(room, stream, document))
-        return;
+        return NULL;
     for (struct member_view *view = stream->viewers; view; view = view->next_viewer) {
         view->has_moved = true;
         view->moved_by[0] = 0;
     }
+    return stream;
 }
 
 void shown_views(struct room *room, const cJSON *state)
 {
     const cJSON *entry;
+    struct stream *moved = NULL;
+    int n_moved = 0;
     cJSON_ArrayForEach(entry, log_state_part(state, LOG_VIEWS))
     {
         const cJSON *recorded = cJSON_GetObjectItemCaseSensitive(entry, "document");
@@ -74,11 +75,14 @@ void shown_views(struct room *room, const cJSON *state)
         cJSON *document = recorded ? view_document_patch(NULL, recorded, &problem) : NULL;
         if (document && !override_is_valid(room, document, &problem))
             cJSON_DeleteItemFromObjectCaseSensitive(document, "override");
-        if (document)
-            show_view(room, document);
-        else
+        struct stream *stream = document ? show_view(room, document) : NULL;
+        moved = stream ? stream : moved;
+        n_moved += stream != NULL;
+        if (!document)
             log_error("room %s: a recorded view is left out: %s", room->id, problem.detail);
     }
+    if (n_moved == 1) /* somebody moved this one; where all are shown anew, nobody did */
+        room->main = moved;
 }
 
 /* ---- items ------------------------------------------------------------------------------------------------------ */

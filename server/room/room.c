@@ -18,6 +18,7 @@
 #include "server/room/kept.h"
 #include "server/room/lag.h"
 #include "server/room/look.h"
+#include "server/room/main_view.h"
 #include "server/room/member.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
@@ -30,6 +31,7 @@
 #include "server/room/send.h"
 #include "server/room/shared_scene.h"
 #include "server/room/stream.h"
+#include "server/room/watch_join.h"
 #include "server/wire/json_merge.h"
 #include "server/wire/message.h"
 
@@ -204,6 +206,7 @@ static const struct {
     { MESSAGE_VIEW_OPEN, member_view_open },
     { MESSAGE_VIEW_PATCH, member_view_patch },
     { MESSAGE_VIEW_CLOSE, member_view_close },
+    { MESSAGE_WATCH, watch_set },
     { MESSAGE_FOLLOW, member_follow },
     { MESSAGE_PRESENT, presenter_present },
     { MESSAGE_SHOW_EVERYONE, presenter_show_everyone },
@@ -227,6 +230,14 @@ static const struct {
     { MESSAGE_REPLAY_LEAVE, replay_leave },
     { MESSAGE_PING, handle_ping },
 };
+
+/* Displays and small pictures show the main view that there is now. */
+static void show_main(struct room *room)
+{
+    main_view_settle(room);
+    displays_follow(room);
+    watches_follow(room);
+}
 
 static void whole_number(const cJSON *json, const char *name, double most, int64_t *value)
 {
@@ -308,8 +319,14 @@ int64_t room_text_came(struct room *room, void *connection, const char *text, si
     message_finish(&message);
     control_tell(room);
     members_close_lost(room);
-    const int64_t request_us = streams_request_due(room), late_us = now_us + LAG_AFTER_US;
-    return !is_shown ? now_us : request_us < late_us ? request_us : late_us;
+    int64_t watch_us = INT64_MAX;
+    if (!is_shown)
+        show_main(room);
+    else if (member)
+        watch_us = watch_tick(room, member);
+    const int64_t request_us = streams_request_due(room), late_us = now_us + LAG_AFTER_US,
+                  next_us = watch_us < late_us ? watch_us : late_us;
+    return !is_shown ? now_us : request_us < next_us ? request_us : next_us;
 }
 
 void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us)
@@ -319,6 +336,7 @@ void room_connection_lost(struct room *room, void *connection, int64_t heard_us,
     if (member)
         member_disconnected(room, member, heard_us < now_us ? heard_us : now_us);
     control_tell(room);
+    show_main(room);
 }
 
 void room_connection_closed(struct room *room, void *connection, int64_t now_us)
@@ -342,7 +360,9 @@ int64_t room_tick(struct room *room, int64_t now_us)
     if (has_changed)
         send_members(room);
     control_tell(room);
-    const int64_t due_us[] = { members_forget(room),
+    show_main(room);
+    const int64_t due_us[] = { watches_tick(room),
+                               members_forget(room),
                                streams_request_due(room),
                                presenter_due_us(room),
                                send_members_due(room),

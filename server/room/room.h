@@ -12,6 +12,7 @@
 enum {
     ROOM_MAX_MEMBERS = 200,
     ROOM_MAX_VIEWS = 8,
+    ROOM_WATCH = ROOM_MAX_VIEWS + 1, /* number of the small picture of the presenter in frames and messages */
     ROOM_MAX_UNSHOWN = 2,
     ROOM_STILL_AFTER_MS = 150,
     ROOM_MEMBER_KEPT_S = 300,
@@ -210,13 +211,14 @@ void room_picture_failed(struct room *room, uint64_t request, const struct probl
 struct room_picture *room_picture_hold(struct room_picture *picture);
 void room_picture_drop(struct room_picture *picture);
 
-/* Displays: screens that show a shared view and are no members. view: its kind; NULL: 3d. Of several views of the kind,
- * the presenter's first, else that with the lowest number; one that nobody has shown yet begins as for a member. A
- * display neither keeps a room awake nor counts as its use. NULL with problem: limit, validation, not-found. */
+/* Displays: screens that show a shared view and are no members. view: its kind; NULL: the room's main view, whichever
+ * that is at the time. Of several views of the kind, the presenter's first, else that with the lowest number; one that
+ * nobody has shown yet begins as for a member. A display neither keeps a room awake nor counts as its use. NULL with
+ * problem: limit, validation, not-found. */
 struct room_display;
 struct room_display_callbacks {
-    /* a newer picture; keeping it takes room_picture_hold */
-    void (*picture)(void *context, struct room_picture *picture);
+    /* a newer picture, of a view of this kind (a constant word); keeping it takes room_picture_hold */
+    void (*picture)(void *context, struct room_picture *picture, const char *kind);
     bool (*has_room)(void *context); /* the screen has taken the last one */
     /* The picture does not show what the room shows now: the newest state is slow to be drawn, or cannot be. False at
      * first, and again when it does. */

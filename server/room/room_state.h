@@ -57,7 +57,7 @@ struct stream {
     struct {            /* the message view as it was written last: most viewers are sent the same text */
         char *text;     /* NULL: none, or the view has changed since */
         int index;
-        bool is_following;
+        bool is_following, is_late;
         char by[64];
     } told;
 };
@@ -120,9 +120,23 @@ struct member {
     uint64_t request;   /* for control: the larger, the later; 0: none */
     int64_t refused_us; /* when the last one was refused; 0: none was */
     enum wire_member_lag lag;
-    int64_t lag_until_us; /* it is told at least until then */
-    struct member_view views[ROOM_MAX_VIEWS];
+    int64_t lag_until_us;                 /* it is told at least until then */
+    struct member_view views[ROOM_WATCH]; /* the last one is that of watch */
+    int active;                           /* number of the view in which it works; 0: not known */
+    bool has_told_active;                 /* by a message of its own */
+    uint64_t n_bytes;                     /* of the pictures sent in its views, without that of watch */
+    struct {                              /* the small picture of the presenter */
+        bool is_wanted;
+        bool is_late;      /* as it was told */
+        int64_t behind_us; /* since when what was sent is not the newest state and nothing newer was sent; 0: it is */
+        uint64_t n_bytes;  /* of the member when the newest one was sent */
+    } watch;
 };
+
+static inline bool view_is_watch(const struct member_view *view)
+{
+    return view->member && view == &view->member->views[ROOM_WATCH - 1];
+}
 
 struct item { /* a note, a reply or a bookmark */
     struct item *next;
@@ -229,6 +243,8 @@ struct room {
     struct replay *replay;     /* NULL: the room plays none */
     bool has_links;            /* there was one; then those who are no members may do less: room_call_may */
     struct stream *streams;
+    struct stream
+        *main; /* of them: what watch and displays show; of the last presenter when there is none; NULL: none */
     int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
     uint64_t n_requests;
     struct room_counters counters;

@@ -205,17 +205,19 @@ void send_view_forget(struct stream *stream)
     stream->told.text = NULL;
 }
 
-static void write_view(struct stream *stream, int index, bool is_following, const char *by)
+static void write_view(struct stream *stream, int index, bool is_following, bool is_late, const char *by)
 {
     struct message message = { .type = MESSAGE_VIEW };
     message.view.view = index + 1;
     message.view.document = stream->view;
     message.view.follow = is_following;
+    message.view.late = is_late;
     copy_text(message.view.by, sizeof message.view.by, by);
     send_view_forget(stream);
     stream->told.text = message_write(&message);
     stream->told.index = index;
     stream->told.is_following = is_following;
+    stream->told.is_late = is_late;
     copy_text(stream->told.by, sizeof stream->told.by, by);
 }
 
@@ -223,11 +225,12 @@ void send_view(struct room *room, struct member *member, int index, const char *
 {
     const struct member_view *view = &member->views[index];
     struct stream *stream = view->stream;
+    const bool is_late = view_is_watch(view) && member->watch.is_late;
     if (!member->connection)
         return;
     if (!stream->told.text || stream->told.index != index || stream->told.is_following != view->is_following ||
-        strcmp(stream->told.by, by) != 0)
-        write_view(stream, index, view->is_following, by);
+        stream->told.is_late != is_late || strcmp(stream->told.by, by) != 0)
+        write_view(stream, index, view->is_following, is_late, by);
     (void)send_text(room, member->connection, stream->told.text);
 }
 

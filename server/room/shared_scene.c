@@ -3,6 +3,7 @@
 
 #include "server/room/audit.h"
 #include "server/room/kept.h"
+#include "server/room/main_view.h"
 #include "server/room/marks.h"
 #include "server/room/member_list.h"
 #include "server/room/member_view.h"
@@ -104,7 +105,9 @@ bool member_scene_patch(struct room *room, struct member *member, const struct m
     if (!member_presents(room, member) && !marks_are_own(room, member, patch->patch, problem))
         return false;
     struct stream *acted = patch->view > 0 ? member->views[patch->view - 1].stream : NULL;
-    if (acted)
+    if (acted) {
         acted->acted_us = room->now_us;
+        main_view_acted(member, (int)patch->view);
+    }
     return scene_apply_patch(room, patch->patch, member, (uint32_t)patch->input, problem);
 }

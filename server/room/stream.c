@@ -12,6 +12,7 @@
 #include "server/room/reach.h"
 #include "server/room/send.h"
 #include "server/room/size_class.h"
+#include "server/room/watch.h"
 #include "server/wire/json_merge.h"
 
 enum { STILL_QUALITY = 92 };
@@ -134,6 +135,8 @@ void stream_destroy(struct room *room, struct stream *stream)
     while (*at != stream)
         at = &(*at)->next;
     *at = stream->next;
+    if (room->main == stream)
+        room->main = NULL;
     room_picture_drop(stream->latest);
     send_view_forget(stream);
     cJSON_Delete(stream->view);
@@ -197,7 +200,7 @@ static void report_removed_override(struct room *room, const struct stream *stre
     for (const struct member_view *view = stream->viewers; view; view = view->next_viewer) {
         struct member *member = view->member;
         int index = (int)(view - member->views);
-        if (!member->connection)
+        if (!member->connection || view_is_watch(view))
             continue;
         send_view(room, member, index, stream->mover);
         (void)send_problem(room, member->connection, message_descriptions[MESSAGE_VIEW_OPEN].name, index + 1, 0,
@@ -248,9 +251,9 @@ static bool has_credit(const struct room *room, const struct stream *stream)
 {
     uint32_t coming = (uint32_t)n_outstanding(stream);
     for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
-        if (n_unshown(view) + coming < ROOM_MAX_UNSHOWN)
+        if (!view_is_watch(view) && n_unshown(view) + coming < ROOM_MAX_UNSHOWN)
             return true;
-    return displays_have_credit(stream, coming, room->now_us);
+    return displays_have_credit(stream, coming, room->now_us) || watches_have_credit(stream, coming, room->now_us);
 }
 
 /* Id of the member whose own view it is; NULL: shared, or without a viewer. */
@@ -378,6 +381,8 @@ void stream_send_picture(struct room *room, struct member *member, struct member
     if (view->sent_number == stream->latest_number && view->sent_width_px >= picture->header.width_px &&
         !shows_waiting_input(stream, view))
         return;
+    if (view_is_watch(view) && !watch_has_turn(room, view, picture->n_bytes))
+        return;
     int index = (int)(view - member->views);
     if (view->has_moved) {
         view->has_moved = false;
@@ -403,6 +408,7 @@ void stream_send_picture(struct room *room, struct member *member, struct member
     room->counters.frames_sent++;
     room->counters.frame_bytes += picture->n_bytes;
     room->counters.stills_sent += stream->latest_is_still;
+    watch_count(room, view, picture->n_bytes);
     room->callbacks.send_frame(room->callbacks.context, member->connection, &header, picture);
 }
 
@@ -442,8 +448,8 @@ void stream_acknowledged(struct room *room, struct member_view *view, uint32_t s
     int64_t sent_us = view->sent[sequence % ROOM_MAX_UNSHOWN].sent_us;
     bool was_still = view->sent[sequence % ROOM_MAX_UNSHOWN].is_still;
     view->shown_sequence = sequence;
-    if (was_still || !view->stream)
-        return; /* a still is larger than the pictures that pace the link */
+    if (was_still || !view->stream || view_is_watch(view))
+        return; /* a still is larger than the pictures that pace the link; those of watch pace nothing */
     int64_t lag_us = room->now_us - sent_us + 1;
     if (view->lag_least_us == 0 || lag_us < view->lag_least_us)
         view->lag_least_us = lag_us;
@@ -536,7 +542,7 @@ static void refuse_version(struct room *room, struct stream *stream, uint64_t ve
     stream->refused_version = version;
     stream->refusal = *problem;
     for (const struct member_view *view = stream->viewers; view; view = view->next_viewer)
-        if (view->member->connection)
+        if (view->member->connection && !view_is_watch(view))
             (void)send_problem(room, view->member->connection, "", view - view->member->views + 1, 0, problem);
 }
 

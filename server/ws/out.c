@@ -62,7 +62,7 @@ void out_queue_clear(struct queue_out *queue)
 
 void out_drop_frames(struct ws_connection *connection)
 {
-    for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
+    for (int i = 0; i < ROOM_WATCH; i++) {
         room_picture_drop(connection->slots[i].picture);
         connection->slots[i].picture = NULL;
     }
@@ -211,7 +211,7 @@ void ws_bye(struct ws_connection *connection, enum ws_close_code code, const cha
 
 void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct room_picture *picture)
 {
-    if (connection->state != STATE_OPEN || header->view < 1 || header->view > ROOM_MAX_VIEWS)
+    if (connection->state != STATE_OPEN || header->view < 1 || header->view > ROOM_WATCH)
         return;
     struct frame_slot *slot = &connection->slots[header->view - 1];
     room_picture_drop(slot->picture);
@@ -294,6 +294,8 @@ static bool begin_next(struct ws_connection *connection)
         begin_frame(sending, &connection->slots[at]);
         return true;
     }
+    if (connection->slots[ROOM_WATCH - 1].picture) /* after the member's own views */
+        begin_frame(sending, &connection->slots[ROOM_WATCH - 1]);
     return sending->n > 0;
 }
 
@@ -327,7 +329,7 @@ static bool has_more(const struct ws_connection *connection)
 {
     bool has = is_sending(connection) || connection->pongs.first || connection->texts.first || connection->close ||
                (connection->state == STATE_OPEN && connection->latest.first);
-    for (int i = 0; i < ROOM_MAX_VIEWS; i++)
+    for (int i = 0; i < ROOM_WATCH; i++)
         has = has || connection->slots[i].picture;
     return has;
 }

@@ -67,7 +67,7 @@ struct ws_connection { /* lives as long as its socket */
     size_t n_dropped;
     struct queue_out pongs, texts, latest; /* latest: at most one message of each key */
     struct message_out *close;             /* sent after pongs and texts, instead of latest */
-    struct frame_slot slots[ROOM_MAX_VIEWS];
+    struct frame_slot slots[ROOM_WATCH];
     int next_slot;
     struct sending sending;
     bool is_armed;  /* out_write is called when the socket takes more */

@@ -9,7 +9,7 @@
 enum { N_PAGES = 2, MAX_REQUESTS = 4096 };
 
 static struct page {
-    uint32_t sent[ROOM_MAX_VIEWS + 1], shown[ROOM_MAX_VIEWS + 1];
+    uint32_t sent[ROOM_WATCH + 1], shown[ROOM_WATCH + 1];
     bool is_closed;
 } pages[N_PAGES];
 static uint64_t requests[MAX_REQUESTS];
@@ -64,7 +64,7 @@ static void send_frame(void *context, void *connection, const struct frame_heade
     struct page *page = connection;
     (void)context;
     REQUIRE(!page->is_closed && picture->references > 0);
-    REQUIRE(header->view >= 1 && header->view <= ROOM_MAX_VIEWS);
+    REQUIRE(header->view >= 1 && header->view <= ROOM_WATCH);
     REQUIRE(header->sequence == page->sent[header->view] + 1);
     page->sent[header->view] = header->sequence;
     REQUIRE(header->sequence - page->shown[header->view] <= ROOM_MAX_UNSHOWN);
@@ -100,7 +100,7 @@ static void follow_acknowledgement(struct page *page, const char *text, size_t n
     cJSON *json = json_read(text, n, NULL);
     const char *type = json_text(json, "type");
     double view = json_number(json, "view", 0), sequence = json_number(json, "sequence", -1);
-    if (type && strcmp(type, "frame.shown") == 0 && view >= 1 && view <= ROOM_MAX_VIEWS && sequence >= 0 &&
+    if (type && strcmp(type, "frame.shown") == 0 && view >= 1 && view <= ROOM_WATCH && sequence >= 0 &&
         sequence <= page->sent[(int)view] && sequence > page->shown[(int)view])
         page->shown[(int)view] = (uint32_t)sequence;
     cJSON_Delete(json);

@@ -152,7 +152,7 @@ static void an_acknowledgement_is_read_alike_however_it_is_written(void **state)
         { "{\"type\":\"frame.shown\",\"view\":3,\"sequence\":77.0}", 3, 77 },
         { "{\"type\":\"frame.shown\",\"view\":3,\"sequence\":77} ", 3, 77 },
         { "{\"type\":\"frame.shown\",\"view\":0,\"sequence\":1}", 0, 0 },
-        { "{\"type\":\"frame.shown\",\"view\":9,\"sequence\":1}", 0, 0 },
+        { "{\"type\":\"frame.shown\",\"view\":10,\"sequence\":1}", 0, 0 },
         { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":4294967296}", 0, 0 },
         { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":-1}", 0, 0 },
         { "{\"type\":\"frame.shown\",\"view\":1,\"sequence\":18446744073709551617}", 0, 0 },

@@ -182,6 +182,55 @@ static void where_the_beginning_is_lost_the_first_there_is_is_shown(void **state
     assert_string_equal(name_shown(), "e");
 }
 
+/* The kind of the view in the small picture, and the number of frames of it. */
+static const char *small_picture(size_t *n_frames)
+{
+    static char kind[64];
+    cJSON *message = fake_heard(&page, "view");
+    assert_int_equal((int)json_number(message, "view", 0), ROOM_WATCH);
+    (void)snprintf(kind, sizeof kind, "%s", json_text(cJSON_GetObjectItem(message, "document"), "kind"));
+    cJSON_Delete(message);
+    *n_frames = 0;
+    for (size_t i = 0; i < page.n_frames; i++)
+        *n_frames += page.frames[i].view == ROOM_WATCH;
+    return kind;
+}
+
+static void who_looks_for_themselves_has_a_small_picture_of_the_replay(void **state)
+{
+    static const char *const batches[] = {
+        "[{\"t_ms\":0,\"part\":\"state\",\"whole\":{\"scene\":{},\"views\":{\"3d-1\":{\"document\":{\"kind\":\"3d\"}},"
+        "\"axial-1\":{\"document\":{\"kind\":\"axial\"}}},\"pointers\":{},\"items\":{},\"members\":{}}}]",
+        "[{\"t_ms\":1000,\"part\":\"views\",\"id\":\"axial-1\",\"patch\":{\"document\":{\"size_px\":[500,300]}}}]", NULL
+    };
+    size_t n_frames, n_requests;
+    (void)state;
+    begin(batches);
+    answer();
+    fake_pass(&fake, REPLAY_EVERY_MS);
+    fake_say(&fake, &page, "{\"type\":\"watch\",\"size_px\":[260,195]}");
+    assert_string_equal(small_picture(&n_frames), "3d");
+    assert_int_equal(fake_outstanding(&fake), 1); /* nobody else takes pictures */
+    fake_draw(&fake, fake_oldest(&fake));
+    assert_string_equal(small_picture(&n_frames), "3d");
+    assert_int_equal(n_frames, 1);
+    n_requests = fake.n_requests;
+    fake_pass(&fake, 5000);
+    assert_int_equal(fake.n_requests, n_requests); /* not acknowledged */
+    fake_say(&fake, &page, "{\"type\":\"frame.shown\",\"view\":9,\"sequence\":1}");
+    fake_pass(&fake, 500);
+    assert_true(fake.n_requests > n_requests); /* the still */
+    fake_draw(&fake, fake_oldest(&fake));
+    fake_say(&fake, &page, "{\"type\":\"frame.shown\",\"view\":9,\"sequence\":2}");
+
+    (void)shown_at(1500); /* the axial view was moved */
+    assert_string_equal(small_picture(&n_frames), "axial");
+    fake_pass(&fake, 500);
+    fake_draw(&fake, fake_oldest(&fake));
+    assert_string_equal(small_picture(&n_frames), "axial");
+    assert_int_equal(n_frames, 3);
+}
+
 /* Answers with one batch, and the time of the state behind it, until nothing is asked; time passes meanwhile. */
 static size_t n_reads_in(int64_t ms, const char *text, int64_t next_ms)
 {
@@ -300,6 +349,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(each_time_shows_what_was_then),
+        TEST(who_looks_for_themselves_has_a_small_picture_of_the_replay),
         TEST(where_the_beginning_is_lost_the_first_there_is_is_shown),
         TEST(what_cannot_be_played_is_read_again_after_growing_pauses),
         TEST(another_plan_than_the_recorded_one_is_said),

@@ -4,12 +4,14 @@
 struct screen {
     size_t n_pictures, n_ended;
     bool is_full, is_late;
+    const char *kind; /* of the newest picture */
 };
 
-static void take_picture(void *context, struct room_picture *picture)
+static void take_picture(void *context, struct room_picture *picture, const char *kind)
 {
     (void)picture;
     ((struct screen *)context)->n_pictures++;
+    ((struct screen *)context)->kind = kind;
 }
 
 static bool has_room(void *context)
@@ -116,6 +118,83 @@ static void a_screen_alone_is_drawn_for_when_it_has_taken_its_picture(void **sta
     room_display_remove(display);
 }
 
+static void open_axial(struct fake_page *page)
+{
+    fake_say(
+        &fake, page,
+        "{\"type\":\"view.open\",\"view\":2,\"document\":{\"kind\":\"axial\",\"size_px\":[400,400]},\"follow\":true}");
+    for (int i = 0; i < 3; i++) {
+        settle_one();
+        for (uint32_t sequence = 1; sequence < 9; sequence++) /* those that were not sent are refused */
+            fake_say(&fake, page, "{\"type\":\"frame.shown\",\"view\":2,\"sequence\":%u}", sequence);
+    }
+}
+
+static void a_screen_that_names_no_view_shows_the_one_the_presenter_works_in(void **state)
+{
+    (void)state;
+    struct screen screen = { 0 };
+    fake_join(&fake, &ann, true);
+    open_axial(&ann);
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":2,\"patch\":{}}");
+    struct room_display *display = add_screen(&screen);
+    assert_string_equal(screen.kind, "axial");
+    assert_string_equal(room_display_kind(display), "axial");
+    size_t n_pictures = screen.n_pictures;
+    assert_int_equal(n_pictures, 1);
+
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{}}");
+    assert_string_equal(screen.kind, "3d"); /* the picture that is there */
+    assert_int_equal(screen.n_pictures, n_pictures + 1);
+    fake_turn(&fake, &ann, 8, 21);
+    settle_one();
+    assert_string_equal(screen.kind, "3d");
+    assert_true(screen.n_pictures > n_pictures + 1);
+
+    fake_say(&fake, &ann, "{\"type\":\"view.close\",\"view\":1}"); /* as when she maximises the other pane */
+    assert_string_equal(screen.kind, "axial");
+    room_connection_closed(fake.room, &ann, fake.now_us);
+    fake_pass(&fake, 60000); /* nobody presents: what was shown stays */
+    assert_string_equal(room_display_kind(display), "axial");
+    assert_int_equal(screen.n_ended, 0);
+    room_display_remove(display);
+}
+
+static void a_screen_that_names_a_view_keeps_it(void **state)
+{
+    (void)state;
+    struct screen screen = { 0 };
+    const struct room_display_callbacks callbacks = { take_picture, has_room, hear_late, hear_end, &screen };
+    struct problem problem = { 0 };
+    fake_join(&fake, &ann, true);
+    open_axial(&ann);
+    struct room_display *display = room_display_add(fake.room, "axial", &callbacks, fake.now_us, &problem);
+    assert_non_null(display);
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{}}");
+    fake_turn(&fake, &ann, 8, 21);
+    settle_one();
+    assert_string_equal(room_display_kind(display), "axial");
+    assert_string_equal(screen.kind, "axial");
+    room_display_remove(display);
+}
+
+static void of_several_screens_each_goes_over(void **state)
+{
+    (void)state;
+    struct screen screens[3] = { { 0 } };
+    struct room_display *displays[3];
+    for (int i = 0; i < 3; i++) /* nobody has shown a view: they make one, which ends with them */
+        displays[i] = add_screen(&screens[i]);
+    fake_join(&fake, &ann, true);
+    open_axial(&ann);
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":2,\"patch\":{}}");
+    for (int i = 0; i < 3; i++) {
+        assert_string_equal(screens[i].kind, "axial");
+        assert_int_equal(screens[i].n_ended, 0);
+        room_display_remove(displays[i]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -123,6 +202,9 @@ int main(void)
         ROOM_TEST(pictures_that_follow_each_other_are_not_old),
         ROOM_TEST(nothing_is_drawn_for_a_screen_while_a_member_takes_pictures),
         ROOM_TEST(a_screen_alone_is_drawn_for_when_it_has_taken_its_picture),
+        ROOM_TEST(a_screen_that_names_no_view_shows_the_one_the_presenter_works_in),
+        ROOM_TEST(a_screen_that_names_a_view_keeps_it),
+        ROOM_TEST(of_several_screens_each_goes_over),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,13 +51,35 @@ describe('the page of a display', { skip: missing && `${missing} is missing` }, 
       await display.setViewportSize({ width, height });
       const box = await until(() => display.evaluate(() => {
         const { left, top, right, bottom } = document.querySelector('canvas').getBoundingClientRect();
-        return { left, top, right, bottom, head: document.querySelector('header').getBoundingClientRect().bottom, ratio: (right - left) / (bottom - top), own: document.querySelector('canvas').width / document.querySelector('canvas').height };
-      }), ({ left, right, top, bottom, head }) => right <= width && bottom <= height && (right - left > width - 3 || bottom - top > height - head - 3)); // as large as it can be
+        return { left, top, right, bottom, head: document.querySelector('header').getBoundingClientRect().bottom, foot: document.querySelector('footer').getBoundingClientRect().top, ratio: (right - left) / (bottom - top), own: document.querySelector('canvas').width / document.querySelector('canvas').height };
+      }), ({ left, right, top, bottom, head, foot }) => right <= width && bottom <= foot && foot < height && (right - left > width - 3 || bottom - top > foot - head - 3)); // as large as it can be
       assert.ok(box.left >= 0 && box.top >= box.head, JSON.stringify(box));
       assert.ok(Math.abs(box.ratio / box.own - 1) < 0.01, `not stretched: ${JSON.stringify(box)}`);
     }
+    assert.match(await display.locator('footer').textContent(), /crosshair, pointers, notes, measures and the legend of the dose are not in it/);
     assert.match(await display.locator('h1').textContent(), new RegExp(`Snyder head · Room ${room} · 3-D`));
     assert.deepEqual(await axe(display), []);
+  });
+
+  it('goes with the view that the presenter works in, unless its address names one', async () => {
+    const named = await world.newPage(`display/${room}?view=3d`, { viewport: { width: 900, height: 600 } });
+    await says(named, 'Live');
+    await presenter.locator('#picture-2').focus();
+    await presenter.keyboard.press('ArrowUp'); // the next slice
+    await until(() => display.locator('h1').textContent(), (text) => text.endsWith('· Axial'));
+    await full(presenter, 2);
+    await until(async () => [await pixels(display, 'canvas'), await pixels(presenter, '[data-view="2"] canvas')], ([shown, sent]) => shown === sent);
+    assert.deepEqual(await letters(display), ['R', 'L', 'A', 'P']);
+    assert.match(await named.locator('h1').textContent(), / · 3-D$/);
+    await presenter.locator('[aria-label="Maximise Coronal"]').click(); // the others are closed
+    await until(() => display.locator('h1').textContent(), (text) => text.endsWith('· Coronal'));
+    await presenter.locator('[aria-label="Restore Coronal"]').click();
+    await presenter.locator('#picture-1').focus();
+    await presenter.keyboard.press('ArrowLeft');
+    await until(() => display.locator('h1').textContent(), (text) => text.endsWith('· 3-D'));
+    await full(presenter);
+    await same();
+    await named.close();
   });
 
   it('says when the connection is lost, and goes on when it is back', async () => {

@@ -28,7 +28,6 @@ const state = {
   problem: null, // why there is no stream
   facts: null, // of GET /rooms/{room}
   plan: '',
-  kind: '',
 };
 
 const painter = new Painter($('canvas'), {
@@ -63,7 +62,8 @@ function words(silentMs) {
 
 function draw() {
   const silentMs = state.heardAt ? performance.now() - state.heardAt : Infinity;
-  const { facts, header, plan, kind } = state;
+  const { facts, header, plan } = state;
+  const kind = header?.kind;
   const presenter = facts?.members.find(({ presenting }) => presenting);
   const isLost = header && silentMs > lostMs;
   const isSilent = silentMs > lateMs;
@@ -103,7 +103,6 @@ async function show(abort) {
   state.number = 0;
   const answer = await fetch(`${base}/rooms/${room}/stream${location.search}`, { signal: abort.signal });
   if (!answer.ok) throw new Problem({ status: answer.status, ...(await answer.json().catch(() => ({}))) });
-  state.kind = answer.headers.get('Beamroom-View') ?? '';
   tellFacts().catch(() => {}); // asked again soon
   const parts = new Parts();
   const reader = answer.body.getReader();

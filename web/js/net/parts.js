@@ -72,5 +72,5 @@ export function pictureHeader(fields) {
   const [width, height] = (fields['beamroom-size'] ?? '').split('x').map(Number);
   const matrix = (fields['beamroom-clip-from-lps'] ?? '').split(' ').map(Number);
   if (!(width > 0 && height > 0) || matrix.length !== 16 || !matrix.every(Number.isFinite)) throw new RangeError('a part of the stream says neither size nor camera of its picture');
-  return { media_type: 'image/jpeg', view: 0, sequence: Number(fields['beamroom-picture']), width_px: width, height_px: height, clip_from_lps_mm: Float32Array.from(matrix), missing: fields['beamroom-missing'] ?? '' };
+  return { media_type: 'image/jpeg', view: 0, sequence: Number(fields['beamroom-picture']), width_px: width, height_px: height, clip_from_lps_mm: Float32Array.from(matrix), missing: fields['beamroom-missing'] ?? '', kind: fields['beamroom-view'] ?? '' };
 }

@@ -87,7 +87,7 @@ export function roomPage(host, id, { api, connect, clock, redraw, decode, hooks,
   });
 
   const after = new AfterRoom({ api, clock, enter });
-  const world = { after, room, ui, api, clock, storage, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
+  const world = { after, room, ui, api, clock, connection, decode, storage, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
   world.charts = new ChartLoader(world);
   stops.push(() => world.charts.stop());
   for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofDose(room)?.doseBar(world)}${draftBar(world)}${playBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', (shown) => html`${savedLine(shown)}${requestLines(shown)}${toasts(shown)}`], ['.floating', floating]])

@@ -43,7 +43,7 @@ function row(member, room) {
     ${buttonsFor(member, room)}</li>`;
 }
 
-const actions = ({ following, control, recording: { replay } }) => [
+const actions = ({ following, control, recording: { replay } }, watching) => [
   following.isPresenting.value && { word: 'Show everyone', about: 'Everybody follows you again', do: () => following.showEveryone() },
   following.isPresenting.value && control.may('control') && (control.isLocked.value
     ? { word: 'Unlock', about: 'Presenters may take control again', do: () => control.lock(false) }
@@ -52,6 +52,7 @@ const actions = ({ following, control, recording: { replay } }) => [
   control.canRequest.value && (control.isRequesting.value
     ? { word: 'Withdraw request', about: 'You do not want control any more', do: () => control.withdraw() }
     : { word: 'Request control', about: 'The presenter is asked to give you control', do: () => control.request() }),
+  !following.isFollowing.value && watching?.isClosed.value && { word: 'Show presenter\'s picture', about: 'What the presenter works in, small, in a corner of your panes', do: () => { watching.isClosed.value = false; } },
   !following.isFollowing.value && { word: 'Return', about: 'Follow with all panes again', do: () => following.return() },
   following.isFollowing.value && !following.isPresenting.value && { word: 'Look for yourself', about: 'Your panes alone, from what they show now', do: () => following.leave() },
 ].filter(Boolean);
@@ -75,8 +76,8 @@ function nameForm({ room, ui, ownName }) {
     <input id="room-name" name="name" required maxlength=${maxName} autocomplete="name" placeholder=${room.identity.name} .value=${ownName.value.value}><button>Save</button></form>`;
 }
 
-/** What the popover of the room chip shows. @param {object} world {room, ui, ownName} */
-export function roster({ room, ui, ownName, api }) {
+/** What the popover of the room chip shows. @param {object} world {room, ui, ownName, api, watching} */
+export function roster({ room, ui, ownName, api, watching }) {
   const act = (event, what) => {
     const main = event.target.closest('.room-chip').querySelector('.chip-main');
     ui.popover.value = '';
@@ -86,7 +87,7 @@ export function roster({ room, ui, ownName, api }) {
   const locked = room.control.isLocked.value;
   return html`<ul>${repeat(room.members.value, ({ id }) => id, (member) => row(member, room))}</ul>
     ${locked ? html`<p class="dim roster-locked">Control is locked: it can only be given.</p>` : nothing}
-    <div class="room-actions">${actions(room).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
+    <div class="room-actions">${actions(room, watching).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
     ${recordings({ room, ui, api })}
     ${nameForm({ room, ui, ownName })}`;
 }

@@ -1,0 +1,56 @@
+// The small picture of the presenter: in which corner it stands, whether it is folded or closed. Kept by the browser.
+import { effect, signal } from '../../lib/signals-core.js';
+
+const key = 'beamroom watch';
+/** Clockwise. */
+export const corners = ['bottom-right', 'bottom-left', 'top-left', 'top-right'];
+
+function read(storage) {
+  try {
+    return JSON.parse(storage?.getItem(key) ?? '{}') ?? {};
+  } catch {
+    return {};
+  }
+}
+
+export class Watching {
+  /** @param {{getItem: Function, setItem: Function}|null} storage null where the browser keeps nothing */
+  constructor(storage = null) {
+    const kept = read(storage);
+    this.corner = signal(corners.includes(kept.corner) ? kept.corner : ''); // '': where it hides least
+    this.isFolded = signal(kept.isFolded === true);
+    this.isClosed = signal(kept.isClosed === true);
+    this.stop = effect(() => {
+      const text = JSON.stringify({ corner: this.corner.value, isFolded: this.isFolded.value, isClosed: this.isClosed.value });
+      try {
+        storage?.setItem(key, text);
+      } catch {
+        // a browser that keeps nothing begins anew
+      }
+    });
+  }
+}
+
+/** Who is seen in the small picture: {name, isAway}; null: nobody, as this member follows or presents, or nobody else presents. @param {import('./room.js').RoomState} room */
+export function watched({ following, recording }) {
+  if (following.isFollowing.value || following.isPresenting.value) return null;
+  const presenter = following.presenter.value;
+  if (presenter) return { name: presenter.name, isAway: presenter.connected === false };
+  return recording.replay.value ? { name: 'The replay', isAway: false } : null;
+}
+
+/**
+ * Whether the picture shows what the presenter sees now, in words. Pure.
+ * @param {object} of link: of the room; renderer: its state; isLate: the server says so; paintedAt: ms since 1970, 0: there is no picture yet; isAway: the presenter is
+ * @returns {{state: 'wait'|'live'|'old'|'lost', text: string, why: string}}
+ */
+export function liveness({ link, renderer, isLate, paintedAt, isAway }) {
+  if (!paintedAt) return { state: 'wait', text: 'No picture yet', why: '' };
+  const old = (why, state = 'old') => ({ state, text: `Old, of ${new Date(paintedAt).toLocaleTimeString('en-GB')}`, why });
+  if (link.state !== 'open') return old('The connection to the server is lost', 'lost');
+  if (link.quietSince) return old('The server does not answer');
+  if (renderer !== 'ready') return old('The plan is not being drawn');
+  if (isLate) return old('What the presenter sees now has not come yet');
+  if (isAway) return { ...old('The presenter is away'), text: 'Away' };
+  return { state: 'live', text: 'Live', why: '' };
+}
