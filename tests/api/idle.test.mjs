@@ -1,6 +1,6 @@
 // Plans without use: they are closed, and loaded again when somebody enters their room. --stub: grey pictures, everything else is real.
 import assert from 'node:assert/strict';
-import { chmodSync, cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { chmodSync, cpSync, existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -166,34 +166,4 @@ test('a daemon that was stopped for a while finds its renderers alive', () => wi
   ann.send({ type: 'view.patch', view: 1, input: 7, patch: { camera: { position_mm: [9, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } } });
   await ann.frame((f) => f.isStill && f.input === 7);
   assert.doesNotMatch(daemon.log(), /did not|starting it again/);
-}));
-
-/** How often each thread of a process has gone to sleep: once for each time that it was woken up, however busy the machine is. */
-function sleeps(pid) {
-  const of = {};
-  for (const task of readdirSync(`/proc/${pid}/task`)) {
-    const status = readFileSync(`/proc/${pid}/task/${task}/status`, 'utf8');
-    of[task] = Number(/^voluntary_ctxt_switches:\s+(\d+)/m.exec(status)[1]);
-  }
-  return of;
-}
-
-/** Wake-ups of each thread within so many milliseconds, the most first. */
-async function wakeUps(pid, ms) {
-  const before = sleeps(pid);
-  await sleep(ms);
-  const after = sleeps(pid);
-  return Object.keys(after).map((task) => after[task] - (before[task] ?? 0)).sort((a, b) => b - a);
-}
-
-test('rooms at rest wake nothing up, however many there are; members that keep still, one thread for their pongs', () => withDaemon([], async ({ daemon, enter, newRoom }) => {
-  const nRooms = 80, nMembers = 20, { pid } = daemon.child, rooms = [];
-  for (let n = 0; n < nRooms; n++) rooms.push(await newRoom('head-1'));
-  // Nothing was asked for 5 s, then all threads sleep but the one that measures the cache of a running renderer, once a second.
-  await until(() => wakeUps(pid, 3000), ([quota, ...others]) => quota <= 4 && others.every((n) => n === 0));
-
-  for (const room of rooms.slice(0, nMembers)) await picture(await enter(room));
-  // Within 6 s there are at most two rounds of pings, each one wake-up and one for each member's pong.
-  const most = 2 * (nMembers + 2);
-  await until(() => wakeUps(pid, 6000), ([net, quota, ...others]) => net <= most && quota <= 7 && others.every((n) => n === 0));
 }));
