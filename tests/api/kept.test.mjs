@@ -154,7 +154,7 @@ test('an idle room that people used sleeps and wakes; one that nobody entered is
   ann.cut();
   ben.cut();
   await until(() => rooms(daemon), (list) => list.n_asleep === 2 && list.rooms.length === 2);
-  assert.equal(onDisk(unused, folder), null);
+  await until(() => onDisk(unused, folder), (row) => row === null);
   assert.equal((await call(`${daemon.api}/rooms/${deleted}`, 'DELETE')).status, 204);
   assert.equal((await call(`${daemon.api}/rooms/${deleted}`)).status, 404);
   assert.equal((await call(`${daemon.api}/rooms/${unused}`)).status, 404);
