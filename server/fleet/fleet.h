@@ -109,6 +109,7 @@ struct fleet_plan {
 struct fleet_revision {
     char digest[65]; /* of the plan's files, as server/renderer/digest.h says; "": not known */
     uint64_t n_files;
+    bool is_current;    /* no look at the files is due or running */
     const char *reason; /* why it cannot be known; "": it can; borrowed until the next call into the fleet */
 };
 /* The revision of the plan's files, as last looked at; looks again, in a program of its own, when that was some time

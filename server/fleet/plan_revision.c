@@ -24,6 +24,7 @@ bool fleet_revision(struct fleet *fleet, const char *plan_id, struct fleet_revis
     memcpy(revision->digest, plan->revision.digest, sizeof revision->digest);
     revision->n_files = plan->revision.n_files;
     revision->reason = plan->revision.reason;
+    revision->is_current = !is_old && !plan->revision.program && !plan->revision.is_wanted;
     return plan->revision.digest[0] != 0;
 }
 

@@ -237,6 +237,17 @@ static void report_state(struct net_room *entry, const struct fleet_plan *plan)
     room_renderer_state(entry->room, state, plan->phase, plan->percent, problem);
 }
 
+void bridge_tell_revision(struct net_room *entry)
+{
+    struct fleet_revision revision;
+    if (!room_wants_revision(entry->room) || !fleet_revision(entry->net->fleet, room_plan_id(entry->room), &revision) ||
+        !revision.is_current)
+        return;
+    room_revision_came(entry->room, revision.digest, clock_now_us());
+    if (room_replays(entry->room))
+        schedule_room(entry);
+}
+
 void bridge_report_plan(struct net_room *entry)
 {
     struct fleet_plan plan;
@@ -251,6 +262,7 @@ void bridge_report_plan(struct net_room *entry)
         return;
     }
     room_plan_revision(entry->room, plan.revision);
+    bridge_tell_revision(entry);
     const char *phase = plan.phase ? plan.phase : "";
     bool is_same = plan.state == entry->state && strcmp(phase, entry->phase) == 0 && plan.percent == entry->percent;
     if (plan.state == FLEET_READY ? entry->state == FLEET_READY && entry->generation == plan.generation : is_same)

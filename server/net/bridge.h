@@ -9,6 +9,8 @@ void bridge_forget(void *context, struct room *room, uint64_t request);
 void bridge_scene_changed(void *context, struct room *room, const cJSON *scene, uint32_t revision);
 /* fleet_options.changed; context is the net */
 void bridge_fleet_changed(void *context, const char *plan_id);
+/* Tells a room that plays or records the revision of the plan's files, if it is known by now; else it is looked for. */
+void bridge_tell_revision(struct net_room *room);
 /* Reports the plan's state to the room, if it differs from the one last reported. */
 void bridge_report_plan(struct net_room *room);
 /* A connection entered its room: the plan is opened if it is closed, and held until bridge_leave. */

@@ -8,6 +8,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/net/bridge.h"
 #include "server/net/net.h"
 #include "server/net/schedule.h"
 #include "server/room/meeting_log.h"
@@ -36,6 +37,7 @@ static char *write_facts(const struct room_recording *facts)
     cJSON_AddStringToObject(json, "by", facts->by);
     cJSON_AddStringToObject(json, "by_name", facts->by_name);
     cJSON_AddStringToObject(json, "plan_mark", facts->plan_mark);
+    cJSON_AddStringToObject(json, "plan_revision", facts->plan_revision);
     json_add(json, "marks", facts->marks ? cJSON_Duplicate(facts->marks, true) : cJSON_CreateArray());
     char *text = json_print(json);
     cJSON_Delete(json);
@@ -75,6 +77,8 @@ static bool add_batch(struct store_recording *recording, uint32_t place, struct 
 void keep_recorded(void *context, struct room *room, const struct room_recording *facts, struct log_batch *batch)
 {
     struct net_room *entry = find_entry(context, room);
+    if (entry)
+        bridge_tell_revision(entry);
     struct store_recording *recording = entry ? place_of(entry, facts->id) : NULL;
     char *text = recording ? write_facts(facts) : NULL;
     if (text) {
@@ -140,6 +144,7 @@ static bool read_facts(const char *text, struct room_recording *facts)
     copy_text(facts->by, sizeof facts->by, json, "by");
     copy_text(facts->by_name, sizeof facts->by_name, json, "by_name");
     copy_text(facts->plan_mark, sizeof facts->plan_mark, json, "plan_mark");
+    copy_text(facts->plan_revision, sizeof facts->plan_revision, json, "plan_revision"); /* older ones have none */
     marks = cJSON_DetachItemFromObjectCaseSensitive(json, "marks");
     if (cJSON_IsArray(marks) && cJSON_GetArraySize(marks) <= ROOM_MAX_MARKS)
         facts->marks = marks;

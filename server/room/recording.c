@@ -108,7 +108,10 @@ void recording_show(struct room *room, struct member *member)
 bool recording_plan_mark(const struct room *room, char mark[20])
 {
     (void)json_no_memory(NULL, "what came before");
-    char *text = room->plan ? json_print(room->plan) : NULL;
+    cJSON *plan = room->plan ? cJSON_Duplicate(room->plan, true) : NULL;
+    cJSON_DeleteItemFromObjectCaseSensitive(plan, "load_ms"); /* measured: another one each time */
+    char *text = plan ? json_print(plan) : NULL;
+    cJSON_Delete(plan);
     uint64_t sum = UINT64_C(0xcbf29ce484222325); /* FNV-1a, 64 bits */
     for (const char *at = text; at && *at; at++)
         sum = (sum ^ (uint8_t)*at) * UINT64_C(0x100000001b3);
@@ -116,6 +119,18 @@ bool recording_plan_mark(const struct room *room, char mark[20])
     const bool ok = text != NULL;
     free(text);
     return ok;
+}
+
+bool recording_wants_revision(const struct room *room)
+{
+    return room->recorder && !room->recorder->facts->plan_revision[0];
+}
+
+void recording_revision_came(struct room *room, const char *revision)
+{
+    struct room_recording *facts = room->recorder ? room->recorder->facts : NULL;
+    if (facts && !facts->plan_revision[0]) /* kept with the next batch, or the end */
+        (void)snprintf(facts->plan_revision, sizeof facts->plan_revision, "%s", revision);
 }
 
 /* ---- what has changed ------------------------------------------------------------------------------------------- */

@@ -23,5 +23,8 @@ void recording_show(struct room *room, struct member *member); /* tells a member
 int64_t recording_tick(struct room *room);
 /* Ends the recording that runs, and frees the facts of all: the room is destroyed. */
 void recordings_finish(struct room *room);
+/* Whether a recording runs that does not know the revision of the plan's files, and the first that is known. */
+bool recording_wants_revision(const struct room *room);
+void recording_revision_came(struct room *room, const char *revision);
 /* Tells the same plan document from another one. False: no memory. */
 NODISCARD bool recording_plan_mark(const struct room *room, char mark[20]);

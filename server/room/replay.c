@@ -36,6 +36,7 @@ struct replay {
     /* the state at_ms, and what of it is shown */
     cJSON *state, *shown;
     int64_t at_ms;
+    char plan_revision[65]; /* of the plan's files now; "": not known yet */
     bool plan_changed;
     cJSON *report;
 };
@@ -430,13 +431,32 @@ bool replay_allows(const struct room *room, enum message_type type, struct probl
 
 /* ---- beginning and end ------------------------------------------------------------------------------------------ */
 
+/* The document says little of the values in the files, the revision nothing of how they are read. */
+static bool has_other_plan(const struct room *room)
+{
+    const struct replay *replay = room->replay;
+    const char *then = replay->facts.plan_revision, *now = replay->plan_revision;
+    char mark[20];
+    return !recording_plan_mark(room, mark) || strcmp(mark, replay->facts.plan_mark) != 0 ||
+           (then[0] && now[0] && strcmp(then, now) != 0);
+}
+
+void replay_revision_came(struct room *room, const char *revision)
+{
+    struct replay *replay = room->replay;
+    if (!replay)
+        return;
+    (void)snprintf(replay->plan_revision, sizeof replay->plan_revision, "%s", revision);
+    if (room->scene && has_other_plan(room) != replay->plan_changed)
+        replay_plan_ready(room);
+}
+
 void replay_plan_ready(struct room *room)
 {
     struct replay *replay = room->replay;
-    char mark[20];
     if (!replay)
         return;
-    replay->plan_changed = !recording_plan_mark(room, mark) || strcmp(mark, replay->facts.plan_mark) != 0;
+    replay->plan_changed = has_other_plan(room);
     cJSON_Delete(replay->report);
     replay->report = NULL;
     cJSON_Delete(replay->shown); /* all of it is shown anew */

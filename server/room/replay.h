@@ -23,6 +23,8 @@ NODISCARD bool replay_allows(const struct room *room, enum message_type type, st
 
 void replay_show(struct room *room, struct member *member); /* tells a member who has just come */
 void replay_plan_ready(struct room *room);                  /* the plan was loaded: what is shown is made anew for it */
+/* The revision of the plan's files is this one now. */
+void replay_revision_came(struct room *room, const char *revision);
 /* Shows what is due; returns when something is due again. */
 int64_t replay_tick(struct room *room);
 void replay_free(struct room *room);

@@ -451,6 +451,18 @@ void room_plan_revision(struct room *room, const char *revision)
     (void)snprintf(room->plan_revision, sizeof room->plan_revision, "%s", revision);
 }
 
+bool room_wants_revision(const struct room *room)
+{
+    return room_replays(room) || recording_wants_revision(room);
+}
+
+void room_revision_came(struct room *room, const char *revision, int64_t now_us)
+{
+    room->now_us = now_us;
+    recording_revision_came(room, revision);
+    replay_revision_came(room, revision);
+}
+
 void room_audit_flush(struct room *room, int64_t now_us)
 {
     room->now_us = now_us;

@@ -49,6 +49,7 @@ struct log_batch; /* meeting_log.h */
 struct room_recording {
     char id[32], by[64], by_name[161]; /* by: the member who began it */
     char plan_mark[20];                /* of the plan's document then: the same for the same document */
+    char plan_revision[65];            /* of its files then; "": not known */
     int64_t started_ms, length_ms;     /* since 1970; of the meeting */
     uint32_t n_batches, n_events;
     uint64_t n_bytes;
@@ -331,6 +332,11 @@ void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named,
 void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,
                       const struct problem *problem, int64_t now_us);
 bool room_replays(const struct room *room);
+/* Whether the room has a use for the revision of the plan's files as they are now: it plays, or records and does not
+ * know it yet. */
+bool room_wants_revision(const struct room *room);
+/* This is the revision now; unlike that of room_plan_revision never one of files that have changed since. */
+void room_revision_came(struct room *room, const char *revision, int64_t now_us);
 
 /* Counters for /metrics. */
 struct room_counters {

@@ -316,6 +316,46 @@ static void another_plan_than_the_recorded_one_is_said(void **state)
     assert_false(is_told_that_the_plan_changed());
 }
 
+static void another_revision_of_the_files_is_said_when_it_is_known(void **state)
+{
+    static const char *const batches[] = { STATE(0, "a"), NULL };
+    struct room_recording facts = { .id = "rec-1", .length_ms = 10000, .plan_revision = "aa" };
+    (void)state;
+    disk = batches;
+    fake_plan_ready(&fake, true);
+    assert_true(recording_plan_mark(fake.room, facts.plan_mark));
+    room_replay_begin(fake.room, "k3rw-8vxa", 0, &facts, fake.now_us);
+    fake_hello(&fake, &page);
+    answer();
+    assert_true(room_wants_revision(fake.room));
+    assert_false(is_told_that_the_plan_changed()); /* not known yet */
+    room_revision_came(fake.room, "bb", fake.now_us);
+    assert_true(is_told_that_the_plan_changed());
+    fake_plan_ready(&fake, true);
+    assert_true(is_told_that_the_plan_changed());
+    room_revision_came(fake.room, "aa", fake.now_us);
+    assert_false(is_told_that_the_plan_changed());
+    fake_other_plan_ready(&fake);
+    assert_true(is_told_that_the_plan_changed());
+    room_revision_came(fake.room, "aa", fake.now_us);
+    assert_true(is_told_that_the_plan_changed()); /* the document is another one */
+}
+
+static void an_older_recording_knows_no_revision(void **state)
+{
+    static const char *const batches[] = { STATE(0, "a"), NULL };
+    struct room_recording facts = { .id = "rec-1", .length_ms = 10000 };
+    (void)state;
+    disk = batches;
+    fake_plan_ready(&fake, true);
+    assert_true(recording_plan_mark(fake.room, facts.plan_mark));
+    room_replay_begin(fake.room, "k3rw-8vxa", 0, &facts, fake.now_us);
+    fake_hello(&fake, &page);
+    answer();
+    room_revision_came(fake.room, "bb", fake.now_us);
+    assert_false(is_told_that_the_plan_changed());
+}
+
 /* ---- what is written --------------------------------------------------------------------------------------------- */
 
 static cJSON *member(const char *name)
@@ -353,6 +393,8 @@ int main(void)
         TEST(where_the_beginning_is_lost_the_first_there_is_is_shown),
         TEST(what_cannot_be_played_is_read_again_after_growing_pauses),
         TEST(another_plan_than_the_recorded_one_is_said),
+        TEST(another_revision_of_the_files_is_said_when_it_is_known),
+        TEST(an_older_recording_knows_no_revision),
         TEST(a_disk_that_has_too_much_to_do_is_asked_again_after_pauses),
         cmocka_unit_test(a_part_that_there_was_no_memory_for_stays_as_it_was),
     };
