@@ -5,6 +5,7 @@
 #include "core/base/mem.h"
 #include "server/room/room.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/kept_plan.h"
 
 enum { N_PAGES = 2, MAX_REQUESTS = 4096 };
 
@@ -106,22 +107,6 @@ static void follow_acknowledgement(struct page *page, const char *text, size_t n
     cJSON_Delete(json);
 }
 
-static void plan_ready(struct room *room, int64_t now_us)
-{
-    static const char text[] = "{\"regions\":{\"scalp\":{\"visible\":true},\"brain\":{\"opacity\":0.5}}}";
-    static const char document[] =
-        "{\"id\":\"head\",\"images\":[{\"id\":\"ct\"}],\"regions\":[{\"id\":\"scalp\"},{\"id\":\"brain\"}]}";
-    struct scene scene;
-    cJSON *said = json_read(text, strlen(text), NULL), *plan = json_read(document, strlen(document), NULL);
-    REQUIRE(scene_read(said, &scene, NULL));
-    cJSON *defaults = scene_write(&scene);
-    (void)room_plan_ready(room, plan, defaults, "fuzz", true, now_us);
-    scene_finish(&scene);
-    cJSON_Delete(said);
-    cJSON_Delete(plan);
-    cJSON_Delete(defaults);
-}
-
 static void play_line(struct room *room, const char *line, size_t n, int64_t *now_us)
 {
     switch (line[0]) {
@@ -142,7 +127,7 @@ static void play_line(struct room *room, const char *line, size_t n, int64_t *no
         (void)room_tick(room, *now_us);
         break;
     case 'r': room_renderer_state(room, WIRE_RENDERER_STATE_RESTARTING, "again", 10, NULL); break;
-    case 'p': plan_ready(room, *now_us); break;
+    case 'p': kept_plan_ready(room, *now_us); break;
     case 'x': {
         struct page *page = &pages[n > 1 && line[1] == '1'];
         room_connection_closed(room, page, *now_us);
@@ -185,7 +170,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     log_start("fuzz", LOG_ERROR); /* failing pictures are normal here */
     memset(pages, 0, sizeof pages);
     n_requests = n_answered = 0;
-    plan_ready(room, now_us);
+    kept_plan_ready(room, now_us);
     for (size_t at = 0, end; at < n; at = end + 1) {
         for (end = at; end < n && data[end] != '\n'; end++) {
         }
