@@ -127,6 +127,19 @@ static double number_below(const cJSON *json, const char *name, double most)
     return number >= 0 && number <= most ? number : 0;
 }
 
+/* [[t_ms, kind, name]], as pages are told. */
+static bool are_marks(const cJSON *marks)
+{
+    const cJSON *mark;
+    if (!cJSON_IsArray(marks) || cJSON_GetArraySize(marks) > ROOM_MAX_MARKS)
+        return false;
+    cJSON_ArrayForEach(mark, marks) if (!cJSON_IsArray(mark) || cJSON_GetArraySize(mark) != 3 ||
+                                        !cJSON_IsNumber(cJSON_GetArrayItem(mark, 0)) ||
+                                        !cJSON_IsString(cJSON_GetArrayItem(mark, 1)) ||
+                                        !cJSON_IsString(cJSON_GetArrayItem(mark, 2))) return false;
+    return true;
+}
+
 /* False: it is damaged. */
 static bool read_facts(const char *text, struct room_recording *facts)
 {
@@ -146,7 +159,7 @@ static bool read_facts(const char *text, struct room_recording *facts)
     copy_text(facts->plan_mark, sizeof facts->plan_mark, json, "plan_mark");
     copy_text(facts->plan_revision, sizeof facts->plan_revision, json, "plan_revision"); /* older ones have none */
     marks = cJSON_DetachItemFromObjectCaseSensitive(json, "marks");
-    if (cJSON_IsArray(marks) && cJSON_GetArraySize(marks) <= ROOM_MAX_MARKS)
+    if (are_marks(marks))
         facts->marks = marks;
     else
         cJSON_Delete(marks);
