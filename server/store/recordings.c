@@ -119,6 +119,17 @@ static bool add(struct store_part *part, sqlite3_stmt *row, uint64_t *n_bytes, s
     return true;
 }
 
+/* A batch is missing behind those of the part, the last of which begins at last_ms: the part ends there. False: t_ms
+ * lies in what is missing. */
+static bool end_at_gap(struct store_part *part, int64_t last_ms, int64_t t_ms, struct error *err)
+{
+    if (t_ms > last_ms)
+        return error_set(err, ERROR_FORMAT, "what was recorded after %lld ms is missing, up to the next whole state",
+                         (long long)last_ms);
+    part->next_ms = last_ms + 1;
+    return true;
+}
+
 struct store_part *recordings_read_part(sqlite3 *db, const char *room, const char *recording, int64_t t_ms,
                                         struct error *err)
 {
@@ -127,8 +138,8 @@ struct store_part *recordings_read_part(sqlite3 *db, const char *room, const cha
     if (!find_first(db, room, recording, t_ms, &first, err))
         return NULL;
     sqlite3_stmt *row = sql_prepare(db,
-                                    "SELECT t_ms, is_state, body FROM recording_batches WHERE room = ?1 AND recording ="
-                                    " ?2 AND place >= ?3 ORDER BY place",
+                                    "SELECT t_ms, is_state, body, place FROM recording_batches WHERE room = ?1 AND"
+                                    " recording = ?2 AND place >= ?3 ORDER BY place",
                                     err);
     if (!row)
         return NULL;
@@ -138,13 +149,18 @@ struct store_part *recordings_read_part(sqlite3 *db, const char *room, const cha
     sql_bind_text(row, 2, recording);
     (void)sqlite3_bind_int64(row, 3, first);
     bool ok = true;
+    int64_t last_ms = 0;
     for (int step; ok && (step = sqlite3_step(row)) != SQLITE_DONE;) {
         if (step != SQLITE_ROW) {
             ok = sql_fail(db, "reading a recording", err);
+        } else if (sqlite3_column_int64(row, 3) - first != (int64_t)part->n) {
+            ok = end_at_gap(part, last_ms, t_ms, err);
+            break;
         } else if (part->n && sqlite3_column_int(row, 1)) {
             part->next_ms = sqlite3_column_int64(row, 0);
             break;
         } else {
+            last_ms = sqlite3_column_int64(row, 0);
             ok = add(part, row, &n_bytes, err);
         }
     }

@@ -52,6 +52,8 @@ static void write_recording(uint32_t n)
     store_world_write(&world, room);
 }
 
+static enum error_code expected_error = ERROR_NOT_FOUND;
+
 /* The texts of the part for t_ms, one after the other; "" when there is none. */
 static const char *part_at(int64_t t_ms, int64_t *next_ms)
 {
@@ -64,7 +66,7 @@ static const char *part_at(int64_t t_ms, int64_t *next_ms)
         (void)strncat(texts, answer->part->texts[i], sizeof texts - strlen(texts) - 1);
     *next_ms = answer->part ? answer->part->next_ms : -1;
     if (!answer->part)
-        assert_int_equal(answer->error.code, ERROR_NOT_FOUND);
+        assert_int_equal(answer->error.code, expected_error);
     store_answer_free(answer);
     return texts;
 }
@@ -86,6 +88,28 @@ static void a_part_goes_from_a_state_to_the_next(void **state)
     assert_string_equal(room->recordings[0].id, "rec-1");
     assert_string_equal(room->recordings[0].facts, "{\"state\":\"stopped\"}");
     store_room_free(room);
+}
+
+static void a_missing_batch_is_noticed(void **state)
+{
+    (void)state;
+    int64_t next_ms;
+    write_recording(11);
+    store_world_close(&world);
+    store_file_run(world.path, "DELETE FROM recording_batches WHERE place IN (4, 9)"); /* 9 holds a state */
+    store_world_open(&world);
+    store_answer_free(store_world_await(&world, STORE_OPENED));
+    expected_error = ERROR_FORMAT;
+    assert_string_equal(part_at(2999, &next_ms), "[0][1][2]");
+    assert_int_equal(next_ms, 3000);
+    assert_string_equal(part_at(3000, &next_ms), "[3]");
+    assert_int_equal(next_ms, 3001);
+    assert_string_equal(part_at(3001, &next_ms), "");
+    assert_string_equal(part_at(5999, &next_ms), "");
+    assert_string_equal(part_at(6000, &next_ms), "[6][7][8]"); /* the next whole state */
+    assert_int_equal(next_ms, 8001);
+    assert_string_equal(part_at(1000000, &next_ms), "");
+    expected_error = ERROR_NOT_FOUND;
 }
 
 static void a_deleted_recording_takes_its_batches_along(void **state)
@@ -124,6 +148,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(a_part_goes_from_a_state_to_the_next),
+        TEST(a_missing_batch_is_noticed),
         TEST(a_deleted_recording_takes_its_batches_along),
         TEST(a_deleted_room_takes_its_recordings_along),
     };
