@@ -15,6 +15,10 @@ describe('a recorded meeting', { skip: missing && `${missing} is not there` }, (
     const ann = await enterAs(world, `#/rooms/${room}`, 'Dr Ann');
     const ben = await enterAs(world, `#/rooms/${room}`, 'Ben');
     await Promise.all([full(ann), full(ben)]);
+    await ben.locator('#picture-1').focus();
+    await ben.keyboard.press('p');
+    await ben.locator('#picture-1').hover();
+    await ann.locator('.person-pointer').first().waitFor({ state: 'attached' });
     await open(ann);
     await action(ann, 'Record meeting').click();
     for (const page of [ann, ben]) await page.locator('.chip-recorded:visible').waitFor();
@@ -29,11 +33,15 @@ describe('a recorded meeting', { skip: missing && `${missing} is not there` }, (
     const opened = ann.context().waitForEvent('page');
     await play.click();
     const replay = await opened;
+    await replay.locator('.person-pointer .label', { hasText: 'Ben' }).first().waitFor({ state: 'attached' });
     await replay.locator('.room-chip:visible .chip-words', { hasText: /^Replay \d{4}-\d\d-\d\d \d\d:\d\d$/ }).waitFor();
     await full(replay);
     await open(replay);
     await replay.locator('.replay-transport:visible').waitFor();
     await replay.getByText('Replay of a meeting of').locator('visible=true').waitFor();
+    const people = replay.getByRole('list', { name: 'In the meeting at this time' }).locator('visible=true');
+    await people.locator('li', { hasText: 'Dr Ann' }).getByText('presented').waitFor();
+    await people.locator('li', { hasText: 'Ben' }).getByText('was there').waitFor();
     assert.equal(await replay.locator('#saved').textContent(), 'Not kept');
     assert.deepEqual(await axe(replay), []);
     await shoot(replay, 'replay');

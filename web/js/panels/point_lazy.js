@@ -11,7 +11,7 @@ const panels = new Lazy(async () => (await Promise.all([import('./point_panels.j
 export function startPointers(world) {
   let stop = null;
   const stopEffect = effect(() => {
-    if (!world.room.pointers.others.value.length) return;
+    if (!world.room.pointers.shown.value.length) return;
     if (!panels.loaded.value) return void panels.load();
     stop ??= panels.loaded.value.start(world);
   });

@@ -16,7 +16,7 @@ function shown({ room }, number) {
   const [look, own] = [pointers.look.value, pointers.own.value];
   const list = [];
   if (!pointers.isHidden.value)
-    for (const member of pointers.others.value) {
+    for (const member of pointers.shown.value) {
       const pointer = pointers.all.value.get(member.id);
       if (pointer) list.push({ id: member.id, name: member.name, color: colorOf(member), point: pointer.point, movedAt: pointer.movedAt });
     }

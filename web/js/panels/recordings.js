@@ -68,10 +68,17 @@ function transport({ recording, control }) {
     ${marks.length ? html`<details><summary>${marks.length} marks</summary><ul>${marks.map(([t_ms, kind, name]) => html`<li><button @click=${() => recording.say('replay.seek', { t_ms })}>${timeOf(t_ms)}</button><span>${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}</span></li>`)}</ul></details>` : nothing}`;
 }
 
-/** @param {object} world {room, ui, api} */
-export function recordings({ room, ui, api }) {
+const then = ({ presenting, connected }) => [presenting ? 'presented' : '', connected === false ? 'was away' : ''].filter(Boolean).join(', ') || 'was there';
+
+/** Who was in the meeting at the time that is shown. */
+const people = ({ recording: { members } }, avatar) => (members.value.length ? html`<h3 class="replay-title">In the meeting at this time</h3>
+  <ul aria-label="In the meeting at this time">${members.value.map((member) => html`<li data-was=${member.id} data-away=${member.connected === false}>${avatar(member)}
+    <span class="roster-who"><span class="clipped" title=${member.name}>${member.name}</span><span class="dim">${[member.role, then(member)].filter(Boolean).join(' · ')}</span></span></li>`)}</ul>` : nothing);
+
+/** @param {object} world {room, ui, api} @param {(member: object) => object} avatar of a member, as in the list above */
+export function recordings({ room, ui, api }, avatar) {
   const { recording, following } = room;
-  if (recording.replay.value) return transport(room);
+  if (recording.replay.value) return html`${transport(room)}${people(room, avatar)}`;
   if (!api) return nothing;
   const list = listOf(room, api, ui);
   const rows = (list.value ?? []).filter(({ state }) => state !== 'running');

@@ -88,7 +88,7 @@ export function roster({ room, ui, ownName, api, watching }) {
   return html`<ul>${repeat(room.members.value, ({ id }) => id, (member) => row(member, room))}</ul>
     ${locked ? html`<p class="dim roster-locked">Control is locked: it can only be given.</p>` : nothing}
     <div class="room-actions">${actions(room, watching).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
-    ${recordings({ room, ui, api })}
+    ${recordings({ room, ui, api }, avatar)}
     ${nameForm({ room, ui, ownName })}`;
 }
 

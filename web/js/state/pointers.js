@@ -29,6 +29,7 @@ export class Pointers {
     const own = computed(() => room.members.value.find(({ id }) => id === room.member.value) ?? null);
     this.mayPoint = computed(() => own.value !== null && own.value.role !== 'observer');
     this.others = computed(() => room.members.value.filter(({ id, connected }) => id !== room.member.value && connected !== false));
+    this.shown = computed(() => [...this.others.value, ...room.recording.members.value]); // whose pointers are drawn: in a replay also of who was there
   }
 
   /** Whether pointers are drawn, as this browser keeps it. */

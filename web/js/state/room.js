@@ -71,7 +71,7 @@ export class RoomState {
     this.following = new Following(this, (message) => this.#sending.act(message));
     this.control = new Control(this, (message) => this.#connection.send(message));
     /** The newest of the messages recording (while one runs), replay and replay.at; null: none. Acts: panels/recordings.js. */
-    this.recording = { running: signal(null), replay: signal(null), at: signal(null), say: (type, more) => this.#connection.send({ type, ...more }) };
+    this.recording = { running: signal(null), replay: signal(null), at: signal(null), members: signal([]), say: (type, more) => this.#connection.send({ type, ...more }) };
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
     this.scene = computed(() => {
       const [scene, override] = [this.#sharedScene.value, this.following.override.value];
@@ -274,6 +274,7 @@ export class RoomState {
       control: () => this.control.changed(message),
       recording: () => { this.recording.running.value = message.state === 'running' ? message : null; },
       replay: () => { this.recording.replay.value = message; },
+      'replay.members': () => { this.recording.members.value = message.members; },
       'replay.at': () => {
         this.recording.at.value = message;
         if (message.state === 'left') this.recording.replay.value = null;
@@ -291,6 +292,7 @@ export class RoomState {
     this.pointers.restart();
     this.saved.restart();
     this.recording.running.value = this.recording.replay.value = null;
+    this.recording.members.value = [];
     this.member.value = message.member;
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;
