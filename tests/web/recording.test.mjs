@@ -1,5 +1,7 @@
 // A recorded meeting: everybody sees that it is recorded, and its replay says that it is one. Screenshots stay in build/test-artifacts/.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { axe } from './axe.mjs';
 import { full, missing, shoot, startWorld } from './browser.mjs';
@@ -45,5 +47,31 @@ describe('a recorded meeting', { skip: missing && `${missing} is not there` }, (
     assert.equal(await replay.locator('#saved').textContent(), 'Not kept');
     assert.deepEqual(await axe(replay), []);
     await shoot(replay, 'replay');
+  });
+
+  it('that cannot be read says so in its replay', async () => {
+    const room = await world.newRoom();
+    const ann = await enterAs(world, `#/rooms/${room}`, 'Dr Ann');
+    await full(ann);
+    await open(ann);
+    await action(ann, 'Record meeting').click();
+    await ann.locator('.chip-recorded:visible').waitFor();
+    await open(ann);
+    await action(ann, 'End recording').click();
+    const play = ann.getByRole('button', { name: /^Play the recording/ }).locator('visible=true');
+    await play.waitFor();
+    await ann.locator('#saved', { hasText: /^Saved$/ }).waitFor();
+    execFileSync('python3', ['-c', `import sqlite3, sys
+db = sqlite3.connect(sys.argv[1], timeout=30)
+db.execute('DELETE FROM recording_batches WHERE room = ?', (sys.argv[2],))
+db.commit()`, join(world.daemon.data, 'beamroom.db'), room]);
+    const opened = ann.context().waitForEvent('page');
+    await play.click();
+    const replay = await opened;
+    await replay.locator('.room-chip:visible .chip-words', { hasText: /, unreadable here$/ }).waitFor();
+    await open(replay);
+    await replay.getByText('The recording cannot be read here.').locator('visible=true').waitFor();
+    assert.deepEqual(await axe(replay), []);
+    await shoot(replay, 'replay-unreadable');
   });
 });

@@ -56,9 +56,11 @@ function transport({ recording, control }) {
   const { started_ms, length_ms, marks, plan_changed, report } = recording.replay.value;
   const at = recording.at.value ?? { state: 'waiting', t_ms: 0, rate: 1 };
   const isPlaying = at.state === 'playing';
-  const title = html`<h3 class="replay-title">Replay of a meeting of ${dayTime(started_ms)}</h3>`;
+  const title = html`<h3 class="replay-title">Replay of a meeting of ${dayTime(started_ms)}</h3>
+    ${at.state === 'failed' ? html`<p class="warn" role="status">The recording cannot be read here. What is shown is not what the meeting saw at this time.</p>` : nothing}
+    ${plan_changed ? html`<p class="warn">The plan has changed since the meeting: pictures and numbers may differ.</p>${report.map(({ detail }) => html`<p class="dim">${detail}</p>`)}` : nothing}`;
   if (!control.may('scene')) return html`${title}<p class="dim">${timeOf(at.t_ms)} of ${timeOf(length_ms)}</p>`;
-  return html`${title}${plan_changed ? html`<p class="warn">The plan has changed since the meeting: pictures and numbers may differ.</p>${report.map(({ detail }) => html`<p class="dim">${detail}</p>`)}` : nothing}<div class="replay-transport" role="group" aria-label="Replay">
+  return html`${title}<div class="replay-transport" role="group" aria-label="Replay">
     <button @click=${() => (isPlaying ? recording.say('replay.pause') : recording.say('replay.play', { rate: at.rate }))}>${isPlaying ? 'Pause' : 'Play'}</button>
     <input type="range" min="0" max=${length_ms} step="1000" .value=${String(Math.round(at.t_ms))} list="replay-marks" aria-label="Time of the meeting" aria-valuetext=${`${timeOf(at.t_ms)} of ${timeOf(length_ms)}`} @change=${(event) => recording.say('replay.seek', { t_ms: Number(event.target.value) })}>
     <datalist id="replay-marks">${marks.map(([t_ms, kind, name]) => html`<option value=${t_ms} label=${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}></option>`)}</datalist>

@@ -9,7 +9,7 @@ const marks = { presenting: 'people', following: 'people', own: 'person', away: 
 
 function words({ following, control, recording }) {
   const { started_ms, plan_changed } = recording.replay.value ?? {};
-  const replay = started_ms && `Replay ${dayTime(started_ms)}${plan_changed ? ', plan changed' : ''}`;
+  const replay = started_ms && `Replay ${dayTime(started_ms)}${recording.at.value?.state === 'failed' ? ', unreadable here' : ''}${plan_changed ? ', plan changed' : ''}`;
   const name = following.presenter.value?.name ?? '';
   const n = following.nFollowers.value;
   switch (following.standing.value) {
