@@ -9,7 +9,8 @@ const marks = { presenting: 'people', following: 'people', own: 'person', away: 
 
 function words({ following, control, recording }) {
   const { started_ms, plan_changed } = recording.replay.value ?? {};
-  const replay = started_ms && `Replay ${dayTime(started_ms)}${recording.at.value?.state === 'failed' ? ', unreadable here' : ''}${plan_changed ? ', plan changed' : ''}`;
+  const trouble = recording.at.value?.state === 'failed' ? 'unreadable here' : plan_changed && 'plan changed'; // the popover says when the meeting was
+  const replay = started_ms && (trouble ? `Replay, ${trouble}` : `Replay ${dayTime(started_ms)}`);
   const name = following.presenter.value?.name ?? '';
   const n = following.nFollowers.value;
   switch (following.standing.value) {
