@@ -354,6 +354,9 @@ int main(int argc, char **argv)
     ok = ok && give_up_root(&options, &err);
     ok = ok && data_lock(options.data_folder, &err);
     ok = ok && stop_watch(&err); /* starts the first thread; before, a signal simply ends the process */
+    if (ok && options.recording_speed > 1)
+        log_warn("--recording-speed %lld: times in recordings are no times of the clock",
+                 (long long)options.recording_speed);
     if (ok && options.n_plan_folders == 0)
         log_warn("no --plans folder: only uploaded plans can be shown");
     ok = ok && serve(&options, &err);
