@@ -238,7 +238,7 @@ test-faults: $(faults_BIN)
 # Long ones: LONG_NODE has files of which test-api and test-web run a part (LONG_TESTS=rest: what they leave out), DEEP_NODE those that they leave
 # out whole. Each part of the page and of the interface has tests in what they run: whole_meeting.test.mjs has one of each thing that people do together.
 LONG_TESTS ?= 1
-DEEP_NODE := tests/api/slow.test.mjs tests/api/slow_disk.test.mjs $(patsubst %,tests/web/%.test.mjs,meeting notes planner_hour pointers record recording restart roster saved)
+DEEP_NODE := tests/api/missing.test.mjs tests/api/slow.test.mjs tests/api/slow_disk.test.mjs $(patsubst %,tests/web/%.test.mjs,meeting notes planner_hour pointers record recording restart roster saved)
 LONG_NODE := tests/api/kills.test.mjs tests/api/replayed_meeting.test.mjs tests/api/rest.test.mjs $(patsubst %,tests/web/%.test.mjs,axe beam_eye bookmarks charts clip dose greys image layout measure page pointed \
     regions snapshot start touch tracks upload views)
 # What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest of the api tests wait for most of their time.
@@ -246,8 +246,9 @@ ALONE_NODE := tests/api/burst.test.mjs tests/api/fair.test.mjs
 test-api: all demo
 	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
 	TEST_CONCURRENCY=$(TWICE) tests/run_node.sh api $(filter-out $(DEEP_NODE) $(ALONE_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))) && [ $$alone = 0 ]
+# A page waits for its daemon about half of the time.
 test-web: all demo
-	$(Q)TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh web $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs)))
+	$(Q)TEST_CONCURRENCY=$$(($(PARALLEL) + 1)) tests/run_node.sh web $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs)))
 test-long: all demo
 	$(Q)LONG_TESTS=$(LONG_TESTS) TEST_CONCURRENCY=$(PARALLEL) SUITE_SECONDS=2400 tests/run_node.sh long $(DEEP_NODE) $(LONG_NODE)
 test-install: all demo
