@@ -152,7 +152,8 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     assert.ok(pages.length >= 2 && pages.length <= 6, `${pages.length} pages`);
     for (const text of pages) assert.match(text, /Phantom: modified Snyder head · printed \d{4}-\d\d-\d\d \d\d:\d\d UTC · revision 1For research and plan review\. Not a medical device/);
     const whole = pages.join('\n');
-    assert.match(pages[0], /^Phantom: modified Snyder headPlan/);
+    pages.forEach((text, i) => assert.ok(text.startsWith(`Page ${i + 1} of ${pages.length}`), text));
+    assert.match(pages[0], /^Page 1 of \dPhantom: modified Snyder headPlan/);
     assert.match(whole, /Figure 1\.\s*Tumour in the slice of its middle/);
     assert.match(whole, /Figure 2\./);
     const { sagittal, coronal, axial } = (await world.scene(room)).image.slices;
