@@ -26,11 +26,8 @@ const verify = (file, ...args) => spawnSync(join(bin, 'beamroomd'), ['--verify-a
 const rowWith = (action, matches = () => true) => until(() => onDisk().find((row) => row.action === action && matches(row)), (row) => row);
 
 async function enter(hello = {}) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  const client = await Client.enter(daemon.url, room, hello);
   clients.push(client);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  client.welcome = await client.message('welcome');
-  client.headers = { 'Beamroom-Member': `${client.welcome.member} ${client.welcome.secret}` };
   return client;
 }
 

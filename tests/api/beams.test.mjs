@@ -30,11 +30,9 @@ after(async () => {
 
 const newRoom = async (plan = 'phantom') => (await call(`${api}/rooms`, 'POST', { plan })).json.id;
 async function enter(room) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  const client = await Client.enter(daemon.url, room);
   clients.push(client);
-  client.send({ type: 'hello', protocol: 2 });
-  client.welcome = await client.message('welcome');
-  await client.message('renderer', ({ state }) => state === 'ready');
+  await client.ready();
   return client;
 }
 const open = (client, view, kind, more = {}, follow = true) => client.send({ type: 'view.open', view, follow, document: { kind, size_px: [96, 72], ...more } });

@@ -21,12 +21,7 @@ const fixture = (name) => JSON.parse(readFileSync(new URL(`../data/bookmarks/${n
 const newRoom = async () => (await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
 const sceneOf = async (room) => (await until(() => call(`${api}/rooms/${room}/scene`), ({ status }) => status === 200)).json;
 
-async function enter(room, name, url = daemon.url) {
-  const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
-  client.send({ type: 'hello', protocol: 2, name });
-  await client.message('welcome');
-  return client;
-}
+const enter = (room, name, url = daemon.url) => Client.enter(url, room, { name });
 
 let input = 100;
 async function put(client, body, row = null) {

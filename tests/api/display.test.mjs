@@ -82,10 +82,8 @@ describe('displays', () => {
     return screen;
   };
   const enter = async (room, document = { kind: '3d', size_px: [320, 240] }, follow = true) => {
-    const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+    const client = await Client.enter(daemon.url, room, { name: 'member' });
     clients.push(client);
-    client.send({ type: 'hello', protocol: 2, name: 'member' });
-    client.welcome = await client.message('welcome');
     if (document) client.send({ type: 'view.open', view: 1, follow, input: 1, document });
     return client;
   };

@@ -7,10 +7,8 @@ import { FullDisk } from './full_disk.mjs';
 import { Client } from './ws_client.mjs';
 
 async function enter(daemon, room, hello = {}) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  client.welcome = await client.message('welcome');
-  await client.message('renderer', (m) => m.state === 'ready');
+  const client = await Client.enter(daemon.url, room, hello);
+  await client.ready();
   return client;
 }
 let input = 0;

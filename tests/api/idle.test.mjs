@@ -21,10 +21,8 @@ async function withDaemon(args, run) {
   const clients = [];
   const api = `${daemon.url}/api/v1`;
   const enter = async (room) => {
-    const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+    const client = await Client.enter(daemon.url, room);
     clients.push(client);
-    client.send({ type: 'hello', protocol: 2 });
-    client.welcome = await client.message('welcome');
     return client;
   };
   const ready = (client) => client.message('renderer', (m) => m.state === 'ready');

@@ -32,10 +32,8 @@ async function end(daemon, signal) {
   await ended;
 }
 async function enter(daemon, room, hello = {}) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  const client = await Client.enter(daemon.url, room, hello);
   clients.add(client);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  client.welcome = await client.message('welcome');
   return client;
 }
 const ready = (client) => client.message('renderer', (m) => m.state === 'ready');

@@ -87,8 +87,7 @@ const model = new Model();
 let nTexts = 0;
 
 async function enter(daemon, room, hello, heard) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-  client.send({ type: 'hello', protocol: 2, ...hello });
+  const client = await Client.hello(daemon.url, room, hello);
   const first = await client.until(() => client.messages.find(({ type }) => type === 'welcome' || type === 'bye'), 'welcome or bye');
   let n = client.messages.indexOf(first) + 1;
   client.drain = () => { while (n < client.messages.length) heard?.(client.messages[n++]); };

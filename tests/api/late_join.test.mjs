@@ -12,9 +12,7 @@ const limitMs = 16000; // eight times the 2 s that a quiet machine is held to: t
 
 async function enter(daemon, room, hello = {}) {
   const began = performance.now();
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  client.welcome = await client.message('welcome');
+  const client = await Client.enter(daemon.url, room, hello);
   await client.until(() => client.welcome.scene || client.messages.some(({ type }) => type === 'plan'), 'the plan');
   return Object.assign(client, { tookMs: performance.now() - began });
 }

@@ -32,9 +32,8 @@ const newRoom = async () => (await api('', 'POST', { plan: 'phantom' })).json.id
 const newLink = async (room, wanted, by) => (await api(`/${room}/links`, 'POST', wanted, by)).json.token;
 /** Enters and gives the welcome with the member's role, or the bye. */
 async function enter(room, hello = {}) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  const client = await Client.hello(daemon.url, room, hello);
   clients.push(client);
-  client.send({ type: 'hello', protocol: 2, ...hello });
   const first = await client.until(() => client.messages.find(({ type }) => type === 'welcome' || type === 'bye'), 'welcome or bye');
   if (first.type === 'welcome') first.role = (await client.message('members')).members.find(({ id }) => id === first.member).role;
   return Object.assign(first, { client });

@@ -17,10 +17,8 @@ test('a member with four views takes at most 1 MiB of the daemon', async (t) => 
     await openPlan(daemon.url, 'phantom');
     const room = (await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
     const enter = async () => {
-      const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+      const client = await Client.enter(daemon.url, room);
       clients.push(client);
-      client.send({ type: 'hello', protocol: 2 });
-      await client.message('welcome');
       for (const [at, kind] of ['3d', 'axial', 'sagittal', 'coronal'].entries()) client.send({ type: 'view.open', view: at + 1, document: { kind, size_px: [800, 600] }, follow: true });
       await until(() => new Set(client.frames.map(({ view }) => view)).size, (n) => n === 4);
     };

@@ -5,10 +5,8 @@ import { call, openPlan, startDaemon, until } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
 
 async function enter(url, room, name) {
-  const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
-  client.send({ type: 'hello', protocol: 2, name });
-  client.me = (await client.message('welcome')).member;
-  return client;
+  const client = await Client.enter(url, room, { name });
+  return Object.assign(client, { me: client.welcome.member });
 }
 
 test('notes and bookmarks are in their lists, and in the welcome of who comes later', { timeout: 120000 }, async (t) => {

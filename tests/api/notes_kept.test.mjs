@@ -15,12 +15,7 @@ print(json.dumps([json.loads(body) for body, in db.execute('SELECT body FROM ite
 `;
 const onDisk = (room, data) => JSON.parse(execFileSync('python3', ['-c', script, join(data, 'beamroom.db'), room], { encoding: 'utf8' }));
 
-async function enter(daemon, room, hello) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  client.welcome = await client.message('welcome');
-  return client;
-}
+const enter = (daemon, room, hello) => Client.enter(daemon.url, room, hello);
 
 let nInputs = 0;
 async function put(client, body, more = {}) {

@@ -14,11 +14,8 @@ const api = (path, method, body, headers) => call(`${daemon.url}/api/v1/rooms/${
 let input = 0;
 
 async function enter(hello) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  const client = await Client.enter(daemon.url, room, hello);
   clients.push(client);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  client.welcome = await client.message('welcome');
-  client.headers = { 'Beamroom-Member': `${client.welcome.member} ${client.welcome.secret}` };
   return client;
 }
 /** Sends a command; resolves with the item, or the problem. */

@@ -26,11 +26,9 @@ async function kill() {
   await ended;
 }
 async function enter(room, hello = {}) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  const client = await Client.enter(daemon.url, room, hello);
   clients.add(client);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  client.welcome = await client.message('welcome');
-  await client.message('renderer', (m) => m.state === 'ready');
+  await client.ready();
   return client;
 }
 const opens = (client) => client.send({ type: 'view.open', view: 1, document: { kind: '3d', size_px: [320, 240] }, follow: true });

@@ -12,11 +12,9 @@ let data, plans, daemon;
 const clients = new Set();
 const start = async () => { daemon = await startDaemon({ data, plans: [plans], args: ['--stub'] }); };
 async function enter(room) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+  const client = await Client.enter(daemon.url, room, { name: 'Ann' });
   clients.add(client);
-  client.send({ type: 'hello', protocol: 2, name: 'Ann' });
-  await client.message('welcome');
-  await client.message('renderer', (m) => m.state === 'ready');
+  await client.ready();
   return client;
 }
 const revision = () => until(() => call(`${daemon.url}/api/v1/plans/phantom/revision`), ({ status }) => status === 200).then(({ json }) => json.revision);

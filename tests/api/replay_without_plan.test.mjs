@@ -14,10 +14,8 @@ test('a recording whose plan is gone is not played, and leaves no room behind; w
   let daemon = await start(), client;
   const enter = async (room) => {
     client?.cut();
-    client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-    client.send({ type: 'hello', protocol: 2 });
-    await client.message('welcome');
-    await client.message('renderer', (m) => m.state === 'ready');
+    client = await Client.enter(daemon.url, room);
+    await client.ready();
     return client;
   };
   const rooms = async () => (await call(`${daemon.url}/api/v1/rooms`)).json.rooms.map(({ id }) => id);

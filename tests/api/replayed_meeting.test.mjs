@@ -42,12 +42,10 @@ const sceneOf = async (of) => (await call(url(`rooms/${of}/scene`))).json;
 const timeNow = async () => (await call(url(`rooms/${room}/recordings`))).json.recordings[0].length_ms;
 
 async function enter(of, name, who = {}) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${of}/ws`);
+  const client = await Client.enter(daemon.url, of, { name, ...who });
   clients.add(client);
-  client.send({ type: 'hello', protocol: 2, name, ...who });
-  client.welcome = await client.message('welcome');
   client.views = new Map();
-  await client.message('renderer', (message) => message.state === 'ready');
+  await client.ready();
   return client;
 }
 

@@ -41,8 +41,7 @@ describe('rights in a room', () => {
   const api = (path, method, body, more) => call(`${daemon.url}/api/v1/rooms/${room}${path}`, method, body, more);
 
   async function enter(hello = {}) {
-    const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-    client.send({ type: 'hello', protocol: 2, ...hello });
+    const client = await Client.hello(daemon.url, room, hello);
     const welcome = await client.until(() => client.messages.find(({ type }) => type === 'welcome' || type === 'bye'), 'welcome or bye');
     return { client, welcome };
   }

@@ -10,12 +10,7 @@ import { onDisk } from './on_disk.mjs';
 import { Client } from './ws_client.mjs';
 
 const newRoom = async (daemon) => (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
-async function enter(daemon, room, hello = {}) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  client.welcome = await client.message('welcome');
-  return client;
-}
+const enter = (daemon, room, hello) => Client.enter(daemon.url, room, hello);
 let input = 0;
 async function patch(client, center) {
   client.send({ type: 'scene.patch', input: ++input, patch: { image: { window: { center } } } });

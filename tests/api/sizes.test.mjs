@@ -25,9 +25,8 @@ test('who follows in a small window is sent the same render in fewer pixels', { 
   await openPlan(daemon.url, 'phantom');
   const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
   const enter = async (size_px) => {
-    const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
+    const client = await Client.enter(daemon.url, room);
     t.after(() => client.cut());
-    client.send({ type: 'hello', protocol: 2 });
     await client.message('members');
     client.send({ type: 'view.open', view: 1, follow: true, document: { kind: '3d', size_px } });
     await client.frame((frame) => frame.isStill);

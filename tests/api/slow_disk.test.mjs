@@ -26,11 +26,7 @@ libc.ptrace(17, tid, None, None) # PTRACE_DETACH
 /** Bytes that each thread has written. */
 const written = (pid) => new Map(readdirSync(`/proc/${pid}/task`).map((tid) => [tid, Number(/^wchar: (\d+)/m.exec(readFileSync(`/proc/${pid}/task/${tid}/io`, 'utf8'))[1])]));
 
-async function enter(daemon, room, hello) {
-  const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
-  client.send({ type: 'hello', protocol: 2, ...hello });
-  return client;
-}
+const enter = (daemon, room, hello) => Client.hello(daemon.url, room, hello);
 
 test('who comes back while the disk is slow to give the room is let in, and is not told to say hello', { timeout: 180000 }, async (t) => {
   const data = mkdtempSync(join(tmpdir(), 'beamroom-slow-'));

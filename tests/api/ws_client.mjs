@@ -45,6 +45,26 @@ export class Client {
     return client;
   }
 
+  /** Enters a room: resolves when the server has welcomed the member, with `welcome` in the client. @param {object} hello fields of the message beside the protocol */
+  static async enter(url, room, hello = {}) {
+    const client = await Client.hello(url, room, hello);
+    client.welcome = await client.message('welcome');
+    client.headers = { 'Beamroom-Member': `${client.welcome.member} ${client.welcome.secret}` };
+    return client;
+  }
+
+  /** The same, without waiting for an answer. */
+  static async hello(url, room, hello = {}) {
+    const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
+    client.send({ type: 'hello', protocol: 2, ...hello });
+    return client;
+  }
+
+  /** Resolves when the plan can be drawn. */
+  ready() {
+    return this.message('renderer', ({ state }) => state === 'ready');
+  }
+
   #take(bytes, key) {
     this.#bytes = Buffer.concat([this.#bytes, bytes]);
     if (!this.#isOpen) {
