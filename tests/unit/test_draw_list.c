@@ -1,4 +1,6 @@
 /* The draw list of a picture and the cache of what back ends make, with a back end that only counts. */
+#include "core/render/soft/soft.h"
+#include "core/render/visible/beam_shape.h"
 #include "core/render/visible/draw_list.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
@@ -298,6 +300,67 @@ static void a_computed_volume_goes_when_nobody_else_holds_it(void **state)
     plan_and_derived_destroy(plan);
 }
 
+/* ---- the software back end, whose shapes hold what they were made of ---------------------------------------------- */
+
+static struct drawable *make_soft_shape(void *context, const struct shape *shape, int n_passes, struct error *err)
+{
+    const struct drawable_maker soft = soft_renderer_maker();
+    ((struct counting *)context)->n_shapes++;
+    return soft.make_shape(soft.context, shape, n_passes, err);
+}
+
+static void destroy_soft_shape(void *context, struct drawable *drawable)
+{
+    const struct drawable_maker soft = soft_renderer_maker();
+    ((struct counting *)context)->n_shapes--;
+    soft.destroy_shape(soft.context, drawable);
+}
+
+static struct shape *beam_of(double length_mm)
+{
+    struct cut_lines lines = { 0 };
+    struct error err = { 0 };
+    assert_true(cut_lines_add(&lines, vec3(0, 0, 0), vec3(0, 0, length_mm), &err));
+    struct shape *shape = beam_lines_shape(&lines, &err);
+    assert_non_null(shape);
+    cut_lines_finish(&lines);
+    return shape;
+}
+
+/* A beam has a new shape in each picture: those of earlier pictures are gone, with back ends that hold them and with
+ * others; one that the test holds stays. */
+static void a_computed_shape_goes_when_nobody_else_holds_it(void **state)
+{
+    (void)state;
+    struct plan *plan = make_plan();
+    for (int is_soft = 0; is_soft < 2; is_soft++) {
+        struct counting counting = { .bytes_each = 1000 };
+        const struct drawable_maker soft = { .make_shape = make_soft_shape,
+                                             .destroy_shape = destroy_soft_shape,
+                                             .context = &counting };
+        struct draw_cache *cache = is_soft ? draw_cache_create(&soft) : counting_cache(&counting);
+        struct shape *held = beam_of(1);
+        struct draw_cache_use use;
+        struct error err = { 0 };
+        for (int picture = 0; picture < 5; picture++) {
+            struct shape *shape = beam_of(picture + 2);
+            draw_cache_begin(cache, &use);
+            assert_int_equal(counting.n_shapes, picture > 0); /* the held one */
+            assert_non_null(draw_cache_computed_shape(cache, plan, held, 0, 1, &err));
+            assert_non_null(draw_cache_computed_shape(cache, plan, shape, 0, 1, &err));
+            assert_int_equal(counting.n_shapes, 2);
+            shape_unref(shape);
+            draw_cache_end(&use);
+        }
+        shape_unref(held);
+        draw_cache_begin(cache, &use);
+        assert_int_equal(counting.n_shapes, 0);
+        draw_cache_end(&use);
+        draw_cache_destroy(cache);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 /* The error names the region, and nothing that began stays begun. */
 static void a_list_fails_when_a_shape_cannot_be_made(void **state)
 {
@@ -335,6 +398,7 @@ int main(void)
         cmocka_unit_test(the_least_recently_used_goes_and_nothing_that_is_in_use),
         cmocka_unit_test(what_is_requested_again_is_not_made_again),
         cmocka_unit_test(a_computed_volume_goes_when_nobody_else_holds_it),
+        cmocka_unit_test(a_computed_shape_goes_when_nobody_else_holds_it),
         cmocka_unit_test(a_list_fails_when_a_shape_cannot_be_made),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -75,6 +75,7 @@ static struct drawable *make_shape(void *context, const struct shape *shape, int
     made->kind = shape->kind;
     made->is_faceted = shape->is_faceted;
     made->shape = shape_ref(shape);
+    made->base.holds_shape = true;
     if (!fill(made, n_passes, err)) {
         destroy_shape(context, &made->base);
         return NULL;

@@ -82,11 +82,11 @@ void draw_cache_destroy(struct draw_cache *cache)
     free(cache);
 }
 
-/* True if the cache alone still holds what the drawable was computed from. */
+/* True if only the cache and the drawable still hold what the drawable was computed from. */
 static bool is_forsaken(const struct entry *entry)
 {
     return (entry->volume && atomic_load(&entry->volume->references) == 1) ||
-           (entry->shape && atomic_load(&entry->shape->references) == 1);
+           (entry->shape && atomic_load(&entry->shape->references) == (entry->drawable->holds_shape ? 2 : 1));
 }
 
 static void trim(struct draw_cache *cache)

@@ -8,6 +8,7 @@
 /* The first member of everything that a back end makes. */
 struct drawable {
     uint64_t n_bytes; /* memory that dropping it frees; 0: kept as long as its plan */
+    bool holds_shape; /* of a shape: it holds a reference of it */
     /* of shapes, filled by the cache */
     struct box3 bounds_lps_mm; /* empty: nothing to draw, and the back end made nothing */
     size_t n_triangles;
