@@ -256,6 +256,55 @@ static void a_moving_picture_outlines_univels_until_the_surface_is_built(void **
     shots_forget(plan);
 }
 
+/* ---- lines that are kept as pixels ------------------------------------------------------------------------------- */
+
+static const struct made_region crossing[] = { { "ball", -1, 0x20ff20 }, { "block", -1, 0xff20ff } };
+static double ball_and_block(struct vec3 p)
+{
+    return block(vec3(p.x - 12, p.y, p.z)) > 0 ? 2 : sphere(p);
+}
+
+/* What stays where it is, is not painted anew: a picture is the same with lines that are kept and without, whatever was
+ * drawn between. The renderer forgets the plan for the other picture. */
+static void kept_lines_make_the_same_picture(void **state)
+{
+    (void)state;
+    enum { FIRST, ZOOMED, SHIFTED, WIDER, OTHER_SLICE, ONE_HIDDEN, SMALLER, CHECKED, N_LOOKS };
+    static const int order[] = { FIRST,   FIRST,   FIRST,       ZOOMED,      ZOOMED,     ZOOMED,     SHIFTED,
+                                 SHIFTED, SHIFTED, WIDER,       WIDER,       WIDER,      FIRST,      OTHER_SLICE,
+                                 FIRST,   FIRST,   OTHER_SLICE, OTHER_SLICE, ONE_HIDDEN, ONE_HIDDEN, SMALLER,
+                                 SMALLER, SMALLER, FIRST,       CHECKED,     CHECKED,    CHECKED };
+    enum { N = sizeof order / sizeof order[0] };
+    struct grid grid = made_cube_grid(49);
+    struct plan *plan = made_plan(&grid, ball_and_block, crossing, 2);
+    made_plan_add_image(plan, &grid, VOXEL_F32, sphere);
+    struct image *kept[N];
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < N; i++) {
+            int look = order[i];
+            struct scene scene = outlined(plan, SCENE_OUTLINE_METHOD_SURFACE, vec3(0, 0, look == OTHER_SLICE ? 3 : 0));
+            scene.outline.width_px = look == WIDER ? 3 : 1.5;
+            scene.check.visible = look == CHECKED;
+            snprintf(scene.check.region, sizeof scene.check.region, "ball");
+            shots_style(&scene, "block")->visible = look != ONE_HIDDEN;
+            const struct render_options options = { SHOTS_WIDTH / (look == SMALLER ? 2 : 1),
+                                                    SHOTS_HEIGHT / (look == SMALLER ? 2 : 1), SURFACE_FULL, true };
+            struct view view = shots_view(SCENE_KIND_AXIAL, vec3(look == SHIFTED ? 0.31 : 0, 0, 0),
+                                          look == ZOOMED ? SPHERE_PX_PER_MM * 1.01 : SPHERE_PX_PER_MM);
+            if (pass)
+                renderer_forget(shots_renderer, plan);
+            struct image *image = shots_take(plan, scene, view, &options, NULL);
+            if (!pass) {
+                kept[i] = image;
+                continue;
+            }
+            assert_memory_equal(kept[i]->rgba, image->rgba, (size_t)image->width_px * (size_t)image->height_px * 4);
+            image_destroy(image);
+            image_destroy(kept[i]);
+        }
+    shots_forget(plan);
+}
+
 /* Degree bins cannot show a region of two pieces; the pane outlines its univels, as marching squares do. */
 static double two_pieces(struct vec3 p)
 {
@@ -292,6 +341,7 @@ int main(void)
         cmocka_unit_test(a_dark_pixel_to_each_side_sets_a_line_off_from_bone),
         cmocka_unit_test(a_region_that_cannot_have_its_shape_is_outlined_all_the_same),
         cmocka_unit_test(a_moving_picture_outlines_univels_until_the_surface_is_built),
+        cmocka_unit_test(kept_lines_make_the_same_picture),
     };
     return shots_run("outlines", tests, sizeof tests / sizeof tests[0]);
 }

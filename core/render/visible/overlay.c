@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/base/mem.h"
 #include "core/derive/shape_slabs.h"
@@ -12,15 +13,31 @@
 #include "core/render/visible/paint.h"
 #include "core/scene/axes.h"
 
-/* Limits of the lines that are kept: three panes of all regions that a plan can have, and 96 MiB at 48 bytes per line.
+/* Limits of what is kept: the lines of three panes of all regions that a plan can have, and 96 MiB of lines and
+ * strokes.
  */
-enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_LINES = 2 << 20 };
+enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_BYTES = 96 << 20 };
 static const uint32_t univel_rgb = 0xffffff;
 /* Under outlines, to keep light lines readable on bone. */
 static const uint32_t halo_rgb = 0x07080a;
 static const double halo_px = 1;
 
 enum lines_of { LINES_OF_OUTLINE, LINES_OF_BORDER, LINES_OF_SHAPE };
+
+/* From a pane's patient coordinates to pixels: x = p . x + x[3]. A parallel view has no division. */
+struct pane_pixels {
+    double x[4], y[4];
+};
+
+/* Lines as pixels, kept while a pane shows them in the same place: another beam or dose over it leaves them alone. */
+struct stroked {
+    struct pane_pixels pixels;
+    double width_px;
+    int32_t size_px[2];            /* of the picture */
+    struct paint_strokes *strokes; /* NULL: these lines were painted so only once */
+};
+
+enum stroke_of { STROKE_OF_HALO, STROKE_OF_LINE, N_STROKES };
 
 struct entry {
     const struct plan *plan;
@@ -32,6 +49,7 @@ struct entry {
     struct cut_lines lines;
     bool is_open;   /* LINES_OF_SHAPE: its lines enclose nothing */
     bool is_absent; /* LINES_OF_SHAPE: the region has no such shape */
+    struct stroked stroked[N_STROKES];
     struct entry *next;
 };
 
@@ -47,6 +65,8 @@ struct overlay *overlay_create(void)
 static void entry_destroy(struct entry *entry)
 {
     cut_lines_finish(&entry->lines);
+    for (size_t i = 0; i < N_STROKES; i++)
+        paint_strokes_destroy(entry->stroked[i].strokes);
     free(entry);
 }
 
@@ -126,12 +146,20 @@ static bool fill_shape(struct entry *entry, struct derive *derived, struct error
     return is_good;
 }
 
+static size_t entry_bytes(const struct entry *entry)
+{
+    size_t n = entry->lines.n * sizeof *entry->lines.ends_lps_mm;
+    for (size_t i = 0; i < N_STROKES; i++)
+        n += paint_strokes_bytes(entry->stroked[i].strokes);
+    return n;
+}
+
 /* Drops the least recently used beyond the limits. */
 static void trim(struct overlay *overlay)
 {
     struct entry **at = &overlay->first;
-    size_t n_lines = 0;
-    for (size_t i = 0; *at && i < MAX_ENTRIES && (n_lines += (*at)->lines.n) <= MAX_LINES; i++)
+    size_t n_bytes = 0;
+    for (size_t i = 0; *at && i < MAX_ENTRIES && (n_bytes += entry_bytes(*at)) <= MAX_BYTES; i++)
         at = &(*at)->next;
     while (*at) {
         struct entry *entry = *at;
@@ -141,8 +169,8 @@ static void trim(struct overlay *overlay)
 }
 
 /* The lines that are wanted, kept or computed now; borrowed until trim. NULL on failure. */
-static const struct entry *lines_of(struct overlay *overlay, struct derive *derived, const struct entry *wanted,
-                                    struct error *err)
+static struct entry *lines_of(struct overlay *overlay, struct derive *derived, const struct entry *wanted,
+                              struct error *err)
 {
     for (struct entry **at = &overlay->first; *at; at = &(*at)->next)
         if (is_same(*at, wanted)) {
@@ -171,7 +199,8 @@ struct target {
     const struct draw_scope *scope;
     struct image *image;
     struct paint *paint;
-    double scale; /* pixels of this picture to one of the full one */
+    struct paint *alone; /* as large, for the lines of one entry; NULL: not needed yet */
+    double scale;        /* pixels of this picture to one of the full one */
     struct check_counts *check;
 };
 
@@ -181,11 +210,6 @@ static struct paint_point project(const struct target *target, const double p[3]
     return (struct paint_point){ (clip.x + 1) / 2 * target->image->width_px,
                                  (1 - clip.y) / 2 * target->image->height_px };
 }
-
-/* From a pane's patient coordinates to pixels: x = p . x + x[3]. A parallel view has no division. */
-struct pane_pixels {
-    double x[4], y[4];
-};
 
 static struct pane_pixels pane_pixels(const struct target *target)
 {
@@ -206,13 +230,59 @@ static inline struct paint_point on_pane(const struct pane_pixels *pixels, const
                                  y[0] * p[0] + y[1] * p[1] + y[2] * p[2] + y[3] };
 }
 
+static void stroke_into(struct paint *paint, const struct cut_lines *lines, const struct pane_pixels *pixels,
+                        double width_px)
+{
+    for (size_t i = 0; i < lines->n; i++)
+        paint_line(paint, on_pane(pixels, lines->ends_lps_mm[i][0]), on_pane(pixels, lines->ends_lps_mm[i][1]),
+                   width_px);
+}
+
 /* Of a slice pane. */
 static void stroke(const struct target *target, const struct cut_lines *lines, double width_px)
 {
     const struct pane_pixels pixels = pane_pixels(target);
-    for (size_t i = 0; i < lines->n; i++)
-        paint_line(target->paint, on_pane(&pixels, lines->ends_lps_mm[i][0]),
-                   on_pane(&pixels, lines->ends_lps_mm[i][1]), fmax(1, width_px * target->scale));
+    stroke_into(target->paint, lines, &pixels, fmax(1, width_px * target->scale));
+}
+
+static bool is_stroked_so(const struct stroked *a, const struct stroked *b)
+{
+    return memcmp(&a->pixels, &b->pixels, sizeof a->pixels) == 0 && a->width_px == b->width_px &&
+           a->size_px[0] == b->size_px[0] && a->size_px[1] == b->size_px[1];
+}
+
+/* The same for lines that are kept. Those that are painted in the same place again are kept as pixels from then on. */
+static bool stroke_entry(struct target *target, struct entry *entry, enum stroke_of of, double width_px,
+                         struct error *err)
+{
+    struct stroked *kept = &entry->stroked[of];
+    const struct stroked wanted = { .pixels = pane_pixels(target),
+                                    .width_px = fmax(1, width_px * target->scale),
+                                    .size_px = { target->image->width_px, target->image->height_px } };
+    if (!is_stroked_so(kept, &wanted)) {
+        paint_strokes_destroy(kept->strokes);
+        *kept = wanted;
+        stroke_into(target->paint, &entry->lines, &wanted.pixels, wanted.width_px);
+        return true;
+    }
+    if (!kept->strokes) {
+        target->alone = target->alone ? target->alone : paint_create(target->image, err);
+        if (!target->alone)
+            return false;
+        stroke_into(target->alone, &entry->lines, &wanted.pixels, wanted.width_px);
+        kept->strokes = paint_take(target->alone, err);
+        if (!kept->strokes)
+            return false;
+    }
+    paint_queue(target->paint, kept->strokes);
+    return true;
+}
+
+static bool paint_entry(struct target *target, struct entry *entry, double width_px, uint32_t rgb, struct error *err)
+{
+    bool is_good = stroke_entry(target, entry, STROKE_OF_LINE, width_px, err);
+    paint_flush(target->paint, rgb, 1);
+    return is_good;
 }
 
 static void paint_lines(const struct target *target, const struct cut_lines *lines, double width_px, uint32_t rgb)
@@ -229,7 +299,7 @@ static void paint_strokes(const struct target *target, const struct draw *draw)
 
 /* The lines of an outline, borrowed until trim: of the surface; of univels if these are wanted, if the surface is not
  * built and must not be waited for, or if the region cannot have it. NULL on failure. */
-static const struct cut_lines *outline_lines(const struct target *target, const struct draw *draw, struct error *err)
+static struct entry *outline_lines(const struct target *target, const struct draw *draw, struct error *err)
 {
     struct derive *derived = target->scope->snapshot->derived;
     const struct shape_want want = { draw->subject, draw->lines.key, SURFACE_FULL };
@@ -237,43 +307,40 @@ static const struct cut_lines *outline_lines(const struct target *target, const 
     if (draw->lines.is_of_surface && (!draw->lines.may_be_univels || derive_shape_is_ready(derived, &want))) {
         wanted.what = LINES_OF_SHAPE;
         wanted.key = draw->lines.key;
-        const struct entry *found = lines_of(target->overlay, derived, &wanted, err);
+        struct entry *found = lines_of(target->overlay, derived, &wanted, err);
         if (!found || !found->is_absent)
-            return found ? &found->lines : NULL;
+            return found;
         wanted.key = (struct shape_key){ 0 };
     }
     wanted.what = LINES_OF_OUTLINE;
     wanted.method = draw->lines.method;
-    const struct entry *found = lines_of(target->overlay, derived, &wanted, err);
-    return found ? &found->lines : NULL;
+    return lines_of(target->overlay, derived, &wanted, err);
 }
 
 /* Strokes outlines with dark lines a pixel wider to each side, all before the first outline is painted, so that none
  * covers another's line. */
-static bool paint_halos(const struct target *target, const struct draw_list *list, struct error *err)
+static bool paint_halos(struct target *target, const struct draw_list *list, struct error *err)
 {
     for (size_t i = list->n_in_image; i < list->n; i++) {
         const struct draw *draw = &list->draws[i];
-        const struct cut_lines *lines = draw->kind == DRAW_OUTLINE ? outline_lines(target, draw, err) : NULL;
         if (draw->kind == DRAW_ISOLINES)
             stroke(target, draw->isolines.lines, draw->isolines.width_px + 2 * halo_px);
         else if (draw->kind == DRAW_STROKES && draw->opacity >= 1)
             stroke(target, draw->strokes.lines, draw->strokes.width_px + 2 * halo_px);
-        else if (lines)
-            stroke(target, lines, draw->lines.width_px + 2 * halo_px);
-        else if (draw->kind == DRAW_OUTLINE)
-            return false;
+        else if (draw->kind == DRAW_OUTLINE) {
+            struct entry *entry = outline_lines(target, draw, err);
+            if (!entry || !stroke_entry(target, entry, STROKE_OF_HALO, draw->lines.width_px + 2 * halo_px, err))
+                return false;
+        }
     }
     paint_flush(target->paint, halo_rgb, 1);
     return true;
 }
 
-static bool paint_outline(const struct target *target, const struct draw *draw, struct error *err)
+static bool paint_outline(struct target *target, const struct draw *draw, struct error *err)
 {
-    const struct cut_lines *lines = outline_lines(target, draw, err);
-    if (lines)
-        paint_lines(target, lines, draw->lines.width_px, draw->color_rgb);
-    return lines != NULL;
+    struct entry *entry = outline_lines(target, draw, err);
+    return entry && paint_entry(target, entry, draw->lines.width_px, draw->color_rgb, err);
 }
 
 static bool paint_check(const struct target *target, const struct draw *draw, struct error *err)
@@ -408,7 +475,7 @@ static void paint_beam_eye(const struct target *target)
         beam_eye_paint(&marks, target->scope->camera, target->scale, target->paint);
 }
 
-static bool paint_draw(const struct target *target, const struct draw *draw, struct error *err)
+static bool paint_draw(struct target *target, const struct draw *draw, struct error *err)
 {
     switch (draw->kind) {
     case DRAW_OUTLINE: return paint_outline(target, draw, err);
@@ -437,14 +504,15 @@ bool overlay_draw(struct overlay *overlay, const struct draw_scope *scope, const
     *check = (struct check_counts){ 0, 0 };
     if (list->n_in_image == list->n)
         return true;
-    struct target target = {
-        overlay, scope, image, paint_create(image, err), (double)image->width_px / scope->snapshot->view.size_px[0],
-        check
-    };
+    struct target target = { overlay, scope,
+                             image,   paint_create(image, err),
+                             NULL,    (double)image->width_px / scope->snapshot->view.size_px[0],
+                             check };
     bool is_good = target.paint && paint_halos(&target, list, err);
     for (size_t i = list->n_in_image; is_good && i < list->n; i++)
         is_good = paint_draw(&target, &list->draws[i], err);
     paint_destroy(target.paint);
+    paint_destroy(target.alone);
     trim(overlay);
     return is_good;
 }

@@ -1,6 +1,7 @@
 /* Anti-aliased lines over a picture: coverage is collected stroke by stroke, then blended once. */
 #include "core/render/visible/paint.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,6 +61,14 @@ static inline double clamp(double value, double low, double high)
     return smaller(larger(value, low), high);
 }
 
+static void widen(struct paint *paint, int low_x, int high_x, int low_y, int high_y)
+{
+    paint->low_x = low_x < paint->low_x ? low_x : paint->low_x;
+    paint->low_y = low_y < paint->low_y ? low_y : paint->low_y;
+    paint->high_x = high_x > paint->high_x ? high_x : paint->high_x;
+    paint->high_y = high_y > paint->high_y ? high_y : paint->high_y;
+}
+
 /* Coverage falls linearly from 1, half a pixel inside the line's edge, to 0, half a pixel outside. */
 static void paint_piece(struct paint *paint, struct paint_point a, struct paint_point b, double radius)
 {
@@ -72,10 +81,7 @@ static void paint_piece(struct paint *paint, struct paint_point a, struct paint_
         high_y = (int)clamp(floor(larger(a.y, b.y) + reach - 0.5), -1, height - 1);
     if (low_x > high_x || low_y > high_y)
         return;
-    paint->low_x = low_x < paint->low_x ? low_x : paint->low_x;
-    paint->low_y = low_y < paint->low_y ? low_y : paint->low_y;
-    paint->high_x = high_x > paint->high_x ? high_x : paint->high_x;
-    paint->high_y = high_y > paint->high_y ? high_y : paint->high_y;
+    widen(paint, low_x, high_x, low_y, high_y);
     double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy, inverse = square > 0 ? 1 / square : 0;
     double most = smaller(1, 2 * radius);
     for (int y = low_y; y <= high_y; y++) {
@@ -127,6 +133,110 @@ static inline bool is_clear(const uint8_t cover[8])
     uint64_t all;
     memcpy(&all, cover, sizeof all);
     return all == 0;
+}
+
+/* ---- strokes that are kept ---------------------------------------------------------------------------------------- */
+
+/* Neighbouring pixels of a row that are covered. */
+struct span {
+    uint32_t at; /* the first one, counted through the picture */
+    uint32_t n;
+};
+
+struct paint_strokes {
+    struct span *spans;
+    uint8_t *levels; /* of the spans' pixels, one after the other */
+    size_t n_spans, n_levels;
+    size_t n_pixels; /* of the picture */
+    int low_x, high_x, low_y, high_y;
+};
+
+/* The next covered pixel of a row's part, or its end. */
+static int skip_clear(const uint8_t *row, int x, int end)
+{
+    while (x + 8 <= end && is_clear(row + x))
+        x += 8;
+    while (x < end && row[x] == 0)
+        x++;
+    return x;
+}
+
+static int skip_covered(const uint8_t *row, int x, int end)
+{
+    while (x < end && row[x] != 0)
+        x++;
+    return x;
+}
+
+/* Counts the spans and their pixels; with room for them fills them in and clears the coverage. */
+static void find_spans(struct paint *paint, struct paint_strokes *strokes, bool has_room)
+{
+    strokes->n_spans = strokes->n_levels = 0;
+    for (int y = paint->low_y; y <= paint->high_y; y++) {
+        const int end = paint->high_x + 1;
+        size_t first = (size_t)y * (size_t)paint->image->width_px;
+        uint8_t *row = paint->cover + first;
+        for (int x = skip_clear(row, paint->low_x, end); x < end; x = skip_clear(row, x, end)) {
+            int to = skip_covered(row, x, end);
+            size_t n = (size_t)(to - x);
+            if (has_room) {
+                strokes->spans[strokes->n_spans] = (struct span){ (uint32_t)(first + (size_t)x), (uint32_t)n };
+                memcpy(strokes->levels + strokes->n_levels, row + x, n);
+                memset(row + x, 0, n);
+            }
+            strokes->n_spans++;
+            strokes->n_levels += n;
+            x = to;
+        }
+    }
+}
+
+struct paint_strokes *paint_take(struct paint *paint, struct error *err)
+{
+    struct paint_strokes *strokes = mem_new(sizeof *strokes);
+    strokes->n_pixels = (size_t)paint->image->width_px * (size_t)paint->image->height_px;
+    strokes->low_x = paint->low_x;
+    strokes->high_x = paint->high_x;
+    strokes->low_y = paint->low_y;
+    strokes->high_y = paint->high_y;
+    find_spans(paint, strokes, false);
+    strokes->spans = mem_array(strokes->n_spans, sizeof *strokes->spans, UINT64_MAX, err);
+    strokes->levels = strokes->spans ? mem_array(strokes->n_levels, 1, UINT64_MAX, err) : NULL;
+    if (!strokes->levels) {
+        paint_strokes_destroy(strokes);
+        return NULL;
+    }
+    find_spans(paint, strokes, true);
+    reset(paint);
+    return strokes;
+}
+
+void paint_queue(struct paint *paint, const struct paint_strokes *strokes)
+{
+    assert(strokes->n_pixels == (size_t)paint->image->width_px * (size_t)paint->image->height_px);
+    widen(paint, strokes->low_x, strokes->high_x, strokes->low_y, strokes->high_y);
+    const uint8_t *level = strokes->levels;
+    for (size_t i = 0; i < strokes->n_spans; i++) {
+        uint8_t *cover = paint->cover + strokes->spans[i].at;
+        size_t n = strokes->spans[i].n;
+        for (size_t k = 0; k < n; k++)
+            cover[k] = level[k] > cover[k] ? level[k] : cover[k];
+        level += n;
+    }
+}
+
+size_t paint_strokes_bytes(const struct paint_strokes *strokes)
+{
+    return strokes ? sizeof *strokes + strokes->n_spans * sizeof *strokes->spans + strokes->n_levels : 0;
+}
+
+void paint_strokes_destroy(struct paint_strokes *strokes)
+{
+    if (!strokes)
+        return;
+    free(strokes->spans);
+    free(strokes->levels);
+    free(strokes);
 }
 
 void paint_flush(struct paint *paint, uint32_t rgb, double opacity)
