@@ -133,6 +133,84 @@ test('another pane is drawn with its picture, also when that brings the change, 
   assert.deepEqual(drawn, [0, 1, 2, 3]);
 });
 
+test('while pictures follow one another where something is dragged, those of other panes share a frame 25 ms later, and its own do not wait', () => {
+  const { clock, frames, redraw, frame, drag, pressed } = world();
+  const [here, one, other] = [new FakePane({ pressed }), new FakePane(), new FakePane()];
+  const painted = [];
+  const paint = (pane, name) => redraw.schedulePicture(pane, () => {
+    redraw.painted(pane);
+    painted.push(name);
+  });
+  drag();
+  paint(one, 'one'); // nothing came for this pane yet: the other's is all there is to see
+  frame();
+  assert.deepEqual(painted.splice(0), ['one']);
+  paint(here, 'here');
+  paint(one, 'one');
+  frame();
+  assert.deepEqual(painted.splice(0), ['here']);
+  clock.pass(12);
+  paint(other, 'other');
+  assert.equal(frames.length, 0);
+  clock.pass(13);
+  frame();
+  assert.deepEqual(painted.splice(0), ['one', 'other']);
+  paint(one, 'one');
+  clock.pass(24);
+  paint(here, 'here');
+  frame();
+  assert.deepEqual(painted.splice(0), ['here'], 'the other one has a millisecond yet');
+  clock.pass(1);
+  frame();
+  assert.deepEqual(painted.splice(0), ['one']);
+  clock.pass(99);
+  paint(one, 'one');
+  frame();
+  assert.deepEqual(painted, ['one'], '100 ms without a picture');
+});
+
+test('a picture that waits to share a frame is painted when the drag ends, and none waits at rest', () => {
+  const { frames, redraw, fire, frame, drag, pressed } = world();
+  const [here, other] = [new FakePane({ pressed }), new FakePane()];
+  const painted = [];
+  drag();
+  redraw.schedulePicture(here, () => painted.push('here'));
+  frame();
+  redraw.schedulePicture(other, () => painted.push('waiting'));
+  assert.equal(frames.length, 0);
+  fire('pointerup');
+  frame();
+  assert.deepEqual(painted.splice(0), ['here', 'waiting']);
+  redraw.schedulePicture(other, () => painted.push('at rest'));
+  frame();
+  assert.deepEqual(painted, ['at rest']);
+});
+
+test('what an input changes where something is dragged shares the frame of pictures that wait, and else has the next one', () => {
+  const { clock, frames, redraw, value, part, frame, drag, pressed } = world();
+  const [pane, other] = [new FakePane({ pressed }), new FakePane()];
+  const drawn = part(pane);
+  const picture = (of) => redraw.schedulePicture(of, () => redraw.painted(of));
+  drag();
+  picture(pane);
+  frame();
+  value.value = 1;
+  frame();
+  assert.deepEqual(drawn, [0, 1], 'no picture waits');
+  picture(other);
+  clock.pass(10);
+  value.value = 2;
+  assert.equal(frames.length, 0);
+  clock.pass(15);
+  frame();
+  assert.deepEqual(drawn, [0, 1, 2]);
+  picture(other);
+  value.value = 3;
+  picture(pane);
+  frame();
+  assert.deepEqual(drawn, [0, 1, 2, 3], 'with its own picture before');
+});
+
 test('what is around the panes is drawn ten times a second, marked, and at once when the drag ends; a hidden pane only then', () => {
   const { clock, fire, value, part, frame, drag } = world();
   const host = new FakePart();

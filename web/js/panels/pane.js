@@ -68,7 +68,7 @@ export class Pane {
     this.#stops.push(mount(host, () => this.#draw(), redraw));
     this.#stops.push(mount(host.querySelector(`#caption-${view.number}`), () => html`${this.#caption()}`, redraw));
     const body = host.querySelector('.picture');
-    this.painter = new Painter(host.querySelector('canvas'), { decode, schedule: redraw.schedule, onPainted: (header, isDrawn) => {
+    this.painter = new Painter(host.querySelector('canvas'), { decode, schedule: (callback) => redraw.schedulePicture(host, callback), onPainted: (header, isDrawn) => {
       if (isDrawn) redraw.painted(host);
       onPainted(header, isDrawn);
     } });
