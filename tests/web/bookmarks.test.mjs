@@ -164,7 +164,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
     await ben.context().close();
   });
 
-  once('are within reach on a telephone', async () => {
+  later('are within reach on a telephone', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
     await full(page);

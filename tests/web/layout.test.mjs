@@ -176,8 +176,8 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  for (const [size, options] of Object.entries(roomSizes).filter(([name]) => isDue(name === 'compact')))
-    it(`${size}: the comparison of methods shows its table in the window`, async () => {
+  for (const [size, options] of Object.entries(roomSizes))
+    later(`${size}: the comparison of methods shows its table in the window`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
       await full(page);
       if (size === 'compact') await page.locator('[data-section="regions"]').click();
