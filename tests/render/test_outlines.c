@@ -269,7 +269,7 @@ static double ball_and_block(struct vec3 p)
 static void kept_lines_make_the_same_picture(void **state)
 {
     (void)state;
-    enum { FIRST, ZOOMED, SHIFTED, WIDER, OTHER_SLICE, ONE_HIDDEN, SMALLER, CHECKED, N_LOOKS };
+    enum { FIRST, ZOOMED, SHIFTED, WIDER, OTHER_SLICE, ONE_HIDDEN, SMALLER, CHECKED };
     static const int order[] = { FIRST,   FIRST,   FIRST,       ZOOMED,      ZOOMED,     ZOOMED,     SHIFTED,
                                  SHIFTED, SHIFTED, WIDER,       WIDER,       WIDER,      FIRST,      OTHER_SLICE,
                                  FIRST,   FIRST,   OTHER_SLICE, OTHER_SLICE, ONE_HIDDEN, ONE_HIDDEN, SMALLER,

@@ -13,9 +13,8 @@
 #include "core/render/visible/paint.h"
 #include "core/scene/axes.h"
 
-/* Limits of what is kept: the lines of three panes of all regions that a plan can have, and 96 MiB of lines and
- * strokes.
- */
+/* Limits of what is kept: the lines of three panes of all regions that a plan can have, and 96 MiB of lines and strokes
+ * when a picture is done; while it is drawn, no strokes are added after the first 96 MiB of them. */
 enum { MAX_ENTRIES = 3 * REGION_MAX + 512, MAX_BYTES = 96 << 20 };
 static const uint32_t univel_rgb = 0xffffff;
 /* Under outlines, to keep light lines readable on bone. */
@@ -200,6 +199,7 @@ struct target {
     struct image *image;
     struct paint *paint;
     struct paint *alone; /* as large, for the lines of one entry; NULL: not needed yet */
+    size_t n_kept_bytes; /* of strokes that were kept for this picture */
     double scale;        /* pixels of this picture to one of the full one */
     struct check_counts *check;
 };
@@ -251,9 +251,25 @@ static bool is_stroked_so(const struct stroked *a, const struct stroked *b)
            a->size_px[0] == b->size_px[0] && a->size_px[1] == b->size_px[1];
 }
 
-/* The same for lines that are kept. Those that are painted in the same place again are kept as pixels from then on. */
-static bool stroke_entry(struct target *target, struct entry *entry, enum stroke_of of, double width_px,
-                         struct error *err)
+/* Keeps the lines as pixels if memory and limit allow; else they are painted anew each time. */
+static void keep_strokes(struct target *target, const struct entry *entry, struct stroked *kept)
+{
+    if (target->n_kept_bytes > MAX_BYTES)
+        return;
+    target->alone = target->alone ? target->alone : paint_create(target->image, NULL);
+    if (!target->alone)
+        return;
+    stroke_into(target->alone, &entry->lines, &kept->pixels, kept->width_px);
+    kept->strokes = paint_take(target->alone, NULL);
+    if (!kept->strokes) {
+        paint_destroy(target->alone); /* with what is queued in it */
+        target->alone = NULL;
+    }
+    target->n_kept_bytes += paint_strokes_bytes(kept->strokes);
+}
+
+/* As stroke(), of lines that are kept: painted in the same place again, they are kept as pixels from then on. */
+static void stroke_entry(struct target *target, struct entry *entry, enum stroke_of of, double width_px)
 {
     struct stroked *kept = &entry->stroked[of];
     const struct stroked wanted = { .pixels = pane_pixels(target),
@@ -262,27 +278,12 @@ static bool stroke_entry(struct target *target, struct entry *entry, enum stroke
     if (!is_stroked_so(kept, &wanted)) {
         paint_strokes_destroy(kept->strokes);
         *kept = wanted;
+    } else if (!kept->strokes)
+        keep_strokes(target, entry, kept);
+    if (kept->strokes)
+        paint_queue(target->paint, kept->strokes);
+    else
         stroke_into(target->paint, &entry->lines, &wanted.pixels, wanted.width_px);
-        return true;
-    }
-    if (!kept->strokes) {
-        target->alone = target->alone ? target->alone : paint_create(target->image, err);
-        if (!target->alone)
-            return false;
-        stroke_into(target->alone, &entry->lines, &wanted.pixels, wanted.width_px);
-        kept->strokes = paint_take(target->alone, err);
-        if (!kept->strokes)
-            return false;
-    }
-    paint_queue(target->paint, kept->strokes);
-    return true;
-}
-
-static bool paint_entry(struct target *target, struct entry *entry, double width_px, uint32_t rgb, struct error *err)
-{
-    bool is_good = stroke_entry(target, entry, STROKE_OF_LINE, width_px, err);
-    paint_flush(target->paint, rgb, 1);
-    return is_good;
 }
 
 static void paint_lines(const struct target *target, const struct cut_lines *lines, double width_px, uint32_t rgb)
@@ -329,8 +330,9 @@ static bool paint_halos(struct target *target, const struct draw_list *list, str
             stroke(target, draw->strokes.lines, draw->strokes.width_px + 2 * halo_px);
         else if (draw->kind == DRAW_OUTLINE) {
             struct entry *entry = outline_lines(target, draw, err);
-            if (!entry || !stroke_entry(target, entry, STROKE_OF_HALO, draw->lines.width_px + 2 * halo_px, err))
+            if (!entry)
                 return false;
+            stroke_entry(target, entry, STROKE_OF_HALO, draw->lines.width_px + 2 * halo_px);
         }
     }
     paint_flush(target->paint, halo_rgb, 1);
@@ -340,7 +342,11 @@ static bool paint_halos(struct target *target, const struct draw_list *list, str
 static bool paint_outline(struct target *target, const struct draw *draw, struct error *err)
 {
     struct entry *entry = outline_lines(target, draw, err);
-    return entry && paint_entry(target, entry, draw->lines.width_px, draw->color_rgb, err);
+    if (!entry)
+        return false;
+    stroke_entry(target, entry, STROKE_OF_LINE, draw->lines.width_px);
+    paint_flush(target->paint, draw->color_rgb, 1);
+    return true;
 }
 
 static bool paint_check(const struct target *target, const struct draw *draw, struct error *err)
@@ -504,10 +510,12 @@ bool overlay_draw(struct overlay *overlay, const struct draw_scope *scope, const
     *check = (struct check_counts){ 0, 0 };
     if (list->n_in_image == list->n)
         return true;
-    struct target target = { overlay, scope,
-                             image,   paint_create(image, err),
-                             NULL,    (double)image->width_px / scope->snapshot->view.size_px[0],
-                             check };
+    struct target target = { .overlay = overlay,
+                             .scope = scope,
+                             .image = image,
+                             .paint = paint_create(image, err),
+                             .scale = (double)image->width_px / scope->snapshot->view.size_px[0],
+                             .check = check };
     bool is_good = target.paint && paint_halos(&target, list, err);
     for (size_t i = list->n_in_image; is_good && i < list->n; i++)
         is_good = paint_draw(&target, &list->draws[i], err);

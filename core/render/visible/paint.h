@@ -17,7 +17,7 @@ void paint_destroy(struct paint *paint);
 void paint_line(struct paint *paint, struct paint_point a, struct paint_point b, double width_px);
 /* Strokes as coverage of pixels, to be queued again without painting them anew: in pictures of the same size. */
 struct paint_strokes;
-/* Takes what is queued off the queue. NULL on failure, and then it is still queued. errors ERROR_MEMORY */
+/* Takes what is queued off the queue. NULL on failure, and then it is queued still. errors ERROR_MEMORY */
 NODISCARD struct paint_strokes *paint_take(struct paint *paint, struct error *err);
 /* Queues them; paint must have the size of the one that they were taken from. */
 void paint_queue(struct paint *paint, const struct paint_strokes *strokes);

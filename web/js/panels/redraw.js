@@ -67,7 +67,7 @@ export class Redraw {
     else if (this.#painted.has(pane) || (isHere && !this.#gathered.length)) {
       this.#inFrame.add(tick);
       this.#request();
-    } else if (pane || isHere) {
+    } else if (pane) {
       this.#withPicture.set(tick, { pane, at: isHere ? this.#gatheredAt : this.#clock.now() + pictureMs });
       this.#wake();
     } else this.#putSlow(host, tick);
