@@ -5,6 +5,7 @@
 #include "core/beam/beam.h"
 #include "core/dose/curve.h"
 #include "core/dose/dose.h"
+#include "core/plan/origin.h"
 #include "core/region/region.h"
 #include "core/report/report.h"
 #include "core/track/track.h"
@@ -47,6 +48,16 @@ struct plan {
     struct plan_image images[PLAN_MAX_IMAGES];
     size_t n_images;
     struct region_set regions;
+    struct part_origin image_origins[PLAN_MAX_IMAGES], dose_origins[PLAN_MAX_DOSES], beam_origins[PLAN_MAX_BEAMS];
+    struct part_origin *region_origins; /* [n_region_origins], owned; of a region: [region.origin - 1] */
+    size_t n_region_origins;
+    struct part_origin tracks_origin;
+    struct plan_patient patients[ORIGIN_MAX_PATIENTS];
+    size_t n_patients;
+    struct treatment_plan treatment_plans[ORIGIN_MAX_TREATMENT_PLANS];
+    size_t n_treatment_plans;
+    struct plan_registration registrations[ORIGIN_MAX_REGISTRATIONS];
+    size_t n_registrations;
     struct dose doses[PLAN_MAX_DOSES];
     size_t n_doses;
     struct beam beams[PLAN_MAX_BEAMS];

@@ -21,6 +21,7 @@ struct region {
     int parent;          /* index of the region directly around it, or -1; never a cycle */
     uint32_t layer;      /* index in layers */
     uint16_t label;      /* its value in that layer, never 0 */
+    uint16_t origin;     /* 1 + index of its source in the plan's region_origins; 0: not known */
     /* Filled by region_set_measure. */
     uint64_t n_voxels;                /* voxels with the label: "univels" */
     double volume_cm3;                /* n_voxels times the volume of a voxel */
