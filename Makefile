@@ -253,7 +253,7 @@ test-long: all demo
 	$(Q)LONG_TESTS=$(LONG_TESTS) TEST_CONCURRENCY=$(PARALLEL) SUITE_SECONDS=2400 tests/run_node.sh long $(DEEP_NODE) $(LONG_NODE)
 test-install: all demo
 	$(Q)tests/install.sh
-lint: $(GEN_STAMP) $(call obj,$(CORE_SRC) $(WIRE_SRC) $(SERVER_SRC) $(DAEMON_SRC) $(RENDERER_SRC) $(CLI_SRC))
+lint: $(GEN_STAMP) node_modules/.stamp $(call obj,$(CORE_SRC) $(WIRE_SRC) $(SERVER_SRC) $(DAEMON_SRC) $(RENDERER_SRC) $(CLI_SRC))
 	$(Q)tests/lint.sh
 test:
 	@deploy/packages build run test

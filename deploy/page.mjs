@@ -10,10 +10,10 @@ import { createHash } from 'node:crypto';
 import { basename, join } from 'node:path';
 import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
 import { build } from 'esbuild';
+import { browsers } from './promised.mjs';
 
 const folder = process.argv[2];
 const read = (name) => readFileSync(join(folder, name), 'utf8');
-const browsers = ['chrome107', 'firefox115', 'safari16.4'];
 const notice = '/*! The licences of lit-html, signals-core and uPlot are in licences.txt */';
 
 /** Makes one file of a module and all that it imports at once, and one of each module that is imported on demand, which takes from the first what both
@@ -63,7 +63,7 @@ const sheets = [...source.matchAll(/^ *<link rel="stylesheet" href="([^"]+)" \/>
 const script = source.match(/^ *<script type="module" src="([^"]+)"><\/script>\n/m);
 if (!sheets.length || !script) throw new Error('index.html names no style sheets or no module in the form that deploy/page.mjs knows');
 
-const shared = { absWorkingDir: join(process.cwd(), folder), bundle: true, minify: true, target: browsers, metafile: true, legalComments: 'none', logLevel: 'warning', outdir: 'page' };
+const shared = { absWorkingDir: join(process.cwd(), folder), bundle: true, minify: true, target: Object.entries(browsers).map(([name, version]) => name + version), metafile: true, legalComments: 'none', logLevel: 'warning', outdir: 'page' };
 const { main } = await joinModules(script[1]);
 const style = await build({ ...shared, entryNames: '[name]-[hash]', assetNames: '[name]-[hash]', loader: { '.woff2': 'file' },
   entryPoints: [{ in: 'page.css', out: 'main' }], plugins: [{ name: 'sheets', setup({ onLoad, onResolve }) {

@@ -93,6 +93,7 @@ check "locks stand in core/base alone" locks_in_base
 check "no value-changing float flags" no_flags
 check "each header compiles alone, once" headers_stand_alone
 check "scripts parse and can be run" scripts_parse
+check "nothing is newer than the browsers and the node that deploy/promised.mjs promises" "${NODE:-node}" tests/oldest.mjs
 check "JSON files parse, with no name twice in an object" json_parses
 check "the npm lock names no addresses" no_addresses_in_the_lock
 

@@ -303,7 +303,7 @@ describe('a plan', () => {
     const percents = ['0.1', '1', '50', '99', '99.9'];
     assert.deepEqual(Object.keys(whole.percentiles).sort(), percents);
     const ascending = [whole.low, ...percents.map((percent) => whole.percentiles[percent]), whole.high];
-    assert.deepEqual(ascending, ascending.toSorted((a, b) => a - b));
+    assert.deepEqual(ascending, [...ascending].sort((a, b) => a - b));
     const halves = (await call(`${image}/histogram?bins=128`)).json.counts;
     assert.deepEqual(halves, halves.map((_, bin) => whole.counts[2 * bin] + whole.counts[2 * bin + 1]));
     assertProblem(await call(`${image}/histogram?bins=0`), 422, 'validation', '/bins');

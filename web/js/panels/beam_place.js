@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { endCompare, isDraftOn, movedPoint } from '../state/beam_ui.js';
 import { shownLine } from '../state/beams.js';
+import { replaced } from '../state/lists.js';
 import { crosshair } from '../state/plan.js';
 import { setLine } from './beam_actions.js';
 import { startMoving } from './beam_move.js';
@@ -53,7 +54,7 @@ export function placeBlock(world, isDisabled, facts) {
   if (!line) return nothing;
   const isDraft = isDraftOn(room);
   const point = (part, name) => html`<dt>${name}</dt><dd class="beam-fields">${['L', 'P', 'S'].map((letter, axis) => numberField(`${name}, ${letter} in mm`, tenths(line[`${part}_mm`][axis]), letter, isDisabled,
-    (value, event) => setLine(world, { [`${part}_mm`]: line[`${part}_mm`].with(axis, value) }, event)))}</dd>`;
+    (value, event) => setLine(world, { [`${part}_mm`]: replaced(line[`${part}_mm`], axis, value) }, event)))}</dd>`;
   const { phi_deg: phi, theta_deg: theta } = facts?.sera ?? {};
   const turn = (angles) => (value, event) => ask(world, event, { mode: 'angles', phi_deg: phi, theta_deg: theta, ...angles(value) });
   return html`<section class="block beam-place"><h3 class="beam-head">Position <span class="dim">${isDraft ? 'of the draft' : 'a change begins a draft'}</span></h3>

@@ -72,7 +72,7 @@ function atCrosshair(world) {
 function nearest(world, { value, yValue }) {
   const { curves, unit, isDifferential } = world.curves;
   const at = (curve) => shareOf(curve, isDifferential.value ? densityAt(curve, value) : volumeFrom(curve, value), unit.value);
-  return curves.value.toSorted((a, b) => Math.abs(at(a) - yValue) - Math.abs(at(b) - yValue))[0];
+  return [...curves.value].sort((a, b) => Math.abs(at(a) - yValue) - Math.abs(at(b) - yValue))[0];
 }
 
 /** What the pointer is about: of the nearest curve's region, what has at least the dose there or, of a differential one, what is in the bin. */

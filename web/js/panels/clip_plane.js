@@ -1,6 +1,7 @@
 // The inspector's Selection of a clip plane: where it is, which side it keeps, caps, and what it does not cut.
 import { html, nothing } from '../../lib/lit-html.js';
 import { allThroughCrosshair, beamOf, clipName, clipRow, clipThrough, clipWords, clipsOf, enabledClips, flippedClip, freeByAngles, leavesNothing, movedClip, positionOfClip, rangeOfClip, switchedClip, toggledClips } from '../state/clip.js';
+import { replaced } from '../state/lists.js';
 import { alongBeam, anglesOf, facing } from '../state/obliques.js';
 import { crosshair, shownImage } from '../state/plan.js';
 import { axes } from '../view/camera.js';
@@ -88,7 +89,7 @@ function freeFields(part) {
   const { scene, isDisabled, change } = part;
   const { origin_mm: origin, normal } = scene.clip.free;
   const { turn, tilt } = anglesOf(normal);
-  const place = (axis) => (value, event) => change({ clip: { free: { origin_mm: origin.with(axis, Math.min(Math.max(value, -1e5), 1e5)) } } }, event);
+  const place = (axis) => (value, event) => change({ clip: { free: { origin_mm: replaced(origin, axis, Math.min(Math.max(value, -1e5), 1e5)) } } }, event);
   return html`${alongFields(part, 'Along its direction', false)}
     <dl class="clip-list"><dt title="About the patient's long axis: 0 anterior, 90 left, 180 posterior, −90 right">Turn</dt><dd>${numberField('Turn in degrees', tenths(turn), '°', isDisabled, (value, event) => change(freeByAngles(value, tilt), event))}</dd>
       <dt title="Upwards: 90 superior, −90 inferior">Tilt</dt><dd>${numberField('Tilt in degrees', tenths(tilt), '°', isDisabled, (value, event) => change(freeByAngles(turn, Math.min(Math.max(value, -90), 90)), event))}</dd>

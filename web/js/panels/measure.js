@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
+import { replaced, without } from '../state/lists.js';
 import { freeId, kindName, kinds, listed, mostMeasures, mostPoints, pointsAround, pointsOf, removePatch } from '../state/measures.js';
 import { nearestIn, planeOfView } from '../state/obliques.js';
 import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
@@ -102,10 +103,10 @@ const pointNames = { ellipse: ['Centre', 'Edge', 'Edge 2'] };
 
 function pointTable({ kind, points }, isDisabled, change) {
   const places = points.map(({ at_mm: at }) => at);
-  const set = (index, axis, value, event) => change({ points: listed(places.with(index, places[index].with(axis, Math.min(Math.max(value, -100000), 100000)))) }, event);
+  const set = (index, axis, value, event) => change({ points: listed(replaced(places, index, replaced(places[index], axis, Math.min(Math.max(value, -100000), 100000)))) }, event);
   const nameOf = (index) => pointNames[kind]?.[index] ?? `Point ${index + 1}`;
   const isLine = kind === 'polyline' && places.length > 2;
   return html`<table class="image-places"><thead><tr><th scope="col">mm</th>${letters.map((letter) => html`<th scope="col">${letter}</th>`)}${isLine ? html`<th scope="col"><span class="hidden">Remove</span></th>` : nothing}</tr></thead>
     <tbody>${places.map((place, index) => html`<tr><th scope="row">${nameOf(index)}</th>${place.map((value, axis) => html`<td>${numberField(`${nameOf(index)}, ${letters[axis]} in mm`, Number(value.toFixed(2)), '', isDisabled, (entered, event) => set(index, axis, entered, event))}</td>`)}
-      ${isLine ? html`<td><button class="icon-button small" aria-label=${`Remove ${nameOf(index)}`} ?disabled=${isDisabled} @click=${(event) => change({ points: listed(places.toSpliced(index, 1)) }, event)}>${icon('close', 12)}</button></td>` : nothing}</tr>`)}</tbody></table>`;
+      ${isLine ? html`<td><button class="icon-button small" aria-label=${`Remove ${nameOf(index)}`} ?disabled=${isDisabled} @click=${(event) => change({ points: listed(without(places, index)) }, event)}>${icon('close', 12)}</button></td>` : nothing}</tr>`)}</tbody></table>`;
 }

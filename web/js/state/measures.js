@@ -1,5 +1,6 @@
 // Measures in the patient: their lengths, angles and areas, the plane of a pane, and which measures lie in it. Pure; LPS mm.
 import { add, cross, dot, length, scale, subtract, unit } from '../view/vec.js';
+import { replaced } from './lists.js';
 import { freeNumber } from './marks.js';
 import { heightOver } from './obliques.js';
 
@@ -84,12 +85,12 @@ export function circle([center, a], normal) {
 
 /** The points with one of them elsewhere. The centre of an ellipse takes the others with it; its half axes stay at right angles. */
 export function withPoint(kind, points, index, place) {
-  if (kind !== 'ellipse' || points.length < 3) return points.with(index, place);
+  if (kind !== 'ellipse' || points.length < 3) return replaced(points, index, place);
   const [center, a, b] = points;
   const [p, q] = [subtract(a, center), subtract(b, center)];
   if (index === 0) return [place, add(place, p), add(place, q)];
   const normal = unit(cross(p, q));
-  if (!(length(normal) > 0)) return points.with(index, place);
+  if (!(length(normal) > 0)) return replaced(points, index, place);
   const other = index === 1 ? scale(unit(cross(normal, subtract(place, center))), length(q)) : scale(unit(cross(normal, p)), Math.max(dot(subtract(place, center), unit(cross(normal, p))), 0.01));
   return index === 1 ? [center, place, add(center, other)] : [center, a, add(center, other)];
 }

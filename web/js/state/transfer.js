@@ -1,6 +1,7 @@
 // A transfer function as its editor changes it: points by ascending value, each with a colour and an opacity per millimetre. Pure.
 import { mergePatch } from '../wire/merge.js';
 import { cullsNothing, isCt, lookOf, showPatch } from './image_look.js';
+import { replaced } from './lists.js';
 import { shownImage } from './plan.js';
 import { presetPoints, presetsOfImage } from './volume_presets.js';
 
@@ -56,7 +57,7 @@ export function inserted(points, axis, value, opacity = null) {
   if (points.length >= mostPoints || points.some((point) => Math.abs(point.value - value) < least)) return { points, index: -1 };
   const here = sampleAt(points, value);
   const point = { value: rounded(value, axis), color: here.color, opacity: roundedOpacity(opacity ?? here.opacity) };
-  return { points: points.toSpliced(index, 0, point), index };
+  return { points: [...points.slice(0, index), point, ...points.slice(index)], index };
 }
 
 /** The widest gap beside a point, for a new one by key: between it and its neighbour, or beyond the last. */
@@ -71,11 +72,11 @@ export function gapBeside(points, axis, index) {
 /** The point elsewhere: never beyond its neighbours, whose order stays. */
 export function moved(points, axis, index, { value = points[index].value, opacity = points[index].opacity }) {
   const [low, high] = [points[index - 1]?.value ?? -1e12, points[index + 1]?.value ?? 1e12];
-  return points.with(index, { ...points[index], value: clamp(rounded(value, axis), low, high), opacity: roundedOpacity(opacity) });
+  return replaced(points, index, { ...points[index], value: clamp(rounded(value, axis), low, high), opacity: roundedOpacity(opacity) });
 }
 
-export const recolored = (points, index, color) => points.with(index, { ...points[index], color });
-export const removed = (points, index) => points.toSpliced(index, 1);
+export const recolored = (points, index, color) => replaced(points, index, { ...points[index], color });
+export { without as removed } from './lists.js';
 
 /** The point nearest to a place of the plot, within a distance in pixels; -1: none. */
 export function nearest(points, axis, [x, y], [width, height], withinPx) {
