@@ -244,8 +244,7 @@ void bridge_tell_revision(struct net_room *entry)
         !revision.is_current)
         return;
     room_revision_came(entry->room, revision.digest, clock_now_us());
-    if (room_replays(entry->room))
-        schedule_room(entry);
+    schedule_room(entry);
 }
 
 void bridge_report_plan(struct net_room *entry)
@@ -270,10 +269,12 @@ void bridge_report_plan(struct net_room *entry)
     entry->state = plan.state;
     entry->percent = plan.percent;
     (void)snprintf(entry->phase, sizeof entry->phase, "%s", phase);
-    if (plan.state == FLEET_READY && plan.document && plan.default_scene)
+    if (plan.state == FLEET_READY && plan.document && plan.default_scene) {
         report_ready(entry, &plan);
-    else
+        bridge_tell_revision(entry); /* of what this process has loaded */
+    } else {
         report_state(entry, &plan);
+    }
     schedule_room(entry);
 }
 

@@ -12,6 +12,14 @@ struct item *items_find(const struct room *room, const char *id)
     return NULL;
 }
 
+bool items_has(const struct room *room, enum wire_item_kind kind)
+{
+    const struct item *item = room->items;
+    while (item && item->kind != kind)
+        item = item->next;
+    return item != NULL;
+}
+
 void items_keep(struct room *room, struct item *item, char *row)
 {
     struct item **last = &room->items;

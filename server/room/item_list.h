@@ -5,6 +5,7 @@
 
 /* NULL: there is none with this id. */
 struct item *items_find(const struct room *room, const char *id);
+bool items_has(const struct room *room, enum wire_item_kind kind);
 /* Whether the room has the place for a row of n bytes in the stead of `before` (NULL: a new one). False with problem.
  */
 NODISCARD bool items_have_place(const struct room *room, const struct item *before, size_t n, struct problem *problem);

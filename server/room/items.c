@@ -9,6 +9,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/room/acceptance.h"
 #include "server/room/audit.h"
 #include "server/room/bookmark_body.h"
 #include "server/room/item_list.h"
@@ -32,6 +33,7 @@ static const struct {
     [WIRE_ITEM_KIND_CHECK] = { RECORD_MAX_BYTES, record_read_check },
     [WIRE_ITEM_KIND_DECISION] = { RECORD_MAX_BYTES, record_read_decision },
     [WIRE_ITEM_KIND_SIGNATURE] = { RECORD_MAX_BYTES, record_read_signature },
+    [WIRE_ITEM_KIND_ACCEPTANCE] = { ACCEPTANCE_MAX_BYTES, acceptance_read },
 };
 
 static const char *word_of(enum wire_item_kind kind)
@@ -134,10 +136,10 @@ static struct item *find_to_change(const struct room *room, const struct member 
         problem_set(problem, PROBLEM_NOT_FOUND, "/item", "", "there is no item \"%.63s\", or not any more", id);
         return NULL;
     }
-    if (!record_may_change(room, item, problem))
+    if (!record_may_change(room, item, problem) || !acceptance_may(room, member, item->kind, problem))
         return NULL;
-    if (item->kind != WIRE_ITEM_KIND_CHECK && strcmp(item->author, member->id) != 0 &&
-        member->role != WIRE_MEMBER_ROLE_PRESENTER) {
+    if (item->kind != WIRE_ITEM_KIND_CHECK && item->kind != WIRE_ITEM_KIND_ACCEPTANCE &&
+        strcmp(item->author, member->id) != 0 && member->role != WIRE_MEMBER_ROLE_PRESENTER) {
         problem_set(problem, PROBLEM_FORBIDDEN, "/item", "",
                     "this %s is by %.40s: only its author or a member of role presenter changes or deletes it",
                     word_of(item->kind), item->author_name);
@@ -168,8 +170,12 @@ bool items_put(struct room *room, struct member *member, const struct message *m
         if (before->kind != put->kind)
             return problem_set(problem, PROBLEM_VALIDATION, "/kind", "enum", "this item is a %s and stays one",
                                word_of(before->kind));
+        if (!acceptance_may_write(room, member, put->kind, before, problem))
+            return false;
         next = *before;
     } else {
+        if (!acceptance_may_write(room, member, put->kind, NULL, problem))
+            return false;
         make_id(room, next.id);
         (void)snprintf(next.author, sizeof next.author, "%s", member->id);
         copy_name(next.author_name, member->name);
@@ -196,7 +202,10 @@ bool items_put(struct room *room, struct member *member, const struct message *m
     *item = next;
     items_keep(room, item, row);
     record_audit(room, item, member);
+    acceptance_audit(room, item, member, false);
     tell(room, item->id, item->row, member, (uint32_t)put->input);
+    if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
+        acceptances_settle(room);
     return true;
 }
 
@@ -215,8 +224,12 @@ bool items_delete(struct room *room, struct member *member, const struct message
         items_drop(room, reply);
         tell(room, id, NULL, member, 0);
     }
+    const bool was_accepted = item->kind == WIRE_ITEM_KIND_ACCEPTANCE;
+    acceptance_audit(room, item, member, true);
     items_drop(room, item);
     tell(room, asked->item, NULL, member, (uint32_t)asked->input);
+    if (was_accepted)
+        acceptances_settle(room);
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/room/acceptance.h"
 #include "server/room/audit.h"
 #include "server/room/control.h"
 #include "server/room/known.h"
@@ -218,6 +219,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     record_entry(room, member, as);
     presence_entered(room, member);
     send_welcome(room, member);
+    acceptances_tell(room, member);
     send_renderer_state(room, member);
     control_send(room, member);
     saved_show(room, member);

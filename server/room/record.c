@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "server/room/acceptance.h"
 #include "server/room/presence.h"
 #include "server/wire/json.h"
 
@@ -25,6 +26,8 @@ static cJSON *rows_of(const struct room *room, enum wire_item_kind kind)
             }
         }
         cJSON_Delete(body);
+        if (kind == WIRE_ITEM_KIND_ACCEPTANCE)
+            cJSON_AddBoolToObject(row, "counts", acceptance_counts(room, item));
         json_append(list, row);
     }
     return list;
@@ -46,6 +49,7 @@ cJSON *room_record(const struct room *room)
     json_add(json, "checklist", rows_of(room, WIRE_ITEM_KIND_CHECK));
     json_add(json, "decisions", rows_of(room, WIRE_ITEM_KIND_DECISION));
     json_add(json, "signatures", rows_of(room, WIRE_ITEM_KIND_SIGNATURE));
+    json_add(json, "acceptances", rows_of(room, WIRE_ITEM_KIND_ACCEPTANCE));
     json_add(json, "notes", rows_of(room, WIRE_ITEM_KIND_NOTE));
     json_add(json, "saved_views", rows_of(room, WIRE_ITEM_KIND_BOOKMARK));
     return json;

@@ -113,6 +113,9 @@ void shown_items(struct room *room, const cJSON *state)
     cJSON_ArrayForEach(entry, list)
     {
         struct problem problem = { 0 };
+        const char *kind = json_text(entry, "kind");
+        if (kind && strcmp(kind, wire_item_kind_words.words[WIRE_ITEM_KIND_ACCEPTANCE]) == 0)
+            continue; /* said in another room, and not for the pictures of this one */
         char *row = json_print(entry);
         if (!row || !room_restore_item(room, row, strlen(row), &problem))
             log_error("room %s: a recorded item is left out: %s", room->id, problem.detail);

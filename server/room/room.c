@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "core/base/mem.h"
+#include "server/room/acceptance.h"
 #include "server/room/audit.h"
 #include "server/room/beginning.h"
 #include "server/room/control.h"
@@ -77,6 +78,7 @@ void room_destroy(struct room *room)
         stream_destroy(room, room->streams);
     forget_plan(room);
     items_free(room);
+    acceptances_free(room);
     beginning_free(room);
     replay_free(room);
     cJSON_Delete(room->scene);
@@ -152,6 +154,7 @@ bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
         streams_restart_pace(room);
     }
     set_state(room, WIRE_RENDERER_STATE_READY, NULL, 0, NULL);
+    acceptances_revision(room, "");
     streams_forget_requests(room);
     streams_changed(room, true);
     send_plan(room);
@@ -453,13 +456,14 @@ void room_plan_revision(struct room *room, const char *revision)
 
 bool room_wants_revision(const struct room *room)
 {
-    return room_replays(room) || recording_wants_revision(room);
+    return room_replays(room) || recording_wants_revision(room) || acceptances_want_revision(room);
 }
 
 void room_revision_came(struct room *room, const char *revision, int64_t now_us)
 {
     room->now_us = now_us;
     recording_revision_came(room, revision);
+    acceptances_revision(room, revision);
     replay_revision_came(room, revision);
 }
 

@@ -86,9 +86,9 @@ struct room_picture {
 
 /* A row for the audit. Texts are borrowed. Actions: open, leave (a member enters, or its connection ends), link (one
  * was used), link-made, control, weights (of a dose), draft-made, draft-changed, draft-reset (of the beam), decision,
- * signature, recording (of the meeting: running, stopped, cut, ..., deleted), export (something was given away as a
- * file), refused (a message or call lacked the right), deleted (the
- * room). */
+ * signature, acceptance, withdrawal (of parts that do not fit, used together by a person's word), recording (of the
+ * meeting: running, stopped, cut, ..., deleted), export (something was given away as a file), refused (a message or
+ * call lacked the right), deleted (the room). */
 struct room_audit {
     int64_t time_ms; /* since 1970 */
     const char *action;
@@ -271,6 +271,10 @@ void room_plan_revision(struct room *room, const char *revision);
 NODISCARD cJSON *room_record(const struct room *room);
 /* Records what is still being gathered. */
 void room_audit_flush(struct room *room, int64_t now_us);
+
+/* [{thing, with, by, words}], borrowed until the next call: the acceptances of this room that count for the files of
+ * its plan, which the renderer is sent with every scene of the room. NULL: there are none. */
+const cJSON *room_acceptances(const struct room *room);
 
 /* Items: notes with their replies, and bookmarks. [row] of one kind, oldest first, as in the message welcome; NULL: no
  * memory. */

@@ -214,6 +214,11 @@ struct room {
     uint32_t n_named;             /* members ever made, for ids */
     struct item *items;           /* oldest first */
     size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */
+    struct {
+        cJSON *list, *ids; /* of those that count: for the renderer, and the items' ids; NULL: not known, or none */
+        char revision[65]; /* of the files that the present renderer has loaded; "": not known */
+        bool is_known;     /* as members were told last: revision is */
+    } acceptances;
     struct look look;
     struct gathered gathered[ROOM_MAX_GATHERED];
     int n_gathered;                 /* the oldest first */
