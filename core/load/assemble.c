@@ -15,6 +15,7 @@
 #include "core/load/dose_entry.h"
 #include "core/load/dose_maximum.h"
 #include "core/load/image_window.h"
+#include "core/load/origins.h"
 #include "core/load/part_names.h"
 #include "core/load/plan_ids.h"
 #include "core/load/region_builder.h"
@@ -86,6 +87,7 @@ static void add_image(struct loading *loading, struct part_reading *reading)
         others[i] = plan->images[i].id;
     plan_make_id(image->id, entry->id, entry->path, others, plan->n_images);
     reading->image = plan->n_images;
+    plan->image_origins[plan->n_images] = origin_of_reading(loading, reading);
     loading->image_stacks[plan->n_images++] = reading->format == PART_DICOM ? reading->stack : -1;
     memcpy(image->name, entry->name, sizeof image->name);
     snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : reading->modality);
@@ -160,8 +162,17 @@ static bool add_regions(struct loading *loading, struct region_builder *builder,
     return region_builder_add_labels(builder, volume, &reading->names, reading->path, err);
 }
 
+static bool add_regions_of(struct loading *loading, struct region_builder *builder, struct part_reading *reading,
+                           struct error *err)
+{
+    size_t first = loading->plan->regions.n_regions;
+    struct part_origin origin = origin_of_reading(loading, reading);
+    return add_regions(loading, builder, reading, err) &&
+           origins_add_regions(loading->plan, &origin, first, err); /* of those that have no origin of their own */
+}
+
 /* Adds the dose of an entry of the plan file, without components yet. NULL: the plan has no room for it. */
-static struct dose *start_dose(struct loading *loading, size_t index, bool is_sera)
+static struct dose *start_dose(struct loading *loading, const struct part_reading *reading, size_t index)
 {
     struct plan *plan = loading->plan;
     const struct plan_file_dose *entry = &loading->file->doses[index];
@@ -172,12 +183,27 @@ static struct dose *start_dose(struct loading *loading, size_t index, bool is_se
     for (size_t i = 0; i < plan->n_doses; i++)
         others[i] = plan->doses[i].id;
     plan_make_id(id, entry->id, path, others, plan->n_doses);
+    struct part_origin *origin = &plan->dose_origins[plan->n_doses];
     struct dose *dose = &plan->doses[plan->n_doses++];
+    *origin = origin_of_reading(loading, reading);
+    origin_state(origin, entry);
     memcpy(dose->id, id, sizeof dose->id);
     memcpy(dose->name, entry->name, sizeof dose->name);
-    plan_dose_units(dose, entry, is_sera, &plan->report);
+    plan_dose_units(dose, entry, part_is_sera_dose(reading->format), &plan->report);
     plan_dose_frame(dose, entry, entry->components[0].path, &plan->report);
     return dose;
+}
+
+/* False, and reported, if the file is of another patient than the dose's first file. */
+static bool is_of_dose(struct loading *loading, const struct dose *dose, const struct part_reading *reading)
+{
+    struct plan *plan = loading->plan;
+    const struct part_origin origin = origin_of_reading(loading, reading);
+    if (origin_join(&plan->dose_origins[dose - plan->doses], &origin))
+        return true;
+    report_add(&plan->report, REPORT_ERROR, "dose.left-out", reading->path,
+               "This file is of another patient than the first file of the dose \"%s\"; it is left out.", dose->id);
+    return false;
 }
 
 static void add_component(struct loading *loading, struct dose *dose, struct part_reading *reading)
@@ -233,10 +259,11 @@ static void add_dose(struct loading *loading, size_t index)
             continue;
         }
         if (!dose)
-            dose = start_dose(loading, index, part_is_sera_dose(reading->format));
+            dose = start_dose(loading, reading, index);
         if (!dose)
             return;
-        add_component(loading, dose, reading);
+        if (is_of_dose(loading, dose, reading))
+            add_component(loading, dose, reading);
     }
     for (size_t i = 0; dose && i < loading->n_readings; i++)
         if (loading->readings[i].kind == PART_KIND_DOSE_MASK && loading->readings[i].index == index)
@@ -297,6 +324,7 @@ static void add_beams(struct loading *loading)
             others[b] = plan->beams[b].id;
         plan->beams[i] = loading->file->beams[i];
         plan_make_id(plan->beams[i].id, loading->file->beams[i].id, "beam", others, plan->n_beams);
+        snprintf(plan->beam_origins[i].path, sizeof plan->beam_origins[i].path, "plan.json");
         plan->n_beams++;
     }
     plan_dicom_add_beams(loading);
@@ -308,6 +336,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
     struct region_builder builder;
     bool is_whole = true;
     uint64_t n_rois = 0;
+    origins_begin(loading);
     for (size_t i = 0; i < loading->n_readings; i++)
         n_rois += loading->readings[i].structs ? loading->readings[i].structs->n_rois : 0;
     loading_begin(loading, n_rois);
@@ -317,7 +346,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
         if (reading->kind == PART_KIND_IMAGE && !reading->is_failed)
             add_image(loading, reading);
         else if (reading->kind == PART_KIND_REGION && !reading->is_failed)
-            is_whole = add_regions(loading, &builder, reading, err);
+            is_whole = add_regions_of(loading, &builder, reading, err);
     }
     for (size_t i = 0; i < loading->n_readings; i++)
         if (is_whole && loading->readings[i].kind == PART_KIND_IMAGE)
@@ -338,5 +367,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
     plan_measure_body(plan);
     add_beams(loading);
     plan_measure_bounds(plan);
+    if (loading->file->n_tracks > 0)
+        snprintf(plan->tracks_origin.path, sizeof plan->tracks_origin.path, "%s", loading->file->tracks[0].path);
     return plan_add_tracks(plan, &loading->folder, loading->file, err);
 }

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/formats/text.h"
 #include "core/load/dicom_parts.h"
+#include "core/load/origins.h"
 #include "core/load/plan_ids.h"
 
 /* ---- structure sets --------------------------------------------------------------------------------------------- */
@@ -123,9 +124,11 @@ static bool fill_roi(struct loading *loading, struct region_builder *builder, co
     bool is_added = region_builder_add_bits(builder, mask, &choice->grid, roi->name, rgb, reading->path, err);
     mask_destroy(mask);
     struct region_set *set = &loading->plan->regions;
-    if (is_added)
-        set->regions[set->n_regions - 1].is_target = is_target_type(roi->kind);
-    return is_added;
+    if (!is_added)
+        return false;
+    set->regions[set->n_regions - 1].is_target = is_target_type(roi->kind);
+    struct part_origin origin = origin_of_roi(loading, reading, roi->frame_uid);
+    return origins_add_regions(loading->plan, &origin, set->n_regions - 1, err);
 }
 
 static bool fill_rois(struct loading *loading, struct region_builder *builder, const struct part_reading *reading,
@@ -240,6 +243,7 @@ void plan_dicom_add_beams(struct loading *loading)
                 others[o] = plan->beams[o].id;
             struct beam *beam = &plan->beams[plan->n_beams];
             *beam = from->beams[b];
+            plan->beam_origins[plan->n_beams] = origin_of_reading(loading, &loading->readings[i]);
             double outside_mm = outside_images_mm(plan, beam->target_lps_mm);
             if (outside_mm > 0)
                 report_add(&plan->report, REPORT_WARNING, "beam.outside", loading->readings[i].path,

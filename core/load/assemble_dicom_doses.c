@@ -9,6 +9,7 @@
 #include "core/formats/text.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/dose_entry.h"
+#include "core/load/origins.h"
 #include "core/load/plan_ids.h"
 
 static const struct rtplan *plan_of(const struct loading *loading, const char *uid)
@@ -62,16 +63,18 @@ static void name_stated(const struct loading *loading, const char *structs_uid, 
     dose->n_stated = n;
 }
 
-static void add_group(struct loading *loading, struct rtdose *objects, size_t n, const struct plan_file_dose *entry,
-                      const char *where)
+/* objects: consumed; origins: of each object */
+static void add_group(struct loading *loading, struct rtdose *objects, const struct part_origin *origins, size_t n,
+                      const struct plan_file_dose *entry, const char *where)
 {
     struct plan *plan = loading->plan;
+    size_t from[PLAN_MAX_DOSES];
     struct dose *doses = mem_new(PLAN_MAX_DOSES * sizeof *doses);
     union { /* rtdose_group takes a non-const context; rtplan_beam_name only reads it */
         const struct rtplan *plan;
         void *context;
     } of = { plan_of(loading, objects[0].plan_uid) };
-    size_t n_doses = rtdose_group(objects, n, of.plan ? rtplan_beam_name : NULL, of.context, where, doses,
+    size_t n_doses = rtdose_group(objects, n, of.plan ? rtplan_beam_name : NULL, of.context, where, doses, from,
                                   PLAN_MAX_DOSES, &plan->report);
     for (size_t i = 0; i < n_doses; i++) {
         const char *others[PLAN_MAX_DOSES];
@@ -85,6 +88,9 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
         memcpy(name, doses[i].id, sizeof name);
         struct dose *dose = &plan->doses[plan->n_doses];
         *dose = doses[i];
+        plan->dose_origins[plan->n_doses] = origins[from[i]];
+        if (entry)
+            origin_state(&plan->dose_origins[plan->n_doses], entry);
         memcpy(dose->name, name, sizeof dose->name);
         name_stated(loading, objects[0].structs_uid, dose);
         if (entry)
@@ -104,14 +110,18 @@ static void add_group(struct loading *loading, struct rtdose *objects, size_t n,
 void plan_dicom_add_doses(struct loading *loading, size_t index, const struct plan_file_dose *entry)
 {
     struct rtdose *objects = mem_new(PLAN_DICOM_MAX_DOSES * sizeof *objects);
+    struct part_origin *origins = mem_new(PLAN_DICOM_MAX_DOSES * sizeof *origins);
     bool *is_taken = mem_new(loading->n_readings + 1);
-    for (size_t first = 0; first < loading->n_readings; first++) { /* doses of the same treatment plan go together */
+    for (size_t first = 0; first < loading->n_readings; first++) { /* doses of a patient's treatment plan go together */
         const char *where = "";
         size_t n = 0;
         for (size_t i = first; i < loading->n_readings && n < PLAN_DICOM_MAX_DOSES; i++) {
             struct part_reading *reading = &loading->readings[i];
-            if (reading->kind != PART_KIND_DOSE || reading->index != index || !reading->rtdose.values || is_taken[i] ||
-                (n > 0 && strcmp(reading->rtdose.plan_uid, objects[0].plan_uid) != 0))
+            if (reading->kind != PART_KIND_DOSE || reading->index != index || !reading->rtdose.values || is_taken[i])
+                continue;
+            origins[n] = origin_of_reading(loading, reading);
+            if (n > 0 && (origins[n].patient != origins[0].patient ||
+                          strcmp(reading->rtdose.plan_uid, objects[0].plan_uid) != 0))
                 continue;
             check_frame(loading, reading, &loading->plan->report);
             where = n == 0 ? reading->path : where;
@@ -121,9 +131,10 @@ void plan_dicom_add_doses(struct loading *loading, size_t index, const struct pl
             is_taken[i] = true;
         }
         if (n > 0)
-            add_group(loading, objects, n, entry, where);
+            add_group(loading, objects, origins, n, entry, where);
     }
     free(objects);
+    free(origins);
     free(is_taken);
 }
 

@@ -168,7 +168,7 @@ static void fields_images(struct fields *fields, struct plan *plan)
 /* Counts, boxes and centres are not written: they are measured again after reading. */
 static void fields_region(struct fields *fields, struct region *region, const struct region_set *set)
 {
-    uint64_t layer = region->layer, label = region->label;
+    uint64_t layer = region->layer, label = region->label, origin = region->origin;
     int64_t parent = region->parent;
     fields_text(fields, region->id, sizeof region->id);
     fields_text(fields, region->name, sizeof region->name);
@@ -180,12 +180,14 @@ static void fields_region(struct fields *fields, struct region *region, const st
     fields_bytes(fields, &parent, sizeof parent);
     fields_u64(fields, &layer);
     fields_u64(fields, &label);
+    fields_u64(fields, &origin);
     require(fields, parent >= -1 && parent < (int64_t)set->n_regions && layer < set->n_layers && label >= 1 &&
-                        label <= UINT16_MAX);
+                        label <= UINT16_MAX && origin <= REGION_MAX);
     if (fields->is_reading) {
         region->parent = fields->is_bad ? -1 : (int)parent;
         region->layer = fields->is_bad ? 0 : (uint32_t)layer;
         region->label = (uint16_t)label;
+        region->origin = fields->is_bad ? 0 : (uint16_t)origin;
     }
     fields_number(fields, &region->boron_ratio);
     fields_number(fields, &region->cbe_boron);
@@ -455,6 +457,97 @@ static void fields_report(struct fields *fields, struct report *report)
         report->n_dropped = all->n_dropped;
 }
 
+/* An index below n, or -1. */
+static void fields_index(struct fields *fields, int *index, size_t n)
+{
+    int64_t wide = *index;
+    fields_bytes(fields, &wide, sizeof wide);
+    require(fields, wide >= -1 && wide < (int64_t)n);
+    if (fields->is_reading)
+        *index = fields->is_bad ? -1 : (int)wide;
+}
+
+static void fields_origin(struct fields *fields, struct part_origin *origin, const struct plan *plan)
+{
+    fields_index(fields, &origin->patient, plan->n_patients);
+    fields_index(fields, &origin->treatment_plan, plan->n_treatment_plans);
+    fields_text(fields, origin->frame_uid, sizeof origin->frame_uid);
+    fields_text(fields, origin->study_uid, sizeof origin->study_uid);
+    fields_text(fields, origin->series_uid, sizeof origin->series_uid);
+    fields_text(fields, origin->plan_uid, sizeof origin->plan_uid);
+    fields_text(fields, origin->structs_uid, sizeof origin->structs_uid);
+    fields_text(fields, origin->path, sizeof origin->path);
+    fields_bool(fields, &origin->is_stated_same);
+    fields_bool(fields, &origin->is_stated_other);
+}
+
+static void fields_patient(struct fields *fields, struct plan_patient *patient)
+{
+    fields_text(fields, patient->id, sizeof patient->id);
+    fields_text(fields, patient->issuer, sizeof patient->issuer);
+    fields_text(fields, patient->name, sizeof patient->name);
+    fields_text(fields, patient->birth_date, sizeof patient->birth_date);
+    fields_text(fields, patient->sex, sizeof patient->sex);
+    fields_bool(fields, &patient->has_conflict);
+}
+
+static void fields_treatment_plan(struct fields *fields, struct treatment_plan *treatment, const struct plan *plan)
+{
+    fields_text(fields, treatment->uid, sizeof treatment->uid);
+    fields_text(fields, treatment->structs_uid, sizeof treatment->structs_uid);
+    fields_text(fields, treatment->label, sizeof treatment->label);
+    fields_text(fields, treatment->name, sizeof treatment->name);
+    fields_text(fields, treatment->date, sizeof treatment->date);
+    fields_text(fields, treatment->time, sizeof treatment->time);
+    fields_text(fields, treatment->approval, sizeof treatment->approval);
+    fields_text(fields, treatment->review_date, sizeof treatment->review_date);
+    fields_text(fields, treatment->reviewer, sizeof treatment->reviewer);
+    fields_bytes(fields, &treatment->n_fractions, sizeof treatment->n_fractions);
+    fields_number(fields, &treatment->prescription_gy);
+    fields_index(fields, &treatment->patient, plan->n_patients);
+}
+
+static void fields_registration(struct fields *fields, struct plan_registration *registration, const struct plan *plan)
+{
+    fields_text(fields, registration->from_uid, sizeof registration->from_uid);
+    fields_text(fields, registration->to_uid, sizeof registration->to_uid);
+    for (int i = 0; i < 3; i++)
+        fields_point(fields, &registration->to_from_lps_mm.columns[i]);
+    fields_point(fields, &registration->to_from_lps_mm.origin);
+    fields_index(fields, &registration->patient, plan->n_patients);
+}
+
+/* After images, regions, doses and beams, which it counts. */
+static void fields_origins(struct fields *fields, struct plan *plan)
+{
+    fields_size(fields, &plan->n_patients, ORIGIN_MAX_PATIENTS);
+    for (size_t i = 0; i < plan->n_patients; i++)
+        fields_patient(fields, &plan->patients[i]);
+    fields_size(fields, &plan->n_treatment_plans, ORIGIN_MAX_TREATMENT_PLANS);
+    for (size_t i = 0; i < plan->n_treatment_plans; i++)
+        fields_treatment_plan(fields, &plan->treatment_plans[i], plan);
+    fields_size(fields, &plan->n_registrations, ORIGIN_MAX_REGISTRATIONS);
+    for (size_t i = 0; i < plan->n_registrations; i++)
+        fields_registration(fields, &plan->registrations[i], plan);
+    for (size_t i = 0; i < plan->n_images; i++)
+        fields_origin(fields, &plan->image_origins[i], plan);
+    for (size_t i = 0; i < plan->n_doses; i++)
+        fields_origin(fields, &plan->dose_origins[i], plan);
+    for (size_t i = 0; i < plan->n_beams; i++)
+        fields_origin(fields, &plan->beam_origins[i], plan);
+    fields_origin(fields, &plan->tracks_origin, plan);
+    fields_size(fields, &plan->n_region_origins, REGION_MAX);
+    if (fields->is_reading) {
+        plan->region_origins = mem_array(plan->n_region_origins, sizeof *plan->region_origins, UINT64_MAX, NULL);
+        require(fields, plan->region_origins != NULL);
+        plan->n_region_origins = plan->region_origins ? plan->n_region_origins : 0;
+    }
+    for (size_t i = 0; i < plan->n_region_origins; i++)
+        fields_origin(fields, &plan->region_origins[i], plan);
+    for (size_t i = 0; i < plan->regions.n_regions; i++)
+        require(fields, plan->regions.regions[i].origin <= plan->n_region_origins);
+}
+
 void fields_plan(struct fields *fields, struct plan *plan)
 {
     fields_text(fields, plan->name, sizeof plan->name);
@@ -468,6 +561,7 @@ void fields_plan(struct fields *fields, struct plan *plan)
     fields_size(fields, &plan->n_beams, PLAN_MAX_BEAMS);
     for (size_t b = 0; b < plan->n_beams; b++)
         fields_beam(fields, &plan->beams[b]);
+    fields_origins(fields, plan);
     fields_tracks(fields, &plan->tracks);
     fields_size(fields, &plan->n_curves, PLAN_MAX_CURVES);
     for (size_t c = 0; c < plan->n_curves; c++)

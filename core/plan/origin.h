@@ -5,19 +5,21 @@
 
 enum {
     ORIGIN_UID_SIZE = 66, /* a DICOM UID of at most 64 characters */
-    ORIGIN_MAX_PATIENTS = 16,
+    ORIGIN_MAX_PATIENTS = 64,
     ORIGIN_MAX_TREATMENT_PLANS = 16,
     ORIGIN_MAX_REGISTRATIONS = 64
 };
 
-/* One person: Patient ID with its issuer. source: DICOM PS3.3 C.7.1.1. Never written to logs, metrics, addresses or
+/* One person: Patient ID with its issuer, name and birth date. Parts of two patients of the list are never of one
+ * person by their files: files with the same ID and another name or birth date make a patient of their own, and all
+ * patients with that ID have has_conflict. source: DICOM PS3.3 C.7.1.1. Never written to logs, metrics, addresses or
  * file names; who may read it in full is decided by the server. */
 struct plan_patient {
-    char id[65], issuer[65]; /* (0010,0020), (0010,0021); "" not given */
-    char name[200];          /* (0010,0010) as UTF-8, with its groups: "Family^Given=ideographic=phonetic" */
-    char birth_date[9];      /* (0010,0030) YYYYMMDD; "" not given */
-    char sex[17];            /* (0010,0040) */
-    bool has_conflict;       /* files with this id differ in name or birth date */
+    char id[130], issuer[65]; /* (0010,0020), (0010,0021); "" not given */
+    char name[200];           /* (0010,0010) as UTF-8, with its groups: "Family^Given=ideographic=phonetic" */
+    char birth_date[9];       /* (0010,0030) YYYYMMDD; "" not given */
+    char sex[17];             /* (0010,0040) */
+    bool has_conflict;        /* another patient of the list has the same id, and another name or birth date */
 };
 
 /* A treatment plan (RTPLAN) of the folder. source: DICOM PS3.3 C.8.8.9, C.8.8.16 (approval). */
@@ -49,7 +51,7 @@ struct part_origin {
     char series_uid[ORIGIN_UID_SIZE];  /* an image's own; of regions the series they were drawn on */
     char plan_uid[ORIGIN_UID_SIZE];    /* RTPLAN that a dose refers to, or a beam comes from; "" none stated */
     char structs_uid[ORIGIN_UID_SIZE]; /* of regions their own structure set; of a dose the one it refers to */
-    char path[256];                    /* of its first file, relative to the plan's folder */
+    char path[512];                    /* of its first file, relative to the plan's folder */
     bool is_stated_same;               /* plan.json says that its frame is the image's */
     bool is_stated_other;              /* plan.json says that it is not */
 };

@@ -65,7 +65,7 @@ static void read_objects(const struct dicom_file *file)
     if (rtdose_read(file, "fuzz.dcm", &dose, &report, &err)) {
         struct dose doses[1];
         REQUIRE(dose.values->low <= dose.values->high);
-        size_t n = rtdose_group(&dose, 1, NULL, NULL, "fuzz.dcm", doses, 1, &report);
+        size_t n = rtdose_group(&dose, 1, NULL, NULL, "fuzz.dcm", doses, NULL, 1, &report);
         for (size_t i = 0; i < n; i++)
             dose_finish(&doses[i]);
     } else {

@@ -61,12 +61,16 @@ void made_slice_bytes(struct made_dicom *made, const struct made_slice *slice)
     made_text(made, DICOM_TAG(0x0008, 0x0018), "UI", slice->instance_uid ? slice->instance_uid : uid);
     made_text(made, DICOM_TAG(0x0008, 0x0060), "CS", slice->modality);
     made_text(made, DICOM_TAG(0x0008, 0x103E), "LO", slice->description);
-    made_text(made, DICOM_TAG(0x0010, 0x0010), "PN", "SECRET^NAME");
+    made_text(made, DICOM_TAG(0x0010, 0x0010), "PN", slice->patient_name ? slice->patient_name : "SECRET^NAME");
+    if (slice->patient_id)
+        made_text(made, DICOM_TAG(0x0010, 0x0020), "LO", slice->patient_id);
+    if (slice->birth_date)
+        made_text(made, DICOM_TAG(0x0010, 0x0030), "DA", slice->birth_date);
     if (slice->thickness > 0)
         made_number(made, DICOM_TAG(0x0018, 0x0050), "DS", &slice->thickness, 1);
     if (slice->echo > 0)
         made_number(made, DICOM_TAG(0x0018, 0x0086), "IS", &(double){ slice->echo }, 1);
-    made_text(made, DICOM_TAG(0x0020, 0x000D), "UI", "1.2.1");
+    made_text(made, DICOM_TAG(0x0020, 0x000D), "UI", slice->study ? slice->study : "1.2.1");
     made_text(made, DICOM_TAG(0x0020, 0x000E), "UI", slice->series);
     snprintf(number, sizeof number, "%d", slice->number);
     made_text(made, DICOM_TAG(0x0020, 0x0013), "IS", number);

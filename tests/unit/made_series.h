@@ -6,6 +6,7 @@
 struct made_slice {
     const char *transfer_syntax, *series, *instance_uid, *modality, *description, *color, *image_type,
         *frame_of_reference;
+    const char *patient_id, *patient_name, *birth_date, *study; /* NULL: no ID, "SECRET^NAME", no date, "1.2.1" */
     double position[3], cosines[6], spacing[2] /* rows, columns */, thickness;
     int number, echo, rows, columns, bits, stored, is_signed, base;
     bool has_rescale;

@@ -8,7 +8,11 @@
  * not be noticed. */
 #define IS_COMPARED_UP_TO(type, bytes) \
     _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
-IS_COMPARED_UP_TO(struct plan, 1110728);
+IS_COMPARED_UP_TO(struct plan, 1242312);
+IS_COMPARED_UP_TO(struct part_origin, 852);
+IS_COMPARED_UP_TO(struct plan_patient, 422);
+IS_COMPARED_UP_TO(struct treatment_plan, 408);
+IS_COMPARED_UP_TO(struct plan_registration, 240);
 IS_COMPARED_UP_TO(struct plan_image, 248);
 IS_COMPARED_UP_TO(struct plan_preferences, 1296);
 IS_COMPARED_UP_TO(struct region, 336);
@@ -265,4 +269,80 @@ void assert_same_plan(const struct plan *found, const struct plan *expected, dou
     }
     assert_close(vec3_length(vec3_sub(found->bounds_lps_mm.low, expected->bounds_lps_mm.low)), 0, mm);
     assert_close(vec3_length(vec3_sub(found->bounds_lps_mm.high, expected->bounds_lps_mm.high)), 0, mm);
+}
+
+static void same_origin(const struct part_origin *a, const struct part_origin *b)
+{
+    assert_int_equal(a->patient, b->patient);
+    assert_int_equal(a->treatment_plan, b->treatment_plan);
+    assert_string_equal(a->frame_uid, b->frame_uid);
+    assert_string_equal(a->study_uid, b->study_uid);
+    assert_string_equal(a->series_uid, b->series_uid);
+    assert_string_equal(a->plan_uid, b->plan_uid);
+    assert_string_equal(a->structs_uid, b->structs_uid);
+    assert_string_equal(a->path, b->path);
+    assert_int_equal(a->is_stated_same, b->is_stated_same);
+    assert_int_equal(a->is_stated_other, b->is_stated_other);
+}
+
+static void same_patients(const struct plan *found, const struct plan *expected)
+{
+    assert_int_equal(found->n_patients, expected->n_patients);
+    for (size_t i = 0; i < found->n_patients; i++) {
+        const struct plan_patient *a = &found->patients[i], *b = &expected->patients[i];
+        assert_string_equal(a->id, b->id);
+        assert_string_equal(a->issuer, b->issuer);
+        assert_string_equal(a->name, b->name);
+        assert_string_equal(a->birth_date, b->birth_date);
+        assert_string_equal(a->sex, b->sex);
+        assert_int_equal(a->has_conflict, b->has_conflict);
+    }
+}
+
+static void same_treatment_plans(const struct plan *found, const struct plan *expected)
+{
+    assert_int_equal(found->n_treatment_plans, expected->n_treatment_plans);
+    for (size_t i = 0; i < found->n_treatment_plans; i++) {
+        const struct treatment_plan *a = &found->treatment_plans[i], *b = &expected->treatment_plans[i];
+        assert_string_equal(a->uid, b->uid);
+        assert_string_equal(a->structs_uid, b->structs_uid);
+        assert_string_equal(a->label, b->label);
+        assert_string_equal(a->name, b->name);
+        assert_string_equal(a->date, b->date);
+        assert_string_equal(a->time, b->time);
+        assert_string_equal(a->approval, b->approval);
+        assert_string_equal(a->review_date, b->review_date);
+        assert_string_equal(a->reviewer, b->reviewer);
+        assert_int_equal(a->n_fractions, b->n_fractions);
+        same_number(a->prescription_gy, b->prescription_gy);
+        assert_int_equal(a->patient, b->patient);
+    }
+}
+
+void assert_same_origins(const struct plan *found, const struct plan *expected)
+{
+    same_patients(found, expected);
+    same_treatment_plans(found, expected);
+    assert_int_equal(found->n_registrations, expected->n_registrations);
+    for (size_t i = 0; i < found->n_registrations; i++) {
+        const struct plan_registration *a = &found->registrations[i], *b = &expected->registrations[i];
+        assert_string_equal(a->from_uid, b->from_uid);
+        assert_string_equal(a->to_uid, b->to_uid);
+        assert_int_equal(a->patient, b->patient);
+        for (int c = 0; c < 3; c++)
+            same_vector(a->to_from_lps_mm.columns[c], b->to_from_lps_mm.columns[c]);
+        same_vector(a->to_from_lps_mm.origin, b->to_from_lps_mm.origin);
+    }
+    for (size_t i = 0; i < found->n_images; i++)
+        same_origin(&found->image_origins[i], &expected->image_origins[i]);
+    for (size_t i = 0; i < found->n_doses; i++)
+        same_origin(&found->dose_origins[i], &expected->dose_origins[i]);
+    for (size_t i = 0; i < found->n_beams; i++)
+        same_origin(&found->beam_origins[i], &expected->beam_origins[i]);
+    same_origin(&found->tracks_origin, &expected->tracks_origin);
+    assert_int_equal(found->n_region_origins, expected->n_region_origins);
+    for (size_t i = 0; i < found->n_region_origins; i++)
+        same_origin(&found->region_origins[i], &expected->region_origins[i]);
+    for (size_t r = 0; r < found->regions.n_regions; r++)
+        assert_int_equal(found->regions.regions[r].origin, expected->regions.regions[r].origin);
 }

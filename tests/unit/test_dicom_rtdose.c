@@ -291,7 +291,7 @@ static size_t group(const struct made_dose *made, size_t n, struct dose *doses, 
     struct rtdose objects[8];
     for (size_t i = 0; i < n; i++)
         objects[i] = read_good(&made[i], NULL);
-    return rtdose_group(objects, n, name_of_beam, NULL, "", doses, 8, report);
+    return rtdose_group(objects, n, name_of_beam, NULL, "", doses, NULL, 8, report);
 }
 
 static void components_that_agree_become_one_dose(void **state)
@@ -382,7 +382,7 @@ static void the_oncentra_doses_have_their_maxima(void **state)
     }
     struct report report = { 0 };
     struct dose doses[8];
-    size_t n = rtdose_group(objects, 4, rtplan_beam_name, plan, "", doses, 8, &report);
+    size_t n = rtdose_group(objects, 4, rtplan_beam_name, plan, "", doses, NULL, 8, &report);
     assert_int_equal(n, 3);
     assert_true(report_has(&report, "dose.all-zero") && report_has(&report, "dose.not-summed"));
     const struct {

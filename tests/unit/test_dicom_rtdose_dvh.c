@@ -78,7 +78,7 @@ static void stored_histograms_give_figures_of_their_regions(void **state)
     assert_true(isnan(read.stated[2].volume_cm3));
     assert_true(report_has(&report, "dose.histograms-left-out"));
     objects[0] = read;
-    assert_int_equal(rtdose_group(objects, 1, NULL, NULL, "made", doses, 1, &report), 1);
+    assert_int_equal(rtdose_group(objects, 1, NULL, NULL, "made", doses, NULL, 1, &report), 1);
     assert_int_equal(doses[0].n_stated, 3);
     dose_finish(&doses[0]);
     report_finish(&report);

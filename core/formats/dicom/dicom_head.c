@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/formats/dicom/dicom_patients.h"
 #include "core/formats/dicom/dicom_tags.h"
 
 #define CLASSES "1.2.840.10008.5.1.4.1.1."
@@ -277,6 +278,8 @@ static void read_identity(const struct dicom_file *file, struct dicom_object *ob
     (void)dicom_text(root, TAG_FRAME_OF_REFERENCE, object->frame_of_reference, DICOM_UID_SIZE);
     (void)dicom_text(root, TAG_MODALITY, object->modality, sizeof object->modality);
     (void)dicom_text(root, TAG_SERIES_DESCRIPTION, object->description, DICOM_TEXT_SIZE);
+    free(object->named);
+    object->named = dicom_patient_read(root);
     snprintf(object->transfer_syntax, sizeof object->transfer_syntax, "%s", dicom_transfer_syntax(file));
 }
 
@@ -381,5 +384,6 @@ void dicom_object_finish(struct dicom_object *object)
 {
     free(object->path);
     free(object->image);
+    free(object->named);
     *object = (struct dicom_object){ 0 };
 }

@@ -8,6 +8,7 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/formats/dicom/dicom_head.h"
+#include "core/formats/dicom/dicom_patients.h"
 #include "core/formats/dicom/dicom_stacks.h"
 #include "core/formats/text.h"
 
@@ -141,6 +142,21 @@ static bool list_files(const struct folder *folder, char *const *names, size_t n
 
 enum { MOST_LINES = 20 }; /* per kind of problem; further ones are counted */
 
+/* Gives the object the number of its patient. */
+static void number_patient(struct dicom_index *index, struct dicom_object *object)
+{
+    object->patient = object->named ? dicom_patients_add(index, object->named) : -1;
+    if (object->named && object->patient < 0) {
+        object->kind = DICOM_KIND_OTHER;
+        free(object->image);
+        object->image = NULL;
+        snprintf(object->reason, sizeof object->reason, "it is of one more patient than the first %d",
+                 DICOM_MAX_PATIENTS);
+    }
+    free(object->named);
+    object->named = NULL;
+}
+
 /* Moves the objects that were read into the index; reports the files that could not be read. */
 static bool collect(struct scan *scan, struct dicom_index *index, struct report *report, struct error *err)
 {
@@ -159,6 +175,7 @@ static bool collect(struct scan *scan, struct dicom_index *index, struct report 
             object->path = file->path;
             file->object = (struct dicom_object){ 0 };
             file->path = NULL;
+            number_patient(index, object);
         } else if (file->result == DICOM_HEAD_FOREIGN) {
             index->n_foreign++;
             if (file->why && n_misnamed++ < MOST_LINES)
@@ -190,7 +207,8 @@ static int compare_instances(const void *a, const void *b)
  * number or position. */
 static bool is_copy(const struct dicom_object *a, const struct dicom_object *b)
 {
-    if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind)
+    if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind ||
+        a->patient != b->patient)
         return false;
     return a->kind != DICOM_KIND_IMAGE ||
            (a->image->instance == b->image->instance &&
@@ -370,4 +388,15 @@ const struct dicom_object *dicom_index_find(const struct dicom_index *index, con
         if (strcmp(index->objects[i].sop_instance, sop_instance) == 0)
             return &index->objects[i];
     return NULL;
+}
+
+static int compare_path(const void *path, const void *object)
+{
+    return strcmp(path, ((const struct dicom_object *)object)->path);
+}
+
+const struct dicom_object *dicom_index_at(const struct dicom_index *index, const char *path)
+{
+    return index->n_objects ? bsearch(path, index->objects, index->n_objects, sizeof *index->objects, compare_path)
+                            : NULL;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /* Scans a folder for DICOM: lists every object with its kind and identifiers, and groups images into stacks. Reads the
- * head of each DICOM file and only the beginning of any other file. Knows no voxels and no plan; keeps no names of
- * people. */
+ * head of each DICOM file and only the beginning of any other file. Knows no voxels and no plan. Lists the patients,
+ * and writes their names and IDs nowhere. */
 #include <stdatomic.h>
 
 #include "core/formats/dicom/dicom_object.h"
@@ -30,3 +30,5 @@ void dicom_index_destroy(struct dicom_index *index);
 
 /* The object with this SOP Instance UID, or NULL. */
 const struct dicom_object *dicom_index_find(const struct dicom_index *index, const char *sop_instance);
+/* The object of the file at path, or NULL. */
+const struct dicom_object *dicom_index_at(const struct dicom_index *index, const char *path);

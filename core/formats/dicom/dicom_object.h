@@ -6,6 +6,7 @@ enum {
     DICOM_MAX_OBJECTS = 50000, /* further objects are counted, not kept */
     DICOM_MAX_SLICES = 4096,   /* per stack; same as a volume's longest side */
     DICOM_MAX_STACKS = 256,    /* further ones are reported and left out */
+    DICOM_MAX_PATIENTS = 64,   /* objects of further ones are not used */
     DICOM_TEXT_SIZE = 128      /* bytes of a description in UTF-8 */
 };
 
@@ -16,6 +17,15 @@ enum dicom_kind {
     DICOM_KIND_SEGMENTATION,
     DICOM_KIND_PLAN, /* RTPLAN, photons, electrons or ions */
     DICOM_KIND_OTHER /* not used; reason says why not */
+};
+
+/* One person, as files of the folder say. Text is UTF-8; "" not given. */
+struct dicom_patient {
+    char id[130], issuer[65];
+    char name[200];     /* with its groups: "Family^Given=ideographic=phonetic" */
+    char birth_date[9]; /* YYYYMMDD */
+    char sex[17];
+    bool has_conflict; /* files with this ID differ in name or birth date: they are several patients of the index */
 };
 
 /* The head of an image file. */
@@ -55,6 +65,8 @@ struct dicom_object {
     char referenced_plan[DICOM_UID_SIZE];   /* DOSE: SOP Instance UID of the first plan it refers to */
     char reason[160];                       /* OTHER: why it is not used */
     struct dicom_image *image;              /* IMAGE; NULL for all other kinds */
+    int patient;                            /* number in the index's patients; -1: the file has neither ID nor name */
+    struct dicom_patient *named; /* only until the object is in the index; NULL: neither ID nor name; owned */
 };
 
 /* Images that form one volume: same series, size, spacing and orientation, each at a different position. */
@@ -65,6 +77,7 @@ struct dicom_stack {
     size_t n_objects;                  /* 1 if all slices are in one file */
     uint32_t rows, columns, n_slices;
     uint64_t n_bytes; /* upper bound of the volume's memory, without the resampling that uneven slices need */
+    int patient;      /* as of its objects */
 };
 
 struct dicom_index {
@@ -72,5 +85,7 @@ struct dicom_index {
     size_t n_objects;
     struct dicom_stack *stacks; /* the stack with most slices first */
     size_t n_stacks;
-    size_t n_files, n_foreign; /* files looked at; those of them that are not DICOM */
+    size_t n_files, n_foreign;                         /* files looked at; those of them that are not DICOM */
+    struct dicom_patient patients[DICOM_MAX_PATIENTS]; /* in the order of their first files by path */
+    size_t n_patients;
 };

@@ -62,11 +62,12 @@ typedef const char *(*rtdose_beam_name)(void *context, int64_t number);
  * Boron for a known ppm is divided by it (boron per ppm). All-zero objects are left out.
  *
  *   objects  consumed: their volumes move into the doses or are released
+ *   from     NULL, or room for `most`: of each dose the index of its first object
  *   doses    room for `most`. id holds a unique name for people, not yet an id; unit is "Gy", "relative" or ""; per
  *            comes from the summation type; EFFECTIVE dose becomes DOSE_WEIGHTED_TOTAL
  *   report   what was combined or left out, and doses of single beams that no plan dose sums up
  *   returns  the number of doses */
 size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name beam_name, void *context,
-                    const char *where, struct dose *doses, size_t most, struct report *report);
+                    const char *where, struct dose *doses, size_t *from, size_t most, struct report *report);
 /* Compares the frames of reference of dose and image, like rtstruct_check_frame, and sets dose->frame. */
 void rtdose_check_frame(struct rtdose *dose, const char *image_frame_uid, const char *where, struct report *report);

@@ -14,6 +14,7 @@ struct grouping {
     void *context;
     const char *where;
     struct dose *doses;
+    size_t *from; /* NULL, or of each dose the index of its first object */
     size_t n_doses, most;
     struct report *report;
 };
@@ -124,6 +125,8 @@ static struct dose *new_dose(struct grouping *grouping, const struct rtdose *obj
     struct dose *dose = &grouping->doses[grouping->n_doses];
     *dose = (struct dose){ 0 };
     name_dose(grouping, object, dose->id);
+    if (grouping->from)
+        grouping->from[grouping->n_doses] = (size_t)(object - grouping->objects);
     snprintf(dose->unit, sizeof dose->unit, "%s", unit_of(object));
     snprintf(dose->per, sizeof dose->per, "%s", per_of(object));
     grouping->n_doses++;
@@ -231,9 +234,9 @@ static void report_beams(const struct grouping *grouping, size_t n_beam_doses, b
 }
 
 size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name beam_name, void *context,
-                    const char *where, struct dose *doses, size_t most, struct report *report)
+                    const char *where, struct dose *doses, size_t *from, size_t most, struct report *report)
 {
-    struct grouping grouping = { objects, n_objects, beam_name, context, where, doses, 0, most, report };
+    struct grouping grouping = { objects, n_objects, beam_name, context, where, doses, from, 0, most, report };
     size_t n_beam_doses = 0;
     bool has_plan_dose = false;
     bool *is_given = mem_new(n_objects + 1);

@@ -29,6 +29,8 @@ enum {
     PLAN_LABEL = DICOM_TAG(0x300a, 0x0002),
     PLAN_NAME = DICOM_TAG(0x300a, 0x0003),
     PLAN_DESCRIPTION = DICOM_TAG(0x300a, 0x0004),
+    PLAN_DATE = DICOM_TAG(0x300a, 0x0006),
+    PLAN_TIME = DICOM_TAG(0x300a, 0x0007),
     PLAN_INTENT = DICOM_TAG(0x300a, 0x000a),
     PLAN_GEOMETRY = DICOM_TAG(0x300a, 0x000c),
     PRESCRIPTION = DICOM_TAG(0x300a, 0x000e),
@@ -69,7 +71,10 @@ enum {
     REFERENCED_BEAM_SEQUENCE = DICOM_TAG(0x300c, 0x0004),
     REFERENCED_BEAM = DICOM_TAG(0x300c, 0x0006),
     REFERENCED_STRUCT_SEQUENCE = DICOM_TAG(0x300c, 0x0060),
-    REFERENCED_SETUP = DICOM_TAG(0x300c, 0x006a)
+    REFERENCED_SETUP = DICOM_TAG(0x300c, 0x006a),
+    APPROVAL_STATUS = DICOM_TAG(0x300e, 0x0002),
+    REVIEW_DATE = DICOM_TAG(0x300e, 0x0004),
+    REVIEWER = DICOM_TAG(0x300e, 0x0008)
 };
 
 struct reading {
@@ -458,6 +463,23 @@ static void read_prescription(const struct reading *reading)
     }
 }
 
+static void read_plan_words(const struct dicom_item *root, struct rtplan *plan)
+{
+    dicom_text(root, PLAN_LABEL, plan->label, sizeof plan->label);
+    dicom_text(root, PLAN_NAME, plan->name, sizeof plan->name);
+    dicom_text(root, PLAN_DESCRIPTION, plan->description, sizeof plan->description);
+    dicom_text(root, PRESCRIPTION, plan->prescription, sizeof plan->prescription);
+    dicom_text(root, PLAN_INTENT, plan->intent, sizeof plan->intent);
+    dicom_text(root, PLAN_GEOMETRY, plan->geometry, sizeof plan->geometry);
+    dicom_text(root, PLAN_DATE, plan->date, sizeof plan->date);
+    dicom_text(root, PLAN_TIME, plan->time, sizeof plan->time);
+    dicom_text(root, APPROVAL_STATUS, plan->approval, sizeof plan->approval);
+    dicom_text(root, REVIEW_DATE, plan->review_date, sizeof plan->review_date);
+    dicom_text(root, REVIEWER, plan->reviewer, sizeof plan->reviewer);
+    dicom_text(root, SOP_INSTANCE, plan->uid, sizeof plan->uid);
+    dicom_text(root, FRAME_UID, plan->frame_uid, sizeof plan->frame_uid);
+}
+
 struct rtplan *rtplan_read(const struct dicom_file *file, const char *where, struct report *report, struct error *err)
 {
     const struct dicom_item *root = dicom_root(file);
@@ -469,14 +491,7 @@ struct rtplan *rtplan_read(const struct dicom_file *file, const char *where, str
         return NULL;
     }
     struct rtplan *plan = mem_new(sizeof *plan);
-    dicom_text(root, PLAN_LABEL, plan->label, sizeof plan->label);
-    dicom_text(root, PLAN_NAME, plan->name, sizeof plan->name);
-    dicom_text(root, PLAN_DESCRIPTION, plan->description, sizeof plan->description);
-    dicom_text(root, PRESCRIPTION, plan->prescription, sizeof plan->prescription);
-    dicom_text(root, PLAN_INTENT, plan->intent, sizeof plan->intent);
-    dicom_text(root, PLAN_GEOMETRY, plan->geometry, sizeof plan->geometry);
-    dicom_text(root, SOP_INSTANCE, plan->uid, sizeof plan->uid);
-    dicom_text(root, FRAME_UID, plan->frame_uid, sizeof plan->frame_uid);
+    read_plan_words(root, plan);
     const struct dicom_item *structures = dicom_item_at(root, REFERENCED_STRUCT_SEQUENCE, 0);
     if (structures)
         dicom_text(structures, REFERENCED_INSTANCE, plan->struct_uid, sizeof plan->struct_uid);

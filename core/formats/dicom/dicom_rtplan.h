@@ -13,8 +13,11 @@ struct rtplan {
     char label[65], name[65], description[129], prescription[257];
     char uid[DICOM_UID_SIZE], frame_uid[DICOM_UID_SIZE], struct_uid[DICOM_UID_SIZE];
     char intent[17], geometry[17];
-    int64_t n_fractions;   /* 0 if not given */
-    double target_dose_gy; /* the largest target prescription; NaN if there is none */
+    char date[9], time[15];            /* RT Plan Date, YYYYMMDD, and Time; "" if not given */
+    char approval[17];                 /* Approval Status: "APPROVED", "UNAPPROVED", "REJECTED"; "" if not given */
+    char review_date[9], reviewer[65]; /* "" if not given */
+    int64_t n_fractions;               /* 0 if not given */
+    double target_dose_gy;             /* the largest target prescription; NaN if there is none */
     struct beam *beams;
     size_t n_beams;
 };

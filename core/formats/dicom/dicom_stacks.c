@@ -234,7 +234,8 @@ static void add_stack(struct dicom_index *index, const struct group *group, cons
     struct dicom_stack *stack = &index->stacks[index->n_stacks++];
     *stack = (struct dicom_stack){ .rows = first->image->pixels.rows,
                                    .columns = first->image->pixels.columns,
-                                   .n_objects = group->n };
+                                   .n_objects = group->n,
+                                   .patient = first->patient };
     memcpy(stack->series, first->series, sizeof stack->series);
     memcpy(stack->study, first->study, sizeof stack->study);
     memcpy(stack->frame_of_reference, first->frame_of_reference, sizeof stack->frame_of_reference);
@@ -318,7 +319,8 @@ static struct group *group_for(struct grouping *all, const struct dicom_index *i
         const struct dicom_object *other = &index->objects[first->object];
         if (strcmp(one->series, other->series) == 0 &&
             strcmp(one->frame_of_reference, other->frame_of_reference) == 0 &&
-            strcmp(one->modality, other->modality) == 0 && fit_together(one->image, other->image))
+            strcmp(one->modality, other->modality) == 0 && one->patient == other->patient &&
+            fit_together(one->image, other->image))
             return &all->groups[g];
     }
     return all->n < DICOM_MAX_STACKS ? &all->groups[all->n++] : NULL;
@@ -346,6 +348,8 @@ static void name_difference(const struct dicom_object *a, const struct dicom_obj
             expected->column[2]);
     else if (strcmp(a->frame_of_reference, b->frame_of_reference) != 0)
         snprintf(out, 240, "(0020,0052), frame of reference");
+    else if (a->patient != b->patient)
+        snprintf(out, 240, "(0010,0020) or (0010,0010), patient");
     else
         snprintf(out, 240, "(0008,0060), modality: found %s, expected %s", a->modality, b->modality);
 }

@@ -1,0 +1,217 @@
+/* What a plan knows of where its parts come from: patients, frames of reference, treatment plans, structure sets. */
+#include "core/load/cache.h"
+#include "core/load/load.h"
+#include "tests/check.h"
+#include "tests/unit/data_folder.h"
+#include "tests/unit/made_parts.h"
+#include "tests/unit/plan_help.h"
+#include "tests/unit/same_plan.h"
+
+static const struct made_owner anna = {
+    .id = "88-20417", .name = "Voss^Anna", .birth_date = "19610412", .study = "1.2.31", .frame = "1.2.41"
+};
+static const struct made_owner bert = { .id = "99", .name = "Ruf^Bert", .study = "1.2.32", .frame = "1.2.42" };
+
+static struct plan *open_plan(const char *folder)
+{
+    struct error err = { 0 };
+    struct plan *plan = plan_of_folder(folder, &err);
+    assert_string_equal(err.text, "");
+    return plan;
+}
+
+/* CT, structure set, plan and dose of Anna, and a dose of Bert. */
+static void put_case(const char *folder)
+{
+    made_part_images(folder, "ct", &anna, "1.2.51", 4);
+    made_part_structs(folder, "structs.dcm", &anna, "1.2.61", "1.2.51");
+    made_part_plan(folder, "plan.dcm", &anna,
+                   &(struct made_part_plan){ .uid = "1.2.71",
+                                             .structs_uid = "1.2.61",
+                                             .label = "BNCT-2",
+                                             .date = "20261101",
+                                             .approval = "APPROVED",
+                                             .beams = { "Front" } });
+    made_part_dose(folder, "dose.dcm", &anna,
+                   &(struct made_part_dose){ .uid = "1.2.81", .plan_uid = "1.2.71", .summation = "PLAN" });
+    made_part_dose(folder, "other.dcm", &bert,
+                   &(struct made_part_dose){ .uid = "1.2.82", .plan_uid = "1.2.79", .summation = "PLAN" });
+}
+
+static void every_part_says_where_it_comes_from(void **state)
+{
+    (void)state;
+    char folder[256];
+    folder_make(folder);
+    put_case(folder);
+    struct plan *plan = open_plan(folder);
+    assert_int_equal(plan->n_patients, 2);
+    assert_string_equal(plan->patients[0].id, "88-20417");
+    assert_string_equal(plan->patients[0].name, "Voss^Anna");
+    assert_string_equal(plan->patients[0].birth_date, "19610412");
+    assert_false(plan->patients[0].has_conflict);
+    assert_string_equal(plan->patients[1].id, "99");
+
+    assert_int_equal(plan->n_treatment_plans, 1);
+    assert_string_equal(plan->treatment_plans[0].uid, "1.2.71");
+    assert_string_equal(plan->treatment_plans[0].structs_uid, "1.2.61");
+    assert_string_equal(plan->treatment_plans[0].label, "BNCT-2");
+    assert_string_equal(plan->treatment_plans[0].date, "20261101");
+    assert_string_equal(plan->treatment_plans[0].approval, "APPROVED");
+    assert_string_equal(plan->treatment_plans[0].review_date, "20261112");
+    assert_string_equal(plan->treatment_plans[0].reviewer, "Reviewer^R");
+    assert_int_equal(plan->treatment_plans[0].patient, 0);
+
+    assert_int_equal(plan->n_images, 1);
+    assert_int_equal(plan->image_origins[0].patient, 0);
+    assert_int_equal(plan->image_origins[0].treatment_plan, -1);
+    assert_string_equal(plan->image_origins[0].frame_uid, "1.2.41");
+    assert_string_equal(plan->image_origins[0].study_uid, "1.2.31");
+    assert_string_equal(plan->image_origins[0].series_uid, "1.2.51");
+    assert_string_equal(plan->image_origins[0].path, "ct0.dcm");
+
+    assert_int_equal(plan->regions.n_regions, 1);
+    assert_int_equal(plan->regions.regions[0].origin, 1);
+    assert_int_equal(plan->n_region_origins, 1);
+    assert_string_equal(plan->region_origins[0].structs_uid, "1.2.61");
+    assert_string_equal(plan->region_origins[0].series_uid, "1.2.51");
+    assert_string_equal(plan->region_origins[0].frame_uid, "1.2.41");
+    assert_int_equal(plan->region_origins[0].patient, 0);
+
+    assert_int_equal(plan->n_beams, 1);
+    assert_int_equal(plan->beam_origins[0].treatment_plan, 0);
+    assert_int_equal(plan->beam_origins[0].patient, 0);
+    assert_string_equal(plan->beam_origins[0].frame_uid, "1.2.41"); /* that of the structure set */
+    assert_string_equal(plan->beam_origins[0].structs_uid, "1.2.61");
+
+    assert_int_equal(plan->n_doses, 2);
+    assert_int_equal(plan->dose_origins[0].patient, 0);
+    assert_int_equal(plan->dose_origins[0].treatment_plan, 0);
+    assert_string_equal(plan->dose_origins[0].frame_uid, "1.2.41");
+    assert_int_equal(plan->dose_origins[1].patient, 1);
+    assert_int_equal(plan->dose_origins[1].treatment_plan, -1);
+    assert_string_equal(plan->dose_origins[1].plan_uid, "1.2.79");
+    assert_string_equal(plan->dose_origins[1].frame_uid, "1.2.42");
+    assert_int_equal(plan->tracks_origin.patient, -1);
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+static void a_kept_plan_knows_the_same_origins(void **state)
+{
+    (void)state;
+    char folder[256], cache[256];
+    struct error err = { 0 };
+    struct plan_sources *sources;
+    folder_make(folder);
+    folder_make(cache);
+    put_case(folder);
+    struct plan *first =
+        plan_load(folder, "p", &(struct plan_load_options){ .cache_folder = cache, .sources = &sources }, &err);
+    assert_string_equal(err.text, "");
+    assert_true(plan_cache_store(first, sources, cache, &err));
+    struct plan *again = plan_load(folder, "p", &(struct plan_load_options){ .cache_folder = cache }, &err);
+    assert_true(again->is_from_cache);
+    assert_same_plan(again, first, 0);
+    assert_same_origins(again, first);
+    plan_destroy(first);
+    plan_destroy(again);
+    plan_sources_destroy(sources);
+    folder_remove(folder);
+    folder_remove(cache);
+}
+
+/* Opens a CT and a dose of two owners, and tells their patients: 0 and 0, or 0 and 1. */
+static void assert_patients(const struct made_owner *of_image, const struct made_owner *of_dose, bool is_same,
+                            bool has_conflict)
+{
+    char folder[256];
+    folder_make(folder);
+    made_part_images(folder, "ct", of_image, "1.2.51", 2);
+    made_part_dose(folder, "dose.dcm", of_dose, &(struct made_part_dose){ .uid = "1.2.81", .summation = "PLAN" });
+    struct plan *plan = open_plan(folder);
+    assert_int_equal(plan->n_patients, is_same ? 1 : 2);
+    assert_int_equal(plan->image_origins[0].patient, 0);
+    assert_int_equal(plan->dose_origins[0].patient, is_same ? 0 : 1);
+    assert_int_equal(plan->patients[0].has_conflict, has_conflict);
+    if (!is_same)
+        assert_int_equal(plan->patients[1].has_conflict, has_conflict);
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+static void patients_are_told_apart_by_id_name_and_birth_date(void **state)
+{
+    (void)state;
+    static const struct {
+        struct made_owner a, b;
+        bool is_same, has_conflict;
+    } pairs[] = {
+        { { .id = "1", .name = "Voss^Anna" }, { .id = "1", .name = "VOSS^ANNA^^^" }, true, false },
+        { { .id = "1", .name = "Voss^Anna" }, { .id = "1", .name = "Voss Anna" }, true, false },
+        { { .id = "1", .name = "Voss^Anna" }, { .id = "1" }, true, false },
+        { { .id = "1" }, { .id = "1", .name = "Voss^Anna", .birth_date = "19610412" }, true, false },
+        { { .id = "1", .name = "Voss^Anna=\xe7\x8e\x8b^\xe5\xb0\x8f" },
+          { .id = "1", .name = "Voss^Anna" },
+          true,
+          false },
+        { { .id = "1", .name = "Voss^Anna=\xe7\x8e\x8b" }, { .id = "1", .name = "=\xe7\x8e\x8b" }, true, false },
+        { { .id = "1", .birth_date = "1961.04.12" }, { .id = "1", .birth_date = "19610412" }, true, false },
+        { { .id = "1", .name = "Voss^Anna" }, { .id = "1", .name = "Ruf^Bert" }, false, true },
+        { { .id = "1", .birth_date = "19610412" }, { .id = "1", .birth_date = "19610413" }, false, true },
+        { { .id = "1", .name = "Voss^Anna" }, { .id = "2", .name = "Voss^Anna" }, false, false },
+        { { .id = "1", .name = "Voss^Anna" }, { .name = "Voss^Anna" }, false, false },
+        { { .name = "Voss^Anna" }, { .name = "voss^anna" }, true, false },
+        { { .name = "Voss^Anna" }, { .name = "Ruf^Bert" }, false, false },
+    };
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        struct made_owner a = pairs[i].a, b = pairs[i].b;
+        a.study = b.study = "1.2.31";
+        a.frame = b.frame = "1.2.41";
+        assert_patients(&a, &b, pairs[i].is_same, pairs[i].has_conflict);
+    }
+}
+
+static void slices_of_two_patients_make_two_images(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct made_owner other = anna;
+    other.id = "77-1";
+    folder_make(folder);
+    made_part_images(folder, "a", &anna, "1.2.51", 4);
+    made_part_images(folder, "b", &other, "1.2.51", 3); /* the same series and frame of reference */
+    struct plan *plan = open_plan(folder);
+    assert_int_equal(plan->n_images, 2);
+    assert_int_equal(plan->images[0].volume->grid.size[2], 4);
+    assert_int_equal(plan->image_origins[0].patient, 0);
+    assert_int_equal(plan->image_origins[1].patient, 1);
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+static void files_without_a_patient_are_of_none(void **state)
+{
+    (void)state;
+    char folder[256];
+    const struct made_owner nobody = { .id = "", .name = "^^", .study = "1.2.31", .frame = "1.2.41" };
+    folder_make(folder);
+    made_part_images(folder, "ct", &nobody, "1.2.51", 2);
+    struct plan *plan = open_plan(folder);
+    assert_int_equal(plan->n_patients, 0);
+    assert_int_equal(plan->image_origins[0].patient, -1);
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_part_says_where_it_comes_from),
+        cmocka_unit_test(a_kept_plan_knows_the_same_origins),
+        cmocka_unit_test(patients_are_told_apart_by_id_name_and_birth_date),
+        cmocka_unit_test(slices_of_two_patients_make_two_images),
+        cmocka_unit_test(files_without_a_patient_are_of_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
