@@ -191,6 +191,7 @@ static bool peek(struct acceptor *acceptor, struct pending *slot, bool has_ended
     }
     struct handshake handshake;
     head_read_handshake(acceptor->bytes, (size_t)n, &handshake);
+    address_write(&client, handshake.client);
     if (!hand_to_net(acceptor, slot->socket, &handshake, &client, &problem)) {
         refuse(acceptor, slot, &problem);
         (void)refusal_drain(slot->socket, HEAD_MAX_BYTES);

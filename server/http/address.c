@@ -91,6 +91,16 @@ struct address address_of_peer(const struct sockaddr_storage *peer)
     return address;
 }
 
+void address_write(const struct address *address, char text[ADDRESS_TEXT])
+{
+    static const struct address none = { { 0 } };
+    const bool is_four = is_ipv4(address);
+    text[0] = 0;
+    if (!address_is_equal(address, &none) &&
+        !inet_ntop(is_four ? AF_INET : AF_INET6, address->bytes + (is_four ? N_MAPPED : 0), text, ADDRESS_TEXT))
+        text[0] = 0;
+}
+
 bool address_is_equal(const struct address *a, const struct address *b)
 {
     return memcmp(a->bytes, b->bytes, sizeof a->bytes) == 0;

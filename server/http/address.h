@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-enum { ADDRESS_MAX_RANGES = 64, ADDRESS_COUNTED_BITS = 64 };
+enum { ADDRESS_MAX_RANGES = 64, ADDRESS_COUNTED_BITS = 64, ADDRESS_TEXT = 46 };
 
 struct sockaddr_storage;
 
@@ -28,6 +28,8 @@ NODISCARD bool address_read(const char *text, size_t n, struct address *address)
 NODISCARD bool address_range_read(const char *text, struct address_range *range, struct error *err);
 /* The address of a socket's peer; all zeros for a socket that is not of IP. */
 struct address address_of_peer(const struct sockaddr_storage *peer);
+/* "192.0.2.1" or "2001:db8::1"; "" for all zeros, a socket that is not of IP. */
+void address_write(const struct address *address, char text[ADDRESS_TEXT]);
 bool address_is_in(const struct address *address, const struct address_range *ranges, size_t n_ranges);
 bool address_is_equal(const struct address *a, const struct address *b);
 

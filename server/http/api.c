@@ -116,7 +116,7 @@ static bool has_right(struct api *api, const struct call *call, const struct api
         (void)snprintf(what, sizeof what, "%s %s", route->method, route->path);
         cJSON_AddStringToObject(detail, "what", what);
         cJSON_AddStringToObject(detail, "why", problem->detail);
-        room_audit_call(room, call->member, "refused", detail, true, clock_now_us());
+        room_audit_call(room, call->member, call->client, "refused", detail, true, clock_now_us());
         return false;
     }
     return true;

@@ -148,9 +148,9 @@ void api_room_delete(struct api *api, struct call *call)
         return;
     struct room *room = net_room_find(api->net, call->ids[0]);
     if (room)
-        room_audit_call(room, call->member, "deleted", NULL, false, clock_now_us());
+        room_audit_call(room, call->member, call->client, "deleted", NULL, false, clock_now_us());
     else
-        net_audit(api->net, call->ids[0], "", "deleted", NULL);
+        net_audit(api->net, call->client, call->ids[0], "", "deleted", NULL);
     net_room_delete(api->net, call->ids[0]);
     call_answer_nothing(call, 204);
 }
@@ -251,7 +251,7 @@ void api_room_scene_patch(struct api *api, struct call *call)
     }
     if (!call_read_object(call, media_types, &patch))
         return;
-    bool ok = room_patch_scene(room, patch, call->member, clock_now_us(), &problem);
+    bool ok = room_patch_scene(room, patch, call->member, call->client, clock_now_us(), &problem);
     cJSON_Delete(patch);
     if (!ok) {
         call_answer_problem(call, &problem);

@@ -33,6 +33,7 @@ struct call {
     struct call_pair query[CALL_MAX_QUERY];
     size_t n_query;
     char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member; /* NULL when not sent */
+    char client[46]; /* address of the client, behind trusted proxies; "": not known */
     char *body;
     size_t n_body;
     char *upload_path; /* the file that holds the body when it is an archive; removed with the call unless it is set to

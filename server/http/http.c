@@ -301,6 +301,8 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->method = method_of(method);
     call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);
+    if (request->link)
+        relay_client(request->link, call->client);
     call->if_match = copy_header(connection, "If-Match");
     call->member = copy_header(connection, "Beamroom-Member");
     call->if_none_match = copy_header(connection, "If-None-Match");

@@ -31,6 +31,11 @@ static char wake_tag, server_tag; /* their addresses mark the events of wake_fd 
 
 /* ---- the set of links ------------------------------------------------------------------------------------------- */
 
+void relay_client(const struct relay_link *link, char text[ADDRESS_TEXT])
+{
+    address_write(&link->asked_by, text);
+}
+
 struct relay_link *relay_find(struct relay *relay, int socket)
 {
     struct relay_link *link = relay->links;

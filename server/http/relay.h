@@ -66,6 +66,8 @@ void relay_hang(struct relay *relay); /* for tests: the thread hangs */
 /* The connection that was added with this socket; NULL: none. Valid until relay_link_closed, which the library must
  * then call. */
 struct relay_link *relay_find(struct relay *relay, int socket);
+/* The address of the client of the present request, behind trusted proxies; "": not known. */
+void relay_client(const struct relay_link *link, char text[ADDRESS_TEXT]);
 void relay_link_closed(struct relay_link *link); /* the library closed its end */
 /* Whether all bytes of the answer so far are on their way to the client. False: some wait for the client to take them.
  */

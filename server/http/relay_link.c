@@ -246,6 +246,7 @@ static bool step_head(struct relay_link *link)
     }
     struct address client = address_of_client(&link->peer, relay->options.trusted, relay->options.n_trusted,
                                               request.forwarded, request.n_forwarded);
+    link->asked_by = client;
     if (!relay_count(link, &client, &problem)) {
         relay_log_refusal(relay);
         relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);

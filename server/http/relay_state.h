@@ -25,7 +25,7 @@ struct relay_link {
     struct relay *relay;
     enum link_state state;
     int client, inner, server; /* sockets: the client's, our end and the library's end of the pair; -1: closed */
-    struct address peer, counted;
+    struct address peer, counted, asked_by; /* asked_by: of the present request, behind trusted proxies */
     bool is_counted, is_touched;
     bool is_started;       /* the library took the connection: it will report its end */
     bool inner_wants_room; /* epoll reports when the library has read bytes */

@@ -69,6 +69,7 @@ static cJSON *describe(const char *room, const char *plan, const struct room_aud
     cJSON_AddStringToObject(json, "member", row->member);
     cJSON_AddStringToObject(json, "name", row->name);
     cJSON_AddStringToObject(json, "role", row->role);
+    cJSON_AddStringToObject(json, "address", row->address);
     cJSON_AddStringToObject(json, "action", row->action);
     json_add(json, "detail", cJSON_CreateRaw(row->detail));
     json_add(json, "revision_before", row->before < 0 ? cJSON_CreateNull() : cJSON_CreateNumber((double)row->before));
@@ -100,6 +101,7 @@ static void keep_row_and_loss(struct net *net, char ***rows, size_t *n, cJSON *j
                                      .member = "",
                                      .name = "",
                                      .role = "",
+                                     .address = "",
                                      .detail = detail,
                                      .result = "done",
                                      .before = -1,
@@ -130,7 +132,8 @@ bool net_audit_has_place(const struct net *net)
     return !net->store || net->n_audit_waiting < NET_MAX_AUDIT;
 }
 
-void net_audit(struct net *net, const char *room, const char *plan, const char *action, cJSON *detail)
+void net_audit(struct net *net, const char *address, const char *room, const char *plan, const char *action,
+               cJSON *detail)
 {
     char *text = json_print(detail);
     const struct room_audit row = { .time_ms = clock_wall_ms(),
@@ -138,6 +141,7 @@ void net_audit(struct net *net, const char *room, const char *plan, const char *
                                     .member = "",
                                     .name = "",
                                     .role = "",
+                                    .address = address,
                                     .detail = text ? text : "{}",
                                     .result = "done",
                                     .before = -1,

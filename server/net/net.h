@@ -85,8 +85,10 @@ NODISCARD cJSON *net_asleep_document(const struct net *net, size_t index);
 NODISCARD bool net_rooms_are_known(const struct net *net, struct problem *problem);
 /* False: too many rows of the audit wait for the disk. */
 bool net_audit_has_place(const struct net *net);
-/* Records what happened in no room that is in memory. room, plan: "" none; detail is taken. */
-void net_audit(struct net *net, const char *room, const char *plan, const char *action, cJSON *detail);
+/* Records what happened in no room that is in memory. address: the client's, "" not known; room, plan: "" none; detail
+ * is taken. */
+void net_audit(struct net *net, const char *address, const char *room, const char *plan, const char *action,
+               cJSON *detail);
 struct net_audit_head net_audit_head(const struct net *net);
 size_t net_n_rooms(const struct net *net);
 struct room *net_room_at(const struct net *net, size_t index);

@@ -25,6 +25,12 @@ struct net_room *rooms_find(const struct net *net, const char *id)
     return NULL;
 }
 
+static const char *address(void *context, void *connection)
+{
+    (void)context;
+    return ws_client(connection);
+}
+
 static void send_text(void *context, void *connection, const char *text)
 {
     (void)context;
@@ -77,6 +83,7 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .send_latest = send_latest,
                                               .send_frame = send_frame,
                                               .close = close_connection,
+                                              .address = address,
                                               .context = net,
                                               .item_changed = keep_item_changed,
                                               .kept_changed = keep_changed,

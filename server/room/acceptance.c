@@ -7,6 +7,7 @@
 
 #include "core/base/mem.h"
 #include "server/room/acceptance_body.h"
+#include "server/auth/digest.h"
 #include "server/room/audit.h"
 #include "server/room/body_check.h"
 #include "server/room/item_list.h"
@@ -135,12 +136,15 @@ void acceptance_audit(struct room *room, const struct item *item, const struct m
     cJSON *row, *body = body_of(item, &row);
     struct audit_act act = { .by = by,
                              .action = is_withdrawn ? "withdrawal" : "acceptance",
-                             .key = item->id,
                              .detail = cJSON_CreateObject(),
                              .before = -1,
                              .after = room->revision };
     const char *words = json_text(body, "words");
+    char hex[DIGEST_TEXT];
+    digest_text(item->row, hex);
     cJSON_AddStringToObject(act.detail, "item", item->id);
+    cJSON_AddNumberToObject(act.detail, "version", item->version);
+    cJSON_AddStringToObject(act.detail, "sha256", hex);
     copy_text(act.detail, body, "thing");
     copy_text(act.detail, body, "with");
     copy_text(act.detail, body, "reason");

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "server/auth/digest.h"
 #include "server/wire/json_merge.h"
 
 static const int64_t quiet_us = ROOM_AUDIT_QUIET_MS * INT64_C(1000), at_most_us = ROOM_AUDIT_AT_MOST_MS * INT64_C(1000);
@@ -23,28 +24,36 @@ bool audit_has_place(const struct room *room, struct problem *problem)
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
-/* The text of the detail, for free(). */
-static char *write_detail(cJSON *detail, unsigned n)
+/* The text of the detail, for free(); one that is too long is named by its length and its SHA-256. */
+static char *write_detail(const struct gathered *act)
 {
-    char *text = NULL, left_out[64];
-    if (n > 1)
-        cJSON_AddNumberToObject(detail, "times", n);
-    text = detail ? json_print(detail) : NULL;
+    char *text = NULL, hex[DIGEST_TEXT];
+    if (act->n > 1) {
+        cJSON_AddNumberToObject(act->detail, "times", act->n);
+        cJSON_AddNumberToObject(act->detail, "since_ms", (double)act->since_ms);
+    }
+    text = act->detail ? json_print(act->detail) : NULL;
+    if (act->n > 1) { /* later acts are compared with it */
+        cJSON_DeleteItemFromObjectCaseSensitive(act->detail, "times");
+        cJSON_DeleteItemFromObjectCaseSensitive(act->detail, "since_ms");
+    }
     if (text && strlen(text) > ROOM_MAX_AUDIT_DETAIL) {
-        (void)snprintf(left_out, sizeof left_out, "{\"left_out_bytes\":%zu}", strlen(text));
-        (void)snprintf(text, strlen(text), "%s", left_out);
+        const size_t n = strlen(text);
+        digest_text(text, hex);
+        (void)snprintf(text, n, "{\"left_out_bytes\":%zu,\"sha256\":\"%s\"}", n, hex);
     }
     return text;
 }
 
 static void write_row(struct room *room, struct gathered *act)
 {
-    char *detail = write_detail(act->detail, act->n);
-    const struct room_audit row = { .time_ms = clock_wall_ms(),
+    char *detail = write_detail(act);
+    const struct room_audit row = { .time_ms = act->newest_ms,
                                     .action = act->action,
                                     .member = act->member,
                                     .name = act->name,
                                     .role = act->member[0] ? wire_member_role_words.words[act->role] : "",
+                                    .address = act->address,
                                     .detail = detail ? detail : "{}",
                                     .result = act->is_refused ? "refused" : "done",
                                     .before = act->before,
@@ -71,41 +80,71 @@ static void end(struct room *room, int index)
     drop(room, index);
 }
 
-static struct gathered *find(struct room *room, const struct audit_act *act)
+static const char *address_of(const struct audit_act *act)
 {
-    for (int i = 0; i < room->n_gathered; i++) {
-        struct gathered *found = &room->gathered[i];
-        if (strcmp(found->action, act->action) == 0 && strcmp(found->key, act->key) == 0 &&
-            strcmp(found->member, act->by ? act->by->id : "") == 0 && found->is_refused == act->is_refused)
-            return found;
-    }
+    return act->address ? act->address : act->by ? act->by->address : "";
+}
+
+static enum wire_member_role role_of(const struct audit_act *act)
+{
+    return act->by ? act->by->role : WIRE_MEMBER_ROLE_OBSERVER;
+}
+
+/* Whether this act may share a row with what is gathered. Steps of a gesture (a key) may differ in their values; other
+ * acts must be equal in everything but their time. */
+static bool is_same_act(const struct gathered *found, const struct audit_act *act, const cJSON *detail)
+{
+    if (strcmp(found->action, act->action) != 0 || strcmp(found->key, act->key ? act->key : "") != 0 ||
+        strcmp(found->member, act->by ? act->by->id : "") != 0 ||
+        strcmp(found->name, act->by ? act->by->name : "") != 0 || strcmp(found->address, address_of(act)) != 0 ||
+        found->role != role_of(act) || found->is_refused != act->is_refused)
+        return false;
+    return act->key ||
+           (found->before == act->before && found->after == act->after && json_equal(found->detail, detail));
+}
+
+static struct gathered *find(struct room *room, const struct audit_act *act, const cJSON *detail)
+{
+    for (int i = 0; i < room->n_gathered; i++)
+        if (is_same_act(&room->gathered[i], act, detail))
+            return &room->gathered[i];
     return NULL;
+}
+
+static struct gathered *begin(struct room *room, const struct audit_act *act)
+{
+    if (room->n_gathered == ROOM_MAX_GATHERED)
+        end(room, 0);
+    struct gathered *found = &room->gathered[room->n_gathered++];
+    *found = (struct gathered){ .is_refused = act->is_refused, .first_us = room->now_us, .before = act->before };
+    (void)snprintf(found->action, sizeof found->action, "%s", act->action);
+    (void)snprintf(found->key, sizeof found->key, "%s", act->key ? act->key : "");
+    (void)snprintf(found->member, sizeof found->member, "%s", act->by ? act->by->id : "");
+    (void)snprintf(found->name, sizeof found->name, "%s", act->by ? act->by->name : "");
+    (void)snprintf(found->address, sizeof found->address, "%s", address_of(act));
+    found->role = role_of(act);
+    return found;
 }
 
 /* The place for this act; is_new: nothing of the same is gathered yet. */
 static struct gathered *place(struct room *room, const struct audit_act *act, bool *is_new)
 {
-    struct gathered *found = find(room, act);
+    cJSON *detail = act->detail ? act->detail : cJSON_CreateObject();
+    struct gathered *found = find(room, act, detail);
     if (found && (room->now_us - found->last_us >= quiet_us || room->now_us - found->first_us >= at_most_us)) {
         end(room, (int)(found - room->gathered));
         found = NULL;
     }
     *is_new = !found;
-    if (!found) {
-        if (room->n_gathered == ROOM_MAX_GATHERED)
-            end(room, 0);
-        found = &room->gathered[room->n_gathered++];
-        *found = (struct gathered){ .is_refused = act->is_refused, .first_us = room->now_us, .before = act->before };
-        (void)snprintf(found->action, sizeof found->action, "%s", act->action);
-        (void)snprintf(found->key, sizeof found->key, "%s", act->key);
-        (void)snprintf(found->member, sizeof found->member, "%s", act->by ? act->by->id : "");
-        (void)snprintf(found->name, sizeof found->name, "%s", act->by ? act->by->name : "");
-        found->role = act->by ? act->by->role : WIRE_MEMBER_ROLE_OBSERVER;
-    }
-    if (found->n == 0)
+    if (!found)
+        found = begin(room, act);
+    found->newest_ms = clock_wall_ms();
+    if (found->n == 0) {
         found->before = act->before;
+        found->since_ms = found->newest_ms;
+    }
     cJSON_Delete(found->detail);
-    found->detail = act->detail ? act->detail : cJSON_CreateObject();
+    found->detail = detail;
     found->after = act->after;
     found->last_us = room->now_us;
     found->n++;
@@ -212,6 +251,26 @@ static cJSON *weights_changed(const cJSON *before, const cJSON *after)
     return changed;
 }
 
+/* The names of the fields that changed, with those inside maps, as the key of a gesture: changes of other fields are
+ * other rows. Names too long for a key are named by their SHA-256. */
+static void name_fields(const cJSON *changed, char *key, size_t size)
+{
+    cJSON *names = cJSON_CreateArray();
+    const cJSON *field, *entry;
+    char hex[DIGEST_TEXT];
+    cJSON_ArrayForEach(field, changed)
+    {
+        json_append(names, cJSON_CreateString(field->string));
+        const cJSON *map = cJSON_IsObject(field) ? field : NULL;
+        cJSON_ArrayForEach(entry, map) json_append(names, cJSON_CreateString(entry->string));
+    }
+    char *text = json_print(names);
+    digest_text(text ? text : "", hex);
+    (void)snprintf(key, size, "%.63s", text && strlen(text) < size ? text : hex);
+    cJSON_Delete(names);
+    free(text);
+}
+
 bool audit_is_of_scene(const cJSON *before, const cJSON *after)
 {
     cJSON *weights = weights_changed(before, after);
@@ -223,24 +282,32 @@ bool audit_is_of_scene(const cJSON *before, const cJSON *after)
 void audit_scene(struct room *room, const cJSON *before, const struct member *by)
 {
     const cJSON *old = draft_of(before), *new = draft_of(room->scene);
-    struct audit_act act = {
-        .by = by, .key = "", .before = (int64_t)room->revision - 1, .after = room->revision, .action = "weights"
-    };
+    struct audit_act act = { .by = by,
+                             .address = room->caller_address,
+                             .before = (int64_t)room->revision - 1,
+                             .after = room->revision,
+                             .action = "weights" };
+    char key[sizeof room->gathered[0].key];
     if (!room->callbacks.audited)
         return;
     act.detail = weights_changed(before, room->scene);
-    if (act.detail)
+    if (act.detail) {
+        name_fields(act.detail, key, sizeof key);
+        act.key = key;
         audit_gather(room, &act);
+    }
     if (!draft_changed(old, new))
         return;
     act.detail = is_drafted(new) ? cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(new, "line"), true) : NULL;
     if (is_drafted(old) && is_drafted(new)) {
         act.action = "draft-changed";
+        act.key = "line";
         audit_gather(room, &act);
     } else {
         if (by)
             audit_flush(room, by);
         act.action = is_drafted(new) ? "draft-made" : "draft-reset";
+        act.key = NULL;
         audit_tell(room, &act);
     }
 }

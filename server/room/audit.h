@@ -1,21 +1,25 @@
 #pragma once
-/* What members do that is recorded in the audit (room_callbacks.audited). What comes many times in a row, as while
- * somebody drags, or a program repeats what it was refused, is gathered into one row. Internal to server/room. */
+/* What members do that is recorded in the audit (room_callbacks.audited). Acts that are equal in everything but their
+ * time, as when a program repeats what it was refused, are gathered into one row, as are the steps of one gesture,
+ * which change the same fields. Internal to server/room. */
 #include "server/room/room_state.h"
 
 struct audit_act {
     const struct member *by; /* NULL: nobody of the room */
     const char *action;      /* a word of room.h's list */
-    const char *key;         /* acts of one member, action, key and result are gathered; "" where there is one kind */
+    const char *key;         /* of a gesture: the fields that it changes; NULL: of another act */
+    const char *address;     /* NULL: that of the member */
     cJSON *detail;           /* taken; NULL: {} */
     bool is_refused;
     int64_t before, after; /* revisions of the scene; -1: does not apply */
 };
 
-/* Records it at once, and gathers the repetitions that follow. */
+/* Records it at once, and gathers the repetitions that follow: the same member, name, role, address, action, detail and
+ * result. */
 void audit_tell(struct room *room, const struct audit_act *act);
-/* Records it when it is over: nothing of the same came for ROOM_AUDIT_QUIET_MS, or it has lasted for
- * ROOM_AUDIT_AT_MOST_MS. before is that of the first, after and detail those of the last. */
+/* Records a step of a gesture when that is over: nothing of the same member, action and key came for
+ * ROOM_AUDIT_QUIET_MS, or it has lasted for ROOM_AUDIT_AT_MOST_MS. before is that of the first step, after and detail
+ * those of the last. */
 void audit_gather(struct room *room, const struct audit_act *act);
 /* Records what is gathered of this member; NULL: of everybody. */
 void audit_flush(struct room *room, const struct member *by);

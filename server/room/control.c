@@ -56,7 +56,6 @@ static void record(struct room *room)
     const char *act = wire_control_act_words.words[room->control_act.act];
     const struct audit_act row = { .by = find(room, room->control_act.by),
                                    .action = "control",
-                                   .key = act,
                                    .detail = cJSON_CreateObject(),
                                    .before = -1,
                                    .after = -1 };

@@ -221,11 +221,15 @@ bool items_delete(struct room *room, struct member *member, const struct message
             continue;
         char id[sizeof reply->id];
         memcpy(id, reply->id, sizeof id);
+        record_audit_deleted(room, reply, member);
         items_drop(room, reply);
         tell(room, id, NULL, member, 0);
     }
     const bool was_accepted = item->kind == WIRE_ITEM_KIND_ACCEPTANCE;
-    acceptance_audit(room, item, member, true);
+    if (was_accepted)
+        acceptance_audit(room, item, member, true);
+    else
+        record_audit_deleted(room, item, member);
     items_drop(room, item);
     tell(room, asked->item, NULL, member, (uint32_t)asked->input);
     if (was_accepted)

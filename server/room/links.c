@@ -68,12 +68,23 @@ const char *link_find(struct room *room, const char *token, const char *person, 
 }
 
 /* Of the token only eight digits of its hash: they tell links apart and let nobody in. */
+static void write_mark(const unsigned char hash[SECRET_HASH_BYTES], char mark[9])
+{
+    (void)snprintf(mark, 9, "%02x%02x%02x%02x", hash[0], hash[1], hash[2], hash[3]);
+}
+
+void room_link_mark(const char *token, char mark[9])
+{
+    unsigned char hash[SECRET_HASH_BYTES];
+    secret_hash(token, hash);
+    write_mark(hash, mark);
+}
+
 static cJSON *describe(const struct link *link)
 {
     char mark[9];
     cJSON *detail = cJSON_CreateObject();
-    (void)snprintf(mark, sizeof mark, "%02x%02x%02x%02x", link->token_hash[0], link->token_hash[1], link->token_hash[2],
-                   link->token_hash[3]);
+    write_mark(link->token_hash, mark);
     cJSON_AddStringToObject(detail, "link", mark);
     cJSON_AddStringToObject(detail, "role", wire_member_role_words.words[link->role]);
     cJSON_AddBoolToObject(detail, "one_use", link->is_one_use);
@@ -83,7 +94,7 @@ static cJSON *describe(const struct link *link)
 void link_used(struct room *room, struct link *link, const struct member *member, const char *person)
 {
     const struct audit_act act = {
-        .by = member, .action = "link", .key = "", .detail = describe(link), .before = -1, .after = -1
+        .by = member, .action = "link", .detail = describe(link), .before = -1, .after = -1
     };
     audit_tell(room, &act);
     if (!link->is_one_use)

@@ -91,7 +91,7 @@ void member_disconnected(struct room *room, struct member *member, int64_t heard
     control_left(room, member);
     audit_flush(room, member);
     presence_left(room, member);
-    audit_tell(room, &(struct audit_act){ .by = member, .action = "leave", .key = "", .before = -1, .after = -1 });
+    audit_tell(room, &(struct audit_act){ .by = member, .action = "leave", .before = -1, .after = -1 });
     (void)presenter_settle(room);
     send_members(room);
     pointer_end(room, member);
@@ -144,16 +144,21 @@ static struct member *member_create(struct room *room, const char *name, enum wi
 static void record_entry(struct room *room, const struct member *member, const char *as)
 {
     const struct audit_act row = {
-        .by = member, .action = "open", .key = as, .detail = cJSON_CreateObject(), .before = -1, .after = room->revision
+        .by = member, .action = "open", .detail = cJSON_CreateObject(), .before = -1, .after = room->revision
     };
     cJSON_AddStringToObject(row.detail, "as", as);
     audit_tell(room, &row);
 }
 
+static const char *address_of(const struct room *room, void *connection)
+{
+    return room->callbacks.address ? room->callbacks.address(room->callbacks.context, connection) : "";
+}
+
 static void refuse_link(struct room *room, void *connection, const char *name, const char *refusal)
 {
     const struct audit_act row = { .action = "refused",
-                                   .key = "link",
+                                   .address = address_of(room, connection),
                                    .detail = cJSON_CreateObject(),
                                    .is_refused = true,
                                    .before = -1,
@@ -204,6 +209,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
             room->members[room->n_members++] = member;
         else
             member = member_create(room, hello->name, link ? link->role : role);
+        (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
         if (link)
             link_used(room, link, member, hello->person);
     } else {
@@ -216,6 +222,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
         (void)snprintf(member->secret, sizeof member->secret, "%.32s", hello->secret);
     (void)snprintf(member->person, sizeof member->person, "%s", hello->person);
     member->connection = connection;
+    (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
     record_entry(room, member, as);
     presence_entered(room, member);
     send_welcome(room, member);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/auth/digest.h"
 #include "server/room/audit.h"
 #include "server/room/body_check.h"
 #include "server/room/item_list.h"
@@ -216,23 +217,42 @@ bool record_may_change(const struct room *room, const struct item *item, struct 
                                     "this entry stands under an earlier revision of the plan's files, and stays");
 }
 
+/* The act without its words. */
+static struct audit_act act_of(const struct room *room, const struct item *item, const struct member *by)
+{
+    const struct audit_act act = { .by = by,
+                                   .action = wire_item_kind_words.words[item->kind],
+                                   .detail = cJSON_CreateObject(),
+                                   .before = -1,
+                                   .after = room->revision };
+    cJSON_AddStringToObject(act.detail, "item", item->id);
+    cJSON_AddNumberToObject(act.detail, "version", item->version);
+    return act;
+}
+
 void record_audit(struct room *room, const struct item *item, const struct member *by)
 {
-    if (!is_append_only(item->kind))
+    char hex[DIGEST_TEXT];
+    if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE) /* acceptance.h */
         return;
-    cJSON *row, *body = body_of(item, &row);
-    struct audit_act act = { .by = by,
-                             .action = wire_item_kind_words.words[item->kind],
-                             .key = item->id,
-                             .detail = cJSON_CreateObject(),
-                             .before = -1,
-                             .after = room->revision };
-    cJSON_AddStringToObject(act.detail, "item", item->id);
-    copy_text(act.detail, body, item->kind == WIRE_ITEM_KIND_DECISION ? "decision" : "meaning");
-    if (item->kind == WIRE_ITEM_KIND_SIGNATURE)
-        copy_text(act.detail, body, "name");
-    copy_text(act.detail, body, "corrects");
-    copy_text(act.detail, body, "plan_revision");
-    cJSON_Delete(row);
+    const struct audit_act act = act_of(room, item, by);
+    digest_text(item->row, hex);
+    cJSON_AddStringToObject(act.detail, "sha256", hex);
+    if (is_append_only(item->kind)) {
+        cJSON *row, *body = body_of(item, &row);
+        copy_text(act.detail, body, item->kind == WIRE_ITEM_KIND_DECISION ? "decision" : "meaning");
+        if (item->kind == WIRE_ITEM_KIND_SIGNATURE)
+            copy_text(act.detail, body, "name");
+        copy_text(act.detail, body, "corrects");
+        copy_text(act.detail, body, "plan_revision");
+        cJSON_Delete(row);
+    }
+    audit_tell(room, &act);
+}
+
+void record_audit_deleted(struct room *room, const struct item *item, const struct member *by)
+{
+    const struct audit_act act = act_of(room, item, by);
+    cJSON_AddBoolToObject(act.detail, "deleted", true);
     audit_tell(room, &act);
 }

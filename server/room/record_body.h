@@ -26,5 +26,7 @@ bool record_may_write(const struct room *room, const struct member *member, enum
                       struct problem *problem);
 /* Whether an item may be changed or deleted at all; true for kinds that are not of the record. */
 bool record_may_change(const struct room *room, const struct item *item, struct problem *problem);
-/* A decision or signature is recorded in the audit. */
+/* Records in the audit that `by` put this item: its id, version and the SHA-256 of its row; of a decision or signature
+ * also its words. */
 void record_audit(struct room *room, const struct item *item, const struct member *by);
+void record_audit_deleted(struct room *room, const struct item *item, const struct member *by);

@@ -222,7 +222,7 @@ static void audit(struct room *room, const struct room_recording *facts, const s
 {
     const char *state = wire_recording_state_words.words[facts->state];
     const struct audit_act act = {
-        .by = by, .action = "recording", .key = state, .detail = cJSON_CreateObject(), .before = -1, .after = -1
+        .by = by, .action = "recording", .detail = cJSON_CreateObject(), .before = -1, .after = -1
     };
     cJSON_AddStringToObject(act.detail, "id", facts->id);
     cJSON_AddStringToObject(act.detail, "state", state);

@@ -251,13 +251,9 @@ static void whole_number(const cJSON *json, const char *name, double most, int64
 static void record_refusal(struct room *room, const struct member *member, const char *what,
                            const struct problem *problem)
 {
-    const struct audit_act row = { .by = member,
-                                   .action = "refused",
-                                   .key = what,
-                                   .detail = cJSON_CreateObject(),
-                                   .is_refused = true,
-                                   .before = -1,
-                                   .after = -1 };
+    const struct audit_act row = {
+        .by = member, .action = "refused", .detail = cJSON_CreateObject(), .is_refused = true, .before = -1, .after = -1
+    };
     cJSON_AddStringToObject(row.detail, "what", what);
     cJSON_AddStringToObject(row.detail, "why", problem->detail);
     audit_tell(room, &row);
@@ -414,14 +410,16 @@ cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct pr
     return scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
 }
 
-bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, int64_t now_us,
+bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, const char *address, int64_t now_us,
                       struct problem *problem)
 {
     room->now_us = now_us;
     if (!replay_allows(room, MESSAGE_SCENE_PATCH, problem))
         return false;
     room->caller = find_caller(room, caller);
+    room->caller_address = address;
     const bool ok = scene_apply_patch(room, patch, NULL, 0, problem);
+    room->caller_address = NULL;
     room->caller = NULL;
     if (!ok)
         return false;
@@ -429,18 +427,14 @@ bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller,
     return true;
 }
 
-void room_audit_call(struct room *room, const char *member, const char *action, cJSON *detail, bool is_refused,
-                     int64_t now_us)
+void room_audit_call(struct room *room, const char *member, const char *address, const char *action, cJSON *detail,
+                     bool is_refused, int64_t now_us)
 {
-    const char *what = json_text(detail, "what"), *name = json_text(detail, "name");
-    const size_t n_name = name ? strlen(name) : 0, n_left_out = n_name > 40 ? n_name - 40 : 0;
-    char key[64];
-    (void)snprintf(key, sizeof key, "%s%s", name ? name + n_left_out : "", what ? what : "");
     if (strcmp(action, "export") == 0 && room->plan_revision[0])
         cJSON_AddStringToObject(detail, "plan_revision", room->plan_revision);
     const struct audit_act act = { .by = find_caller(room, member),
                                    .action = action,
-                                   .key = key,
+                                   .address = address,
                                    .detail = detail,
                                    .is_refused = is_refused,
                                    .before = -1,

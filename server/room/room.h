@@ -84,18 +84,20 @@ struct room_picture {
     atomic_int references;
 };
 
-/* A row for the audit. Texts are borrowed. Actions: open, leave (a member enters, or its connection ends), link (one
- * was used), link-made, control, weights (of a dose), draft-made, draft-changed, draft-reset (of the beam), decision,
- * signature, acceptance, withdrawal (of parts that do not fit, used together by a person's word), recording (of the
- * meeting: running, stopped, cut, ..., deleted), export (something was given away as a file), refused (a message or
- * call lacked the right), deleted (the room). */
+/* A row for the audit. Texts are borrowed. Actions: note, bookmark, check (an item was put or deleted), open, leave (a
+ * member enters, or its connection ends), link (one was used), link-made, control, weights (of a dose), draft-made,
+ * draft-changed, draft-reset (of the beam), decision, signature, acceptance, withdrawal (of parts that do not fit, used
+ * together by a person's word), recording (of the meeting: running, stopped, cut, ..., deleted), export (something was
+ * given away as a file), refused (a message or call lacked the right), deleted (the room). */
 struct room_audit {
-    int64_t time_ms; /* since 1970 */
+    int64_t time_ms; /* since 1970, of the newest act */
     const char *action;
     const char *member, *name, *role; /* "": nobody of the room */
-    const char *detail;               /* a JSON object; where acts were gathered, with times, their number */
-    const char *result;               /* "done" or "refused" */
-    int64_t before, after;            /* revisions of the scene; -1: does not apply */
+    const char *address;              /* from which it was done; "": not known */
+    const char *detail; /* a JSON object; where acts were gathered, with times, their number, and since_ms, the time of
+                           the oldest. Of an item it has sha256, of its row as it is kept */
+    const char *result; /* "done" or "refused" */
+    int64_t before, after; /* revisions of the scene; -1: does not apply */
 };
 
 struct room_saved {
@@ -126,6 +128,8 @@ struct room_callbacks {
     void *context;
     /* NULL, or: parts of the room (enum room_part) that are to be kept have changed; called often */
     void (*kept_changed)(void *context, struct room *room, unsigned parts);
+    /* The address of the client at this connection, "": not known. NULL: no address is known. */
+    const char *(*address)(void *context, void *connection);
     /* A row for the audit, to be committed with what else of the room is written, or before. NULL: there is no audit.
      */
     void (*audited)(void *context, struct room *room, const struct room_audit *row);
@@ -242,9 +246,9 @@ const cJSON *room_scene(const struct room *room, uint32_t *revision);
 /* The scene with the override of this view document, which need not belong to a view of the room. room_scene must not
  * be NULL. Returns the caller's document, or NULL with problem. */
 NODISCARD cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem);
-/* caller: as member in room_call_may. */
-NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, int64_t now_us,
-                                struct problem *problem);
+/* caller: as member in room_call_may; address: as in room_audit_call. */
+NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, const char *address,
+                                int64_t now_us, struct problem *problem);
 /* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */
 NODISCARD cJSON *room_document(const struct room *room);
 /* The same of a room that is not in memory: without members, and with asleep true. */
@@ -259,10 +263,13 @@ NODISCARD bool room_call_may(const struct room *room, const char *member, enum w
 /* Makes a link; token gets 32 digits and a final zero. False with problem limit. */
 NODISCARD bool room_link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
                                 int64_t now_us, char token[33], struct problem *problem);
+/* The eight digits that name the link of this token in the audit. */
+void room_link_mark(const char *token, char mark[9]);
 size_t room_n_connected(const struct room *room);
-/* Records what a call over HTTP does in this room; member as in room_call_may. detail is taken. */
-void room_audit_call(struct room *room, const char *member, const char *action, cJSON *detail, bool is_refused,
-                     int64_t now_us);
+/* Records what a call over HTTP does in this room; member as in room_call_may; address: the client's, "": not known.
+ * detail is taken. */
+void room_audit_call(struct room *room, const char *member, const char *address, const char *action, cJSON *detail,
+                     bool is_refused, int64_t now_us);
 /* The revision of the plan's files has become known, or is another one; what is written of the record from then on
  * stands under it. "": it is not known, and nothing of the record is written. */
 void room_plan_revision(struct room *room, const char *revision);

@@ -109,6 +109,7 @@ struct member {
     char id[64], name[161], secret[SECRET_TEXT]; /* secret "": only its hash is known until it comes back */
     unsigned char secret_hash[SECRET_HASH_BYTES];
     char person[257];
+    char address[46]; /* of its connection, also when that has ended; "": not known */
     enum wire_member_role role;
     int color;        /* color_rgb(color) */
     void *connection; /* NULL: away */
@@ -151,13 +152,14 @@ struct item { /* a note, a reply or a bookmark */
 };
 
 struct gathered { /* acts for the audit that are one row */
-    char action[24], key[64], member[64], name[161];
+    char action[24], key[64], member[64], name[161], address[46];
     enum wire_member_role role;
     bool is_refused;
     cJSON *detail; /* of the last */
     int64_t before, after;
     int64_t first_us, last_us;
-    unsigned n; /* acts that no row was made for yet */
+    int64_t since_ms, newest_ms; /* since 1970: of the first act that no row was made for yet, and of the last */
+    unsigned n;                  /* acts that no row was made for yet */
 };
 
 struct presence { /* one stay of a member */
@@ -211,6 +213,7 @@ struct room {
     int n_presences;
     unsigned n_presences_dropped;
     const struct member *caller;  /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */
+    const char *caller_address;   /* and from where; NULL: no call */
     uint32_t n_named;             /* members ever made, for ids */
     struct item *items;           /* oldest first */
     size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */

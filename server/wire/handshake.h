@@ -10,5 +10,6 @@ struct handshake {
     char key[25];                          /* Sec-WebSocket-Key */
     char host[HANDSHAKE_MAX_HOST + 1];     /* "" when there is none */
     char origin[HANDSHAKE_MAX_ORIGIN + 1]; /* "" when there is none: programs send none */
+    char client[46];                       /* address of the client, behind trusted proxies; "": not known */
     size_t n_head;                         /* bytes of the whole head, which are still to be read from the socket */
 };

@@ -180,6 +180,7 @@ void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake, cons
         return;
     }
     connection->ws = ws;
+    memcpy(connection->client, handshake->client, sizeof connection->client);
     start(connection, socket, handshake->room_id, count);
 }
 
@@ -408,6 +409,11 @@ void ws_count(const struct ws *ws, struct ws_counters *counters)
 void ws_set_owner(struct ws_connection *connection, void *owner)
 {
     connection->owner = owner;
+}
+
+const char *ws_client(const struct ws_connection *connection)
+{
+    return connection->client;
 }
 
 int64_t ws_heard_us(const struct ws_connection *connection)

@@ -77,7 +77,8 @@ void ws_count(const struct ws *ws, struct ws_counters *counters);
 
 void ws_set_owner(struct ws_connection *connection, void *owner); /* a pointer of the caller's */
 void *ws_owner(const struct ws_connection *connection);
-int64_t ws_heard_us(const struct ws_connection *connection); /* when bytes came from the client, at last */
+const char *ws_client(const struct ws_connection *connection); /* its address; "": not known */
+int64_t ws_heard_us(const struct ws_connection *connection);   /* when bytes came from the client, at last */
 void ws_send_text(struct ws_connection *connection, const char *text);
 /* Replaces a waiting text with the same key of which nothing was sent. Texts of ws_send_text go first. */
 void ws_send_latest(struct ws_connection *connection, uint32_t key, const char *text);

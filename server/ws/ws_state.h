@@ -58,6 +58,7 @@ struct ws_connection { /* lives as long as its socket */
     struct ws_connection *next, *previous;
     int fd;
     void *owner;
+    char client[46]; /* as in struct handshake */
     struct ws_count count;
     enum state state;
     int64_t opened_us, heard_us, close_by_us;

@@ -52,9 +52,11 @@ test('what members and calls do is on the disk, who did it, and at which revisio
 
   const link = (await call(`${api}/links`, 'POST', { role: 'observer', one_use: true }, ann.headers)).json;
   const made = await rowWith('link-made');
-  assert.deepEqual([made.member, made.detail], ['m1', { role: 'observer', expires_s: 86400, one_use: true }]);
+  assert.match(made.detail.link, /^[0-9a-f]{8}$/);
+  assert.deepEqual([made.member, made.address, made.detail], ['m1', '127.0.0.1', { link: made.detail.link, role: 'observer', expires_s: 86400, one_use: true }]);
   const eve = await enter({ name: 'Eve', link: link.token });
-  assert.equal((await rowWith('link')).name, 'Eve');
+  const used = await rowWith('link');
+  assert.deepEqual([used.name, used.address, used.detail.link], ['Eve', '127.0.0.1', made.detail.link]);
   assert.ok(!JSON.stringify(onDisk()).includes(link.token));
 
   eve.send({ type: 'scene.patch', input: 1, patch: {} });
@@ -84,6 +86,17 @@ test('what members and calls do is on the disk, who did it, and at which revisio
   assert.equal((await call(`${daemon.url}/api/v1/plans/phantom/render`, 'POST', {})).status, 200);
   const outside = await rowWith('export', (row) => row.room === '');
   assert.deepEqual([outside.plan, outside.member, outside.detail.what], ['phantom', '', 'picture']);
+});
+
+test('calls that differ are rows of their own: a link for presenters between two for observers', async () => {
+  const api = `${daemon.url}/api/v1/rooms/${room}`;
+  const ann = await enter({ name: 'Ada', member: clients[0].welcome.member, secret: clients[0].welcome.secret });
+  const before = onDisk().filter(({ action }) => action === 'link-made').length;
+  const roles = ['observer', 'presenter', 'observer'];
+  for (const role of roles) assert.equal((await call(`${api}/links`, 'POST', { role }, ann.headers)).status, 201);
+  const rows = await until(() => onDisk().filter(({ action }) => action === 'link-made').slice(before), ({ length }) => length >= roles.length);
+  assert.deepEqual(rows.map(({ detail }) => detail.role), roles);
+  assert.equal(new Set(rows.map(({ detail }) => detail.link)).size, roles.length);
 });
 
 test('what the page makes by itself is recorded before it is made: who, what, its name, and the revision of the files', async () => {

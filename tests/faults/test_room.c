@@ -119,7 +119,7 @@ static void patch_scene(void *context, struct outcome *outcome)
     uint32_t before, after;
     char *old = json_write(room_scene(world->fake.room, &before));
     faults_go_on();
-    outcome->is_done = room_patch_scene(world->fake.room, patch, NULL, world->fake.now_us, &outcome->problem);
+    outcome->is_done = room_patch_scene(world->fake.room, patch, NULL, "", world->fake.now_us, &outcome->problem);
     faults_pause();
     (void)json_no_memory(NULL, "what the fake renderer keeps");
     char *now = json_write(room_scene(world->fake.room, &after));

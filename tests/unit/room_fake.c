@@ -97,6 +97,7 @@ static void item_changed(void *context, struct room *room, const char *row, cons
 static void audited(void *context, struct room *room, const struct room_audit *row)
 {
     struct fake_room *fake = context;
+    (void)snprintf(fake->addresses[fake->n_audited % 16], 46, "%s", row->address);
     char *text = fake->audit[fake->n_audited++ % 16];
     (void)room;
     (void)snprintf(text, sizeof fake->audit[0], "%s %s %s %s %lld %lld", row->action, row->member, row->result,

@@ -33,9 +33,10 @@ struct fake_room {
     size_t n_requests;
     size_t n_scenes;
     uint32_t told_revision;
-    char kept[8][4096];   /* rows of the newest calls of item_changed, "" for deleted ones; call n at n % 8 */
-    size_t n_kept;        /* such calls */
-    char audit[16][1400]; /* "action member result detail before after", row n at n % 16 */
+    char kept[8][4096];     /* rows of the newest calls of item_changed, "" for deleted ones; call n at n % 8 */
+    size_t n_kept;          /* such calls */
+    char audit[16][1400];   /* "action member result detail before after", row n at n % 16 */
+    char addresses[16][46]; /* of the rows */
     size_t n_audited;
     bool audit_is_full;
     const char *missing;     /* of pictures drawn from now on, as JSON; NULL: nothing */

@@ -1,5 +1,6 @@
 /* What a room records, what it gathers into one row, and what it refuses while nothing can be recorded. Ann enters
  * first, with the role of presenter. */
+#include "server/auth/digest.h"
 #include "tests/unit/room_set_up.h"
 
 /* The newest row but `back`, as "action member result detail before after". */
@@ -50,7 +51,8 @@ static void a_gesture_is_one_row_with_the_revisions_around_it(void **state)
     assert_int_equal(fake.n_audited, before);
     fake_pass(&fake, ROOM_AUDIT_QUIET_MS);
     assert_int_equal(fake.n_audited, before + 1);
-    assert_string_equal(row(0), "weights m1 done {\"blood_ppm\":59,\"times\":40} 1 41");
+    assert_true(strncmp(row(0), "weights m1 done {\"blood_ppm\":59,\"times\":40,\"since_ms\":", 54) == 0);
+    assert_non_null(strstr(row(0), "} 1 41"));
     scene(&ann, "{\"dose\":{\"weights\":{\"brain\":{\"cbe\":1.3}}}}");
     fake_pass(&fake, ROOM_AUDIT_QUIET_MS);
     assert_non_null(strstr(row(0), "weights m1 done {\"weights\":{\"brain\":{"));
@@ -97,7 +99,8 @@ static void drafts_are_made_changed_and_reset(void **state)
     scene(&ann, "{\"beam\":{\"draft\":{\"enabled\":false}}}"); /* first what came before */
     assert_int_equal(fake.n_audited, before + 3);
     assert_true(strncmp(row(1), "draft-changed m1 done {", 23) == 0);
-    assert_non_null(strstr(row(1), "\"times\":10} 2 12"));
+    assert_non_null(strstr(row(1), "\"times\":10,\"since_ms\":"));
+    assert_non_null(strstr(row(1), "} 2 12"));
     assert_string_equal(row(0), "draft-reset m1 done {} 12 13");
 }
 
@@ -113,7 +116,7 @@ static void what_lacks_the_right_is_recorded_once_and_then_counted(void **state)
     assert_true(strncmp(row(0), "refused m2 refused {\"what\":\"scene.patch\",\"why\":\"", 48) == 0);
     fake_pass(&fake, ROOM_AUDIT_QUIET_MS);
     assert_int_equal(fake.n_audited, before + 2);
-    assert_non_null(strstr(row(0), "\"times\":49}"));
+    assert_non_null(strstr(row(0), "\"times\":49,\"since_ms\":"));
     fake_say(&fake, &ben, "{\"type\":\"control.lock\",\"locked\":true}"); /* the role */
     assert_true(strncmp(row(0), "refused m2 refused {\"what\":\"control.lock\"", 40) == 0);
     fake_say(&fake, &ben, "{\"type\":\"view.close\",\"view\":9}"); /* wrong, not forbidden */
@@ -129,10 +132,50 @@ static void control_and_calls_are_recorded(void **state)
     assert_string_equal(row(0), "control m1 done {\"act\":\"given\",\"member\":\"m2\"} -1 -1");
     char caller[80];
     (void)snprintf(caller, sizeof caller, "m2 %s", heard(&ben, "welcome", "secret"));
-    room_audit_call(fake.room, caller, "export", NULL, false, fake.now_us);
+    room_audit_call(fake.room, caller, "192.0.2.7", "export", NULL, false, fake.now_us);
     assert_string_equal(row(0), "export m2 done {} -1 1");
-    room_audit_call(fake.room, "m2 00000000000000000000000000000000", "export", NULL, false, fake.now_us);
+    room_audit_call(fake.room, "m2 00000000000000000000000000000000", "", "export", NULL, false, fake.now_us);
     assert_string_equal(row(0), "export  done {} -1 1");
+}
+
+/* Two links are made between two others within the second in which equal acts are gathered. */
+static void acts_that_differ_are_rows_of_their_own(void **state)
+{
+    static const char *const roles[] = { "observer", "presenter", "observer", "observer" };
+    (void)state;
+    const size_t before = fake.n_audited;
+    for (size_t i = 0; i < 4; i++) {
+        cJSON *detail = cJSON_CreateObject();
+        cJSON_AddStringToObject(detail, "role", roles[i]);
+        room_audit_call(fake.room, NULL, i == 3 ? "192.0.2.8" : "192.0.2.7", "link-made", detail, false, fake.now_us);
+    }
+    room_audit_flush(fake.room, fake.now_us);
+    assert_int_equal(fake.n_audited, before + 4);
+    assert_non_null(strstr(row(2), "{\"role\":\"presenter\"}"));
+    assert_string_equal(fake.addresses[(before + 0) % 16], "192.0.2.7");
+    fake_hello(&fake, &ann);
+    const size_t at = fake.n_audited;
+    scene(&ann, "{\"dose\":{\"blood_ppm\":30}}"); /* two fields, each in turn */
+    scene(&ann, "{\"dose\":{\"factor\":2}}");
+    scene(&ann, "{\"dose\":{\"blood_ppm\":31}}");
+    room_audit_flush(fake.room, fake.now_us);
+    assert_int_equal(fake.n_audited, at + 2);
+    assert_non_null(strstr(row(1), "{\"blood_ppm\":31,\"times\":2"));
+    assert_true(strncmp(row(0), "weights m1 done {\"factor\":2} ", 29) == 0);
+}
+
+/* The hash is that of the row as item_changed gave it. */
+static void what_is_put_and_deleted_stands_there_with_its_hash(void **state)
+{
+    (void)state;
+    char hex[DIGEST_TEXT];
+    fake_hello(&fake, &ann);
+    fake_say(&fake, &ann, "{\"type\":\"item.put\",\"kind\":\"note\",\"body\":{\"text\":\"Edge?\"}}");
+    assert_true(strncmp(row(0), "note m1 done {\"item\":\"i-", 24) == 0);
+    digest_text(fake.kept[(fake.n_kept - 1) % 8], hex);
+    assert_non_null(strstr(row(0), hex));
+    fake_say(&fake, &ann, "{\"type\":\"item.delete\",\"item\":\"%s\"}", heard(&ann, "item", "id"));
+    assert_non_null(strstr(row(0), "\"version\":1,\"deleted\":true} "));
 }
 
 static void a_long_detail_is_left_out_and_said(void **state)
@@ -143,8 +186,10 @@ static void a_long_detail_is_left_out_and_said(void **state)
     memset(text, 'x', sizeof text - 1);
     text[sizeof text - 1] = 0;
     cJSON_AddStringToObject(detail, "text", text);
-    room_audit_call(fake.room, NULL, "export", detail, false, fake.now_us);
-    assert_string_equal(row(0), "export  done {\"left_out_bytes\":1035} -1 1"); /* 1024 and {"text":""} */
+    room_audit_call(fake.room, NULL, "", "export", detail, false, fake.now_us);
+    /* 1024 and {"text":""}; hashlib.sha256(b'{"text":"' + b'x' * 1024 + b'"}').hexdigest() */
+    assert_string_equal(row(0), "export  done {\"left_out_bytes\":1035,\"sha256\":"
+                                "\"14383360d0a651d8fa415ec15f601ef6b818a0affdd5d8a9e602df732f53328a\"} -1 1");
 }
 
 static void without_place_nothing_that_is_recorded_happens(void **state)
@@ -183,6 +228,8 @@ int main(void)
         ROOM_TEST(drafts_are_made_changed_and_reset),
         ROOM_TEST(what_lacks_the_right_is_recorded_once_and_then_counted),
         ROOM_TEST(control_and_calls_are_recorded),
+        ROOM_TEST(acts_that_differ_are_rows_of_their_own),
+        ROOM_TEST(what_is_put_and_deleted_stands_there_with_its_hash),
         ROOM_TEST(a_long_detail_is_left_out_and_said),
         ROOM_TEST(without_place_nothing_that_is_recorded_happens),
     };
