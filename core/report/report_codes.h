@@ -44,6 +44,8 @@
       "Check the rescale slope and intercept.") \
     X("dicom.unreadable", "A DICOM file cannot be read.", \
       "Check or copy the file again; the rest is shown without it.") \
+    X("part.unreadable", "A part of the plan cannot be read.", \
+      "Check or copy the file again; the rest is shown without it.") \
     X("dicom.not-used", "DICOM objects of a kind that has no place in a plan.", \
       "Nothing; they are left out: the line says what they are.") \
     X("dicom.bad-number", "A value of a DICOM file is no number, or cannot be what it stands for.", \
