@@ -11,7 +11,7 @@
 #define REPEATED_SHARE 0.8 /* least area of the smaller, as a share of the larger */
 #define ON_OUTLINE_MM 0.1  /* every point of a coarser copy is this near to the outline */
 #define UNION_MM 0.002     /* overlaps narrower than this, on the mean of the length, are rounding */
-enum { LINES = 128 };
+enum { LINES = 128, BUCKETS = 128, LEAST_BUCKETED = 64 };
 
 enum relation { APART, OVERLAPPING, CONTAINING, REPEATED };
 
@@ -23,6 +23,8 @@ struct outline {
     double low[2], high[2];
     double length_mm, mm2;
     size_t layer;
+    uint32_t *starts; /* [BUCKETS + 1] edges by bucket of v, in `edges`; NULL: all are looked at */
+    uint32_t *edges;  /* numbers of end points */
     uint32_t depth;
     bool is_measured, is_left_out;
 };
@@ -49,23 +51,68 @@ static int by_value(const void *a, const void *b)
     return one < other ? -1 : one > other;
 }
 
+static uint32_t bucket_of(const struct outline *outline, double v)
+{
+    double at = (v - outline->low[1]) / (outline->high[1] - outline->low[1]) * BUCKETS;
+    return !(at > 0) ? 0 : at >= BUCKETS ? BUCKETS - 1 : (uint32_t)at;
+}
+
+static const double *start_of(const struct outline *outline, size_t edge)
+{
+    return outline->uv + 2 * (edge > 0 ? edge - 1 : outline->n - 1);
+}
+
+/* Sorts the edges of a long outline into buckets, unless many edges are as high as the outline. */
+static bool sort_edges(struct outline *outline, struct error *err)
+{
+    uint32_t counts[BUCKETS + 2] = { 0 };
+    size_t n = 0;
+    if (outline->n < LEAST_BUCKETED || outline->n > CONTOUR_MAX_POINTS)
+        return true;
+    for (size_t i = 0; i < outline->n; i++) {
+        uint32_t a = bucket_of(outline, start_of(outline, i)[1]), b = bucket_of(outline, outline->uv[2 * i + 1]);
+        for (uint32_t k = a < b ? a : b; k <= (a < b ? b : a); k++)
+            counts[k + 2]++;
+        n += 1 + (a < b ? b - a : a - b);
+    }
+    if (n > 8 * outline->n + BUCKETS)
+        return true;
+    for (size_t k = 2; k < BUCKETS + 2; k++)
+        counts[k] += counts[k - 1];
+    outline->starts = mem_array(BUCKETS + 1 + n, sizeof *outline->starts, UINT64_MAX, err);
+    if (!outline->starts)
+        return false;
+    outline->edges = outline->starts + BUCKETS + 1;
+    for (size_t i = 0; i < outline->n; i++) {
+        uint32_t a = bucket_of(outline, start_of(outline, i)[1]), b = bucket_of(outline, outline->uv[2 * i + 1]);
+        for (uint32_t k = a < b ? a : b; k <= (a < b ? b : a); k++)
+            outline->edges[counts[k + 1]++] = (uint32_t)i;
+    }
+    memcpy(outline->starts, counts, (BUCKETS + 1) * sizeof *counts);
+    return true;
+}
+
 /* The sorted positions where the line v crosses an outline. */
-static size_t crossings_at(const struct outline *outline, double v, double *out)
+static size_t crossings_at(const struct outline *outline, double v, double *out, uint64_t *n_steps)
 {
     size_t n = 0;
     if (v < outline->low[1] || v >= outline->high[1])
         return 0;
-    const double *from = outline->uv + 2 * (outline->n - 1);
-    for (size_t i = 0; i < outline->n; i++) {
-        const double *to = outline->uv + 2 * i, *low = from[1] < to[1] ? from : to, *high = from[1] < to[1] ? to : from;
+    uint32_t bucket = outline->starts ? bucket_of(outline, v) : 0;
+    size_t first = outline->starts ? outline->starts[bucket] : 0,
+           end = outline->starts ? outline->starts[bucket + 1] : outline->n;
+    for (size_t at = first; at < end; at++) {
+        size_t i = outline->starts ? outline->edges[at] : at;
+        const double *from = start_of(outline, i), *to = outline->uv + 2 * i;
+        const double *low = from[1] < to[1] ? from : to, *high = from[1] < to[1] ? to : from;
         if (low[1] <= v && v < high[1])
             out[n++] = low[0] + (high[0] - low[0]) * ((v - low[1]) / (high[1] - low[1]));
-        from = to;
     }
+    *n_steps += end - first + n;
     if (n == 2 && out[0] > out[1]) {
-        double first = out[0];
+        double last = out[0];
         out[0] = out[1];
-        out[1] = first;
+        out[1] = last;
     } else if (n > 2) {
         qsort(out, n, sizeof *out, by_value);
     }
@@ -99,22 +146,25 @@ static double line_at(const struct outline *outline, int line)
     return outline->low[1] + (outline->high[1] - outline->low[1]) * (line + 0.5) / LINES;
 }
 
-static void measure(struct plane_work *work, struct outline *outline)
+static bool measure(struct plane_work *work, struct outline *outline, struct error *err)
 {
     if (outline->is_measured)
-        return;
+        return true;
+    if (!sort_edges(outline, err))
+        return false;
     double sum = 0, pitch_mm = (outline->high[1] - outline->low[1]) / LINES;
-    for (int line = 0; line < LINES; line++)
-        sum +=
-            inside_mm(work->crossings[0], crossings_at(outline, line_at(outline, line), work->crossings[0])) * pitch_mm;
+    for (int line = 0; line < LINES; line++) {
+        size_t n = crossings_at(outline, line_at(outline, line), work->crossings[0], work->n_steps);
+        sum += inside_mm(work->crossings[0], n) * pitch_mm;
+    }
     outline->mm2 = sum;
-    *work->n_steps += LINES * (uint64_t)outline->n;
     outline->length_mm = 0;
     for (size_t i = 0; i < outline->n; i++) {
         const double *a = outline->uv + 2 * i, *b = outline->uv + 2 * (i + 1 < outline->n ? i + 1 : 0);
         outline->length_mm += hypot(b[0] - a[0], b[1] - a[1]);
     }
     outline->is_measured = true;
+    return true;
 }
 
 static double distance_mm(const double *point, const double *a, const double *b)
@@ -145,11 +195,11 @@ static enum relation compare(struct plane_work *work, struct outline *outer, str
     double shared = 0, pitch_mm = (inner->high[1] - inner->low[1]) / LINES;
     for (int line = 0; line < LINES; line++) {
         double v = line_at(inner, line);
-        size_t n_outer = crossings_at(outer, v, work->crossings[0]);
-        size_t n_inner = n_outer > 0 ? crossings_at(inner, v, work->crossings[1]) : 0;
+        size_t n_outer = crossings_at(outer, v, work->crossings[0], work->n_steps);
+        size_t n_inner = n_outer > 0 ? crossings_at(inner, v, work->crossings[1], work->n_steps) : 0;
         shared += shared_mm(work->crossings[0], n_outer, work->crossings[1], n_inner) * pitch_mm;
     }
-    *work->n_steps += LINES * (uint64_t)(outer->n + inner->n);
+    *work->n_steps += LINES;
     double alone_outer = fmax(0, outer->mm2 - shared), alone_inner = fmax(0, inner->mm2 - shared);
     bool is_alike = inner->mm2 >= REPEATED_SHARE * outer->mm2;
     if (is_alike && alone_outer + alone_inner <= REPEATED_MM * (outer->length_mm + inner->length_mm) / 2)
@@ -189,8 +239,8 @@ static int by_left_side(const void *a, const void *b)
 /* Compares two outlines and keeps their relation unless they are apart. */
 static bool relate(struct plane_work *work, struct outline *a, struct outline *b, struct error *err)
 {
-    measure(work, a);
-    measure(work, b);
+    if (!measure(work, a, err) || !measure(work, b, err))
+        return false;
     struct outline *outer = a->mm2 >= b->mm2 ? a : b, *inner = a->mm2 >= b->mm2 ? b : a;
     enum relation relation = compare(work, outer, inner);
     struct pair pair = { (size_t)(outer - work->outlines), (size_t)(inner - work->outlines), relation };
@@ -398,6 +448,8 @@ static bool combine_plane(struct contour_combining *combining, const struct cont
             project(&work.outlines[i], in_order[i], uv + 2 * at, u, v);
         is_combined = combine_outlines(combining, &work, n_members, err);
     }
+    for (size_t i = 0; work.outlines && i < n; i++)
+        free(work.outlines[i].starts);
     free(work.crossings[0]);
     free(work.outlines);
     free(work.pairs);

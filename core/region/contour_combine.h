@@ -32,7 +32,7 @@ struct contour_combining {
     size_t n_overlap_planes; /* planes on which contours overlap by more than CONTOUR_SAME_MM along their outline */
 };
 
-#define CONTOUR_MAX_COMPARED ((uint64_t)1 << 30) /* steps of comparing contours, per filling */
+#define CONTOUR_MAX_COMPARED ((uint64_t)1 << 28) /* steps of comparing contours, per filling */
 #define CONTOUR_SAME_MM 0.05 /* a contour that leaves another by less than this, on the mean of its length, is inside \
                               */
 

@@ -40,7 +40,7 @@ enum {
 struct reading_roi {
     struct rtstruct_roi roi;
     size_t n_points_alone, n_open; /* contours of a single point, and open ones: they enclose nothing */
-    size_t n_miscounted, n_uneven;
+    size_t n_miscounted, n_uneven, n_twice_round;
     bool is_unnamed;
 };
 
@@ -147,6 +147,19 @@ static enum contour_kind kind_of(const struct dicom_item *item, size_t n_points)
     return strcmp(type, "POINT") == 0 ? KIND_POINT : KIND_OPEN;
 }
 
+/* Number of points of the first round if a contour goes round twice over the same points; else n. Even-odd would fill
+ * nothing of the whole. */
+static size_t first_round(const double *xyz, size_t n)
+{
+    const double same_mm = 0.05;
+    if (n < 6 || n % 2 != 0)
+        return n;
+    for (size_t i = 0; i < 3 * (n / 2); i++)
+        if (!(fabs(xyz[i] - xyz[i + 3 * (n / 2)]) <= same_mm))
+            return n;
+    return n / 2;
+}
+
 static bool read_contour(struct reading *reading, struct reading_roi *roi, const struct dicom_item *item,
                          struct contour *contour, struct error *err)
 {
@@ -166,6 +179,9 @@ static bool read_contour(struct reading *reading, struct reading_roi *roi, const
     roi->n_open += kind == KIND_OPEN;
     if ((kind != KIND_CLOSED && kind != KIND_XOR) || n_points == 0)
         return true;
+    size_t n_once = first_round(reading->values, n_points);
+    roi->n_twice_round += n_once < n_points;
+    n_points = n_once;
     contour->points_lps_mm = mem_array(3 * n_points, sizeof *contour->points_lps_mm, UINT64_MAX, err);
     if (!contour->points_lps_mm)
         return false;
@@ -273,6 +289,9 @@ static void report_roi(const struct reading *reading, const struct reading_roi *
             reading->report, REPORT_WARNING, "region.contours-count", reading->where,
             "\"%s\": %zu contours have another number of points than the file says; the points there are were taken.",
             name, roi->n_miscounted);
+    if (roi->n_twice_round > 0)
+        report_add(reading->report, REPORT_WARNING, "region.contours-left-out", reading->where,
+                   "\"%s\": %zu contours go round twice; the second round was left out.", name, roi->n_twice_round);
     if (roi->n_uneven > 0)
         report_add(reading->report, REPORT_WARNING, "region.contours-count", reading->where,
                    "\"%s\": %zu contours have coordinates that are not three for each point; the last were left out.",
