@@ -2,6 +2,7 @@
 # (the page) and build/demo (the demo plan).
 #   make            the programs and the page               make run     install what is missing, build, demo plan, serve
 #   make test       every kind of test (tests/README.md)    make test-deep  the long ones: sanitizers, clang, fuzzing
+#   make check      the quick ones for work: lint, units of C and of the page, in about a minute
 #   make install PREFIX=/usr/local DESTDIR=
 #   make test-unit test-render test-faults test-api test-web test-install test-long  one suite
 #   make bench  lint  fuzz  cover  clean
@@ -243,9 +244,22 @@ LONG_NODE := tests/api/kills.test.mjs tests/api/replayed_meeting.test.mjs tests/
     regions snapshot start touch tracks upload views)
 # What a daemon does under load, and how it shares the cores, is seen without other tests beside it; the rest of the api tests wait for most of their time.
 ALONE_NODE := tests/api/burst.test.mjs tests/api/fair.test.mjs
+# All of them from one queue: what is left of one suite runs beside the next. On a page three things wait for each other, so few of these run at once.
+API_NODE := $(filter-out $(DEEP_NODE) $(ALONE_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs)))
+PAGE_UNITS := $(sort $(wildcard tests/web/unit/*.test.mjs))
+.PHONY: test-queue check
+test-queue: all demo $(unit_BIN) $(render_BIN) $(faults_BIN)
+	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
+	SLOTS=$(TWICE) $(NODE) tests/queue.mjs web:$$(($(PARALLEL) + 1)) $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs))) -- api $(API_NODE) \
+	    -- faults:$(PARALLEL) $(faults_BIN) -- lint:1 tests/lint.sh -- install:1 tests/install.sh -- render:$(PARALLEL) $(render_BIN) \
+	    -- unit $(unit_BIN) -- page-units $(PAGE_UNITS) && [ $$alone = 0 ]
+# What takes longest of the units is for make test.
+SLOW_UNITS := api_routes gamma gamma_oracle plan_jobs recording replay room_following room_recording smooth smooth_slices surface_oracle unpack
+check: all $(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(unit_BIN))
+	$(Q)SLOTS=$(TWICE) $(NODE) tests/queue.mjs lint:1 tests/lint.sh -- unit $(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(unit_BIN)) -- page-units $(PAGE_UNITS)
 test-api: all demo
 	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
-	TEST_CONCURRENCY=$(TWICE) tests/run_node.sh api $(filter-out $(DEEP_NODE) $(ALONE_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs))) && [ $$alone = 0 ]
+	TEST_CONCURRENCY=$(TWICE) tests/run_node.sh api $(API_NODE) && [ $$alone = 0 ]
 # A page waits for its daemon about half of the time.
 test-web: all demo
 	$(Q)TEST_CONCURRENCY=$$(($(PARALLEL) + 1)) tests/run_node.sh web $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs)))

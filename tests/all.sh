@@ -33,17 +33,26 @@ suite() { # suite NAME MAKE-ARGUMENT...
     total_passed=$((total_passed + passed)) total_failed=$((total_failed + failed)) total_skipped=$((total_skipped + skipped))
 }
 
+# All other suites of `make test` at once, from one queue: a row for each.
+queue() {
+    local log=$logs/queue.log start=$SECONDS status passed failed skipped name any=0
+    echo "== all suites from one queue"
+    ${MAKE:-make} --no-print-directory "$jobs" test-queue 2>&1 </dev/null | tee "$log" | grep -vE '^[^: ]+: [0-9]+ passed, [0-9]+ failed, [0-9]+ skipped$'
+    status=${PIPESTATUS[0]}
+    while read -r name passed failed skipped; do
+        rows+=("$(printf '%-28s %6d passed %4d failed %4d skipped' "$name" "$passed" "$failed" "$skipped")")
+        total_passed=$((total_passed + passed)) total_failed=$((total_failed + failed)) total_skipped=$((total_skipped + skipped))
+        any=1
+    done < <(sed -nE 's/^([^: ]+): ([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$/\1 \2 \3 \4/p' "$log")
+    rows+=("$(printf '%-28s %47d s' "(these together)" $((SECONDS - start)))")
+    [ $any = 1 ] && { [ "$status" = 0 ] || [ "$total_failed" -gt 0 ]; } || { total_failed=$((total_failed + 1)); tail -n 40 "$log"; }
+}
+
 programs="unit-programs render-programs faults-programs"
 case $group in
 test)
     suite build-gcc "$jobs" WERROR=1 all $programs bench-objects
-    suite lint lint
-    suite unit "$jobs" test-unit
-    suite render "$jobs" test-render
-    suite faults "$jobs" test-faults
-    suite api "$jobs" test-api
-    suite web "$jobs" test-web
-    suite install "$jobs" test-install
+    queue
     ;;
 deep)
     # clang's warnings do not depend on how it optimises

@@ -1,6 +1,8 @@
 #pragma once
 /* Whom and what a part of a plan belongs to, as its files say: patient, frame of reference, study, series, treatment
  * plan, structure set. Plain data, filled while loading. Judges nothing: core/plan/fit.h does. */
+#include <stdint.h>
+
 #include "core/math/vec.h"
 
 enum {

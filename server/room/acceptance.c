@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "server/room/acceptance_body.h"
 #include "server/auth/digest.h"
+#include "server/room/acceptance_body.h"
 #include "server/room/audit.h"
 #include "server/room/body_check.h"
 #include "server/room/item_list.h"

@@ -11,7 +11,6 @@
 #include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 #include "server/wire/document.h"
-#include "server/wire/plan_origins.h"
 
 static cJSON *number(double value)
 {
@@ -396,7 +395,6 @@ static cJSON *write_plan(const struct plan *plan)
     json_add(object, "curves", curves);
     json_add(object, "preferences", preferences_object(&plan->preferences));
     json_add(object, "report", report_object(&plan->report));
-    plan_origins_add(object, plan);
     return object;
 }
 

@@ -1,11 +1,10 @@
 // A beam on the page and its draft: rows, read-outs, dragging in panes of every kind, keys, numbers, the bar for everybody, compare, keep, export;
 // the scene on the server says what happened, and the matrix of each picture where it has to.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { after, before, describe, it } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, header, missing, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, header, missing, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 
 const planned = { entry: [0, 0, 88], target: [0, 0, 10] }; // of the demo phantom: straight down the patient's axis
@@ -234,7 +233,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
       await bar('Export').click();
       await page.locator('.beam-export button:not([disabled])', { hasText: words }).waitFor();
       const [file] = await Promise.all([page.waitForEvent('download'), page.locator('.beam-export button', { hasText: words }).click()]);
-      return readFileSync(await file.path(), 'utf8');
+      return (await bytesOf(file)).toString();
     };
     const text = await save('SERA beam card');
     assert.match(text, /^ +1\.0000000E\+01 +0\.0000000E\+00 /m); // distance in cm, φ

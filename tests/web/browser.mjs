@@ -21,12 +21,19 @@ export const later = long ? it : () => {};
 /** What these tests need and is not there: they skip then. */
 export const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));
 
+/** A browser that several test files use one after the other: what BEAMROOM_BROWSER names. */
+export async function startBrowser() {
+  const { chromium } = await import('playwright-core');
+  return chromium.launchServer({ executablePath: chromiumPath, headless: true, args: flags });
+}
+
 /** @param {{plans?: string[], args?: string[], data?: string}} how data: a state folder, kept afterwards */
 export async function startWorld({ plans = [], args = [], data } = {}) {
   mkdirSync(artifacts, { recursive: true });
   const daemon = await startDaemon({ plans: [demo, ...plans], args, data });
   const { chromium } = await import('playwright-core');
-  const browser = await chromium.launch({ executablePath: chromiumPath, headless: true, args: flags });
+  const shared = process.env.BEAMROOM_BROWSER;
+  const browser = await (shared ? chromium.connect(shared) : chromium.launch({ executablePath: chromiumPath, headless: true, args: flags }));
   const errors = [];
   const refused = []; // what the content security policy refused
   return {
@@ -52,7 +59,7 @@ export async function startWorld({ plans = [], args = [], data } = {}) {
       return json.scene ?? json;
     },
     async stop() {
-      await browser.close();
+      await browser.close(); // of a shared one, the connection and the pages that came by it
       await this.daemon.stop(); // a test may have started another one
     },
   };
@@ -65,5 +72,12 @@ export const full = (page, view = 1) => page.waitForFunction((n) => globalThis.b
 export const newer = (page, view, revision) => page.waitForFunction(([n, old]) => globalThis.beamroom.stats().headers[n].scene_revision > old, [view, revision]);
 
 export const header = (page, view) => page.evaluate((n) => globalThis.beamroom.stats().headers[n], view);
+
+/** What was downloaded. @param {import('playwright-core').Download} download @returns {Promise<Buffer>} */
+export async function bytesOf(download) {
+  const parts = [];
+  for await (const part of await download.createReadStream()) parts.push(part);
+  return Buffer.concat(parts);
+}
 
 export const shoot = (page, name) => page.screenshot({ path: `${artifacts}/${name}.png` });

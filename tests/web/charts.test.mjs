@@ -1,10 +1,9 @@
 // Plots of dose: drawer, table twins, files, limits, print. Numbers come from doses with a closed form (dose_stub.mjs).
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { after, before, describe, it } from 'node:test';
 import { call } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, later, missing, once, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, later, missing, once, shoot, startWorld } from './browser.mjs';
 import { evenly, stubDose } from './dose_stub.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
@@ -31,7 +30,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
   const cells = (page, name) => page.locator(`[aria-label="${name}"] tbody tr`).evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent.trim())));
   const saved = async (page, click) => {
     const [download] = await Promise.all([page.waitForEvent('download'), click()]);
-    return { name: download.suggestedFilename(), text: readFileSync(await download.path(), 'utf8') };
+    return { name: download.suggestedFilename(), text: (await bytesOf(download)).toString() };
   };
 
   once('the code of the plots is loaded when they are first opened, by key V, and the drawer takes 220 px of the panes alone', async () => {

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, describe } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, later, missing, once, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, later, missing, once, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes } from './room_states.mjs';
 import { writeStrayDose } from './stray_dose.mjs';
@@ -236,7 +236,7 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     const row = page.locator('.dose-pins tbody tr').first();
     await shows(row, answer.value.toPrecision(3));
     const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.dose-head button', { hasText: 'CSV' }).click()]);
-    const lines = readFileSync(await download.path(), 'utf8').split('\r\n');
+    const lines = (await bytesOf(download)).toString().split('\r\n');
     assert.equal(lines.length, 4);
     assert.ok(lines[0].startsWith('pin,L_mm,P_mm,S_mm,region'));
     assert.ok(lines[1].includes(String(Number(answer.value.toPrecision(7)))), `${lines[1]} has no ${answer.value}`);

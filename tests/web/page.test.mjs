@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { call, demo, sleep } from '../api/daemon.mjs';
-import { full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
 
 /** In the browser: mean and spread of grey over a pane's picture, and a fingerprint of it. */
 const look = (page, view) => page.evaluate((n) => {
@@ -196,7 +196,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     for (const [at, ending, magic] of [[0, 'stl', 'Beamroom mm LPS tumour'], [1, 'ply', 'ply\n'], [2, 'glb', 'glTF']]) {
       const [download] = await Promise.all([page.waitForEvent('download'), links.nth(at).click()]);
       assert.equal(download.suggestedFilename(), `phantom-tumour.${ending}`);
-      assert.equal(readFileSync(await download.path()).subarray(0, magic.length).toString(), magic);
+      assert.equal((await bytesOf(download)).subarray(0, magic.length).toString(), magic);
     }
     await page.context().close();
   });
@@ -254,7 +254,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     assert.match(rows.find((row) => /Univels/.test(row)), /0\.00 %/, 'univels enclose exactly themselves');
     await shoot(page, 'compare');
     const [download] = await Promise.all([page.waitForEvent('download'), dialog.locator('button', { hasText: 'CSV' }).click()]);
-    assert.equal(readFileSync(await download.path(), 'utf8').trim().split('\n').length, 15);
+    assert.equal((await bytesOf(download)).toString().trim().split('\n').length, 15);
     await page.keyboard.press('Escape');
     await dialog.waitFor({ state: 'detached' });
     await page.context().close();

@@ -1,12 +1,12 @@
 // One planner's hour, from the start page to the picture that comes back, at each size of window the page is made for.
 import assert from 'node:assert/strict';
-import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { textOfPng } from '../../web/js/net/png.js';
 import { call, realData, until } from '../api/daemon.mjs';
-import { full, header, missing, newer, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, header, missing, newer, shoot, startWorld } from './browser.mjs';
 
 const sizes = {
   '1600x1000': { viewport: { width: 1600, height: 1000 } },
@@ -306,7 +306,7 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       await shot('menu');
       const [download] = await Promise.all([page.waitForEvent('download'), press(page.getByRole('menuitem', { name: 'Save the active pane as PNG' }))]);
       assert.equal(download.suggestedFilename(), `${subject.plan}-3d.png`);
-      const bytes = readFileSync(await download.path());
+      const bytes = await bytesOf(download);
       writeFileSync(`build/test-artifacts/hour-${size}-snapshot.png`, bytes);
       assert.ok(bytes.readUInt32BE(16) >= 1200, 'wide enough for paper');
       const kept = await scene();

@@ -1,10 +1,9 @@
 // The record of a review by two people: entries marked, a decision, a signature, there after a reload; exported and printed.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, missing, shoot, startWorld } from './browser.mjs';
 import { textOfPages } from './pdf_text.mjs';
 import { enter as enterAs } from './people.mjs';
 
@@ -74,7 +73,7 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   assert.equal(await check(ben, 'Constraints').getAttribute('data-state'), 'issue');
 
   const [download] = await Promise.all([ben.waitForEvent('download'), ben.getByRole('button', { name: 'JSON' }).click()]);
-  const saved = JSON.parse(readFileSync(await download.path(), 'utf8'));
+  const saved = JSON.parse((await bytesOf(download)).toString());
   assert.deepEqual([saved.format, saved.decisions[0].decision, saved.signatures[0].name], ['beamroom-record', 'accept-with-changes', 'B. Example']);
 
   await ann.getByRole('button', { name: 'Page to print' }).click();

@@ -1,12 +1,12 @@
 // Snapshots in the browser: saved, dropped on the page and shown again; the report to print, as PDF.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe } from 'node:test';
 import { bin, call } from '../api/daemon.mjs';
-import { full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, header, later, missing, newer, once, shoot, startWorld } from './browser.mjs';
 import { textOfPages } from './pdf_text.mjs';
 
 describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
@@ -30,7 +30,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
   const choose = (page, view) => page.locator(`#picture-${view}`).focus();
   const saved = async (page) => {
     const [download] = await Promise.all([page.waitForEvent('download'), menu(page, 'Save the active pane as PNG')]);
-    return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+    return { name: download.suggestedFilename(), bytes: await bytesOf(download) };
   };
   const drop = (page, bytes, name = 'picture.png') => page.evaluate(([data, as]) => {
     const transfer = new DataTransfer();

@@ -1,11 +1,11 @@
 // Plans that go up by being dropped on the page, while others look at the list, and go again.
 import assert from 'node:assert/strict';
-import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { call, demo, until } from '../api/daemon.mjs';
-import { full, later, missing, once, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, later, missing, once, shoot, startWorld } from './browser.mjs';
 
 describe('dropping plans', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -78,7 +78,7 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     await note.locator('text=no longer on this server').waitFor();
     await shoot(two, 'drop-ended');
     const [file] = await Promise.all([two.waitForEvent('download'), note.getByRole('button', { name: 'Save its notes as a file' }).click()]);
-    assert.match(readFileSync(await file.path(), 'utf8'), /^Notes of the room \S+ on .*\n\n1\. Reviewer 1, .*\n   Look at the rim again\n$/);
+    assert.match((await bytesOf(file)).toString(), /^Notes of the room \S+ on .*\n\n1\. Reviewer 1, .*\n   Look at the rim again\n$/);
     await note.locator('a', { hasText: 'All plans' }).click();
     await two.locator('.plans').waitFor();
     assert.deepEqual(await uploaded(), []);

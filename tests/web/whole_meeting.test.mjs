@@ -1,13 +1,13 @@
 // A meeting from the first link to the last view: three people in three browsers, through the crash of a renderer and the death of the
 // daemon. Screenshots stay in build/test-artifacts/.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { call, renderersOf, startDaemon, until } from '../api/daemon.mjs';
 import { onDisk } from '../api/on_disk.mjs';
-import { full, missing, newer, header, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, header, missing, newer, shoot, startWorld } from './browser.mjs';
 import { action, chip, enter, matrix, openRoster, row, says, showsAs, toast, turn } from './people.mjs';
 import { axialPoint, boxOf, mark, near, pointAt, project } from './places.mjs';
 
@@ -272,7 +272,7 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     await ben.getByRole('button', { name: 'Sign' }).click();
     await ann.locator('.record-lines').getByText('B. Example').waitFor();
     const [download] = await Promise.all([ann.waitForEvent('download'), ann.getByRole('button', { name: 'JSON' }).click()]);
-    const { decisions, signatures, notes, saved_views, present } = JSON.parse(readFileSync(await download.path(), 'utf8'));
+    const { decisions, signatures, notes, saved_views, present } = JSON.parse((await bytesOf(download)).toString());
     assert.deepEqual([decisions.map(({ decision, text }) => [decision, text]), signatures.map(({ name }) => name)], [[['accept', 'As shown']], ['B. Example']]);
     assert.deepEqual([notes.length, saved_views.length], [(await items('notes')).length, 1]);
     for (const name of ['Dr Ann', 'Ben', 'Cem']) assert.ok(present.some((stay) => stay.name === name), `${name} was present`);

@@ -5,6 +5,10 @@ import { load } from './page.mjs';
 
 const { exportFile, exportRows, printable, savePicture } = await load('panels/exports.js');
 
+// A saved file is let go of a minute later; the test does not wait for that.
+const { setTimeout } = globalThis;
+globalThis.setTimeout = (...given) => setTimeout(...given).unref();
+
 let made, said;
 beforeEach(() => { [made, said] = [[], []]; });
 globalThis.document = { createElement: () => ({ click() { made.push(this.download); } }), querySelector: () => ({}) };

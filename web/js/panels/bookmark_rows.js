@@ -2,7 +2,6 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { Bookmarks, bookmarksOf } from '../state/bookmarks.js';
-import { toldOfMerge } from '../state/saved_merge.js';
 import { icon } from './icons.js';
 import { name, treeRow } from './tree_row.js';
 
@@ -29,15 +28,14 @@ export async function attempt({ ui }, run, done = '') {
 }
 
 /** What of a saved view could not be shown, in a sentence; '' when it is whole. */
-const lost = ({ report, n_report: all }) => (all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}.` : '');
+const lost = ({ report, n_report: all }) => (all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}` : '');
 
-function told(world, opened, isQuiet = false) {
+function told(world, opened) {
   if (!opened) return;
-  const isReported = opened.n_report > 0;
-  const why = [lost(opened), toldOfMerge(opened.merge)].filter(Boolean).join(' ');
+  const why = lost(opened);
   const who = world.room.following.isPresenting.value ? '' : ' In your own view.';
-  if (why) world.ui.notify('warn', `“${opened.name}”: ${why}`, 'saved', isReported ? { word: 'All', act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) } : null);
-  else if (who && !isQuiet) world.ui.notify('ok', `“${opened.name}”.${who}`, 'saved', { word: 'Return', keys: 'Esc or F', act: () => world.room.following.return() });
+  if (why) world.ui.notify('warn', `“${opened.name}”: ${why}`, 'saved', { word: 'All', act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) });
+  else if (who) world.ui.notify('ok', `“${opened.name}”.${who}`, 'saved', { word: 'Return', keys: 'Esc or F', act: () => world.room.following.return() });
 }
 
 /** Shows a saved view: the presenter to everybody, anybody else to themselves. */
@@ -79,7 +77,7 @@ export async function play(world, row = null) {
   endPlaying();
   playing = world;
   addEventListener('keydown', onKey, true);
-  told(world, await attempt(world, () => bookmarksIn(world).play(row)), true);
+  await attempt(world, () => bookmarksIn(world).play(row));
 }
 
 function endPlaying() {
@@ -94,7 +92,7 @@ export function leave(world) {
   bookmarksIn(world).stop();
 }
 
-const step = async (world, by) => told(world, await attempt(world, () => bookmarksIn(world).step(by)), true);
+const step = (world, by) => attempt(world, () => bookmarksIn(world).step(by));
 
 export function playBar(world) {
   const bookmarks = bookmarksIn(world);
