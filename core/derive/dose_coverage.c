@@ -7,7 +7,7 @@
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
-#include "core/region/mask.h"
+#include "core/derive/dose_histogram.h"
 
 struct coverage_recipe {
     struct derive_recipe base;
@@ -22,60 +22,60 @@ struct counts {
 
 struct marking {
     const struct dose_field *field;
-    const struct mask *mask;
+    uint8_t row;                  /* of the field */
+    const struct volume *members; /* the univels that count */
     double low, high;
     uint32_t first[3]; /* index in the region's grid of voxel 0 of labels */
     struct volume *labels;
     struct counts counts[MAX_THREADS];
 };
 
-/* The box of the bits; false: there is none. */
-static bool find_box(const struct mask *mask, uint32_t low[3], uint32_t high[3])
+/* The box of the univels that count; false: there is none. */
+static bool find_box(const struct volume *members, uint32_t low[3], uint32_t high[3])
 {
-    bool has_any = false;
+    const uint32_t *size = members->grid.size;
+    const uint8_t *at = members->voxels;
     for (int axis = 0; axis < 3; axis++) {
         low[axis] = UINT32_MAX;
         high[axis] = 0;
     }
-    for (uint32_t k = mask->low_k; k < mask->end_k; k++)
-        for (uint32_t j = mask->low_j; j < mask->end_j; j++) {
-            const uint64_t *row = mask->bits + (j + (size_t)k * mask->size[1]) * mask->words;
-            uint32_t first = 0, end = mask->words;
-            while (first < end && !row[first])
-                first++;
-            while (end > first && !row[end - 1])
-                end--;
-            if (first == end)
+    for (uint32_t k = 0; k < size[2]; k++)
+        for (uint32_t j = 0; j < size[1]; j++, at += size[0]) {
+            const uint8_t *first = memchr(at, 1, size[0]), *last = at + size[0] - 1;
+            if (!first)
                 continue;
-            const uint32_t at[2][3] = { { 64 * first + (uint32_t)__builtin_ctzll(row[first]), j, k },
-                                        { 64 * end - 1 - (uint32_t)__builtin_clzll(row[end - 1]), j, k } };
+            while (!*last)
+                last--;
+            const uint32_t ends[2][3] = { { (uint32_t)(first - at), j, k }, { (uint32_t)(last - at), j, k } };
             for (int axis = 0; axis < 3; axis++) {
-                low[axis] = at[0][axis] < low[axis] ? at[0][axis] : low[axis];
-                high[axis] = at[1][axis] > high[axis] ? at[1][axis] : high[axis];
+                low[axis] = ends[0][axis] < low[axis] ? ends[0][axis] : low[axis];
+                high[axis] = ends[1][axis] > high[axis] ? ends[1][axis] : high[axis];
             }
-            has_any = true;
         }
-    return has_any;
+    return low[0] != UINT32_MAX;
 }
 
 static void mark_row(struct marking *marking, uint32_t j, uint32_t k, struct counts *counts)
 {
-    const struct mask *mask = marking->mask;
-    const uint64_t *row = mask->bits + (j + (size_t)k * mask->size[1]) * mask->words;
+    const struct grid *all = &marking->members->grid;
     const uint32_t *size = marking->labels->grid.size, *first = marking->first;
-    uint8_t *labels = (uint8_t *)marking->labels->voxels + size[0] * (j - first[1] + (size_t)size[1] * (k - first[2]));
-    for (uint32_t w = 0; w < mask->words; w++)
-        for (uint64_t bits = row[w]; bits; bits &= bits - 1) {
-            uint32_t i = 64 * w + (uint32_t)__builtin_ctzll(bits);
-            double value;
-            counts->n_region++;
-            if (!dose_field_value(marking->field, affine_point(&mask->lps_mm_from_ijk, vec3(i, j, k)), &value))
-                counts->n_without++;
-            else if (value >= marking->low && value < marking->high) {
-                labels[i - first[0]] = 1;
-                counts->n++;
-            }
+    const uint8_t *members =
+        (const uint8_t *)marking->members->voxels + first[0] + (size_t)all->size[0] * (j + (size_t)all->size[1] * k);
+    uint8_t *labels =
+        (uint8_t *)marking->labels->voxels + (size_t)size[0] * (j - first[1] + (size_t)size[1] * (k - first[2]));
+    for (uint32_t i = 0; i < size[0]; i++) {
+        double value;
+        if (!members[i])
+            continue;
+        counts->n_region++;
+        if (!dose_field_value_in(marking->field, marking->row,
+                                 affine_point(&all->lps_mm_from_ijk, vec3(first[0] + i, j, k)), &value))
+            counts->n_without++;
+        else if (value >= marking->low && value < marking->high) {
+            labels[i] = 1;
+            counts->n++;
         }
+    }
 }
 
 static void mark_some(void *context, int part, int n_parts)
@@ -104,7 +104,7 @@ static bool fill(struct derive *derive, struct dose_coverage *coverage, const st
     const struct grid *grid = &set->layers[set->regions[choice->region].layer]->grid;
     uint32_t high[3];
     struct grid part;
-    if (!find_box(marking->mask, marking->first, high))
+    if (!find_box(marking->members, marking->first, high))
         return error_set(err, ERROR_NOT_FOUND, "region \"%s\" has no univels", set->regions[choice->region].id);
     if (!part_of_grid(grid, marking->first, high, &part, err) ||
         !(coverage->labels = volume_create(&part, VOXEL_U8, err)))
@@ -121,6 +121,8 @@ static bool fill(struct derive *derive, struct dose_coverage *coverage, const st
     uint64_t n_with = coverage->n_region - coverage->n_without;
     coverage->volume_cm3 = (double)coverage->n * grid_voxel_mm3(grid) / 1000;
     coverage->share = n_with > 0 ? (double)coverage->n / (double)n_with : NAN;
+    coverage->least_share = (double)coverage->n / (double)coverage->n_region;
+    coverage->most_share = (double)(coverage->n + coverage->n_without) / (double)coverage->n_region;
     volume_measure(coverage->labels);
     return true;
 }
@@ -146,13 +148,15 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
                                    struct error *err)
 {
     const struct dose_coverage_choice *choice = &((const struct coverage_recipe *)base)->choice;
-    struct dose_field *field = dose_field_get(derive, &choice->dose, err);
-    struct mask *mask = field ? mask_from_region(&derive_plan(derive)->regions, choice->region, 0, err) : NULL;
-    struct dose_coverage *coverage = mask ? mem_array(1, sizeof *coverage, UINT64_MAX, err) : NULL;
+    const struct region_set *set = &derive_plan(derive)->regions;
+    struct volume *members = population_labels(set, choice->region, choice->population, err);
+    uint8_t row = members ? dose_row_of_region(set, &choice->dose, choice->region, err) : DOSE_NO_ROW;
+    struct dose_field *field = row != DOSE_NO_ROW ? dose_field_get(derive, &choice->dose, err) : NULL;
+    struct dose_coverage *coverage = field ? mem_array(1, sizeof *coverage, UINT64_MAX, err) : NULL;
     (void)way;
     bool is_good = coverage != NULL;
     if (is_good) {
-        struct marking marking = { .field = field, .mask = mask };
+        struct marking marking = { .field = field, .row = row, .members = members };
         derive_result_init(&coverage->base, &kind, 0);
         is_good = fill(derive, coverage, choice, &marking, err);
     }
@@ -162,7 +166,8 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
         destroy(&coverage->base);
         coverage = NULL;
     }
-    mask_destroy(mask);
+    if (members)
+        volume_unref(members);
     if (field)
         derive_result_unref(&field->base);
     return coverage ? &coverage->base : NULL;

@@ -17,7 +17,8 @@ static bool read_region(struct dose_extremes *extremes, struct derive *derive, c
                         size_t region, struct error *err)
 {
     struct dvh dvh;
-    if (!dose_histogram_get(derive, choice, region, false, 1, &dvh, err))
+    if (!dose_histogram_get(derive, choice, region, population_usual(&derive_plan(derive)->regions), DOSE_BY_TISSUE, 1,
+                            &dvh, err))
         return false;
     if (dvh.n > 0) {
         extremes->high[region] = dvh.high;

@@ -33,13 +33,14 @@ static bool is_equal(const struct derive_recipe *a, const struct derive_recipe *
                   sizeof(struct dose_choice)) == 0;
 }
 
-/* True if only weights and blood differ, which people drag. */
+/* True if only weights and blood differ, which people drag. A field with one tissue's weights everywhere, which is
+ * drawn, leaves that with each tissue's own, which is counted, in place. */
 static bool is_alike(const void *left, const void *right)
 {
     const struct field_recipe *a = left, *b = right;
     return a->base.kind == b->base.kind && subject_equal(a->base.subject, b->base.subject) &&
            a->choice.shown == b->choice.shown && a->choice.quantity == b->choice.quantity &&
-           a->choice.n_parts == b->choice.n_parts &&
+           a->choice.n_parts == b->choice.n_parts && a->choice.is_everywhere == b->choice.is_everywhere &&
            memcmp(a->choice.parts, b->choice.parts, sizeof a->choice.parts) == 0;
 }
 
@@ -236,5 +237,10 @@ bool dose_field_value(const struct dose_field *field, struct vec3 point_lps_mm, 
         return false;
     if (field->filling && !dose_filling_is_complete(field->filling))
         dose_field_need_box(field, &(struct box3){ point_lps_mm, point_lps_mm });
+    return volume_sample(field->rows[row], point_lps_mm, value);
+}
+
+bool dose_field_value_in(const struct dose_field *field, uint8_t row, struct vec3 point_lps_mm, double *value)
+{
     return volume_sample(field->rows[row], point_lps_mm, value);
 }

@@ -70,3 +70,5 @@ uint8_t dose_field_row(const struct dose_field *field, struct vec3 point_lps_mm)
 /* The value at a patient point: tri-linear in the row's volume, as volume_sample. False: there is none. Every picture,
  * histogram and read-out agrees with this. */
 bool dose_field_value(const struct dose_field *field, struct vec3 point_lps_mm, double *value);
+/* The same with the weights of one row, wherever the point lies; of a field from dose_field_get. */
+bool dose_field_value_in(const struct dose_field *field, uint8_t row, struct vec3 point_lps_mm, double *value);

@@ -1,5 +1,5 @@
-/* Builds histograms of doses: a layer's regions in one sweep, and the union of regions on several layers by its mask.
- */
+/* Builds histograms of doses: a layer's regions in one sweep, and a region whose population is not its label alone by
+ * itself. */
 #include "core/derive/dose_histogram.h"
 
 #include <stdlib.h>
@@ -7,21 +7,22 @@
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
-#include "core/region/mask.h"
 
-/* The regions of a layer, each alone; or one region with its descendants on all layers. Zeroed before it is filled. */
+/* The regions of a layer, each by its label; or one region by its population. Zeroed before it is filled. */
 struct histogram_recipe {
     struct derive_recipe base;
     struct dose_choice choice;
     uint32_t layer;
     int per_side;
-    bool is_union;
-    size_t region; /* of a union */
+    enum dose_weighing weighing;
+    bool is_alone; /* one region */
+    size_t region;
+    enum region_population population; /* of the one region */
 };
 
 struct dose_histograms {
     struct derive_result base;
-    size_t n;          /* the plan's regions; 1 for a union */
+    size_t n;          /* the plan's regions; 1 for a region alone */
     struct dvh dvhs[]; /* by region index; empty ones for regions of other layers */
 };
 
@@ -29,7 +30,8 @@ static bool is_equal(const struct derive_recipe *left, const struct derive_recip
 {
     const struct histogram_recipe *a = (const struct histogram_recipe *)left,
                                   *b = (const struct histogram_recipe *)right;
-    return a->layer == b->layer && a->per_side == b->per_side && a->is_union == b->is_union && a->region == b->region &&
+    return a->layer == b->layer && a->per_side == b->per_side && a->weighing == b->weighing &&
+           a->is_alone == b->is_alone && a->region == b->region && a->population == b->population &&
            memcmp(&a->choice, &b->choice, sizeof a->choice) == 0;
 }
 
@@ -69,8 +71,8 @@ static void move_some(void *context, int part, int n_parts)
             }
 }
 
-/* The rows of weights on a layer's grid; one reference. */
-static struct volume *rows_on(const struct grid *grid, const struct volume *rows, struct error *err)
+/* The rows of weights by tissue on a layer's grid; one reference. */
+static struct volume *rows_of_tissue(const struct grid *grid, const struct volume *rows, struct error *err)
 {
     if (grid_is_same(grid, &rows->grid))
         return volume_ref(rows);
@@ -80,21 +82,44 @@ static struct volume *rows_on(const struct grid *grid, const struct volume *rows
     return moving.to;
 }
 
-/* 1 in the region and its descendants. */
-static struct volume *union_labels(const struct region_set *set, size_t region, struct error *err)
+enum { N_LABELS = 65536 };
+
+struct naming {
+    const struct volume *labels;
+    const uint8_t *row_of_label; /* [N_LABELS] */
+    struct volume *rows;
+};
+
+static void name_some(void *context, int part, int n_parts)
 {
-    struct mask *mask = mask_from_region(set, region, 0, err);
-    struct volume *labels = mask ? volume_create(&set->layers[set->regions[region].layer]->grid, VOXEL_U8, err) : NULL;
-    for (uint32_t k = mask ? mask->low_k : 0; labels && k < mask->end_k; k++)
-        for (uint32_t j = mask->low_j; j < mask->end_j; j++) {
-            const uint64_t *row = mask->bits + (j + (size_t)k * mask->size[1]) * mask->words;
-            uint8_t *to = (uint8_t *)labels->voxels + mask->size[0] * (j + (size_t)mask->size[1] * k);
-            for (uint32_t w = 0; w < mask->words; w++)
-                for (uint64_t bits = row[w]; bits; bits &= bits - 1)
-                    to[64 * w + (uint32_t)__builtin_ctzll(bits)] = 1;
-        }
-    mask_destroy(mask);
-    return labels;
+    const struct naming *naming = context;
+    size_t n = grid_n_voxels(&naming->labels->grid), from = n / (size_t)n_parts * (size_t)part,
+           to = part + 1 == n_parts ? n : n / (size_t)n_parts * (size_t)(part + 1);
+    uint8_t *rows = naming->rows->voxels;
+    if (naming->labels->type == VOXEL_U8)
+        for (size_t i = from; i < to; i++)
+            rows[i] = naming->row_of_label[((const uint8_t *)naming->labels->voxels)[i]];
+    else
+        for (size_t i = from; i < to; i++)
+            rows[i] = naming->row_of_label[((const uint16_t *)naming->labels->voxels)[i]];
+}
+
+/* The row of each univel's region on a layer; one reference. */
+static struct volume *rows_of_labels(const struct region_set *set, const struct histogram_recipe *recipe,
+                                     const struct volume *labels, struct error *err)
+{
+    uint8_t *row_of_label = mem_array(N_LABELS, 1, UINT64_MAX, err);
+    struct volume *rows = row_of_label ? volume_create_unset(&labels->grid, VOXEL_U8, err) : NULL;
+    if (rows) {
+        memset(row_of_label, DOSE_NO_ROW, N_LABELS);
+        for (size_t r = 0; r < set->n_regions; r++)
+            if (set->regions[r].layer == recipe->layer)
+                row_of_label[set->regions[r].label] = recipe->choice.row_of_region[r];
+        struct naming naming = { labels, row_of_label, rows };
+        parallel_run(parallel_cores(), name_some, &naming);
+    }
+    free(row_of_label);
+    return rows;
 }
 
 static bool sweep(const struct region_set *set, const struct histogram_recipe *recipe, const struct dose_field *field,
@@ -102,21 +127,29 @@ static bool sweep(const struct region_set *set, const struct histogram_recipe *r
 {
     struct dvh_label *wanted = mem_array(histograms->n, sizeof *wanted, UINT64_MAX, err);
     struct dvh *found = mem_array(histograms->n, sizeof *found, UINT64_MAX, err);
-    struct volume *row_of = field->tissue ? rows_on(&labels->grid, field->tissue->rows, err) : NULL;
+    bool is_by_region = recipe->weighing == DOSE_BY_REGION && !recipe->choice.is_everywhere,
+         has_rows = field->tissue && !(is_by_region && recipe->is_alone);
+    struct volume *row_of = !has_rows      ? NULL
+                            : is_by_region ? rows_of_labels(set, recipe, labels, err)
+                                           : rows_of_tissue(&labels->grid, field->tissue->rows, err);
     const struct volume *rows[DOSE_MAX_ROWS];
     struct dvh_sweep how = { .labels = labels, .rows = rows, .n_rows = field->n_rows, .row_of = row_of };
     size_t n = 0;
-    bool is_good = wanted && found && (row_of || !field->tissue);
+    bool is_good = wanted && found && (row_of || !has_rows);
     for (size_t r = 0; r < field->n_rows; r++)
         rows[r] = field->rows[r];
-    if (is_good && recipe->is_union)
+    if (is_by_region && recipe->is_alone) {
+        rows[0] = field->rows[recipe->choice.row_of_region[recipe->region]];
+        how.n_rows = 1;
+    }
+    if (is_good && recipe->is_alone)
         wanted[n++] = (struct dvh_label){ 1, recipe->per_side };
-    for (size_t r = 0; is_good && !recipe->is_union && r < set->n_regions; r++)
+    for (size_t r = 0; is_good && !recipe->is_alone && r < set->n_regions; r++)
         if (set->regions[r].layer == recipe->layer)
             wanted[n++] = (struct dvh_label){ set->regions[r].label, recipe->per_side };
     is_good = is_good && dvh_sweep(&how, wanted, n, found, err);
     for (size_t r = 0, at = 0; is_good && r < histograms->n; r++)
-        if (recipe->is_union || set->regions[r].layer == recipe->layer) {
+        if (recipe->is_alone || set->regions[r].layer == recipe->layer) {
             histograms->dvhs[r] = found[at++];
             histograms->base.n_bytes += histograms->dvhs[r].n_bins * sizeof(double);
         }
@@ -131,11 +164,11 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
 {
     const struct histogram_recipe *recipe = (const struct histogram_recipe *)base;
     const struct region_set *set = &derive_plan(derive)->regions;
-    size_t n = recipe->is_union ? 1 : set->n_regions;
+    size_t n = recipe->is_alone ? 1 : set->n_regions;
     (void)way;
     struct dose_field *field = dose_field_get(derive, &recipe->choice, err);
     struct volume *labels = !field             ? NULL
-                            : recipe->is_union ? union_labels(set, recipe->region, err)
+                            : recipe->is_alone ? population_labels(set, recipe->region, recipe->population, err)
                                                : volume_ref(set->layers[recipe->layer]);
     struct dose_histograms *histograms =
         labels ? mem_array(1, sizeof *histograms + n * sizeof histograms->dvhs[0], UINT64_MAX, err) : NULL;
@@ -157,7 +190,7 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
 /* ---- what is asked for ------------------------------------------------------------------------------------------ */
 
 static struct dose_histograms *get(struct derive *derive, const struct dose_choice *choice, uint32_t layer,
-                                   int per_side, const size_t *union_region, struct error *err)
+                                   int per_side, enum dose_weighing weighing, struct error *err)
 {
     struct histogram_recipe recipe;
     memset(&recipe, 0, sizeof recipe);
@@ -165,45 +198,55 @@ static struct dose_histograms *get(struct derive *derive, const struct dose_choi
     recipe.choice = *choice;
     recipe.layer = layer;
     recipe.per_side = per_side;
-    recipe.is_union = union_region != NULL;
-    recipe.region = union_region ? *union_region : 0;
+    recipe.weighing = weighing;
     return (struct dose_histograms *)derive_get(derive, &recipe.base, NULL, err);
 }
 
-/* Univels of regions on one layer never overlap, so that their counts add up; on several they may. */
-static bool is_on_one_layer(const struct region_set *set, const size_t *members, size_t n)
+static struct dose_histograms *get_alone(struct derive *derive, const struct dose_choice *choice, size_t region,
+                                         enum region_population population, enum dose_weighing weighing, int per_side,
+                                         struct error *err)
 {
-    const struct volume *layer = set->layers[set->regions[members[0]].layer];
-    for (size_t i = 1; i < n; i++) {
-        const struct volume *other = set->layers[set->regions[members[i]].layer];
-        if (other != layer && grid_is_same(&other->grid, &layer->grid))
-            return false;
-    }
-    return true;
+    struct histogram_recipe recipe;
+    memset(&recipe, 0, sizeof recipe);
+    recipe.base = (struct derive_recipe){ &kind, { SUBJECT_DOSE, choice->parts[0].dose, 0 } };
+    recipe.choice = *choice;
+    recipe.layer = derive_plan(derive)->regions.regions[region].layer;
+    recipe.per_side = per_side;
+    recipe.weighing = weighing;
+    recipe.is_alone = true;
+    recipe.region = region;
+    recipe.population = population;
+    return (struct dose_histograms *)derive_get(derive, &recipe.base, NULL, err);
 }
 
-bool dose_histogram_get(struct derive *derive, const struct dose_choice *choice, size_t region, bool with_descendants,
-                        int per_side, struct dvh *dvh, struct error *err)
+uint8_t dose_row_of_region(const struct region_set *set, const struct dose_choice *choice, size_t region,
+                           struct error *why)
+{
+    uint8_t row = choice->is_everywhere ? 0 : choice->row_of_region[region];
+    if (row == DOSE_NO_ROW)
+        (void)error_set(why, ERROR_NOT_FOUND,
+                        choice->shown == DOSE_SHOWN_ISOEFFECTIVE ? "no parameters of the isoeffective dose for %.127s"
+                                                                 : "no weights for %.127s",
+                        set->regions[region].name);
+    return row;
+}
+
+bool dose_histogram_get(struct derive *derive, const struct dose_choice *choice, size_t region,
+                        enum region_population population, enum dose_weighing weighing, int per_side, struct dvh *dvh,
+                        struct error *err)
 {
     const struct region_set *set = &derive_plan(derive)->regions;
-    size_t *members = mem_array(set->n_regions, sizeof *members, UINT64_MAX, err), n = 1;
     memset(dvh, 0, sizeof *dvh);
-    if (!members)
+    if (weighing == DOSE_BY_REGION && dose_row_of_region(set, choice, region, err) == DOSE_NO_ROW)
         return false;
-    members[0] = region;
-    if (with_descendants)
-        n = region_with_descendants(set, region, members);
-    bool is_union = !is_on_one_layer(set, members, n);
-    uint32_t layer = set->regions[region].layer;
-    struct dose_histograms *histograms = get(derive, choice, layer, per_side, is_union ? &region : NULL, err);
-    bool is_good = histograms != NULL;
-    if (is_good && is_union)
-        is_good = dvh_add(dvh, &histograms->dvhs[0], err);
-    for (size_t i = 0; is_good && !is_union && i < n; i++)
-        is_good = set->regions[members[i]].layer != layer || dvh_add(dvh, &histograms->dvhs[members[i]], err);
-    if (histograms)
-        derive_result_unref(&histograms->base);
-    free(members);
+    bool is_label = population_is_label(set, region, population);
+    struct dose_histograms *histograms = is_label
+                                             ? get(derive, choice, set->regions[region].layer, per_side, weighing, err)
+                                             : get_alone(derive, choice, region, population, weighing, per_side, err);
+    if (!histograms)
+        return false;
+    bool is_good = dvh_add(dvh, &histograms->dvhs[is_label ? region : 0], err);
+    derive_result_unref(&histograms->base);
     if (!is_good)
         dvh_finish(dvh);
     return is_good;
@@ -226,7 +269,7 @@ bool dose_histogram_of_body(struct derive *derive, const struct dose_choice *cho
             *layer = l;
         }
     }
-    struct dose_histograms *histograms = get(derive, choice, (uint32_t)*layer, 1, NULL, err);
+    struct dose_histograms *histograms = get(derive, choice, (uint32_t)*layer, 1, DOSE_BY_TISSUE, err);
     bool is_good = histograms != NULL;
     for (size_t r = 0; is_good && r < set->n_regions; r++)
         is_good = set->regions[r].layer != *layer || dvh_add(dvh, &histograms->dvhs[r], err);

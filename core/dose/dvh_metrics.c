@@ -99,7 +99,7 @@ static double ranked(const struct dvh *dvh, double n, bool is_hot)
 {
     if (is_hot)
         return n <= dvh->n_missing ? INFINITY : dvh_value_of_hottest(dvh, n - dvh->n_missing);
-    return n > dvh->n ? 0 : dvh_value_of_hottest(dvh, n);
+    return n > dvh->n ? fmin(dvh->low, 0) : dvh_value_of_hottest(dvh, n);
 }
 
 void dvh_metric_bounds(const struct dvh *dvh, const struct dvh_metric *metric, double *least, double *most)
@@ -114,7 +114,10 @@ void dvh_metric_bounds(const struct dvh *dvh, const struct dvh_metric *metric, d
         return;
     switch (metric->kind) {
     case DVH_MEAN: *least = dvh->sum / all; break;
-    case DVH_MIN: *most = value; break;
+    case DVH_MIN:
+        *least = fmin(value, 0);
+        *most = value;
+        break;
     case DVH_MAX: *least = value; break;
     case DVH_DOSE_PERCENT:
     case DVH_DOSE_CC: {
@@ -137,6 +140,22 @@ void dvh_metric_bounds(const struct dvh *dvh, const struct dvh_metric *metric, d
     }
     case DVH_HOMOGENEITY: break;
     }
+}
+
+/* A part without a value that no figure depends on, as a share of the region. */
+static const double negligible_share = 1e-3;
+
+bool dvh_is_partial(const struct dvh *dvh)
+{
+    return dvh->n_missing > 0 && dvh->n_missing >= negligible_share * (dvh->n + dvh->n_missing);
+}
+
+void dvh_metric_range(const struct dvh *dvh, const struct dvh_metric *metric, double *least, double *most)
+{
+    if (dvh_is_partial(dvh))
+        dvh_metric_bounds(dvh, metric, least, most);
+    else
+        *least = *most = dvh_metric_value(dvh, metric);
 }
 
 struct dvh_conformity dvh_conformity(double target_cm3, double isodose_cm3, double covered_cm3)

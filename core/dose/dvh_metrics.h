@@ -1,6 +1,6 @@
 #pragma once
-/* Figures of a dose-volume histogram, and the words they are written by. A figure of a region with univels without a
- * value is one of its other univels. */
+/* Figures of a dose-volume histogram, and the words they are written by. The value of a
+ * figure is that of the univels with a value; its bounds are those of the whole region. */
 #include "core/dose/dvh.h"
 
 enum dvh_metric_kind {
@@ -23,8 +23,13 @@ NODISCARD bool dvh_metric_parse(const char *word, struct dvh_metric *metric, str
 /* In the quantity's unit, %, cm3 or without a unit, as its kind says. NAN without a univel that has a value. */
 double dvh_metric_value(const struct dvh *dvh, const struct dvh_metric *metric);
 
-/* The two bounds of a figure, when univels without a value may have any value from 0 on. */
+/* The two bounds of a figure of the whole region, when univels without a value may have any value from 0 on; most is
+ * INFINITY where there is none. NAN: the region is too small for the figure. */
 void dvh_metric_bounds(const struct dvh *dvh, const struct dvh_metric *metric, double *least, double *most);
+/* True if so many univels have no value that figures are said as bounds: 0.1 % of the region and more. */
+bool dvh_is_partial(const struct dvh *dvh);
+/* The bounds that are said of a figure: those of dvh_metric_bounds, of a region that is not partial both its value. */
+void dvh_metric_range(const struct dvh *dvh, const struct dvh_metric *metric, double *least, double *most);
 
 /* How an isodose volume and a target agree.
  *

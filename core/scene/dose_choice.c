@@ -102,7 +102,8 @@ static bool add_row(struct dose_choice *choice, const struct scene_tissue_weight
     return true;
 }
 
-static bool add_rows(const struct plan *plan, const struct scene *scene, struct dose_choice *choice, struct error *why)
+static bool add_rows(const struct plan *plan, const struct scene *scene, const char *tissue, struct dose_choice *choice,
+                     struct error *why)
 {
     bool is_on_tissue = false;
     for (size_t p = 0; p < choice->n_parts; p++)
@@ -114,18 +115,17 @@ static bool add_rows(const struct plan *plan, const struct scene *scene, struct 
         choice->rows[0] = (struct tissue_weights){ 1, 1, 1, 1, 1, 1 };
         return true;
     }
-    if (scene->dose.tissue[0]) {
-        const struct region *region = region_find(&plan->regions, scene->dose.tissue);
+    if (tissue[0]) {
+        const struct region *region = region_find(&plan->regions, tissue);
         const struct scene_tissue_weights *row =
             region ? scene_weights_of(plan, scene, (size_t)(region - plan->regions.regions)) : NULL;
         if (!row)
-            return error_set(why, ERROR_NOT_FOUND, "\"%s\" has no weights that could hold everywhere",
-                             scene->dose.tissue);
+            return error_set(why, ERROR_NOT_FOUND, "\"%.64s\" has no weights that could hold everywhere", tissue);
         uint8_t index;
         choice->is_everywhere = true;
         return add_row(choice, row, &index, why) &&
                (index != DOSE_NO_ROW ||
-                error_set(why, ERROR_NOT_FOUND, "\"%s\" has no parameters of this dose", scene->dose.tissue));
+                error_set(why, ERROR_NOT_FOUND, "\"%.64s\" has no parameters of this dose", tissue));
     }
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
         const struct scene_tissue_weights *row = scene_weights_of(plan, scene, r);
@@ -164,6 +164,12 @@ static bool add_part(const struct plan *plan, struct dose_choice *choice, size_t
 bool dose_choice_of(const struct plan *plan, const struct scene *scene, size_t dose, enum scene_dose_quantity quantity,
                     struct dose_choice *choice, struct error *why)
 {
+    return dose_choice_in(plan, scene, dose, quantity, scene->dose.tissue, choice, why);
+}
+
+bool dose_choice_in(const struct plan *plan, const struct scene *scene, size_t dose, enum scene_dose_quantity quantity,
+                    const char *tissue, struct dose_choice *choice, struct error *why)
+{
     memset(choice, 0, sizeof *choice);
     choice->shown = quantities[quantity].shown;
     choice->quantity = quantities[quantity].quantity;
@@ -177,7 +183,7 @@ bool dose_choice_of(const struct plan *plan, const struct scene *scene, size_t d
         if (part >= 0 && !add_part(plan, choice, (size_t)part, scene->dose.sum[i].value.factor, why))
             return false;
     }
-    if (!add_rows(plan, scene, choice, why))
+    if (!add_rows(plan, scene, tissue, choice, why))
         return false;
     bool has_boron = false;
     for (size_t p = 0; p < choice->n_parts; p++) {
@@ -190,6 +196,39 @@ bool dose_choice_of(const struct plan *plan, const struct scene *scene, size_t d
     if (!has_boron)
         choice->blood_ppm = 0; /* what does not depend on it is one and the same field */
     return true;
+}
+
+enum region_population scene_population(const struct plan *plan, const struct scene *scene)
+{
+    switch (scene->dose.population) {
+    case SCENE_DOSE_POPULATION_OWN: return POPULATION_OWN;
+    case SCENE_DOSE_POPULATION_WHOLE: return POPULATION_WHOLE;
+    case SCENE_DOSE_POPULATION_USUAL: break;
+    }
+    return population_usual(&plan->regions);
+}
+
+bool population_from_word(const struct plan *plan, const char *word, enum region_population *population)
+{
+    bool is_own = strcmp(word, "own") == 0, is_whole = strcmp(word, "whole") == 0;
+    *population = is_own ? POPULATION_OWN : is_whole ? POPULATION_WHOLE : population_usual(&plan->regions);
+    return is_own || is_whole || !word[0] || strcmp(word, "usual") == 0;
+}
+
+const char *dose_basis_words(const struct plan *plan, const struct dose_choice *choice, const char *tissue,
+                             char words[96])
+{
+    bool is_on_tissue = false;
+    for (size_t p = 0; p < choice->n_parts; p++)
+        is_on_tissue |= dose_depends_on_tissue(&plan->doses[choice->parts[p].dose], choice->shown, choice->quantity);
+    if (!is_on_tissue)
+        return NULL;
+    const struct region *region = tissue[0] ? region_find(&plan->regions, tissue) : NULL;
+    if (region)
+        snprintf(words, 96, "weights of %.80s", region->name);
+    else
+        snprintf(words, 96, "each region's own weights");
+    return words;
 }
 
 static bool is_accepted(const struct scene *scene, const char *id)

@@ -149,9 +149,15 @@ static bool is_whole(struct dose_scale *scale, struct problem *problem)
 bool dose_asked_of(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
                    struct dose_asked *asked, struct error *why)
 {
+    return dose_asked_in(snapshot, dose, quantity, snapshot->scene.dose.tissue, asked, why);
+}
+
+bool dose_asked_in(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity, const char *tissue,
+                   struct dose_asked *asked, struct error *why)
+{
     char sentence[DOSE_FIT_WHY_SIZE];
     asked->dose = dose;
-    if (!dose_choice_of(snapshot->plan, &snapshot->scene, dose, quantity, &asked->choice, why))
+    if (!dose_choice_in(snapshot->plan, &snapshot->scene, dose, quantity, tissue, &asked->choice, why))
         return false;
     dose_shown_unit(&snapshot->plan->doses[dose], asked->choice.shown, asked->choice.quantity, asked->unit);
     return scene_dose_may_be_drawn(snapshot->plan, &snapshot->scene, dose, sentence) ||
@@ -174,6 +180,35 @@ struct snapshot *dose_snapshot_of(const struct snapshot *snapshot, const char *w
     copy->has_dose_choice = dose_asked_of(copy, (size_t)copy->dose, copy->scene.dose.quantity, &asked, &copy->dose_why);
     copy->dose_choice = asked.choice;
     return copy;
+}
+
+struct snapshot *dose_snapshot_in(const struct snapshot *snapshot, const char *word, const char *tissue,
+                                  struct problem *problem)
+{
+    struct snapshot *copy = dose_snapshot_of(snapshot, word, problem);
+    struct dose_asked asked;
+    if (!copy)
+        return NULL;
+    if (tissue[0] && !region_find(&copy->plan->regions, tissue)) {
+        (void)problem_set(problem, PROBLEM_NOT_FOUND, "/tissue", "", "the plan has no region \"%.64s\"", tissue);
+        free(copy);
+        return NULL;
+    }
+    if (strcmp(copy->scene.dose.tissue, tissue) == 0)
+        return copy;
+    snprintf(copy->scene.dose.tissue, sizeof copy->scene.dose.tissue, "%s", tissue);
+    copy->dose_why = (struct error){ 0 };
+    copy->has_dose_choice = dose_asked_of(copy, (size_t)copy->dose, copy->scene.dose.quantity, &asked, &copy->dose_why);
+    copy->dose_choice = asked.choice;
+    return copy;
+}
+
+void dose_add_population(cJSON *json, const struct snapshot *snapshot, const struct dose_choice *choice,
+                         const char *tissue, enum region_population population)
+{
+    char words[96];
+    dose_add_text(json, "basis", dose_basis_words(snapshot->plan, choice, tissue, words));
+    cJSON_AddStringToObject(json, "population", population == POPULATION_OWN ? "own" : "whole");
 }
 
 /* {id, name, per, quantity, unit, drawn, reason, fit, fit_reason, accepted, missing, parts: [{id, factor}], tissue,

@@ -20,6 +20,16 @@ struct dose_asked {
 /* Returns false with why: it has no such quantity, no weights, or a person has yet to accept it. */
 NODISCARD bool dose_asked_of(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
                              struct dose_asked *asked, struct error *why);
+/* The same with the weights of one tissue (dose_choice_in), whatever the scene's says. */
+NODISCARD bool dose_asked_in(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
+                             const char *tissue, struct dose_asked *asked, struct error *why);
 /* The snapshot with another quantity of its dose, or its own (word NULL or ""). Borrows all of the snapshot's; freed
  * with free(). NULL with problem: no such quantity. */
 NODISCARD struct snapshot *dose_snapshot_of(const struct snapshot *snapshot, const char *word, struct problem *problem);
+/* The same with the weights of one tissue, "" for each region's own, in place of the scene's dose.tissue: for figures
+ * of regions. */
+NODISCARD struct snapshot *dose_snapshot_in(const struct snapshot *snapshot, const char *word, const char *tissue,
+                                            struct problem *problem);
+/* {basis, population} of figures of regions. */
+void dose_add_population(cJSON *json, const struct snapshot *snapshot, const struct dose_choice *choice,
+                         const char *tissue, enum region_population population);

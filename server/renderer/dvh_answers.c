@@ -17,6 +17,7 @@ struct asking {
     const struct packet_dvh *packet;
     const struct snapshot *snapshot;
     struct dose_scale scale;
+    enum region_population population;
     size_t *regions, n_regions;
     struct dose_asked doses[2];
     size_t n_doses;
@@ -76,6 +77,18 @@ static bool find_metrics(struct asking *asking, struct problem *problem)
     return true;
 }
 
+static bool find_population(struct asking *asking, struct problem *problem)
+{
+    const char *word = asking->packet->descendants ? "whole" : asking->packet->population;
+    if (!word[0]) {
+        asking->population = scene_population(asking->snapshot->plan, &asking->snapshot->scene);
+        return true;
+    }
+    return population_from_word(asking->snapshot->plan, word, &asking->population) ||
+           problem_set(problem, PROBLEM_VALIDATION, "/population", "enum", "\"%.40s\" is not own, whole or usual",
+                       word);
+}
+
 /* The doses that have curves: that of the scene, and the one it is compared with. */
 static void find_doses(struct asking *asking, cJSON *json)
 {
@@ -108,12 +121,12 @@ static void add_method(cJSON *json, const struct asking *asking)
     char border[128] = "";
     if (per_side > 1)
         snprintf(border, sizeof border, ", univels at a border in %d x %d x %d points", per_side, per_side, per_side);
-    snprintf(
-        text, sizeof text,
-        "Univels of each region%s; the dose at a univel's centre%s, trilinear in the dose's own grid; weights of each "
-        "univel's tissue%s. Univels without a value are left out and counted in missing_cm3. Figures: ICRU Report 83.",
-        asking->packet->descendants ? " and of the regions inside it" : "", border,
-        asking->snapshot->scene.dose.tissue[0] ? ": those of one tissue everywhere" : "");
+    snprintf(text, sizeof text,
+             "Regions: %s; the dose at a univel's centre%s, trilinear in the dose's own grid; %s. 100 %% is the whole "
+             "region. Univels without a value are counted in missing_cm3; from 0.1 %% of a region on its figures are "
+             "bounds, for any dose there from 0 on. Figures: ICRU Report 83.",
+             population_words(asking->population), border,
+             asking->packet->tissue[0] ? "weights of one tissue everywhere" : "each region's own weights");
     cJSON_AddStringToObject(json, "method", text);
 }
 
@@ -133,7 +146,7 @@ static bool curve_init(struct curve *curve, const struct asking *asking, size_t 
 {
     const struct snapshot *snapshot = asking->snapshot;
     *curve = (struct curve){ &snapshot->plan->regions.regions[region], dose, .n = (size_t)asking->packet->bins };
-    if (!dose_histogram_get(snapshot->derived, &dose->choice, region, asking->packet->descendants,
+    if (!dose_histogram_get(snapshot->derived, &dose->choice, region, asking->population, DOSE_BY_REGION,
                             (int)asking->packet->border, &curve->dvh, err))
         return false;
     curve->from = fmin(curve->dvh.low, 0);
@@ -153,18 +166,19 @@ static void curve_finish(struct curve *curve)
     free(curve->counts);
 }
 
-static void add_conformity(cJSON *json, const struct asking *asking, const struct curve *curve, const struct dvh *body)
+/* body and target: each univel with the weights of its tissue, so that the covered part is one of the isodose. */
+static void add_conformity(cJSON *json, const struct asking *asking, const struct dvh *target, const struct dvh *body)
 {
     const struct scene_dose_style *style = &asking->snapshot->scene.dose;
     cJSON *list = cJSON_AddArrayToObject(json, "conformity");
-    double cm3 = curve->dvh.univel_cm3;
+    double cm3 = target->univel_cm3;
     for (size_t i = 0; i < style->n_levels; i++) {
         double value = dose_level_value(&asking->scale, style->levels[i].value.unit, style->levels[i].value.value);
         if (!isfinite(value))
             continue;
-        struct dvh_conformity found = dvh_conformity((curve->dvh.n + curve->dvh.n_missing) * cm3,
-                                                     dvh_univels_from(body, value) * body->univel_cm3,
-                                                     dvh_univels_from(&curve->dvh, value) * cm3);
+        struct dvh_conformity found =
+            dvh_conformity((target->n + target->n_missing) * cm3, dvh_univels_from(body, value) * body->univel_cm3,
+                           dvh_univels_from(target, value) * cm3);
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "level", style->levels[i].id);
         dose_add_number(row, "value", value);
@@ -199,38 +213,99 @@ static cJSON *stated_object(const struct asking *asking, const struct curve *cur
     return cJSON_CreateNull();
 }
 
-static cJSON *curve_object(const struct asking *asking, const struct curve *curve, const struct dvh *body)
+static const struct {
+    const char *name;
+    enum dvh_metric_kind kind;
+} plain_figures[] = { { "min", DVH_MIN }, { "mean", DVH_MEAN }, { "max", DVH_MAX } };
+enum { N_PLAIN = sizeof plain_figures / sizeof *plain_figures };
+
+/* A figure where the univels without a value cannot change it, and both of its bounds. */
+static void add_figure(cJSON *value, cJSON *least, cJSON *most, const char *name, const struct dvh *dvh,
+                       const struct dvh_metric *metric)
 {
-    static const struct {
-        const char *name;
-        enum dvh_metric_kind kind;
-    } plain[] = { { "min", DVH_MIN }, { "mean", DVH_MEAN }, { "max", DVH_MAX } };
+    double low, high;
+    dvh_metric_range(dvh, metric, &low, &high);
+    dose_add_number(value, name, low == high ? low : NAN);
+    dose_add_number(least, name, low);
+    dose_add_number(most, name, high);
+}
+
+/* {min, mean, max, metrics, least: {min, mean, max, metrics}, most} */
+static void add_figures(cJSON *json, const struct asking *asking, const struct dvh *dvh)
+{
+    cJSON *least = cJSON_CreateObject(), *most = cJSON_CreateObject();
+    for (size_t i = 0; i < N_PLAIN; i++)
+        add_figure(json, least, most, plain_figures[i].name, dvh, &(struct dvh_metric){ plain_figures[i].kind, 0 });
+    cJSON *of[3] = { cJSON_AddObjectToObject(json, "metrics"), cJSON_AddObjectToObject(least, "metrics"),
+                     cJSON_AddObjectToObject(most, "metrics") };
+    for (size_t i = 0; i < asking->n_metrics; i++) {
+        struct dvh_metric metric;
+        if (dvh_metric_parse(asking->metrics[i], &metric, NULL))
+            add_figure(of[0], of[1], of[2], asking->metrics[i], dvh, &metric);
+    }
+    cJSON_AddItemToObject(json, "least", least);
+    cJSON_AddItemToObject(json, "most", most);
+}
+
+/* The conformity of a target; nothing of other regions. */
+static bool add_target(cJSON *json, const struct asking *asking, const struct curve *curve, const struct dvh *body,
+                       struct error *err)
+{
+    struct dvh target;
+    if (!body || !region_is_target(curve->region))
+        return true;
+    size_t region = (size_t)(curve->region - asking->snapshot->plan->regions.regions);
+    if (!dose_histogram_get(asking->snapshot->derived, &curve->dose->choice, region, asking->population, DOSE_BY_TISSUE,
+                            1, &target, err))
+        return false;
+    add_conformity(json, asking, &target, body);
+    dvh_finish(&target);
+    return true;
+}
+
+static cJSON *curve_object(const struct asking *asking, const struct curve *curve, const struct dvh *body,
+                           struct error *err)
+{
     const struct dvh *dvh = &curve->dvh;
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "region", curve->region->id);
     cJSON_AddStringToObject(json, "dose", asking->snapshot->plan->doses[curve->dose->dose].id);
     cJSON_AddStringToObject(json, "quantity", dose_quantity_scene_word(asking->snapshot->scene.dose.quantity));
     cJSON_AddStringToObject(json, "unit", curve->dose->unit);
+    dose_add_population(json, asking->snapshot, &curve->dose->choice, asking->packet->tissue, asking->population);
     dose_add_number(json, "n_univels", dvh->n + dvh->n_missing);
     dose_add_number(json, "volume_cm3", (dvh->n + dvh->n_missing) * dvh->univel_cm3);
     dose_add_number(json, "missing_cm3", dvh->n_missing * dvh->univel_cm3);
-    for (size_t i = 0; i < sizeof plain / sizeof *plain; i++)
-        dose_add_number(json, plain[i].name, dvh_metric_value(dvh, &(struct dvh_metric){ plain[i].kind, 0 }));
-    cJSON *metrics = cJSON_AddObjectToObject(json, "metrics");
-    for (size_t i = 0; i < asking->n_metrics; i++) {
-        struct dvh_metric metric;
-        if (dvh_metric_parse(asking->metrics[i], &metric, NULL))
-            dose_add_number(metrics, asking->metrics[i], dvh_metric_value(dvh, &metric));
-    }
+    cJSON_AddBoolToObject(json, "is_partial", dvh_is_partial(dvh));
+    add_figures(json, asking, dvh);
     cJSON_AddItemToObject(json, "stated", stated_object(asking, curve));
-    if (body && region_is_target(curve->region))
-        add_conformity(json, asking, curve, body);
+    if (!add_target(json, asking, curve, body, err)) {
+        cJSON_Delete(json);
+        return NULL;
+    }
     dose_add_number(json, "bin_from", curve->from);
     dose_add_number(json, "bin_width", curve->width);
     cJSON *counts = cJSON_AddArrayToObject(json, "counts_cm3");
     for (size_t i = 0; i < curve->n; i++)
         cJSON_AddItemToArray(counts, cJSON_CreateNumber(curve->counts[i] * dvh->univel_cm3));
     return json;
+}
+
+/* False with a row of without_curves: the region has no weights. */
+static bool has_curve(cJSON *json, const struct asking *asking, const struct dose_asked *dose, size_t region)
+{
+    const struct plan *plan = asking->snapshot->plan;
+    struct error why = { 0 };
+    if (dose_row_of_region(&plan->regions, &dose->choice, region, &why) != DOSE_NO_ROW)
+        return true;
+    cJSON *row = json ? cJSON_CreateObject() : NULL;
+    if (row) {
+        cJSON_AddStringToObject(row, "dose", plan->doses[dose->dose].id);
+        cJSON_AddStringToObject(row, "region", plan->regions.regions[region].id);
+        cJSON_AddStringToObject(row, "reason", why.text);
+        cJSON_AddItemToArray(cJSON_GetObjectItemCaseSensitive(json, "without_curves"), row);
+    }
+    return false;
 }
 
 static bool add_curves(cJSON *json, const struct asking *asking, struct error *err)
@@ -245,9 +320,13 @@ static bool add_curves(cJSON *json, const struct asking *asking, struct error *e
     for (size_t d = 0; is_good && d < asking->n_doses; d++)
         for (size_t r = 0; is_good && r < asking->n_regions; r++) {
             struct curve curve;
+            if (!has_curve(json, asking, &asking->doses[d], asking->regions[r]))
+                continue;
             if (!(is_good = curve_init(&curve, asking, asking->regions[r], &asking->doses[d], err)))
                 break;
-            cJSON_AddItemToArray(curves, curve_object(asking, &curve, d == 0 && has_body ? &body : NULL));
+            cJSON *object = curve_object(asking, &curve, d == 0 && has_body ? &body : NULL, err);
+            if (!(is_good = object != NULL) || !cJSON_AddItemToArray(curves, object))
+                cJSON_Delete(object);
             curve_finish(&curve);
         }
     cJSON_AddItemToObject(json, "body_cm3",
@@ -284,7 +363,11 @@ static void put_field(FILE *file, const char *text)
 
 static void put_curve(FILE *file, const struct asking *asking, const struct curve *curve)
 {
-    double cm3 = curve->dvh.univel_cm3, n = curve->dvh.n, above = n;
+    const char *tissue = asking->packet->tissue;
+    double cm3 = curve->dvh.univel_cm3, missing = curve->dvh.n_missing, all = curve->dvh.n + missing,
+           above = curve->dvh.n;
+    char words[96];
+    const char *basis = dose_basis_words(asking->snapshot->plan, &curve->dose->choice, tissue, words);
     for (size_t i = 0; i < curve->n; i++) {
         put_field(file, asking->snapshot->plan->doses[curve->dose->dose].id);
         fputc(',', file);
@@ -293,15 +376,18 @@ static void put_curve(FILE *file, const struct asking *asking, const struct curv
         put_field(file, curve->region->name);
         fprintf(file, ",%s,", dose_quantity_scene_word(asking->snapshot->scene.dose.quantity));
         put_field(file, curve->dose->unit);
-        fprintf(file, ",%.9g,%.9g,%.9g,%.9g,%.9g\r\n", curve->from + curve->width * (double)i,
+        fprintf(file, ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%s,", curve->from + curve->width * (double)i,
                 curve->from + curve->width * (double)(i + 1), curve->counts[i] * cm3, above * cm3,
-                n > 0 ? 100 * above / n : 0);
+                all > 0 ? 100 * above / all : 0, all > 0 ? 100 * (above + missing) / all : 0, missing * cm3,
+                asking->population == POPULATION_OWN ? "own" : "whole");
+        put_field(file, basis ? basis : "");
+        fputs("\r\n", file);
         above = fmax(above - curve->counts[i], 0);
     }
 }
 
-/* A line for each bin: dose, region, region name, quantity, unit, from, to, cm3 within, cm3 and percent from `from` on.
- */
+/* A line for each bin: dose, region, region name, quantity, unit, from, to, cm3 within, cm3 and percent of the whole
+ * region known to be from `from` on, the percent that are at most, cm3 without a value, population, basis. */
 static cJSON *csv_of(const struct asking *asking, struct error *err)
 {
     struct text text = { 0 };
@@ -309,11 +395,14 @@ static cJSON *csv_of(const struct asking *asking, struct error *err)
     if (!is_good)
         (void)error_set(err, ERROR_MEMORY, "no memory for the table");
     else
-        fputs("dose,region,region_name,quantity,unit,from,to,volume_cm3,volume_from_cm3,volume_from_percent\r\n",
+        fputs("dose,region,region_name,quantity,unit,from,to,volume_cm3,volume_from_cm3,volume_from_percent,"
+              "volume_from_percent_most,missing_cm3,population,basis\r\n",
               text.file);
     for (size_t d = 0; is_good && d < asking->n_doses; d++)
         for (size_t r = 0; is_good && r < asking->n_regions; r++) {
             struct curve curve;
+            if (!has_curve(NULL, asking, &asking->doses[d], asking->regions[r]))
+                continue;
             if (!(is_good = curve_init(&curve, asking, asking->regions[r], &asking->doses[d], err)))
                 break;
             put_curve(text.file, asking, &curve);
@@ -339,7 +428,7 @@ static cJSON *answer(struct asking *asking, struct problem *problem)
         (void)problem_set(problem, PROBLEM_VALIDATION, "/format", "enum", "\"%.40s\" is not json or csv", format);
         return NULL;
     }
-    if (!find_regions(asking, problem) || !find_metrics(asking, problem))
+    if (!find_regions(asking, problem) || !find_metrics(asking, problem) || !find_population(asking, problem))
         return NULL;
     cJSON *json = cJSON_CreateObject();
     find_doses(asking, json);
@@ -364,8 +453,9 @@ static cJSON *answer(struct asking *asking, struct problem *problem)
     return table;
 }
 
-/* What the dose's own answer says beside its numbers; {method, without_curves: [{dose, reason}], body_cm3, curves:
- * [{region, dose, quantity, unit, n_univels, volume_cm3, missing_cm3, min, mean, max, metrics: {WORD: value}, stated,
+/* What the dose's own answer says beside its numbers; {method, without_curves: [{dose, region, reason}], body_cm3,
+ * curves: [{region, dose, quantity, unit, basis, population, n_univels, volume_cm3, missing_cm3, is_partial, min, mean,
+ * max, metrics: {WORD: value}, least: {min, mean, max, metrics}, most, stated,
  * conformity: [{level, value, isodose_cm3, covered_cm3, paddick, rtog}], bin_from, bin_width, counts_cm3}]}; or a table
  * of the curves as text/csv */
 cJSON *answer_dvh(struct question *question, struct derive *derived, struct problem *problem)
@@ -374,7 +464,8 @@ cJSON *answer_dvh(struct question *question, struct derive *derived, struct prob
     (void)derived;
     if (!dose_is_there(question->snapshot, problem))
         return NULL;
-    struct snapshot *snapshot = dose_snapshot_of(question->snapshot, question->packet.dvh.quantity, problem);
+    struct snapshot *snapshot =
+        dose_snapshot_in(question->snapshot, question->packet.dvh.quantity, question->packet.dvh.tissue, problem);
     asking.snapshot = snapshot;
     cJSON *json = snapshot ? answer(&asking, problem) : NULL;
     free(asking.regions);

@@ -49,15 +49,20 @@ static void add_coverage(cJSON *json, const struct snapshot *snapshot, const str
     dose_add_text(json, "region", region ? region->id : NULL);
     dose_add_number(json, "low", has_choice ? choice.low : NAN);
     dose_add_number(json, "high", has_choice ? choice.high : NAN);
+    bool is_partial = coverage && dvh_is_partial(&(struct dvh){ .n = (double)(coverage->n_region - coverage->n_without),
+                                                                .n_missing = (double)coverage->n_without });
+    dose_add_population(json, snapshot, has_choice ? &choice.dose : &(struct dose_choice){ .n_parts = 0 },
+                        snapshot->scene.dose.coverage.tissue, scene_population(snapshot->plan, &snapshot->scene));
     dose_add_number(json, "volume_cm3", coverage ? coverage->volume_cm3 : NAN);
-    dose_add_number(json, "share", coverage ? coverage->share : NAN);
+    dose_add_number(json, "share", coverage && !is_partial ? coverage->least_share : NAN);
+    dose_add_number(json, "share_least", coverage ? coverage->least_share : NAN);
+    dose_add_number(json, "share_most", coverage ? coverage->most_share : NAN);
     dose_add_number(json, "region_cm3", coverage ? (double)coverage->n_region * cm3 : NAN);
     dose_add_number(json, "missing_cm3", coverage ? (double)coverage->n_without * cm3 : NAN);
     dose_add_text(json, "coverage_reason", coverage ? NULL : why.text);
     cJSON_AddStringToObject(json, "method",
-                            "Univels of the region and of the regions inside it; the dose at a univel's centre, "
-                            "trilinear in the dose's own grid; low <= value < high. share is that of the univels with "
-                            "a value.");
+                            "Univels of the population, with the weights of the region; the dose at a univel's centre, "
+                            "trilinear in the dose's own grid; low <= value < high. share is a part of all of them.");
     if (coverage)
         derive_result_unref(&coverage->base);
 }
@@ -86,9 +91,6 @@ cJSON *answer_coverage(struct question *question, struct derive *derived, struct
 
 /* ---- constraints ------------------------------------------------------------------------------------------------ */
 
-/* A region's part without a value that no verdict depends on. */
-#define NEGLIGIBLE_SHARE 1e-3
-
 static const char *unit_of(const struct dvh_metric *metric, const char *dose_unit)
 {
     switch (metric->kind) {
@@ -104,34 +106,49 @@ static bool is_met(const struct scene_constraint *constraint, double value)
     return constraint->side == SCENE_LIMIT_SIDE_AT_MOST ? value <= constraint->limit : value >= constraint->limit;
 }
 
-/* Fills value, unit, met and, where nothing can be said, why. */
+/* The figure's bounds; false with why: nothing can be said. */
+static bool find_figure(const struct snapshot *snapshot, const struct scene_constraint *constraint,
+                        const struct dose_asked *asked, const struct dvh_metric *metric, struct dvh *dvh, double *least,
+                        double *most, struct error *why)
+{
+    const struct region_set *set = &snapshot->plan->regions;
+    const struct region *region = region_find(set, constraint->region);
+    if (!region)
+        return error_set(why, ERROR_NOT_FOUND, "no region is chosen");
+    if (region->n_voxels == 0)
+        return error_set(why, ERROR_NOT_FOUND, "the region has no univels");
+    if (!dose_histogram_get(snapshot->derived, &asked->choice, (size_t)(region - set->regions),
+                            scene_population(snapshot->plan, &snapshot->scene), DOSE_BY_REGION, 1, dvh, why))
+        return false;
+    dvh_metric_range(dvh, metric, least, most);
+    if (!(dvh->n > 0))
+        return error_set(why, ERROR_NOT_FOUND, "the dose has no value in the region");
+    if (isnan(*least) || isnan(*most))
+        return error_set(why, ERROR_RANGE, "the region is smaller than that");
+    return is_met(constraint, *least) == is_met(constraint, *most) ||
+           error_set(why, ERROR_NOT_FOUND, "%.3g %% of the region have no dose",
+                     100 * dvh->n_missing / (dvh->n + dvh->n_missing));
+}
+
+/* Fills tissue, basis, population, value, its bounds, unit, met and, where nothing can be said, why. */
 static void add_verdict(cJSON *json, const struct snapshot *snapshot, const struct scene_constraint *constraint)
 {
-    const struct region *region = region_find(&snapshot->plan->regions, constraint->region);
     struct dose_asked asked = { .unit = "" };
     struct dvh_metric metric = { 0 };
     struct dvh dvh = { 0 };
     struct error why = { 0 };
-    double value = NAN, least = NAN, most = NAN;
-    bool is_known = region != NULL || error_set(&why, ERROR_NOT_FOUND, "no region is chosen");
-    is_known = is_known && dvh_metric_parse(constraint->metric, &metric, &why) &&
-               dose_asked_of(snapshot, (size_t)snapshot->dose, constraint->quantity, &asked, &why) &&
-               dose_histogram_get(snapshot->derived, &asked.choice, (size_t)(region - snapshot->plan->regions.regions),
-                                  false, 1, &dvh, &why);
-    if (is_known) {
-        value = dvh_metric_value(&dvh, &metric);
-        dvh_metric_bounds(&dvh, &metric, &least, &most);
-        double share = dvh.n_missing / (dvh.n + dvh.n_missing);
-        if (share <= NEGLIGIBLE_SHARE)
-            least = most = value;
-        if (!(dvh.n > 0))
-            is_known = error_set(&why, ERROR_NOT_FOUND, "the dose has no value in the region");
-        else if (isnan(value))
-            is_known = error_set(&why, ERROR_RANGE, "the region is smaller than that");
-        else if (is_met(constraint, least) != is_met(constraint, most))
-            is_known = error_set(&why, ERROR_NOT_FOUND, "%.3g %% of the region have no dose", 100 * share);
-    }
-    dose_add_number(json, "value", value);
+    double least = NAN, most = NAN;
+    bool is_known =
+        dvh_metric_parse(constraint->metric, &metric, &why) &&
+        dose_asked_in(snapshot, (size_t)snapshot->dose, constraint->quantity, constraint->tissue, &asked, &why) &&
+        find_figure(snapshot, constraint, &asked, &metric, &dvh, &least, &most, &why);
+    cJSON_AddItemToObject(json, "tissue",
+                          constraint->tissue[0] ? cJSON_CreateString(constraint->tissue) : cJSON_CreateNull());
+    dose_add_population(json, snapshot, &asked.choice, constraint->tissue,
+                        scene_population(snapshot->plan, &snapshot->scene));
+    dose_add_number(json, "value", least == most ? least : NAN);
+    dose_add_number(json, "least", least);
+    dose_add_number(json, "most", most);
     cJSON_AddStringToObject(json, "unit", unit_of(&metric, asked.unit));
     cJSON_AddItemToObject(json, "met", is_known ? cJSON_CreateBool(is_met(constraint, least)) : cJSON_CreateNull());
     dose_add_text(json, "reason", is_known ? NULL : why.text);
@@ -141,7 +158,7 @@ static void add_verdict(cJSON *json, const struct snapshot *snapshot, const stru
 }
 
 /* What the dose's own answer says beside its numbers; {method, constraints: [{id, region, quantity, metric, side,
- * limit, value, unit, met, reason, volume_cm3, missing_cm3}]} */
+ * limit, tissue, basis, population, value, least, most, unit, met, reason, volume_cm3, missing_cm3}]} */
 cJSON *answer_constraints(struct question *question, struct derive *derived, struct problem *problem)
 {
     const struct snapshot *snapshot = question->snapshot;
@@ -155,9 +172,11 @@ cJSON *answer_constraints(struct question *question, struct derive *derived, str
     dose_add_basis(json, snapshot, &scale);
     dose_add_weights(json, snapshot);
     dose_scale_finish(&scale);
-    cJSON_AddStringToObject(json, "method",
-                            "Univels of each region alone, each with the dose at its centre. met is null where univels "
-                            "without a dose, more than 0.1 % of the region, could decide.");
+    cJSON_AddStringToObject(
+        json, "method",
+        "Univels of the population, each with the dose at its centre and the weights of its region, or "
+        "those chosen in the limit; how the dose is drawn changes nothing. met is null where "
+        "univels without a dose, 0.1 % of the region and more, could decide.");
     cJSON *list = cJSON_AddArrayToObject(json, "constraints");
     for (size_t i = 0; i < scene->n_constraints; i++) {
         const struct scene_constraint *constraint = &scene->constraints[i].value;

@@ -83,6 +83,7 @@ static struct dose_coverage_choice choice_of(size_t region, double low, double h
     choice.dose.n_rows = 1;
     choice.dose.is_everywhere = true;
     choice.region = region;
+    choice.population = POPULATION_WHOLE;
     choice.low = low;
     choice.high = high;
     return choice;
@@ -206,6 +207,8 @@ static void univels_without_a_value_are_counted_apart(void **state)
     assert_int_equal(upper->n, n_upper);
     assert_int_equal(upper->n_without, n_region - n_with);
     assert_near(upper->share, (double)n_upper / (double)n_with, 1e-12);
+    assert_near(upper->least_share, (double)n_upper / (double)n_region, 1e-12);
+    assert_near(upper->most_share, (double)(n_upper + n_region - n_with) / (double)n_region, 1e-12);
     derive_result_unref(&all->base);
     derive_result_unref(&upper->base);
     plan_and_derived_destroy(plan);
