@@ -33,12 +33,12 @@ void beam_place_words(char text[WORDS_SIZE], double along_mm)
     (void)snprintf(text, WORDS_SIZE, "%s mm from entry", number);
 }
 
-/* "aperture 120 mm", "aperture 88.5 mm"; before: "aperture". */
-static void ring_words(char text[WORDS_SIZE], const char *before, double diameter_mm)
+/* "ring 120 mm", "ring 88.5 mm": a ring that is drawn need not be the beam's aperture. */
+static void ring_words(char text[WORDS_SIZE], double diameter_mm, const char *after)
 {
     char number[40];
     words_number(number, diameter_mm, fabs(diameter_mm - round(diameter_mm)) < 0.05 ? 0 : 1);
-    (void)snprintf(text, WORDS_SIZE, "%s %s mm", before, number);
+    (void)snprintf(text, WORDS_SIZE, "ring %s mm%s", number, after);
 }
 
 void beam_describe(struct annotations *annotations, const struct snapshot *snapshot)
@@ -56,7 +56,7 @@ void beam_describe(struct annotations *annotations, const struct snapshot *snaps
                            is_eye ? "eye " : "", words);
         }
         if (view->beam.has_aperture_mm)
-            ring_words(annotation_add(annotations, ANNOTATION_BEAM)->text, "aperture ring", view->beam.aperture_mm);
+            ring_words(annotation_add(annotations, ANNOTATION_BEAM)->text, view->beam.aperture_mm, ", drawn");
     }
     if (snapshot->has_beam && snapshot->beam.is_draft && dose_is_described(snapshot))
         (void)snprintf(annotation_add(annotations, ANNOTATION_BEAM)->text, ANNOTATION_TEXT_SIZE, "%s",
@@ -158,7 +158,7 @@ static void add_eye(const struct labels *labels, const struct beam_eye_marks *ma
     struct paint_point on_ring = { marks->middle.x + reach, marks->middle.y - reach };
     struct annotation_label *label = reach > 0 ? add_label(labels, on_ring, false) : NULL;
     if (label)
-        ring_words(label->text, "aperture", marks->ring_mm);
+        ring_words(label->text, marks->ring_mm, "");
     label = marks->has_planned ? add_label(labels, marks->planned_entry, false) : NULL;
     if (label)
         (void)snprintf(label->text, sizeof label->text, "planned entry");

@@ -263,24 +263,76 @@ static void note_spacing(const struct fields *f, const char *name, const uint32_
                        f->pixdim[i + 1]);
 }
 
+/* True if the rows of the sform are all 0, so that it says nothing though its code says that it does. */
+static bool is_sform_empty(const struct fields *f)
+{
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++)
+            if (f->srow[row][column] != 0)
+                return false;
+    return true;
+}
+
+static double handedness(const struct affine *map)
+{
+    return vec3_dot(vec3_cross(map->columns[0], map->columns[1]), map->columns[2]);
+}
+
+/* The patient axis, 0 to 2, that a column runs along, with 3 added where it runs against it. */
+static int direction_of(struct vec3 column)
+{
+    double along[3] = { column.x, column.y, column.z };
+    int axis = fabs(along[1]) > fabs(along[0]) ? 1 : 0;
+    axis = fabs(along[2]) > fabs(along[axis]) ? 2 : axis;
+    return along[axis] < 0 ? axis + 3 : axis;
+}
+
+/* Reports two orientations that differ. With different codes they stand for two spaces, scanner and aligned, and may
+ * lie apart; but a mirrored one, or one that points another way, is never an alignment. */
+static void compare_forms(const struct fields *f, const char *name, const struct affine *sform, const uint32_t size[3],
+                          struct report *report)
+{
+    static const char *const sides[] = { "right", "anterior", "superior", "left", "posterior", "inferior" };
+    if (f->qform_code <= 0)
+        return;
+    struct affine qform = ras_from_quaternion(f);
+    if (!isfinite(handedness(&qform)))
+        return;
+    for (int i = 0; i < 3; i++) {
+        int s = direction_of(sform->columns[i]), q = direction_of(qform.columns[i]);
+        bool is_mirrored = handedness(sform) * handedness(&qform) < 0;
+        if (s == q || !(is_mirrored || s % 3 == q % 3))
+            continue;
+        report_add(
+            report, REPORT_WARNING, "geometry.forms-disagree", name,
+            "The two orientations in the file put its sides differently: its axis %d runs to the patient's %s by "
+            "sform, to the %s by qform. The sform was used; other programs may use the qform. Check left and right.",
+            i + 1, sides[s], sides[q]);
+        return;
+    }
+    double apart = f->qform_code == f->sform_code ? largest_corner_distance(sform, &qform, size) : 0;
+    if (apart > 1)
+        report_add(report, REPORT_WARNING, "geometry.forms-disagree", name,
+                   "The two orientations in the file (sform, qform) put a corner %.1f units apart; the sform was used.",
+                   apart);
+}
+
 static bool get_geometry(const struct fields *f, const char *name, const uint32_t size[3], struct grid *grid,
                          struct report *report, struct error *err)
 {
     struct affine ras;
-    if (f->sform_code > 0) {
+    bool has_sform = f->sform_code > 0 && !(f->qform_code > 0 && is_sform_empty(f));
+    if (has_sform) {
         ras = ras_from_rows(f);
-        struct affine other = ras_from_quaternion(f);
-        double apart = f->qform_code == f->sform_code ? largest_corner_distance(&ras, &other, size) : 0;
-        if (apart > 1)
-            report_add(
-                report, REPORT_WARNING, "geometry.forms-disagree", name,
-                "The two orientations in the file (sform, qform) put a corner %.1f units apart; the sform was used.",
-                apart);
+        compare_forms(f, name, &ras, size, report);
     } else if (f->qform_code > 0) {
         if (!check_quaternion(f, name, err))
             return false;
         ras = ras_from_quaternion(f);
         note_spacing(f, name, size, report);
+        if (f->sform_code > 0)
+            report_add(report, REPORT_NOTE, "geometry.forms-disagree", name,
+                       "The sform of the file is all 0; its qform was used.");
     } else {
         ras = ras_from_spacing(f);
         note_spacing(f, name, size, report);
@@ -300,7 +352,7 @@ static bool get_geometry(const struct fields *f, const char *name, const uint32_
         lps.columns[i] = vec3(-ras.columns[i].x * mm, -ras.columns[i].y * mm, ras.columns[i].z * mm);
     lps.origin = vec3(-ras.origin.x * mm, -ras.origin.y * mm, ras.origin.z * mm);
     if (!grid_init(grid, size, &lps, err)) {
-        error_prefix(err, "%s: %s", name, f->sform_code > 0 ? "sform" : f->qform_code > 0 ? "qform" : "pixdim");
+        error_prefix(err, "%s: %s", name, has_sform ? "sform" : f->qform_code > 0 ? "qform" : "pixdim");
         return false;
     }
     return true;

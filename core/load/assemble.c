@@ -64,7 +64,7 @@ static bool holds_only_0_and_1(const struct volume *volume)
 static void note_mask(struct loading *loading, const struct part_reading *reading, const struct plan_image *image)
 {
     const char *base = part_base_name(reading->path);
-    int stem = (int)strcspn(base, ".");
+    int stem = part_stem_length(base);
     if (!loading->parts.is_recognised || reading->format == PART_DICOM || !holds_only_0_and_1(image->volume))
         return;
     char rename[160] = "";
@@ -162,13 +162,22 @@ static bool add_regions(struct loading *loading, struct region_builder *builder,
     return region_builder_add_labels(builder, volume, &reading->names, reading->path, err);
 }
 
+/* Adds the regions of one file with their origin; a file whose regions are beyond a limit is reported and left out. */
 static bool add_regions_of(struct loading *loading, struct region_builder *builder, struct part_reading *reading,
                            struct error *err)
 {
     size_t first = loading->plan->regions.n_regions;
     struct part_origin origin = origin_of_reading(loading, reading);
-    return add_regions(loading, builder, reading, err) &&
-           origins_add_regions(loading->plan, &origin, first, err); /* of those that have no origin of their own */
+    struct error why = { 0 };
+    if (!add_regions(loading, builder, reading, &why)) {
+        if (!loading_may_leave_out(&why)) {
+            if (err)
+                *err = why;
+            return false;
+        }
+        loading_leave_out(loading, "part.unreadable", reading->path, &why);
+    }
+    return origins_add_regions(loading->plan, &origin, first, err); /* of those that have no origin of their own */
 }
 
 /* Adds the dose of an entry of the plan file, without components yet. NULL: the plan has no room for it. */
@@ -250,7 +259,7 @@ static void add_dose(struct loading *loading, size_t index)
     bool is_grouped = false;
     for (size_t i = 0; i < loading->n_readings; i++) {
         struct part_reading *reading = &loading->readings[i];
-        if (reading->kind != PART_KIND_DOSE || reading->index != index || is_grouped)
+        if (reading->kind != PART_KIND_DOSE || reading->index != index || reading->is_failed || is_grouped)
             continue;
         if (reading->format == PART_DICOM && entry->n_components == 1) {
             plan_dicom_add_doses(loading, index, entry);
@@ -265,11 +274,15 @@ static void add_dose(struct loading *loading, size_t index)
         if (is_of_dose(loading, dose, reading))
             add_component(loading, dose, reading);
     }
-    for (size_t i = 0; dose && i < loading->n_readings; i++)
-        if (loading->readings[i].kind == PART_KIND_DOSE_MASK && loading->readings[i].index == index)
-            add_dose_mask(loading, dose, &loading->readings[i]);
-        else if (loading->readings[i].kind == PART_KIND_DOSE_ERROR && loading->readings[i].index == index)
-            add_dose_error(dose, entry, &loading->readings[i]);
+    for (size_t i = 0; dose && i < loading->n_readings; i++) {
+        struct part_reading *reading = &loading->readings[i];
+        if (reading->index != index || reading->is_failed)
+            continue;
+        if (reading->kind == PART_KIND_DOSE_MASK)
+            add_dose_mask(loading, dose, reading);
+        else if (reading->kind == PART_KIND_DOSE_ERROR)
+            add_dose_error(dose, entry, reading);
+    }
 }
 
 static void add_doses(struct loading *loading)
@@ -280,19 +293,35 @@ static void add_doses(struct loading *loading)
         plan_dicom_add_doses(loading, PART_WITHOUT_ENTRY, NULL);
 }
 
+static bool apply_hierarchy_file(struct loading *loading, const char *path, struct error *err)
+{
+    struct plan *plan = loading->plan;
+    struct bytes bytes;
+    if (!folder_read(&loading->folder, path, TEXT_FILE_MAX_BYTES, UINT64_MAX, &bytes, err))
+        return false;
+    struct plan_file_pair *pairs = mem_new(PLAN_FILE_MAX_PAIRS * sizeof *pairs);
+    size_t n = hierarchy_parse(bytes.data, bytes.size, path, pairs, PLAN_FILE_MAX_PAIRS, &plan->report);
+    bytes_free(&bytes);
+    region_set_apply_pairs(&plan->regions, pairs, n, false, path, &plan->report);
+    free(pairs);
+    return true;
+}
+
 static bool apply_hierarchy(struct loading *loading, const struct region_builder *builder, struct error *err)
 {
     struct plan *plan = loading->plan;
     const struct plan_file *file = loading->file;
-    if (file->hierarchy[0]) {
-        struct bytes bytes;
-        if (!folder_read(&loading->folder, file->hierarchy, TEXT_FILE_MAX_BYTES, UINT64_MAX, &bytes, err))
+    struct error why = { 0 };
+    if (file->hierarchy[0] && !apply_hierarchy_file(loading, file->hierarchy, &why)) {
+        if (!loading_may_leave_out(&why)) {
+            if (err)
+                *err = why;
             return false;
-        struct plan_file_pair *pairs = mem_new(PLAN_FILE_MAX_PAIRS * sizeof *pairs);
-        size_t n = hierarchy_parse(bytes.data, bytes.size, file->hierarchy, pairs, PLAN_FILE_MAX_PAIRS, &plan->report);
-        bytes_free(&bytes);
-        region_set_apply_pairs(&plan->regions, pairs, n, false, file->hierarchy, &plan->report);
-        free(pairs);
+        }
+        loading_leave_out(loading, "part.unreadable", file->hierarchy, &why);
+    }
+    if (file->hierarchy[0]) {
+        /* applied, or reported */
     } else if (file->n_pairs > 0) {
         region_set_apply_pairs(&plan->regions, file->pairs, file->n_pairs, true, "plan.json", &plan->report);
     } else if (builder->n_pairs > 0) {
@@ -349,7 +378,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
             is_whole = add_regions_of(loading, &builder, reading, err);
     }
     for (size_t i = 0; i < loading->n_readings; i++)
-        if (is_whole && loading->readings[i].kind == PART_KIND_IMAGE)
+        if (is_whole && loading->readings[i].kind == PART_KIND_IMAGE && !loading->readings[i].is_failed)
             borrow_grid(loading, &loading->readings[i]);
     if (is_whole) {
         loading_phase(loading, "measuring regions", "", 95, 100);
@@ -369,5 +398,5 @@ bool plan_assemble(struct loading *loading, struct error *err)
     plan_measure_bounds(plan);
     if (loading->file->n_tracks > 0)
         snprintf(plan->tracks_origin.path, sizeof plan->tracks_origin.path, "%s", loading->file->tracks[0].path);
-    return plan_add_tracks(plan, &loading->folder, loading->file, err);
+    return plan_add_tracks(loading, err);
 }

@@ -78,20 +78,35 @@ static void beam_from_tracks(struct plan *plan)
     }
 }
 
-bool plan_add_tracks(struct plan *plan, const struct folder *folder, const struct plan_file *file, struct error *err)
+bool plan_add_tracks(struct loading *loading, struct error *err)
 {
+    struct plan *plan = loading->plan;
+    const struct folder *folder = &loading->folder;
+    const struct plan_file *file = loading->file;
     for (size_t i = 0; i < file->n_tracks; i++) {
         const char *path = file->tracks[i].path;
         enum part_format format = part_format_of(folder, path);
-        if (format == PART_ABSENT)
-            return error_set(err, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", path);
+        struct error why = { 0 };
+        size_t n_before = plan->tracks.n_segments;
+        if (format == PART_ABSENT) {
+            error_set(&why, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", path);
+            loading_leave_out(loading, "part.unreadable", path, &why);
+            continue;
+        }
         if (format != PART_PP && format != PART_TRACK_CSV) {
             report_add(&plan->report, REPORT_WARNING, "tracks.unsupported", path,
                        "Tracks of this kind are not read by this version; the plan is shown without them.");
             continue;
         }
-        if (!add_file(plan, folder, &file->tracks[i], format, err))
+        if (add_file(plan, folder, &file->tracks[i], format, &why))
+            continue;
+        plan->tracks.n_segments = n_before;
+        if (!loading_may_leave_out(&why)) {
+            if (err)
+                *err = why;
             return false;
+        }
+        loading_leave_out(loading, "part.unreadable", path, &why);
     }
     beam_from_tracks(plan);
     return true;

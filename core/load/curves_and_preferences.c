@@ -11,6 +11,7 @@
 #include "core/formats/sera_table.h"
 #include "core/formats/text.h"
 #include "core/formats/zlib_stream.h"
+#include "core/load/part_names.h"
 
 static bool read_curve(const struct folder *folder, const char *path, struct dose_curve *curve, struct report *report,
                        struct error *err)
@@ -51,8 +52,8 @@ void plan_add_curves(struct plan *plan, const struct folder *folder, const struc
                        "%s. The plan is shown without this curve.", err.text);
             continue;
         }
-        const char *slash = strrchr(entry->path, '/'), *base = slash ? slash + 1 : entry->path;
-        snprintf(stem, sizeof stem, "%.*s", (int)strcspn(base, "."), base);
+        const char *base = part_base_name(entry->path);
+        snprintf(stem, sizeof stem, "%.*s", part_stem_length(base), base);
         make_id(plan, entry->id, stem, id);
         memcpy(curve.id, id, sizeof curve.id);
         text_clean(entry->name[0] ? entry->name : stem[0] ? stem : id, curve.name, sizeof curve.name);

@@ -32,7 +32,7 @@ static int folder_length(const char *path)
 /* "a/parts.nii.gz" and ".json" give "a/parts.json"; false when that is too long. */
 static bool with_ending(const char *path, const char *ending, char out[FOLDER_NAME_SIZE])
 {
-    int stem = folder_length(path) + (int)strcspn(part_base_name(path), ".");
+    int stem = folder_length(path) + part_stem_length(part_base_name(path));
     int n = snprintf(out, FOLDER_NAME_SIZE, "%.*s%s", stem, path, ending);
     return n > 0 && n < FOLDER_NAME_SIZE;
 }

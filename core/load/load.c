@@ -57,15 +57,25 @@ static bool load_from_cache(struct loading *loading)
     return is_read;
 }
 
-/* False when every part was left out; the gravest line of the report becomes the reason. */
-static bool has_anything(const struct plan *plan, struct error *err)
+/* False when every part was left out; the first of them, else the gravest line of the report, becomes the reason. */
+static bool has_anything(const struct loading *loading, struct error *err)
 {
+    const struct plan *plan = loading->plan;
     const struct report_line *gravest = NULL;
+    size_t n_errors = 0;
     if (plan->n_images + plan->regions.n_regions + plan->n_doses + plan->n_beams > 0)
         return true;
-    for (size_t i = 0; i < plan->report.n_lines; i++)
+    for (size_t i = 0; i < plan->report.n_lines; i++) {
+        n_errors += plan->report.lines[i].severity == REPORT_ERROR;
         if (!gravest || plan->report.lines[i].severity > gravest->severity)
             gravest = &plan->report.lines[i];
+    }
+    if (loading->n_left_out > 0) {
+        *err = loading->first_left_out;
+        if (n_errors > 1)
+            error_prefix(err, "nothing is left to show");
+        return false;
+    }
     return error_set(err, ERROR_UNSUPPORTED, "nothing is left to show%s%s%s%s", gravest ? "; " : "",
                      gravest ? gravest->where : "", gravest && gravest->where[0] ? ": " : "",
                      gravest ? gravest->sentence : "");
@@ -83,7 +93,7 @@ static bool load(struct loading *loading)
     bool is_found = plan_find_parts(&loading->folder, &looking, &loading->parts, &plan->report, err);
     loading->file = loading->parts.file;
     if (!is_found || !plan_list_parts(loading, err) || !plan_check_estimate(loading, err) ||
-        !plan_read_parts(loading, err) || !plan_assemble(loading, err) || !has_anything(plan, err)) {
+        !plan_read_parts(loading, err) || !plan_assemble(loading, err) || !has_anything(loading, err)) {
         if (error_n_memory() != n_lacked && err->code != ERROR_MEMORY)
             error_set(err, ERROR_MEMORY, "no memory, or too many open files, to read the plan");
         return false;

@@ -78,6 +78,18 @@ struct loading *loading_create(const char *folder, const char *id, struct error 
     return loading;
 }
 
+bool loading_may_leave_out(const struct error *why)
+{
+    return why->code != ERROR_MEMORY && why->code != ERROR_CANCELLED;
+}
+
+void loading_leave_out(struct loading *loading, const char *code, const char *path, const struct error *why)
+{
+    report_add(&loading->plan->report, REPORT_ERROR, code, path, "Left out: %s", why->text);
+    if (loading->n_left_out++ == 0)
+        loading->first_left_out = *why;
+}
+
 const struct dicom_stack *loading_stack_of(const struct loading *loading, size_t image)
 {
     int stack = loading->image_stacks[image];

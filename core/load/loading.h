@@ -36,6 +36,8 @@ struct loading {
     uint64_t n_bytes; /* of all files */
     atomic_size_t next, first_failed;
 
+    struct error first_left_out; /* why the first part was left out */
+    size_t n_left_out;
     struct error err; /* why loading failed, when is_whole is false */
     bool is_whole;
     struct queue *ended;                  /* gets one letter when the thread is through */
@@ -57,6 +59,13 @@ void loading_phase(struct loading *loading, const char *what, const char *name, 
 void loading_begin(struct loading *loading, uint64_t work);
 /* Adds to the work that is done, in the same unit. */
 void loading_work(struct loading *loading, uint64_t work);
+
+/* True if the fault is of one part alone, so that the rest of the plan can be shown without it: anything but a lack of
+ * memory, and a load that was cancelled. */
+bool loading_may_leave_out(const struct error *why);
+/* Reports a part that is left out, and keeps the first reason for the case that nothing is left to show. path: the
+ * part's file. */
+void loading_leave_out(struct loading *loading, const char *code, const char *path, const struct error *why);
 
 /* The stack of the DICOM index that an image of the plan was read from; NULL when it was not DICOM. */
 const struct dicom_stack *loading_stack_of(const struct loading *loading, size_t image);

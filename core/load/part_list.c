@@ -128,6 +128,34 @@ static bool list_dose(struct loading *loading, size_t i, struct error *err)
     return true;
 }
 
+/* Lists the files of the ith entry of one list of the plan file. */
+typedef bool (*list_entry)(struct loading *loading, size_t i, struct error *err);
+
+/* Lists an entry. When that fails it is reported and left out, unless the fault is not its own. */
+static bool list_or_leave_out(struct loading *loading, list_entry list, size_t i, const char *path, struct error *err)
+{
+    struct error why = { 0 };
+    size_t n_before = loading->n_readings;
+    if (list(loading, i, &why))
+        return true;
+    while (loading->n_readings > n_before)
+        loading->readings[--loading->n_readings] = (struct part_reading){ 0 };
+    if (loading_may_leave_out(&why)) {
+        loading_leave_out(loading, "part.unreadable", path, &why);
+        return true;
+    }
+    if (err)
+        *err = why;
+    return false;
+}
+
+static bool list_beams(struct loading *loading, size_t i, struct error *err)
+{
+    const char *path = loading->file->beam_files[i].path;
+    return list_dicom(loading, PART_KIND_BEAMS, DICOM_KIND_PLAN, i, 0, path, PLAN_DICOM_MAX_PLANS) > 0 ||
+           refuse_dicom(loading, path, "treatment plan", err);
+}
+
 bool plan_list_parts(struct loading *loading, struct error *err)
 {
     const struct plan_file *file = loading->file;
@@ -142,15 +170,13 @@ bool plan_list_parts(struct loading *loading, struct error *err)
     if (!loading->readings)
         return false;
     for (size_t i = 0; is_made && i < file->n_images; i++)
-        is_made = list_image(loading, i, err);
+        is_made = list_or_leave_out(loading, list_image, i, file->images[i].path, err);
     for (size_t i = 0; is_made && i < file->n_regions; i++)
-        is_made = list_regions(loading, i, err);
+        is_made = list_or_leave_out(loading, list_regions, i, file->regions[i].path, err);
     for (size_t i = 0; is_made && i < file->n_doses; i++)
-        is_made = list_dose(loading, i, err);
+        is_made = list_or_leave_out(loading, list_dose, i, file->doses[i].components[0].path, err);
     for (size_t i = 0; is_made && i < file->n_beam_files; i++)
-        is_made = list_dicom(loading, PART_KIND_BEAMS, DICOM_KIND_PLAN, i, 0, file->beam_files[i].path,
-                             PLAN_DICOM_MAX_PLANS) > 0 ||
-                  refuse_dicom(loading, file->beam_files[i].path, "treatment plan", err);
+        is_made = list_or_leave_out(loading, list_beams, i, file->beam_files[i].path, err);
     if (is_made && parts->is_all_dicom) {
         list_dicom(loading, PART_KIND_DOSE, DICOM_KIND_DOSE, PART_WITHOUT_ENTRY, 0, "", PLAN_DICOM_MAX_DOSES);
         list_dicom(loading, PART_KIND_BEAMS, DICOM_KIND_PLAN, PART_WITHOUT_ENTRY, 0, "", PLAN_DICOM_MAX_PLANS);

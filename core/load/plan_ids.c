@@ -4,14 +4,15 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/load/part_names.h"
+
 void plan_make_id(char id[64], const char *given, const char *path, const char *const *others, size_t n_others)
 {
     const struct region_set none = { 0 };
-    const char *slash = strrchr(path, '/');
-    const char *base = slash ? slash + 1 : path;
+    const char *base = part_base_name(path);
     char stem[128];
-    size_t length = strcspn(base, ".");
-    snprintf(stem, sizeof stem, "%.*s", (int)(length < 100 ? length : 100), base);
+    int length = part_stem_length(base);
+    snprintf(stem, sizeof stem, "%.*s", length < 100 ? length : 100, base);
     region_make_id(&none, given[0] ? given : stem, id);
     size_t n = strlen(id);
     bool is_taken = true;

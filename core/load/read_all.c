@@ -16,32 +16,15 @@ static void order_readings(struct loading *loading)
     }
 }
 
-/* True if the file can be reported and left out: it was recognised, not named by a plan.json, so its fault need not
- * keep the rest from being shown. */
-static bool may_be_left_out(const struct loading *loading, const struct part_reading *reading)
+/* Reports the failed readings; the rest is shown without them. */
+static void leave_out_failed(struct loading *loading)
 {
-    return loading->parts.is_all_dicom && reading->format == PART_DICOM &&
-           (reading->err.code == ERROR_FORMAT || reading->err.code == ERROR_UNSUPPORTED ||
-            reading->err.code == ERROR_RANGE);
-}
-
-/* Reports the failed readings. errors: the first one's, when all failed */
-static bool leave_out_failed(struct loading *loading, struct error *err)
-{
-    const struct error *first = NULL;
-    size_t n_read = 0;
     for (size_t i = 0; i < loading->n_readings; i++) {
         struct part_reading *reading = &loading->readings[i];
-        n_read += !reading->is_failed;
-        if (!reading->is_failed)
-            continue;
-        first = first ? first : &reading->err;
-        report_add(&loading->plan->report, REPORT_ERROR, "dicom.unreadable", reading->path, "Left out: %s",
-                   reading->err.text);
+        if (reading->is_failed)
+            loading_leave_out(loading, reading->format == PART_DICOM ? "dicom.unreadable" : "part.unreadable",
+                              reading->path, &reading->err);
     }
-    if (n_read == 0 && first && err)
-        *err = *first;
-    return n_read > 0 || !first;
 }
 
 /* The name shown for a reading: the series of a DICOM image, else the path. */
@@ -63,7 +46,8 @@ static void work(void *context, int part, int n_parts)
             return;
         size_t at = loading->order[turn];
         struct part_reading *reading = &loading->readings[at];
-        /* Once a part has failed only earlier parts matter: the error of the first in the plan's order is returned. */
+        /* Once a fault ends loading only earlier parts matter: the error of the first in the plan's order is returned.
+         */
         if (at > atomic_load(&loading->first_failed))
             continue;
         if (part == 0)
@@ -74,7 +58,7 @@ static void work(void *context, int part, int n_parts)
         if (error_n_memory() != n_lacked && (!reading->is_failed || reading->err.code != ERROR_MEMORY))
             reading->is_failed = !error_set(&reading->err, ERROR_MEMORY,
                                             "%s: no memory, or too many open files, to read all of it", reading->path);
-        if (reading->is_failed && !may_be_left_out(loading, reading)) {
+        if (reading->is_failed && !loading_may_leave_out(&reading->err)) {
             size_t before = atomic_load(&loading->first_failed);
             while (at < before && !atomic_compare_exchange_weak(&loading->first_failed, &before, at)) {
             }
@@ -101,8 +85,7 @@ bool plan_read_parts(struct loading *loading, struct error *err)
             *err = loading->readings[failed].err;
         return false;
     }
-    if (!leave_out_failed(loading, err))
-        return false;
+    leave_out_failed(loading);
     for (size_t i = 0; i < loading->n_readings; i++)
         report_move(&loading->plan->report, &loading->readings[i].report);
     return true;

@@ -27,15 +27,24 @@ static bool read_layers(const struct folder *folder, struct part_reading *readin
     return plan_nrrd_read_layers(folder, reading->path, reading->layers, &reading->report, &reading->err);
 }
 
+/* Reads the list of names of a label map. A list that cannot be read is reported, and the map stays without names. */
 static bool read_names(const struct folder *folder, const char *path, struct part_reading *reading)
 {
-    struct bytes bytes;
+    struct bytes bytes = { 0 };
+    struct error why = { 0 };
     if (!path[0])
         return true;
-    if (!folder_read(folder, path, TEXT_FILE_MAX_BYTES, UINT64_MAX, &bytes, &reading->err))
-        return false;
-    bool is_read = label_names_parse(bytes.data, bytes.size, path, &reading->names, &reading->err);
+    bool is_read = folder_read(folder, path, TEXT_FILE_MAX_BYTES, UINT64_MAX, &bytes, &why) &&
+                   label_names_parse(bytes.data, bytes.size, path, &reading->names, &why);
     bytes_free(&bytes);
+    if (!is_read && loading_may_leave_out(&why)) {
+        label_names_finish(&reading->names);
+        report_add(&reading->report, REPORT_ERROR, "part.unreadable", path,
+                   "Left out: %s. The labels of %.120s go by their numbers.", why.text, reading->path);
+        return true;
+    }
+    if (!is_read)
+        reading->err = why;
     if (is_read && reading->names.file[0] &&
         strcmp(part_base_name(reading->names.file), part_base_name(reading->path)) != 0)
         report_add(&reading->report, REPORT_WARNING, "region.names-elsewhere", reading->path,

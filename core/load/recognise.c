@@ -131,7 +131,7 @@ static bool has_good_header(struct recognition *all, const char *name, enum part
     }
     if (is_good)
         return true;
-    report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "Not used: %s", err.text);
+    report_add(all->report, REPORT_ERROR, "plan.ignored-file", name, "Left out: %s", err.text);
     if (!all->reason.text[0])
         all->reason = err;
     return false;

@@ -8,6 +8,7 @@
 
 #include "core/base/mem.h"
 #include "core/formats/text.h"
+#include "core/load/part_names.h"
 #include "core/region/contour_layer.h"
 #include "core/region/label_rows.h"
 
@@ -156,10 +157,9 @@ static void note_surroundings(struct region_builder *builder, const char *name, 
 /* Names a label that has no name: after the file when it is the only label, else by its number. */
 static void make_name(char name[REGION_NAME_SIZE], uint32_t label, bool is_only, const char *where)
 {
-    const char *slash = strrchr(where, '/');
-    const char *base = slash ? slash + 1 : where;
+    const char *base = part_base_name(where);
     char stem[REGION_NAME_SIZE];
-    snprintf(stem, sizeof stem, "%.*s", (int)strcspn(base, "."), base);
+    snprintf(stem, sizeof stem, "%.*s", part_stem_length(base), base);
     if (is_only && stem[0])
         text_clean(stem, name, REGION_NAME_SIZE);
     else
@@ -194,13 +194,32 @@ static void add_pair(struct region_builder *builder, const char *outer, const ch
     snprintf(pair->inner, sizeof pair->inner, "%s", inner);
 }
 
+/* Refuses a file whose labels are more than the plan has room for, before any of them is added. */
+static bool has_room_for_labels(const struct region_builder *builder, const uint64_t *counts, const char *where,
+                                struct error *err)
+{
+    size_t n_labels = 0;
+    for (uint32_t label = 1; label < 65536; label++)
+        n_labels += counts[label] > 0;
+    return builder->set->n_regions + n_labels <= REGION_MAX ||
+           error_set(err, ERROR_LIMIT, "%s: %zu labels besides %zu regions; at most %d regions in a plan", where,
+                     n_labels, builder->set->n_regions, REGION_MAX);
+}
+
 bool region_builder_add_labels(struct region_builder *builder, struct volume *labels, const struct label_names *names,
                                const char *where, struct error *err)
 {
     uint32_t layer = 0;
-    if (!add_layer(builder, labels, where, &layer, err))
-        return false;
     uint64_t *counts = count_labels(labels);
+    if (!has_room_for_labels(builder, counts, where, err)) {
+        free(counts);
+        volume_unref(labels);
+        return false;
+    }
+    if (!add_layer(builder, labels, where, &layer, err)) {
+        free(counts);
+        return false;
+    }
     bool *is_named = mem_new(65536);
     bool is_added = true;
     size_t n_unused = 0;
@@ -237,9 +256,16 @@ bool region_builder_add_univels(struct region_builder *builder, struct volume *u
                                 const char *where, struct error *err)
 {
     uint32_t layer = 0;
-    if (!add_layer(builder, univels, where, &layer, err))
-        return false;
     uint64_t *counts = count_labels(univels);
+    if (!has_room_for_labels(builder, counts, where, err)) {
+        free(counts);
+        volume_unref(univels);
+        return false;
+    }
+    if (!add_layer(builder, univels, where, &layer, err)) {
+        free(counts);
+        return false;
+    }
     bool *is_named = mem_new(65536);
     bool is_added = true;
     is_named[1] = true; /* SERA reserves 1 for the buffer, named or not */

@@ -148,19 +148,19 @@ static void add_image_part(struct plan_summary *summary, const struct plan_parts
         add_part(summary, n, "image", "images");
 }
 
-static bool check_images(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary,
-                         struct error *err)
+/* Returns the number of images whose headers are valid; err: why the first of the others is not. */
+static size_t check_images(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary,
+                           struct error *err)
 {
-    bool is_good = true;
+    size_t n_good = 0;
     for (size_t i = 0; i < parts->file->n_images; i++) {
         const struct plan_file_image *image = &parts->file->images[i];
         int stack = plan_dicom_stack(parts->dicom, image->path);
         count_bytes(folder, image->path, summary);
-        if (stack < 0)
-            is_good = is_good && check_image(folder, image, summary, err);
+        n_good += stack >= 0 || check_image(folder, image, summary, err->text[0] ? NULL : err);
         add_image_part(summary, parts, i, stack);
     }
-    return is_good;
+    return n_good;
 }
 
 /* Number of items in a sequence of a DICOM object, or of items that have the inner sequence. */
@@ -199,44 +199,49 @@ static size_t count_objects(const struct folder *folder, const struct dicom_inde
     return n;
 }
 
-static bool check_regions(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary,
-                          struct error *err)
+/* Returns the number of files of regions whose headers are valid; err: why the first of the others is not, unless it
+ * holds an error already. */
+static size_t check_regions(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary,
+                            struct error *err)
 {
     const struct plan_file *file = parts->file;
-    size_t n_regions = 0, n_names = 0, n_maps = 0;
-    bool is_good = true;
+    size_t n_regions = 0, n_names = 0, n_maps = 0, n_good = 0;
     for (size_t i = 0; i < file->n_regions; i++) {
         const struct plan_file_region *region = &file->regions[i];
         enum part_format format = part_format_of(folder, region->path);
+        struct error *why = err->text[0] ? NULL : err;
+        bool is_good = true;
         count_bytes(folder, region->path, summary);
         if (format == PART_UVH) {
-            is_good = is_good && check_univels(folder, region->path, summary, &n_regions, err);
+            is_good = check_univels(folder, region->path, summary, &n_regions, why);
         } else if (format == PART_DICOM) {
             size_t n = count_objects(folder, parts->dicom, DICOM_KIND_STRUCT, region->path, summary) +
                        count_objects(folder, parts->dicom, DICOM_KIND_SEGMENTATION, region->path, summary);
             n_regions += region->name[0] && n > 1 ? 1 : n;
         } else if (format != PART_NIFTI && format != PART_NRRD) {
-            is_good = is_good && refuse(region->path, format, err);
+            is_good = refuse(region->path, format, why);
         } else {
             size_t n = count_names(folder, region->names), n_segments = 0;
             if (format == PART_NIFTI)
-                is_good = is_good && check_nifti(folder, region->path, summary, err);
+                is_good = check_nifti(folder, region->path, summary, why);
             else
-                is_good = is_good && check_nrrd(folder, region->path, summary, &n_segments, err);
+                is_good = check_nrrd(folder, region->path, summary, &n_segments, why);
             if (n == 0 && !region->name[0])
                 n = n_segments;
             n_regions += region->name[0] != 0;
             n_names += n;
             n_maps += !region->name[0] && n == 0;
         }
+        n_good += is_good;
     }
     add_part(summary, n_regions, "region", "regions");
     add_part(summary, n_names, "named label", "named labels");
     add_part(summary, n_maps, "label map", "label maps");
-    return is_good;
+    return n_good;
 }
 
-static void count_doses(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary)
+/* Returns the number of doses, or components, that are read. */
+static size_t count_doses(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary)
 {
     const struct plan_file *file = parts->file;
     size_t n_components = 0, n_unread = 0, n_objects = 0;
@@ -265,6 +270,7 @@ static void count_doses(const struct folder *folder, const struct plan_parts *pa
     add_part(summary, n_objects, "dose", "doses");
     add_part(summary, n_components, "dose component", "dose components");
     add_part(summary, n_unread, "dose not read by this version", "doses not read by this version");
+    return n_objects + n_components;
 }
 
 static size_t count_beams(const struct folder *folder, const struct plan_parts *parts, struct plan_summary *summary)
@@ -297,11 +303,13 @@ void plan_summarize(const char *path, struct plan_summary *summary)
         memcpy(summary->name, file->name, sizeof summary->name);
         memcpy(summary->note, file->note, sizeof summary->note);
         summary->is_phantom = file->is_phantom;
-        bool has_images = check_images(&folder, &parts, summary, &err);
-        summary->is_readable = check_regions(&folder, &parts, summary, has_images ? &err : NULL) && has_images;
+        size_t n_good = check_images(&folder, &parts, summary, &err);
+        n_good += check_regions(&folder, &parts, summary, &err);
         count_series_bytes(parts.dicom, summary);
-        count_doses(&folder, &parts, summary);
-        add_part(summary, count_beams(&folder, &parts, summary), "beam", "beams");
+        n_good += count_doses(&folder, &parts, summary);
+        size_t n_beams = count_beams(&folder, &parts, summary);
+        add_part(summary, n_beams, "beam", "beams");
+        summary->is_readable = n_good + n_beams > 0 || !err.text[0]; /* one bad part keeps no other from being shown */
         for (size_t i = 0; i < file->n_tracks; i++)
             count_bytes(&folder, file->tracks[i].path, summary);
         add_part(summary, file->n_tracks, "file of tracks", "files of tracks");

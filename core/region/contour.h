@@ -21,11 +21,14 @@ enum {
 struct contour {
     double *points_lps_mm; /* [n_points][3] */
     size_t n_points;       /* the last point is joined to the first */
+    bool is_xor;           /* CLOSEDPLANAR_XOR: planes of these alone combine by exclusive or */
 };
 
-/* The contours of one region. Contours on the same plane combine by even-odd: an outline inside another is a hole, an
+/* The contours of one region. Those of one plane combine so: an outline inside another (up to 0.05 mm) is a hole, an
  * outline in that hole an island. A hole joined to its outline by a channel of zero width (keyhole) gives the same
- * result. */
+ * result. Outlines that partly overlap are a union. One that repeats another is left out: outlines that lie 0.35 mm
+ * apart on the mean or less, or a coarser copy with all its points on the other. A contour alone is filled by even-odd.
+ */
 struct contour_set {
     struct contour *contours;
     size_t n_contours;
@@ -42,8 +45,10 @@ extern const struct contour_options contour_defaults; /* 2 threads, 0 mm, 64 Mi 
 
 struct contour_facts {
     size_t n_planes;
-    double polygon_cm3;    /* sum over the planes: even-odd area times the thickness of its slab */
+    double polygon_cm3;    /* sum over the planes: area of the combined contours times the thickness of its slab */
     double filled_cm3;     /* volume of the voxels */
+    double outlines_cm3;   /* a check by another way: shoelace areas with the sign of their nesting, times the thickness
+                              of   their slab as far as it is on the grid; NaN if too intricate */
     double spacing_mm;     /* median distance of neighbouring planes; with a single plane, the thickness given to it */
     size_t n_gaps;         /* places where the next plane is over 1.5 times further away; not filled there */
     double widest_gap_mm;  /* 0 if there is no gap */
@@ -51,9 +56,12 @@ struct contour_facts {
     size_t n_not_planar;   /* contours that leave their plane by more than 0.01 mm; they are flattened into it */
     size_t n_not_parallel; /* contours tilted by more than 5 degrees against the largest one; left out */
     size_t n_degenerate;   /* contours with fewer than 3 points or no area; left out */
-    size_t n_repeated; /* contours with the same points as another; left out, because even-odd would turn the pair into
-                          a hole */
-    size_t n_not_finite; /* contours with a coordinate that is not finite or beyond CONTOUR_MAX_MM; left out */
+    size_t n_repeated;     /* contours that repeat another of their plane; left out */
+    size_t n_overlap_planes; /* planes with contours that partly overlap */
+    size_t n_moved_planes;   /* planes that lie beside the slices of the grid they were filled on */
+    double moved_mm;         /* largest distance of such a plane from the nearest slice */
+    size_t n_close_planes;   /* planes joined with a neighbour, as they are much closer than the usual distance */
+    size_t n_not_finite;     /* contours with a coordinate that is not finite or beyond CONTOUR_MAX_MM; left out */
 };
 
 /* Sets the voxels of the grid whose centres the contours enclose.
@@ -62,7 +70,7 @@ struct contour_facts {
  * spacing thick. The spacing is the median distance of neighbouring planes (options->spacing_mm where there are fewer
  * than four and they are further apart). A distance over 1.5 spacings is a gap, into which the slab on either side
  * reaches half a spacing. A voxel is inside if its centre is in a slab and the contours of that plane enclose its
- * projection along the normal (even-odd). A centre on an edge belongs to one side only, so regions that share an edge
+ * projection along the normal. A centre on an edge belongs to one side only, so regions that share an edge
  * share no voxel. Planes may have any orientation to the grid.
  *
  *   facts    filled on success; may be NULL

@@ -12,6 +12,7 @@
 #define MOST_TILT_COSINE 0.99619469809174555 /* cosine of 5 degrees */
 #define SNAP_COSINE 0.9999984769132877       /* cosine of 0.1 degree */
 #define GAP_FACTOR 1.5
+#define CLOSE_SHARE 0.18 /* of the upper quartile of the distances: closer planes are one, drawn twice and shifted */
 enum { FEW_PLANES = 4 };
 
 enum verdict { GOOD, NOT_FINITE, DEGENERATE, NOT_PARALLEL };
@@ -196,10 +197,40 @@ static bool is_repeated(const struct contour *a, const struct contour *b)
            memcmp(a->points_lps_mm, b->points_lps_mm, a->n_points * 3 * sizeof(double)) == 0;
 }
 
+/* Largest distance of contours on one plane. Where copies of contours lie a little beside the first ones, it is more
+ * than the rounding of decimals. */
+static bool find_same_plane_mm(const struct entry *entries, size_t n, double *same_mm, struct error *err)
+{
+    size_t n_gaps = 0;
+    *same_mm = SAME_PLANE_MM;
+    double *gaps_mm = mem_array(n, sizeof *gaps_mm, UINT64_MAX, err);
+    if (!gaps_mm)
+        return false;
+    for (size_t i = 1; i < n; i++)
+        if (entries[i].at_mm - entries[i - 1].at_mm > SAME_PLANE_MM)
+            gaps_mm[n_gaps++] = entries[i].at_mm - entries[i - 1].at_mm;
+    if (n_gaps >= FEW_PLANES) {
+        qsort(gaps_mm, n_gaps, sizeof *gaps_mm, by_value);
+        *same_mm = fmax(SAME_PLANE_MM, CLOSE_SHARE * gaps_mm[3 * n_gaps / 4]);
+    }
+    free(gaps_mm);
+    return true;
+}
+
+/* Returns true if an entry is on the plane that entries[first] begins. */
+static bool is_same_plane(const struct entry *entries, size_t first, size_t i, double same_mm)
+{
+    return entries[i].at_mm - entries[i - 1].at_mm <= SAME_PLANE_MM ||
+           entries[i].at_mm - entries[first].at_mm <= same_mm;
+}
+
 static bool make_planes(struct contour_planes *planes, struct entry *entries, size_t n, const struct contour_set *set,
                         struct error *err)
 {
     size_t most = 0;
+    double same_mm;
+    if (!find_same_plane_mm(entries, n, &same_mm, err))
+        return false;
     for (size_t i = 0; i < n; i++)
         most += i == 0 || entries[i].at_mm - entries[i - 1].at_mm > SAME_PLANE_MM;
     if (most > CONTOUR_MAX_PLANES)
@@ -210,9 +241,10 @@ static bool make_planes(struct contour_planes *planes, struct entry *entries, si
         return false;
     for (size_t first = 0, end; first < n; first = end) {
         double sum = 0;
-        for (end = first; end < n && (end == first || entries[end].at_mm - entries[end - 1].at_mm <= SAME_PLANE_MM);
-             end++)
+        for (end = first; end < n && (end == first || is_same_plane(entries, first, end, same_mm)); end++) {
             sum += entries[end].at_mm;
+            planes->facts.n_close_planes += end > first && entries[end].at_mm - entries[end - 1].at_mm > SAME_PLANE_MM;
+        }
         struct contour_plane *plane = &planes->planes[planes->n_planes++];
         plane->at_mm = sum / (double)(end - first);
         plane->first = planes->n_contours;

@@ -1,4 +1,4 @@
-/* Intersects contour edges with the rows of a grid: even-odd areas of planes, and the bits of enclosed voxels. */
+/* Intersects contour edges with the rows of a grid: areas of planes, and the bits of enclosed voxels. */
 #include "core/region/contour_raster.h"
 
 #include <stdlib.h>
@@ -37,7 +37,8 @@ struct plane_edges {
 struct contour_raster {
     const struct contour_planes *planes;
     struct vec3 u_lps, v_lps;
-    struct plane_edges *layers; /* one per plane */
+    struct contour_combining combining;
+    struct plane_edges *layers; /* those of combining */
 };
 
 static void layer_edges(struct plane_edges *layer, const struct contour_raster *raster, const struct contour *contour)
@@ -103,17 +104,18 @@ static bool layer_sort(struct plane_edges *layer, double row_mm, struct error *e
 }
 
 static bool layer_init(struct plane_edges *layer, const struct contour_raster *raster,
-                       const struct contour_plane *plane, double row_mm, struct error *err)
+                       const struct contour_layer *range, double row_mm, struct error *err)
 {
+    struct contour const **members = raster->combining.members;
     size_t n_points = 0;
-    for (size_t i = plane->first; i < plane->end; i++)
-        n_points += raster->planes->contours[i]->n_points;
+    for (size_t i = range->first; i < range->end; i++)
+        n_points += members[i]->n_points;
     *layer = (struct plane_edges){ .v_low = INFINITY, .v_high = -INFINITY };
     layer->edges = mem_array(n_points, sizeof *layer->edges, UINT64_MAX, err);
     if (!layer->edges)
         return false;
-    for (size_t i = plane->first; i < plane->end; i++)
-        layer_edges(layer, raster, raster->planes->contours[i]);
+    for (size_t i = range->first; i < range->end; i++)
+        layer_edges(layer, raster, members[i]);
     return layer_sort(layer, row_mm, err);
 }
 
@@ -132,10 +134,12 @@ struct contour_raster *contour_raster_create(const struct contour_planes *planes
     raster->u_lps = vec3_normalize(u);
     raster->v_lps = vec3_cross(planes->normal_lps, raster->u_lps);
     double row_mm = fmax(fabs(vec3_dot(raster->v_lps, columns[1])), fabs(vec3_dot(raster->v_lps, columns[2])));
-    raster->layers = mem_array(planes->n_planes, sizeof *raster->layers, UINT64_MAX, err);
-    bool is_made = raster->layers != NULL;
-    for (size_t i = 0; is_made && i < planes->n_planes; i++)
-        is_made = layer_init(&raster->layers[i], raster, &planes->planes[i], row_mm, err);
+    struct contour_combining *combining = &raster->combining;
+    bool is_made = contour_combine(combining, planes, raster->u_lps, raster->v_lps, err);
+    raster->layers = is_made ? mem_array(combining->n_layers, sizeof *raster->layers, UINT64_MAX, err) : NULL;
+    is_made = raster->layers != NULL;
+    for (size_t i = 0; is_made && i < combining->n_layers; i++)
+        is_made = layer_init(&raster->layers[i], raster, &combining->layers[i], row_mm, err);
     if (!is_made) {
         contour_raster_destroy(raster);
         return NULL;
@@ -147,13 +151,19 @@ void contour_raster_destroy(struct contour_raster *raster)
 {
     if (!raster)
         return;
-    for (size_t i = 0; raster->layers && i < raster->planes->n_planes; i++) {
+    for (size_t i = 0; raster->layers && i < raster->combining.n_layers; i++) {
         free(raster->layers[i].edges);
         free(raster->layers[i].starts);
         free(raster->layers[i].which);
     }
     free(raster->layers);
+    contour_combining_finish(&raster->combining);
     free(raster);
+}
+
+const struct contour_combining *contour_raster_combining(const struct contour_raster *raster)
+{
+    return &raster->combining;
 }
 
 /* ---- areas of planes -------------------------------------------------------------------------------------------- */
@@ -164,78 +174,159 @@ static int by_value(const void *a, const void *b)
     return one < other ? -1 : one > other;
 }
 
-static void sort_values(double *values, size_t n)
+/* A place where a line across a plane enters or leaves a layer. */
+struct crossing {
+    double u;
+    size_t layer;
+};
+
+static int by_place(const void *a, const void *b)
+{
+    const struct crossing *one = a, *other = b;
+    return one->u < other->u ? -1 : one->u > other->u;
+}
+
+static void sort_crossings(struct crossing *crossings, size_t n)
 {
     if (n > 32) {
-        qsort(values, n, sizeof *values, by_value);
+        qsort(crossings, n, sizeof *crossings, by_place);
         return;
     }
     for (size_t i = 1; i < n; i++) {
-        double value = values[i];
+        struct crossing crossing = crossings[i];
         size_t at = i;
-        for (; at > 0 && values[at - 1] > value; at--)
-            values[at] = values[at - 1];
-        values[at] = value;
+        for (; at > 0 && crossings[at - 1].u > crossing.u; at--)
+            crossings[at] = crossings[at - 1];
+        crossings[at] = crossing;
     }
 }
 
-/* Length of the part of the line v that is inside (even-odd). */
-static double inside_mm(const struct plane_edges *layer, double v, double *crossings, uint64_t *n_met)
+/* Parts of one plane; of its layers, is_in says which contain the current place. */
+struct plane_parts {
+    const struct contour_raster *raster;
+    const struct contour_part *parts;
+    size_t n_parts, first_layer, end_layer;
+    bool *is_in; /* indexed by layer - first_layer */
+    struct crossing *crossings;
+    double *heights;
+    uint64_t n_met;
+};
+
+static bool is_enclosed(const struct plane_parts *plane)
 {
-    uint32_t bucket = bucket_of(layer, v);
-    size_t n = 0;
-    for (size_t at = layer->starts[bucket]; at < layer->starts[bucket + 1]; at++) {
-        const struct edge *edge = &layer->edges[layer->which[at]];
-        if (edge->v_low <= v && v < edge->v_high)
-            crossings[n++] = edge_u(edge, v);
+    bool is_in_piece = false;
+    for (size_t i = 0; i < plane->n_parts; i++) {
+        bool is_in_layer = plane->is_in[plane->parts[i].layer - plane->first_layer];
+        if (plane->parts[i].is_cut)
+            is_in_piece = is_in_piece && !is_in_layer;
+        else if (is_in_piece)
+            return true;
+        else
+            is_in_piece = is_in_layer;
     }
-    *n_met += layer->starts[bucket + 1] - layer->starts[bucket] + n * (n > 32 ? 16 : 1); /* count the sorting too */
-    sort_values(crossings, n);
-    double sum = 0;
-    for (size_t i = 0; i + 1 < n; i += 2)
-        sum += crossings[i + 1] - crossings[i];
+    return is_in_piece;
+}
+
+/* Length of the part of the line v that is enclosed. */
+static double enclosed_mm(struct plane_parts *plane, double v)
+{
+    size_t n = 0;
+    for (size_t l = plane->first_layer; l < plane->end_layer; l++) {
+        const struct plane_edges *layer = &plane->raster->layers[l];
+        if (layer->n_edges == 0 || v < layer->v_low || v >= layer->v_high)
+            continue;
+        uint32_t bucket = bucket_of(layer, v);
+        for (size_t at = layer->starts[bucket]; at < layer->starts[bucket + 1]; at++) {
+            const struct edge *edge = &layer->edges[layer->which[at]];
+            if (edge->v_low <= v && v < edge->v_high)
+                plane->crossings[n++] = (struct crossing){ edge_u(edge, v), l };
+        }
+        plane->n_met += layer->starts[bucket + 1] - layer->starts[bucket];
+    }
+    plane->n_met += n * (plane->n_parts + (n > 32 ? 16 : 0)); /* count the sorting too */
+    sort_crossings(plane->crossings, n);
+    double sum = 0, from = 0;
+    bool was_enclosed = false;
+    for (size_t i = 0; i < n; i++) {
+        bool *is_in = &plane->is_in[plane->crossings[i].layer - plane->first_layer];
+        *is_in = !*is_in; /* an even number of times on each line, so that all are false at its end */
+        bool is_now = is_enclosed(plane);
+        if (is_now && !was_enclosed)
+            from = plane->crossings[i].u;
+        else if (!is_now && was_enclosed)
+            sum += plane->crossings[i].u - from;
+        was_enclosed = is_now;
+    }
     return sum;
 }
 
-/* Values of v between which inside_mm is linear: those of all points, and evenly spaced ones because edges may cross.
+/* Values of v between which enclosed_mm is linear: those of all points, and evenly spaced ones because edges may cross.
  * Ascending; returns how many. */
-static size_t area_heights(const struct plane_edges *layer, double *heights)
+static size_t area_heights(const struct plane_parts *plane)
 {
-    size_t n = 0;
-    for (size_t line = 0; line <= AREA_LINES; line++)
-        heights[n++] = layer->v_low + (layer->v_high - layer->v_low) * (double)line / AREA_LINES;
-    for (size_t i = 0; layer->n_edges <= MOST_EXACT_EDGES && i < layer->n_edges; i++) {
-        heights[n++] = layer->edges[i].v_low;
-        heights[n++] = layer->edges[i].v_high;
+    double v_low = INFINITY, v_high = -INFINITY;
+    size_t n = 0, n_edges = 0;
+    for (size_t l = plane->first_layer; l < plane->end_layer; l++) {
+        const struct plane_edges *layer = &plane->raster->layers[l];
+        v_low = fmin(v_low, layer->v_low);
+        v_high = fmax(v_high, layer->v_high);
+        n_edges += layer->n_edges;
     }
-    sort_values(heights, n);
+    if (n_edges == 0)
+        return 0;
+    for (size_t line = 0; line <= AREA_LINES; line++)
+        plane->heights[n++] = v_low + (v_high - v_low) * (double)line / AREA_LINES;
+    for (size_t l = plane->first_layer; l < plane->end_layer && n_edges <= MOST_EXACT_EDGES; l++)
+        for (size_t i = 0; i < plane->raster->layers[l].n_edges; i++) {
+            plane->heights[n++] = plane->raster->layers[l].edges[i].v_low;
+            plane->heights[n++] = plane->raster->layers[l].edges[i].v_high;
+        }
+    qsort(plane->heights, n, sizeof *plane->heights, by_value);
     return n;
+}
+
+static void look_at_plane(struct plane_parts *plane, const struct contour_raster *raster, size_t at)
+{
+    const struct contour_combining *combining = &raster->combining;
+    plane->raster = raster;
+    plane->parts = combining->parts + combining->part_starts[at];
+    plane->n_parts = combining->part_starts[at + 1] - combining->part_starts[at];
+    plane->first_layer = combining->layer_starts[at];
+    plane->end_layer = combining->layer_starts[at + 1];
 }
 
 bool contour_raster_areas(const struct contour_raster *raster, double *areas_mm2, struct error *err)
 {
-    size_t n_planes = raster->planes->n_planes, most_edges = 0;
-    for (size_t i = 0; i < n_planes; i++)
-        most_edges = raster->layers[i].n_edges > most_edges ? raster->layers[i].n_edges : most_edges;
-    double *crossings = mem_array(most_edges, sizeof *crossings, UINT64_MAX, err);
-    double *heights = mem_array(2 * MOST_EXACT_EDGES + AREA_LINES + 1, sizeof *heights, UINT64_MAX, err);
-    uint64_t n_met = 0;
-    for (size_t i = 0; crossings && heights && i < n_planes; i++) {
-        const struct plane_edges *layer = &raster->layers[i];
-        size_t n = layer->n_edges > 0 ? area_heights(layer, heights) : 0;
+    size_t n_planes = raster->planes->n_planes, most_edges = 0, most_layers = 0;
+    const struct contour_combining *combining = &raster->combining;
+    for (size_t i = 0; i < n_planes; i++) {
+        size_t n_layers = combining->layer_starts[i + 1] - combining->layer_starts[i], n_edges = 0;
+        for (size_t l = combining->layer_starts[i]; l < combining->layer_starts[i + 1]; l++)
+            n_edges += raster->layers[l].n_edges;
+        most_edges = n_edges > most_edges ? n_edges : most_edges;
+        most_layers = n_layers > most_layers ? n_layers : most_layers;
+    }
+    struct plane_parts plane = { 0 };
+    plane.crossings = mem_array(most_edges, sizeof *plane.crossings, UINT64_MAX, err);
+    plane.heights = mem_array(2 * MOST_EXACT_EDGES + AREA_LINES + 1, sizeof *plane.heights, UINT64_MAX, err);
+    plane.is_in = mem_array(most_layers, sizeof *plane.is_in, UINT64_MAX, err);
+    bool is_made = plane.crossings && plane.heights && plane.is_in;
+    for (size_t i = 0; is_made && i < n_planes; i++) {
+        look_at_plane(&plane, raster, i);
+        size_t n = area_heights(&plane);
         areas_mm2[i] = 0;
-        for (size_t line = 1; line < n && n_met <= CONTOUR_MAX_MEETINGS; line++) {
-            double from = heights[line - 1], to = heights[line];
+        for (size_t line = 1; line < n && plane.n_met <= CONTOUR_MAX_MEETINGS; line++) {
+            double from = plane.heights[line - 1], to = plane.heights[line];
             if (to > from)
-                areas_mm2[i] += (to - from) * inside_mm(layer, (from + to) / 2, crossings, &n_met);
+                areas_mm2[i] += (to - from) * enclosed_mm(&plane, (from + to) / 2);
         }
     }
-    bool is_made = crossings && heights;
-    free(crossings);
-    free(heights);
+    free(plane.crossings);
+    free(plane.heights);
+    free(plane.is_in);
     if (!is_made)
         return false;
-    if (n_met > CONTOUR_MAX_MEETINGS)
+    if (plane.n_met > CONTOUR_MAX_MEETINGS)
         return error_set(err, ERROR_LIMIT, "contours too intricate: lines across them meet more than %llu edges",
                          (unsigned long long)CONTOUR_MAX_MEETINGS);
     return true;
@@ -328,42 +419,94 @@ static void run_in_slab(const struct contour_plane *plane, double d, double step
     }
 }
 
-/* Toggles a bit at the first index after each crossing, then takes the running parity of the bits. Adds the result to
- * the row. */
-static uint64_t fill_run(const struct plane_edges *layer, const struct raster_point *start, double u_step,
-                         uint32_t from, uint32_t end, uint64_t *row, uint64_t *n_met)
+/* The part of a row in the slab of one plane. */
+struct row_run {
+    struct raster_point start;
+    double u_step;
+    uint32_t from, end;
+};
+
+/* Toggles a bit at the first index after each crossing, then takes the running parity of the bits: words from/64 ..
+ * (end-1)/64 of `inside`. Returns false, with the words unset, if the layer does not reach the row. */
+static bool inside_run(const struct plane_edges *layer, const struct row_run *run, uint64_t *inside, uint64_t *n_met)
 {
-    if (layer->n_edges == 0 || from >= end || start->v < layer->v_low || start->v >= layer->v_high)
-        return 0;
-    uint64_t flips[VOLUME_MAX_SIDE / 64];
-    uint32_t first_word = from / 64, last_word = (end - 1) / 64;
-    memset(flips + first_word, 0, (last_word - first_word + 1) * sizeof *flips);
-    uint32_t bucket = bucket_of(layer, start->v);
+    double v = run->start.v;
+    if (layer->n_edges == 0 || v < layer->v_low || v >= layer->v_high)
+        return false;
+    uint32_t first_word = run->from / 64, last_word = (run->end - 1) / 64;
+    memset(inside + first_word, 0, (last_word - first_word + 1) * sizeof *inside);
+    uint32_t bucket = bucket_of(layer, v);
     *n_met += layer->starts[bucket + 1] - layer->starts[bucket];
     for (size_t at = layer->starts[bucket]; at < layer->starts[bucket + 1]; at++) {
         const struct edge *edge = &layer->edges[layer->which[at]];
-        if (start->v < edge->v_low || start->v >= edge->v_high)
+        if (v < edge->v_low || v >= edge->v_high)
             continue;
-        double u = edge_u(edge, start->v);
-        uint32_t index = u_step > 0 ? first_index(start->u, u_step, u, end) : u <= start->u ? 0 : end;
-        index = index < from ? from : index;
-        if (index < end)
-            flips[index / 64] ^= (uint64_t)1 << index % 64;
+        double u = edge_u(edge, v);
+        uint32_t index = run->u_step > 0     ? first_index(run->start.u, run->u_step, u, run->end)
+                         : u <= run->start.u ? 0
+                                             : run->end;
+        index = index < run->from ? run->from : index;
+        if (index < run->end)
+            inside[index / 64] ^= (uint64_t)1 << index % 64;
     }
-    uint64_t n = 0, carry = 0;
+    uint64_t carry = 0;
     for (uint32_t word = first_word; word <= last_word; word++) {
-        uint64_t inside = flips[word];
         for (int shift = 1; shift < 64; shift *= 2)
-            inside ^= inside << shift;
-        inside ^= carry;
-        carry = inside >> 63 ? UINT64_MAX : 0;
-        if (word == last_word && end % 64 != 0)
-            inside &= ((uint64_t)1 << end % 64) - 1;
-        n += (uint64_t)__builtin_popcountll(inside);
+            inside[word] ^= inside[word] << shift;
+        inside[word] ^= carry;
+        carry = inside[word] >> 63 ? UINT64_MAX : 0;
+        if (word == last_word && run->end % 64 != 0)
+            inside[word] &= ((uint64_t)1 << run->end % 64) - 1;
+    }
+    return true;
+}
+
+static uint64_t count_and_add(const uint64_t *inside, const struct row_run *run, uint64_t *row)
+{
+    uint64_t n = 0;
+    for (uint32_t word = run->from / 64; word <= (run->end - 1) / 64; word++) {
+        n += (uint64_t)__builtin_popcountll(inside[word]);
         if (row)
-            row[word] |= inside;
+            row[word] |= inside[word];
     }
     return n;
+}
+
+/* Adds the piece that parts[at] begins to `all`. Returns the index after its last part. */
+static size_t add_piece(const struct contour_raster *raster, size_t at, size_t end, const struct row_run *run,
+                        uint64_t *all, uint64_t *n_met)
+{
+    const struct contour_part *parts = raster->combining.parts;
+    uint64_t piece[VOLUME_MAX_SIDE / 64], cut[VOLUME_MAX_SIDE / 64];
+    uint32_t first_word = run->from / 64, last_word = (run->end - 1) / 64;
+    bool is_met = inside_run(&raster->layers[parts[at].layer], run, piece, n_met);
+    for (at++; at < end && parts[at].is_cut; at++)
+        if (is_met && inside_run(&raster->layers[parts[at].layer], run, cut, n_met))
+            for (uint32_t word = first_word; word <= last_word; word++)
+                piece[word] &= ~cut[word];
+    for (uint32_t word = first_word; is_met && word <= last_word; word++)
+        all[word] |= piece[word];
+    return at;
+}
+
+static uint64_t fill_run(const struct contour_raster *raster, size_t plane, const struct row_run *run, uint64_t *row,
+                         uint64_t *n_met)
+{
+    const struct contour_combining *combining = &raster->combining;
+    size_t at = combining->part_starts[plane], end = combining->part_starts[plane + 1];
+    uint64_t inside[VOLUME_MAX_SIDE / 64];
+    if (run->from >= run->end)
+        return 0;
+    if (end - at == 1) {
+        const struct plane_edges *layer = &raster->layers[combining->parts[at].layer];
+        return inside_run(layer, run, inside, n_met) ? count_and_add(inside, run, row) : 0;
+    }
+    uint32_t first_word = run->from / 64, last_word = (run->end - 1) / 64;
+    memset(inside + first_word, 0, (last_word - first_word + 1) * sizeof *inside);
+    *n_met += end - at;
+    while (at < end)
+        at = add_piece(raster, at, end, run, inside, n_met);
+    return count_and_add(inside, run, row);
 }
 
 static uint64_t fill_row(const struct filling *filling, const struct raster_point *start, uint64_t *row,
@@ -375,9 +518,9 @@ static uint64_t fill_row(const struct filling *filling, const struct raster_poin
     double d_low = fmin(start->d, d_last), d_high = fmax(start->d, d_last);
     uint64_t n_voxels = 0;
     for (size_t i = plane_after(planes, d_low); i < planes->n_planes && planes->planes[i].low_mm <= d_high; i++) {
-        uint32_t from, end;
-        run_in_slab(&planes->planes[i], start->d, d_step, n, &from, &end);
-        n_voxels += fill_run(&filling->raster->layers[i], start, filling->step[0].u, from, end, row, n_met);
+        struct row_run run = { .start = *start, .u_step = filling->step[0].u };
+        run_in_slab(&planes->planes[i], start->d, d_step, n, &run.from, &run.end);
+        n_voxels += fill_run(filling->raster, i, &run, row, n_met);
     }
     return n_voxels;
 }

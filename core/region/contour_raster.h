@@ -1,16 +1,19 @@
 #pragma once
 /* Inside of contour filling: intersects the edges of sorted contours with the rows of a grid. */
-#include "core/region/contour_planes.h"
+#include "core/region/contour_combine.h"
 
 struct contour_raster;
 
 /* Projects the edges for a grid; then any grid with the same axis directions can be filled. planes is borrowed. Errors:
- * ERROR_MEMORY. */
+ * ERROR_LIMIT and
+ * ERROR_MEMORY, as contour_combine. */
 NODISCARD struct contour_raster *contour_raster_create(const struct contour_planes *planes, const struct grid *grid,
                                                        struct error *err);
 void contour_raster_destroy(struct contour_raster *raster);
+/* How the contours of each plane were combined; the raster's. */
+const struct contour_combining *contour_raster_combining(const struct contour_raster *raster);
 
-/* Even-odd area of every plane, mm2. Exact, except for contours that cross each other or themselves and for planes of
+/* Enclosed area of every plane, mm2. Exact, except for contours that cross each other or themselves and for planes of
  * more than 4096 points: there it is integrated on lines 1/256 of the plane's height apart, or nearer. Errors:
  * ERROR_LIMIT CONTOUR_MAX_MEETINGS, ERROR_MEMORY. */
 NODISCARD bool contour_raster_areas(const struct contour_raster *raster, double *areas_mm2, struct error *err);

@@ -44,6 +44,8 @@
       "Check the rescale slope and intercept.") \
     X("dicom.unreadable", "A DICOM file cannot be read.", \
       "Check or copy the file again; the rest is shown without it.") \
+    X("part.unreadable", "A part of the plan cannot be read.", \
+      "Check or copy the file again; the rest is shown without it.") \
     X("dicom.not-used", "DICOM objects of a kind that has no place in a plan.", \
       "Nothing; they are left out: the line says what they are.") \
     X("dicom.bad-number", "A value of a DICOM file is no number, or cannot be what it stands for.", \
@@ -110,6 +112,13 @@
       "The regions are whole, on a grid that continues the image; look for the missing slices.") \
     X("region.contours-outside", "Contours reach more than 2 m beyond the image.", \
       "What lies outside is not shown; check that they belong together.") \
+    X("region.contours-overlap", "Contours of one plane partly overlap; their union was filled.", \
+      "Compare the volume with the treatment planning system: programs differ here.") \
+    X("region.contours-differ", \
+      "The voxels of a region differ by 2 % or more (5 % below 1 cm3) from the areas of its contours, added up another way.", \
+      "Look at the region slice by slice, and compare its volume with the treatment planning system.") \
+    X("region.contours-moved", "Contours lie beside the slices that they were filled on.", \
+      "Nothing, if the distance is a part of a slice; else check that they belong to this image.") \
     X("region.contours-not-planar", "Contours are not flat.", "They were flattened into their mean plane.") \
     X("region.contours-left-out", \
       "Contours that enclose nothing, are not numbers, are there twice or tilted were left out.", \

@@ -79,7 +79,7 @@ static void print_help(void)
         "                    gamma-medium, gamma-high, lost, beam-line, with commas between; neutron, gamma: three each\n"
         "  --kind KIND       3d, axial, coronal, sagittal, oblique; beam: along the chosen beam; beam-slice: across it\n"
         "  --along MM        in a beam's-eye view: the eye's distance from the beam's entry; else the whole plan is seen\n"
-        "  --ring MM         in a beam's-eye view: an aperture ring of this diameter, in parallel projection\n"
+        "  --ring MM         in a beam's-eye view: a ring of this diameter about its axis, in parallel projection\n"
         "  --from A,E        looks at the plan from A degrees off the front, towards the patient's left, and E degrees up\n"
         "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
         "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"

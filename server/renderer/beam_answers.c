@@ -23,18 +23,26 @@ static void add_number(cJSON *json, const char *name, double value)
     cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
+static const double SAME_DIAMETER_MM = 0.005; /* figures are given to 0.1 mm */
+
 /* A beam and what its axis crosses. */
 struct beam_asked {
     const struct plan *plan;
     struct beam_shown shown;
     const struct beam *planned; /* NULL: of a draft in a plan without beams */
+    double cylinder_mm;         /* diameter in which univels are counted; NaN: none */
+    bool is_ring;               /* that diameter was asked for, and is not the beam's aperture */
     struct ray_band *bands;     /* owned; along the whole axis, depths from the entry */
     size_t n_bands;
 };
 
-static bool beam_asked_fill(struct beam_asked *asked, struct problem *problem)
+/* ring_mm: a diameter that was asked for; NaN: none was. */
+static bool beam_asked_fill(struct beam_asked *asked, double ring_mm, struct problem *problem)
 {
     struct error err = { 0 };
+    const double own_mm = asked->shown.aperture_mm;
+    asked->cylinder_mm = ring_mm > 0 ? ring_mm : own_mm;
+    asked->is_ring = ring_mm > 0 && !(fabs(ring_mm - own_mm) <= SAME_DIAMETER_MM);
     asked->planned = asked->shown.beam >= 0 ? &asked->plan->beams[asked->shown.beam] : NULL;
     return ray_bands_all(&asked->plan->regions, asked->shown.entry_lps_mm, asked->shown.direction, &asked->bands,
                          &asked->n_bands, &err) ||
@@ -145,23 +153,24 @@ static void add_outline(cJSON *json, const struct beam_asked *asked)
     cJSON_AddItemToObject(json, "outline", outline);
 }
 
-/* The univels of regions inside the aperture, the first met first. */
+/* The univels of regions inside the aperture or the ring, the first met first. */
 static bool add_aperture(cJSON *json, const struct beam_asked *asked, struct problem *problem)
 {
     const struct region_set *set = &asked->plan->regions;
     struct error err = { 0 };
-    if (!(asked->shown.aperture_mm > 0)) {
+    if (!(asked->cylinder_mm > 0)) {
         cJSON_AddNullToObject(json, "aperture");
         return true;
     }
     struct region_in_cylinder *found = mem_array(set->n_regions + 1, sizeof *found, UINT64_MAX, &err);
-    if (!found || !regions_in_cylinder(set, asked->shown.entry_lps_mm, asked->shown.direction,
-                                       asked->shown.aperture_mm / 2, found, &err)) {
+    if (!found || !regions_in_cylinder(set, asked->shown.entry_lps_mm, asked->shown.direction, asked->cylinder_mm / 2,
+                                       found, &err)) {
         free(found);
         return problem_set(problem, PROBLEM_MEMORY, "", "", "%s", err.text);
     }
     cJSON *aperture = cJSON_AddObjectToObject(json, "aperture");
-    add_number(aperture, "diameter_mm", asked->shown.aperture_mm);
+    add_number(aperture, "diameter_mm", asked->cylinder_mm);
+    cJSON_AddBoolToObject(aperture, "is_ring", asked->is_ring);
     cJSON *list = cJSON_AddArrayToObject(aperture, "regions");
     for (;;) {
         size_t next = set->n_regions;
@@ -187,9 +196,9 @@ static bool add_aperture(cJSON *json, const struct beam_asked *asked, struct pro
 }
 
 /* All but planned and moved. NULL with problem. */
-static cJSON *beam_json(struct beam_asked *asked, struct problem *problem)
+static cJSON *beam_json(struct beam_asked *asked, double ring_mm, struct problem *problem)
 {
-    if (!beam_asked_fill(asked, problem))
+    if (!beam_asked_fill(asked, ring_mm, problem))
         return NULL;
     cJSON *json = cJSON_CreateObject();
     add_line(json, asked);
@@ -223,9 +232,8 @@ cJSON *answer_beam(struct question *question, struct derive *derived, struct pro
     (void)derived;
     if (!find_beam(snapshot, question->packet.beam.beam, &asked.shown, problem))
         return NULL;
-    if (question->packet.beam.has_aperture_mm)
-        asked.shown.aperture_mm = question->packet.beam.aperture_mm;
-    cJSON *json = beam_json(&asked, problem);
+    const double ring_mm = question->packet.beam.has_aperture_mm ? question->packet.beam.aperture_mm : NAN;
+    cJSON *json = beam_json(&asked, ring_mm, problem);
     if (!json)
         return NULL;
     const char *name = asked.shown.is_draft ? snapshot->scene.beam.draft.line.name : asked.planned->name;
@@ -236,9 +244,7 @@ cJSON *answer_beam(struct question *question, struct derive *derived, struct pro
         return json;
     }
     struct beam_asked before = { .plan = plan, .shown = beam_planned(plan, (size_t)asked.shown.beam) };
-    if (question->packet.beam.has_aperture_mm)
-        before.shown.aperture_mm = question->packet.beam.aperture_mm;
-    cJSON *planned = beam_json(&before, problem);
+    cJSON *planned = beam_json(&before, ring_mm, problem);
     if (!planned) {
         cJSON_Delete(json);
         return NULL;

@@ -33,9 +33,10 @@ struct stream {
     bool scene_is_stale; /* scene is made anew before the next request */
     bool is_shared;
     int kind;
-    char mover[64];   /* shared: id of the presenter who moved it last; "": nobody has yet */
-    uint64_t version; /* counts changes of what the picture shows */
-    bool is_reached;  /* by the newest change of the scene */
+    char mover[64];         /* shared: id of the presenter who moved it last; "": nobody has yet */
+    uint64_t version;       /* counts changes of what the picture shows */
+    uint64_t scene_version; /* version after the newest change of the scene that reached it */
+    bool is_reached;        /* by the newest change of the scene */
     uint64_t requested_version,
         still_requested_version; /* newest version requested, of either kind, and as a still; 0: none */
     uint64_t refused_version;    /* newest version that cannot be drawn; 0: none */

@@ -43,6 +43,21 @@ static void stream_changed(struct room *room, struct stream *stream)
         stream->behind_us = room->now_us;
 }
 
+/* The same of a change of the scene. */
+static void stream_reached(struct room *room, struct stream *stream)
+{
+    stream_changed(room, stream);
+    stream->scene_version = stream->version;
+}
+
+/* The newest revision of the scene whose picture is the stream's latest: changes that do not reach it leave it as it
+ * is.
+ */
+static uint32_t revision_held(const struct room *room, const struct stream *stream)
+{
+    return stream->latest_version >= stream->scene_version ? room->revision : stream->latest->header.scene_revision;
+}
+
 static void destroy_unseen_obliques(struct room *room)
 {
     for (struct stream *stream = room->streams, *next; stream; stream = next) {
@@ -64,7 +79,7 @@ struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
     stream->next = room->streams;
     room->streams = stream;
     start_pace(room, stream);
-    stream_changed(room, stream);
+    stream_reached(room, stream);
     if (is_shared)
         kept_changed(room, ROOM_VIEWS);
     return stream;
@@ -169,7 +184,7 @@ void streams_changed(struct room *room, bool scene_is_new)
 {
     for (struct stream *stream = room->streams; stream; stream = stream->next) {
         stream->scene_is_stale = stream->scene_is_stale || scene_is_new;
-        stream_changed(room, stream);
+        stream_reached(room, stream);
     }
 }
 
@@ -180,7 +195,7 @@ void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *
             view_has_override(stream->view) || change_reaches(stream->view, before, room->scene, patch);
         stream->scene_is_stale = true;
         if (stream->is_reached)
-            stream_changed(room, stream);
+            stream_reached(room, stream);
     }
 }
 
@@ -403,6 +418,7 @@ void stream_send_picture(struct room *room, struct member *member, struct member
     header.view = (uint32_t)index + 1;
     header.sequence = view->sent_sequence;
     header.input_id = view->input;
+    header.scene_revision = revision_held(room, stream);
     if (stream->is_shared)
         header.flags |= FRAME_SHARED;
     room->counters.frames_sent++;

@@ -11,6 +11,7 @@
 #include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 #include "server/wire/document.h"
+#include "server/wire/plan_origins.h"
 
 static cJSON *number(double value)
 {
@@ -395,6 +396,7 @@ static cJSON *write_plan(const struct plan *plan)
     json_add(object, "curves", curves);
     json_add(object, "preferences", preferences_object(&plan->preferences));
     json_add(object, "report", report_object(&plan->report));
+    plan_origins_add(object, plan);
     return object;
 }
 

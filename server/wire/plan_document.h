@@ -36,8 +36,19 @@
  *     quantities: [ {quantity, unit, per_ppm, peak, peak_depth_mm} ]  peaks on the axis
  *   } ],
  *   preferences: {levels: [ {percent, color} ], colors: ["#rrggbb"]},  of the program that the plan comes from
- *   report: {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped}
+ *   report: {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped},
+ *   patients: [ {masked, has_identity: true, has_conflict} ],  "A. V. ...417"; empty: no patient identity in the files
+ *   treatment_plans: [ {
+ *     label, name, date, time, approval, review_date, reviewer, fractions | null, prescription_gy | null, patient,
+ *     structs, is_structs_absent
+ *   } ],
+ *   shown_patient, shown_plan: index in patients, in treatment_plans | null
  * }
+ *
+ * Each image, region, dose and beam has its origins: patient and plan, indices in patients and treatment_plans;
+ * is_plan_absent: its files name a treatment plan that is not here; frame and study, numbers of its frame of reference
+ * and its study; a region, and a treatment plan, also structs, the number of its structure set. null: not stated, or
+ * not here. Equal numbers mean the same frame, study or set.
  *
  *   point      [L, P, S] in mm
  *   box        {low: point, high: point}

@@ -117,6 +117,17 @@ test('a beam that is placed has the gap, the point and the angles asked for', as
   assert.deepEqual(await ask('beam', { room }), draft, 'nothing was altered');
 });
 
+test('a ring that is asked about is no aperture: the plan\'s and a draft\'s own stay what they are', async () => {
+  const said = ({ aperture_mm, aperture }) => [aperture_mm, aperture && aperture.diameter_mm, aperture && aperture.is_ring];
+  assert.deepEqual(said(await ask('beam', { aperture_mm: 40 })), [planned.aperture_mm, 40, true]);
+  assert.deepEqual(said(await ask('beam', { aperture_mm: planned.aperture_mm })), [planned.aperture_mm, planned.aperture_mm, false]);
+  assert.deepEqual(said(await ask('beam')), [planned.aperture_mm, planned.aperture_mm, false]);
+  const room = await makeRoom(draftOf([90, -150, 40], [10, 5, -20], { aperture_mm: 60 }));
+  const draft = await ask('beam', { room, aperture_mm: 75 });
+  assert.deepEqual([said(draft), said(draft.planned)], [[60, 75, true], [planned.aperture_mm, 75, true]]);
+  assert.deepEqual(said(await ask('beam', { room })), [60, 60, false]);
+});
+
 test('what cannot be asked or placed is refused or said', async () => {
   const room = await makeRoom(draftOf([300, 300, 0], [300, -300, 0]));
   const refused = async (path) => {

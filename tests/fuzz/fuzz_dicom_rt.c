@@ -39,7 +39,7 @@ static void fill_bytes(const uint8_t *data, size_t n)
     struct grid grid;
     struct affine map = { { { 1, 0, 0 }, { 0, 1.5, 0 }, { 0, 0, 2 } }, { 0, 0, 0 } };
     double points[2][64][3];
-    struct contour contours[2] = { { points[0][0], 0 }, { points[1][0], 0 } };
+    struct contour contours[2] = { { .points_lps_mm = points[0][0] }, { .points_lps_mm = points[1][0] } };
     struct contour_set set = { contours, 2 };
     if (n < 3 || !grid_init(&grid, (uint32_t[3]){ 70, 20, 10 }, &map, NULL))
         return;

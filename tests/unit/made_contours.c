@@ -8,8 +8,7 @@ void contours_add_points(struct contour_set *set, const double *xyz, size_t n)
     set->contours = realloc(set->contours, (set->n_contours + 1) * sizeof *set->contours);
     assert_non_null(set->contours);
     struct contour *contour = &set->contours[set->n_contours++];
-    contour->n_points = n;
-    contour->points_lps_mm = malloc(n * 3 * sizeof(double) + 1);
+    *contour = (struct contour){ .points_lps_mm = malloc(n * 3 * sizeof(double) + 1), .n_points = n };
     assert_non_null(contour->points_lps_mm);
     memcpy(contour->points_lps_mm, xyz, n * 3 * sizeof(double));
 }

@@ -421,7 +421,7 @@ static void more_than_the_written_limits_is_refused(void **state)
     assert_string_equal(err.text, "contours on 8193 planes; the limit is 8192");
     contour_set_finish(&set);
 
-    struct contour huge = { NULL, CONTOUR_MAX_POINTS + 1 };
+    struct contour huge = { .n_points = CONTOUR_MAX_POINTS + 1 };
     set = (struct contour_set){ &huge, 1 };
     assert_null(contour_fill(&set, &grid, &contour_defaults, NULL, &err));
     assert_string_equal(err.text, "contours of 10000001 points; the limit is 10000000");

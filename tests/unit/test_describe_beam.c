@@ -116,7 +116,7 @@ static void the_eye_of_a_draft_has_letters_scale_place_ring_and_whose_dose_it_sh
         char expected[256];
         (void)snprintf(expected, sizeof expected,
                        "Beam: draft%s of beam-1 (FiR 1)|eye 20.0 mm from entry|"
-                       "aperture ring 88.5 mm%s%s",
+                       "ring 88.5 mm, drawn%s%s",
                        has_dose ? " steeper" : "", has_dose ? "|" : "", has_dose ? belongs : "");
         assert_string_equal(row_text(&words, ANNOTATION_BEAM), expected);
         annotations_finish(&words);
@@ -154,7 +154,7 @@ static void the_crosshair_has_its_numbers_and_the_ring_its_diameter(void **state
             expect_label(&words, text, 500 + side * numbers_mm[i] * 4, 400 + aside, 0.01);
             expect_label(&words, text, 500 + aside, 400 + side * numbers_mm[i] * 4, 0.01);
         }
-    expect_label(&words, "aperture 120 mm", 500 + 240 * sqrt(0.5), 400 - 240 * sqrt(0.5), 0.01);
+    expect_label(&words, "ring 120 mm", 500 + 240 * sqrt(0.5), 400 - 240 * sqrt(0.5), 0.01);
     /* the planned entry less the draft's: L 10, P 2.7, S 2.1, along right (dy, -dx, 0) / h and up = right x d */
     double n = sqrt(22.1 * 22.1 + 22.9 * 22.9 + 30.8 * 30.8), h = hypot(22.1, 22.9);
     double dx = -22.1 / n, dy = -22.9 / n, dz = -30.8 / n, s = h / n;

@@ -77,6 +77,61 @@ static void the_qform_is_a_rotation_with_a_sign_for_k(void **state)
     nifti_bytes_free(&file);
 }
 
+/* A qform of identity with code 1 beside an sform with another code: two spaces may be turned against each other, but
+ * not put the sides differently. */
+static void sform_and_qform_that_put_the_sides_differently_are_said(void **state)
+{
+    (void)state;
+    static const struct {
+        double rows[3][4];
+        const char *said; /* NULL: nothing */
+    } cases[] = {
+        { { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } }, NULL },
+        { { { 0.98, -0.17, 0, 30 }, { 0.17, 0.98, 0, 20 }, { 0, 0, 1, 0 } }, NULL },
+        { { { -1, 0, 0, 90 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } },
+          "axis 1 runs to the patient's left by sform, to the right" },
+        { { { -1, 0, 0, 9 }, { 0, -1, 0, 9 }, { 0, 0, 1, 0 } }, "axis 1 runs to the patient's left by sform" },
+        { { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, -1, 0 } }, "axis 3 runs to the patient's inferior by sform" },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct nifti_bytes file = nifti_bytes_make(2, 2, 2, U8, 8, 8, false);
+        struct report report = { 0 };
+        struct error err;
+        nifti_put_sform(&file, cases[i].rows);
+        nifti_put_i16(&file, 252, 1); /* qform_code */
+        nifti_put_i16(&file, 254, 2); /* sform_code */
+        struct volume *volume = read_from(&file, RAW_IMAGE, &report, &err);
+        assert_non_null(volume);
+        const char *said = report_said(&report, "geometry.forms-disagree");
+        if (cases[i].said ? !strstr(said, cases[i].said) : said[0] != 0)
+            fail_msg("case %zu: \"%s\"", i, said);
+        volume_unref(volume);
+        report_finish(&report);
+        nifti_bytes_free(&file);
+    }
+}
+
+static void an_sform_of_zeros_gives_way_to_the_qform(void **state)
+{
+    (void)state;
+    static const double zeros[3][4] = { { 0 } };
+    struct nifti_bytes file = nifti_bytes_make(2, 2, 2, U8, 8, 8, false);
+    struct report report = { 0 };
+    struct error err;
+    nifti_put_sform(&file, zeros);
+    struct volume *volume = read_from(&file, RAW_IMAGE, NULL, &err);
+    assert_null(volume); /* without a qform nothing is left */
+    nifti_put_i16(&file, 252, 1);
+    nifti_put_f32(&file, 268, 100); /* qoffset_x */
+    volume = read_from(&file, RAW_IMAGE, &report, &err);
+    assert_string_equal(err.text, "");
+    assert_point(volume->grid.lps_mm_from_ijk.origin, -100, 0, 0, 1e-4);
+    assert_non_null(strstr(report_said(&report, "geometry.forms-disagree"), "all 0"));
+    volume_unref(volume);
+    report_finish(&report);
+    nifti_bytes_free(&file);
+}
+
 static void the_sform_wins_and_a_missing_orientation_is_said(void **state)
 {
     (void)state;
@@ -437,6 +492,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_sform_becomes_patient_lps),
         cmocka_unit_test(the_qform_is_a_rotation_with_a_sign_for_k),
+        cmocka_unit_test(sform_and_qform_that_put_the_sides_differently_are_said),
+        cmocka_unit_test(an_sform_of_zeros_gives_way_to_the_qform),
         cmocka_unit_test(the_sform_wins_and_a_missing_orientation_is_said),
         cmocka_unit_test(metres_and_microns_become_millimetres),
         cmocka_unit_test(every_real_data_type_is_read_in_both_byte_orders),

@@ -213,7 +213,6 @@ static void a_plan_that_is_wrong_is_refused_with_the_place(void **state)
                    "images[0].modality");
     expect_refused(folder, PLAN("\"regions\":[{\"path\":\"a.nii\",\"name\":\"x\",\"names\":\"y.json\"}]"), ERROR_FORMAT,
                    "not both");
-    expect_refused(folder, PLAN("\"regions\":[{\"path\":\"a.nii\",\"names\":\"y.json\"}]"), ERROR_NOT_FOUND, "y.json");
     expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"alpha\"}]"), ERROR_RANGE,
                    "doses[0].quantity");
     expect_refused(folder, PLAN("\"doses\":[{\"path\":\"a.nii\",\"quantity\":\"fast\",\"per_ppm\":true}]"), ERROR_RANGE,
@@ -240,8 +239,61 @@ static void a_plan_that_is_wrong_is_refused_with_the_place(void **state)
     struct nifti_bytes file = nested_boxes();
     folder_put(folder, "cut.nii", file.data, 400);
     nifti_bytes_free(&file);
-    expect_refused(folder, PLAN("\"images\":[{\"path\":\"a.nii\"},{\"path\":\"cut.nii\"}]"), ERROR_FORMAT,
-                   "cut.nii: cut short");
+    expect_refused(folder, PLAN("\"images\":[{\"path\":\"cut.nii\"}]"), ERROR_FORMAT, "cut.nii: cut short");
+    folder_remove(folder);
+}
+
+/* One bad part of a plan.json beside a good image: the image opens, and an error line names the part. */
+static void a_part_that_cannot_be_read_is_left_out_and_the_rest_opens(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *parts, *where, *said;
+    } cases[] = {
+        { "\"images\":[{\"path\":\"a.nii\"},{\"path\":\"cut.nii\"}]", "cut.nii", "cut short" },
+        { "\"images\":[{\"path\":\"a.nii\"},{\"path\":\"b.nii\"}]", "b.nii", "no such file" },
+        { "\"images\":[{\"path\":\"a.nii\"},{\"path\":\"c.dcm\"}]", "c.dcm", "no DICOM image series" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"regions\":[{\"path\":\"cut.nii\"}]", "cut.nii", "cut short" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"regions\":[{\"path\":\"b.nii\",\"name\":\"x\"}]", "b.nii",
+          "no such file" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"regions\":[{\"path\":\"a.nii\",\"names\":\"y.json\"}]", "y.json",
+          "numbers" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"hierarchy\":\"b.info\"", "b.info", "b.info" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"doses\":[{\"path\":\"cut.nii\"}]", "cut.nii", "cut short" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"doses\":[{\"path\":\"a.nii\",\"mask\":\"cut.nii\"}]", "cut.nii",
+          "cut short" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"doses\":[{\"path\":\"a.nii\",\"error\":\"cut.nii\"}]", "cut.nii",
+          "cut short" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"doses\":[{\"components\":[{\"path\":\"a.nii\",\"quantity\":\"gamma\"},"
+          "{\"path\":\"b.nii\",\"quantity\":\"fast\"}]}]",
+          "a.nii", "b.nii" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"beams\":[{\"path\":\"c.dcm\"}]", "c.dcm", "no DICOM treatment plan" },
+        { "\"images\":[{\"path\":\"a.nii\"}],\"tracks\":[{\"path\":\"b.pp\"}]", "b.pp", "no such file" },
+    };
+    char folder[256], json[600];
+    make_folder_of_boxes(folder, "a.nii");
+    struct nifti_bytes file = nested_boxes();
+    folder_put(folder, "cut.nii", file.data, 400);
+    nifti_bytes_free(&file);
+    folder_put_text(folder, "c.dcm", "not one");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct error err;
+        snprintf(json, sizeof json, "{\"format\":\"beamroom-plan\",\"version\":1,%s}", cases[i].parts);
+        folder_put_text(folder, "plan.json", json);
+        struct plan *plan = plan_of_folder(folder, &err);
+        if (!plan)
+            fail_msg("%s\n  is refused: %s", json, err.text);
+        assert_string_equal(plan->images[0].id, "a");
+        bool is_said = false;
+        for (size_t l = 0; l < plan->report.n_lines; l++) {
+            const struct report_line *line = &plan->report.lines[l];
+            is_said |= line->severity == REPORT_ERROR && strcmp(line->where, cases[i].where) == 0 &&
+                       strstr(line->sentence, cases[i].said);
+        }
+        if (!is_said)
+            fail_msg("%s\n  no error line about %s with \"%s\"", json, cases[i].where, cases[i].said);
+        plan_destroy(plan);
+    }
     folder_remove(folder);
 }
 
@@ -338,6 +390,7 @@ int main(void)
         cmocka_unit_test(masks_share_a_layer_until_they_overlap_or_their_grids_differ),
         cmocka_unit_test(a_plan_never_leaves_its_folder),
         cmocka_unit_test(a_plan_that_is_wrong_is_refused_with_the_place),
+        cmocka_unit_test(a_part_that_cannot_be_read_is_left_out_and_the_rest_opens),
         cmocka_unit_test(a_dose_in_a_format_not_read_is_left_out_and_said),
         cmocka_unit_test(an_image_beside_the_regions_is_reported),
         cmocka_unit_test(loading_can_be_cancelled),

@@ -1,5 +1,7 @@
 /* The plan document: a plan as JSON for page and API. */
 #include "server/wire/plan_document.h"
+
+#include "server/wire/plan_origins.h"
 #include "tests/check.h"
 #include "tests/unit/made_mask.h"
 
@@ -169,9 +171,118 @@ static void doses_tracks_and_the_report_keep_their_words(void **state)
     volume_unref(plan.doses[0].components[1].values);
 }
 
+static void set(char *out, size_t size, const char *text)
+{
+    snprintf(out, size, "%s", text);
+}
+
+/* Image and regions of patient 0 and frame a, a dose of patient 1 and frame b. */
+static struct plan *origins_plan(void)
+{
+    struct plan *plan = plan_create("p");
+    struct plan_patient *anna = &plan->patients[0], *bert = &plan->patients[1];
+    set(anna->id, sizeof anna->id, "88-20417");
+    set(anna->name, sizeof anna->name, "Voss^Anna");
+    set(anna->birth_date, sizeof anna->birth_date, "19610412");
+    set(bert->id, sizeof bert->id, "99");
+    set(bert->birth_date, sizeof bert->birth_date, "1950");
+    plan->n_patients = 2;
+    set(plan->treatment_plans[0].label, 65, "BNCT-1");
+    set(plan->treatment_plans[1].label, 65, "BNCT-2");
+    set(plan->treatment_plans[1].approval, 17, "APPROVED");
+    set(plan->treatment_plans[1].structs_uid, 66, "1.5");
+    set(plan->treatment_plans[0].structs_uid, 66, "1.6");
+    plan->treatment_plans[0].prescription_gy = NAN;
+    plan->treatment_plans[1].prescription_gy = 60;
+    plan->treatment_plans[0].patient = -1;
+    plan->n_treatment_plans = 2;
+    plan->n_images = 1;
+    plan->images[0].volume = make_volume(VOXEL_I16);
+    plan->image_origins[0].patient = 0;
+    set(plan->image_origins[0].frame_uid, 66, "1.1");
+    plan->n_doses = 1;
+    plan->dose_origins[0].patient = 1;
+    set(plan->dose_origins[0].frame_uid, 66, "1.2");
+    set(plan->dose_origins[0].plan_uid, 66, "1.9");
+    plan->n_beams = 1;
+    plan->beam_origins[0].treatment_plan = 1;
+    set(plan->beam_origins[0].plan_uid, 66, "1.8");
+    set(plan->beam_origins[0].frame_uid, 66, "1.1");
+    plan->region_origins = calloc(1, sizeof *plan->region_origins);
+    assert_non_null(plan->region_origins);
+    plan->region_origins[0] = plan->image_origins[0];
+    set(plan->region_origins[0].structs_uid, 66, "1.5");
+    plan->n_region_origins = 1;
+    plan->regions.layers[0] = make_volume(VOXEL_U8);
+    plan->regions.n_layers = 1;
+    plan->regions.regions = calloc(2, sizeof *plan->regions.regions);
+    assert_non_null(plan->regions.regions);
+    plan->regions.n_regions = 2;
+    for (int i = 0; i < 2; i++)
+        plan->regions.regions[i] = (struct region){ .parent = -1, .label = 1, .origin = i == 0 };
+    return plan;
+}
+
+static int index_in(const cJSON *object, const char *name)
+{
+    const cJSON *found = item(object, name);
+    return cJSON_IsNull(found) ? -1 : found->valueint;
+}
+
+static void each_part_says_whose_it_is_and_patients_are_masked(void **state)
+{
+    (void)state;
+    struct plan *plan = origins_plan();
+    cJSON *document = plan_document(plan);
+    const cJSON *patients = item(document, "patients"), *plans = item(document, "treatment_plans");
+    assert_int_equal(cJSON_GetArraySize(patients), 2);
+    assert_string_equal(item(cJSON_GetArrayItem(patients, 0), "masked")->valuestring, "A. V. \u2026417");
+    assert_string_equal(item(cJSON_GetArrayItem(patients, 1), "masked")->valuestring, "\u20269");
+    assert_int_equal(cJSON_GetArraySize(plans), 2);
+    assert_int_equal(index_in(document, "shown_plan"), 1);
+    assert_int_equal(index_in(document, "shown_patient"), 0); /* plan 1's */
+    assert_int_equal(index_in(cJSON_GetArrayItem(plans, 0), "structs"), -1);
+    assert_true(cJSON_IsTrue(item(cJSON_GetArrayItem(plans, 0), "is_structs_absent")));
+    assert_int_equal(index_in(cJSON_GetArrayItem(plans, 1), "structs"), 0);
+    assert_true(cJSON_IsNull(item(cJSON_GetArrayItem(plans, 0), "prescription_gy")));
+
+    static const struct {
+        const char *list;
+        int nth, patient, plan, is_absent, frame;
+    } expected[] = { { "images", 0, 0, -1, 0, 0 },
+                     { "doses", 0, 1, -1, 1, 1 },
+                     { "beams", 0, -1, 1, 0, 0 },
+                     { "regions", 0, 0, -1, 0, 0 },
+                     { "regions", 1, -1, -1, 0, -1 } };
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
+        const cJSON *part = cJSON_GetArrayItem(item(document, expected[i].list), expected[i].nth);
+        assert_int_equal(index_in(part, "patient"), expected[i].patient);
+        assert_int_equal(index_in(part, "plan"), expected[i].plan);
+        assert_int_equal(cJSON_IsTrue(item(part, "is_plan_absent")), expected[i].is_absent);
+        assert_int_equal(index_in(part, "frame"), expected[i].frame);
+        assert_int_equal(index_in(part, "study"), -1);
+    }
+    char *text = json_write(document);
+    static const char *const secrets[] = { "Voss", "Anna", "88-20417", "19610412", "1961" };
+    for (size_t i = 0; i < sizeof secrets / sizeof secrets[0]; i++)
+        assert_null(strstr(text, secrets[i]));
+    free(text);
+    cJSON_Delete(document);
+
+    cJSON *identity = plan_identity(plan);
+    const cJSON *first = cJSON_GetArrayItem(item(identity, "patients"), 0);
+    assert_string_equal(item(first, "name")->valuestring, "Voss^Anna");
+    assert_string_equal(item(first, "id")->valuestring, "88-20417");
+    assert_string_equal(item(first, "birth_date")->valuestring, "1961-04-12");
+    assert_string_equal(item(cJSON_GetArrayItem(item(identity, "patients"), 1), "birth_date")->valuestring, "1950");
+    cJSON_Delete(identity);
+    plan_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_part_says_whose_it_is_and_patients_are_masked),
         cmocka_unit_test(a_plan_is_told_with_units_and_null_where_nothing_is_known),
         cmocka_unit_test(doses_tracks_and_the_report_keep_their_words),
     };

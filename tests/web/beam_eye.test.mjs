@@ -80,7 +80,7 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await page.mouse.up();
   };
   const shown = (of = page) => of.evaluate(() => [...globalThis.document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)));
-  const ring = (on = page) => on.getByRole('button', { name: 'Aperture ring' });
+  const ring = (on = page) => on.getByRole('button', { name: 'Ring', exact: true });
 
   once('key B looks along the beam, with anterior up as it runs down the patient; a drag turns nothing, R is home', async () => {
     await openEye();
@@ -116,7 +116,7 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     assert.equal((await document(eye)).beam.aperture_mm, aperture);
     const scale = await scaleOf(eye);
     assert.ok(Math.abs(scale / before - 1) < 2e-3, `${scale} px per mm after ${before}`);
-    const handle = page.getByRole('slider', { name: 'Aperture ring' });
+    const handle = page.getByRole('slider', { name: 'Ring', exact: true });
     const at = await handle.boundingBox();
     const [x, y] = await middle(eye);
     const half = (aperture / 2) * scale * Math.SQRT1_2;
@@ -125,10 +125,13 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     const { beam: { aperture_mm: mm } } = await until(() => document(eye), ({ beam }) => beam.aperture_mm !== aperture, 60000);
     assert.ok(Math.abs(mm - 60) <= 0.5 + 1 / scale, `${mm} mm`); // a half millimetre, and a pixel on both sides
     await handle.press('Shift+ArrowUp');
-    await page.getByText(`aperture ${mm + 10} mm`).waitFor();
+    await page.getByText(`ring ${mm + 10} mm`, { exact: true }).waitFor();
     assert.deepEqual(await axe(page), []);
     await until(() => document(eye), ({ beam }) => beam.aperture_mm === mm + 10, 60000);
     await full(page, eye);
+    await page.getByRole('treeitem', { name: /^beam-1/ }).click();
+    await page.getByText('Regions in the ring').waitFor();
+    assert.equal(await page.locator('.beam-table tr', { hasText: 'Aperture' }).locator('td').textContent(), `${aperture}.0 mm`, 'a ring that is drawn changes nothing of the beam');
     await shoot(page, 'beam-eye-1600x1000');
     const points = [entry, target, [30, -20, 10], [-40, 30, 60], [10, 10, -50]];
     /** Where they are in halves of the smaller side: the 3-D pane has no foot, so its picture is a little higher. */

@@ -40,7 +40,7 @@ enum {
 struct reading_roi {
     struct rtstruct_roi roi;
     size_t n_points_alone, n_open; /* contours of a single point, and open ones: they enclose nothing */
-    size_t n_miscounted, n_uneven;
+    size_t n_miscounted, n_uneven, n_twice_round;
     bool is_unnamed;
 };
 
@@ -133,16 +133,31 @@ static size_t read_values(struct reading *reading, const struct dicom_item *item
     return reading->values ? dicom_numbers(item, CONTOUR_DATA, reading->values, n) : SIZE_MAX;
 }
 
-enum contour_kind { KIND_CLOSED, KIND_POINT, KIND_OPEN };
+enum contour_kind { KIND_CLOSED, KIND_XOR, KIND_POINT, KIND_OPEN };
 
 static enum contour_kind kind_of(const struct dicom_item *item, size_t n_points)
 {
     char type[32];
     if (!dicom_text(item, CONTOUR_TYPE, type, sizeof type))
         return n_points >= 3 ? KIND_CLOSED : KIND_POINT;
-    if (strcmp(type, "CLOSED_PLANAR") == 0 || strcmp(type, "CLOSEDPLANAR_XOR") == 0)
+    if (strcmp(type, "CLOSED_PLANAR") == 0)
         return KIND_CLOSED;
+    if (strcmp(type, "CLOSEDPLANAR_XOR") == 0)
+        return KIND_XOR;
     return strcmp(type, "POINT") == 0 ? KIND_POINT : KIND_OPEN;
+}
+
+/* Number of points of the first round if a contour goes round twice over the same points; else n. Even-odd would fill
+ * nothing of the whole. */
+static size_t first_round(const double *xyz, size_t n)
+{
+    const double same_mm = 0.05;
+    if (n < 6 || n % 2 != 0)
+        return n;
+    for (size_t i = 0; i < 3 * (n / 2); i++)
+        if (!(fabs(xyz[i] - xyz[i + 3 * (n / 2)]) <= same_mm))
+            return n;
+    return n / 2;
 }
 
 static bool read_contour(struct reading *reading, struct reading_roi *roi, const struct dicom_item *item,
@@ -162,13 +177,17 @@ static bool read_contour(struct reading *reading, struct reading_roi *roi, const
     enum contour_kind kind = kind_of(item, n_points);
     roi->n_points_alone += kind == KIND_POINT;
     roi->n_open += kind == KIND_OPEN;
-    if (kind != KIND_CLOSED || n_points == 0)
+    if ((kind != KIND_CLOSED && kind != KIND_XOR) || n_points == 0)
         return true;
+    size_t n_once = first_round(reading->values, n_points);
+    roi->n_twice_round += n_once < n_points;
+    n_points = n_once;
     contour->points_lps_mm = mem_array(3 * n_points, sizeof *contour->points_lps_mm, UINT64_MAX, err);
     if (!contour->points_lps_mm)
         return false;
     memcpy(contour->points_lps_mm, reading->values, 3 * n_points * sizeof *contour->points_lps_mm);
     contour->n_points = n_points;
+    contour->is_xor = kind == KIND_XOR;
     return true;
 }
 
@@ -270,6 +289,9 @@ static void report_roi(const struct reading *reading, const struct reading_roi *
             reading->report, REPORT_WARNING, "region.contours-count", reading->where,
             "\"%s\": %zu contours have another number of points than the file says; the points there are were taken.",
             name, roi->n_miscounted);
+    if (roi->n_twice_round > 0)
+        report_add(reading->report, REPORT_WARNING, "region.contours-left-out", reading->where,
+                   "\"%s\": %zu contours go round twice; the second round was left out.", name, roi->n_twice_round);
     if (roi->n_uneven > 0)
         report_add(reading->report, REPORT_WARNING, "region.contours-count", reading->where,
                    "\"%s\": %zu contours have coordinates that are not three for each point; the last were left out.",
@@ -422,12 +444,45 @@ static void report_left_out(const char *name, const struct contour_facts *facts,
         const char *why;
     } reasons[] = { { facts->n_not_finite, "have coordinates that are no numbers or beyond 100 m" },
                     { facts->n_degenerate, "enclose no area" },
-                    { facts->n_repeated, "are there twice" },
+                    { facts->n_repeated, "repeat another of their plane" },
                     { facts->n_not_parallel, "are tilted against the others" } };
     for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++)
         if (reasons[i].n > 0)
             report_add(report, i == 1 ? REPORT_NOTE : REPORT_WARNING, "region.contours-left-out", where,
                        "\"%s\": %zu contours %s and were left out.", name, reasons[i].n, reasons[i].why);
+}
+
+/* Returns true if voxels and outlines differ by more than 2 % (5 % below 1 cm3) of the outlines. */
+static bool is_doubtful(const struct contour_facts *facts)
+{
+    double most = facts->outlines_cm3 < 1 ? 0.05 : 0.02;
+    return fabs(facts->filled_cm3 - facts->outlines_cm3) >= most * facts->outlines_cm3 &&
+           facts->filled_cm3 != facts->outlines_cm3;
+}
+
+static void report_doubts(const char *name, const struct contour_facts *facts, const char *where, struct report *report)
+{
+    if (facts->n_overlap_planes > 0)
+        report_add(
+            report, REPORT_WARNING, "region.contours-overlap", where,
+            "\"%s\": contours partly overlap on %zu of %zu planes. Their union was filled: %.4g cm3; other programs "
+            "may leave out the overlap.",
+            name, facts->n_overlap_planes, facts->n_planes, facts->filled_cm3);
+    if (is_doubtful(facts))
+        report_add(report, REPORT_WARNING, "region.contours-differ", where,
+                   "\"%s\": its voxels hold %.4g cm3, the areas of its outlines without holes add up to %.4g cm3.%s",
+                   name, facts->filled_cm3, facts->outlines_cm3,
+                   facts->n_overlap_planes > 0 ? " Overlaps count twice there."
+                   : facts->n_outside > 0      ? " Part of it lies outside the image."
+                                               : " An outline may cross itself, or touch another.");
+    if (facts->n_moved_planes > 0)
+        report_add(report, REPORT_NOTE, "region.contours-moved", where,
+                   "\"%s\": %zu of %zu planes lie beside the slices that they were filled on, by up to %.3g mm.", name,
+                   facts->n_moved_planes, facts->n_planes, facts->moved_mm);
+    if (facts->n_close_planes > 0)
+        report_add(report, REPORT_WARNING, "region.contours-moved", where,
+                   "\"%s\": %zu times a contour lies so near to the plane of others that it was moved into it.", name,
+                   facts->n_close_planes);
 }
 
 void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_choice *choice,
@@ -444,12 +499,19 @@ void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_c
         snprintf(grid, sizeof grid, "voxels of %.4g x %.4g x %.4g mm", mm.x, mm.y, mm.z);
     else if (s[0] * s[1] * s[2] > 1)
         snprintf(grid, sizeof grid, "voxels of the image divided %u x %u x %u", s[0], s[1], s[2]);
-    double percent = facts->polygon_cm3 > 0 ? 100 * (facts->filled_cm3 / facts->polygon_cm3 - 1) : 0;
-    report_add(
-        report, choice->is_short ? REPORT_WARNING : REPORT_NOTE,
-        choice->is_short ? "region.contours-coarse" : "region.contours-filled", where,
-        "\"%s\": %zu planes %.4g mm apart, filled by even-odd at the centres of %s: %.4g cm3, its polygons enclose %.4g cm3 (%+.1f %%).",
-        name, facts->n_planes, facts->spacing_mm, grid, facts->filled_cm3, facts->polygon_cm3, percent);
+    char check[120];
+    double percent = 100 * (facts->filled_cm3 / facts->outlines_cm3 - 1);
+    if (facts->outlines_cm3 > 0)
+        snprintf(check, sizeof check, "the areas of its outlines, without holes, add up to %.4g cm3 (%+.1f %%)",
+                 facts->outlines_cm3, percent);
+    else
+        snprintf(check, sizeof check, "the areas of its outlines %s",
+                 isnan(facts->outlines_cm3) ? "were too intricate to add up" : "add up to nothing");
+    report_add(report, choice->is_short ? REPORT_WARNING : REPORT_NOTE,
+               choice->is_short ? "region.contours-coarse" : "region.contours-filled", where,
+               "\"%s\": %zu planes %.4g mm apart, filled at the centres of %s: %.4g cm3; %s.", name, facts->n_planes,
+               facts->spacing_mm, grid, facts->filled_cm3, check);
+    report_doubts(name, facts, where, report);
     if (facts->n_gaps > 0)
         report_add(
             report, REPORT_NOTE, "region.contours-gap", where,

@@ -138,7 +138,12 @@ static bool lay_out_uneven(const struct dicom_slice *slices, size_t n, const cha
         return false;
     size_t n_made, n_between;
     interpolate(slices, n, *pitch_mm, layout, &n_made, &n_between);
-    if (n_between == 0) {
+    if (n_between == 0 && n_made == 0) {
+        report_add(
+            report, REPORT_NOTE, "image.locations-uneven", where,
+            "%zu slices lie between %.4g and %.4g mm apart; none is missing, and they were placed %.4g mm apart.", n,
+            least, most, *pitch_mm);
+    } else if (n_between == 0) {
         char gaps[120] = "";
         list_gaps(layout, slices, *pitch_mm, gaps, sizeof gaps);
         report_add(report, REPORT_WARNING, "image.slices-missing", where,

@@ -87,7 +87,7 @@ test('why a question is not answered is said; a member on their own asks about w
   assert.deepEqual([facts.answer.value.result, facts.answer.value.error], [null, 'the plan has no beam']);
 });
 
-test('the ring of a beam\'s-eye view on the screen is the aperture asked about', async () => {
+test('the ring of a beam\'s-eye view on the screen is the diameter asked about', async () => {
   const { asked, facts, rest, room } = world();
   room.views = [{ kind: '3d', isOpen: signal(true), document: signal({}) }, { kind: 'beam', isOpen: signal(true), document: signal({ beam: { aperture_mm: 80 } }) }];
   effect(() => facts.answer.value);

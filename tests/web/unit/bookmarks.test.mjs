@@ -102,3 +102,61 @@ test('a presentation goes from one to the next, and stays at its ends', async ()
   bookmarks.end();
   assert.equal(bookmarks.isPlaying.value, false);
 });
+
+// ---- what others made since -----------------------------------------------------------------------------------------------
+
+const { mergedScene, toldOfMerge } = await load('state/saved_merge.js');
+
+test('a saved view hides planes and levels that it does not hold, and leaves marks as they are now', () => {
+  const line = (name, visible = true) => ({ kind: 'distance', name, author: 'Dr A', visible, points: [] });
+  const draft = (enabled, x) => ({ enabled, shows_planned: false, line: { name: '', entry_mm: [x, 0, 0], target_mm: [0, 0, 0] } });
+  const now = {
+    measures: { 'm1-m2': line('since'), 'm2-m3': line('moved since') }, probes: { 'pin-1-m2': { at_mm: [1, 2, 3] } }, constraints: { 'limit-1-m2': { region: 'brain', limit: 9 } },
+    image: { obliques: { b: { visible: true, origin_mm: [1, 1, 1] }, c: { visible: false } } }, dose: { levels: { 90: { value: 90, visible: true } } },
+    beam: { kept: { k: { name: 'AP' } }, draft: draft(true, 7) },
+  };
+  const saved = {
+    measures: { 'm2-m3': line('as saved', false), m9: line('deleted since') }, probes: {}, constraints: {},
+    image: { obliques: {} }, dose: { levels: { 50: { value: 50, visible: true } } }, beam: { kept: {}, draft: draft(false, 0) },
+  };
+  const { scene, hidden, changed } = mergedScene(now, saved);
+  assert.deepEqual(scene.measures, { 'm1-m2': line('since'), 'm2-m3': line('moved since', false), m9: line('deleted since') });
+  assert.deepEqual([scene.probes, scene.constraints, scene.beam.kept, scene.beam.draft], [now.probes, now.constraints, now.beam.kept, draft(false, 7)]);
+  assert.deepEqual(scene.image.obliques, { b: { visible: false, origin_mm: [1, 1, 1] }, c: { visible: false } });
+  assert.deepEqual(scene.dose.levels, { 90: { value: 90, visible: false }, 50: { value: 50, visible: true } });
+  assert.equal(toldOfMerge({ hidden, changed, left: [] }), 'Hidden, not deleted: 1 measure, 1 oblique plane, 1 isodose level, the draft beam. Changed since, and left so: 1 measure.');
+  assert.equal(toldOfMerge(mergedScene(now, now)), '');
+});
+
+test('whatever was made before and since, showing a saved view deletes none of it, and says what it hides', () => {
+  let state = 1;
+  const below = (n) => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return (state >>> 16) % n;
+  };
+  const pick = (make) => Object.fromEntries(Array.from({ length: 40 }, (_, at) => [`e${at}`, make(at)]).filter(() => below(2)));
+  const mark = () => ({ visible: below(2) > 0, value: below(3) });
+  const made = () => ({ measures: pick(mark), probes: pick(() => ({ value: below(3) })), constraints: pick(() => ({ value: below(3) })), image: { obliques: Object.fromEntries(Object.entries(pick(mark)).slice(0, 4)) }, dose: { levels: Object.fromEntries(Object.entries(pick(mark)).slice(0, 20)), weights: pick(() => ({ boron_ratio: 1 })) }, beam: { kept: pick(() => ({ value: below(3) })), draft: { enabled: below(2) > 0, line: { x: below(9) } } } });
+  const of = (scene) => [scene.measures, scene.probes, scene.constraints, scene.image.obliques, scene.dose.levels, scene.beam.kept];
+  for (let run = 0; run < 200; run++) {
+    const [now, saved] = [made(), made()];
+    for (const isOwn of [false, true]) {
+      const merge = mergedScene(now, saved);
+      const after = mergePatch(now, patchTo(now, merge.scene, isOwn));
+      let hidden = 0;
+      of(now).forEach((map, kind) => {
+        for (const [id, entry] of Object.entries(map)) {
+          const is = of(after)[kind][id];
+          assert.ok(is, `entry ${id} of map ${kind} is gone`);
+          if (![3, 4].includes(kind)) assert.equal(is.value, entry.value, 'a mark stays as it is now');
+          if (entry.visible && !is.visible) hidden += 1;
+        }
+      });
+      const told = merge.hidden.filter((words) => words !== 'the draft beam').reduce((sum, words) => sum + Number.parseInt(words, 10), 0);
+      assert.equal(told, hidden);
+      assert.equal(merge.hidden.includes('the draft beam'), now.beam.draft.enabled && !after.beam.draft.enabled);
+      if (!saved.beam.draft.enabled) assert.deepEqual(after.beam.draft.line, now.beam.draft.line);
+      [64, 32, 64, 8, 32, 16].forEach((most, kind) => assert.ok(Object.keys(of(after)[kind]).length <= Math.max(most, Object.keys(of(now)[kind]).length)));
+    }
+  }
+});

@@ -155,7 +155,7 @@ test('a picture that came before the refusal does not end it, whatever has chang
 // ---- badges ---------------------------------------------------------------------------------------------------------------
 
 const facts = {
-  link: { state: 'open', retryAt: 0 }, renderer: 'ready', staleSince: 0, revision: 3, revisionAt: 0, fps: 27, now: 10000,
+  link: { state: 'open', retryAt: 0 }, renderer: 'ready', staleSince: 0, behindSince: 0, fps: 27, now: 10000,
   header: { is_still: false, is_lossless: false, is_coarse: false, scale_percent: 100, quality: 80, scene_revision: 3 },
 };
 const still = { ...facts.header, is_still: true };
@@ -167,7 +167,7 @@ for (const [what, change, state] of [
   ['a still', { header: still }, 'full'],
   ['an input unanswered for 0.9 s', { header: still, staleSince: 9100 }, 'full'],
   ['an input unanswered for 1.1 s', { header: still, staleSince: 8900 }, 'stale'],
-  ['an older scene for 1.1 s', { header: { ...still, scene_revision: 2 }, revisionAt: 8900 }, 'stale'],
+  ['an older scene for 1.1 s', { header: still, behindSince: 8900 }, 'stale'],
   ['a view that cannot be drawn as it is', { header: still, refusal: 'the camera looks at itself' }, 'stale'],
   ['a restarting renderer', { header: still, renderer: 'restarting' }, 'stale'],
   ['a link that is quiet for 3 s', { header: still, link: { state: 'open', retryAt: 0, quietSince: 7000, dueSince: 7500 } }, 'link'],

@@ -47,6 +47,12 @@ const place = (point) => html`<span class="beam-point">${coordinates(point).map(
 
 const sources = { 'treatment-plan': 'treatment plan', 'plan-folder': 'plan folder', draft: 'draft' };
 
+/** The plan's or the draft's; a ring that is drawn in a picture is neither. */
+function apertureWords({ name, facts, line }) {
+  if (!facts.aperture_mm) return missing(facts.outline ? facts.outline.kind : 'not known');
+  return `${mm(facts.aperture_mm)}${name === 'Draft' && line.aperture_mm ? ', own' : ''}`;
+}
+
 /** Rows of [name, value of a line's facts, tooltip, whether it is left out]. line: with entry_mm, target_mm of the scene or the plan; facts: of the question, null until they are here. */
 const rows = [
   ['Target, mm', ({ line }) => place(line.target_mm)],
@@ -56,7 +62,7 @@ const rows = [
   ['Entry to target', ({ facts }) => mm(facts.length_mm)],
   ['Skin gap', ({ facts }) => (Number.isFinite(facts.gap_mm) ? mm(facts.gap_mm) : missing(facts.skin_reason || 'axis misses the skin')), 'From the entry to the skin, along the axis'],
   ['Depth to target', ({ facts }) => (Number.isFinite(facts.depth_mm) ? mm(facts.depth_mm) : missing(facts.skin_reason || 'axis misses the skin')), 'From the skin to the target, along the axis'],
-  ['Aperture', ({ facts, line }) => { const of = facts.aperture_mm ?? line.aperture_mm; return of ? mm(of) : missing(facts.outline ? facts.outline.kind : 'not known'); }, 'Diameter'],
+  ['Aperture', apertureWords, 'Diameter'],
   ['Source', ({ facts }) => sources[facts.source] ?? facts.source],
   ['Radiation', ({ facts }) => facts.radiation, undefined, ({ facts }) => !facts.radiation],
 ];

@@ -215,7 +215,7 @@ class BeamEye extends AlongBeam {
     const place = header && pane[0] > 1 ? { header, box, pane, beam, ring } : null;
     return {
       where: html`<button class="beam-lock" ?disabled=${isOff} title="Leave the beam: a 3-D view with the same camera, which can be turned (B goes back to the 3-D view before)" @click=${(event) => this.unlock(event.timeStamp)}><span>${words}</span>${lock}</button>`,
-      head: html`<button class="icon-button small beam-ring-toggle" aria-pressed=${ring !== null} aria-label="Aperture ring" ?disabled=${isOff} title=${ring === null ? 'Aperture ring: parallel projection, so that its size is true at every depth' : 'Without the aperture ring'}
+      head: html`<button class="icon-button small beam-ring-toggle" aria-pressed=${ring !== null} aria-label="Ring" ?disabled=${isOff} title=${ring === null ? 'Ring: parallel projection, so that its size is true at every depth' : 'Without the ring'}
         @click=${(event) => this.toggleRing(event.timeStamp)}>${ringPicture}</button>`,
       overlay: place && ringNumbers(place, document.beam?.crosshair !== false),
       handles: place && ring !== null ? ringHandle(place, isOff, (mm, at) => this.setRing(mm, at)) : nothing,

@@ -25,7 +25,7 @@ function apertureBlock(world, { aperture, planned, is_draft: isDraft }, isOld) {
   const before = isDraft && planned ? planned.aperture : undefined;
   const ids = [...aperture.regions, ...(before?.regions ?? []).filter(({ region }) => !aperture.regions.some((other) => other.region === region))].map(({ region }) => region);
   const of = (list, id) => list?.regions.find(({ region }) => region === id);
-  return html`<section class="block"><h3 class="beam-head">Regions in the aperture <span class="dim">cylinder of ${number(aperture.diameter_mm, aperture.diameter_mm % 1 ? 1 : 0)} mm</span></h3>
+  return html`<section class="block"><h3 class="beam-head">Regions in the ${aperture.is_ring ? 'ring' : 'aperture'} <span class="dim">${aperture.is_ring ? 'drawn, ' : ''}cylinder of ${number(aperture.diameter_mm, aperture.diameter_mm % 1 ? 1 : 0)} mm</span></h3>
     ${ids.length ? html`<table class=${classMap({ 'beam-regions': true, old: isOld })}><thead><tr><th scope="col">Region</th><th scope="col">first at</th><th scope="col">inside${before !== undefined ? ', draft' : ''}</th>${before !== undefined ? html`<th scope="col">planned</th>` : nothing}</tr></thead>
       <tbody>${ids.map((id) => { const row = of(aperture, id); return html`<tr><th scope="row">${named(world, id)}</th><td>${Number.isFinite(row?.first_mm) ? mm(row.first_mm) : '–'}</td>
         <td title=${row ? `${number(row.inside_cm3, 2)} of ${number(row.region_cm3, 2)} cm³` : nothing}><b>${share(row)}</b></td>${before !== undefined ? html`<td class="planned">${share(of(before, id))}</td>` : nothing}</tr>`; })}</tbody></table>

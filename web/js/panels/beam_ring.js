@@ -44,19 +44,19 @@ export function ringNumbers(place, hasCrosshair) {
     const r = mm * pxPerMm;
     return svg`${text(x + r, y + 20, mm, 'middle')}${text(x - r, y + 20, mm, 'middle')}${text(x + 13, y - r + 4, mm, 'start')}${text(x + 13, y + r + 4, mm, 'start')}`;
   }) : nothing}${hasCrosshair && !(header.pixels_per_mm > 0) ? svg`<text class="halo caption beam-depth" x="12" y=${height - 12}>mm at the target’s depth</text>` : nothing}
-    ${ring === null ? nothing : ringWords(frame, ring, place.beam.aperture, width)}`;
+    ${ring === null ? nothing : ringWords(frame, ring, place.beam, width)}`;
 }
 
 const handleAt = ({ middle: [x, y], pxPerMm }, ring) => [x + (ring / 2) * pxPerMm * diagonal, y - (ring / 2) * pxPerMm * diagonal];
 
-/** Of a beam without a round aperture it is no more than a ring. */
-function ringWords(frame, ring, aperture, width) {
+/** What the ring is beside the beam's aperture, which it need not be. */
+function ringWords(frame, ring, { aperture, isShaped }, width) {
   const [x, y] = handleAt(frame, ring);
   const isPlanned = aperture && Math.abs(ring - aperture) < 0.05;
-  const below = !aperture ? 'this beam has no round one' : isPlanned ? 'drag to change' : `the beam’s is ${number(aperture, aperture % 1 ? 1 : 0)} mm`;
+  const below = !aperture ? `drawn; ${isShaped ? 'the opening is not round' : 'aperture not known'}` : isPlanned ? 'as the aperture' : `drawn; the aperture is ${number(aperture, aperture % 1 ? 1 : 0)} mm`;
   const isLeft = x + 20 + Math.max(18, below.length) * charPx > width;
   const at = placed(isLeft ? x - 14 : x + 14);
-  return svg`<g text-anchor=${isLeft ? 'end' : 'start'}><text class="halo beam-aperture" x=${at} y=${placed(y - 4)}>${aperture ? 'aperture' : 'ring'} ${number(ring, ring % 1 ? 1 : 0)} mm</text><text class="halo caption" x=${at} y=${placed(y + 10)}>${below}</text></g>`;
+  return svg`<g text-anchor=${isLeft ? 'end' : 'start'}><text class="halo beam-aperture" x=${at} y=${placed(y - 4)}>ring ${number(ring, ring % 1 ? 1 : 0)} mm</text><text class="halo caption" x=${at} y=${placed(y + 10)}>${below}</text></g>`;
 }
 
 /** The round handle on the ring, up and to the right. @param {(mm: number, at: number) => void} set */
@@ -66,7 +66,7 @@ export function ringHandle(place, isOff, set) {
   const { ring, pane: [width, height] } = place;
   const [x, y] = handleAt(frame, ring);
   if (x < 0 || y < 0 || x > width || y > height) return nothing;
-  const words = `aperture ${number(ring, 1)} mm`;
+  const words = `ring ${number(ring, 1)} mm`;
   const onMove = (event) => {
     event.stopPropagation(); // no card at the pointer beside the handle
     if (!event.currentTarget.hasPointerCapture(event.pointerId)) return;
@@ -88,6 +88,6 @@ export function ringHandle(place, isOff, set) {
     event.stopPropagation();
     set(mm, event.timeStamp);
   };
-  return html`<div class="clip-handles"><i class="beam-handle" role="slider" tabindex="0" aria-label="Aperture ring" aria-valuemin=${range.low} aria-valuemax=${range.high} aria-valuenow=${ring} aria-valuetext=${words} aria-disabled=${isOff}
+  return html`<div class="clip-handles"><i class="beam-handle" role="slider" tabindex="0" aria-label="Ring" aria-valuemin=${range.low} aria-valuemax=${range.high} aria-valuenow=${ring} aria-valuetext=${words} aria-disabled=${isOff}
     title=${`${words} (drag, arrow keys)`} ${variables({ '--x': `${placed(x)}px`, '--y': `${placed(y)}px` })} @pointerdown=${onDown} @pointermove=${onMove} @keydown=${onKey}></i></div>`;
 }

@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { Bookmarks, bookmarksOf } from '../state/bookmarks.js';
+import { toldOfMerge } from '../state/saved_merge.js';
 import { icon } from './icons.js';
 import { name, treeRow } from './tree_row.js';
 
@@ -28,14 +29,15 @@ export async function attempt({ ui }, run, done = '') {
 }
 
 /** What of a saved view could not be shown, in a sentence; '' when it is whole. */
-const lost = ({ report, n_report: all }) => (all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}` : '');
+const lost = ({ report, n_report: all }) => (all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}.` : '');
 
-function told(world, opened) {
+function told(world, opened, isQuiet = false) {
   if (!opened) return;
-  const why = lost(opened);
+  const isReported = opened.n_report > 0;
+  const why = [lost(opened), toldOfMerge(opened.merge)].filter(Boolean).join(' ');
   const who = world.room.following.isPresenting.value ? '' : ' In your own view.';
-  if (why) world.ui.notify('warn', `“${opened.name}”: ${why}`, 'saved', { word: 'All', act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) });
-  else if (who) world.ui.notify('ok', `“${opened.name}”.${who}`, 'saved', { word: 'Return', keys: 'Esc or F', act: () => world.room.following.return() });
+  if (why) world.ui.notify('warn', `“${opened.name}”: ${why}`, 'saved', isReported ? { word: 'All', act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) } : null);
+  else if (who && !isQuiet) world.ui.notify('ok', `“${opened.name}”.${who}`, 'saved', { word: 'Return', keys: 'Esc or F', act: () => world.room.following.return() });
 }
 
 /** Shows a saved view: the presenter to everybody, anybody else to themselves. */
@@ -77,7 +79,7 @@ export async function play(world, row = null) {
   endPlaying();
   playing = world;
   addEventListener('keydown', onKey, true);
-  await attempt(world, () => bookmarksIn(world).play(row));
+  told(world, await attempt(world, () => bookmarksIn(world).play(row)), true);
 }
 
 function endPlaying() {
@@ -92,7 +94,7 @@ export function leave(world) {
   bookmarksIn(world).stop();
 }
 
-const step = (world, by) => attempt(world, () => bookmarksIn(world).step(by));
+const step = async (world, by) => told(world, await attempt(world, () => bookmarksIn(world).step(by)), true);
 
 export function playBar(world) {
   const bookmarks = bookmarksIn(world);

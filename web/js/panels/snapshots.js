@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect } from '../../lib/signals-core.js';
 import { filesOfDrop } from '../net/dropped.js';
+import { toldOfMerge } from '../state/saved_merge.js';
 import { recordOfFile, restore } from '../state/snapshot_record.js';
 import { icon } from './icons.js';
 import { styled } from './lazy.js';
@@ -87,8 +88,8 @@ function show(world, record) {
   } else if (!room.canChange.value) {
     ui.notify('warn', 'The picture can be shown again when the plan is loaded and the server answers.', 'snapshot');
   } else {
-    restore(world, record);
-    ui.notify('ok', 'Scene and view are as in the picture', 'snapshot');
+    const but = toldOfMerge(restore(world, record));
+    ui.notify(but ? 'warn' : 'ok', `Scene and view are as in the picture${but ? `. ${but}` : ''}`, 'snapshot');
   }
 }
 

@@ -6,7 +6,7 @@ const pole = 0.01; // sine of the angle to the patient's axis, under which anter
 
 /**
  * The beam with this id; '': the one that the scene chooses, as its draft if that is on.
- * @returns {{id: string, name: string, isDraft: boolean, entry: number[], target: number[], direction: number[], length: number, aperture: number|null}|null} id '': a draft in a plan without beams; null: there is none
+ * @returns {{id: string, name: string, isDraft: boolean, entry: number[], target: number[], direction: number[], length: number, aperture: number|null, isShaped: boolean}|null} id '': a draft in a plan without beams; null: there is none
  */
 export function beamShown(plan, scene, id = '') {
   if (!plan || !scene) return null;
@@ -17,7 +17,7 @@ export function beamShown(plan, scene, id = '') {
   if (!planned && (!isDraft || chosen)) return null;
   const { entry_mm: entry, target_mm: target, aperture_mm: aperture } = isDraft ? draft.line : planned;
   const line = subtract(target, entry);
-  return { id: planned?.id ?? '', name: (isDraft && draft.line.name) || planned?.name || planned?.id || 'Draft', isDraft, entry, target, direction: unit(line), length: length(line), aperture: aperture ?? planned?.aperture_mm ?? null };
+  return { id: planned?.id ?? '', name: (isDraft && draft.line.name) || planned?.name || planned?.id || 'Draft', isDraft, entry, target, direction: unit(line), length: length(line), aperture: aperture ?? planned?.aperture_mm ?? null, isShaped: !isDraft && Boolean(planned.delivery?.outline) };
 }
 
 /** A point of the beam's line; 0: the entry, positive towards the target and beyond. */

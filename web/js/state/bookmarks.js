@@ -3,6 +3,7 @@ import { batch, effect, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
 import { isObject } from '../wire/merge.js';
 import { layouts } from './layout.js';
+import { mergedScene } from './saved_merge.js';
 
 export const maxName = 80; // characters
 const mostPictures = 60; // kept in this tab; never written to the disk of this computer: they show patients
@@ -165,16 +166,16 @@ export class Bookmarks {
     const { room, api } = this.#world;
     const opened = await api.bookmark(room.id, row.id);
     if (!room.canChange.value) throw new Error('The server does not answer now: try again.');
-    this.showOpened(opened, row.id);
-    return opened;
+    return { ...opened, merge: this.showOpened(opened, row.id) };
   }
 
-  /** @param {object} opened as GET .../bookmarks/{bookmark} answers */
+  /** @param {object} opened as GET .../bookmarks/{bookmark} answers @returns what of the room's scene it hid or left: mergedScene */
   showOpened(opened, id = '') {
     const { room, ui, undo } = this.#world;
     this.#stopViews();
     undo?.press();
-    const patch = patchTo(room.scene.value, opened.scene, !room.following.isPresenting.value);
+    const merge = mergedScene(room.scene.value, opened.scene);
+    const patch = patchTo(room.scene.value, merge.scene, !room.following.isPresenting.value);
     if (Object.keys(patch).length) room.patchScene(patch, { view: ui.active.value });
     arrangeAs(ui, opened.layout);
     this.#stopViews = showViews(room, opened.views);
@@ -182,6 +183,7 @@ export class Bookmarks {
     this.shown.value = id;
     if (id && this.isPlaying.value && ui.selection.value.kind === 'bookmark') ui.select('bookmark', id, false);
     this.report.value = { id, name: opened.name, lines: opened.report, n: opened.n_report };
+    return merge;
   }
 
   /** The page of a room that was made from a saved view: the server has given the room its scene and cameras. @param {object} saved of the room's document */
@@ -201,16 +203,16 @@ export class Bookmarks {
 
   async play(row = null) {
     const rows = bookmarksOf(this.#world.room);
-    if (!rows.length) return;
+    if (!rows.length) return null;
     this.isPlaying.value = true;
-    await this.show(row ?? rows[Math.max(this.position(rows), 0)]);
+    return this.show(row ?? rows[Math.max(this.position(rows), 0)]);
   }
 
   /** The next (1) or the one before (-1); at either end it stays. */
   async step(by) {
     const rows = bookmarksOf(this.#world.room);
     const to = Math.min(Math.max(this.position(rows) + by, 0), rows.length - 1);
-    if (rows[to] && rows[to].id !== this.shown.value) await this.show(rows[to]);
+    return rows[to] && rows[to].id !== this.shown.value ? this.show(rows[to]) : null;
   }
 
   end() {

@@ -20,11 +20,11 @@ function why(header) {
  * @param {{state: string, retryAt: number, quietSince: number, dueSince: number}} facts.link
  * @param {string} facts.renderer state of the renderer
  * @param {import('../wire/frame.js').FrameHeader|null} facts.header of the picture on the screen
- * @param {number} facts.staleSince @param {number} facts.revision @param {number} facts.revisionAt
+ * @param {number} facts.staleSince since when an answer is due @param {number} facts.behindSince since when a newer picture is; each 0: none is
  * @param {number} facts.fps @param {number} facts.now
  * @returns {{state: string, text: string, why: string} | null} null before the first picture
  */
-export function fidelity({ link, renderer, header, staleSince, revision, revisionAt, fps, now, refusal = '' }) {
+export function fidelity({ link, renderer, header, staleSince, behindSince, fps, now, refusal = '' }) {
   const badge = (state, text, reason = '') => ({ state, text, why: reason });
   if (link.state === 'lost') {
     const seconds = Math.max(0, Math.ceil((link.retryAt - now) / 1000));
@@ -37,7 +37,6 @@ export function fidelity({ link, renderer, header, staleSince, revision, revisio
   if (renderer === 'failed' || renderer === 'closed') return badge('stale', 'Stale', 'The plan is not loaded; this is the last picture of it.');
   if (renderer !== 'ready') return badge('stale', 'Stale', 'The renderer is being started again; this is the last picture it made.');
   if (refusal) return badge('stale', 'Stale', `The view cannot be drawn as it is now: ${refusal}`);
-  const behindSince = header.scene_revision < revision ? revisionAt : 0;
   const since = Math.min(staleSince || Infinity, behindSince || Infinity);
   if (now - since > staleMs) return badge('stale', `Stale ${Math.floor((now - since) / 1000)} s`, 'The picture does not show the newest change yet.');
   if (header.is_still && header.scale_percent === 100 && !header.is_coarse)

@@ -54,7 +54,6 @@ export class RoomState {
     this.planId = signal('');
     this.plan = signal(null);
     this.revision = signal(0);
-    this.revisionAt = signal(0);
     this.isScenePending = signal(false);
     this.renderer = signal({ state: 'starting', phase: '', percent: 0, problem: null });
     this.gl = signal('');
@@ -252,7 +251,7 @@ export class RoomState {
         this.saved.changed();
         this.#scene.accept(message.patch, message.input);
         this.#reach(message);
-        this.#setRevision(message.revision);
+        this.revision.value = message.revision;
         this.#showScene();
       },
       view: () => this.#viewChanged(message),
@@ -339,18 +338,19 @@ export class RoomState {
     if (message.scene) {
       this.#isLoaded = true;
       this.#scene.replace(message.scene);
-      for (const view of this.views) view.sceneChanged(message.revision);
+      for (const view of this.views) view.sceneChanged(message.revision, this.#clock.now());
       this.#showScene();
       this.renderer.value = { state: 'ready', phase: '', percent: 100, problem: null };
     }
-    this.#setRevision(message.revision);
+    this.revision.value = message.revision;
     this.#shareOwn();
   }
 
   /** Tells the views whether the change of the scene reaches them. An input in a pane that it does not reach is answered by another one. */
   #reach({ revision, input, unchanged }) {
     const isSame = (view) => Array.isArray(unchanged) && unchanged.includes(view.number);
-    for (const view of this.views) view.sceneChanged(revision, isSame(view));
+    // a patch that changes nothing is answered with the revision as it was
+    if (revision !== this.revision.value) for (const view of this.views) view.sceneChanged(revision, this.#clock.now(), isSame(view));
     if (!input) return;
     const expected = this.views.filter(isSame).map((view) => view.release(input)).find(Boolean);
     const other = expected && this.views.find((view) => view.isOpen.value && !isSame(view));
@@ -415,11 +415,6 @@ export class RoomState {
 
   #setLink(state, more = {}) {
     this.link.value = { state, retryAt: 0, quietSince: 0, dueSince: 0, reason: '', ...more };
-  }
-
-  #setRevision(revision) {
-    if (revision !== this.revision.value) this.revisionAt.value = this.#clock.now();
-    this.revision.value = revision;
   }
 
   #showScene() {

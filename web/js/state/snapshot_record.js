@@ -4,6 +4,7 @@ import { isPng, maxFileBytes, textOfPng } from '../net/png.js';
 import { isId, readDocument } from '../wire/check.js';
 import { isObject } from '../wire/merge.js';
 import { adopted } from './marks.js';
+import { mergedScene } from './saved_merge.js';
 
 const keyword = 'beamroom';
 const version = 1;
@@ -67,12 +68,13 @@ export function difference(now, wanted) {
 /**
  * Shows the record's scene, and its camera in the view of its kind, as changes of this person: one step to undo. A view that no pane
  * shows, as the oblique one, takes the place of the active one.
- * @param {object} world {room, ui, undo}
+ * @param {object} world {room, ui, undo} @returns what of the room's scene it hid or left: mergedScene
  */
 export function restore({ room, ui, undo }, record) {
   const { kind, number, plane, camera, beam } = record.view;
   const view = room.views.find((other) => other.kind === kind && other.ofKind === number) ?? room.views.find((other) => other.kind === kind);
-  const scene = adopted(difference(room.scene.value, record.scene), room.scene.value, room.member.value);
+  const merge = mergedScene(room.scene.value, record.scene);
+  const scene = adopted(difference(room.scene.value, merge.scene), room.scene.value, room.member.value);
   undo?.press();
   if (Object.keys(scene).length) room.patchScene(scene, { view: view.number });
   room.patchView(view.number, kind === 'oblique' ? { camera, plane } : kind === 'beam' ? { camera, beam } : { camera });
@@ -80,4 +82,5 @@ export function restore({ room, ui, undo }, record) {
   if (!ui.maximised.value && !ui.visible.value.includes(view.number)) ui.showInPlaceOf(ui.active.value, view.number);
   ui.active.value = view.number;
   if (ui.maximised.value) ui.maximised.value = view.number;
+  return merge;
 }

@@ -28,6 +28,7 @@ export class ViewState {
     this.refusal = signal(''); // why the view cannot be drawn as it is now; '' when it can
     this.painted = signal(null); // FrameHeader of the picture on the screen
     this.staleSince = signal(0); // time since which an answer is missing; 0: none is
+    this.behindSince = signal(0); // time since which the picture has not shown the newest scene, and no newer one came; 0: it does
     this.fps = signal(0);
   }
 
@@ -108,10 +109,16 @@ export class ViewState {
   }
 
   /** The scene has this revision now. isSame: this view's picture does not change by it, and no other one comes. */
-  sceneChanged(revision, isSame = false) {
+  sceneChanged(revision, now, isSame = false) {
     this.#revision = revision;
     if (!isSame) this.#sameSince = revision;
     else if (this.painted.value) this.painted.value = this.#asOfNow(this.painted.value);
+    if (!this.#isBehind(this.painted.value)) this.behindSince.value = 0;
+    else if (!this.behindSince.value) this.behindSince.value = now;
+  }
+
+  #isBehind(header) {
+    return header !== null && header.scene_revision < this.#revision;
   }
 
   /** The header with the newest revision that its picture is of. */
@@ -129,6 +136,7 @@ export class ViewState {
     batch(() => {
       this.document.value = this.#replica.value;
       this.painted.value = this.#asOfNow(header);
+      this.behindSince.value = this.#isBehind(this.painted.value) ? now : 0;
       if (header.sequence > this.#refusedAt) this.refusal.value = '';
       this.fps.value = this.#paintedAt.length;
     });

@@ -1,0 +1,196 @@
+/* Writes where the parts of a plan come from. */
+#include "server/wire/plan_origins.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "core/plan/identity.h"
+
+/* Distinct UIDs in the order of their first use: a UID is told by its place. */
+struct uids {
+    const char **texts;
+    size_t n;
+};
+
+struct numbers {
+    struct uids frames, studies, structs;
+};
+
+static void add_uid(struct uids *uids, const char *uid)
+{
+    for (size_t i = 0; i < uids->n; i++)
+        if (strcmp(uids->texts[i], uid) == 0)
+            return;
+    if (uid[0])
+        uids->texts[uids->n++] = uid;
+}
+
+static cJSON *number_of(const struct uids *uids, const char *uid)
+{
+    for (size_t i = 0; i < uids->n; i++)
+        if (strcmp(uids->texts[i], uid) == 0)
+            return cJSON_CreateNumber((double)i);
+    return cJSON_CreateNull();
+}
+
+static void add_uids(struct numbers *numbers, const struct part_origin *origins, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        add_uid(&numbers->frames, origins[i].frame_uid);
+        add_uid(&numbers->studies, origins[i].study_uid);
+    }
+}
+
+static struct numbers number_uids(const struct plan *plan)
+{
+    size_t most = plan->n_images + plan->n_doses + plan->n_beams + plan->n_region_origins + 1;
+    struct uids *lists[3];
+    struct numbers numbers = { 0 };
+    lists[0] = &numbers.frames;
+    lists[1] = &numbers.studies;
+    lists[2] = &numbers.structs;
+    for (int i = 0; i < 3; i++)
+        lists[i]->texts = mem_new(most * sizeof *lists[i]->texts); /* at most REGION_MAX and some */
+    add_uids(&numbers, plan->image_origins, plan->n_images);
+    add_uids(&numbers, plan->region_origins, plan->n_region_origins);
+    add_uids(&numbers, plan->dose_origins, plan->n_doses);
+    add_uids(&numbers, plan->beam_origins, plan->n_beams);
+    for (size_t i = 0; i < plan->n_region_origins; i++)
+        add_uid(&numbers.structs, plan->region_origins[i].structs_uid);
+    return numbers;
+}
+
+static void numbers_finish(struct numbers *numbers)
+{
+    free(numbers->frames.texts);
+    free(numbers->studies.texts);
+    free(numbers->structs.texts);
+}
+
+static cJSON *index_or_null(int index, size_t n)
+{
+    return index >= 0 && (size_t)index < n ? cJSON_CreateNumber(index) : cJSON_CreateNull();
+}
+
+static void add_origin(cJSON *part, const struct plan *plan, const struct numbers *numbers,
+                       const struct part_origin *origin)
+{
+    cJSON *index = index_or_null(origin->treatment_plan, plan->n_treatment_plans);
+    bool is_absent = origin->plan_uid[0] && cJSON_IsNull(index);
+    json_add(part, "patient", index_or_null(origin->patient, plan->n_patients));
+    json_add(part, "plan", index);
+    json_add(part, "is_plan_absent", cJSON_CreateBool(is_absent));
+    json_add(part, "frame", number_of(&numbers->frames, origin->frame_uid));
+    json_add(part, "study", number_of(&numbers->studies, origin->study_uid));
+}
+
+/* Adds the origins to the entries of a list of the document, which are in the plan's order. */
+static void add_to_list(const cJSON *document, const char *name, const struct plan *plan, const struct numbers *numbers,
+                        const struct part_origin *origins)
+{
+    cJSON *list = cJSON_GetObjectItemCaseSensitive(document, name);
+    for (cJSON *part = list ? list->child : NULL; part; part = part->next)
+        add_origin(part, plan, numbers, origins++);
+}
+
+static void add_to_regions(const cJSON *document, const struct plan *plan, const struct numbers *numbers)
+{
+    static const struct part_origin unknown = { .patient = -1, .treatment_plan = -1 };
+    cJSON *list = cJSON_GetObjectItemCaseSensitive(document, "regions");
+    const struct region *region = plan->regions.regions;
+    for (cJSON *part = list ? list->child : NULL; part; part = part->next, region++) {
+        bool is_known = region->origin > 0 && region->origin <= plan->n_region_origins;
+        const struct part_origin *origin = is_known ? &plan->region_origins[region->origin - 1] : &unknown;
+        add_origin(part, plan, numbers, origin);
+        json_add(part, "structs", number_of(&numbers->structs, origin->structs_uid));
+    }
+}
+
+static cJSON *patients_array(const struct plan *plan)
+{
+    cJSON *array = cJSON_CreateArray();
+    for (size_t i = 0; i < plan->n_patients; i++) {
+        char masked[IDENTITY_MASK_SIZE];
+        cJSON *object = cJSON_CreateObject();
+        identity_mask(&plan->patients[i], masked);
+        json_add(object, "masked", cJSON_CreateString(masked));
+        json_add(object, "has_identity", cJSON_CreateTrue());
+        json_add(object, "has_conflict", cJSON_CreateBool(plan->patients[i].has_conflict));
+        json_append(array, object);
+    }
+    return array;
+}
+
+/* YYYYMMDD as YYYY-MM-DD; anything else as it is. */
+static cJSON *date(const char *text)
+{
+    char out[16];
+    if (strlen(text) != 8 || strspn(text, "0123456789") != 8)
+        return cJSON_CreateString(text);
+    (void)snprintf(out, sizeof out, "%.4s-%.2s-%.2s", text, text + 4, text + 6);
+    return cJSON_CreateString(out);
+}
+
+static cJSON *treatment_plan_object(const struct plan *plan, const struct treatment_plan *treatment,
+                                    const struct numbers *numbers)
+{
+    cJSON *object = cJSON_CreateObject(), *structs = number_of(&numbers->structs, treatment->structs_uid);
+    bool is_absent = treatment->structs_uid[0] && cJSON_IsNull(structs);
+    json_add(object, "label", cJSON_CreateString(treatment->label));
+    json_add(object, "name", cJSON_CreateString(treatment->name));
+    json_add(object, "date", date(treatment->date));
+    json_add(object, "time", cJSON_CreateString(treatment->time));
+    json_add(object, "approval", cJSON_CreateString(treatment->approval));
+    json_add(object, "review_date", date(treatment->review_date));
+    json_add(object, "reviewer", cJSON_CreateString(treatment->reviewer));
+    json_add(object, "fractions",
+             treatment->n_fractions > 0 ? cJSON_CreateNumber((double)treatment->n_fractions) : cJSON_CreateNull());
+    json_add(object, "prescription_gy",
+             isfinite(treatment->prescription_gy) ? cJSON_CreateNumber(treatment->prescription_gy)
+                                                  : cJSON_CreateNull());
+    json_add(object, "patient", index_or_null(treatment->patient, plan->n_patients));
+    json_add(object, "structs", structs);
+    json_add(object, "is_structs_absent", cJSON_CreateBool(is_absent));
+    return object;
+}
+
+void plan_origins_add(cJSON *document, const struct plan *plan)
+{
+    struct numbers numbers = number_uids(plan);
+    cJSON *treatments = cJSON_CreateArray();
+    for (size_t i = 0; i < plan->n_treatment_plans; i++)
+        json_append(treatments, treatment_plan_object(plan, &plan->treatment_plans[i], &numbers));
+    json_add(document, "patients", patients_array(plan));
+    json_add(document, "treatment_plans", treatments);
+    json_add(document, "shown_patient", index_or_null(plan_shown_patient(plan), plan->n_patients));
+    json_add(document, "shown_plan", index_or_null(plan_shown_treatment_plan(plan), plan->n_treatment_plans));
+    add_to_list(document, "images", plan, &numbers, plan->image_origins);
+    add_to_list(document, "doses", plan, &numbers, plan->dose_origins);
+    add_to_list(document, "beams", plan, &numbers, plan->beam_origins);
+    add_to_regions(document, plan, &numbers);
+    numbers_finish(&numbers);
+}
+
+cJSON *plan_identity(const struct plan *plan)
+{
+    cJSON *object = cJSON_CreateObject(), *array = cJSON_CreateArray();
+    for (size_t i = 0; i < plan->n_patients; i++) {
+        const struct plan_patient *patient = &plan->patients[i];
+        char masked[IDENTITY_MASK_SIZE];
+        cJSON *entry = cJSON_CreateObject();
+        identity_mask(patient, masked);
+        json_add(entry, "id", cJSON_CreateString(patient->id));
+        json_add(entry, "issuer", cJSON_CreateString(patient->issuer));
+        json_add(entry, "name", cJSON_CreateString(patient->name));
+        json_add(entry, "birth_date", date(patient->birth_date));
+        json_add(entry, "sex", cJSON_CreateString(patient->sex));
+        json_add(entry, "has_conflict", cJSON_CreateBool(patient->has_conflict));
+        json_add(entry, "masked", cJSON_CreateString(masked));
+        json_append(array, entry);
+    }
+    json_add(object, "patients", array);
+    return object;
+}
