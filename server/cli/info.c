@@ -8,20 +8,23 @@
 #include "core/plan/dose_fit.h"
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
+#include "server/cli/info_origins.h"
 #include "server/cli/open_plan.h"
 #include "server/cli/text.h"
 #include "server/wire/plan_document.h"
+#include "server/wire/plan_origins.h"
 
 enum { LINE_LETTERS = 96, NAME_LETTERS = 34, ID_LETTERS = 12 };
 
 static void print_help(void)
 {
     fputs(
-        "usage: beamroom info DIR [--json]\n"
-        "Opens the plan in the folder DIR and prints what it holds: images, regions and what lies inside what, doses,\n"
-        "beams, particle tracks, and everything noticed while reading.\n\n"
-        "  --json   the same as one JSON object, as the daemon's API gives it\n"
-        "  --help   this text\n\n"
+        "usage: beamroom info DIR [--json] [--identity]\n"
+        "Opens the plan in the folder DIR and prints what it holds: patients, treatment plans, images, regions and what\n"
+        "lies inside what, doses, beams, particle tracks, and everything noticed while reading.\n\n"
+        "  --json       the same as one JSON object, as the daemon's API gives it\n"
+        "  --identity   patients by name, ID and birth date; without it they are masked\n"
+        "  --help       this text\n\n"
         "Points and lengths are millimetres toward the patient's left, back and top (LPS).\n",
         stdout);
 }
@@ -280,12 +283,13 @@ static void print_report(const struct report *report)
         printf("  and %zu more\n", report->n_dropped);
 }
 
-static void print_plan(const struct plan *plan)
+static void print_plan(const struct plan *plan, bool is_full)
 {
     text_print(stdout, *plan->name ? plan->name : plan->id, 0);
     printf("%s\n", plan->is_phantom ? "  [phantom, made up]" : "");
     text_print_wrapped(stdout, plan->note, 2, LINE_LETTERS);
     printf("  read in %.0f ms\n", (double)plan->load_us / 1000);
+    info_print_origins(plan, is_full);
     print_images(plan);
     print_regions(&plan->regions);
     print_doses(plan);
@@ -296,9 +300,11 @@ static void print_plan(const struct plan *plan)
     print_report(&plan->report);
 }
 
-static void print_json(const struct plan *plan)
+static void print_json(const struct plan *plan, bool is_full)
 {
     cJSON *document = plan_document(plan);
+    if (is_full)
+        json_add(document, "identity", plan_identity(plan));
     char *text = json_write(document);
     cJSON_Delete(document);
     puts(text);
@@ -308,13 +314,15 @@ static void print_json(const struct plan *plan)
 int command_info(int argc, char **argv)
 {
     static const struct option long_options[] = { { "json", no_argument, NULL, 'j' },
+                                                  { "identity", no_argument, NULL, 'i' },
                                                   { "help", no_argument, NULL, 'h' },
                                                   { NULL, 0, NULL, 0 } };
-    bool is_json = false;
+    bool is_json = false, is_full = false;
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "h", long_options, NULL)) != -1;) {
         switch (option) {
         case 'j': is_json = true; break;
+        case 'i': is_full = true; break;
         case 'h': print_help(); return EXIT_DONE;
         default: return command_usage_error("info", "'%s' is not an option", argv[optind - 1]);
         }
@@ -325,9 +333,9 @@ int command_info(int argc, char **argv)
     if (!plan)
         return EXIT_REFUSED;
     if (is_json)
-        print_json(plan);
+        print_json(plan, is_full);
     else
-        print_plan(plan);
+        print_plan(plan, is_full);
     plan_destroy(plan);
     return EXIT_DONE;
 }

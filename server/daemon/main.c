@@ -232,10 +232,17 @@ static bool verify_audit(const struct options *options, struct error *err)
     return true;
 }
 
+static bool is_loopback(const char *listen)
+{
+    struct address address;
+    return address_read(listen, strlen(listen), &address) && address_is_loopback(&address);
+}
+
 /* Serves until a signal comes. */
 static bool serve(const struct options *options, struct error *err)
 {
     const char *data_folder = options->data_folder;
+    const char *listen = options->listen ? options->listen : "127.0.0.1:8080";
     char database[PATH_SIZE + 16];
     (void)snprintf(database, sizeof database, "%s/beamroom.db", data_folder);
     const struct net_options net_options = {
@@ -266,10 +273,11 @@ static bool serve(const struct options *options, struct error *err)
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
                                                .hosts = hosts,
                                                .trusted = options->trusted_proxies,
-                                               .n_trusted = options->n_trusted_proxies };
+                                               .n_trusted = options->n_trusted_proxies,
+                                               .is_alone = options->n_public_names == 0 && is_loopback(listen) };
     struct net *net = net_create(&net_options, err);
     struct http *http = net ? http_create(net, &http_options, err) : NULL;
-    const struct acceptor_options acceptor_options = { .listen = options->listen ? options->listen : "127.0.0.1:8080",
+    const struct acceptor_options acceptor_options = { .listen = listen,
                                                        .net = net,
                                                        .http = http,
                                                        .hosts = hosts,

@@ -101,6 +101,13 @@ void address_write(const struct address *address, char text[ADDRESS_TEXT])
         text[0] = 0;
 }
 
+bool address_is_loopback(const struct address *address)
+{
+    static const uint8_t six[16] = { [15] = 1 };
+    return memcmp(address->bytes, six, sizeof six) == 0 ||
+           (memcmp(address->bytes, mapped, N_MAPPED) == 0 && address->bytes[N_MAPPED] == 127);
+}
+
 bool address_is_equal(const struct address *a, const struct address *b)
 {
     return memcmp(a->bytes, b->bytes, sizeof a->bytes) == 0;

@@ -31,6 +31,7 @@ struct address address_of_peer(const struct sockaddr_storage *peer);
 /* "192.0.2.1" or "2001:db8::1"; "" for all zeros, a socket that is not of IP. */
 void address_write(const struct address *address, char text[ADDRESS_TEXT]);
 bool address_is_in(const struct address *address, const struct address_range *ranges, size_t n_ranges);
+bool address_is_loopback(const struct address *address); /* 127.0.0.0/8 or ::1 */
 bool address_is_equal(const struct address *a, const struct address *b);
 
 /* The address that limits count for: the whole of an IPv4 address, the first 64 bits of an IPv6 address, because a

@@ -22,6 +22,7 @@ static const struct api_route api_routes[] = {
     { "GET", "/api/v1/plans/{plan}", api_plan },
     { "DELETE", "/api/v1/plans/{plan}", api_plan_delete },
     { "GET", "/api/v1/plans/{plan}/revision", api_plan_revision },
+    { "GET", "/api/v1/plans/{plan}/identity", api_plan_identity },
     { "POST", "/api/v1/plans/{plan}/open", api_plan_open },
     { "POST", "/api/v1/plans/{plan}/close", api_plan_close },
     { "GET", "/api/v1/jobs/{job}", api_job },
@@ -53,11 +54,12 @@ static const struct api_route api_routes[] = {
 static const char in_room[] = "/api/v1/rooms/{room}";
 static const size_t api_n_routes = sizeof api_routes / sizeof api_routes[0];
 
-struct api *api_create(struct net *net, uint64_t max_upload_bytes)
+struct api *api_create(struct net *net, uint64_t max_upload_bytes, bool is_alone)
 {
     struct api *api = mem_new(sizeof *api);
     api->net = net;
     api->max_upload_bytes = max_upload_bytes;
+    api->is_alone = is_alone;
     api->started_us = clock_now_us();
     return api;
 }

@@ -5,7 +5,8 @@
 
 struct api;
 
-struct api *api_create(struct net *net, uint64_t max_upload_bytes); /* 0: no uploads */
+/* max_upload_bytes 0: no uploads. is_alone: as in http.h. */
+struct api *api_create(struct net *net, uint64_t max_upload_bytes, bool is_alone);
 void api_destroy(struct api *api);
 
 struct api_route {

@@ -454,7 +454,7 @@ struct http *http_create(struct net *net, const struct http_options *options, st
 {
     struct http *http = mem_new(sizeof *http);
     http->net = net;
-    http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0);
+    http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0, options->is_alone);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes
                                                                                      : HTTP_MIN_ARCHIVE_DROPPED;
     http->intake = intake_create(options->upload_folder, options->max_upload_bytes, options->disk_reserve_bytes);

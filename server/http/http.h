@@ -22,6 +22,7 @@ struct http_options {
     const struct hosts *hosts;           /* names of the server; outlives it */
     const struct address_range *trusted; /* proxies whose X-Forwarded-For is believed; outlives it */
     size_t n_trusted;
+    bool is_alone; /* only this machine reaches the server: a listener on loopback, and no public name */
 };
 
 /* errors ERROR_IO, ERROR_LIMIT, ERROR_NOT_FOUND. net outlives it. */

@@ -6,6 +6,7 @@
 #include "core/derive/shapes.h"
 #include "core/scene/pick.h"
 #include "server/wire/document.h"
+#include "server/wire/plan_origins.h"
 #include "server/wire/shape_query.h"
 #include "wire_gen.h"
 
@@ -144,6 +145,13 @@ cJSON *answer_probe(struct question *question, struct derive *derived, struct pr
         cJSON_AddItemToArray(doses, item);
     }
     return json;
+}
+
+cJSON *answer_identity(struct question *question, struct derive *derived, struct problem *problem)
+{
+    (void)question;
+    (void)problem;
+    return plan_identity(derive_plan(derived));
 }
 
 /* The planned beam of a hit, and whether its draft was hit; a draft in a plan without beams has the id "". */

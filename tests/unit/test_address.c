@@ -126,9 +126,26 @@ static void an_ipv6_client_is_counted_by_its_network_of_64_bits(void **state)
     }
 }
 
+static void loopback_is_told_from_all_other_addresses(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        bool is_loopback;
+    } rows[] = { { "127.0.0.1:8080", true }, { "127.255.3.4", true }, { "[::1]:0", true },     { "::1", true },
+                 { "0.0.0.0:8080", false },  { "128.0.0.1", false },  { "10.127.0.1", false }, { "::", false },
+                 { "::2", false },           { "fe80::1", false },    { "1::1", false } };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct address address;
+        assert_true(address_read(rows[i].text, strlen(rows[i].text), &address));
+        assert_int_equal(address_is_loopback(&address), rows[i].is_loopback);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(loopback_is_told_from_all_other_addresses),
         cmocka_unit_test(an_address_is_read_with_or_without_a_port),
         cmocka_unit_test(a_range_holds_the_addresses_with_its_first_bits),
         cmocka_unit_test(the_client_is_the_newest_address_that_is_no_trusted_proxy),

@@ -1,0 +1,56 @@
+/* GET /plans/{plan}/identity: the only answer that names patients in full. As every answer of the API it is not stored
+ * (Cache-Control: no-store). */
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "server/http/address.h"
+#include "server/http/api_audit.h"
+#include "server/http/api_handlers.h"
+#include "server/http/api_queries.h"
+
+/* Nobody signs in here, so everybody who can reach the server counts as the same person: names are given only where
+ * that is the person at this machine. */
+static bool may_read(const struct api *api, const struct call *call, struct problem *problem)
+{
+    struct address client;
+    bool is_here = address_read(call->client, strlen(call->client), &client) && address_is_loopback(&client);
+    if (!api->is_alone || !is_here)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "identity",
+                           "who a patient is is told only to the person at the server's own machine (a listener on "
+                           "127.0.0.1 or [::1], without --public-name), as nobody signs in here");
+    /* a page of another site could not read the answer, but it could fill the audit with rows */
+    if (call->fetch_site && strcmp(call->fetch_site, "same-origin") != 0 && strcmp(call->fetch_site, "none") != 0)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "identity",
+                           "a page of another site (Sec-Fetch-Site: %.40s) may not ask who a patient is",
+                           call->fetch_site);
+    return api_audit_has_place(api, problem);
+}
+
+static void record(struct call *call)
+{
+    struct net *net = ((struct api *)call->api)->net;
+    const char *room_id = call_query(call, "room");
+    struct room *room = room_id ? net_room_find(net, room_id) : NULL;
+    if (call->status >= 300)
+        return;
+    if (room && strcmp(room_plan_id(room), call->ids[0]) == 0)
+        room_audit_call(room, call->member, call->client, "identity", cJSON_CreateObject(), false, clock_now_us());
+    else
+        net_audit(net, call->client, "", call->ids[0], "identity", cJSON_CreateObject());
+}
+
+void api_plan_identity(struct api *api, struct call *call)
+{
+    struct fleet_plan plan;
+    struct problem problem;
+    struct packet question;
+    if (!may_read(api, call, &problem)) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!api_find_plan(api, call, &plan))
+        return;
+    call->answering = record;
+    packet_init(&question, PACKET_IDENTITY);
+    api_query_send(api, call, call->ids[0], &question, api_query_answer);
+}
