@@ -74,7 +74,7 @@ void api_room_link_new(struct api *api, struct call *call)
     }
     if (!call_read_object(call, media_types, &body))
         return;
-    bool ok = read_wanted(body, &wanted, &problem) &&
+    bool ok = read_wanted(body, &wanted, &problem) && net_can_write(api->net, &problem) &&
               room_link_create(room, wanted.role, wanted.expires_s, wanted.is_one_use, clock_now_us(), token, &problem);
     cJSON_Delete(body);
     if (!ok) {

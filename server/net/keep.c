@@ -8,12 +8,12 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/net/keep_audit.h"
 #include "server/net/keep_recordings.h"
 #include "server/net/schedule.h"
 #include "server/wire/json.h"
 
-/* The room's entry; NULL: rooms are not kept. */
-static struct net_room *find_kept(const struct net *net, const struct room *room)
+struct net_room *keep_find(const struct net *net, const struct room *room)
 {
     for (size_t i = 0; net->store && i < net->n_rooms; i++)
         if (net->rooms[i]->room == room)
@@ -23,7 +23,7 @@ static struct net_room *find_kept(const struct net *net, const struct room *room
 
 void keep_changed(void *context, struct room *room, unsigned parts)
 {
-    struct net_room *entry = find_kept(context, room);
+    struct net_room *entry = keep_find(context, room);
     if (!entry)
         return;
     entry->keep.changed |= parts;
@@ -37,147 +37,13 @@ static bool is_changed(const struct net_room *room)
 
 bool keep_is_written(const struct net_room *room)
 {
-    return !is_changed(room) && room->keep.ticket == 0;
-}
-
-/* ---- the audit -------------------------------------------------------------------------------------------------- */
-
-/* Adds a row (taken) that waits already. */
-static void add_row(struct net *net, char ***rows, size_t *n, char *row)
-{
-    if (*n % 16 == 0) {
-        void *more = realloc(*rows, (*n + 16) * sizeof **rows);
-        if (!more) {
-            log_error("a row of the audit is lost: no memory");
-            net->n_audit_waiting--;
-            net->n_audit_lost++;
-            free(row);
-            return;
-        }
-        *rows = more;
-    }
-    (*rows)[(*n)++] = row;
-}
-
-/* The row as JSON, without its number. */
-static cJSON *describe(const char *room, const char *plan, const struct room_audit *row)
-{
-    cJSON *json = cJSON_CreateObject();
-    cJSON_AddNumberToObject(json, "time_ms", (double)row->time_ms);
-    cJSON_AddStringToObject(json, "room", room);
-    cJSON_AddStringToObject(json, "plan", plan);
-    cJSON_AddStringToObject(json, "member", row->member);
-    cJSON_AddStringToObject(json, "name", row->name);
-    cJSON_AddStringToObject(json, "role", row->role);
-    cJSON_AddStringToObject(json, "address", row->address);
-    cJSON_AddStringToObject(json, "action", row->action);
-    json_add(json, "detail", cJSON_CreateRaw(row->detail));
-    json_add(json, "revision_before", row->before < 0 ? cJSON_CreateNull() : cJSON_CreateNumber((double)row->before));
-    json_add(json, "revision_after", row->after < 0 ? cJSON_CreateNull() : cJSON_CreateNumber((double)row->after));
-    cJSON_AddStringToObject(json, "result", row->result);
-    return json;
-}
-
-static void keep_row(struct net *net, char ***rows, size_t *n, cJSON *json)
-{
-    char *text = net->n_audit_waiting < 2 * (size_t)NET_MAX_AUDIT ? json_print(json) : NULL;
-    cJSON_Delete(json);
-    if (!text) {
-        if (net->n_audit_lost++ == 0)
-            log_error("a row of the audit is lost: %zu wait for the disk", net->n_audit_waiting);
-        return;
-    }
-    net->n_audit_waiting++;
-    add_row(net, rows, n, text);
-    schedule_at(net, 0);
-}
-
-/* Says first how many rows were lost before this one. */
-static void keep_row_and_loss(struct net *net, char ***rows, size_t *n, cJSON *json)
-{
-    char detail[64];
-    const struct room_audit lost = { .time_ms = clock_wall_ms(),
-                                     .action = "lost",
-                                     .member = "",
-                                     .name = "",
-                                     .role = "",
-                                     .address = "",
-                                     .detail = detail,
-                                     .result = "done",
-                                     .before = -1,
-                                     .after = -1 };
-    if (net->n_audit_lost && net->n_audit_waiting < NET_MAX_AUDIT) {
-        (void)snprintf(detail, sizeof detail, "{\"rows\":%llu}", (unsigned long long)net->n_audit_lost);
-        net->n_audit_lost = 0;
-        keep_row(net, rows, n, describe("", "", &lost));
-    }
-    keep_row(net, rows, n, json);
-}
-
-void keep_audited(void *context, struct room *room, const struct room_audit *row)
-{
-    struct net_room *entry = find_kept(context, room);
-    if (entry)
-        keep_row_and_loss(context, &entry->keep.audit, &entry->keep.n_audit,
-                          describe(room_id(room), room_plan_id(room), row));
-}
-
-bool keep_audit_has_place(void *context)
-{
-    return net_audit_has_place(context);
-}
-
-bool net_audit_has_place(const struct net *net)
-{
-    return !net->store || net->n_audit_waiting < NET_MAX_AUDIT;
-}
-
-void net_audit(struct net *net, const char *address, const char *room, const char *plan, const char *action,
-               cJSON *detail)
-{
-    char *text = json_print(detail);
-    const struct room_audit row = { .time_ms = clock_wall_ms(),
-                                    .action = action,
-                                    .member = "",
-                                    .name = "",
-                                    .role = "",
-                                    .address = address,
-                                    .detail = text ? text : "{}",
-                                    .result = "done",
-                                    .before = -1,
-                                    .after = -1 };
-    if (net->store)
-        keep_row_and_loss(net, &net->audit, &net->n_audit, describe(room, plan, &row));
-    cJSON_Delete(detail);
-    free(text);
-}
-
-struct net_audit_head net_audit_head(const struct net *net)
-{
-    struct net_audit_head head = net->audit_head;
-    head.n_waiting = net->n_audit_waiting;
-    return head;
-}
-
-/* Hands over the rows of no room. */
-static void write_audit(struct net *net)
-{
-    struct store_room *row = mem_new(sizeof *row);
-    *row = (struct store_room){ .audit = net->audit, .n_audit = net->n_audit };
-    if (store_write(net->store, row, 0)) {
-        net->audit = NULL;
-        net->n_audit = 0;
-        return;
-    }
-    row->audit = NULL;
-    row->n_audit = 0;
-    store_room_free(row);
+    return !is_changed(room) && room->keep.ticket == 0 && !room->keep.prompts;
 }
 
 void keep_is_saved(void *context, const struct room *room, struct room_saved *saved)
 {
     const struct net *net = context;
-    const struct net_room *entry = find_kept(net, room);
+    const struct net_room *entry = keep_find(net, room);
     if (!entry || room_replays(room))
         return;
     const bool fails = net->store_fails || entry->keep.is_refused;
@@ -241,9 +107,114 @@ static void item_changed(struct net_room *room, const char *row, const char *id)
 
 void keep_item_changed(void *context, struct room *room, const char *row, const char *id)
 {
-    struct net_room *entry = find_kept(context, room);
+    struct net_room *entry = keep_find(context, room);
     if (entry)
         item_changed(entry, row, id);
+}
+
+/* Why nothing that must last is accepted. */
+static bool refuse_to_keep(const struct net *net, bool is_full, struct problem *problem)
+{
+    (void)net;
+    (void)problem_set(problem, PROBLEM_STORAGE, "", is_full ? "full" : "write",
+                      "%s: this was not kept and does not count; give it again when the disk can be written",
+                      is_full ? "the server's disk is full" : "the server cannot write to its disk, its log says why");
+    problem->retry_after_ms = 10000;
+    return false;
+}
+
+bool keep_can_write(void *context, struct problem *problem)
+{
+    const struct net *net = context;
+    return !net->store || !net->store_fails || refuse_to_keep(net, net->store_is_full, problem);
+}
+
+bool net_can_write(struct net *net, struct problem *problem)
+{
+    return keep_can_write(net, problem);
+}
+
+static struct store_room *make_row(const struct net_room *room, unsigned parts);
+
+/* Fills the write with the item, its record and its row for the audit. */
+static bool fill_prompt(struct store_room *row, const struct room_item_write *write, char *audit)
+{
+    row->is_prompt = true;
+    row->items = mem_array(1, sizeof row->items[0], 1 << 20, NULL);
+    row->records = write->record ? mem_array(1, sizeof row->records[0], 1 << 20, NULL) : NULL;
+    row->audit = mem_array(1, sizeof row->audit[0], 1 << 20, NULL);
+    if (!row->items || !row->audit || (write->record && !row->records)) {
+        free(audit);
+        return false;
+    }
+    row->audit[row->n_audit++] = audit;
+    struct store_item *item = &row->items[row->n_items++];
+    *item = (struct store_item){ .body = mem_copy_text(write->row) };
+    copy_text(item->id, sizeof item->id, write->id);
+    read_columns(write->row, item);
+    if (!write->record)
+        return true;
+    struct store_record *record = &row->records[row->n_records++];
+    *record = (struct store_record){ .time_ms = write->time_ms,
+                                     .item = mem_copy_text(write->row),
+                                     .body = mem_copy_text(write->record) };
+    copy_text(record->id, sizeof record->id, write->id);
+    copy_text(record->room, sizeof record->room, row->id);
+    copy_text(record->plan, sizeof record->plan, row->plan);
+    copy_text(record->kind, sizeof record->kind, write->kind);
+    copy_text(record->author, sizeof record->author, write->author);
+    copy_text(record->author_name, sizeof record->author_name, write->author_name);
+    return true;
+}
+
+bool keep_item_first(void *context, struct room *room, uint64_t number, const struct room_item_write *write,
+                     struct problem *problem)
+{
+    struct net *net = context;
+    struct net_room *entry = keep_find(net, room);
+    if (!entry)
+        return problem_set(problem, PROBLEM_STORAGE, "", "write",
+                           "this room is not kept, and nothing can be added to it");
+    if (!keep_can_write(net, problem))
+        return false;
+    cJSON *json = keep_audit_describe(room_id(room), room_plan_id(room), write->audit);
+    char *audit = json_print(json);
+    cJSON_Delete(json);
+    struct store_room *row = audit ? make_row(entry, 0) : NULL;
+    if (!row)
+        free(audit);
+    struct prompt_write *prompt = mem_new(sizeof *prompt);
+    *prompt = (struct prompt_write){ entry->keep.prompts, ++net->n_tickets, number };
+    if (!row || !fill_prompt(row, write, audit) || !store_write(net->store, row, prompt->ticket)) {
+        store_room_free(row);
+        free(prompt);
+        return refuse_to_keep(net, false, problem);
+    }
+    net->n_audit_waiting++;
+    entry->keep.prompts = prompt;
+    return true;
+}
+
+/* The answer to keep_item_first. True: it was one. */
+static bool prompt_written(struct net *net, const struct store_answer *answer)
+{
+    for (size_t i = 0; i < net->n_rooms; i++)
+        for (struct prompt_write **at = &net->rooms[i]->keep.prompts; *at; at = &(*at)->next) {
+            struct prompt_write *prompt = *at;
+            struct problem problem;
+            if (prompt->ticket != answer->ticket)
+                continue;
+            const bool is_refused = answer->error.code != ERROR_NONE;
+            const uint64_t number = prompt->number;
+            *at = prompt->next;
+            free(prompt);
+            if (is_refused)
+                (void)refuse_to_keep(net, answer->error.code == ERROR_LIMIT, &problem);
+            room_item_written(net->rooms[i]->room, number, is_refused ? &problem : NULL, clock_now_us());
+            schedule_room(net->rooms[i]);
+            return true;
+        }
+    return false;
 }
 
 static void all_items_again(struct net_room *room)
@@ -276,13 +247,18 @@ static void restore_items(struct room *room, const struct store_room *row)
 void keep_room_finish(struct net_room *room)
 {
     keep_recordings_finish(room);
+    while (room->keep.prompts) {
+        struct prompt_write *prompt = room->keep.prompts;
+        room->keep.prompts = prompt->next;
+        free(prompt);
+    }
     for (size_t i = 0; i < room->keep.n_items; i++)
         free(room->keep.items[i].body);
     free(room->keep.items);
     room->keep.items = NULL;
     room->keep.n_items = 0;
     for (size_t i = 0; i < room->keep.n_audit; i++)
-        add_row(room->net, &room->net->audit, &room->net->n_audit, room->keep.audit[i]);
+        keep_audit_add(room->net, &room->net->audit, &room->net->n_audit, room->keep.audit[i]);
     free(room->keep.audit);
     room->keep.audit = NULL;
     room->keep.n_audit = 0;
@@ -398,7 +374,7 @@ void keep_write_due(struct net *net, bool is_last)
     while (net->store && net->n_undeleted && store_delete(net->store, net->undeleted[net->n_undeleted - 1], 0))
         net->n_undeleted--;
     if (net->store && net->n_audit)
-        write_audit(net);
+        keep_audit_write(net);
     for (size_t i = 0; net->store && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];
         if (!is_changed(room) || (!is_last && room->keep.ticket))
@@ -430,18 +406,11 @@ void keep_delete(struct net *net, const char *id)
 
 /* ---- from the store --------------------------------------------------------------------------------------------- */
 
-void keep_audit_written(struct net *net, const struct store_answer *answer)
-{
-    net->n_audit_waiting -= answer->n_audit;
-    if (answer->error.code != ERROR_NONE && !answer->audit_n)
-        return;
-    net->audit_head.n = answer->audit_n;
-    memcpy(net->audit_head.hash, answer->audit_hash, sizeof net->audit_head.hash);
-}
-
 void keep_written(struct net *net, const struct store_answer *answer)
 {
     keep_audit_written(net, answer);
+    if (answer->ticket && prompt_written(net, answer))
+        return;
     for (size_t i = 0; answer->ticket && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];
         if (room->keep.ticket != answer->ticket)

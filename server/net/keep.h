@@ -9,12 +9,14 @@ enum { /* between the beginnings of two writes of one room */
        KEEP_REFUSED_PAUSE_MS = 10000 /* after one that the store dropped */
 };
 
+/* The room's entry; NULL: rooms are not kept. */
+struct net_room *keep_find(const struct net *net, const struct room *room);
 /* struct room_callbacks; context is the net */
 void keep_changed(void *context, struct room *room, unsigned parts);
-/* struct room_callbacks */
-void keep_audited(void *context, struct room *room, const struct room_audit *row);
-bool keep_audit_has_place(void *context);
 void keep_is_saved(void *context, const struct room *room, struct room_saved *saved);
+bool keep_item_first(void *context, struct room *room, uint64_t number, const struct room_item_write *write,
+                     struct problem *problem);
+bool keep_can_write(void *context, struct problem *problem);
 void keep_item_changed(void *context, struct room *room, const char *row, const char *id);
 /* Hands over what is due. is_last: all that changed, whatever is under way. */
 void keep_write_due(struct net *net, bool is_last);
@@ -22,8 +24,7 @@ void keep_write_due(struct net *net, bool is_last);
 bool keep_is_written(const struct net_room *room);
 /* Answers of the store; borrowed. */
 void keep_written(struct net *net, const struct store_answer *answer);
-void keep_audit_written(struct net *net, const struct store_answer *answer); /* of any that has the audit's head */
-void keep_all_again(struct net *net);                                        /* what is on disk was lost */
+void keep_all_again(struct net *net); /* what is on disk was lost */
 /* The room's row is deleted; at once or when the store has place for it. */
 void keep_delete(struct net *net, const char *room_id);
 void keep_room_finish(struct net_room *room); /* before it is freed; rows for the audit go to the net */

@@ -14,7 +14,9 @@
 #include "server/net/asleep.h"
 #include "server/net/bridge.h"
 #include "server/net/keep.h"
+#include "server/net/keep_audit.h"
 #include "server/net/keep_recordings.h"
+#include "server/net/keep_records.h"
 #include "server/net/net_state.h"
 #include "server/net/rooms.h"
 #include "server/net/schedule.h"
@@ -263,6 +265,7 @@ static void handle_answer(struct net *net, void *argument)
         break;
     case STORE_READ: rooms_was_read(net, answer); break;
     case STORE_PART: keep_part_was_read(net, answer); break;
+    case STORE_RECORDS: keep_records_were_read(net, answer); break;
     case STORE_FAILING:
     case STORE_FINE:
         net->store_fails = answer->event == STORE_FAILING;
@@ -398,6 +401,7 @@ static void *work(void *context)
     problem_set(&stops, PROBLEM_BUSY, "", "", "the server is stopping");
     asleep_tell(net, NULL, &stops);
     keep_readers_finish(net);
+    keep_record_readers_finish(net);
     while (net->n_rooms)
         rooms_close(net, 0);
     keep_write_due(net, true); /* what was recorded while rooms were closed */

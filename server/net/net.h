@@ -74,6 +74,18 @@ typedef void net_part_read(void *context, const char *const *texts, size_t n, in
                            const struct problem *problem);
 NODISCARD bool net_recording_read(struct net *net, const char *room, const char *recording, int64_t t_ms,
                                   net_part_read *done, void *context, struct problem *problem);
+/* Reads records of decisions and signatures, without item and body, the newest first: those before this one ("": all);
+ * id not "": this one, with both. done is called once, later; n 0 with problem: they cannot be read, or there is none.
+ * False with problem: the disk has too much to do, or nothing is kept. */
+struct net_record {
+    const char *id, *room, *plan, *kind, *author, *author_name, *item, *body, *hash;
+    int64_t time_ms;
+};
+typedef void net_records_read(void *context, const struct net_record *records, size_t n, const struct problem *problem);
+NODISCARD bool net_read_records(struct net *net, const char *id, const char *before, net_records_read *done,
+                                void *context, struct problem *problem);
+/* False with problem: the disk cannot be written now, so nothing is accepted that must last. */
+NODISCARD bool net_can_write(struct net *net, struct problem *problem);
 /* A new room on the plan of that room, which plays this recording of it. NULL with problem. */
 struct room *net_replay_create(struct net *net, const struct room *of_room, const char *recording,
                                struct problem *problem);

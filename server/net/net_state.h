@@ -39,6 +39,11 @@ struct picture_request { /* sent to the fleet and not yet answered */
     bool is_override;                      /* the packet carries a scene of its own */
 };
 
+struct prompt_write { /* of one item, which counts when it is on disk */
+    struct prompt_write *next;
+    uint64_t ticket, number; /* of the store; of the room */
+};
+
 struct net_room { /* a room and what the net thread keeps beside it */
     struct net *net;
     struct room *room;
@@ -62,7 +67,8 @@ struct net_room { /* a room and what the net thread keeps beside it */
         size_t n_recordings;
         char **audit; /* rows that are to be written */
         size_t n_audit;
-        bool is_refused; /* the store dropped a write, which it can never make */
+        struct prompt_write *prompts; /* items whose writing is under way */
+        bool is_refused;              /* the store dropped a write, which it can never make */
     } keep;
 };
 
@@ -76,6 +82,13 @@ struct waiter { /* for a room that is being read */
     char room[64];
     uint64_t ticket; /* of the read that looks for the room of a bookmark, whose token stands in room; 0: none */
     void (*done)(void *context, const char *room_id, const struct problem *problem);
+    void *context;
+};
+
+struct record_reader { /* waits for records */
+    struct record_reader *next;
+    uint64_t ticket;
+    net_records_read *done;
     void *context;
 };
 
@@ -102,6 +115,7 @@ struct net {
     size_t n_asleep;
     struct waiter *waiters;
     struct part_reader *readers;
+    struct record_reader *record_readers;
     char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */
     size_t n_undeleted;
     uint64_t n_tickets;

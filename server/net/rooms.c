@@ -13,6 +13,7 @@
 #include "server/net/asleep.h"
 #include "server/net/bridge.h"
 #include "server/net/keep.h"
+#include "server/net/keep_audit.h"
 #include "server/net/keep_recordings.h"
 #include "server/net/net.h"
 #include "server/net/schedule.h"
@@ -86,6 +87,8 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .address = address,
                                               .context = net,
                                               .item_changed = keep_item_changed,
+                                              .item_first = net->store ? keep_item_first : NULL,
+                                              .can_write = keep_can_write,
                                               .kept_changed = keep_changed,
                                               .audited = keep_audited,
                                               .audit_has_place = keep_audit_has_place,

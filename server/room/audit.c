@@ -45,19 +45,24 @@ static char *write_detail(const struct gathered *act)
     return text;
 }
 
+static struct room_audit row_of(const struct gathered *act, const char *detail)
+{
+    return (struct room_audit){ .time_ms = act->newest_ms,
+                                .action = act->action,
+                                .member = act->member,
+                                .name = act->name,
+                                .role = act->member[0] ? wire_member_role_words.words[act->role] : "",
+                                .address = act->address,
+                                .detail = detail ? detail : "{}",
+                                .result = act->is_refused ? "refused" : "done",
+                                .before = act->before,
+                                .after = act->after };
+}
+
 static void write_row(struct room *room, struct gathered *act)
 {
     char *detail = write_detail(act);
-    const struct room_audit row = { .time_ms = act->newest_ms,
-                                    .action = act->action,
-                                    .member = act->member,
-                                    .name = act->name,
-                                    .role = act->member[0] ? wire_member_role_words.words[act->role] : "",
-                                    .address = act->address,
-                                    .detail = detail ? detail : "{}",
-                                    .result = act->is_refused ? "refused" : "done",
-                                    .before = act->before,
-                                    .after = act->after };
+    const struct room_audit row = row_of(act, detail);
     if (room->callbacks.audited && act->n > 0)
         room->callbacks.audited(room->callbacks.context, room, &row);
     act->n = 0;
@@ -111,11 +116,8 @@ static struct gathered *find(struct room *room, const struct audit_act *act, con
     return NULL;
 }
 
-static struct gathered *begin(struct room *room, const struct audit_act *act)
+static void fill(const struct room *room, const struct audit_act *act, struct gathered *found)
 {
-    if (room->n_gathered == ROOM_MAX_GATHERED)
-        end(room, 0);
-    struct gathered *found = &room->gathered[room->n_gathered++];
     *found = (struct gathered){ .is_refused = act->is_refused, .first_us = room->now_us, .before = act->before };
     (void)snprintf(found->action, sizeof found->action, "%s", act->action);
     (void)snprintf(found->key, sizeof found->key, "%s", act->key ? act->key : "");
@@ -123,6 +125,14 @@ static struct gathered *begin(struct room *room, const struct audit_act *act)
     (void)snprintf(found->name, sizeof found->name, "%s", act->by ? act->by->name : "");
     (void)snprintf(found->address, sizeof found->address, "%s", address_of(act));
     found->role = role_of(act);
+}
+
+static struct gathered *begin(struct room *room, const struct audit_act *act)
+{
+    if (room->n_gathered == ROOM_MAX_GATHERED)
+        end(room, 0);
+    struct gathered *found = &room->gathered[room->n_gathered++];
+    fill(room, act, found);
     return found;
 }
 
@@ -151,9 +161,31 @@ static struct gathered *place(struct room *room, const struct audit_act *act, bo
     return found;
 }
 
+static void fill_apart(const struct room *room, const struct audit_act *act, struct audit_apart *apart)
+{
+    fill(room, act, &apart->act);
+    apart->act.newest_ms = clock_wall_ms();
+    apart->act.after = act->after;
+    apart->act.n = 1;
+    apart->act.detail = act->detail ? act->detail : cJSON_CreateObject();
+    apart->detail = write_detail(&apart->act);
+    apart->row = row_of(&apart->act, apart->detail);
+}
+
+void audit_apart_finish(struct audit_apart *apart)
+{
+    cJSON_Delete(apart->act.detail);
+    free(apart->detail);
+}
+
 void audit_tell(struct room *room, const struct audit_act *act)
 {
     bool is_new;
+    if (room->apart) {
+        audit_apart_finish(room->apart);
+        fill_apart(room, act, room->apart);
+        return;
+    }
     struct gathered *gathered = place(room, act, &is_new);
     if (is_new)
         write_row(room, gathered);

@@ -14,6 +14,14 @@ struct audit_act {
     int64_t before, after; /* revisions of the scene; -1: does not apply */
 };
 
+/* A row that is committed together with an item, instead of by the callback audited. */
+struct audit_apart {
+    struct gathered act;
+    char *detail;          /* owned */
+    struct room_audit row; /* borrows from the two */
+};
+void audit_apart_finish(struct audit_apart *apart);
+
 /* Records it at once, and gathers the repetitions that follow: the same member, name, role, address, action, detail and
  * result. */
 void audit_tell(struct room *room, const struct audit_act *act);

@@ -37,12 +37,16 @@ void items_keep(struct room *room, struct item *item, char *row)
 
 bool items_have_place(const struct room *room, const struct item *before, size_t n, struct problem *problem)
 {
-    const size_t others = room->n_item_bytes - (before ? strlen(before->row) : 0);
-    if (!before && room->n_items >= ROOM_MAX_ITEMS)
+    size_t others = room->n_item_bytes - (before ? strlen(before->row) : 0), n_items = room->n_items;
+    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next) {
+        others += strlen(keeping->item.row);
+        n_items += !keeping->is_change;
+    }
+    if (!before && n_items >= ROOM_MAX_ITEMS)
         return problem_set(problem, PROBLEM_LIMIT, "", "",
                            "the room has %zu notes, replies and bookmarks, at most %d are allowed; delete some",
                            room->n_items, ROOM_MAX_ITEMS);
-    if (n > ROOM_MAX_ITEMS_BYTES - others)
+    if (others > ROOM_MAX_ITEMS_BYTES || n > ROOM_MAX_ITEMS_BYTES - others)
         return problem_set(problem, PROBLEM_LIMIT, "", "",
                            "notes, replies and bookmarks of the room have %zu bytes and this one %zu, at most %d are "
                            "allowed together; delete some",

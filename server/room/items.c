@@ -13,6 +13,7 @@
 #include "server/room/audit.h"
 #include "server/room/bookmark_body.h"
 #include "server/room/item_list.h"
+#include "server/room/member.h"
 #include "server/room/note_body.h"
 #include "server/room/record_body.h"
 #include "server/room/recording.h"
@@ -109,21 +110,29 @@ static void copy_name(char to[161], const char *from)
 
 /* ---- changes ---------------------------------------------------------------------------------------------------- */
 
-/* Tells the room's owner and all members; row NULL: the item is deleted. input: the number of it that `by` gave. */
-static void tell(struct room *room, const char *id, const char *row, const struct member *by, uint32_t input)
+/* Tells all members; row NULL: the item is deleted. by: a member's id; input: the number of it that this member gave.
+ */
+static void tell_members(struct room *room, const char *id, const char *row, const char *by, uint32_t input)
 {
     struct message message = { .type = MESSAGE_ITEM, .item = { .item = row ? cJSON_CreateRaw(row) : NULL } };
     (void)snprintf(message.item.id, sizeof message.item.id, "%s", id);
-    (void)snprintf(message.item.by, sizeof message.item.by, "%s", by->id);
-    room->saved.n_item_changes++;
+    (void)snprintf(message.item.by, sizeof message.item.by, "%s", by);
     recording_item_changed(room, id);
-    if (room->callbacks.item_changed)
-        room->callbacks.item_changed(room->callbacks.context, room, row, id);
     for (int i = 0; i < room->n_members; i++) {
-        message.item.input = room->members[i] == by ? input : 0; /* the input number is only for its sender */
+        const bool is_own = strcmp(room->members[i]->id, by) == 0;
+        message.item.input = is_own ? input : 0; /* the input number is only for its sender */
         send_to_member(room, room->members[i], &message);
     }
     message_finish(&message);
+}
+
+/* Tells the room's owner and all members. */
+static void tell(struct room *room, const char *id, const char *row, const struct member *by, uint32_t input)
+{
+    room->saved.n_item_changes++;
+    if (room->callbacks.item_changed)
+        room->callbacks.item_changed(room->callbacks.context, room, row, id);
+    tell_members(room, id, row, by->id, input);
 }
 
 /* The item that a member may change or delete, which knows it in this version (0: whatever it is). NULL with problem.
@@ -145,6 +154,13 @@ static struct item *find_to_change(const struct room *room, const struct member 
                     word_of(item->kind), item->author_name);
         return NULL;
     }
+    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+        if (strcmp(keeping->item.id, id) == 0) {
+            problem_set(problem, PROBLEM_CONFLICT, "/item", "",
+                        "another change of this %s by %.40s is just being kept: try again", word_of(item->kind),
+                        keeping->item.changed_name);
+            return NULL;
+        }
     if (version && version != item->version) {
         problem_set(problem, PROBLEM_CONFLICT, "/version", "",
                     "this %s was changed by %.40s meanwhile: it is at version %u, the change was made for %lld",
@@ -152,6 +168,106 @@ static struct item *find_to_change(const struct room *room, const struct member 
         return NULL;
     }
     return item;
+}
+
+/* The item in the list becomes next with this row (taken); before NULL: it is new. */
+static struct item *take(struct room *room, struct item *before, const struct item *next, char *row)
+{
+    struct item *item = before ? before : mem_new(sizeof *item);
+    char *old_row = before ? before->row : NULL;
+    *item = *next;
+    item->next = before ? next->next : NULL;
+    item->row = old_row;
+    items_keep(room, item, row);
+    return item;
+}
+
+static bool write_first(struct room *room, const struct keeping *keeping, const struct member *member,
+                        struct problem *problem)
+{
+    const struct item *item = &keeping->item;
+    struct audit_apart apart = { 0 };
+    char *record = record_of(room, item, problem);
+    const bool has_record = record || !record_is_wanted(item->kind);
+    room->apart = &apart;
+    record_audit(room, item, member, record);
+    acceptance_audit(room, item, member, false);
+    room->apart = NULL;
+    const struct room_item_write write = { .id = item->id,
+                                           .kind = word_of(item->kind),
+                                           .row = item->row,
+                                           .author = item->author,
+                                           .author_name = item->author_name,
+                                           .time_ms = item->changed_ms,
+                                           .record = record,
+                                           .audit = &apart.row };
+    const bool is_begun =
+        has_record && room->callbacks.item_first(room->callbacks.context, room, keeping->number, &write, problem);
+    audit_apart_finish(&apart);
+    free(record);
+    return is_begun;
+}
+
+/* Has the item written, and only then lets it count. next->row is taken. */
+static bool keep_first(struct room *room, const struct item *next, bool is_change, const struct member *member,
+                       uint32_t input, struct problem *problem)
+{
+    struct keeping *keeping = mem_new(sizeof *keeping), **last = &room->keeping;
+    *keeping = (struct keeping){ .number = ++room->n_kept, .item = *next, .is_change = is_change, .input = input };
+    (void)snprintf(keeping->member, sizeof keeping->member, "%s", member->id);
+    if (!write_first(room, keeping, member, problem)) {
+        free(keeping->item.row);
+        free(keeping);
+        return false;
+    }
+    while (*last)
+        last = &(*last)->next;
+    *last = keeping;
+    return true;
+}
+
+void items_forget_keeping(struct room *room)
+{
+    while (room->keeping) {
+        struct keeping *keeping = room->keeping;
+        room->keeping = keeping->next;
+        free(keeping->item.row);
+        free(keeping);
+    }
+}
+
+size_t room_n_items_written(const struct room *room)
+{
+    size_t n = 0;
+    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+        n++;
+    return n;
+}
+
+void room_item_written(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
+{
+    struct keeping **at = &room->keeping, *keeping;
+    room->now_us = now_us;
+    while (*at && (*at)->number != number)
+        at = &(*at)->next;
+    if (!(keeping = *at))
+        return;
+    *at = keeping->next;
+    if (problem) {
+        for (int i = 0; i < room->n_members; i++)
+            if (strcmp(room->members[i]->id, keeping->member) == 0 && room->members[i]->connection)
+                (void)send_problem(room, room->members[i]->connection, "item.put", 0, keeping->input, problem);
+        free(keeping->item.row);
+    } else {
+        struct item *before = keeping->is_change ? items_find(room, keeping->item.id) : NULL;
+        const struct item *item = take(room, before, &keeping->item, keeping->item.row);
+        room->saved.n_item_changes++;
+        tell_members(room, item->id, item->row, keeping->member, keeping->input);
+        if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
+            acceptances_settle(room);
+    }
+    free(keeping);
+    members_close_lost(room);
 }
 
 bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem)
@@ -198,10 +314,12 @@ bool items_put(struct room *room, struct member *member, const struct message *m
         free(row);
         return false;
     }
-    struct item *item = before ? before : mem_new(sizeof *item);
-    *item = next;
-    items_keep(room, item, row);
-    record_audit(room, item, member);
+    if (room->callbacks.item_first) {
+        next.row = row;
+        return keep_first(room, &next, before != NULL, member, (uint32_t)put->input, problem);
+    }
+    struct item *item = take(room, before, &next, row);
+    record_audit(room, item, member, NULL);
     acceptance_audit(room, item, member, false);
     tell(room, item->id, item->row, member, (uint32_t)put->input);
     if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
@@ -213,7 +331,7 @@ bool items_delete(struct room *room, struct member *member, const struct message
 {
     const struct message_item_delete *asked = &message->item_delete;
     struct item *item = find_to_change(room, member, asked->item, asked->version, problem);
-    if (!item)
+    if (!item || (room->callbacks.can_write && !room->callbacks.can_write(room->callbacks.context, problem)))
         return false;
     for (struct item *reply = room->items, *after; reply; reply = after) {
         after = reply->next;

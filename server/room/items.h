@@ -7,4 +7,5 @@
 
 /* The handlers of item.put and item.delete. */
 bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem);
+void items_forget_keeping(struct room *room); /* with the room */
 bool items_delete(struct room *room, struct member *member, const struct message *message, struct problem *problem);

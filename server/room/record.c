@@ -4,6 +4,7 @@
 #include "core/base/clock.h"
 #include "server/room/acceptance.h"
 #include "server/room/presence.h"
+#include "server/room/record_body.h"
 #include "server/wire/json.h"
 
 /* The rows of one kind, each as {..., body...}: what a record holds of an item. */
@@ -33,6 +34,47 @@ static cJSON *rows_of(const struct room *room, enum wire_item_kind kind)
     return list;
 }
 
+bool record_is_wanted(enum wire_item_kind kind)
+{
+    return kind == WIRE_ITEM_KIND_DECISION || kind == WIRE_ITEM_KIND_SIGNATURE;
+}
+
+/* What is on the server's disk. */
+static cJSON *describe_saved(const struct room *room)
+{
+    struct room_saved saved = { .state = WIRE_SAVED_STATE_UNKEPT };
+    cJSON *json = cJSON_CreateObject();
+    if (room->callbacks.is_saved)
+        room->callbacks.is_saved(room->callbacks.context, room, &saved);
+    cJSON_AddStringToObject(json, "state", wire_saved_state_words.words[saved.state]);
+    cJSON_AddNumberToObject(json, "revision", saved.revision);
+    return json;
+}
+
+char *record_of(const struct room *room, const struct item *item, struct problem *problem)
+{
+    struct room_kept kept;
+    if (!record_is_wanted(item->kind))
+        return NULL;
+    if (!room_keep(room, ROOM_SCENE | ROOM_VIEWS, &kept)) {
+        json_no_memory(problem, "a record");
+        return NULL;
+    }
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "format", "beamroom-kept-record");
+    cJSON_AddNumberToObject(json, "version", 1);
+    json_add(json, "item", cJSON_CreateRaw(item->row));
+    json_add(json, "record", room_record(room));
+    json_add(json, "scene", kept.scene ? cJSON_CreateRaw(kept.scene) : cJSON_CreateNull());
+    json_add(json, "views", kept.views ? cJSON_CreateRaw(kept.views) : cJSON_CreateNull());
+    char *text = json_print(json);
+    cJSON_Delete(json);
+    room_kept_finish(&kept);
+    if (!text)
+        json_no_memory(problem, "a record");
+    return text;
+}
+
 cJSON *room_record(const struct room *room)
 {
     cJSON *json = cJSON_CreateObject();
@@ -52,5 +94,6 @@ cJSON *room_record(const struct room *room)
     json_add(json, "acceptances", rows_of(room, WIRE_ITEM_KIND_ACCEPTANCE));
     json_add(json, "notes", rows_of(room, WIRE_ITEM_KIND_NOTE));
     json_add(json, "saved_views", rows_of(room, WIRE_ITEM_KIND_BOOKMARK));
+    json_add(json, "saved", describe_saved(room));
     return json;
 }

@@ -87,19 +87,27 @@ static bool check_corrects(const struct room *room, const cJSON *body, enum wire
 
 /* ---- kinds ------------------------------------------------------------------------------------------------------ */
 
-/* Whether another check of the same entry stands under the same revision. */
+static bool is_of_entry(const struct room *room, const struct item *item, const char *entry)
+{
+    if (item->kind != WIRE_ITEM_KIND_CHECK)
+        return false;
+    cJSON *row, *body = body_of(item, &row);
+    const char *found = json_text(body, "entry"), *revision = json_text(body, "plan_revision");
+    const bool is_of = found && revision && strcmp(found, entry) == 0 && strcmp(revision, room->plan_revision) == 0;
+    cJSON_Delete(row);
+    return is_of;
+}
+
+/* Whether another check of the same entry stands under the same revision, or is being kept. */
 static bool entry_is_there(const struct room *room, const char *entry, const struct item *before)
 {
-    bool is_there = false;
-    for (const struct item *item = room->items; item && !is_there; item = item->next) {
-        if (item->kind != WIRE_ITEM_KIND_CHECK || item == before)
-            continue;
-        cJSON *row, *body = body_of(item, &row);
-        const char *found = json_text(body, "entry"), *revision = json_text(body, "plan_revision");
-        is_there = found && revision && strcmp(found, entry) == 0 && strcmp(revision, room->plan_revision) == 0;
-        cJSON_Delete(row);
-    }
-    return is_there;
+    for (const struct item *item = room->items; item; item = item->next)
+        if (item != before && is_of_entry(room, item, entry))
+            return true;
+    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+        if (!(before && strcmp(keeping->item.id, before->id) == 0) && is_of_entry(room, &keeping->item, entry))
+            return true;
+    return false;
 }
 
 static bool check_entry(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
@@ -230,7 +238,7 @@ static struct audit_act act_of(const struct room *room, const struct item *item,
     return act;
 }
 
-void record_audit(struct room *room, const struct item *item, const struct member *by)
+void record_audit(struct room *room, const struct item *item, const struct member *by, const char *record)
 {
     char hex[DIGEST_TEXT];
     if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE) /* acceptance.h */
@@ -246,6 +254,10 @@ void record_audit(struct room *room, const struct item *item, const struct membe
         copy_text(act.detail, body, "corrects");
         copy_text(act.detail, body, "plan_revision");
         cJSON_Delete(row);
+    }
+    if (record) {
+        digest_text(record, hex);
+        cJSON_AddStringToObject(act.detail, "record_sha256", hex);
     }
     audit_tell(room, &act);
 }

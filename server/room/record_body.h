@@ -27,6 +27,11 @@ bool record_may_write(const struct room *room, const struct member *member, enum
 /* Whether an item may be changed or deleted at all; true for kinds that are not of the record. */
 bool record_may_change(const struct room *room, const struct item *item, struct problem *problem);
 /* Records in the audit that `by` put this item: its id, version and the SHA-256 of its row; of a decision or signature
- * also its words. */
-void record_audit(struct room *room, const struct item *item, const struct member *by);
+ * also its words, and the SHA-256 of the record of that moment (record; NULL: there is none). */
+void record_audit(struct room *room, const struct item *item, const struct member *by, const char *record);
+/* Whether a record of the room is kept with an item of this kind: it is a decision or signature. */
+bool record_is_wanted(enum wire_item_kind kind);
+/* The record of the room at this moment, with the item, scene and views, as JSON for free(). NULL: of another kind;
+ * with problem: no memory. */
+NODISCARD char *record_of(const struct room *room, const struct item *item, struct problem *problem);
 void record_audit_deleted(struct room *room, const struct item *item, const struct member *by);

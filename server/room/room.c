@@ -77,6 +77,7 @@ void room_destroy(struct room *room)
     while (room->streams)
         stream_destroy(room, room->streams);
     forget_plan(room);
+    items_forget_keeping(room);
     items_free(room);
     acceptances_free(room);
     beginning_free(room);

@@ -106,6 +106,16 @@ struct room_saved {
     bool is_full;      /* failing: for want of space */
 };
 
+/* An item that is to be on disk before it counts. All borrowed. */
+struct room_item_write {
+    const char *id, *kind, *row; /* row: as in item_changed */
+    const char *author, *author_name;
+    int64_t time_ms;
+    const char
+        *record; /* of a decision or signature: the record of the room at this moment, JSON; NULL: of another kind */
+    const struct room_audit *audit; /* the row that is committed with it */
+};
+
 struct room_callbacks {
     /* requests a picture; answered later by room_picture_came or room_picture_failed with the same request number */
     void (*render)(void *context, struct room *room, const struct room_render *request);
@@ -125,6 +135,13 @@ struct room_callbacks {
     /* An item is new or was changed: row is the whole of it as JSON, borrowed. row NULL: it was deleted. A store keeps
      * the newest row of each id and gives it back with room_restore_item. NULL: nobody keeps items. */
     void (*item_changed)(void *context, struct room *room, const char *row, const char *id);
+    /* An item is new or was changed, and counts only once it is on disk with its row for the audit: answered by
+     * room_item_written with this number, later. False with problem: it cannot be written now. NULL: nobody keeps
+     * items, and they count at once, with item_changed. */
+    bool (*item_first)(void *context, struct room *room, uint64_t number, const struct room_item_write *write,
+                       struct problem *problem);
+    /* False with problem: nothing can be written now, so nothing is accepted that must last. NULL: always true. */
+    bool (*can_write)(void *context, struct problem *problem);
     void *context;
     /* NULL, or: parts of the room (enum room_part) that are to be kept have changed; called often */
     void (*kept_changed)(void *context, struct room *room, unsigned parts);
@@ -274,7 +291,7 @@ void room_audit_call(struct room *room, const char *member, const char *address,
  * stands under it. "": it is not known, and nothing of the record is written. */
 void room_plan_revision(struct room *room, const char *revision);
 /* The record of the review: {format, version, room, plan, plan_revision, revision, made_ms, present, n_present_dropped,
- * checklist, decisions, signatures, notes, saved_views}; proto/record.json describes it. NULL: no memory. */
+ * checklist, decisions, signatures, notes, saved_views, saved}; proto/record.json describes it. NULL: no memory. */
 NODISCARD cJSON *room_record(const struct room *room);
 /* Records what is still being gathered. */
 void room_audit_flush(struct room *room, int64_t now_us);
@@ -290,6 +307,12 @@ NODISCARD cJSON *room_items(const struct room *room, enum wire_item_kind kind);
  * of created_ms; neither item_changed nor a message follows. False with problem when the row is damaged, there already
  * or beyond a limit: the others can still be restored. */
 NODISCARD bool room_restore_item(struct room *room, const char *row, size_t n, struct problem *problem);
+
+/* Answers item_first. problem NULL: the item is on disk, so it counts and all members are told. Else it will never be
+ * written, and who gave it is told why. */
+void room_item_written(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us);
+/* Items whose writing was asked for and is not answered. */
+size_t room_n_items_written(const struct room *room);
 
 /* Bookmarks. The body of one by its id or by the token of its permalink, the caller's; NULL: there is none. */
 NODISCARD cJSON *room_bookmark(const struct room *room, const char *id, uint32_t *version);

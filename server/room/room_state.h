@@ -152,6 +152,15 @@ struct item { /* a note, a reply or a bookmark */
     char *row;                                          /* all of this with the body, as JSON */
 };
 
+struct keeping { /* an item that is being written, and counts afterwards */
+    struct keeping *next;
+    uint64_t number;
+    struct item item; /* what it will be; row: owned */
+    bool is_change;   /* of an item in the list */
+    char member[64];  /* who gave it */
+    uint32_t input;
+};
+
 struct gathered { /* acts for the audit that are one row */
     char action[24], key[64], member[64], name[161], address[46];
     enum wire_member_role role;
@@ -218,6 +227,9 @@ struct room {
     uint32_t n_named;             /* members ever made, for ids */
     struct item *items;           /* oldest first */
     size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */
+    struct keeping *keeping;      /* the oldest first */
+    uint64_t n_kept;              /* numbers of keeping that were given out */
+    struct audit_apart *apart;    /* audit.h; NULL: rows go to the room's owner */
     struct {
         cJSON *list, *ids; /* of those that count: for the renderer, and the items' ids; NULL: not known, or none */
         char revision[65]; /* of the files that the present renderer has loaded; "": not known */

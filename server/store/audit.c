@@ -11,6 +11,13 @@
 
 const char audit_no_hash[STORE_AUDIT_HASH] = "0000000000000000000000000000000000000000000000000000000000000000";
 
+void audit_digest(const char *text, char hash[STORE_AUDIT_HASH])
+{
+    unsigned char bytes[crypto_hash_sha256_BYTES];
+    (void)crypto_hash_sha256(bytes, (const unsigned char *)text, strlen(text));
+    (void)sodium_bin2hex(hash, STORE_AUDIT_HASH, bytes, sizeof bytes);
+}
+
 void audit_hash(const char before[STORE_AUDIT_HASH], const char *text, char hash[STORE_AUDIT_HASH])
 {
     crypto_hash_sha256_state state;
@@ -35,6 +42,19 @@ bool audit_read_head(sqlite3 *db, struct audit_head *head, struct error *err)
         sql_text(row, 1, head->hash, sizeof head->hash);
     }
     bool ok = step == SQLITE_ROW || step == SQLITE_DONE || sql_fail(db, "reading the audit", err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+/* The newest row's number and hash, beside the table. */
+static bool write_head(sqlite3 *db, const struct audit_head *head, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db, "UPDATE audit_head SET n = ?1, hash = ?2 WHERE id = 1", err);
+    if (!row)
+        return false;
+    (void)sqlite3_bind_int64(row, 1, head->n);
+    sql_bind_text(row, 2, head->hash);
+    bool ok = sql_step(row, "writing the audit", err);
     (void)sqlite3_finalize(row);
     return ok;
 }
@@ -66,5 +86,5 @@ bool audit_append(sqlite3 *db, char *const *rows, size_t n, struct error *err)
         free(text);
     }
     (void)sqlite3_finalize(row);
-    return ok;
+    return ok && write_head(db, &head, err);
 }

@@ -19,4 +19,6 @@ NODISCARD bool audit_read_head(sqlite3 *db, struct audit_head *head, struct erro
 NODISCARD bool audit_append(sqlite3 *db, char *const *rows, size_t n, struct error *err);
 /* What the hash of a row with this text is, after a row with the hash `before`. */
 void audit_hash(const char before[STORE_AUDIT_HASH], const char *text, char hash[STORE_AUDIT_HASH]);
+/* SHA-256 of a text. */
+void audit_digest(const char *text, char hash[STORE_AUDIT_HASH]);
 extern const char audit_no_hash[STORE_AUDIT_HASH]; /* before row 1 */

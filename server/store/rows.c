@@ -6,6 +6,7 @@
 
 #include "core/base/mem.h"
 #include "server/store/recordings.h"
+#include "server/store/records.h"
 #include "server/store/sql.h"
 
 void store_room_free(struct store_room *room)
@@ -17,6 +18,9 @@ void store_room_free(struct store_room *room)
     for (size_t i = 0; i < room->n_recordings; i++)
         store_recording_finish(&room->recordings[i]);
     free(room->recordings);
+    for (size_t i = 0; i < room->n_records; i++)
+        store_record_finish(&room->records[i]);
+    free(room->records);
     for (size_t i = 0; i < room->n_audit; i++)
         free(room->audit[i]);
     free(room->audit);
@@ -157,6 +161,36 @@ bool rows_write_room(sqlite3 *db, const struct store_room *room, struct error *e
         if (!write_item(db, room->id, &room->items[i], err))
             return false;
     return recordings_write(db, room, err);
+}
+
+/* A room that was never written begins with what is known; the write that follows has the rest. */
+static bool write_begun(sqlite3 *db, const struct store_room *room, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db,
+                                    "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, has_links)"
+                                    " VALUES(?1, ?2, ?3, ?4, 0, ?5, ?6) ON CONFLICT(id) DO NOTHING",
+                                    err);
+    if (!row)
+        return false;
+    sql_bind_text(row, 1, room->id);
+    sql_bind_text(row, 2, room->plan);
+    (void)sqlite3_bind_int64(row, 3, room->created_ms);
+    (void)sqlite3_bind_int64(row, 4, room->used_ms);
+    (void)sqlite3_bind_int64(row, 5, room->n_named);
+    (void)sqlite3_bind_int(row, 6, room->has_links);
+    bool ok = sql_step(row, "writing a room", err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+bool rows_write_prompt(sqlite3 *db, const struct store_room *room, struct error *err)
+{
+    if (!write_begun(db, room, err))
+        return false;
+    for (size_t i = 0; i < room->n_items; i++)
+        if (!write_item(db, room->id, &room->items[i], err))
+            return false;
+    return records_write(db, room, err);
 }
 
 bool rows_delete_room(sqlite3 *db, const char *id, struct error *err)

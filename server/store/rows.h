@@ -8,6 +8,8 @@
 
 /* Errors of all: those of sql_fail. */
 NODISCARD bool rows_write_room(sqlite3 *db, const struct store_room *room, struct error *err);
+/* Items and records of a write that is_prompt, of a room that may never have been written. */
+NODISCARD bool rows_write_prompt(sqlite3 *db, const struct store_room *room, struct error *err);
 NODISCARD bool rows_delete_room(sqlite3 *db, const char *id, struct error *err); /* true when there is none */
 /* NULL: ERROR_NOT_FOUND, ERROR_MEMORY, or of sql_fail. */
 NODISCARD struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err);

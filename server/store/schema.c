@@ -39,6 +39,25 @@ static const char *const steps[] = {
     "CREATE TABLE recording_batches(room TEXT NOT NULL, recording TEXT NOT NULL, place INTEGER NOT NULL,"
     " t_ms INTEGER NOT NULL, is_state INTEGER NOT NULL, body TEXT NOT NULL, PRIMARY KEY(room, recording, place),"
     " FOREIGN KEY(room, recording) REFERENCES recordings(room, id) ON DELETE CASCADE) STRICT;",
+    /* 6: the newest row of the audit beside it, so that a removed end is seen; records of decisions and signatures,
+     * which outlive their rooms. Of earlier ones there is the item alone; the hash is that of {} */
+    "CREATE TABLE audit_head(id INTEGER PRIMARY KEY CHECK(id = 1), n INTEGER NOT NULL, hash TEXT NOT NULL) STRICT;"
+    "INSERT INTO audit_head(id, n, hash) SELECT 1, coalesce(max(n), 0), coalesce((SELECT hash FROM audit ORDER BY n DESC"
+    " LIMIT 1), '0000000000000000000000000000000000000000000000000000000000000000') FROM audit;"
+    "CREATE TRIGGER audit_head_order BEFORE UPDATE ON audit_head WHEN NEW.n <= OLD.n"
+    " BEGIN SELECT RAISE(ABORT, 'the audit only grows'); END;"
+    "CREATE TRIGGER audit_head_delete BEFORE DELETE ON audit_head"
+    " BEGIN SELECT RAISE(ABORT, 'the audit is never deleted'); END;"
+    "CREATE TABLE records(n INTEGER PRIMARY KEY, id TEXT NOT NULL, room TEXT NOT NULL, plan TEXT NOT NULL,"
+    " kind TEXT NOT NULL, author TEXT NOT NULL, author_name TEXT NOT NULL, time_ms INTEGER NOT NULL, item TEXT NOT NULL,"
+    " body TEXT NOT NULL, hash TEXT NOT NULL, UNIQUE(room, id)) STRICT;"
+    "CREATE INDEX records_id ON records(id);"
+    "INSERT INTO records(id, room, plan, kind, author, author_name, time_ms, item, body, hash) SELECT items.id,"
+    " items.room, rooms.plan, kind, author, author_name, items.created_ms, body, '{}',"
+    " '44136fa355b3678a1146ad16f7e8649e94fb4fc21fe77e8310c060f61caaff8a' FROM items JOIN rooms ON rooms.id = items.room"
+    " WHERE kind IN ('decision', 'signature') ORDER BY items.created_ms, items.rowid;"
+    "CREATE TRIGGER records_update BEFORE UPDATE ON records BEGIN SELECT RAISE(ABORT, 'a record is never changed'); END;"
+    "CREATE TRIGGER records_delete BEFORE DELETE ON records BEGIN SELECT RAISE(ABORT, 'a record is never deleted'); END;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

@@ -15,12 +15,13 @@
 #include "server/store/audit.h"
 #include "server/store/database.h"
 #include "server/store/recordings.h"
+#include "server/store/records.h"
 #include "server/store/rows.h"
 #include "server/store/sql.h"
 
 enum { MAX_BATCH = 256, MAX_PENDING = STORE_QUEUE };
 
-enum request_kind { REQUEST_WRITE, REQUEST_DELETE, REQUEST_READ, REQUEST_READ_PART };
+enum request_kind { REQUEST_WRITE, REQUEST_DELETE, REQUEST_READ, REQUEST_READ_PART, REQUEST_READ_RECORDS };
 
 struct request {
     struct request *next; /* in the list of writes that are not yet on disk */
@@ -28,7 +29,7 @@ struct request {
     uint64_t ticket;
     char room_id[64];
     struct store_room *room; /* of a write */
-    char recording[64];      /* of a part that is read */
+    char recording[64];      /* of a part that is read; of records, those before this one */
     int64_t t_ms;
     struct error refusal; /* why the room can never be written; its rows for the audit are left */
 };
@@ -54,6 +55,9 @@ void store_answer_free(struct store_answer *answer)
     store_room_free(answer->room);
     store_part_free(answer->part);
     free(answer->rooms);
+    for (size_t i = 0; i < answer->n_records; i++)
+        store_record_finish(&answer->records[i]);
+    free(answer->records);
     free(answer);
 }
 
@@ -136,7 +140,8 @@ static bool apply(struct store *store, const struct request *request, struct err
 {
     if (request->kind == REQUEST_DELETE)
         return rows_delete_room(store->db, request->room_id, err);
-    return (request->room->id[0] == 0 || rows_write_room(store->db, request->room, err)) &&
+    return (request->room->id[0] == 0 || (request->room->is_prompt ? rows_write_prompt(store->db, request->room, err)
+                                                                   : rows_write_room(store->db, request->room, err))) &&
            audit_append(store->db, request->room->audit, request->room->n_audit, err);
 }
 
@@ -177,11 +182,37 @@ static void finish(struct store *store, size_t n, const struct error *err)
 static bool keep_audit_alone(struct store *store, const struct error *err)
 {
     struct request *request = store->first;
-    if (!request->room || !request->room->n_audit || !request->room->id[0])
+    if (!request->room || !request->room->n_audit || !request->room->id[0] || request->room->is_prompt)
         return false;
     request->room->id[0] = 0;
     request->refusal = *err;
     return true;
+}
+
+static void refuse_write(struct store *store, struct request *request, const struct error *err)
+{
+    const struct store_answer written = {
+        .event = STORE_WRITTEN, .ticket = request->ticket, .error = *err, .n_audit = request->room->n_audit
+    };
+    answer(store, &written);
+    request_free(request);
+}
+
+/* Nothing can be written now: what is to be written now or never is answered and dropped. */
+static void refuse_prompt(struct store *store, const struct error *err)
+{
+    struct request **at = &store->first;
+    while (*at) {
+        struct request *request = *at;
+        if (!request->room || !request->room->is_prompt) {
+            at = &request->next;
+            continue;
+        }
+        *at = request->next;
+        store->n_pending--;
+        refuse_write(store, request, err);
+    }
+    store->last = at;
 }
 
 /* Brings pending writes to the disk as far as that goes now. */
@@ -190,6 +221,7 @@ static void write_pending(struct store *store)
     struct error err = { 0 };
     if (!store->db && !open_database(store, &err)) {
         fail(store, &err);
+        refuse_prompt(store, &err);
         return;
     }
     while (store->n_pending > 0) {
@@ -213,6 +245,7 @@ static void write_pending(struct store *store)
                 store->db = NULL;
             }
             fail(store, &err);
+            refuse_prompt(store, &err);
             return;
         }
     }
@@ -241,14 +274,30 @@ static void read_part(struct store *store, const struct request *request)
     answer(store, &read);
 }
 
+static void read_records(struct store *store, const struct request *request)
+{
+    struct store_answer read = { .event = STORE_RECORDS, .ticket = request->ticket };
+    if (!store->db)
+        read.error = store->failure;
+    else
+        read.records = records_read(store->db, request->room_id, request->recording, &read.n_records, &read.error);
+    answer(store, &read);
+}
+
 static void take(struct store *store, struct request *request)
 {
-    if (request->kind == REQUEST_READ || request->kind == REQUEST_READ_PART) {
+    if (request->kind != REQUEST_WRITE && request->kind != REQUEST_DELETE) {
         if (request->kind == REQUEST_READ)
             read_room(store, request);
-        else
+        else if (request->kind == REQUEST_READ_PART)
             read_part(store, request);
+        else
+            read_records(store, request);
         request_free(request);
+        return;
+    }
+    if (store->is_failing && request->room && request->room->is_prompt) {
+        refuse_write(store, request, &store->failure);
         return;
     }
     request->next = NULL;
@@ -349,6 +398,18 @@ bool store_delete(struct store *store, const char *room_id, uint64_t ticket)
 bool store_read(struct store *store, const char *room_id, uint64_t ticket)
 {
     return put(store, REQUEST_READ, room_id, NULL, ticket);
+}
+
+bool store_read_records(struct store *store, const char *id, const char *before, uint64_t ticket)
+{
+    struct request *request = mem_new(sizeof *request);
+    *request = (struct request){ .kind = REQUEST_READ_RECORDS, .ticket = ticket };
+    (void)snprintf(request->room_id, sizeof request->room_id, "%s", id);
+    (void)snprintf(request->recording, sizeof request->recording, "%s", before);
+    if (queue_try_put(store->queue, request))
+        return true;
+    free(request);
+    return false;
 }
 
 bool store_read_part(struct store *store, const char *room_id, const char *recording, int64_t t_ms, uint64_t ticket)

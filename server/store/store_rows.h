@@ -34,6 +34,16 @@ struct store_item { /* a note or a bookmark */
     char *body;                              /* JSON; NULL in a write: the item is deleted */
 };
 
+/* What was shown and said when something was decided or signed. It stands in a table of its own, to which is only
+ * added, and outlives room and plan. */
+struct store_record {
+    char id[64], room[64], plan[64], kind[16], author[64], author_name[164]; /* id: the item's */
+    int64_t time_ms;                                                         /* since 1970 */
+    char *item, *body;           /* the row of the item as it is kept; JSON */
+    char hash[STORE_AUDIT_HASH]; /* SHA-256 of body; written by the store */
+};
+void store_record_finish(struct store_record *record);
+
 struct store_batch { /* of the events of a recording */
     uint32_t place;
     int64_t t_ms;
@@ -73,7 +83,11 @@ struct store_room {
     size_t n_items;
     struct store_recording *recordings; /* as items */
     size_t n_recordings;
-    char **audit; /* in a write: rows for the audit (audit.h), committed with the rest or not at all; not read */
+    struct store_record *records; /* in a write: to be added; not read */
+    size_t n_records;
+    bool is_prompt; /* in a write: items, records and audit alone, now or never: where this cannot be, it is answered
+                       with the error and dropped */
+    char **audit;   /* in a write: rows for the audit (audit.h), committed with the rest or not at all; not read */
     size_t n_audit;
 };
 

@@ -13,6 +13,7 @@ import { mayWrite, meIn } from './note_words.js';
 
 const records = new WeakMap(); // by room
 const failed = signal({}); // by form: why the server refused what was last written there
+const kept = signal({}); // by form: 'Keeping …' until what was written is on the server's disk, then 'Kept 14:36'
 const comments = new Map(); // by entry: what is being written about it
 
 function recordOf({ room }) {
@@ -22,19 +23,25 @@ function recordOf({ room }) {
 
 const fail = (form, problem) => { failed.value = { ...failed.peek(), [form]: problem?.detail || problem?.message || '' }; };
 
-/** Writes an item; why not stands at the form. Resolves to whether it was written. */
+const keep = (form, words) => { kept.value = { ...kept.peek(), [form]: words }; };
+const timeOf = (ms) => new Date(ms).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit' });
+
+/** Writes an item, which the server accepts only once it is on its disk; why not stands at the form. Resolves to whether it was written. */
 async function write(room, form, kind, body, of = null) {
+  fail(form, null);
+  keep(form, 'Keeping …');
   try {
-    await room.items.put(kind, body, of);
-    fail(form, null);
+    const { changed_ms: ms } = await room.items.put(kind, body, of);
+    keep(form, `Kept ${timeOf(ms)}`);
     return true;
   } catch (problem) {
+    keep(form, '');
     fail(form, problem);
     return false;
   }
 }
 
-const errorOf = (form) => (failed.value[form] ? html`<p class="note-error" role="alert">${failed.value[form]}</p>` : nothing);
+const errorOf = (form) => (failed.value[form] ? html`<p class="note-error" role="alert">${failed.value[form]}</p>` : kept.value[form] ? html`<p class="note" role="status">${kept.value[form]}</p>` : nothing);
 const when = (ms) => html`<time datetime=${new Date(ms).toISOString()} title=${new Date(ms).toLocaleString()}>${whenWords(ms, Date.now())}</time>`;
 
 export function recordTab(world) {

@@ -1,0 +1,100 @@
+/* The statements that write and read records. */
+#include "server/store/records.h"
+
+#include <stdlib.h>
+
+#include "core/base/mem.h"
+#include "server/store/audit.h"
+#include "server/store/sql.h"
+#include "server/store/store.h"
+
+void store_record_finish(struct store_record *record)
+{
+    free(record->item);
+    free(record->body);
+    *record = (struct store_record){ 0 };
+}
+
+bool records_write(sqlite3 *db, const struct store_room *room, struct error *err)
+{
+    if (!room->n_records)
+        return true;
+    sqlite3_stmt *row =
+        sql_prepare(db,
+                    "INSERT INTO records(id, room, plan, kind, author, author_name, time_ms, item, body,"
+                    " hash) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
+                    err);
+    bool ok = row != NULL;
+    for (size_t i = 0; ok && i < room->n_records; i++) {
+        const struct store_record *record = &room->records[i];
+        char hash[STORE_AUDIT_HASH];
+        audit_digest(record->body, hash);
+        sql_bind_text(row, 1, record->id);
+        sql_bind_text(row, 2, record->room);
+        sql_bind_text(row, 3, record->plan);
+        sql_bind_text(row, 4, record->kind);
+        sql_bind_text(row, 5, record->author);
+        sql_bind_text(row, 6, record->author_name);
+        (void)sqlite3_bind_int64(row, 7, record->time_ms);
+        sql_bind_text(row, 8, record->item);
+        sql_bind_text(row, 9, record->body);
+        sql_bind_text(row, 10, hash);
+        ok = sql_step(row, "writing a record", err);
+    }
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+static bool read_record(sqlite3_stmt *row, bool is_whole, struct store_record *record)
+{
+    *record = (struct store_record){ .time_ms = sqlite3_column_int64(row, 6) };
+    sql_text(row, 0, record->id, sizeof record->id);
+    sql_text(row, 1, record->room, sizeof record->room);
+    sql_text(row, 2, record->plan, sizeof record->plan);
+    sql_text(row, 3, record->kind, sizeof record->kind);
+    sql_text(row, 4, record->author, sizeof record->author);
+    sql_text(row, 5, record->author_name, sizeof record->author_name);
+    sql_text(row, 7, record->hash, sizeof record->hash);
+    record->item = is_whole ? sql_copy_text(row, 8) : NULL;
+    record->body = is_whole ? sql_copy_text(row, 9) : NULL;
+    return !is_whole || (record->item && record->body);
+}
+
+struct store_record *records_read(sqlite3 *db, const char *id, const char *before, size_t *n, struct error *err)
+{
+    const bool is_whole = id[0] != 0;
+    const size_t most = is_whole ? 1 : STORE_RECORDS_AT_ONCE;
+    struct store_record *records = mem_array(most, sizeof *records, STORE_RECORDS_AT_ONCE * sizeof *records, err);
+    sqlite3_stmt *row =
+        records
+            ? sql_prepare(db,
+                          is_whole ? "SELECT id, room, plan, kind, author, author_name, time_ms, hash, item, body FROM"
+                                     " records WHERE id = ?1 ORDER BY n DESC"
+                                   : "SELECT id, room, plan, kind, author, author_name, time_ms, hash FROM records"
+                                     " WHERE ?2 = '' OR n < (SELECT max(n) FROM records WHERE id = ?2) ORDER BY n DESC",
+                          err)
+            : NULL;
+    bool ok = row != NULL;
+    *n = 0;
+    if (ok) {
+        sql_bind_text(row, 1, id);
+        if (!is_whole)
+            sql_bind_text(row, 2, before);
+    }
+    for (int step; ok && *n < most && (step = sqlite3_step(row)) != SQLITE_DONE;) {
+        if (step != SQLITE_ROW)
+            ok = sql_fail(db, "reading records", err);
+        else
+            ok = read_record(row, is_whole, &records[(*n)++]) || error_set(err, ERROR_MEMORY, "no memory for a record");
+    }
+    (void)sqlite3_finalize(row);
+    if (ok && is_whole && *n == 0)
+        ok = error_set(err, ERROR_NOT_FOUND, "there is no record \"%.63s\"", id);
+    if (ok)
+        return records;
+    for (size_t i = 0; records && i < *n; i++)
+        store_record_finish(&records[i]);
+    free(records);
+    *n = 0;
+    return NULL;
+}
