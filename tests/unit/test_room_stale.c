@@ -153,7 +153,7 @@ static void patch_scene(const char *text)
 {
     struct problem problem = { 0 };
     cJSON *patch = json_read(text, strlen(text), NULL);
-    if (!room_patch_scene(fake.room, patch, NULL, fake.now_us, &problem))
+    if (!room_patch_scene(fake.room, patch, NULL, "", fake.now_us, &problem))
         fail_msg("%s: %s %s", text, problem.pointer, problem.detail);
     cJSON_Delete(patch);
 }
