@@ -116,10 +116,8 @@ static bool fill_roi(struct loading *loading, struct region_builder *builder, co
     struct contour_facts facts;
     const uint8_t *rgb = entry->has_color ? entry->rgb : roi->has_color ? roi->rgb : NULL;
     struct mask *mask = contour_fill(&roi->contours, &choice->grid, options, &facts, err);
-    if (!mask) {
-        error_prefix(err, "%s: %s", reading->path, roi->name);
+    if (!mask)
         return false;
-    }
     rtstruct_report_fill(roi, choice, &facts, reading->path, &loading->plan->report);
     bool is_added = region_builder_add_bits(builder, mask, &choice->grid, roi->name, rgb, reading->path, err);
     mask_destroy(mask);
@@ -131,21 +129,50 @@ static bool fill_roi(struct loading *loading, struct region_builder *builder, co
     return origins_add_regions(loading->plan, &origin, set->n_regions - 1, err);
 }
 
+/* Fills a region; one that is beyond a limit is reported and left out. */
+static bool fill_or_leave_out(struct loading *loading, struct region_builder *builder,
+                              const struct part_reading *reading, const struct rtstruct_roi *roi,
+                              const struct contour_choice *choice, const struct contour_options *options,
+                              struct error *err)
+{
+    struct error why = { 0 };
+    if (fill_roi(loading, builder, reading, roi, choice, options, &why))
+        return true;
+    if (why.code == ERROR_LIMIT) {
+        report_add(&loading->plan->report, REPORT_ERROR, "region.contours-refused", reading->path,
+                   "\"%s\" was left out: %s.", roi->name, why.text);
+        return true;
+    }
+    error_prefix(&why, "%s: %s", reading->path, roi->name);
+    if (err)
+        *err = why;
+    return false;
+}
+
 static bool fill_rois(struct loading *loading, struct region_builder *builder, const struct part_reading *reading,
                       const struct contour_choice *choices, const struct contour_options *options, struct error *err)
 {
     const struct rtstruct *structs = reading->structs;
     const struct plan_file_region *entry = &loading->file->regions[reading->index];
-    bool is_filled = true;
-    for (size_t r = 0; is_filled && r < structs->n_rois; r++) {
+    const char *first_left = NULL;
+    size_t n_left = 0;
+    for (size_t r = 0; r < structs->n_rois; r++) {
         if (loading_is_cancelled(loading))
             return error_set(err, ERROR_CANCELLED, "loading was cancelled");
         loading_phase(loading, "filling contours of", structs->rois[r].name, 80, 95);
-        if (is_selected(entry, &structs->rois[r]))
-            is_filled = fill_roi(loading, builder, reading, &structs->rois[r], &choices[r], options, err);
+        if (is_selected(entry, &structs->rois[r]) && builder->set->n_regions >= REGION_MAX) {
+            first_left = n_left++ == 0 ? structs->rois[r].name : first_left;
+        } else if (is_selected(entry, &structs->rois[r]) &&
+                   !fill_or_leave_out(loading, builder, reading, &structs->rois[r], &choices[r], options, err)) {
+            return false;
+        }
         loading_work(loading, 1);
     }
-    return is_filled;
+    if (n_left > 0)
+        report_add(&loading->plan->report, REPORT_ERROR, "region.too-many", reading->path,
+                   "The plan has %d regions, the most it holds; %zu more of this file were left out, from \"%s\" on.",
+                   REGION_MAX, n_left, first_left);
+    return true;
 }
 
 bool plan_dicom_add_regions(struct loading *loading, struct region_builder *builder, struct part_reading *reading,

@@ -105,6 +105,8 @@
       "Its volume and histogram are approximate.") \
     X("region.contours-refused", "The contours of a region are beyond a limit, so it is not shown.", \
       "Draw it with fewer points.") \
+    X("region.too-many", "A file holds more regions than a plan; the first ones are shown.", \
+      "Write a file with fewer regions.") \
     X("region.contours-gap", "Contours are missing between others of a region.", \
       "Nothing was filled there; check that it is two parts.") \
     X("region.contours-beyond", \

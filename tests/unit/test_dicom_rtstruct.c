@@ -229,22 +229,60 @@ static void another_object_is_refused(void **state)
     made_finish(&made);
 }
 
-static void more_regions_than_the_limit_are_refused(void **state)
+static void regions_beyond_the_limit_are_left_out_and_named(void **state)
 {
     (void)state;
     struct made_dicom made;
+    char name[20];
     made_rt_begin(&made, RTSTRUCT, "RTSTRUCT", NULL);
     made_sequence(&made, TAG(0x3006, 0x0020));
-    for (int i = 0; i < RTSTRUCT_MAX_ROIS + 1; i++)
-        put_roi(&made, i, "x", NULL);
+    for (int i = 0; i < 1100; i++) {
+        snprintf(name, sizeof name, "roi %d", i);
+        put_roi(&made, i, name, NULL);
+    }
     made_sequence_end(&made);
-    struct rt_file file = rt_file_of(&made);
-    struct error err = { 0 };
-    assert_null(rtstruct_read(file.file, "x.dcm", NULL, &err));
-    assert_int_equal(err.code, ERROR_LIMIT);
-    assert_string_equal(err.text, "x.dcm: more than 1024 regions");
-    rt_file_close(&file);
-    made_finish(&made);
+    made_sequence(&made, TAG(0x3006, 0x0039));
+    for (int i = 0; i < 1100; i++) {
+        begin_contours(&made, NULL);
+        if (i != 3) /* an empty one takes no room */
+            put_contour(&made, "CLOSED_PLANAR", 3, triangle, 9);
+        end_contours(&made, i);
+    }
+    made_sequence_end(&made);
+    struct report report = { 0 };
+    struct rtstruct *set = read_made(&made, &report);
+    assert_int_equal(set->n_rois, 1024);
+    assert_string_equal(set->rois[1023].name, "roi 1024");
+    assert_int_equal(n_lines(&report, "region.too-many"), 1);
+    for (size_t i = 0; i < report.n_lines; i++)
+        if (strcmp(report.lines[i].code, "region.too-many") == 0) {
+            assert_int_equal(report.lines[i].severity, REPORT_ERROR);
+            assert_non_null(strstr(report.lines[i].sentence, "75 were left out: roi 1025, roi 1026"));
+        }
+    rtstruct_destroy(set);
+    report_finish(&report);
+}
+
+static void a_contour_that_goes_round_twice_is_taken_once(void **state)
+{
+    (void)state;
+    static const double twice[] = { 0, 0, 5, 10, 0, 5, 0, 10, 5, 0, 0, 5, 10, 0, 5, 0, 10.01, 5 };
+    struct made_dicom made;
+    made_rt_begin(&made, RTSTRUCT, "RTSTRUCT", NULL);
+    made_sequence(&made, TAG(0x3006, 0x0020));
+    put_roi(&made, 1, "x", NULL);
+    made_sequence_end(&made);
+    made_sequence(&made, TAG(0x3006, 0x0039));
+    begin_contours(&made, NULL);
+    put_contour(&made, "CLOSED_PLANAR", 6, twice, 18);
+    end_contours(&made, 1);
+    made_sequence_end(&made);
+    struct report report = { 0 };
+    struct rtstruct *set = read_made(&made, &report);
+    assert_int_equal(set->rois[0].contours.contours[0].n_points, 3);
+    assert_int_equal(n_lines(&report, "region.contours-left-out"), 1);
+    rtstruct_destroy(set);
+    report_finish(&report);
 }
 
 static void a_frame_of_reference_that_is_missing_or_another_is_said(void **state)
@@ -550,7 +588,8 @@ int main(void)
         cmocka_unit_test(names_come_in_the_file_s_character_set),
         cmocka_unit_test(what_cannot_be_filled_or_joined_is_said),
         cmocka_unit_test(another_object_is_refused),
-        cmocka_unit_test(more_regions_than_the_limit_are_refused),
+        cmocka_unit_test(regions_beyond_the_limit_are_left_out_and_named),
+        cmocka_unit_test(a_contour_that_goes_round_twice_is_taken_once),
         cmocka_unit_test(a_frame_of_reference_that_is_missing_or_another_is_said),
         cmocka_unit_test(the_sarcoma_masks_come_out_voxel_for_voxel),
         cmocka_unit_test(the_lung_phantom_has_3_regions_and_29_empty_ones),

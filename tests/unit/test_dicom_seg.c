@@ -255,6 +255,89 @@ static void the_size_of_a_segmentation_counts_its_empty_planes(void **state)
     made_finish(&made);
 }
 
+/* Two lesions of three planes, 3 mm apart, with 300 empty planes between them: two grids of 1 + 3 + 1 planes. */
+static void segments_far_apart_take_no_memory_between_them(void **state)
+{
+    (void)state;
+    static const struct made_seg_frame apart[] = { { 1, 0 }, { 1, 3 }, { 1, 6 }, { 2, 909 }, { 2, 912 }, { 2, 915 } };
+    const struct made_seg seg = { .frames = apart, .n_frames = 6, .n_segments = 2, .between_mm = 3 };
+    struct made_dicom made;
+    struct nrrd_layers layers;
+    struct report report = { 0 };
+    struct error err;
+    uint64_t n_voxels;
+    size_t n_segments, one, two;
+    made_seg_bytes(&made, &seg);
+    struct rt_file file = rt_file_of(&made);
+    assert_true(dicom_seg_measure(file.file, &n_voxels, &n_segments));
+    assert_int_equal(n_voxels, 2 * 33 * 5);
+    rt_file_close(&file);
+    if (!read_seg(&made, "", &layers, &report, &err))
+        fail_msg("%s", err.text);
+    assert_int_equal(layers.n, 2);
+    (void)name_of(&layers, "Part 1", &one);
+    (void)name_of(&layers, "Part 2", &two);
+    assert_int_equal(layers.volumes[one]->grid.size[2], 5);
+    assert_int_equal(layers.volumes[two]->grid.size[2], 5);
+    assert_close(layers.volumes[one]->grid.lps_mm_from_ijk.origin.z, -3, 1e-9);
+    assert_close(layers.volumes[two]->grid.lps_mm_from_ijk.origin.z, 906, 1e-9);
+    for (int z = 0; z < 3; z++)
+        for (int y = 0; y < MADE_SEG_ROWS; y++)
+            for (int x = 0; x < MADE_SEG_COLUMNS; x++) {
+                uint32_t at[3] = { (uint32_t)x, (uint32_t)y, (uint32_t)z + 1 };
+                assert_int_equal(volume_label(layers.volumes[one], at[0], at[1], at[2]) > 0,
+                                 made_seg_is_set(1, 3 * z, x, y));
+                assert_int_equal(volume_label(layers.volumes[two], at[0], at[1], at[2]) > 0,
+                                 made_seg_is_set(2, 909 + 3 * z, x, y));
+            }
+    nrrd_layers_finish(&layers);
+    report_finish(&report);
+    made_finish(&made);
+}
+
+static void single_frames_far_apart_are_as_thick_as_they_say(void **state)
+{
+    (void)state;
+    static const struct made_seg_frame apart[] = { { 1, 0 }, { 2, 90 } };
+    const struct made_seg seg = { .frames = apart, .n_frames = 2, .n_segments = 2, .thickness_mm = 3 };
+    struct made_dicom made;
+    struct nrrd_layers layers;
+    struct report report = { 0 };
+    struct error err;
+    made_seg_bytes(&made, &seg);
+    assert_true(read_seg(&made, "", &layers, &report, &err));
+    assert_int_equal(layers.n, 2);
+    assert_close(layers.volumes[0]->grid.lps_mm_from_ijk.columns[2].z, 3, 1e-9);
+    nrrd_layers_finish(&layers);
+    report_finish(&report);
+    made_finish(&made);
+}
+
+static void segments_beyond_the_limit_are_left_out_and_named(void **state)
+{
+    (void)state;
+    enum { N = 1500 };
+    static struct made_seg_frame many[N];
+    for (int i = 0; i < N; i++)
+        many[i] = (struct made_seg_frame){ i + 1, 3 * i };
+    const struct made_seg seg = { .frames = many, .n_frames = N, .n_segments = N, .between_mm = 3 };
+    struct made_dicom made;
+    struct nrrd_layers layers;
+    struct report report = { 0 };
+    struct error err;
+    made_seg_bytes(&made, &seg);
+    assert_true(read_seg(&made, "", &layers, &report, &err));
+    size_t n = 0;
+    for (size_t i = 0; i < layers.n; i++)
+        n += layers.names[i].n;
+    assert_int_equal(n, 1024);
+    assert_non_null(strstr(report_said(&report, "region.too-many"),
+                           "476 of 1500 segments were left out, as at most 1024 are read: Part 1025, Part 1026"));
+    nrrd_layers_finish(&layers);
+    report_finish(&report);
+    made_finish(&made);
+}
+
 static void colors_are_those_of_lindbloom_s_tables(void **state)
 {
     (void)state;
@@ -292,7 +375,7 @@ static void what_contradicts_itself_is_refused_by_name(void **state)
         { { .frames = uneven, .n_frames = 3, .n_segments = 1 },
           0,
           "planes that are not even: 3 places, the nearest 3 mm apart over 7 mm" },
-        { { .frames = far, .n_frames = 3, .n_segments = 1 }, 0, "0.01 mm apart: 90001 planes" },
+        { { .frames = far, .n_frames = 3, .n_segments = 1 }, 0, "0.01 mm apart: 90001 planes; at most 4094 are read" },
         { { .frames = unknown, .n_frames = 2, .n_segments = 0 }, 0, "no Segment Sequence (0062,0002)" },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -456,6 +539,9 @@ int main(void)
         cmocka_unit_test(frames_nearly_at_one_place_stay_inside_the_grid),
         cmocka_unit_test(a_thickness_that_the_file_does_not_give_is_said),
         cmocka_unit_test(the_size_of_a_segmentation_counts_its_empty_planes),
+        cmocka_unit_test(segments_far_apart_take_no_memory_between_them),
+        cmocka_unit_test(single_frames_far_apart_are_as_thick_as_they_say),
+        cmocka_unit_test(segments_beyond_the_limit_are_left_out_and_named),
         cmocka_unit_test(colors_are_those_of_lindbloom_s_tables),
         cmocka_unit_test(what_contradicts_itself_is_refused_by_name),
         cmocka_unit_test(a_folder_with_a_segmentation_has_its_regions),

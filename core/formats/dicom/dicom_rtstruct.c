@@ -41,7 +41,8 @@ struct reading_roi {
     struct rtstruct_roi roi;
     size_t n_points_alone, n_open; /* contours of a single point, and open ones: they enclose nothing */
     size_t n_miscounted, n_uneven, n_twice_round;
-    bool is_unnamed;
+    bool is_unnamed, is_refused;
+    uint64_t n_points, n_contours; /* read, of those that count for the limits of the file */
 };
 
 struct reading {
@@ -49,8 +50,9 @@ struct reading {
     const char *where;
     struct report *report;
     struct reading_roi *rois;
-    size_t n_rois;
-    double *values; /* the numbers of the current contour */
+    size_t n_rois, most_rois;
+    size_t n_beyond; /* described beyond most_rois, so not looked at */
+    double *values;  /* the numbers of the current contour */
     size_t room;
     uint64_t n_points, n_contours;
 };
@@ -63,10 +65,11 @@ static struct reading_roi *find_roi(struct reading *reading, int64_t number)
     return NULL;
 }
 
-static struct reading_roi *add_roi(struct reading *reading, int64_t number, struct error *err)
+/* Adds a region; NULL beyond the limit. */
+static struct reading_roi *add_roi(struct reading *reading, int64_t number)
 {
-    if (reading->n_rois >= RTSTRUCT_MAX_ROIS) {
-        error_set(err, ERROR_LIMIT, "%s: more than %d regions", reading->where, RTSTRUCT_MAX_ROIS);
+    if (reading->n_rois >= reading->most_rois) {
+        reading->n_beyond++;
         return NULL;
     }
     struct reading_roi *roi = &reading->rois[reading->n_rois++];
@@ -74,7 +77,7 @@ static struct reading_roi *add_roi(struct reading *reading, int64_t number, stru
     return roi;
 }
 
-static bool read_names(struct reading *reading, const char *frame_uid, struct error *err)
+static void read_names(struct reading *reading, const char *frame_uid)
 {
     const struct dicom_item *root = dicom_root(reading->file);
     size_t n = dicom_n_items(root, ROI_SEQUENCE);
@@ -91,9 +94,9 @@ static bool read_names(struct reading *reading, const char *frame_uid, struct er
                        "Two regions have the number %lld; the contours were given to the first.", (long long)number);
             continue;
         }
-        struct reading_roi *roi = add_roi(reading, number, err);
+        struct reading_roi *roi = add_roi(reading, number);
         if (!roi)
-            return false;
+            continue;
         if (!dicom_text(item, ROI_NAME, roi->roi.name, sizeof roi->roi.name)) {
             snprintf(roi->roi.name, sizeof roi->roi.name, "ROI %lld", (long long)number);
             roi->is_unnamed = true;
@@ -101,7 +104,6 @@ static bool read_names(struct reading *reading, const char *frame_uid, struct er
         if (!dicom_text(item, ROI_FRAME_UID, roi->roi.frame_uid, sizeof roi->roi.frame_uid))
             snprintf(roi->roi.frame_uid, sizeof roi->roi.frame_uid, "%s", frame_uid);
     }
-    return true;
 }
 
 static void read_kinds(struct reading *reading)
@@ -117,16 +119,13 @@ static void read_kinds(struct reading *reading)
     }
 }
 
-/* Reads all numbers of one contour into reading->values. Returns how many; SIZE_MAX when there is no memory. */
+/* Reads all numbers of one contour into reading->values, if that many points are within the limit. Returns how many
+ * there are; SIZE_MAX when there is no memory. */
 static size_t read_values(struct reading *reading, const struct dicom_item *item, struct error *err)
 {
     size_t n = dicom_numbers(item, CONTOUR_DATA, reading->values, reading->room);
-    if (n <= reading->room)
+    if (n <= reading->room || reading->n_points + n / 3 > RTSTRUCT_MAX_POINTS)
         return n;
-    if (reading->n_points + n / 3 > RTSTRUCT_MAX_POINTS) {
-        error_set(err, ERROR_LIMIT, "%s: contours of more than %d points", reading->where, RTSTRUCT_MAX_POINTS);
-        return SIZE_MAX;
-    }
     free(reading->values);
     reading->room = n;
     reading->values = mem_array(n, sizeof *reading->values, UINT64_MAX, err);
@@ -170,10 +169,14 @@ static bool read_contour(struct reading *reading, struct reading_roi *roi, const
     int64_t n_said;
     roi->n_uneven += n % 3 != 0;
     roi->n_miscounted += dicom_integer(item, CONTOUR_N_POINTS, &n_said) && (n_said < 0 || (uint64_t)n_said != n_points);
+    if (reading->n_points + n_points > RTSTRUCT_MAX_POINTS || reading->n_contours >= RTSTRUCT_MAX_CONTOURS) {
+        roi->is_refused = true;
+        return true;
+    }
     reading->n_points += n_points;
-    if (reading->n_points > RTSTRUCT_MAX_POINTS || ++reading->n_contours > RTSTRUCT_MAX_CONTOURS)
-        return error_set(err, ERROR_LIMIT, "%s: more than %d contours or %d points", reading->where,
-                         RTSTRUCT_MAX_CONTOURS, RTSTRUCT_MAX_POINTS);
+    reading->n_contours++;
+    roi->n_points += n_points;
+    roi->n_contours++;
     enum contour_kind kind = kind_of(item, n_points);
     roi->n_points_alone += kind == KIND_POINT;
     roi->n_open += kind == KIND_OPEN;
@@ -191,24 +194,40 @@ static bool read_contour(struct reading *reading, struct reading_roi *roi, const
     return true;
 }
 
+/* Drops the contours of a region that is beyond a limit, so that there is room for the next ones. */
+static void refuse(struct reading *reading, struct reading_roi *roi)
+{
+    contour_set_finish(&roi->roi.contours);
+    reading->n_points -= roi->n_points;
+    reading->n_contours -= roi->n_contours;
+    roi->n_points = roi->n_contours = 0;
+}
+
 static bool read_contours(struct reading *reading, struct reading_roi *roi, const struct dicom_item *item,
                           struct error *err)
 {
     size_t n = dicom_n_items(item, CONTOUR_SEQUENCE);
     struct contour_set *set = &roi->roi.contours;
-    if (n == 0)
+    if (n == 0 || roi->is_refused)
         return true;
+    if (n > RTSTRUCT_MAX_CONTOURS) {
+        roi->is_refused = true;
+        refuse(reading, roi);
+        return true;
+    }
     struct contour *contours = realloc(set->contours, (set->n_contours + n) * sizeof *contours);
     if (!contours)
         return error_set(err, ERROR_MEMORY, "%s: no memory for %zu contours", reading->where, n);
     set->contours = contours;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < n && !roi->is_refused; i++) {
         struct contour *contour = &set->contours[set->n_contours];
         *contour = (struct contour){ 0 };
         if (!read_contour(reading, roi, dicom_item_at(item, CONTOUR_SEQUENCE, i), contour, err))
             return false;
         set->n_contours += contour->n_points > 0;
     }
+    if (roi->is_refused)
+        refuse(reading, roi);
     return true;
 }
 
@@ -249,9 +268,9 @@ static bool read_all_contours(struct reading *reading, struct error *err)
         }
         struct reading_roi *roi = find_roi(reading, number);
         if (!roi) {
-            roi = add_roi(reading, number, err);
+            roi = add_roi(reading, number);
             if (!roi)
-                return false;
+                continue;
             snprintf(roi->roi.name, sizeof roi->roi.name, "ROI %lld", (long long)number);
             report_add(reading->report, REPORT_WARNING, "region.roi-number", reading->where,
                        "There are contours for region %lld, which the file does not describe; it is called \"%s\".",
@@ -303,7 +322,7 @@ static void report_empty(const struct reading *reading)
     char names[300] = "";
     size_t n_empty = 0;
     for (size_t i = 0; i < reading->n_rois; i++)
-        if (reading->rois[i].roi.contours.n_contours == 0) {
+        if (reading->rois[i].roi.contours.n_contours == 0 && !reading->rois[i].is_refused) {
             add_name(names, sizeof names, reading->rois[i].roi.name);
             n_empty++;
         }
@@ -311,6 +330,22 @@ static void report_empty(const struct reading *reading)
         report_add(reading->report, REPORT_NOTE, "region.no-contours", reading->where,
                    "%zu of %zu regions have no closed contour and are not listed: %s.", n_empty, reading->n_rois,
                    names);
+}
+
+static void report_refused(const struct reading *reading)
+{
+    char names[300] = "";
+    size_t n_refused = 0;
+    for (size_t i = 0; i < reading->n_rois; i++)
+        if (reading->rois[i].is_refused) {
+            add_name(names, sizeof names, reading->rois[i].roi.name);
+            n_refused++;
+        }
+    if (n_refused > 0)
+        report_add(reading->report, REPORT_ERROR, "region.contours-refused", reading->where,
+                   "%zu regions were left out, as the contours of the file would be more than %d or have more than %d "
+                   "points: %s.",
+                   n_refused, RTSTRUCT_MAX_CONTOURS, RTSTRUCT_MAX_POINTS, names);
 }
 
 static void find_references(struct rtstruct *set, const struct dicom_item *root, char *frame_uid, size_t frame_size)
@@ -326,19 +361,31 @@ static void find_references(struct rtstruct *set, const struct dicom_item *root,
         dicom_text(root, FRAME_UID, frame_uid, frame_size);
 }
 
-/* Moves the regions that were read into the set. */
+/* Moves the regions that were read into the set, up to the limit; reports the others. */
 static struct rtstruct *made_set(struct reading *reading, struct rtstruct *set, struct error *err)
 {
-    set->rois = mem_array(reading->n_rois, sizeof *set->rois, UINT64_MAX, err);
+    char names[300] = "";
+    size_t n_left = reading->n_beyond;
+    size_t most = reading->n_rois < RTSTRUCT_MAX_ROIS ? reading->n_rois : RTSTRUCT_MAX_ROIS;
+    set->rois = mem_array(most, sizeof *set->rois, UINT64_MAX, err);
     if (!set->rois)
         return NULL;
     for (size_t i = 0; i < reading->n_rois; i++) {
         struct rtstruct_roi *roi = &reading->rois[i].roi;
         if (roi->contours.n_contours == 0)
             continue;
+        if (set->n_rois == most) {
+            add_name(names, sizeof names, roi->name);
+            n_left++;
+            continue;
+        }
         set->rois[set->n_rois++] = *roi;
         roi->contours = (struct contour_set){ 0 };
     }
+    if (n_left > 0)
+        report_add(reading->report, REPORT_ERROR, "region.too-many", reading->where,
+                   "Of its regions the first %d with contours are read; %zu were left out: %s.", RTSTRUCT_MAX_ROIS,
+                   n_left, names[0] ? names : "with numbers that were not looked at");
     return set;
 }
 
@@ -359,14 +406,20 @@ struct rtstruct *rtstruct_read(const struct dicom_file *file, const char *where,
     }
     dicom_numbers_report(file, CONTOUR_DATA, where, report); /* contour data is counted separately */
     struct reading reading = { .file = file, .where = where, .report = report };
-    reading.rois = mem_new(RTSTRUCT_MAX_ROIS * sizeof *reading.rois);
+    size_t n_described = dicom_n_items(root, ROI_SEQUENCE) + dicom_n_items(root, ROI_CONTOUR_SEQUENCE);
+    reading.most_rois = n_described < RTSTRUCT_MAX_DESCRIBED ? n_described : RTSTRUCT_MAX_DESCRIBED;
+    reading.rois = mem_array(reading.most_rois, sizeof *reading.rois, UINT64_MAX, err);
+    if (!reading.rois)
+        return NULL;
     struct rtstruct *set = mem_new(sizeof *set), *made = NULL;
     find_references(set, root, frame_uid, sizeof frame_uid);
-    if (read_names(&reading, frame_uid, err) && read_all_contours(&reading, err)) {
+    read_names(&reading, frame_uid);
+    if (read_all_contours(&reading, err)) {
         read_kinds(&reading);
         for (size_t i = 0; i < reading.n_rois; i++)
             report_roi(&reading, &reading.rois[i]);
         report_empty(&reading);
+        report_refused(&reading);
         made = made_set(&reading, set, err);
     }
     for (size_t i = 0; i < reading.n_rois; i++)

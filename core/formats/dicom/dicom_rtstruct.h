@@ -6,9 +6,10 @@
 #include "core/report/report.h"
 
 enum {
-    RTSTRUCT_MAX_ROIS = REGION_MAX, /* more are an error */
-    RTSTRUCT_MAX_POINTS = 10000000, /* per file; more are an error */
-    RTSTRUCT_MAX_CONTOURS = 1000000 /* per file; more are an error */
+    RTSTRUCT_MAX_ROIS = REGION_MAX, /* with contours; further ones are reported and left out */
+    RTSTRUCT_MAX_DESCRIBED = 8192,  /* with or without contours; likewise */
+    RTSTRUCT_MAX_POINTS = 10000000, /* per file; a region that would exceed it is reported and left out */
+    RTSTRUCT_MAX_CONTOURS = 1000000 /* per file; likewise */
 };
 
 struct rtstruct_roi {
@@ -33,7 +34,7 @@ struct rtstruct {
  * POINT and OPEN contours are reported; a file without any region to fill has n_rois 0.
  *
  *   where   name of the file, for report and errors
- *   errors  ERROR_UNSUPPORTED another kind of object; ERROR_FORMAT no ROI sequence; ERROR_LIMIT; ERROR_MEMORY
+ *   errors  ERROR_UNSUPPORTED another kind of object; ERROR_FORMAT no ROI sequence; ERROR_MEMORY
  *   thread  any
  *   source  DICOM PS3.3 C.8.8.5 (structure set) */
 NODISCARD struct rtstruct *rtstruct_read(const struct dicom_file *file, const char *where, struct report *report,

@@ -35,6 +35,7 @@ struct segment {
     int64_t number;
     struct label_name name; /* without its label value */
     size_t n_frames;
+    uint32_t box; /* of the grid */
 };
 
 struct reading {
@@ -52,7 +53,9 @@ struct reading {
     uint8_t *cells;             /* fractional: one frame */
     struct dicom_pixels pixels; /* of a fractional segmentation */
     struct dicom_coded coded;
-    size_t n_repeated; /* frames at a plane where their segment already has one */
+    size_t n_repeated;                       /* frames at a plane where their segment already has one */
+    uint32_t layer_boxes[REGION_MAX_LAYERS]; /* the box of each layer */
+    uint64_t layer_voxels;                   /* of all layers */
 };
 
 /* ---- segments --------------------------------------------------------------------------------------------------- */
@@ -120,9 +123,9 @@ static bool read_segments(struct reading *reading, struct error *err)
     size_t n = dicom_n_items(reading->root, SEGMENT_SEQUENCE);
     if (n == 0)
         return error_set(err, ERROR_FORMAT, "%s: no Segment Sequence (0062,0002)", reading->where);
-    if (n > DICOM_SEG_MAX_SEGMENTS)
-        return error_set(err, ERROR_LIMIT, "%s: %zu segments; at most %d are read", reading->where, n,
-                         DICOM_SEG_MAX_SEGMENTS);
+    if (n > DICOM_SEG_MAX_DESCRIBED)
+        return error_set(err, ERROR_LIMIT, "%s: %zu segments; at most %d are looked at", reading->where, n,
+                         DICOM_SEG_MAX_DESCRIBED);
     reading->segments = mem_array(n, sizeof *reading->segments, UINT64_MAX, err);
     if (!reading->segments)
         return false;
@@ -251,12 +254,13 @@ static void add_cells(const struct reading *reading, const uint8_t *cells, uint3
 static bool add_frame(struct reading *reading, uint32_t frame, struct mask *mask, struct error *err)
 {
     const struct seg_grid *grid = &reading->grid;
+    uint32_t k = grid->frames[frame].plane - grid->boxes[grid->frames[frame].box].low_k;
     if (reading->is_fractional && !dicom_pixels_read(reading->file, frame, reading->cells, err))
         return false;
     if (reading->is_fractional)
         dicom_coded_count(&reading->coded, reading->file, &reading->pixels);
     for (uint32_t y = 0; y < grid->rows; y++) {
-        uint64_t *row = mask->bits + ((size_t)grid->frames[frame].plane * grid->rows + y) * mask->words;
+        uint64_t *row = mask->bits + ((size_t)k * grid->rows + y) * mask->words;
         if (reading->is_fractional)
             add_cells(reading, reading->cells + (size_t)y * grid->columns, grid->columns, row);
         else
@@ -270,17 +274,24 @@ static bool add_frame(struct reading *reading, uint32_t frame, struct mask *mask
 static struct mask *read_mask(struct reading *reading, const struct segment *segment, struct error *err)
 {
     const struct seg_grid *grid = &reading->grid;
-    struct mask *mask = mask_create_empty(grid->grid.size, &grid->grid.lps_mm_from_ijk, err);
-    uint32_t low_k = grid->grid.size[2], end_k = 0; /* extent of the segment; the rest of the mask is not looked at */
-    bool *has_plane = mask ? mem_array(grid->grid.size[2], sizeof *has_plane, UINT32_MAX, err) : NULL,
+    const struct seg_box *box = &grid->boxes[segment->box];
+    if (grid_n_voxels(&box->grid) > DICOM_SEG_MAX_VOXELS) {
+        error_set(err, ERROR_LIMIT, "its planes take %u x %u x %u voxels; at most %llu are read", box->grid.size[0],
+                  box->grid.size[1], box->grid.size[2], (unsigned long long)DICOM_SEG_MAX_VOXELS);
+        return NULL;
+    }
+    struct mask *mask = mask_create_empty(box->grid.size, &box->grid.lps_mm_from_ijk, err);
+    uint32_t low_k = box->grid.size[2], end_k = 0; /* extent of the segment; the rest of the mask is not looked at */
+    bool *has_plane = mask ? mem_array(box->grid.size[2], sizeof *has_plane, UINT32_MAX, err) : NULL,
          is_read = has_plane != NULL;
     for (uint32_t f = 0; is_read && f < grid->n_frames; f++) {
         if (!grid->frames[f].is_used || grid->frames[f].segment != segment->number)
             continue;
-        reading->n_repeated += has_plane[grid->frames[f].plane];
-        has_plane[grid->frames[f].plane] = true;
-        low_k = grid->frames[f].plane < low_k ? grid->frames[f].plane : low_k;
-        end_k = grid->frames[f].plane >= end_k ? grid->frames[f].plane + 1 : end_k;
+        uint32_t k = grid->frames[f].plane - box->low_k;
+        reading->n_repeated += has_plane[k];
+        has_plane[k] = true;
+        low_k = k < low_k ? k : low_k;
+        end_k = k >= end_k ? k + 1 : end_k;
         is_read = add_frame(reading, f, mask, err);
     }
     free(has_plane);
@@ -304,62 +315,112 @@ static bool add_name(struct label_names *names, const struct label_name *name, u
     return true;
 }
 
-/* Adds the mask to the first layer that it does not overlap. */
-static bool add_mask(const struct reading *reading, const struct mask *mask, const struct label_name *name,
+/* Adds the mask to the first layer of its box that it does not overlap. */
+static bool add_mask(struct reading *reading, const struct mask *mask, const struct segment *segment,
                      struct nrrd_layers *layers, struct error *err)
 {
+    const uint64_t n_voxels = grid_n_voxels(&reading->grid.boxes[segment->box].grid);
     size_t at = 0;
-    while (at < layers->n && (layers->names[at].n >= UINT8_MAX || !mask_layer_is_free(mask, layers->volumes[at])))
+    while (at < layers->n && (reading->layer_boxes[at] != segment->box || layers->names[at].n >= UINT8_MAX ||
+                              !mask_layer_is_free(mask, layers->volumes[at])))
         at++;
     if (at < layers->n) {
         uint16_t value = (uint16_t)(layers->names[at].n + 1);
         mask_layer_put(mask, layers->volumes[at], value);
-        return add_name(&layers->names[at], name, value, err);
+        return add_name(&layers->names[at], &segment->name, value, err);
     }
-    if (at == REGION_MAX_LAYERS || (at + 1) * (uint64_t)grid_n_voxels(&reading->grid.grid) > VOLUME_MAX_BYTES)
+    if (at == REGION_MAX_LAYERS || reading->layer_voxels + n_voxels > VOLUME_MAX_BYTES)
         return error_set(err, ERROR_LIMIT,
-                         "%s: its segments overlap so much that more than %zu layers of labels would be needed",
-                         reading->where, at);
+                         "its segments overlap so much that more than %zu layers of labels would be "
+                         "needed",
+                         at);
     layers->volumes[at] = mask_layer_create(mask, err);
     if (!layers->volumes[at])
         return false;
+    reading->layer_boxes[at] = segment->box;
+    reading->layer_voxels += n_voxels;
     layers->n++;
-    return add_name(&layers->names[at], name, 1, err);
+    return add_name(&layers->names[at], &segment->name, 1, err);
 }
 
-static bool fill_layers(struct reading *reading, const char *only, struct nrrd_layers *layers, struct error *err)
+/* Names for a line of the report: as many as fit. */
+struct names {
+    char text[200];
+    size_t n;
+};
+
+static void put_name(struct names *names, const char *name)
 {
-    size_t n_empty = 0, n_wanted = 0;
-    char empty[200] = "";
-    bool is_filled = true;
-    for (size_t i = 0; is_filled && i < reading->n_segments; i++) {
-        const struct segment *segment = &reading->segments[i];
-        if (only[0] && !text_equal(only, segment->name.name))
-            continue;
-        n_wanted++;
-        struct mask *mask = segment->n_frames > 0 ? read_mask(reading, segment, err) : NULL;
-        if (segment->n_frames > 0 && !mask)
-            return false;
-        if (!mask || mask_count(mask) == 0) {
-            size_t length = strlen(empty);
-            snprintf(empty + length, sizeof empty - length, "%s%s", n_empty > 0 ? ", " : "", segment->name.name);
-            n_empty++;
-        } else {
-            is_filled = add_mask(reading, mask, &segment->name, layers, err);
-        }
-        mask_destroy(mask);
-    }
-    if (n_empty > 0)
+    size_t length = strlen(names->text);
+    snprintf(names->text + length, sizeof names->text - length, "%s%s", names->n > 0 ? ", " : "", name);
+    names->n++;
+}
+
+/* Reads a segment into the layers. One without a voxel is added to empty. */
+static bool fill_segment(struct reading *reading, const struct segment *segment, struct nrrd_layers *layers,
+                         struct names *empty, struct error *err)
+{
+    struct mask *mask = segment->n_frames > 0 ? read_mask(reading, segment, err) : NULL;
+    if (segment->n_frames > 0 && !mask)
+        return false;
+    bool has_voxel = mask && mask_count(mask) > 0, is_filled = true;
+    if (has_voxel)
+        is_filled = add_mask(reading, mask, segment, layers, err);
+    else
+        put_name(empty, segment->name.name);
+    mask_destroy(mask);
+    return is_filled;
+}
+
+static void report_filled(const struct reading *reading, const struct names *empty, const struct names *left,
+                          const char *why)
+{
+    if (empty->n > 0)
         report_add(reading->report, REPORT_WARNING, "region.unused-names", reading->where,
-                   "%zu of %zu segments have no voxel and are not listed: %s.", n_empty, reading->n_segments, empty);
+                   "%zu of %zu segments have no voxel and are not listed: %s.", empty->n, reading->n_segments,
+                   empty->text);
+    if (left->n > 0)
+        report_add(reading->report, REPORT_ERROR, "region.too-many", reading->where,
+                   "%zu of %zu segments were left out, as %s: %s.", left->n, reading->n_segments, why, left->text);
     if (reading->n_repeated > 0)
         report_add(reading->report, REPORT_WARNING, "image.slices-repeated", reading->where,
                    "%zu frames lie where another one of the same segment "
                    "does; both were taken together.",
                    reading->n_repeated);
-    if (only[0] && n_wanted == 0)
-        return error_set(err, ERROR_NOT_FOUND, "%s: no segment is called \"%s\"", reading->where, only);
-    return is_filled;
+}
+
+/* Fills all wanted segments; those beyond a limit are left out and reported. */
+static bool fill_layers(struct reading *reading, const char *only, struct nrrd_layers *layers, struct error *err)
+{
+    struct names empty = { "", 0 }, left = { "", 0 };
+    struct error first = { 0 };
+    size_t n_wanted = 0, n_filled = 0;
+    for (size_t i = 0; i < reading->n_segments; i++) {
+        const struct segment *segment = &reading->segments[i];
+        struct error why = { 0 };
+        if (only[0] && !text_equal(only, segment->name.name))
+            continue;
+        n_wanted++;
+        bool has_room = n_filled < DICOM_SEG_MAX_SEGMENTS ||
+                        error_set(&why, ERROR_LIMIT, "at most %d are read", DICOM_SEG_MAX_SEGMENTS);
+        if (has_room && fill_segment(reading, segment, layers, &empty, &why)) {
+            n_filled = 0;
+            for (size_t l = 0; l < layers->n; l++)
+                n_filled += layers->names[l].n;
+            continue;
+        }
+        if (why.code != ERROR_LIMIT) {
+            if (err)
+                *err = why;
+            return false;
+        }
+        if (left.n == 0)
+            first = why;
+        put_name(&left, segment->name.name);
+    }
+    report_filled(reading, &empty, &left, first.text);
+    return !only[0] || n_wanted > 0 ||
+           error_set(err, ERROR_NOT_FOUND, "%s: no segment is called \"%s\"", reading->where, only);
 }
 
 /* Counts the frames of each segment; frames of unknown segments are reported and not used. */
@@ -385,6 +446,16 @@ static void assign_frames(struct reading *reading)
                    n_unknown, (long long)first_unknown);
 }
 
+static void find_boxes(struct reading *reading)
+{
+    for (uint32_t f = 0; f < reading->grid.n_frames; f++) {
+        const struct seg_frame *frame = &reading->grid.frames[f];
+        struct segment *segment = frame->is_used ? find_segment(reading, frame->segment) : NULL;
+        if (segment)
+            segment->box = frame->box;
+    }
+}
+
 bool dicom_seg_read(const struct dicom_file *file, const char *where, const char *only, struct nrrd_layers *layers,
                     struct report *report, struct error *err)
 {
@@ -400,7 +471,9 @@ bool dicom_seg_read(const struct dicom_file *file, const char *where, const char
                    seg_grid_find(&reading.grid, reading.root, where, report, err);
     if (is_read) {
         assign_frames(&reading);
-        is_read = fill_layers(&reading, only, layers, err);
+        is_read = seg_grid_find_boxes(&reading.grid, err);
+        find_boxes(&reading);
+        is_read = is_read && fill_layers(&reading, only, layers, err);
     }
     if (is_read && reading.is_fractional)
         dicom_coded_report(&reading.coded, file, &reading.pixels, where, report);
@@ -408,9 +481,9 @@ bool dicom_seg_read(const struct dicom_file *file, const char *where, const char
         const uint32_t *size = reading.grid.grid.size;
         report_add(report, REPORT_NOTE, "region.segments", where,
                    "%zu segments in %u frames (%s), on the frames' own grid of %u x %u x %u voxels; "
-                   "%zu layers of labels.",
+                   "%zu layers of labels in %zu boxes of it.",
                    reading.n_segments, reading.grid.n_frames, reading.is_fractional ? "FRACTIONAL" : "BINARY", size[0],
-                   size[1], size[2], layers->n);
+                   size[1], size[2], layers->n, reading.grid.n_boxes);
     } else {
         nrrd_layers_finish(layers);
     }
@@ -428,8 +501,10 @@ bool dicom_seg_measure(const struct dicom_file *file, uint64_t *n_voxels, size_t
         need_integer(&reading, ROWS, "rows", 1, DICOM_MAX_SIDE, &grid->rows, NULL) &&
         need_integer(&reading, COLUMNS, "columns", 1, DICOM_MAX_SIDE, &grid->columns, NULL) &&
         need_integer(&reading, N_FRAMES, "number of frames", 1, DICOM_SEG_MAX_FRAMES, &grid->n_frames, NULL) &&
-        seg_grid_find(grid, reading.root, "", NULL, NULL);
-    *n_voxels = is_found ? grid_n_voxels(&grid->grid) : 0;
+        seg_grid_find(grid, reading.root, "", NULL, NULL) && seg_grid_find_boxes(grid, NULL);
+    *n_voxels = 0;
+    for (size_t i = 0; is_found && i < grid->n_boxes; i++)
+        *n_voxels += grid_n_voxels(&grid->boxes[i].grid);
     *n_segments = dicom_n_items(reading.root, SEGMENT_SEQUENCE);
     free(grid->frames);
     return is_found;

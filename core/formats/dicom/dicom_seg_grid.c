@@ -14,7 +14,9 @@
 enum {
     MARGIN = 1
 }; /* empty planes at either end: writers omit empty frames, so the outermost frames are not the border of the scan */
-#define MOST_SHIFT 0.5 /* in pixels: how far a plane may lie beside the straight line through the planes */
+enum { LEAST_GAP = 8 }; /* planes without a frame that part two boxes; more where there would be too many boxes */
+#define FAR_APART 2.5   /* in slice thicknesses: frames are single slices of things far apart */
+#define MOST_SHIFT 0.5  /* in pixels: how far a plane may lie beside the straight line through the planes */
 
 struct placing {
     struct seg_grid *grid;
@@ -133,8 +135,13 @@ static bool find_pitch(const struct placing *placing, double *pitch_mm, double *
     *n_planes = 1;
     *pitch_mm = first->between_mm > 0 ? first->between_mm : first->thickness_mm > 0 ? first->thickness_mm : 1;
     if (n_places > 1) {
-        if (!(first->between_mm > 0 && worst_place(placing, first->between_mm) <= DICOM_EVEN &&
-              first->between_mm <= least * (1 + DICOM_EVEN))) {
+        bool is_far = least > FAR_APART * first->thickness_mm && first->thickness_mm > 0 &&
+                      worst_place(placing, first->thickness_mm) <= DICOM_EVEN;
+        bool is_given = first->between_mm > 0 && worst_place(placing, first->between_mm) <= DICOM_EVEN &&
+                        first->between_mm <= least * (1 + DICOM_EVEN);
+        if (!is_given && is_far) {
+            *pitch_mm = first->thickness_mm;
+        } else if (!is_given) {
             double n = floor(extent / least + 0.5);
             *pitch_mm = extent / n;
             if (worst_place(placing, *pitch_mm) > DICOM_EVEN)
@@ -144,10 +151,10 @@ static bool find_pitch(const struct placing *placing, double *pitch_mm, double *
                     placing->where, n_places, least, extent);
         }
         *n_planes = floor(extent / *pitch_mm + 0.5) + 1;
-        if (!(*n_planes + 2 * MARGIN <= VOLUME_MAX_SIDE && *n_planes <= 8.0 * (double)n_places + 64))
+        if (!(*n_planes + 2 * MARGIN <= VOLUME_MAX_SIDE))
             return error_set(err, ERROR_LIMIT,
-                             "%s: frames at %zu places, %g mm apart: %.0f planes, of which most would be empty",
-                             placing->where, n_places, *pitch_mm, *n_planes);
+                             "%s: frames at %zu places, %g mm apart: %.0f planes; at most %d are read", placing->where,
+                             n_places, *pitch_mm, *n_planes, VOLUME_MAX_SIDE - 2 * MARGIN);
     }
     report_pitch(placing, n_places, *pitch_mm, report);
     return true;
@@ -203,9 +210,6 @@ static bool make_grid(struct placing *placing, struct report *report, struct err
     if (!find_pitch(placing, &pitch_mm, &n_planes, report, err) || !find_step(placing, pitch_mm, &step, err))
         return false;
     uint32_t size[3] = { grid->columns, grid->rows, (uint32_t)n_planes + 2 * MARGIN };
-    if ((uint64_t)size[0] * size[1] * size[2] > DICOM_SEG_MAX_VOXELS)
-        return error_set(err, ERROR_LIMIT, "%s: %u x %u x %u voxels; at most %llu are read", placing->where, size[0],
-                         size[1], size[2], (unsigned long long)DICOM_SEG_MAX_VOXELS);
     if (!place_frames(placing, pitch_mm, n_planes, err))
         return false;
     const double *spacing_mm = placing->first.spacing_mm;
@@ -227,4 +231,103 @@ bool seg_grid_find(struct seg_grid *grid, const struct dicom_item *root, const c
     bool is_found = placing.slices && find_frames(&placing, root, report, err) && make_grid(&placing, report, err);
     free(placing.slices);
     return is_found;
+}
+
+/* ---- boxes ------------------------------------------------------------------------------------------------------ */
+
+/* The planes of one segment. */
+struct extent {
+    int64_t segment;
+    uint32_t low_k, end_k, box;
+};
+
+static int by_segment(const void *a, const void *b)
+{
+    const struct extent *one = a, *other = b;
+    return one->segment < other->segment ? -1 : one->segment > other->segment;
+}
+
+static int by_plane(const void *a, const void *b)
+{
+    const struct extent *one = a, *other = b;
+    return one->low_k < other->low_k ? -1 : one->low_k > other->low_k;
+}
+
+/* One extent per segment, sorted by segment. Returns how many. */
+static size_t find_extents(const struct seg_grid *grid, struct extent *extents)
+{
+    size_t n = 0, n_segments = 0;
+    for (uint32_t f = 0; f < grid->n_frames; f++) {
+        const struct seg_frame *frame = &grid->frames[f];
+        if (frame->is_used)
+            extents[n++] = (struct extent){ frame->segment, frame->plane, frame->plane + 1, 0 };
+    }
+    if (n > 0)
+        qsort(extents, n, sizeof *extents, by_segment);
+    for (size_t i = 0; i < n; i++) {
+        struct extent *last = n_segments > 0 ? &extents[n_segments - 1] : NULL;
+        if (!last || last->segment != extents[i].segment) {
+            extents[n_segments++] = extents[i];
+            continue;
+        }
+        last->low_k = extents[i].low_k < last->low_k ? extents[i].low_k : last->low_k;
+        last->end_k = extents[i].end_k > last->end_k ? extents[i].end_k : last->end_k;
+    }
+    return n_segments;
+}
+
+/* Numbers the boxes of extents sorted by plane; a gap of gap planes or more begins a new one. Returns how many. */
+static size_t number_boxes(struct extent *extents, size_t n, uint32_t gap)
+{
+    uint32_t end_k = 0;
+    size_t n_boxes = 0;
+    for (size_t i = 0; i < n; i++) {
+        n_boxes += n_boxes == 0 || extents[i].low_k >= end_k + gap;
+        end_k = extents[i].end_k > end_k ? extents[i].end_k : end_k;
+        extents[i].box = (uint32_t)n_boxes - 1;
+    }
+    return n_boxes;
+}
+
+static bool make_box(struct seg_box *box, const struct grid *whole, struct error *err)
+{
+    box->low_k -= MARGIN; /* every frame lies MARGIN or more inside */
+    box->end_k += MARGIN;
+    uint32_t size[3] = { whole->size[0], whole->size[1], box->end_k - box->low_k };
+    struct affine map = whole->lps_mm_from_ijk;
+    map.origin = vec3_add(map.origin, vec3_scale(map.columns[2], box->low_k));
+    return grid_init(&box->grid, size, &map, err);
+}
+
+bool seg_grid_find_boxes(struct seg_grid *grid, struct error *err)
+{
+    struct extent *extents = mem_array(grid->n_frames, sizeof *extents, UINT32_MAX, err);
+    if (!extents)
+        return false;
+    size_t n = find_extents(grid, extents);
+    if (n > 0)
+        qsort(extents, n, sizeof *extents, by_plane);
+    grid->n_boxes = SEG_MAX_BOXES + 1;
+    for (uint32_t gap = LEAST_GAP; grid->n_boxes > SEG_MAX_BOXES; gap *= 2)
+        grid->n_boxes = number_boxes(extents, n, gap);
+    for (size_t i = 0; i < grid->n_boxes; i++)
+        grid->boxes[i] = (struct seg_box){ .low_k = UINT32_MAX };
+    for (size_t i = 0; i < n; i++) {
+        struct seg_box *box = &grid->boxes[extents[i].box];
+        box->low_k = extents[i].low_k < box->low_k ? extents[i].low_k : box->low_k;
+        box->end_k = extents[i].end_k > box->end_k ? extents[i].end_k : box->end_k;
+    }
+    if (n > 0)
+        qsort(extents, n, sizeof *extents, by_segment);
+    for (uint32_t f = 0; f < grid->n_frames; f++) {
+        const struct extent wanted = { .segment = grid->frames[f].segment };
+        if (grid->frames[f].is_used)
+            grid->frames[f].box =
+                ((const struct extent *)bsearch(&wanted, extents, n, sizeof *extents, by_segment))->box;
+    }
+    free(extents);
+    bool is_made = true;
+    for (size_t i = 0; is_made && i < grid->n_boxes; i++)
+        is_made = make_box(&grid->boxes[i], &grid->grid, err);
+    return is_made;
 }
