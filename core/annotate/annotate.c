@@ -13,7 +13,7 @@
 #define LINE_PX 1.5
 enum { MIN_TEXT_PX = 12, MAX_TEXT_PX = 24, COLUMNS = 70, HALO_PX = 2 };
 static const uint8_t ink[3] = { 255, 255, 255 }, halo[3] = { 0, 0, 0 }, print[3] = { 24, 28, 33 },
-                     print_pale[3] = { 92, 99, 106 }, chip_edge[3] = { 120, 126, 133 };
+                     print_pale[3] = { 92, 99, 106 }, chip_edge[3] = { 120, 126, 133 }, amber[3] = { 255, 191, 71 };
 
 struct annotation_item *annotation_add(struct annotations *annotations, enum annotation_row row)
 {
@@ -48,6 +48,7 @@ static void blend(uint8_t *pixel, const uint8_t rgb[3], int coverage)
 struct canvas {
     struct image *image;
     int width_px, height_px;
+    const uint8_t *ink; /* of words and lines */
 };
 
 /* Paints the coverage, whose top left is at (left, top), with a dark rim of HALO_PX around it. */
@@ -69,7 +70,7 @@ static void paint_with_halo(const struct canvas *canvas, const struct coverage *
                 }
             uint8_t *pixel = &canvas->image->rgba[4 * ((size_t)py * (size_t)canvas->image->width_px + (size_t)px)];
             blend(pixel, halo, around * 3 / 4);
-            blend(pixel, ink, coverage->pixels[(size_t)y * (size_t)width + (size_t)x]);
+            blend(pixel, canvas->ink, coverage->pixels[(size_t)y * (size_t)width + (size_t)x]);
         }
 }
 
@@ -368,7 +369,7 @@ struct image *annotate_image(const struct image *image, const struct annotations
     int caption_px = caption.y_px < ANNOTATE_MAX_CAPTION_PX ? caption.y_px : ANNOTATE_MAX_CAPTION_PX;
     if (!(out = copy_onto_white(image, width_px, image->height_px + caption_px, err)))
         goto done;
-    const struct canvas canvas = { out, image->width_px, image->height_px };
+    const struct canvas canvas = { out, image->width_px, image->height_px, ink };
     is_done = paint_on_picture(&canvas, caption.fonts[0], annotations, err) &&
               paint_caption(&caption, annotations, caption_px, out, image->height_px, err);
 done:
@@ -378,4 +379,14 @@ done:
         return out;
     image_destroy(out);
     return NULL;
+}
+
+bool annotate_mark(struct image *image, const char *words, struct error *err)
+{
+    const int size_px = annotate_text_px(image->width_px) * 3 / 2;
+    const struct canvas canvas = { image, image->width_px, image->height_px, amber };
+    struct font *font = font_create(size_px, err);
+    bool is_done = font && paint_word(&canvas, font, words, size_px / 2 + HALO_PX, 1, size_px, err);
+    font_destroy(font);
+    return is_done;
 }

@@ -75,3 +75,7 @@ int annotate_text_px(int width_px);
  */
 NODISCARD struct image *annotate_image(const struct image *image, const struct annotations *annotations,
                                        struct error *err);
+
+/* Paints words in amber with a dark rim at the image's top left, larger than other words on a picture: for screens that
+ * draw nothing themselves. On failure the image is unchanged or painted in part. errors ERROR_MEMORY thread any */
+NODISCARD bool annotate_mark(struct image *image, const char *words, struct error *err);

@@ -106,6 +106,7 @@ static void picture_destroy(struct picture *picture)
     free(picture->frame.picture.bytes);
     for (int i = 0; i < IMAGE_N_REDUCED; i++)
         free(picture->frame.reduced[i].bytes);
+    free(picture->frame.marked.bytes);
     free(picture);
 }
 
@@ -462,13 +463,27 @@ static void compress_reduced(struct encoder *encoder, struct picture *picture)
     }
 }
 
+/* Paints on the image itself, which nobody needs any more. */
+static void compress_marked(struct encoder *encoder, struct picture *picture)
+{
+    const struct pipeline_request *request = &picture->request;
+    struct error err = { 0 };
+    if (!request->mark || request->annotation)
+        return;
+    if (!annotate_mark(picture->image, request->mark, &err) ||
+        !encode_image(encoder, picture->image, &request->encode, &picture->frame.marked, &err))
+        log_warn("a picture is not made with the words \"%s\": %s", request->mark, err.text);
+}
+
 static void encode(struct pipeline *pipeline, struct encoder *encoder, struct picture *picture)
 {
     struct pipeline_frame *frame = &picture->frame;
     if (picture->image) {
         int64_t start_us = clock_now_us();
-        if (compress(encoder, picture))
+        if (compress(encoder, picture)) {
             compress_reduced(encoder, picture);
+            compress_marked(encoder, picture);
+        }
         frame->encode_us = clock_now_us() - start_us;
     }
     image_destroy(picture->image);
@@ -482,6 +497,7 @@ static void encode(struct pipeline *pipeline, struct encoder *encoder, struct pi
     pipeline->callbacks.deliver(pipeline->callbacks.context, frame);
     frame->picture = (struct encoded){ 0 }; /* the receiver's now */
     memset(frame->reduced, 0, sizeof frame->reduced);
+    frame->marked = (struct encoded){ 0 };
 }
 
 static void *encode_main(void *argument)

@@ -27,6 +27,7 @@ struct pipeline_request {
     struct encode_options encode;           /* of the reduced pictures, too */
     bool is_reduced[IMAGE_N_REDUCED];       /* the reduced pictures that are wanted; of an annotated one none is made */
     struct pipeline_annotation *annotation; /* owned, taken with the snapshot; NULL: a plain picture */
+    const char *mark; /* words for a further copy of the picture (annotate_mark); a constant; NULL: no such copy */
 };
 
 struct pipeline_frame {
@@ -34,6 +35,7 @@ struct pipeline_frame {
     struct error error;                      /* ERROR_NONE: there is a picture */
     struct encoded picture;                  /* the receiver's to free */
     struct encoded reduced[IMAGE_N_REDUCED]; /* likewise; without bytes: not wanted, or no memory beside the picture */
+    struct encoded marked;                   /* likewise, of the whole size: with request.mark */
     int width_px, height_px;                 /* as drawn; the caption of an annotated picture comes below */
     struct camera camera;
     struct render_timing timing;

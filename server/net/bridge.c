@@ -26,39 +26,36 @@ static void unlink_request(struct picture_request *request)
 static bool read_frame(const struct picture_request *request, const struct packet *answer, struct frame_header *header)
 {
     const struct packet_frame *frame = &answer->frame;
-    if (answer->type != PACKET_FRAME || frame->half_bytes + frame->quarter_bytes >= (int64_t)answer->n_blob)
+    const int64_t n_more = frame->half_bytes + frame->quarter_bytes + frame->marked_bytes; /* each at most 81 MiB */
+    if (answer->type != PACKET_FRAME || n_more >= (int64_t)answer->n_blob)
         return false;
-    *header = (struct frame_header){
-        .codec = 1,
-        .flags = request->flags,
-        .quality = request->quality,
-        .scale_percent = request->scale_percent,
-        .scene_revision = request->is_override ? request->scene_revision : (uint32_t)frame->scene_revision,
-        .width_px = (uint16_t)frame->width_px,
-        .height_px = (uint16_t)frame->height_px,
-        .render_us = (uint32_t)frame->render_us,
-        .encode_us = (uint32_t)frame->encode_us,
-        .payload_bytes = (uint32_t)(answer->n_blob - (size_t)frame->half_bytes - (size_t)frame->quarter_bytes),
-        .pixels_per_mm_1000 = (uint32_t)llround(frame->pixels_per_mm * 1000)
-    };
+    *header = (struct frame_header){ .codec = 1,
+                                     .flags = request->flags,
+                                     .quality = request->quality,
+                                     .scale_percent = request->scale_percent,
+                                     .scene_revision = request->is_override ? request->scene_revision
+                                                                            : (uint32_t)frame->scene_revision,
+                                     .width_px = (uint16_t)frame->width_px,
+                                     .height_px = (uint16_t)frame->height_px,
+                                     .render_us = (uint32_t)frame->render_us,
+                                     .encode_us = (uint32_t)frame->encode_us,
+                                     .payload_bytes = (uint32_t)(answer->n_blob - (size_t)n_more),
+                                     .pixels_per_mm_1000 = (uint32_t)llround(frame->pixels_per_mm * 1000) };
     memcpy(header->clip_from_lps_mm, frame->clip_from_lps_mm, sizeof header->clip_from_lps_mm);
     if (frame->is_coarse)
         header->flags |= FRAME_COARSE; /* the renderer reports whether it did draw coarse meshes */
     return true;
 }
 
-/* The picture reduced by divisor, whose n bytes are copied. NULL: there is none, or no memory for it. */
-static struct room_picture *reduced_picture(const struct frame_header *header, int divisor, const uint8_t *bytes,
-                                            size_t n)
+/* A further picture with this header, whose n bytes are copied. NULL: there is none, or no memory for it. */
+static struct room_picture *further_picture(struct frame_header header, const uint8_t *bytes, size_t n)
 {
     uint8_t *copy = n ? malloc(n) : NULL;
     if (!copy)
         return NULL;
     memcpy(copy, bytes, n);
     struct room_picture *picture = mem_new(sizeof *picture);
-    *picture = (struct room_picture){
-        .header = frame_header_reduced(header, divisor), .bytes = copy, .n_bytes = n, .references = 1
-    };
+    *picture = (struct room_picture){ .header = header, .bytes = copy, .n_bytes = n, .references = 1 };
     picture->header.payload_bytes = (uint32_t)n;
     return picture;
 }
@@ -75,7 +72,10 @@ static struct room_picture *take_picture(struct packet *answer, const struct fra
                                       .references = 1,
                                       .missing = missing_read(answer->json) };
     for (int i = 0; i < IMAGE_N_REDUCED; at += n[i++])
-        picture->reduced[i] = reduced_picture(header, image_divisor(i), at, n[i]);
+        picture->reduced[i] = further_picture(frame_header_reduced(header, image_divisor(i)), at, n[i]);
+    picture->marked = further_picture(*header, at, (size_t)answer->frame.marked_bytes);
+    if (picture->marked && picture->missing)
+        picture->marked->missing = cJSON_Duplicate(picture->missing, true);
     answer->blob = NULL;
     return picture;
 }
@@ -150,6 +150,7 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
     render->acted = request->is_acted;
     render->half = request->is_reduced[0];
     render->quarter = request->is_reduced[1];
+    render->marked = request->is_marked;
 
     struct picture_request *sent = mem_new(sizeof *sent);
     *sent = (struct picture_request){ .next = entry->requests,

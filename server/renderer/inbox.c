@@ -25,6 +25,7 @@ void inbox_event_destroy(struct inbox_event *event)
     free(event->frame.picture.bytes);
     for (int i = 0; i < IMAGE_N_REDUCED; i++)
         free(event->frame.reduced[i].bytes);
+    free(event->frame.marked.bytes);
     cJSON_Delete(event->body);
     free(event->blob);
     waiting_request_destroy(event->waiting);

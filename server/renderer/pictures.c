@@ -136,6 +136,13 @@ static struct pipeline_annotation *make_annotation(const struct snapshot *snapsh
     return annotation;
 }
 
+/* True if the picture is of a draft: server/room/display.c waits for a marked picture by the same rule. */
+static bool is_of_draft(const struct snapshot *snapshot)
+{
+    const struct scene_beam_draft *draft = &snapshot->scene.beam.draft;
+    return draft->enabled && !(draft->shows_planned && snapshot->plan->n_beams > 0);
+}
+
 void pictures_start(struct pictures *pictures, const struct packet_render *render)
 {
     struct problem problem;
@@ -161,6 +168,7 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
                     render->still },
         .encode = { is_png ? ENCODE_PNG : ENCODE_JPEG, (int)render->quality, render->full_color },
         .is_reduced = { render->half, render->quarter },
+        .mark = render->marked && is_of_draft(snapshot) ? "Draft beam" : NULL,
     };
     struct picture_request *request = find_request(pictures, NO_REQUEST);
     if (!request) {
@@ -227,32 +235,39 @@ static cJSON *missing_of(const struct picture_request *request)
     return json;
 }
 
-/* The picture and the reduced ones behind each other. NULL: no memory, or there is none reduced. The caller's. */
-static uint8_t *join_reduced(const struct pipeline_frame *frame, size_t *n_bytes)
+static void append(uint8_t *bytes, size_t *n_bytes, const struct encoded *picture)
+{
+    if (picture->n_bytes)
+        memcpy(bytes + *n_bytes, picture->bytes, picture->n_bytes);
+    *n_bytes += picture->n_bytes;
+}
+
+/* The picture, the reduced ones and the marked one behind each other. NULL: no memory, or there is only the picture.
+ * The caller's. */
+static uint8_t *join_all(const struct pipeline_frame *frame, size_t *n_bytes)
 {
     struct error err = { 0 };
-    size_t n = frame->picture.n_bytes;
+    size_t n = frame->picture.n_bytes + frame->marked.n_bytes;
     for (int i = 0; i < IMAGE_N_REDUCED; i++)
         n += frame->reduced[i].n_bytes;
     uint8_t *bytes = n > frame->picture.n_bytes ? mem_array(n, 1, UINT64_MAX, &err) : NULL;
     if (!bytes)
         return NULL;
-    memcpy(bytes, frame->picture.bytes, frame->picture.n_bytes);
-    *n_bytes = frame->picture.n_bytes;
-    for (int i = 0; i < IMAGE_N_REDUCED; *n_bytes += frame->reduced[i++].n_bytes)
-        if (frame->reduced[i].n_bytes)
-            memcpy(bytes + *n_bytes, frame->reduced[i].bytes, frame->reduced[i].n_bytes);
+    append(bytes, n_bytes, &frame->picture);
+    for (int i = 0; i < IMAGE_N_REDUCED; i++)
+        append(bytes, n_bytes, &frame->reduced[i]);
+    append(bytes, n_bytes, &frame->marked);
     return bytes;
 }
 
-static void send_with_reduced(const struct pictures *pictures, struct packet *packet,
-                              const struct pipeline_frame *frame)
+static void send_all(const struct pictures *pictures, struct packet *packet, const struct pipeline_frame *frame)
 {
     size_t n_bytes = 0;
-    uint8_t *bytes = join_reduced(frame, &n_bytes);
+    uint8_t *bytes = join_all(frame, &n_bytes);
     if (bytes) {
         packet->frame.half_bytes = (int64_t)frame->reduced[0].n_bytes;
         packet->frame.quarter_bytes = (int64_t)frame->reduced[1].n_bytes;
+        packet->frame.marked_bytes = (int64_t)frame->marked.n_bytes;
         link_send(pictures->options.link, packet, bytes, n_bytes);
     } else {
         link_send(pictures->options.link, packet, frame->picture.bytes, frame->picture.n_bytes);
@@ -289,6 +304,6 @@ void pictures_send_frame(struct pictures *pictures, const struct pipeline_frame 
     fields->n_triangles = (int64_t)frame->timing.n_triangles;
     fields->missing = missing;
     end_request(request);
-    send_with_reduced(pictures, &packet, frame);
+    send_all(pictures, &packet, frame);
     cJSON_Delete(missing);
 }

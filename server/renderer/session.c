@@ -162,6 +162,7 @@ static void frame_encoded(void *context, struct pipeline_frame *frame)
     struct inbox_event event = { .type = INBOX_FRAME, .frame = *frame };
     frame->picture = (struct encoded){ 0 };
     memset(frame->reduced, 0, sizeof frame->reduced);
+    frame->marked = (struct encoded){ 0 };
     inbox_put(context, &event);
 }
 

@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "server/room/stream.h"
+
 /* A member who takes pictures acknowledges within this time; beyond it, all who look have stalled. */
 static const int64_t DISPLAY_ALONE_US = 2000000;
 
@@ -27,10 +29,48 @@ bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_
     return false;
 }
 
-void displays_send(const struct stream *stream)
+/* True if pictures of the stream are of a draft: as server/renderer/pictures.c has it, whose pictures then are marked.
+ */
+static bool shows_draft(const struct room *room, const struct stream *stream)
 {
-    for (const struct room_display *display = stream->displays; display; display = display->next)
-        display->callbacks.picture(display->callbacks.context, stream->latest, scene_kind_words.words[stream->kind]);
+    const cJSON *scene = stream->scene ? stream->scene : room->scene,
+                *beam = cJSON_GetObjectItemCaseSensitive(scene, "beam"),
+                *draft = cJSON_GetObjectItemCaseSensitive(beam, "draft");
+    const bool has_planned = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(room->plan, "beams")) > 0;
+    return json_flag(draft, "enabled", false) && !(has_planned && json_flag(draft, "shows_planned", false));
+}
+
+/* The stream's latest picture as screens are given it; NULL: there is none yet, or it shows a draft without saying so.
+ */
+static struct room_picture *picture_for_displays(const struct room *room, const struct stream *stream)
+{
+    if (stream->latest && stream->latest->marked)
+        return stream->latest->marked;
+    return shows_draft(room, stream) ? NULL : stream->latest;
+}
+
+static void give(const struct room_display *display, struct room_picture *picture)
+{
+    display->callbacks.picture(display->callbacks.context, picture, scene_kind_words.words[display->stream->kind]);
+}
+
+void displays_send(const struct room *room, const struct stream *stream)
+{
+    struct room_picture *picture = stream->displays ? picture_for_displays(room, stream) : NULL;
+    for (const struct room_display *display = stream->displays; picture && display; display = display->next)
+        give(display, picture);
+}
+
+void display_show(struct room *room, struct room_display *display, struct stream *stream)
+{
+    display->next = stream->displays;
+    display->stream = stream;
+    stream->displays = display;
+    struct room_picture *picture = picture_for_displays(room, stream);
+    if (picture)
+        give(display, picture);
+    else if (shows_draft(room, stream))
+        stream_again(room, stream); /* what is there or on its way was requested without the words */
 }
 
 static void tell_late(const struct stream *stream, bool is_late)
@@ -48,7 +88,9 @@ int64_t displays_tick(struct room *room)
     for (const struct stream *stream = room->streams; stream; stream = stream->next) {
         if (!stream->displays)
             continue;
-        const int64_t late_us = stream->behind_us ? stream->behind_us + DISPLAY_LATE_US : INT64_MAX;
+        int64_t late_us = stream->behind_us ? stream->behind_us + DISPLAY_LATE_US : INT64_MAX;
+        if (!stream->behind_us && stream->latest && !picture_for_displays(room, stream))
+            late_us = room->now_us; /* the words could not be painted */
         tell_late(stream, late_us <= room->now_us);
         if (late_us > room->now_us && late_us < due_us)
             due_us = late_us;

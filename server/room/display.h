@@ -24,8 +24,11 @@ enum { DISPLAY_LATE_US = 1000000 };
 bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_t now_us);
 /* When all members who look will have stalled, if they take no more pictures; INT64_MIN: nobody looks. */
 int64_t display_alone_us(const struct stream *stream);
-/* Gives the stream's latest picture to its displays. */
-void displays_send(const struct stream *stream);
+/* Gives the stream's latest picture to its displays. Of a scene with a draft they are given pictures with words for it
+ * alone: nothing else says so on a screen. */
+void displays_send(const struct room *room, const struct stream *stream);
+/* The display shows this stream from now on. */
+void display_show(struct room *room, struct room_display *display, struct stream *stream);
 /* Tells displays whether their picture is late; when the next may be. */
 int64_t displays_tick(struct room *room);
 /* The room's main view is another one: the displays that show it go over. */

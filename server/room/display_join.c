@@ -40,15 +40,6 @@ static struct room_display **find_main(struct stream *stream)
     return at;
 }
 
-static void show(struct room_display *display, struct stream *stream)
-{
-    display->next = stream->displays;
-    display->stream = stream;
-    stream->displays = display;
-    if (stream->latest)
-        display->callbacks.picture(display->callbacks.context, stream->latest, scene_kind_words.words[stream->kind]);
-}
-
 void displays_follow(struct room *room)
 {
     struct stream *stream = room->streams;
@@ -59,7 +50,7 @@ void displays_follow(struct room *room)
             continue;
         }
         *at = display->next;
-        show(display, room->main);
+        display_show(room, display, room->main);
         stream_left(room, stream);
         stream = room->streams; /* that one may be gone */
     }
@@ -126,7 +117,7 @@ struct room_display *room_display_add(struct room *room, const char *view,
         return NULL;
     struct room_display *display = mem_new(sizeof *display);
     *display = (struct room_display){ .room = room, .callbacks = *callbacks, .is_main = !view };
-    show(display, stream);
+    display_show(room, display, stream);
     (void)streams_request_due(room);
     return display;
 }

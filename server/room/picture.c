@@ -15,6 +15,7 @@ void room_picture_drop(struct room_picture *picture)
         return;
     for (int i = 0; i < IMAGE_N_REDUCED; i++)
         room_picture_drop(picture->reduced[i]); /* these have none */
+    room_picture_drop(picture->marked);
     free(picture->bytes);
     cJSON_Delete(picture->missing);
     free(picture);

@@ -68,6 +68,7 @@ struct room_render {
     bool is_still, full_color, coarse; /* coarse: coarse surfaces are good enough */
     bool is_acted;                     /* of the view in which a member acts: its pictures go first */
     bool is_reduced[IMAGE_N_REDUCED];  /* the reduced pictures that are wanted beside it (size_class.h) */
+    bool is_marked;                    /* also with the words for a draft, if the scene has one */
     const char *member;                /* id of the member whose own view it is; NULL: a shared view */
 };
 
@@ -81,6 +82,7 @@ struct room_picture {
                        NULL: none */
     struct room_picture *reduced[IMAGE_N_REDUCED]; /* owned: the same of a half and of a quarter of the size, without
                                                       missing; NULL: not made */
+    struct room_picture *marked; /* owned: the same, of the whole size, with the words for a draft; NULL: not made */
     atomic_int references;
 };
 

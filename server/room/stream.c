@@ -51,11 +51,15 @@ static void stream_reached(struct room *room, struct stream *stream)
 }
 
 /* The newest revision of the scene whose picture is the stream's latest: changes that do not reach it leave it as it
- * is.
- */
+ * is. */
 static uint32_t revision_held(const struct room *room, const struct stream *stream)
 {
     return stream->latest_version >= stream->scene_version ? room->revision : stream->latest->header.scene_revision;
+}
+
+void stream_again(struct room *room, struct stream *stream)
+{
+    stream_changed(room, stream);
 }
 
 static void destroy_unseen_obliques(struct room *room)
@@ -306,6 +310,7 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
                                   .full_color = is_still,
                                   .coarse = choice.coarse,
                                   .is_acted = stream->acted_us > 0 && room->now_us - stream->acted_us < acted_for_us,
+                                  .is_marked = stream->displays != NULL,
                                   .member = owner_of(stream) };
     size_classes_needed(room, stream, choice.scale_percent, is_still, render.is_reduced);
     room->counters.pictures_requested++;
@@ -435,7 +440,7 @@ static void send_to_subscribers(struct room *room, struct stream *stream)
             room->counters.frames_skipped++; /* the viewer gets the newest picture when its credit returns */
         stream_send_picture(room, view->member, view);
     }
-    displays_send(stream);
+    displays_send(room, stream);
 }
 
 static struct member_view *find_least_lagging(const struct stream *stream)

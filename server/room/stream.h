@@ -21,6 +21,8 @@ void stream_remove_viewer(struct room *room, struct member_view *view);
 void stream_left(struct room *room, struct stream *stream);
 /* Takes view. Returns true when it differs from the present one. */
 bool stream_set_view(struct room *room, struct stream *stream, cJSON *view);
+/* Raises the stream's version though nothing has changed: its picture is requested anew. */
+void stream_again(struct room *room, struct stream *stream);
 /* Raises the version of every stream; scene_is_new: overrides are applied anew. */
 void streams_changed(struct room *room, bool scene_is_new);
 /* The room's scene has changed by a merge patch from before: raises the version of the streams whose pictures differ,

@@ -21,7 +21,8 @@ static void render(void *context, struct room *room, const struct room_render *r
                                .full_color = request->full_color,
                                .coarse = request->coarse,
                                .is_acted = request->is_acted,
-                               .is_reduced = { request->is_reduced[0], request->is_reduced[1] } };
+                               .is_reduced = { request->is_reduced[0], request->is_reduced[1] },
+                               .is_marked = request->is_marked };
 }
 
 static void forget(void *context, struct room *room, uint64_t request)
@@ -316,6 +317,13 @@ void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32
                                              .encode_us = 2000,
                                              .payload_bytes = 100 };
     add_reduced(picture, request);
+    if (request->is_marked && fake->is_draft) {
+        picture->marked = mem_new(sizeof *picture->marked);
+        picture->marked->references = 1;
+        picture->marked->n_bytes = 120;
+        picture->marked->bytes = mem_new(120);
+        picture->marked->header = picture->header;
+    }
     room_picture_came(fake->room, request->request, picture, fake->now_us);
     tick(fake);
 }

@@ -22,7 +22,7 @@ struct fake_request {
     uint32_t scene_revision;
     int scale_percent, quality;
     bool is_still, full_color, coarse, is_acted, is_answered, is_forgotten;
-    bool is_reduced[IMAGE_N_REDUCED];
+    bool is_reduced[IMAGE_N_REDUCED], is_marked;
 };
 
 struct fake_room {
@@ -39,6 +39,7 @@ struct fake_room {
     char addresses[16][46]; /* of the rows */
     size_t n_audited;
     bool audit_is_full;
+    bool is_draft;           /* pictures drawn from now on show a draft */
     const char *missing;     /* of pictures drawn from now on, as JSON; NULL: nothing */
     struct room_saved saved; /* what is on disk; unkept unless a test says otherwise */
 };

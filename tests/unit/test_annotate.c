@@ -338,9 +338,29 @@ static void hostile_text_is_drawn_as_replacements(void **state)
     annotations_finish(&annotations);
 }
 
+static void a_mark_is_amber_at_the_top_left_and_changes_nothing_else(void **state)
+{
+    (void)state;
+    struct error err = { 0 };
+    struct image *image = grey_image(WIDTH, HEIGHT);
+    assert_true(annotate_mark(image, "Draft beam", &err));
+    const struct rectangle corner = { 0, 0, 150, 40 }, all = { 0, 0, WIDTH, HEIGHT };
+    size_t n_amber = 0;
+    for (int y = corner.top; y < corner.bottom; y++)
+        for (int x = corner.left; x < corner.right; x++)
+            n_amber += pixel(image, x, y)[0] > 240 && pixel(image, x, y)[2] < 100;
+    assert_true(n_amber > 100); /* ten letters of 18 px, a stroke of 1.5 px and more each */
+    assert_int_equal(n_changed(image, all), n_changed(image, corner));
+    image_destroy(image);
+    image = grey_image(20, 10); /* as small as a picture can be */
+    assert_true(annotate_mark(image, "Draft beam", &err));
+    image_destroy(image);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_mark_is_amber_at_the_top_left_and_changes_nothing_else),
         cmocka_unit_test(letters_are_those_of_the_planes_and_of_oblique_cameras),
         cmocka_unit_test(letters_stand_at_the_middle_of_their_edges_and_change_nothing_else),
         cmocka_unit_test(a_picture_too_small_for_letters_has_none),

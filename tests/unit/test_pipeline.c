@@ -32,6 +32,7 @@ static void receiver_init(struct receiver *receiver)
 static void receiver_finish(struct receiver *receiver)
 {
     free(receiver->last.picture.bytes);
+    free(receiver->last.marked.bytes);
     pthread_cond_destroy(&receiver->changed);
     pthread_mutex_destroy(&receiver->mutex);
 }
@@ -60,6 +61,7 @@ static void on_frame(void *context, struct pipeline_frame *frame)
     receiver->codes[receiver->n_frames] = frame->error.code;
     receiver->ids[receiver->n_frames++] = frame->id;
     free(receiver->last.picture.bytes);
+    free(receiver->last.marked.bytes);
     receiver->last = *frame;
     pthread_cond_broadcast(&receiver->changed);
     pthread_mutex_unlock(&receiver->mutex);
@@ -161,6 +163,43 @@ static void frames_come_back_in_order_and_none_is_lost(void **state)
     assert_int_equal(receiver.last.picture.bytes[1], 0xd8);
     /* the view's own camera, also from the stub: 30 degrees to the side and 12 above */
     assert_close(receiver.last.camera.forward.y, cos(MATH_PI / 6) * cos(MATH_PI / 15), 1e-9);
+    pipeline_destroy(pipeline);
+    plan_and_derived_destroy(plan);
+    receiver_finish(&receiver);
+}
+
+static void a_marked_copy_is_made_where_words_are_given_and_the_picture_is_what_it_was(void **state)
+{
+    (void)state;
+    struct receiver receiver;
+    receiver_init(&receiver);
+    struct plan *plan = small_plan();
+    struct pipeline *pipeline = start(&receiver);
+    struct encoded plain;
+    for (int is_marked = 0; is_marked < 2; is_marked++) {
+        struct error err = { 0 };
+        struct scene scene = { 0 };
+        struct view view = view_default;
+        char field[128];
+        scene_for_plan(plan, &scene);
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 0, field, &err);
+        const struct pipeline_request request = { .id = (uint64_t)is_marked,
+                                                  .snapshot = snapshot,
+                                                  .render = { 320, 240, SURFACE_COARSE, true },
+                                                  .encode = { ENCODE_JPEG, 80, false },
+                                                  .mark = is_marked ? "Draft beam" : NULL };
+        assert_true(pipeline_submit(pipeline, &request, &err));
+        wait_for(&receiver, (size_t)is_marked + 1);
+        if (!is_marked) {
+            assert_null(receiver.last.marked.bytes);
+            plain = receiver.last.picture;
+            receiver.last.picture = (struct encoded){ 0 };
+        }
+    }
+    assert_int_equal(receiver.last.picture.n_bytes, plain.n_bytes);
+    assert_memory_equal(receiver.last.picture.bytes, plain.bytes, plain.n_bytes);
+    assert_true(receiver.last.marked.n_bytes > plain.n_bytes); /* of grey alone */
+    free(plain.bytes);
     pipeline_destroy(pipeline);
     plan_and_derived_destroy(plan);
     receiver_finish(&receiver);
@@ -384,6 +423,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_come_back_in_order_and_none_is_lost),
+        cmocka_unit_test(a_marked_copy_is_made_where_words_are_given_and_the_picture_is_what_it_was),
         cmocka_unit_test(moving_pictures_overtake_stills_but_not_for_ever),
         cmocka_unit_test(what_is_dropped_while_it_waits_is_not_drawn),
         cmocka_unit_test(any_number_of_drops_blocks_nobody_and_loses_no_request),

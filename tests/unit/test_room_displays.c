@@ -2,14 +2,14 @@
 #include "tests/unit/room_set_up.h"
 
 struct screen {
-    size_t n_pictures, n_ended;
+    size_t n_pictures, n_ended, n_bytes; /* n_bytes: of the newest picture; 120 with the words for a draft, else 100 */
     bool is_full, is_late;
     const char *kind; /* of the newest picture */
 };
 
 static void take_picture(void *context, struct room_picture *picture, const char *kind)
 {
-    (void)picture;
+    ((struct screen *)context)->n_bytes = picture->n_bytes;
     ((struct screen *)context)->n_pictures++;
     ((struct screen *)context)->kind = kind;
 }
@@ -195,9 +195,56 @@ static void of_several_screens_each_goes_over(void **state)
     }
 }
 
+static void draft(bool is_on)
+{
+    fake.is_draft = is_on;
+    fake_say(
+        &fake, &ann,
+        "{\"type\":\"scene.patch\",\"patch\":{\"beam\":{\"draft\":{\"enabled\":%s,\"line\":{\"entry_mm\":[0,-100,0],"
+        "\"target_mm\":[0,0,0]}}}}}",
+        is_on ? "true" : "false");
+}
+
+static void a_screen_is_given_no_picture_of_a_draft_without_words_for_it(void **state)
+{
+    (void)state;
+    struct screen screen = { 0 }, late = { 0 };
+    fake_join(&fake, &ann, true);
+    settle_one();
+    struct room_display *display = add_screen(&screen);
+    assert_int_equal(screen.n_bytes, 100);
+    draft(true);
+    for (struct fake_request *request; (request = fake_oldest(&fake));) {
+        const size_t n_pictures = screen.n_pictures;
+        const bool is_marked = request->is_marked;
+        fake_draw(&fake, request);
+        assert_int_equal(screen.n_pictures, n_pictures + is_marked);
+        assert_int_equal(screen.n_bytes, is_marked ? 120 : 100);
+        fake_shown(&fake, &ann);
+    }
+    settle_one();
+    assert_int_equal(screen.n_bytes, 120);
+    assert_int_equal(ann.n_bytes_last, 100); /* her page says it itself */
+    draft(false);
+    settle_one();
+    assert_int_equal(screen.n_bytes, 100);
+    room_display_remove(display);
+
+    draft(true); /* with no screen, no words are painted */
+    settle_one();
+    display = add_screen(&late);
+    assert_int_equal(late.n_pictures, 0);
+    settle_one();
+    assert_int_equal(late.n_bytes, 120);
+    fake_pass(&fake, 2000);
+    assert_false(late.is_late);
+    room_display_remove(display);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        ROOM_TEST(a_screen_is_given_no_picture_of_a_draft_without_words_for_it),
         ROOM_TEST(a_screen_is_told_when_its_picture_is_old_and_when_it_is_new_again),
         ROOM_TEST(pictures_that_follow_each_other_are_not_old),
         ROOM_TEST(nothing_is_drawn_for_a_screen_while_a_member_takes_pictures),

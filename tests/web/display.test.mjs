@@ -1,7 +1,7 @@
 // The page of a display: the presenter's picture on the screen of a meeting room.
 import { after, before, describe, it } from 'node:test';
 import assert from 'node:assert/strict';
-import { until } from '../api/daemon.mjs';
+import { call, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
 import { full, missing, startWorld } from './browser.mjs';
 
@@ -59,6 +59,35 @@ describe('the page of a display', { skip: missing && `${missing} is missing` }, 
     assert.match(await display.locator('footer').textContent(), /crosshair, pointers, notes, measures and the legend of the dose are not in it/);
     assert.match(await display.locator('h1').textContent(), new RegExp(`Snyder head · Room ${room} · 3-D`));
     assert.deepEqual(await axe(display), []);
+  });
+
+  it('says of a draft that it is one, in the picture itself', async () => {
+    const amber = () => display.evaluate(() => {
+      const canvas = document.querySelector('canvas');
+      const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width / 2, canvas.height / 8);
+      let n = 0;
+      for (let at = 0; at < data.length; at += 4) n += data[at] > 200 && data[at + 1] > 130 && data[at + 1] < 220 && data[at + 2] < 130;
+      return n;
+    });
+    const draft = (enabled) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { beam: { draft: { enabled, line: { entry_mm: [0, -120, 0], target_mm: [0, 0, 0] } } } }, { 'If-Match': '*' });
+    assert.equal(await amber(), 0);
+    await draft(true);
+    await until(amber, (n) => n > 50);
+    await display.screenshot({ path: 'build/test-artifacts/display-draft.png' });
+    await draft(false);
+    await until(amber, (n) => n === 0);
+  });
+
+  it('goes with the pane that a wheel turns, though another one is active', async () => {
+    const box = await presenter.locator('#picture-2').boundingBox();
+    await presenter.mouse.move(box.x + box.width / 2, box.y + box.height / 3);
+    await presenter.mouse.wheel(0, 100);
+    await until(() => display.locator('h1').textContent(), (text) => text.endsWith('· Axial'));
+    assert.match(await presenter.locator('.pane.active').getAttribute('data-view'), /^1$/);
+    await presenter.locator('#picture-1').focus();
+    await presenter.keyboard.press('ArrowLeft');
+    await until(() => display.locator('h1').textContent(), (text) => text.endsWith('· 3-D'));
+    await full(presenter);
   });
 
   it('goes with the view that the presenter works in, unless its address names one', async () => {

@@ -1,7 +1,7 @@
 // The small picture of the presenter beside the views of a member who looks for themselves.
 import { after, before, describe, it } from 'node:test';
 import assert from 'node:assert/strict';
-import { renderersOf, until } from '../api/daemon.mjs';
+import { call, renderersOf, until } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
 import { full, missing, shoot, startWorld } from './browser.mjs';
 import { overlaps } from './overlap.mjs';
@@ -66,6 +66,12 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
     await ann.locator('#picture-1').focus();
     await reads(ben, /^Live · Ann · 3-D$/);
     await same(ben, ann, 1);
+    const draft = (enabled) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { beam: { draft: { enabled, line: { entry_mm: [0, -120, 0], target_mm: [0, 0, 0] } } } }, { 'If-Match': '*' });
+    await draft(true);
+    await card(ben).getByText('Draft beam', { exact: true }).waitFor();
+    await shoot(ben, 'watch-draft');
+    await draft(false);
+    await until(() => card(ben).getByText('Draft beam', { exact: true }).count(), (n) => n === 0);
   });
 
   it('stands in any corner of the panes, over no letter and no words, at every size of window', async () => {

@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import { members, roomWorld } from './fake_room.mjs';
 import { load } from './page.mjs';
 
-const { Watching, corners, liveness, watched } = await load('state/watching.js');
+const { Watching, WorkedIn, corners, liveness, watched } = await load('state/watching.js');
 const open = { state: 'open', quietSince: 0 };
 const now = { link: open, renderer: 'ready', isLate: false, paintedAt: Date.UTC(2026, 0, 1, 10, 22, 31), isAway: false };
 
@@ -61,4 +61,42 @@ test('corner, folded and closed are kept, and what is kept badly is not taken', 
   }
   assert.equal(new Set(corners).size, 4);
   assert.equal(new Watching(null).isClosed.value, false);
+});
+
+test('the view worked in is the one acted in last, once it lasts, and not back and forth', () => {
+  const told = [];
+  let now = 0;
+  let timer = null;
+  const worked = new WorkedIn((view) => told.push([now, view]), { now: () => now, setTimeout: (run, ms) => { timer = { run, at: now + ms }; return timer; }, clearTimeout: (old) => { if (old === timer) timer = null; } });
+  const pass = (ms) => {
+    const end = now + ms;
+    for (let due; timer && timer.at <= end; due.run()) {
+      due = timer;
+      timer = null;
+      now = due.at;
+    }
+    now = end;
+  };
+  worked.acted(1);
+  pass(5000);
+  for (let turn = 0; turn < 5; turn++) { // a wheel over the axial pane
+    worked.acted(2);
+    pass(100);
+  }
+  assert.deepEqual(told, [[0, 1]]);
+  pass(100);
+  assert.deepEqual(told.at(-1), [5600, 2]);
+  worked.acted(1); // and back: not before 2 s are over
+  pass(1900);
+  assert.deepEqual(told.at(-1), [5600, 2]);
+  pass(100);
+  assert.deepEqual(told.at(-1), [7600, 1]);
+  worked.acted(3);
+  pass(300);
+  worked.acted(1); // a slip
+  pass(9000);
+  assert.deepEqual(told.at(-1), [7600, 1]);
+  worked.restart();
+  worked.acted(1);
+  assert.deepEqual(told.at(-1), [now, 1]);
 });

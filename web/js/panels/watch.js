@@ -1,6 +1,7 @@
 // The small live picture of what the presenter works in, beside own views: in a corner of the panes, over none of their letters and scales.
-import { html, nothing } from '../../lib/lit-html.js';
+import { html, nothing, svg } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
+import { isDrafted } from '../state/beams.js';
 import { views } from '../state/layout.js';
 import { crosshair } from '../state/plan.js';
 import { corners, liveness, watched } from '../state/watching.js';
@@ -199,7 +200,8 @@ class Small {
   #spoken(header, shown) {
     if (!header || !shown) return 'no picture yet';
     const { left, right, top, bottom } = edgeLetters(header.clip_from_lps_mm);
-    return `${nameOf(shown)}: left ${left}, right ${right}, top ${top}, bottom ${bottom}`;
+    const draft = isDrafted(this.#world.room.plan.value, this.#world.room.sharedScene) ? ', of a draft beam' : '';
+    return `${nameOf(shown)}${draft}: left ${left}, right ${right}, top ${top}, bottom ${bottom}`;
   }
 
   #overlay(header, { kind }, { width, height }) {
@@ -208,7 +210,8 @@ class Small {
     const scale = Math.min(width / header.width_px, height / header.height_px);
     const box = { width: header.width_px * scale, height: header.height_px * scale };
     const hasPoint = scene && !isTilted(kind) && (plan?.images.length || plan?.regions.length);
-    return overlay({ kind, header, box: { ...box, x: (width - box.width) / 2, y: (height - box.height) / 2 }, pane: [width, height], point: hasPoint ? crosshair(scene) : null, pxPerMm: 0, windowText: '' });
+    const draft = isDrafted(plan, scene) ? svg`<text class="halo draft-word" x="6" y="16">Draft beam</text>` : nothing;
+    return svg`${draft}${overlay({ kind, header, box: { ...box, x: (width - box.width) / 2, y: (height - box.height) / 2 }, pane: [width, height], point: hasPoint ? crosshair(scene) : null, pxPerMm: 0, windowText: '' })}`;
   }
 
   #next() {

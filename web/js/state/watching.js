@@ -31,6 +31,50 @@ export class Watching {
   }
 }
 
+const settledMs = 600; // worked in a view for so long, it is the one that others are shown
+const backMs = 2000; // not sooner back to the view before
+
+/** Finds the view that a presenter works in: the one acted in last, once that lasts; not back and forth between two faster than others can follow. */
+export class WorkedIn {
+  #tell;
+  #clock;
+  #timer = 0;
+  #told = 0; // view; 0: none
+  #before = 0; // the view told before
+  #toldAt = 0;
+  #next = 0; // the view acted in since, which is not told yet
+
+  /** @param {(view: number) => void} tell @param {{now: () => number, setTimeout: Function, clearTimeout: Function}} clock */
+  constructor(tell, clock) {
+    this.#tell = tell;
+    this.#clock = clock;
+  }
+
+  /** The person acted in this view: a drag, a wheel, a key, a slider, a tap, or chose it. */
+  acted(view) {
+    if (!this.#told) return void this.#say(view);
+    if (view === this.#next) return;
+    this.#clock.clearTimeout(this.#timer);
+    this.#next = view === this.#told ? 0 : view;
+    if (!this.#next) return;
+    const now = this.#clock.now();
+    const due = view === this.#before ? Math.max(now + settledMs, this.#toldAt + backMs) : now + settledMs;
+    this.#timer = this.#clock.setTimeout(() => this.#say(view), due - now);
+  }
+
+  #say(view) {
+    [this.#before, this.#told, this.#next] = [this.#told, view, 0];
+    this.#toldAt = this.#clock.now();
+    this.#tell(view);
+  }
+
+  /** Begins anew: the next act is told at once. */
+  restart() {
+    this.#clock.clearTimeout(this.#timer);
+    this.#told = this.#before = this.#next = 0;
+  }
+}
+
 /** Who is seen in the small picture: {name, isAway}; null: nobody, as this member follows or presents, or nobody else presents. @param {import('./room.js').RoomState} room */
 export function watched({ following, recording }) {
   if (following.isFollowing.value || following.isPresenting.value) return null;
