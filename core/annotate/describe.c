@@ -9,6 +9,7 @@
 
 #include "core/annotate/describe_beam.h"
 #include "core/annotate/describe_dose.h"
+#include "core/annotate/describe_fits.h"
 #include "core/annotate/marks.h"
 #include "core/annotate/words.h"
 #include "core/base/mem.h"
@@ -241,7 +242,7 @@ static void cut_words(char text[ANNOTATION_TEXT_SIZE], const struct snapshot *sn
     char place[WORDS_SIZE], normal[WORDS_SIZE] = "", along[40], name[WORDS_SIZE];
     const struct scene_clip_beam *style = &snapshot->scene.clip.beam;
     struct beam_shown beam;
-    if (clip->name == CLIP_BEAM && beam_shown_of(snapshot->plan, &snapshot->scene, style->id, &beam)) {
+    if (clip->name == CLIP_BEAM && beam_shown_of(snapshot->plan, &snapshot->scene, style->id, &snapshot->fits, &beam)) {
         words_number(along, style->along_mm, 1);
         beam_words(name, snapshot, &beam);
         (void)snprintf(place, sizeof place, "%.200s at %s mm", name, along);
@@ -368,7 +369,8 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
     size_t n_missing = visible_missing(snapshot, SURFACE_FULL, missing);
     *annotations = (struct annotations){ .n_items = 0 };
     annotations->items =
-        mem_array(plan->regions.n_regions + MAX_OTHER_ITEMS + DESCRIBE_BEAM_MAX_ITEMS + DESCRIBE_DOSE_MAX_ITEMS,
+        mem_array(plan->regions.n_regions + MAX_OTHER_ITEMS + DESCRIBE_BEAM_MAX_ITEMS + DESCRIBE_DOSE_MAX_ITEMS +
+                      DESCRIBE_FITS_MAX_ITEMS,
                   sizeof annotations->items[0], UINT64_MAX, err);
     if (!annotations->items)
         return false;
@@ -389,6 +391,7 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
     dose_describe(annotations, snapshot);
     add_methods(annotations, snapshot);
     add_missing(annotations, snapshot, missing, n_missing);
+    fits_describe(annotations, snapshot);
     add_origin(annotations, snapshot, date);
     return true;
 }

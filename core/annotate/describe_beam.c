@@ -137,7 +137,7 @@ static void add_name(const struct labels *labels, struct paint_point at, const c
 static void add_names(const struct labels *labels, const struct snapshot *snapshot, const struct camera *camera)
 {
     struct beam_drawn drawn[BEAMS_DRAWN_MAX];
-    size_t n = snapshot_is_pane(snapshot) ? 0 : beams_drawn(snapshot->plan, &snapshot->scene, drawn);
+    size_t n = snapshot_is_pane(snapshot) ? 0 : beams_drawn(snapshot->plan, &snapshot->scene, &snapshot->fits, drawn);
     for (size_t i = 0; i < n; i++) {
         char name[WORDS_SIZE], words[WORDS_SIZE + 16];
         struct vec3 p = beam_label_lps_mm(&drawn[i]), clip = mat4_project(&camera->clip_from_lps_mm, p);

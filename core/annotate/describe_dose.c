@@ -83,22 +83,13 @@ static void add_weights(struct annotations *annotations, const struct snapshot *
                        tissue->name[0] ? tissue->name : tissue->id);
 }
 
-/* What a total lacks, and that a person accepted a dose against doubt. */
-static void add_doubts(struct annotations *annotations, const struct snapshot *snapshot, uint32_t missing)
+/* What a total lacks. */
+static void add_doubts(struct annotations *annotations, uint32_t missing)
 {
     for (int quantity = 0; quantity < DOSE_N_QUANTITIES; quantity++)
         if (missing >> quantity & 1)
             (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "without %s",
                            dose_quantity_word((enum dose_quantity)quantity));
-    for (size_t i = 0; i < snapshot->dose_choice.n_parts; i++) {
-        enum dose_fit fit = dose_fit_of(snapshot->plan, snapshot->dose_choice.parts[i].dose, NULL);
-        if (dose_fit_needs_acceptance(fit)) {
-            (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "%s",
-                           fit == DOSE_FIT_DIFFERS ? "Dose from another frame of reference"
-                                                   : "Dose's grid does not meet the patient");
-            break;
-        }
-    }
 }
 
 static void add_reference(struct annotations *annotations, const struct dose_scale *scale)
@@ -148,10 +139,18 @@ static void add_comparison(struct annotations *annotations, const struct snapsho
                                         [SCENE_DOSE_COMPARISON_DIFFERENCE] = "second less first, its lines dashed",
                                         [SCENE_DOSE_COMPARISON_GAMMA] = "gamma index" };
     const struct scene_dose_compare *compare = &snapshot->scene.dose.compare;
-    for (size_t i = 0; compare->mode != SCENE_DOSE_COMPARISON_NONE && i < snapshot->plan->n_doses; i++)
-        if (strcmp(snapshot->plan->doses[i].id, compare->id) == 0)
-            (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Compared with %.64s: %s",
-                           name_of(&snapshot->plan->doses[i]), ways[compare->mode]);
+    int second = compare->id[0] ? dose_index_of(snapshot->plan, compare->id) : -1;
+    if (compare->mode == SCENE_DOSE_COMPARISON_NONE || second < 0)
+        return;
+    struct fit_use use = dose_compared_use(snapshot, (size_t)second);
+    if (fit_is_used(&use)) {
+        (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Compared with %.64s: %s",
+                       name_of(&snapshot->plan->doses[second]), ways[compare->mode]);
+        return;
+    }
+    char why[FIT_WHY_SIZE];
+    fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, (size_t)second }, &use, why);
+    (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Not compared: %.230s", why);
 }
 
 void dose_describe(struct annotations *annotations, const struct snapshot *snapshot)
@@ -175,7 +174,7 @@ void dose_describe(struct annotations *annotations, const struct snapshot *snaps
                    per);
     add_reference(annotations, &scale);
     add_weights(annotations, snapshot);
-    add_doubts(annotations, snapshot, scale.field->missing);
+    add_doubts(annotations, scale.field->missing);
     add_comparison(annotations, snapshot);
     add_levels(annotations, snapshot, &scale);
     dose_scale_finish(&scale);

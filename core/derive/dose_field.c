@@ -20,7 +20,7 @@ struct field_recipe {
 static void note_field(struct dose_field *field, const struct plan *plan, const struct dose_choice *choice)
 {
     const struct dose *first = &plan->doses[choice->parts[0].dose];
-    dose_shown_unit(first, choice->shown, choice->quantity, field->unit);
+    dose_shown_unit(&plan->doses[choice->unit_of], choice->shown, choice->quantity, field->unit);
     memcpy(field->per, first->per, sizeof field->per);
     for (size_t p = 0; p < choice->n_parts; p++)
         if (dose_is_summed(&plan->doses[choice->parts[p].dose], choice->shown, choice->quantity))

@@ -11,8 +11,9 @@ struct dose_choice {
     struct {
         size_t dose; /* index in the plan */
         double factor;
-    } parts[PLAN_MAX_DOSES]; /* what is summed; the first is the dose shown, whose grid the sum has */
+    } parts[PLAN_MAX_DOSES]; /* what is summed; the first is the dose shown. The finest of their grids is the sum's */
     size_t n_parts;
+    size_t unit_of; /* index in the plan of the dose in whose unit the values are; the parts' units convert to it */
     enum dose_shown shown;
     enum dose_quantity quantity; /* of DOSE_SHOWN_QUANTITY */
     double blood_ppm;

@@ -11,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/derive/dose_bricks.h"
 #include "core/dose/combine.h"
+#include "core/plan/fit.h"
 
 /* A volume that is summed, with its factor in each row. */
 struct summand {
@@ -47,9 +48,10 @@ static bool list_part(struct dose_filling *filling, const struct plan *plan, con
                       size_t part, struct error *err)
 {
     const struct dose *dose = &plan->doses[choice->parts[part].dose];
-    const struct dose *first = &plan->doses[choice->parts[0].dose];
+    const struct dose *first = &plan->doses[choice->unit_of];
     size_t n_before = filling->n;
-    if (strcmp(dose->unit, first->unit) != 0)
+    double unit = 1;
+    if (dose != first && !dose_quantity_is_fluence(choice->quantity) && !fit_unit_factor(dose->unit, first->unit, &unit))
         return error_set(err, ERROR_RANGE, "dose \"%s\" is in \"%s\", dose \"%s\" in \"%s\": they cannot be added",
                          first->id, first->unit, dose->id, dose->unit);
     for (size_t c = 0; c < dose->n_components; c++) {
@@ -59,7 +61,7 @@ static bool list_part(struct dose_filling *filling, const struct plan *plan, con
         for (size_t r = 0; r < choice->n_rows; r++) {
             struct dose_factors factors =
                 dose_factors_of(dose, choice->shown, choice->quantity, &choice->rows[r], choice->blood_ppm);
-            double factor = factors.of[component->quantity] * choice->parts[part].factor;
+            double factor = factors.of[component->quantity] * choice->parts[part].factor * unit;
             bool is_in = dose_is_summed(dose, choice->shown, choice->quantity)
                              ? dose_is_summand(component->quantity)
                              : component->quantity == choice->quantity;

@@ -477,6 +477,7 @@ static void fields_origin(struct fields *fields, struct part_origin *origin, con
     fields_text(fields, origin->plan_uid, sizeof origin->plan_uid);
     fields_text(fields, origin->structs_uid, sizeof origin->structs_uid);
     fields_text(fields, origin->path, sizeof origin->path);
+    fields_bool(fields, &origin->is_registered);
     fields_bool(fields, &origin->is_stated_same);
     fields_bool(fields, &origin->is_stated_other);
 }

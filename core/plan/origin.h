@@ -54,6 +54,7 @@ struct part_origin {
     char plan_uid[ORIGIN_UID_SIZE];    /* RTPLAN that a dose refers to, or a beam comes from; "" none stated */
     char structs_uid[ORIGIN_UID_SIZE]; /* of regions their own structure set; of a dose the one it refers to */
     char path[512];                    /* of its first file, relative to the plan's folder */
+    bool is_registered;                /* a registration brought it into frame_uid while loading (core/load) */
     bool is_stated_same;               /* plan.json says that its frame is the image's */
     bool is_stated_other;              /* plan.json says that it is not */
 };

@@ -4,10 +4,15 @@
 #include <math.h>
 #include <string.h>
 
-static int beam_index(const struct plan *plan, const char *id)
+static bool is_used(const struct scene_fits *fits, size_t beam)
+{
+    return !fits || fit_is_used(&fits->beams[beam]);
+}
+
+static int beam_index(const struct plan *plan, const char *id, const struct scene_fits *fits)
 {
     for (size_t i = 0; i < plan->n_beams; i++)
-        if (id[0] == 0 || strcmp(plan->beams[i].id, id) == 0)
+        if (id[0] == 0 ? is_used(fits, i) : strcmp(plan->beams[i].id, id) == 0)
             return (int)i;
     return -1;
 }
@@ -29,14 +34,17 @@ struct beam_shown beam_planned(const struct plan *plan, size_t beam)
     return shown;
 }
 
-bool beam_shown_of(const struct plan *plan, const struct scene *scene, const char *id, struct beam_shown *shown)
+bool beam_shown_of(const struct plan *plan, const struct scene *scene, const char *id, const struct scene_fits *fits,
+                   struct beam_shown *shown)
 {
     const struct scene_beam_draft *draft = &scene->beam.draft;
-    int beam = beam_index(plan, id[0] ? id : scene->beam.id);
+    int beam = beam_index(plan, id[0] ? id : scene->beam.id, fits);
     bool is_draft = !id[0] && draft->enabled && !(draft->shows_planned && beam >= 0) &&
                     vec3_length(vec3_sub(draft->line.target_mm, draft->line.entry_mm)) >= BEAM_SHOWN_MIN_LENGTH_MM;
-    if (beam < 0 && (!is_draft || scene->beam.id[0]))
+    if ((beam < 0 && (!is_draft || scene->beam.id[0])) || (beam >= 0 && !is_draft && !is_used(fits, (size_t)beam)))
         return false;
+    if (beam >= 0 && !is_used(fits, (size_t)beam))
+        beam = -1; /* the draft of a beam that is not used takes nothing from it */
     *shown = beam >= 0 ? beam_planned(plan, (size_t)beam) : (struct beam_shown){ .beam = -1, .aperture_mm = NAN };
     if (is_draft) {
         shown->is_draft = true;

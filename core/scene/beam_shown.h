@@ -1,6 +1,7 @@
 #pragma once
 /* A beam as a scene shows it, the plan's or its draft, and the axes of pictures along it. Any thread. */
 #include "core/plan/plan.h"
+#include "core/scene/fit_use.h"
 #include "core/scene/plane.h"
 
 #define BEAM_SHOWN_MIN_LENGTH_MM 1e-3 /* of a draft; a shorter one is none */
@@ -14,9 +15,11 @@ struct beam_shown {
     double aperture_mm;    /* diameter; NaN: unknown or not round */
 };
 
-/* The beam of this id; "": the one that the scene chooses, as its draft if that is enabled and not put
- * aside to show the planned beam. False: there is none. */
-bool beam_shown_of(const struct plan *plan, const struct scene *scene, const char *id, struct beam_shown *shown);
+/* The beam of this id; "": the one that the scene chooses, else the first that is used, as its draft if that is enabled
+ * and not put aside to show the planned beam. fits: beams that are not used are none, but their drafts, which a person
+ * made, are; NULL: all are used. False: there is none. */
+bool beam_shown_of(const struct plan *plan, const struct scene *scene, const char *id, const struct scene_fits *fits,
+                   struct beam_shown *shown);
 /* The plan's beam itself, whatever is drafted. */
 struct beam_shown beam_planned(const struct plan *plan, size_t beam);
 

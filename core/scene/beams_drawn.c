@@ -66,10 +66,11 @@ static bool knows_opening(const struct plan *plan, const struct beam_shown *show
     return beam_opening_of(plan, shown, &opening);
 }
 
-size_t beams_drawn(const struct plan *plan, const struct scene *scene, struct beam_drawn drawn[BEAMS_DRAWN_MAX])
+size_t beams_drawn(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                   struct beam_drawn drawn[BEAMS_DRAWN_MAX])
 {
     struct beam_shown chosen;
-    bool has_chosen = beam_shown_of(plan, scene, "", &chosen), has_draft = has_chosen && chosen.is_draft;
+    bool has_chosen = beam_shown_of(plan, scene, "", fits, &chosen), has_draft = has_chosen && chosen.is_draft;
     size_t n = 0;
     if (scene->beam.n_looks == 0 && !has_draft)
         return 0;
@@ -77,7 +78,7 @@ size_t beams_drawn(const struct plan *plan, const struct scene *scene, struct be
         struct scene_beam_look look = look_of(scene, plan->beams[i].id);
         bool is_chosen = has_chosen && chosen.beam == (int)i;
         struct beam_drawn *beam = &drawn[n];
-        if (!look.visible && !(is_chosen && has_draft))
+        if ((!look.visible && !(is_chosen && has_draft)) || (fits && !fit_is_used(&fits->beams[i])))
             continue;
         *beam = (struct beam_drawn){ .shown = beam_planned(plan, i),
                                      .subject = { SUBJECT_BEAM, i, 0 },
@@ -109,21 +110,21 @@ bool beam_opening_is_drawn(const struct beam_drawn *beam, const struct view *vie
     return beam->has_opening && !(view->kind == SCENE_KIND_BEAM && beam->is_chosen && view->beam.has_aperture_mm);
 }
 
-size_t beams_n_translucent(const struct plan *plan, const struct scene *scene)
+size_t beams_n_translucent(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits)
 {
     struct beam_drawn drawn[BEAMS_DRAWN_MAX];
-    size_t n = beams_drawn(plan, scene, drawn), n_openings = 0;
+    size_t n = beams_drawn(plan, scene, fits, drawn), n_openings = 0;
     for (size_t i = 0; i < n; i++)
         n_openings += drawn[i].has_opening;
     return scene->beam.opacity > 0 && scene->beam.opacity < 1 ? n_openings : 0;
 }
 
-struct box3 beams_box(const struct plan *plan, const struct scene *scene)
+struct box3 beams_box(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits)
 {
     struct beam_drawn drawn[BEAMS_DRAWN_MAX];
     struct beam_opening opening;
     struct box3 box = box3_empty();
-    size_t n = beams_drawn(plan, scene, drawn);
+    size_t n = beams_drawn(plan, scene, fits, drawn);
     for (size_t i = 0; i < n; i++) {
         const struct beam_drawn *beam = &drawn[i];
         box3_add(&box, beam_point(&beam->shown, beam->first_mm));

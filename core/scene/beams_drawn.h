@@ -30,16 +30,17 @@ struct beam_drawn {
 enum { BEAMS_DRAWN_MAX = 64 + 2 };
 /* Fills the beams in the order of the plan, then a draft; returns how many. Kind and ring of the view count: its own
  * beam's line and opening are left out by the caller (beam_line_is_drawn, beam_opening_is_drawn). */
-size_t beams_drawn(const struct plan *plan, const struct scene *scene, struct beam_drawn drawn[BEAMS_DRAWN_MAX]);
+size_t beams_drawn(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                   struct beam_drawn drawn[BEAMS_DRAWN_MAX]);
 /* A beam's-eye view does not draw the line of its own beam, which would be a dot; with the aperture ring it does not
  * draw its opening either. */
 bool beam_line_is_drawn(const struct beam_drawn *beam, const struct view *view);
 bool beam_opening_is_drawn(const struct beam_drawn *beam, const struct view *view);
 /* How many openings are translucent, whatever the view is. */
-size_t beams_n_translucent(const struct plan *plan, const struct scene *scene);
+size_t beams_n_translucent(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits);
 
 /* Encloses lines and openings of all beams that the scene draws; empty: it draws none. */
-struct box3 beams_box(const struct plan *plan, const struct scene *scene);
+struct box3 beams_box(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits);
 
 /* Where a beam's label stands: the end of its line before the patient. */
 struct vec3 beam_label_lps_mm(const struct beam_drawn *beam);

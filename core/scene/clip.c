@@ -13,17 +13,19 @@ static struct plane facing(struct plane plane, struct vec3 cut_off)
     return plane;
 }
 
-static bool across_beam(const struct plan *plan, const struct scene *scene, struct plane *plane)
+static bool across_beam(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                        struct plane *plane)
 {
     struct beam_shown beam;
-    if (!beam_shown_of(plan, scene, scene->clip.beam.id, &beam))
+    if (!beam_shown_of(plan, scene, scene->clip.beam.id, fits, &beam))
         return false;
     *plane = facing(plane_of_normal(beam_point(&beam, scene->clip.beam.along_mm), beam.direction),
                     vec3_scale(beam.direction, -1));
     return true;
 }
 
-size_t clip_planes(const struct plan *plan, const struct scene *scene, struct clip_plane planes[CLIP_MAX])
+size_t clip_planes(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                   struct clip_plane planes[CLIP_MAX])
 {
     const struct scene_clip_style *clip = &scene->clip;
     const struct {
@@ -46,7 +48,7 @@ size_t clip_planes(const struct plan *plan, const struct scene *scene, struct cl
                                            axes[i].axis->cap };
     }
     struct plane plane;
-    if (clip->beam.enabled && across_beam(plan, scene, &plane))
+    if (clip->beam.enabled && across_beam(plan, scene, fits, &plane))
         planes[n++] = (struct clip_plane){ CLIP_BEAM, plane, clip->beam.cap };
     if (clip->free.enabled)
         planes[n++] =

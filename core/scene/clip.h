@@ -24,7 +24,8 @@ struct clip_plane {
 };
 
 /* The enabled clip planes, by name; returns how many. One along a beam that the plan does not have is left out. */
-size_t clip_planes(const struct plan *plan, const struct scene *scene, struct clip_plane planes[CLIP_MAX]);
+size_t clip_planes(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                   struct clip_plane planes[CLIP_MAX]);
 
 /* A plane in a clip plane is drawn on it: what lies less than this above a clip plane is not cut off. */
 #define CLIP_SLACK_MM 1e-6

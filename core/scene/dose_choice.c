@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/scene/snapshot.h"
 #include "dose_presets.h" /* generated from proto/dose_presets.json */
 
 /* By the quantity of a scene; the two that are computed have no quantity of the files. */
@@ -43,7 +44,7 @@ bool dose_quantity_from_scene_word(const char *word, enum scene_dose_quantity *q
     return false;
 }
 
-static int dose_index(const struct plan *plan, const char *id)
+int dose_index_of(const struct plan *plan, const char *id)
 {
     for (size_t i = 0; i < plan->n_doses; i++)
         if (strcmp(plan->doses[i].id, id) == 0)
@@ -53,7 +54,7 @@ static int dose_index(const struct plan *plan, const char *id)
 
 int scene_dose_index(const struct plan *plan, const struct scene *scene)
 {
-    return scene->dose.id[0] ? dose_index(plan, scene->dose.id) : plan->n_doses ? 0 : -1;
+    return scene->dose.id[0] ? dose_index_of(plan, scene->dose.id) : plan->n_doses ? 0 : -1;
 }
 
 const struct scene_tissue_weights *scene_weights_of(const struct plan *plan, const struct scene *scene, size_t region)
@@ -102,9 +103,10 @@ static bool add_row(struct dose_choice *choice, const struct scene_tissue_weight
     return true;
 }
 
-static bool add_rows(const struct plan *plan, const struct scene *scene, const char *tissue, struct dose_choice *choice,
-                     struct error *why)
+static bool add_rows(const struct snapshot *snapshot, const char *tissue, struct dose_choice *choice, struct error *why)
 {
+    const struct plan *plan = snapshot->plan;
+    const struct scene *scene = &snapshot->scene;
     bool is_on_tissue = false;
     for (size_t p = 0; p < choice->n_parts; p++)
         is_on_tissue |= dose_depends_on_tissue(&plan->doses[choice->parts[p].dose], choice->shown, choice->quantity);
@@ -128,7 +130,8 @@ static bool add_rows(const struct plan *plan, const struct scene *scene, const c
                 error_set(why, ERROR_NOT_FOUND, "\"%.64s\" has no parameters of this dose", tissue));
     }
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
-        const struct scene_tissue_weights *row = scene_weights_of(plan, scene, r);
+        const struct scene_tissue_weights *row =
+            fit_is_used(region_use(&snapshot->fits, r)) ? scene_weights_of(plan, scene, r) : NULL;
         if (row && !add_row(choice, row, &choice->row_of_region[r], why))
             return false;
     }
@@ -161,33 +164,28 @@ static bool add_part(const struct plan *plan, struct dose_choice *choice, size_t
     return true;
 }
 
-bool dose_choice_of(const struct plan *plan, const struct scene *scene, size_t dose, enum scene_dose_quantity quantity,
-                    struct dose_choice *choice, struct error *why)
+/* Fills all but the parts that are added. */
+static bool begin_choice(const struct snapshot *snapshot, size_t dose, double factor, enum scene_dose_quantity quantity,
+                         struct dose_choice *choice, struct error *why)
 {
-    return dose_choice_in(plan, scene, dose, quantity, scene->dose.tissue, choice, why);
-}
-
-bool dose_choice_in(const struct plan *plan, const struct scene *scene, size_t dose, enum scene_dose_quantity quantity,
-                    const char *tissue, struct dose_choice *choice, struct error *why)
-{
+    const struct scene *scene = &snapshot->scene;
     memset(choice, 0, sizeof *choice);
     choice->shown = quantities[quantity].shown;
     choice->quantity = quantities[quantity].quantity;
     choice->blood_ppm = scene->dose.blood_ppm;
     choice->irradiation_min = choice->shown == DOSE_SHOWN_ISOEFFECTIVE ? scene->dose.irradiation_min : 0;
-    if (!add_part(plan, choice, dose, scene->dose.factor, why))
-        return false;
-    bool is_shown = (int)dose == scene_dose_index(plan, scene);
-    for (size_t i = 0; is_shown && i < scene->dose.n_sum; i++) {
-        int part = dose_index(plan, scene->dose.sum[i].id);
-        if (part >= 0 && !add_part(plan, choice, (size_t)part, scene->dose.sum[i].value.factor, why))
-            return false;
-    }
-    if (!add_rows(plan, scene, tissue, choice, why))
+    choice->unit_of = dose;
+    return add_part(snapshot->plan, choice, dose, factor, why);
+}
+
+static bool end_choice(const struct snapshot *snapshot, const char *tissue, struct dose_choice *choice,
+                       struct error *why)
+{
+    if (!add_rows(snapshot, tissue, choice, why))
         return false;
     bool has_boron = false;
     for (size_t p = 0; p < choice->n_parts; p++) {
-        const struct dose *part = &plan->doses[choice->parts[p].dose];
+        const struct dose *part = &snapshot->plan->doses[choice->parts[p].dose];
         for (size_t c = 0; c < part->n_components; c++)
             has_boron |= part->components[c].is_per_ppm && (dose_is_summed(part, choice->shown, choice->quantity)
                                                                 ? part->components[c].quantity == DOSE_BORON
@@ -231,16 +229,71 @@ const char *dose_basis_words(const struct plan *plan, const struct dose_choice *
     return words;
 }
 
-static bool is_accepted(const struct scene *scene, const char *id)
+static bool refuse(const struct snapshot *snapshot, size_t dose, const struct fit_use *use, struct error *why)
 {
-    for (size_t i = 0; i < scene->dose.n_accepted; i++)
-        if (strcmp(scene->dose.accepted[i].id, id) == 0)
-            return scene->dose.accepted[i].value.accepted;
-    return false;
+    char sentence[FIT_WHY_SIZE];
+    fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, dose }, use, sentence);
+    return error_set(why, ERROR_STATE, "%s", sentence);
 }
 
-bool scene_dose_may_be_drawn(const struct plan *plan, const struct scene *scene, size_t dose,
-                             char why[DOSE_FIT_WHY_SIZE])
+struct fit_use dose_part_use(const struct snapshot *snapshot, size_t dose, double factor)
 {
-    return !dose_fit_needs_acceptance(dose_fit_of(plan, dose, why)) || is_accepted(scene, plan->doses[dose].id);
+    return dose_join_of(&snapshot->fits, dose, factor, (size_t)snapshot->dose, snapshot->scene.dose.factor,
+                        DOSE_JOIN_SUM);
+}
+
+bool dose_choice_of(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
+                    struct dose_choice *choice, struct error *why)
+{
+    return dose_choice_in(snapshot, dose, quantity, snapshot->scene.dose.tissue, choice, why);
+}
+
+bool dose_choice_in(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity, const char *tissue,
+                    struct dose_choice *choice, struct error *why)
+{
+    const struct scene_dose_style *style = &snapshot->scene.dose;
+    memset(choice, 0, sizeof *choice);
+    if (!fit_is_used(&snapshot->fits.doses[dose]))
+        return refuse(snapshot, dose, &snapshot->fits.doses[dose], why);
+    if (!begin_choice(snapshot, dose, style->factor, quantity, choice, why))
+        return false;
+    for (size_t i = 0; (int)dose == snapshot->dose && i < style->n_sum; i++) {
+        int part = dose_index_of(snapshot->plan, style->sum[i].id);
+        double factor = style->sum[i].value.factor;
+        if (part < 0 || part == snapshot->dose) /* the dose shown counts once */
+            continue;
+        struct fit_use use = dose_part_use(snapshot, (size_t)part, factor);
+        if (fit_is_used(&use) && !add_part(snapshot->plan, choice, (size_t)part, factor, why))
+            return false;
+    }
+    return end_choice(snapshot, tissue, choice, why);
+}
+
+/* How many times a dose counts beside the one shown: as often, unless the factor is what makes that one of the whole
+ * plan, as the second already is. */
+static double factor_beside(const struct snapshot *snapshot, size_t second)
+{
+    const struct dose *first = &snapshot->plan->doses[snapshot->dose], *other = &snapshot->plan->doses[second];
+    return strcmp(first->per, other->per) == 0 ? snapshot->scene.dose.factor : 1;
+}
+
+struct fit_use dose_compared_use(const struct snapshot *snapshot, size_t second)
+{
+    return dose_join_of(&snapshot->fits, second, factor_beside(snapshot, second), (size_t)snapshot->dose,
+                        snapshot->scene.dose.factor, DOSE_JOIN_COMPARE);
+}
+
+bool dose_choice_compared(const struct snapshot *snapshot, size_t second, enum scene_dose_quantity quantity,
+                          const char *tissue, struct dose_choice *choice, struct error *why)
+{
+    memset(choice, 0, sizeof *choice);
+    if (snapshot->dose < 0 || !fit_is_used(&snapshot->fits.doses[snapshot->dose]))
+        return error_set(why, ERROR_NOT_FOUND, "there is no first dose to compare with");
+    struct fit_use use = dose_compared_use(snapshot, second);
+    if (!fit_is_used(&use))
+        return refuse(snapshot, second, &use, why);
+    if (!begin_choice(snapshot, second, factor_beside(snapshot, second), quantity, choice, why))
+        return false;
+    choice->unit_of = (size_t)snapshot->dose;
+    return end_choice(snapshot, tissue, choice, why);
 }

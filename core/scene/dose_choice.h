@@ -1,26 +1,36 @@
 #pragma once
 /* What a scene shows of a dose, as the recipe of its field; and whether it may be drawn. Any thread. */
 #include "core/derive/dose_field.h"
-#include "core/plan/dose_fit.h"
 #include "core/region/population.h"
+#include "core/scene/fit_use.h"
 #include "scene.h" /* generated from proto/scene.json */
 
 /* Index of the dose that a scene shows; -1 if the plan has no dose, or none of that id. */
 int scene_dose_index(const struct plan *plan, const struct scene *scene);
 
-/* The field that a scene shows of a dose of the plan; of the scene's own dose with the doses added to it.
+struct snapshot;
+/* The field that a snapshot shows of a dose of the plan; of the dose that is named with the doses added to it. This and
+ * dose_choice_compared are the only ways to the values of a dose: they use what the snapshot's fits use. Doses added
+ * that are not used are left out: dose_part_use tells.
  *   quantity   the scene's, or another one to be read out beside it
  *   returns    false with a sentence: nothing can be shown
- *   errors     ERROR_NOT_FOUND the dose lacks the quantity, the tissue has no weights; ERROR_LIMIT more than
- *              DOSE_MAX_ROWS different weights */
-NODISCARD bool dose_choice_of(const struct plan *plan, const struct scene *scene, size_t dose,
-                              enum scene_dose_quantity quantity, struct dose_choice *choice, struct error *why);
+ *   errors     ERROR_STATE the dose is not used; ERROR_NOT_FOUND it lacks the quantity, the tissue has no weights;
+ *              ERROR_LIMIT more than DOSE_MAX_ROWS different weights */
+NODISCARD bool dose_choice_of(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
+                              struct dose_choice *choice, struct error *why);
+/* The field of a second dose beside the one shown, in the unit of that one, with the weights of a tissue as in
+ * dose_choice_in. The errors are those of dose_choice_of. */
+NODISCARD bool dose_choice_compared(const struct snapshot *snapshot, size_t second, enum scene_dose_quantity quantity,
+                                    const char *tissue, struct dose_choice *choice, struct error *why);
+/* Whether a dose of scene.dose.sum, or the one of scene.dose.compare, is used with the dose shown. */
+struct fit_use dose_part_use(const struct snapshot *snapshot, size_t dose, double factor);
+struct fit_use dose_compared_use(const struct snapshot *snapshot, size_t second);
+int dose_index_of(const struct plan *plan, const char *id); /* -1: none */
 
 /* The same with the weights of one tissue, whatever the scene's dose.tissue says: of the region with that id; "": each
  * tissue's own. For the figures of regions, which no choice of how a dose is drawn may change. */
-NODISCARD bool dose_choice_in(const struct plan *plan, const struct scene *scene, size_t dose,
-                              enum scene_dose_quantity quantity, const char *tissue, struct dose_choice *choice,
-                              struct error *why);
+NODISCARD bool dose_choice_in(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
+                              const char *tissue, struct dose_choice *choice, struct error *why);
 /* Which univels count in a scene's figures of regions. */
 enum region_population scene_population(const struct plan *plan, const struct scene *scene);
 /* False: no such word; "" and "usual" are what is usual for the plan. */
@@ -37,8 +47,3 @@ bool dose_quantity_from_scene_word(const char *word, enum scene_dose_quantity *q
 /* Weights of a region in a scene: its own row, else that of the innermost region around it that has one. NULL: none. */
 const struct scene_tissue_weights *scene_weights_of(const struct plan *plan, const struct scene *scene, size_t region);
 struct tissue_weights tissue_weights_of(const struct scene_tissue_weights *row);
-
-/* True if a dose may be drawn over the plan's image: it fits, or a person accepted it in this scene. why, unless NULL:
- * on false, one sentence. */
-bool scene_dose_may_be_drawn(const struct plan *plan, const struct scene *scene, size_t dose,
-                             char why[DOSE_FIT_WHY_SIZE]);

@@ -10,19 +10,15 @@ bool dose_compare_of(const struct snapshot *snapshot, const struct dose_scale *s
 {
     const struct plan *plan = snapshot->plan;
     const struct scene_dose_compare *asked = &snapshot->scene.dose.compare;
-    char reason[DOSE_FIT_WHY_SIZE];
-    size_t second = 0;
-    while (second < plan->n_doses && strcmp(plan->doses[second].id, asked->id) != 0)
-        second++;
+    int second = asked->id[0] ? dose_index_of(plan, asked->id) : -1;
     memset(choice, 0, sizeof *choice);
-    if (second == plan->n_doses)
+    if (second < 0)
         return error_set(why, ERROR_NOT_FOUND, "no second dose is chosen");
     if (!snapshot->has_dose_choice)
         return error_set(why, ERROR_NOT_FOUND, "there is no first dose to compare with");
-    if (!scene_dose_may_be_drawn(plan, &snapshot->scene, second, reason))
-        return error_set(why, ERROR_RANGE, "%s", reason);
     choice->first = snapshot->dose_choice;
-    if (!dose_choice_of(plan, &snapshot->scene, second, snapshot->scene.dose.quantity, &choice->second, why))
+    if (!dose_choice_compared(snapshot, (size_t)second, snapshot->scene.dose.quantity, snapshot->scene.dose.tissue,
+                              &choice->second, why))
         return false;
     choice->is_gamma = is_gamma;
     if (!is_gamma)

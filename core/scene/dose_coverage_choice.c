@@ -61,7 +61,6 @@ bool dose_coverage_choice_of(const struct snapshot *snapshot, const struct dose_
     if (wanted->quantity[0] && !dose_quantity_from_scene_word(wanted->quantity, &quantity))
         return error_set(why, ERROR_NOT_FOUND, "\"%.40s\" is no quantity", wanted->quantity);
     choice->population = scene_population(snapshot->plan, &snapshot->scene);
-    return dose_choice_in(snapshot->plan, &snapshot->scene, (size_t)snapshot->dose, quantity, wanted->tissue,
-                          &choice->dose, why) &&
+    return dose_choice_in(snapshot, (size_t)snapshot->dose, quantity, wanted->tissue, &choice->dose, why) &&
            find_limits(snapshot, scale, quantity, choice, why) && find_region(snapshot, &choice->region, why);
 }

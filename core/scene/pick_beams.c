@@ -60,7 +60,7 @@ size_t pick_beams(const struct snapshot *snapshot, const struct camera *camera, 
                   struct pick_beam_hit hits[BEAMS_DRAWN_MAX])
 {
     struct beam_drawn drawn[BEAMS_DRAWN_MAX];
-    size_t n_drawn = beams_drawn(snapshot->plan, &snapshot->scene, drawn), n = 0;
+    size_t n_drawn = beams_drawn(snapshot->plan, &snapshot->scene, &snapshot->fits, drawn), n = 0;
     for (size_t i = 0; i < n_drawn; i++) {
         struct vec3 a = beam_point(&drawn[i].shown, drawn[i].first_mm),
                     b = beam_point(&drawn[i].shown, drawn[i].last_mm);

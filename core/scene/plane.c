@@ -46,7 +46,8 @@ struct plane plane_of_normal(struct vec3 origin_lps_mm, struct vec3 normal)
     return (struct plane){ origin_lps_mm, right, up, normal };
 }
 
-struct plane plane_of_view(const struct plan *plan, const struct scene *scene, const struct view *view)
+struct plane plane_of_view(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                           const struct view *view)
 {
     const struct scene_slices *slices = &scene->image.slices;
     struct beam_shown beam;
@@ -59,11 +60,11 @@ struct plane plane_of_view(const struct plan *plan, const struct scene *scene, c
                 return plane_of_normal(scene->image.obliques[i].value.origin_mm, scene->image.obliques[i].value.normal);
         break;
     case SCENE_KIND_BEAM:
-        if (beam_shown_of(plan, scene, "", &beam))
+        if (beam_shown_of(plan, scene, "", fits, &beam))
             return beam_plane(&beam, beam.length_mm);
         break;
     case SCENE_KIND_BEAM_SLICE:
-        if (beam_shown_of(plan, scene, "", &beam))
+        if (beam_shown_of(plan, scene, "", fits, &beam))
             return beam_plane(&beam, scene->beam.slice.along_mm);
         break;
     case SCENE_KIND_AXIAL:
@@ -72,7 +73,8 @@ struct plane plane_of_view(const struct plan *plan, const struct scene *scene, c
     return plane_of_kind(SCENE_KIND_AXIAL, slices->axial.position_mm);
 }
 
-size_t planes_of_slices(const struct plan *plan, const struct scene *scene, struct plane slices[PLANE_MAX_SLICES])
+size_t planes_of_slices(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                        struct plane slices[PLANE_MAX_SLICES])
 {
     const struct {
         enum scene_kind kind;
@@ -90,7 +92,7 @@ size_t planes_of_slices(const struct plan *plan, const struct scene *scene, stru
             slices[n++] = plane_of_normal(oblique->origin_mm, oblique->normal);
     }
     struct beam_shown beam;
-    if (scene->beam.slice.visible && beam_shown_of(plan, scene, "", &beam))
+    if (scene->beam.slice.visible && beam_shown_of(plan, scene, "", fits, &beam))
         slices[n++] = beam_plane(&beam, scene->beam.slice.along_mm);
     return n;
 }

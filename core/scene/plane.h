@@ -3,6 +3,7 @@
  * knows which patient axis a slice or a kind of view belongs to; all others take the plane. Knows no grid, no pixels.
  */
 #include "core/plan/plan.h"
+#include "core/scene/fit_use.h"
 #include "scene.h" /* generated from proto/scene.json */
 
 /* Patient LPS, mm. right, up and normal are unit vectors at right angles to each other; right x up is the normal or its
@@ -25,11 +26,13 @@ struct plane plane_of_normal(struct vec3 origin_lps_mm, struct vec3 normal);
 /* The plane that a view's slice pane shows; of a beam's-eye view that through the beam's target (beam_shown.h). The
  * view's kind is not SCENE_KIND_3D. An oblique view of a plane that the scene does not have, and views of a beam that
  * there is not, have the axial slice. */
-struct plane plane_of_view(const struct plan *plan, const struct scene *scene, const struct view *view);
+struct plane plane_of_view(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                           const struct view *view);
 /* The image slices that a scene shows in space, in the order in which they are drawn: the three orthogonal ones, then
  * the obliques, then the beam slice; returns how many. */
 enum { PLANE_MAX_SLICES = 3 + 8 + 1 };
-size_t planes_of_slices(const struct plan *plan, const struct scene *scene, struct plane slices[PLANE_MAX_SLICES]);
+size_t planes_of_slices(const struct plan *plan, const struct scene *scene, const struct scene_fits *fits,
+                        struct plane slices[PLANE_MAX_SLICES]);
 
 /* Field by field. */
 bool plane_equal(const struct plane *a, const struct plane *b);

@@ -26,7 +26,7 @@ static int image_index(const struct plan *plan, const char *id)
 int scene_image_index(const struct plan *plan, const struct scene *scene)
 {
     if (scene->image.id[0] == 0)
-        return plan->n_images ? 0 : -1;
+        return plan->n_images ? fit_first_image(plan) : -1;
     return image_index(plan, scene->image.id);
 }
 
@@ -91,7 +91,7 @@ static bool find_references(struct snapshot *snapshot, char field[128], struct e
         snprintf(field, 128, "/image/blend/id");
         return error_set(err, ERROR_NOT_FOUND, "the plan has no image '%s'", scene->image.blend.id);
     }
-    if (scene->beam.id[0] && !beam_shown_of(plan, scene, scene->beam.id, &snapshot->beam)) {
+    if (scene->beam.id[0] && !beam_shown_of(plan, scene, scene->beam.id, NULL, &snapshot->beam)) {
         snprintf(field, 128, "/beam/id");
         return error_set(err, ERROR_NOT_FOUND, "the plan has no beam '%s'", scene->beam.id);
     }
@@ -105,19 +105,36 @@ static bool find_references(struct snapshot *snapshot, char field[128], struct e
 /* A dose that cannot be shown leaves the picture without dose, and is no error of the scene. */
 static void choose_dose(struct snapshot *snapshot)
 {
-    char why[DOSE_FIT_WHY_SIZE];
     if (snapshot->dose < 0)
         (void)error_set(&snapshot->dose_why, ERROR_NOT_FOUND, "the plan has no dose");
-    else if (!scene_dose_may_be_drawn(snapshot->plan, &snapshot->scene, (size_t)snapshot->dose, why))
-        (void)error_set(&snapshot->dose_why, ERROR_STATE, "%s", why);
     else
-        snapshot->has_dose_choice =
-            dose_choice_of(snapshot->plan, &snapshot->scene, (size_t)snapshot->dose, snapshot->scene.dose.quantity,
-                           &snapshot->dose_choice, &snapshot->dose_why);
+        snapshot->has_dose_choice = dose_choice_of(snapshot, (size_t)snapshot->dose, snapshot->scene.dose.quantity,
+                                                   &snapshot->dose_choice, &snapshot->dose_why);
+}
+
+/* Decides what is used, and takes out of the snapshot what is not: nothing else of it may be drawn or read. */
+static bool resolve_fits(struct snapshot *snapshot, const struct acceptances *acceptances, struct error *err)
+{
+    if (!scene_fits_of(snapshot->plan, snapshot->image, snapshot->blend, snapshot->dose, acceptances, &snapshot->fits,
+                       err))
+        return false;
+    snapshot->image = snapshot->fits.image;
+    if (snapshot->blend >= 0 && !fit_is_used(&snapshot->fits.blended))
+        snapshot->blend = -1;
+    for (size_t r = 0; r < snapshot->plan->regions.n_regions; r++)
+        snapshot->styles[r].visible &= fit_is_used(region_use(&snapshot->fits, r));
+    return true;
 }
 
 struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, struct view *view,
                                  uint32_t scene_revision, char field[128], struct error *err)
+{
+    return snapshot_create_accepted(derived, scene, view, NULL, scene_revision, field, err);
+}
+
+struct snapshot *snapshot_create_accepted(struct derive *derived, struct scene *scene, struct view *view,
+                                          const struct acceptances *acceptances, uint32_t scene_revision,
+                                          char field[128], struct error *err)
 {
     struct snapshot *snapshot = mem_new(sizeof *snapshot);
     *snapshot = (struct snapshot){ .plan = derive_plan(derived),
@@ -132,15 +149,17 @@ struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, st
 
     if (!resolve_styles(snapshot, field, err))
         goto fail;
-    if (!find_references(snapshot, field, err))
+    if (!find_references(snapshot, field, err) || !resolve_fits(snapshot, acceptances, err))
         goto fail;
     choose_dose(snapshot);
-    snapshot->has_beam = beam_shown_of(snapshot->plan, &snapshot->scene, "", &snapshot->beam);
-    snapshot->pane = plane_of_view(snapshot->plan, &snapshot->scene, &snapshot->view);
-    snapshot->n_slices = planes_of_slices(snapshot->plan, &snapshot->scene, snapshot->slices);
-    snapshot->beyond_lps_mm = snapshot_is_pane(snapshot) ? box3_empty() : beams_box(snapshot->plan, &snapshot->scene);
+    const struct plan *plan = snapshot->plan;
+    const struct scene_fits *fits = &snapshot->fits;
+    snapshot->has_beam = beam_shown_of(plan, &snapshot->scene, "", fits, &snapshot->beam);
+    snapshot->pane = plane_of_view(plan, &snapshot->scene, fits, &snapshot->view);
+    snapshot->n_slices = planes_of_slices(plan, &snapshot->scene, fits, snapshot->slices);
+    snapshot->beyond_lps_mm = snapshot_is_pane(snapshot) ? box3_empty() : beams_box(plan, &snapshot->scene, fits);
     if (!snapshot_is_pane(snapshot))
-        snapshot->n_clips = clip_planes(snapshot->plan, &snapshot->scene, snapshot->clips);
+        snapshot->n_clips = clip_planes(plan, &snapshot->scene, fits, snapshot->clips);
     if (!camera_check(snapshot->plan, &snapshot->view, &snapshot->pane, snapshot_beam(snapshot), field, err))
         goto fail;
     return snapshot;
@@ -165,6 +184,7 @@ void snapshot_unref(const struct snapshot *snapshot)
         return;
     scene_finish(&shared->scene);
     view_finish(&shared->view);
+    scene_fits_finish(&shared->fits);
     free(shared->styles);
     free(shared);
 }

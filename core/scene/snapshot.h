@@ -8,6 +8,7 @@
 #include "core/scene/camera.h"
 #include "core/scene/clip.h"
 #include "core/scene/dose_choice.h"
+#include "core/scene/fit_use.h"
 #include "core/scene/plane.h"
 #include "scene.h" /* generated from proto/scene.json */
 
@@ -18,10 +19,11 @@ struct snapshot {
     struct view view;        /* owned */
     uint32_t scene_revision;
     struct scene_region_style *styles;     /* owned; [n_regions] of the plan */
-    int image;                             /* index of the image shown; -1: the plan has none */
-    int blend;                             /* index of the image that is blended over it; -1: none */
-    int dose;                              /* index of the dose shown; -1: the plan has none */
-    bool has_dose_choice;                  /* the dose can be shown: dose_choice is valid, and it may be drawn */
+    struct scene_fits fits;                /* owned: which parts are used; decides all that follows */
+    int image;                             /* index of the image shown; -1: the plan has none that is used */
+    int blend;                             /* index of the image that is blended over it; -1: none that is used */
+    int dose;                              /* index of the dose that is named, used or not; -1: the plan has none */
+    bool has_dose_choice;                  /* the dose can be shown: dose_choice is valid, and it is used */
     struct dose_choice dose_choice;        /* the field shown */
     struct error dose_why;                 /* unless has_dose_choice: why nothing is shown */
     bool has_beam;                         /* beam is valid */
@@ -42,6 +44,10 @@ struct snapshot {
  *   errors  ERROR_NOT_FOUND, ERROR_RANGE */
 NODISCARD struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, struct view *view,
                                            uint32_t scene_revision, char field[128], struct error *err);
+/* The same with parts that people accepted (copied; NULL: none). Regions that are not used are not visible. */
+NODISCARD struct snapshot *snapshot_create_accepted(struct derive *derived, struct scene *scene, struct view *view,
+                                                    const struct acceptances *acceptances, uint32_t scene_revision,
+                                                    char field[128], struct error *err);
 struct snapshot *snapshot_ref(const struct snapshot *snapshot);
 void snapshot_unref(const struct snapshot *snapshot);
 

@@ -3,7 +3,7 @@
 import { declaration, enumDeclaration, lower, member, notice, objectInitializer, textBytes, upper } from './names.mjs';
 
 const id = { name: 'id', type: 'integer', min: 0, max: 9000000000000000, required: true, about: 'Comes back in the answer; unique among those not answered.' };
-const partTypes = { document: 'DOCUMENT', problem: 'PROBLEM', matrix: 'MATRIX' };
+const partTypes = { document: 'DOCUMENT', list: 'LIST', problem: 'PROBLEM', matrix: 'MATRIX' };
 const isPart = (field) => field.type in partTypes;
 const structOf = (packet) => `packet_${lower(packet.name)}`;
 const constant = (packet) => `PACKET_${upper(packet.name)}`;
@@ -31,7 +31,8 @@ export function checkPackets(packets, scene) {
 
 function declarationOf(field) {
   switch (field.type) {
-    case 'document': return `    const cJSON *${field.name}; /* ${field.about} */\n`;
+    case 'document':
+    case 'list': return `    const cJSON *${field.name}; /* ${field.about} */\n`;
     case 'problem': return `    struct problem ${field.name}; /* ${field.about} */\n`;
     case 'matrix': return `    float ${field.name}[16]; /* ${field.about} */\n`;
     default: return declaration(field, 'packet');

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/dose/weights.h"
-#include "core/plan/dose_fit.h"
+#include "core/plan/fit.h"
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/info_origins.h"
@@ -103,10 +103,17 @@ static void print_regions(const struct region_set *set)
 static void print_fit(const struct plan *plan, size_t index)
 {
     const struct dose *dose = &plan->doses[index];
-    char why[DOSE_FIT_WHY_SIZE];
-    enum dose_fit fit = dose_fit_of(plan, index, why);
-    printf("  fit %s: %s%s\n", dose_fit_word(fit), why,
-           dose_fit_needs_acceptance(fit) ? " It is drawn once a person accepts it." : "");
+    static const char *const until[] = { [FIT_NEEDS_NOTHING] = "",
+                                         [FIT_NEEDS_ACCEPTANCE] = " It is drawn once a person accepts it.",
+                                         [FIT_NEEDS_NEVER] = "" };
+    struct fit_part part = { FIT_DOSE, index };
+    for (size_t i = 0; i < plan->n_images; i++) {
+        char why[FIT_WHY_SIZE];
+        struct fit_part image = { FIT_IMAGE, i };
+        struct fit fit = fit_of(plan, part, image);
+        fit_sentence(plan, part, image, fit.relation, why);
+        printf("  fit %s: %s%s\n", fit_relation_word(fit.relation), why, until[fit_pair_needs(&fit)]);
+    }
     uint32_t missing = dose_missing_summands(dose);
     bool has_summands = false;
     for (size_t c = 0; c < dose->n_components; c++)

@@ -217,8 +217,16 @@ static bool find_beam(const struct snapshot *snapshot, const char *id, struct be
                       struct problem *problem)
 {
     const struct plan *plan = snapshot->plan;
-    if (beam_shown_of(plan, &snapshot->scene, id, shown))
+    if (beam_shown_of(plan, &snapshot->scene, id, &snapshot->fits, shown))
         return true;
+    const char *wanted = id[0] ? id : snapshot->scene.beam.id;
+    for (size_t i = 0; i < plan->n_beams; i++) {
+        char why[FIT_WHY_SIZE];
+        if ((wanted[0] && strcmp(plan->beams[i].id, wanted) != 0) || fit_is_used(&snapshot->fits.beams[i]))
+            continue;
+        fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_BEAM, i }, &snapshot->fits.beams[i], why);
+        return problem_set(problem, PROBLEM_NOT_FOUND, "/beam", "not-used", "%s", why);
+    }
     return id[0] ? problem_set(problem, PROBLEM_NOT_FOUND, "/beam", "", "the plan has no beam \"%.64s\"", id)
                  : problem_set(problem, PROBLEM_NOT_FOUND, "/beam", "",
                                "the plan has no beam, and the scene has no draft of one");

@@ -43,16 +43,25 @@ static cJSON *weights_object(const struct scene_tissue_weights *weights, double 
     return json;
 }
 
+void dose_add_accepted(cJSON *json, const struct fit_use *use)
+{
+    cJSON *accepted = use->acceptance ? cJSON_CreateObject() : cJSON_CreateNull();
+    if (use->acceptance) {
+        cJSON_AddStringToObject(accepted, "by", use->acceptance->by);
+        cJSON_AddStringToObject(accepted, "words", use->acceptance->words);
+    }
+    cJSON_AddItemToObject(json, "accepted", accepted);
+}
+
 /* Whether the dose belongs to the image: {fit, fit_reason, accepted}. */
 static void add_fit(cJSON *json, const struct snapshot *snapshot, size_t dose)
 {
-    char why[DOSE_FIT_WHY_SIZE];
-    enum dose_fit fit = dose_fit_of(snapshot->plan, dose, why);
-    cJSON_AddStringToObject(json, "fit", dose_fit_word(fit));
+    char why[FIT_WHY_SIZE];
+    const struct fit_use *use = &snapshot->fits.doses[dose];
+    fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, dose }, use, why);
+    cJSON_AddStringToObject(json, "fit", fit_relation_word(use->relation));
     cJSON_AddStringToObject(json, "fit_reason", why);
-    cJSON_AddBoolToObject(json, "accepted",
-                          dose_fit_needs_acceptance(fit) &&
-                              scene_dose_may_be_drawn(snapshot->plan, &snapshot->scene, dose, NULL));
+    dose_add_accepted(json, use);
 }
 
 static void add_parts(cJSON *json, const struct snapshot *snapshot)
@@ -61,8 +70,19 @@ static void add_parts(cJSON *json, const struct snapshot *snapshot)
     cJSON *parts = cJSON_AddArrayToObject(json, "parts");
     for (size_t i = 0; i <= style->n_sum; i++) {
         cJSON *part = cJSON_CreateObject();
+        double factor = i == 0 ? style->factor : style->sum[i - 1].value.factor;
+        int dose = i == 0 ? snapshot->dose : dose_index_of(snapshot->plan, style->sum[i - 1].id);
+        struct fit_use use = dose < 0 ? (struct fit_use){ .state = FIT_NOT_USED }
+                             : i == 0 ? snapshot->fits.doses[dose]
+                                      : dose_part_use(snapshot, (size_t)dose, factor);
+        char why[FIT_WHY_SIZE] = "the plan has no such dose";
+        if (dose >= 0)
+            fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, (size_t)dose }, &use, why);
         cJSON_AddStringToObject(part, "id", i == 0 ? snapshot->plan->doses[snapshot->dose].id : style->sum[i - 1].id);
-        dose_add_number(part, "factor", i == 0 ? style->factor : style->sum[i - 1].value.factor);
+        dose_add_number(part, "factor", factor);
+        cJSON_AddBoolToObject(part, "used", fit_is_used(&use));
+        dose_add_text(part, "reason", fit_is_used(&use) ? NULL : why);
+        dose_add_accepted(part, &use);
         cJSON_AddItemToArray(parts, part);
     }
 }
@@ -155,13 +175,14 @@ bool dose_asked_of(const struct snapshot *snapshot, size_t dose, enum scene_dose
 bool dose_asked_in(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity, const char *tissue,
                    struct dose_asked *asked, struct error *why)
 {
-    char sentence[DOSE_FIT_WHY_SIZE];
     asked->dose = dose;
-    if (!dose_choice_in(snapshot->plan, &snapshot->scene, dose, quantity, tissue, &asked->choice, why))
+    if (!(dose == (size_t)snapshot->dose
+              ? dose_choice_in(snapshot, dose, quantity, tissue, &asked->choice, why)
+              : dose_choice_compared(snapshot, dose, quantity, tissue, &asked->choice, why)))
         return false;
-    dose_shown_unit(&snapshot->plan->doses[dose], asked->choice.shown, asked->choice.quantity, asked->unit);
-    return scene_dose_may_be_drawn(snapshot->plan, &snapshot->scene, dose, sentence) ||
-           error_set(why, ERROR_STATE, "%s", sentence);
+    dose_shown_unit(&snapshot->plan->doses[asked->choice.unit_of], asked->choice.shown, asked->choice.quantity,
+                    asked->unit);
+    return true;
 }
 
 struct snapshot *dose_snapshot_of(const struct snapshot *snapshot, const char *word, struct problem *problem)
@@ -211,9 +232,9 @@ void dose_add_population(cJSON *json, const struct snapshot *snapshot, const str
     cJSON_AddStringToObject(json, "population", population == POPULATION_OWN ? "own" : "whole");
 }
 
-/* {id, name, per, quantity, unit, drawn, reason, fit, fit_reason, accepted, missing, parts: [{id, factor}], tissue,
- * blood_ppm, weights_name, reference: {kind, words, value, reason}, weights: [{region, ...}], levels: [{id, value,
- * percent}], resampled} */
+/* {id, name, per, quantity, unit, drawn, reason, fit, fit_reason, accepted, missing, parts: [{id, factor, used, ...}],
+ * tissue, blood_ppm, weights_name, reference: {kind, words, value, reason}, weights: [{region, ...}], levels: [{id,
+ * value, percent}], resampled} */
 cJSON *answer_dose(struct question *question, struct derive *derived, struct problem *problem)
 {
     const struct snapshot *snapshot = question->snapshot;
@@ -242,8 +263,8 @@ static double value_at(const struct snapshot *snapshot, enum scene_dose_quantity
     struct error err = { 0 };
     double value = NAN;
     *why = NULL;
-    if (!dose_choice_of(snapshot->plan, &snapshot->scene, (size_t)snapshot->dose, quantity, &choice, &err)) {
-        *why = "not in this dose";
+    if (!dose_choice_of(snapshot, (size_t)snapshot->dose, quantity, &choice, &err)) {
+        *why = err.code == ERROR_STATE ? "the dose is not used" : "not in this dose";
         return NAN;
     }
     struct dose_field *field = dose_field_get(snapshot->derived, &choice, &err);
@@ -413,7 +434,7 @@ cJSON *answer_dose_probe(struct question *question, struct derive *derived, stru
         struct dose_choice choice;
         struct error err = { 0 };
         char unit[DOSE_UNIT_SIZE];
-        if (!dose_choice_of(plan, &snapshot->scene, (size_t)snapshot->dose, totals[i], &choice, &err))
+        if (!dose_choice_of(snapshot, (size_t)snapshot->dose, totals[i], &choice, &err))
             continue;
         cJSON *item = cJSON_CreateObject();
         dose_shown_unit(&plan->doses[snapshot->dose], choice.shown, choice.quantity, unit);

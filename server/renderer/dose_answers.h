@@ -7,17 +7,19 @@ void dose_add_number(cJSON *json, const char *name, double value);   /* null for
 void dose_add_text(cJSON *json, const char *name, const char *text); /* null for NULL */
 /* What every read-out of the snapshot's dose says beside its numbers; snapshot->dose >= 0. */
 void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale);
+/* accepted: {by, words}, or null. */
+void dose_add_accepted(cJSON *json, const struct fit_use *use);
 void dose_add_weights(cJSON *json, const struct snapshot *snapshot); /* a row for each region with weights */
 /* False with problem: the plan has no dose. */
 NODISCARD bool dose_is_there(const struct snapshot *snapshot, struct problem *problem);
 
-/* A dose of the plan in a quantity, as the scene weighs it. */
+/* The dose shown, or another one beside it, in a quantity, as the scene weighs it; both in the first one's unit. */
 struct dose_asked {
     size_t dose; /* index in the plan */
     struct dose_choice choice;
     char unit[DOSE_UNIT_SIZE];
 };
-/* Returns false with why: it has no such quantity, no weights, or a person has yet to accept it. */
+/* Returns false with why: it is not used, or it has no such quantity or no weights. */
 NODISCARD bool dose_asked_of(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
                              struct dose_asked *asked, struct error *why);
 /* The same with the weights of one tissue (dose_choice_in), whatever the scene's says. */

@@ -36,12 +36,12 @@ static struct dose_field *fill_values(const struct profile *profile, const struc
                                       struct error *why)
 {
     const struct snapshot *snapshot = profile->snapshot;
-    char reason[DOSE_FIT_WHY_SIZE];
-    if (!scene_dose_may_be_drawn(snapshot->plan, scene, (size_t)snapshot->dose, reason)) {
-        (void)error_set(why, ERROR_RANGE, "%s", reason);
-        return NULL;
-    }
-    if (!dose_choice_of(snapshot->plan, scene, (size_t)snapshot->dose, quantity, choice, why))
+    struct snapshot *with = mem_new(sizeof *with); /* borrows all but the scene */
+    *with = *snapshot;
+    with->scene = *scene;
+    bool is_good = dose_choice_of(with, (size_t)snapshot->dose, quantity, choice, why);
+    free(with);
+    if (!is_good)
         return NULL;
     struct dose_field *field = dose_field_get(snapshot->derived, choice, why);
     for (size_t i = 0; field && i < profile->line.n; i++)

@@ -6,12 +6,14 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/wire/acceptances.h"
 #include "server/wire/document.h"
 
 struct room_scene {
     char id[64];
     uint32_t revision;
     cJSON *scene;
+    cJSON *acceptances; /* a list; NULL: none */
 };
 
 struct scenes {
@@ -30,8 +32,10 @@ void scenes_destroy(struct scenes *scenes)
 {
     if (!scenes)
         return;
-    for (size_t i = 0; i < scenes->n_rooms; i++)
+    for (size_t i = 0; i < scenes->n_rooms; i++) {
         cJSON_Delete(scenes->rooms[i].scene);
+        cJSON_Delete(scenes->rooms[i].acceptances);
+    }
     free(scenes->rooms);
     cJSON_Delete(scenes->plans_own);
     free(scenes);
@@ -80,17 +84,20 @@ static struct room_scene *add_room(struct scenes *scenes, const char *id)
     return room;
 }
 
-bool scenes_put_room(struct scenes *scenes, const char *id, uint32_t revision, cJSON *scene)
+bool scenes_put_room(struct scenes *scenes, const char *id, uint32_t revision, cJSON *scene, cJSON *acceptances)
 {
     struct room_scene *room = find_room(scenes, id);
     if (!room)
         room = add_room(scenes, id);
     if (!room) {
         cJSON_Delete(scene);
+        cJSON_Delete(acceptances);
         return false;
     }
     cJSON_Delete(room->scene);
+    cJSON_Delete(room->acceptances);
     room->scene = scene;
+    room->acceptances = acceptances;
     room->revision = revision;
     return true;
 }
@@ -101,6 +108,7 @@ void scenes_forget_room(struct scenes *scenes, const char *id)
     if (!room)
         return;
     cJSON_Delete(room->scene);
+    cJSON_Delete(room->acceptances);
     *room = scenes->rooms[--scenes->n_rooms];
 }
 
@@ -119,6 +127,7 @@ struct snapshot *scenes_snapshot(const struct scenes *scenes, const struct packe
     const cJSON *document = shown->scene;
     struct scene scene;
     struct view view;
+    struct acceptances acceptances;
     *revision = shown->has_scene_revision ? (uint32_t)shown->scene_revision : room ? room->revision : 0;
     if (!document && shown->room[0] && !room) {
         (void)problem_set(problem, PROBLEM_NOT_FOUND, "/room", "", "nothing is known of room \"%.64s\"", shown->room);
@@ -135,9 +144,19 @@ struct snapshot *scenes_snapshot(const struct scenes *scenes, const struct packe
         problem_below(problem, "/view");
         return NULL;
     }
+    if (!acceptances_read(shown->acceptances ? shown->acceptances
+                          : room             ? room->acceptances
+                                             : NULL,
+                          &acceptances, problem)) {
+        scene_finish(&scene);
+        view_finish(&view);
+        return NULL;
+    }
     char field[128] = "";
     struct error err = { 0 };
-    struct snapshot *snapshot = snapshot_create(scenes->derived, &scene, &view, *revision, field, &err);
+    struct snapshot *snapshot =
+        snapshot_create_accepted(scenes->derived, &scene, &view, &acceptances, *revision, field, &err);
+    acceptances_finish(&acceptances);
     if (!snapshot) {
         (void)problem_from_error(problem, &err);
         if (problem->type == PROBLEM_NOT_FOUND)

@@ -12,8 +12,10 @@ void scenes_destroy(struct scenes *scenes);
 void scenes_set_plan(struct scenes *scenes, struct derive *derived);
 /* The plan's own scene, complete; NULL before scenes_set_plan. */
 const cJSON *scenes_default(const struct scenes *scenes);
-/* Takes scene, which replaces the room's last. False: SCENE_MAX_ROOMS rooms are kept already. */
-NODISCARD bool scenes_put_room(struct scenes *scenes, const char *room, uint32_t revision, cJSON *scene);
+/* Takes scene and acceptances (NULL: none), which replace the room's last. False: SCENE_MAX_ROOMS rooms are kept
+ * already. */
+NODISCARD bool scenes_put_room(struct scenes *scenes, const char *room, uint32_t revision, cJSON *scene,
+                               cJSON *acceptances);
 void scenes_forget_room(struct scenes *scenes, const char *room);
 /* Makes the snapshot that a packet is about: of the scene it brings, else the room's, else the plan's own. revision: of
  * that scene. Returns one reference, the caller's; NULL with problem, whose pointer begins with the packet's field. */

@@ -109,7 +109,8 @@ static void start_answer(struct session *session, struct packet *packet)
 static void put_scene(struct session *session, struct packet *packet)
 {
     cJSON *scene = packet_take_document(packet, packet->scene.scene);
-    if (!scenes_put_room(session->scenes, packet->scene.room, (uint32_t)packet->scene.revision, scene))
+    cJSON *acceptances = packet_take_document(packet, packet->scene.acceptances);
+    if (!scenes_put_room(session->scenes, packet->scene.room, (uint32_t)packet->scene.revision, scene, acceptances))
         log_error("no place for the scene of another room");
 }
 

@@ -105,6 +105,11 @@ static bool read_part(const struct packet_part *part, const cJSON *json, char *f
             return refuse_part(part, "type", "is not an object", problem);
         memcpy(at, &json, sizeof json);
         return true;
+    case PACKET_PART_LIST:
+        if (!cJSON_IsArray(json))
+            return refuse_part(part, "type", "is not a list", problem);
+        memcpy(at, &json, sizeof json);
+        return true;
     case PACKET_PART_PROBLEM: {
         struct problem value = { 0 };
         if (!problem_from_json(json, &value))
@@ -213,6 +218,14 @@ static void add_part(cJSON *json, const struct packet_part *part, const char *fi
         cJSON *document;
         memcpy(&document, at, sizeof document);
         value = document ? cJSON_CreateObjectReference(document->child) : NULL;
+        break;
+    }
+    case PACKET_PART_LIST: {
+        cJSON *list;
+        memcpy(&list, at, sizeof list);
+        if (!list)
+            return;
+        value = cJSON_CreateArrayReference(list->child);
         break;
     }
     case PACKET_PART_PROBLEM: {

@@ -15,6 +15,7 @@ enum { PACKET_HEAD_BYTES = 12 };
 /* Fields that fields.h does not know. */
 enum packet_part_type {
     PACKET_PART_DOCUMENT, /* const cJSON *: an object; NULL when there is none */
+    PACKET_PART_LIST,     /* const cJSON *: an array; NULL when there is none: the key is left out */
     PACKET_PART_PROBLEM,  /* struct problem; PROBLEM_NONE when there is none */
     PACKET_PART_MATRIX    /* float[16], finite */
 };

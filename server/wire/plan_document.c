@@ -6,11 +6,12 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
-#include "core/plan/dose_fit.h"
+#include "core/plan/fit.h"
 #include "core/region/target.h"
 #include "core/scene/camera.h"
 #include "core/scene/snapshot.h"
 #include "server/wire/document.h"
+#include "server/wire/plan_fits.h"
 #include "server/wire/plan_origins.h"
 
 static cJSON *number(double value)
@@ -143,7 +144,6 @@ static cJSON *known(double value)
 static cJSON *dose_object(const struct plan *plan, size_t index)
 {
     const struct dose *dose = &plan->doses[index];
-    char why[DOSE_FIT_WHY_SIZE];
     cJSON *object = cJSON_CreateObject(), *components = cJSON_CreateArray();
     json_add(object, "id", cJSON_CreateString(dose->id));
     json_add(object, "name", cJSON_CreateString(dose->name));
@@ -151,7 +151,12 @@ static cJSON *dose_object(const struct plan *plan, size_t index)
     json_add(object, "per", cJSON_CreateString(dose->per));
     json_add(object, "frame_of_reference",
              dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
-    json_add(object, "fit", cJSON_CreateString(dose_fit_word(dose_fit_of(plan, index, why))));
+    char why[FIT_WHY_SIZE];
+    int image = fit_first_image(plan);
+    struct fit_part part = { FIT_DOSE, index }, with = { FIT_IMAGE, (size_t)(image < 0 ? 0 : image) };
+    struct fit fit = image < 0 ? fit_alone(plan, part) : fit_of(plan, part, with);
+    fit_sentence(plan, part, image < 0 ? part : with, fit.relation, why);
+    json_add(object, "fit", cJSON_CreateString(fit_relation_word(fit.relation)));
     json_add(object, "fit_reason", cJSON_CreateString(why));
     json_add(object, "masked", cJSON_CreateBool(dose->mask != NULL));
     for (size_t i = 0; i < dose->n_components; i++) {
@@ -394,6 +399,7 @@ static cJSON *write_plan(const struct plan *plan)
     for (size_t i = 0; i < plan->n_curves; i++)
         json_append(curves, curve_object(&plan->curves[i]));
     json_add(object, "curves", curves);
+    json_add(object, "fits", plan_fits_array(plan));
     json_add(object, "preferences", preferences_object(&plan->preferences));
     json_add(object, "report", report_object(&plan->report));
     plan_origins_add(object, plan);

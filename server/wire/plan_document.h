@@ -19,7 +19,7 @@
  *   doses: [ {
  *     id, name, unit, per, masked,
  *     frame_of_reference: "same" | "unknown" | "differs" | null,  DICOM: compared with the image's; null: no DICOM
- *     fit: "same" | "unknown" | "differs" | "apart", fit_reason,  core/plan/dose_fit.h
+ *     fit, fit_reason,  with the first image: relation and reason as in fits
  *     components: [ {
  *       quantity, unit, per_ppm, grid, low, high,
  *       boron_ppm,  boron in blood that a total includes; null: not known
@@ -35,6 +35,7 @@
  *     id, name, unit, per, depth_mm: [low, high], radius_mm: [low, high],
  *     quantities: [ {quantity, unit, per_ppm, peak, peak_depth_mm} ]  peaks on the axis
  *   } ],
+ *   fits: [ {thing, with, relation, reasons, reason, needs} ],  which parts may be combined: plan_fits.h
  *   preferences: {levels: [ {percent, color} ], colors: ["#rrggbb"]},  of the program that the plan comes from
  *   report: {lines: [ {severity: "note" | "warning" | "error", code, where, sentence} ], dropped},
  *   patients: [ {masked, has_identity: true, has_conflict} ],  "A. V. ...417"; empty: no patient identity in the files

@@ -310,7 +310,7 @@ static void without_a_beam_the_view_is_3d_and_the_slice_is_axial(void **state)
         scene = scene_of(plan);
         scene.image.slices.axial.position_mm = 12;
         view.kind = SCENE_KIND_BEAM_SLICE;
-        struct plane plane = plane_of_view(plan, &scene, &view), axial = plane_of_kind(SCENE_KIND_AXIAL, 12);
+        struct plane plane = plane_of_view(plan, &scene, NULL, &view), axial = plane_of_kind(SCENE_KIND_AXIAL, 12);
         assert_true(plane_equal(&plane, &axial));
         struct camera pane = camera_in(plan, scene, view);
         expect_vec3(pane.forward, vec3(0, 0, 1), 0);
@@ -327,7 +327,7 @@ static void a_draft_of_no_length_leaves_the_planned_beam(void **state)
     scene.beam.draft.line.entry_mm = vec3(5, 6, 7);
     scene.beam.draft.line.target_mm = vec3(5, 6, 7.0009); /* under 0.001 mm */
     struct beam_shown shown;
-    assert_true(beam_shown_of(plan, &scene, "", &shown));
+    assert_true(beam_shown_of(plan, &scene, "", NULL, &shown));
     assert_false(shown.is_draft);
     assert_close(shown.length_mm, 100, 1e-12);
     struct camera camera = camera_in(plan, scene, beam_view(64, 64));
@@ -348,7 +348,7 @@ static void to_compare_the_planned_beam_is_shown_while_the_draft_is_kept_and_a_d
         scene.beam.draft.line.entry_mm = vec3(5, 6, 107);
         scene.beam.draft.line.target_mm = vec3(5, 6, 7);
         struct beam_shown shown;
-        assert_true(beam_shown_of(plan, &scene, "", &shown));
+        assert_true(beam_shown_of(plan, &scene, "", NULL, &shown));
         assert_int_equal(shown.is_draft, !has_planned);
         struct camera camera = camera_in(plan, scene, beam_view(64, 64));
         expect_vec3(camera.forward, has_planned ? vec3(0, 1, 0) : vec3(0, 0, -1), 0);

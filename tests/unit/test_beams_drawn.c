@@ -58,12 +58,12 @@ static void only_visible_beams_are_drawn(void **state)
     struct beam_drawn drawn[BEAMS_DRAWN_MAX];
     add_beam(plan, "a", vec3(0, -200, 0), vec3(0, 0, 0), 80);
     add_beam(plan, "b", vec3(-200, 0, 0), vec3(0, 0, 0), NAN);
-    assert_int_equal(beams_drawn(plan, &scene, drawn), 0);
-    struct box3 box = beams_box(plan, &scene);
+    assert_int_equal(beams_drawn(plan, &scene, NULL, drawn), 0);
+    struct box3 box = beams_box(plan, &scene, NULL);
     assert_true(box3_is_empty(&box));
     look_at(&scene, "b", true);
     look_at(&scene, "a", false);
-    assert_int_equal(beams_drawn(plan, &scene, drawn), 1);
+    assert_int_equal(beams_drawn(plan, &scene, NULL, drawn), 1);
     assert_string_equal(subject_id(plan, drawn[0].subject), "b");
     assert_int_equal(drawn[0].color_rgb, 0x123456);
     assert_false(drawn[0].has_opening); /* its aperture is not known */
@@ -79,7 +79,7 @@ static void a_draft_is_drawn_with_its_planned_beam_grey_beside_it(void **state)
     struct beam_drawn drawn[BEAMS_DRAWN_MAX];
     add_beam(plan, "a", vec3(0, -200, 0), vec3(0, 0, 0), 80);
     draft(&scene, vec3(0, 0, 120), vec3(0, 0, 10)); /* no look: both are drawn all the same */
-    assert_int_equal(beams_drawn(plan, &scene, drawn), 2);
+    assert_int_equal(beams_drawn(plan, &scene, NULL, drawn), 2);
     assert_true(drawn[0].is_beside_draft && !drawn[0].is_chosen && !drawn[0].shown.is_draft);
     assert_true(drawn[1].is_chosen && drawn[1].shown.is_draft && !drawn[1].is_beside_draft);
     assert_int_equal(drawn[1].subject.key, 1);
@@ -87,7 +87,7 @@ static void a_draft_is_drawn_with_its_planned_beam_grey_beside_it(void **state)
     assert_int_not_equal(drawn[0].color_rgb, drawn[1].color_rgb);
     assert_close(drawn[1].shown.aperture_mm, 80, 1e-12); /* that of the planned beam */
     scene.beam.draft.line.target_mm = scene.beam.draft.line.entry_mm;
-    assert_int_equal(beams_drawn(plan, &scene, drawn), 0); /* a draft without a length is none */
+    assert_int_equal(beams_drawn(plan, &scene, NULL, drawn), 0); /* a draft without a length is none */
     scene_finish(&scene);
     plan_destroy(plan);
 }
@@ -114,7 +114,7 @@ static void lines_begin_before_the_box_and_end_behind_it(void **state)
         struct beam_drawn drawn[BEAMS_DRAWN_MAX];
         add_beam(plan, "a", vec3(0, cases[i].entry_y, 0), vec3(0, cases[i].target_y, 0), 80);
         look_at(&scene, "a", true);
-        assert_int_equal(beams_drawn(plan, &scene, drawn), 1);
+        assert_int_equal(beams_drawn(plan, &scene, NULL, drawn), 1);
         assert_close(drawn[0].first_mm, cases[i].first, 1e-9);
         assert_close(drawn[0].mark_mm, cases[i].mark, 1e-9);
         assert_close(drawn[0].last_mm, cases[i].last, 1e-9);
@@ -122,7 +122,7 @@ static void lines_begin_before_the_box_and_end_behind_it(void **state)
         assert_close(drawn[0].opening_last_mm, cases[i].opening_last, 1e-9);
         struct vec3 label = beam_label_lps_mm(&drawn[0]);
         assert_close(label.y, cases[i].entry_y + cases[i].first, 1e-9);
-        struct box3 box = beams_box(plan, &scene);
+        struct box3 box = beams_box(plan, &scene, NULL);
         assert_close(box.low.y, cases[i].entry_y + cases[i].first, 1e-9);
         assert_close(box.high.y, cases[i].entry_y + cases[i].last, 1e-9);
         assert_close(box.low.x, -40, 1e-9); /* half the aperture */
@@ -142,7 +142,7 @@ static void a_line_that_passes_the_plan_far_away_is_not_drawn(void **state)
     add_beam(plan, "far", vec3(2 * DIAGONAL + 1, -100, 0), vec3(2 * DIAGONAL + 1, 0, 0), 80);
     look_at(&scene, "near", true);
     look_at(&scene, "far", true);
-    assert_int_equal(beams_drawn(plan, &scene, drawn), 1);
+    assert_int_equal(beams_drawn(plan, &scene, NULL, drawn), 1);
     assert_string_equal(subject_id(plan, drawn[0].subject), "near");
     scene_finish(&scene);
     plan_destroy(plan);
@@ -195,7 +195,7 @@ static void an_opening_of_jaws_widens_from_the_source_through_the_isocentre(void
     /* a draft takes the outline along: from the feet, its plane's right is the patient's left, up is anterior */
     struct scene scene = scene_default;
     draft(&scene, vec3(0, 0, -500), vec3(0, 0, 0));
-    assert_true(beam_shown_of(plan, &scene, "", &shown) && shown.is_draft);
+    assert_true(beam_shown_of(plan, &scene, "", NULL, &shown) && shown.is_draft);
     assert_true(beam_opening_of(plan, &shown, &opening));
     struct plane planned = beam_plane(&(struct beam_shown){ .direction = { 0, 1, 0 } }, 0),
                  here = beam_plane(&shown, 0);
@@ -283,7 +283,7 @@ static void a_beams_eye_view_leaves_out_its_own_line_and_with_the_ring_its_openi
     look_at(&scene, "a", true);
     look_at(&scene, "b", true);
     snprintf(scene.beam.id, sizeof scene.beam.id, "b");
-    assert_int_equal(beams_drawn(plan, &scene, drawn), 2);
+    assert_int_equal(beams_drawn(plan, &scene, NULL, drawn), 2);
     struct view space = view_default, along = view_default, ring = view_default;
     along.kind = ring.kind = SCENE_KIND_BEAM;
     ring.beam.has_aperture_mm = true;
@@ -292,9 +292,9 @@ static void a_beams_eye_view_leaves_out_its_own_line_and_with_the_ring_its_openi
     assert_true(!beam_line_is_drawn(&drawn[1], &along) && beam_opening_is_drawn(&drawn[1], &along));
     assert_true(!beam_line_is_drawn(&drawn[1], &ring) && !beam_opening_is_drawn(&drawn[1], &ring));
     assert_true(beam_line_is_drawn(&drawn[0], &ring) && beam_opening_is_drawn(&drawn[0], &ring)); /* another beam */
-    assert_int_equal(beams_n_translucent(plan, &scene), 2);
+    assert_int_equal(beams_n_translucent(plan, &scene, NULL), 2);
     scene.beam.opacity = 1;
-    assert_int_equal(beams_n_translucent(plan, &scene), 0);
+    assert_int_equal(beams_n_translucent(plan, &scene, NULL), 0);
     scene_finish(&scene);
     plan_destroy(plan);
 }

@@ -27,7 +27,7 @@ static void each_axis_plane_cuts_off_its_side(void **state)
         int axis = 2 - i / 2; /* of x, y, z */
         struct clip_plane planes[CLIP_MAX];
         *axes[i] = (struct scene_clip_axis){ true, 7.1, i % 3 == 0 };
-        assert_int_equal(clip_planes(plan, &scene, planes), 1);
+        assert_int_equal(clip_planes(plan, &scene, NULL, planes), 1);
         assert_int_equal(planes[0].name, i);
         assert_int_equal(planes[0].is_capped, i % 3 == 0);
         for (int way = -1; way <= 1; way += 2) {
@@ -51,10 +51,10 @@ static void all_planes_at_once_keep_their_order(void **state)
     struct scene scene = scene_default;
     struct clip_plane planes[CLIP_MAX];
     struct scene_clip_style *clip = &scene.clip;
-    assert_int_equal(clip_planes(plan, &scene, planes), 0);
+    assert_int_equal(clip_planes(plan, &scene, NULL, planes), 0);
     clip->axial_low.enabled = clip->axial_high.enabled = clip->coronal_low.enabled = clip->coronal_high.enabled = true;
     clip->sagittal_low.enabled = clip->sagittal_high.enabled = clip->beam.enabled = clip->free.enabled = true;
-    assert_int_equal(clip_planes(plan, &scene, planes), CLIP_MAX);
+    assert_int_equal(clip_planes(plan, &scene, NULL, planes), CLIP_MAX);
     for (int i = 0; i < CLIP_MAX; i++)
         assert_int_equal(planes[i].name, i);
     plan_destroy(plan);
@@ -69,16 +69,16 @@ static void a_plane_across_a_beam_cuts_off_what_the_beam_meets_first(void **stat
     struct clip_plane planes[CLIP_MAX];
     scene.clip.beam.enabled = true;
     scene.clip.beam.along_mm = 20;
-    assert_int_equal(clip_planes(plan, &scene, planes), 1);
+    assert_int_equal(clip_planes(plan, &scene, NULL, planes), 1);
     assert_close(plane_height_mm(&planes[0].plane, vec3(5, 6, 80)), 20, 1e-12);
     assert_close(plane_height_mm(&planes[0].plane, vec3(5, 6, 10)), -50, 1e-12);
     snprintf(scene.clip.beam.id, sizeof scene.clip.beam.id, "second");
-    assert_int_equal(clip_planes(plan, &scene, planes), 1);
+    assert_int_equal(clip_planes(plan, &scene, NULL, planes), 1);
     assert_close(plane_height_mm(&planes[0].plane, vec3(18, 0, 24)), 0, 1e-12);
     assert_close(plane_height_mm(&planes[0].plane, vec3(30, 0, 40)), 20, 1e-12);
     assert_close(plane_height_mm(&planes[0].plane, vec3(0, 9, 0)), -30, 1e-12);
     snprintf(scene.clip.beam.id, sizeof scene.clip.beam.id, "gone");
-    assert_int_equal(clip_planes(plan, &scene, planes), 0);
+    assert_int_equal(clip_planes(plan, &scene, NULL, planes), 0);
     plan_destroy(plan);
 }
 
@@ -108,7 +108,7 @@ static void the_free_plane_cuts_alike_in_all_orders_of_the_axes(void **state)
             struct clip_plane planes[CLIP_MAX];
             scene.clip.free = (struct scene_clip_free){ true, permuted(origin, i / 8, i % 8),
                                                         permuted(normals[n], i / 8, i % 8), true };
-            assert_int_equal(clip_planes(plan, &scene, planes), 1);
+            assert_int_equal(clip_planes(plan, &scene, NULL, planes), 1);
             const struct plane *plane = &planes[0].plane;
             assert_close(plane_height_mm(plane, permuted(point, i / 8, i % 8)), expected, 1e-12);
             assert_close(vec3_dot(plane->right, plane->up), 0, 1e-15);
@@ -147,7 +147,7 @@ static void what_lies_in_a_plane_is_not_cut_off(void **state)
     struct scene scene = scene_default;
     struct clip_plane planes[CLIP_MAX];
     scene.clip.coronal_high = (struct scene_clip_axis){ true, 12.3, true };
-    size_t n = clip_planes(plan, &scene, planes);
+    size_t n = clip_planes(plan, &scene, NULL, planes);
     assert_false(clip_cuts(planes, n, vec3(1, 12.3, 2)));
     assert_false(clip_cuts(planes, n, vec3(1, 12.3 + 0.9e-6, 2)));
     assert_true(clip_cuts(planes, n, vec3(1, 12.3 + 1.1e-6, 2)));

@@ -124,26 +124,25 @@ static void a_dose_is_described_with_what_it_lacks_and_its_levels(void **state)
         scene.dose.levels[1].value.unit = SCENE_DOSE_UNIT_DOSE;
         scene.dose.levels[2].value.value = 50;
         scene.dose.levels[2].value.visible = false;
-        if (is_accepted) {
-            scene.dose.accepted = mem_new(sizeof *scene.dose.accepted);
-            scene.dose.n_accepted = 1;
-            snprintf(scene.dose.accepted[0].id, sizeof scene.dose.accepted[0].id, "run-1");
-            scene.dose.accepted[0].value.accepted = true;
-        }
+        struct acceptance word = { .thing = "dose:run-1", .with = "image:ct", .by = "Anna Weiss" };
+        snprintf(word.with, sizeof word.with, "image:%s", plan->images[0].id);
+        struct acceptances accepted = { &word, 1 };
         struct view view = view_default;
         view.kind = SCENE_KIND_AXIAL;
-        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+        struct snapshot *snapshot =
+            snapshot_create_accepted(derived_of(plan), &scene, &view, is_accepted ? &accepted : NULL, 1, field, &err);
         assert_non_null(snapshot);
         struct annotations words;
         assert_true(annotations_describe(&words, snapshot, 512, "", &err));
         const char *said = row_text(&words, ANNOTATION_DOSE);
         if (is_accepted) {
             assert_string_equal(said, "Dose Run 1 \u00d7 30|weighted dose in Gy(w) per fraction|"
-                                      "100 % = 40.0 Gy(w), prescription|weights: Set A|without nitrogen|without fast|"
-                                      "Dose from another frame of reference");
+                                      "100 % = 40.0 Gy(w), prescription|weights: Set A|without nitrogen|without fast");
+            assert_non_null(strstr(row_text(&words, ANNOTATION_MISSING),
+                                   "though it does not fit: it was computed in another frame of reference"));
             assert_string_equal(row_text(&words, ANNOTATION_LEVELS), "90 % = 36.0 Gy(w)|25.0 % = 10.0 Gy(w)");
         } else {
-            assert_non_null(strstr(said, "Dose not drawn: The dose was computed in another frame of reference"));
+            assert_non_null(strstr(said, "it was computed in another frame of reference"));
             assert_string_equal(row_text(&words, ANNOTATION_LEVELS), "");
         }
         annotations_finish(&words);

@@ -233,33 +233,38 @@ static void a_dose_that_may_not_belong_waits_for_a_person(void **state)
             plan->doses[0].components[3].values->grid.lps_mm_from_ijk.origin.x += 4000;
         for (int accepted = 0; accepted < 2; accepted++) {
             struct scene scene;
+            struct acceptance word = { .thing = "dose:mc", .with = "dose:mc", .by = "Anna" };
+            struct acceptances words = { &word, 1 };
+            struct view view = view_default;
+            char field[128];
+            struct error err = { 0 };
             scene_for_plan(plan, &scene);
-            if (accepted) {
-                scene.dose.n_accepted = 1;
-                scene.dose.accepted = mem_new(sizeof *scene.dose.accepted);
-                snprintf(scene.dose.accepted[0].id, sizeof scene.dose.accepted[0].id, "mc");
-                scene.dose.accepted[0].value.accepted = true;
-            }
-            struct snapshot *snapshot = show(plan, &scene);
+            struct snapshot *snapshot =
+                snapshot_create_accepted(derived_of(plan), &scene, &view, accepted ? &words : NULL, 1, field, &err);
+            assert_non_null(snapshot);
             assert_int_equal(snapshot->has_dose_choice, accepted);
             assert_int_equal(snapshot->dose_why.code == ERROR_NONE, accepted);
             snapshot_unref(snapshot);
         }
-        assert_int_equal(dose_fit_of(plan, 0, NULL), c == 0 ? DOSE_FIT_DIFFERS : DOSE_FIT_APART);
+        assert_int_equal(fit_alone(plan, (struct fit_part){ FIT_DOSE, 0 }).relation, c == 0 ? FIT_FRAME : FIT_APART);
         plan_and_derived_destroy(plan);
     }
 }
 
-/* Parts count by their factors; a part in another unit is refused. */
+/* Parts count by their factors, in the unit of the dose shown; a part whose unit does not convert is left out. */
 static void doses_are_summed_with_their_factors(void **state)
 {
     (void)state;
-    for (int is_other_unit = 0; is_other_unit < 2; is_other_unit++) {
+    static const struct {
+        const char *unit;
+        double gy;
+    } cases[] = { { "Gy", 1 }, { "cGy", 0.01 }, { "MeV", 0 }, { "", 0 } };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         struct plan *plan = make_plan();
         struct grid grid = made_cube_grid(50);
         struct dose *second = &plan->doses[plan->n_doses++];
         snprintf(second->id, sizeof second->id, "second");
-        snprintf(second->unit, sizeof second->unit, is_other_unit ? "cGy" : "Gy");
+        snprintf(second->unit, sizeof second->unit, "%s", cases[c].unit);
         add(second, DOSE_GAMMA, &grid, fast);
         struct scene scene;
         scene_for_plan(plan, &scene);
@@ -271,16 +276,13 @@ static void doses_are_summed_with_their_factors(void **state)
         scene.dose.sum[0].value.factor = 30;
         struct snapshot *snapshot = show(plan, &scene);
         struct dose_scale scale;
-        assert_int_equal(dose_scale_of(snapshot, &scale), !is_other_unit);
-        if (is_other_unit)
-            assert_int_equal(scale.why.code, ERROR_RANGE);
-        else {
-            const struct vec3 p = vec3(3.3, -4.1, 6.6);
-            double value = 0;
-            assert_true(scale.field->is_resampled);
-            assert_true(dose_field_value(scale.field, p, &value));
-            assert_close(value, 2 * gamma_rays(p) + 30 * fast(p), 1e-6);
-        }
+        assert_true(dose_scale_of(snapshot, &scale));
+        const struct vec3 p = vec3(3.3, -4.1, 6.6);
+        double value = 0;
+        assert_int_equal(scale.field->is_resampled, cases[c].gy > 0);
+        assert_string_equal(scale.field->unit, "Gy");
+        assert_true(dose_field_value(scale.field, p, &value));
+        assert_close(value, 2 * gamma_rays(p) + 30 * cases[c].gy * fast(p), 1e-6);
         dose_scale_finish(&scale);
         snapshot_unref(snapshot);
         plan_and_derived_destroy(plan);

@@ -50,7 +50,7 @@ static void only_slices_that_are_visible_have_planes(void **state)
     scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = true;
     scene.image.slices.coronal.position_mm = 5;
     scene.image.slices.sagittal.position_mm = -6;
-    assert_int_equal(planes_of_slices(&none, &scene, slices), 2);
+    assert_int_equal(planes_of_slices(&none, &scene, NULL, slices), 2);
     expect_vec3(slices[0].origin_lps_mm, 0, 5, 0);
     expect_vec3(slices[1].origin_lps_mm, -6, 0, 0);
     scene_finish(&scene);
@@ -155,15 +155,15 @@ static void an_oblique_view_shows_the_plane_that_it_names(void **state)
     scene.image.slices.axial.position_mm = 9;
     view.kind = SCENE_KIND_OBLIQUE;
     (void)snprintf(view.plane, sizeof view.plane, "b");
-    struct plane pane = plane_of_view(&none, &scene, &view), expected = plane_of_normal(vec3(1, 2, 3), vec3(0, 1, 1)),
+    struct plane pane = plane_of_view(&none, &scene, NULL, &view), expected = plane_of_normal(vec3(1, 2, 3), vec3(0, 1, 1)),
                  slices[PLANE_MAX_SLICES], axial = plane_of_kind(SCENE_KIND_AXIAL, 9);
     assert_true(plane_equal(&pane, &expected));
     scene.image.slices.axial.visible = true;
     scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = false;
-    assert_int_equal(planes_of_slices(&none, &scene, slices), 2); /* "a" is not visible in space */
+    assert_int_equal(planes_of_slices(&none, &scene, NULL, slices), 2); /* "a" is not visible in space */
     assert_true(plane_equal(&slices[0], &axial) && plane_equal(&slices[1], &expected));
     (void)snprintf(view.plane, sizeof view.plane, "gone");
-    pane = plane_of_view(&none, &scene, &view);
+    pane = plane_of_view(&none, &scene, NULL, &view);
     assert_true(plane_equal(&pane, &axial));
 }
 

@@ -69,7 +69,7 @@ static bool add_in_space(struct draw_list *list, const struct draw_scope *scope,
     const struct scene_beam_style *style = &snapshot->scene.beam;
     struct beam_drawn drawn[BEAMS_DRAWN_MAX];
     struct beam_opening opening;
-    size_t n = snapshot_is_pane(snapshot) ? 0 : beams_drawn(snapshot->plan, &snapshot->scene, drawn);
+    size_t n = snapshot_is_pane(snapshot) ? 0 : beams_drawn(snapshot->plan, &snapshot->scene, &snapshot->fits, drawn);
     for (size_t i = 0; i < n; i++) {
         const struct beam_drawn *beam = &drawn[i];
         bool has_opening =
@@ -157,7 +157,7 @@ bool draw_beams_on_pane(struct draw_list *list, const struct draw_scope *scope, 
 {
     const struct snapshot *snapshot = scope->snapshot;
     struct beam_drawn drawn[BEAMS_DRAWN_MAX];
-    size_t n = snapshot_is_pane(snapshot) ? beams_drawn(snapshot->plan, &snapshot->scene, drawn) : 0;
+    size_t n = snapshot_is_pane(snapshot) ? beams_drawn(snapshot->plan, &snapshot->scene, &snapshot->fits, drawn) : 0;
     for (size_t i = 0; i < n; i++)
         if (!add_on_pane(list, scope, &drawn[i], err))
             return false;

@@ -66,7 +66,7 @@ struct draw_list *draw_list_create(const struct draw_scope *scope, const struct 
     list->is_order_exact = snapshot->scene.surface.translucent_order == SCENE_TRANSLUCENT_ORDER_EXACT;
     list->reads_dose_in_parts = scope->reads_dose_in_parts;
     list->n_layers_planned = visible_n_translucent(snapshot) + isodoses_n_translucent(snapshot) +
-                             beams_n_translucent(snapshot->plan, &snapshot->scene);
+                             beams_n_translucent(snapshot->plan, &snapshot->scene, &snapshot->fits);
     draw_cache_begin(scope->cache, &list->use);
     for (size_t i = 0; i < sizeof fills / sizeof fills[0]; i++)
         if (!fills[i](list, scope, err)) {

@@ -7,22 +7,13 @@
 
 /* ---- doses and values ------------------------------------------------------------------------------------------- */
 
-static int find_dose(const struct plan *plan, const char *id)
-{
-    for (size_t i = 0; id[0] && i < plan->n_doses; i++)
-        if (strcmp(plan->doses[i].id, id) == 0)
-            return (int)i;
-    return -1;
-}
-
 static void find_second(struct isoline_scene *lines, const struct snapshot *snapshot)
 {
     const struct scene_dose_compare *compare = &snapshot->scene.dose.compare;
     struct isoline_dose *second = &lines->doses[1];
-    int dose = find_dose(snapshot->plan, compare->id);
-    if (dose < 0 || !scene_dose_may_be_drawn(snapshot->plan, &snapshot->scene, (size_t)dose, NULL) ||
-        !dose_choice_of(snapshot->plan, &snapshot->scene, (size_t)dose, snapshot->scene.dose.quantity, &second->choice,
-                        NULL))
+    int dose = compare->id[0] ? dose_index_of(snapshot->plan, compare->id) : -1;
+    if (dose < 0 || !dose_choice_compared(snapshot, (size_t)dose, snapshot->scene.dose.quantity,
+                                          snapshot->scene.dose.tissue, &second->choice, NULL))
         return;
     struct error err = { 0 };
     second->field = dose_field_get(snapshot->derived, &second->choice, &err);

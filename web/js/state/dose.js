@@ -60,8 +60,8 @@ export function quantityFor(scene, dose) {
 // ---- whether it may be drawn --------------------------------------------------------------------------------------------
 
 /** True if a person must accept the dose before it is drawn: core/plan/dose_fit.h. */
-export const needsAcceptance = ({ fit }) => fit === 'differs' || fit === 'apart';
-export const isAccepted = (scene, dose) => Boolean(scene.dose.accepted[dose.id]?.accepted);
+export const needsAcceptance = ({ fit }) => !['same', 'registered', 'unstated'].includes(fit);
+export const isAccepted = () => false;
 /** The doses of a sum, the shown one first. */
 export const summedDoses = (plan, scene) => {
   const shown = shownDose(plan, scene);

@@ -10,7 +10,7 @@ export function readDvh(answer) {
   const without = (answer.without_curves ?? []).map(({ dose, reason }) => `${dose}: ${reason}`).join('. ');
   return {
     unit: answer.curves[0]?.unit ?? answer.unit ?? '', quantity: answer.curves[0]?.quantity ?? answer.quantity ?? '', method: answer.method ?? '', missing: answer.missing ?? [],
-    reason: without || answer.reason || '', per: answer.per ?? '', isAccepted: answer.accepted === true,
+    reason: without || answer.reason || '', per: answer.per ?? '', isAccepted: Boolean(answer.accepted),
     curves: answer.curves.map((row) => withSums({
       region: row.region, dose: row.dose, of: row.dose === answer.id ? 0 : 1, volume: row.volume_cm3, cm3: row.volume_cm3 - row.missing_cm3, missing: row.missing_cm3, univels: row.n_univels,
       low: finite(row.min), mean: finite(row.mean), high: finite(row.max), figures: Object.fromEntries(figureNames.map((name) => [name, finite(row.metrics[name])])),

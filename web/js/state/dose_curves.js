@@ -8,7 +8,7 @@ import { plotPoints } from './dose_dvh.js';
 import { linesOf } from './dose_profile.js';
 
 /** Fields of the dose on which no number depends. */
-const looks = ['grid', 'levels', 'wash', 'lines', 'surfaces', 'coverage', 'error', 'interpolation', 'accepted', 'weights_name'];
+const looks = ['grid', 'levels', 'wash', 'lines', 'surfaces', 'coverage', 'error', 'interpolation', 'weights_name'];
 const [mostBins, allBins, mostIds] = [512, 60000, 2000]; // of a curve, of an answer; characters
 const numbersOf = (dose) => Object.fromEntries(Object.entries(dose ?? {}).filter(([name]) => !looks.includes(name)));
 
