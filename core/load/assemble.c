@@ -20,6 +20,7 @@
 #include "core/load/plan_ids.h"
 #include "core/load/region_builder.h"
 #include "core/load/region_hierarchy.h"
+#include "core/load/settle_parts.h"
 #include "core/plan/plan_bounds.h"
 
 /* Lists of the plan file are copied into the plan's without a check of their length. */
@@ -35,46 +36,27 @@ static struct volume *take_volume(struct part_reading *reading)
     return volume;
 }
 
-static bool holds_only_0_and_1(const struct volume *volume)
-{
-    if (volume->low != 0 || volume->high != 1)
-        return false;
-    size_t n = grid_n_voxels(&volume->grid);
-#define COUNT(type) \
-    do { \
-        const type *in = volume->voxels; \
-        for (size_t i = 0; i < n; i++) { \
-            double value = (double)in[i] * volume->slope + volume->offset; \
-            if (value != 0 && value != 1) \
-                return false; \
-        } \
-    } while (0)
-    switch (volume->type) {
-    case VOXEL_U8: COUNT(uint8_t); break;
-    case VOXEL_I16: COUNT(int16_t); break;
-    case VOXEL_U16: COUNT(uint16_t); break;
-    case VOXEL_F32: COUNT(float); break;
-    }
-#undef COUNT
-    return true;
-}
-
-/* Reports an image that holds only 0 and 1, so it may be a mask. The sentence says how to make it a region: by a file
- * name with _mask, which works for files of whole numbers, or by a plan.json, which must name the other files too. */
-static void note_mask(struct loading *loading, const struct part_reading *reading, const struct plan_image *image)
+/* Reports an image that may be a mask or a label map. The sentence says how to make it regions: by a file name with
+ * _mask or _seg, or by a plan.json, which must name the other files too. */
+static void note_labels(struct loading *loading, const struct part_reading *reading, double high)
 {
     const char *base = part_base_name(reading->path);
     int stem = part_stem_length(base);
-    if (!loading->parts.is_recognised || reading->format == PART_DICOM || !holds_only_0_and_1(image->volume))
+    bool is_mask = reading->content.n_values == 1;
+    if (!reading->is_label_like)
         return;
     char rename[160] = "";
-    if (image->volume->type != VOXEL_F32 && !text_has_ending(base, ".hdr") && !text_has_ending(base, ".hdr.gz"))
-        snprintf(rename, sizeof rename, "call the file %.*s_mask%.20s, or ", stem < 80 ? stem : 80, base, base + stem);
+    if (!text_has_ending(base, ".hdr") && !text_has_ending(base, ".hdr.gz"))
+        snprintf(rename, sizeof rename, "call the file %.*s_%s%.20s, or ", stem < 80 ? stem : 80, base,
+                 is_mask ? "mask" : "seg", base + stem);
+    char what[80] = "Every voxel is 0 or 1, so this may be a mask";
+    if (!is_mask || high != 1)
+        snprintf(what, sizeof what, "It holds %zu whole numbers besides 0, so this may be a label map",
+                 reading->content.n_values);
     report_add(
         &loading->plan->report, REPORT_WARNING, "image.may-be-region", reading->path,
-        "Every voxel is 0 or 1, so this may be a mask. To show it as a region %swrite a plan.json that names it in \"regions\" and the "
-        "folder's other files as well.",
-        rename);
+        "%s. To show it as %s %swrite a plan.json that names it in \"regions\" and the folder's other files as well.",
+        what, is_mask ? "a region" : "regions", rename);
 }
 
 static void add_image(struct loading *loading, struct part_reading *reading)
@@ -92,7 +74,10 @@ static void add_image(struct loading *loading, struct part_reading *reading)
     memcpy(image->name, entry->name, sizeof image->name);
     snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : reading->modality);
     image->volume = take_volume(reading);
-    note_mask(loading, reading, image);
+    note_labels(loading, reading, image->volume->high);
+    if (image->volume->low == image->volume->high)
+        report_add(&plan->report, REPORT_WARNING, "image.constant", reading->path, "Every voxel is %g.",
+                   image->volume->low);
     if (text_equal(image->modality, "CT")) {
         snprintf(image->unit, sizeof image->unit, "HU");
         if (image->volume->low >= 0 && image->volume->high > 0)
@@ -115,6 +100,17 @@ static void add_image(struct loading *loading, struct part_reading *reading)
         image->window_width = reading->facts.windows[0].width;
     }
     plan_image_window_limit(image);
+}
+
+/* Adds the images: in the order of plan.json, else those that are most likely wanted first before the others. */
+static void add_images(struct loading *loading)
+{
+    for (int rank = 0; rank < PLAN_IMAGE_RANKS; rank++)
+        for (size_t i = 0; i < loading->n_readings; i++) {
+            struct part_reading *reading = &loading->readings[i];
+            if (reading->kind == PART_KIND_IMAGE && !reading->is_failed && plan_image_rank(loading, reading) == rank)
+                add_image(loading, reading);
+        }
 }
 
 /* Replaces the grid of an image whose header describes another image by the grid of univels of the same size, which are
@@ -370,11 +366,10 @@ bool plan_assemble(struct loading *loading, struct error *err)
         n_rois += loading->readings[i].structs ? loading->readings[i].structs->n_rois : 0;
     loading_begin(loading, n_rois);
     region_builder_init(&builder, &plan->regions, &plan->report);
+    add_images(loading);
     for (size_t i = 0; is_whole && i < loading->n_readings; i++) {
         struct part_reading *reading = &loading->readings[i];
-        if (reading->kind == PART_KIND_IMAGE && !reading->is_failed)
-            add_image(loading, reading);
-        else if (reading->kind == PART_KIND_REGION && !reading->is_failed)
+        if (reading->kind == PART_KIND_REGION && !reading->is_failed)
             is_whole = add_regions_of(loading, &builder, reading, err);
     }
     for (size_t i = 0; i < loading->n_readings; i++)

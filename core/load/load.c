@@ -2,6 +2,7 @@
 #include "core/load/load.h"
 
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@
 #include "core/load/loading.h"
 #include "core/load/part_list.h"
 #include "core/load/read_all.h"
+#include "core/load/settle_parts.h"
 
 /* The caller waits and looks at the cancel flag every LOOK_EVERY_MS, so a cancelled plan_load returns that soon
  * whatever the thread is doing. The thread goes on to the end of its file or slice, finds is_given_up set, and frees
@@ -81,6 +83,27 @@ static bool has_anything(const struct loading *loading, struct error *err)
                      gravest ? gravest->sentence : "");
 }
 
+static bool settle_and_assemble(struct loading *loading, struct error *err)
+{
+    plan_settle_parts(loading);
+    return plan_assemble(loading, err);
+}
+
+/* Says of a folder without plan.json what was found; the line was added before the parts were read. */
+static void count_found(struct plan *plan)
+{
+    for (size_t i = 0; i < plan->report.n_lines; i++) {
+        struct report_line *line = &plan->report.lines[i];
+        if (strcmp(line->code, "plan.recognised") == 0)
+            snprintf(
+                line->sentence, sizeof line->sentence,
+                "The folder has no plan.json; its parts were found by names and contents: %zu %s, %zu %s, %zu %s, %zu %s.",
+                plan->n_images, plan->n_images == 1 ? "image" : "images", plan->regions.n_regions,
+                plan->regions.n_regions == 1 ? "region" : "regions", plan->n_doses,
+                plan->n_doses == 1 ? "dose" : "doses", plan->n_beams, plan->n_beams == 1 ? "beam" : "beams");
+    }
+}
+
 static bool load(struct loading *loading)
 {
     struct error *err = &loading->err;
@@ -93,13 +116,14 @@ static bool load(struct loading *loading)
     bool is_found = plan_find_parts(&loading->folder, &looking, &loading->parts, &plan->report, err);
     loading->file = loading->parts.file;
     if (!is_found || !plan_list_parts(loading, err) || !plan_check_estimate(loading, err) ||
-        !plan_read_parts(loading, err) || !plan_assemble(loading, err) || !has_anything(loading, err)) {
+        !plan_read_parts(loading, err) || !settle_and_assemble(loading, err) || !has_anything(loading, err)) {
         if (error_n_memory() != n_lacked && err->code != ERROR_MEMORY)
             error_set(err, ERROR_MEMORY, "no memory, or too many open files, to read the plan");
         return false;
     }
     if (error_n_memory() != n_lacked) /* a dose, curves or preferences may be left out: not to be shown, nor cached */
         return error_set(err, ERROR_MEMORY, "no memory, or too many open files, to read all of the plan");
+    count_found(plan);
     memcpy(plan->name, loading->file->name, sizeof plan->name);
     memcpy(plan->note, loading->file->note, sizeof plan->note);
     plan->is_phantom = loading->file->is_phantom;

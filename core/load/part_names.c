@@ -45,6 +45,24 @@ bool part_name_has_word(const char *name, const char *const *words, size_t n_wor
     return false;
 }
 
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+bool part_name_has_whole_word(const char *name, const char *word)
+{
+    size_t n = strlen(word);
+    for (const char *at = name; *at; at++) {
+        size_t i = 0;
+        while (i < n && (at[i] == word[i] || (is_letter(at[i]) && (at[i] | 0x20) == word[i])))
+            i++;
+        if (i == n && (at == name || !is_letter(at[-1])) && !is_letter(at[n]))
+            return true;
+    }
+    return false;
+}
+
 /* Length of the name without its last ending. */
 static size_t stem_length(const char *name)
 {

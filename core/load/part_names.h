@@ -9,6 +9,9 @@ int part_stem_length(const char *base);
 /* True if the name contains one of the words, whatever its case. words: in lower case. */
 bool part_name_has_word(const char *name, const char *const *words, size_t n_words);
 
+/* True if the name contains the word with no letter before or behind it, whatever its case. word: in lower case. */
+bool part_name_has_whole_word(const char *name, const char *word);
+
 /* Finds the data file beside a header: the header's stem with the ending (".uv", ".qim", ".cdf") and ".gz", ".sz" or
  * nothing, in that order. Returns false when there is none. */
 bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE]);

@@ -8,6 +8,7 @@
 #include "core/formats/plan_file.h"
 #include "core/formats/sera_doses.h"
 #include "core/formats/sera_uvh.h"
+#include "core/load/grid_content.h"
 #include "core/load/part_format.h"
 
 enum part_kind {
@@ -44,7 +45,10 @@ struct part_reading {
     bool is_grid_doubtful;           /* the .qhd describes another image */
     struct report report;
     struct error err;
-    bool is_failed; /* after plan_read_parts: reported and left out */
+    struct grid_content content; /* of a NIfTI or NRRD image or label map that was recognised */
+    bool is_no_labels;           /* named like a label map, but its values are none; volume holds an image */
+    bool is_label_like;          /* an image whose values may be labels */
+    bool is_failed;              /* after plan_read_parts: reported and left out */
 
     struct loading *loading; /* for the progress a reader reports */
     uint64_t bytes_counted;  /* of bytes, how many the progress counts already */

@@ -99,12 +99,55 @@ static bool read_rt_object(const struct loading *loading, struct part_reading *r
     return is_read;
 }
 
+/* True if the file of a label map says itself that it is one: by segments, or by layers. */
+static bool says_labels(const struct folder *folder, const struct part_reading *reading)
+{
+    struct nrrd_header header;
+    if (reading->format != PART_NRRD)
+        return false;
+    bool is_said =
+        !plan_nrrd_peek(folder, reading->path, &header, NULL) || header.n_segments > 0 || header.n_layers > 1;
+    nrrd_header_finish(&header);
+    return is_said;
+}
+
+/* Reads a file that is called like a label map; when its values are no labels, as an image. */
+static bool read_by_content(const struct folder *folder, struct part_reading *reading)
+{
+    bool is_read = read_grid(folder, reading, RAW_LABELS);
+    if (!is_read && reading->err.code == ERROR_RANGE) {
+        report_finish(&reading->report);
+        reading->err = (struct error){ 0 };
+        reading->is_no_labels = true;
+        return read_grid(folder, reading, RAW_IMAGE);
+    }
+    if (!is_read)
+        return false;
+    grid_content_measure(reading->volume, &reading->content);
+    reading->is_no_labels = !grid_content_is_labels(&reading->content, true);
+    return true;
+}
+
+static bool read_image(const struct loading *loading, struct part_reading *reading)
+{
+    if (!read_grid(&loading->folder, reading, RAW_IMAGE))
+        return false;
+    if (loading->parts.is_recognised) {
+        grid_content_measure(reading->volume, &reading->content);
+        reading->is_label_like = grid_content_is_labels(&reading->content, false);
+    }
+    return true;
+}
+
 static bool read_region(const struct loading *loading, struct part_reading *reading)
 {
     const struct plan_file_region *region = &loading->file->regions[reading->index];
     if (reading->format == PART_UVH)
         return plan_read_univels(&loading->folder, reading->path, region->mm, &reading->uvh, &reading->volume,
                                  &reading->report, &reading->err);
+    if (loading->parts.is_recognised && !says_labels(&loading->folder, reading))
+        return read_by_content(&loading->folder, reading) &&
+               (reading->is_no_labels || read_names(&loading->folder, region->names, reading));
     if (!read_names(&loading->folder, region->names, reading))
         return false;
     if (reading->format == PART_NRRD && !region->name[0])
@@ -123,7 +166,7 @@ bool plan_read_part(struct loading *loading, struct part_reading *reading)
             return plan_read_qsh(folder, reading->path, loading->file->images[reading->index].header,
                                  loading->file->images[reading->index].mm, &reading->volume, reading->modality,
                                  &reading->is_grid_doubtful, &reading->report, &reading->err);
-        return read_grid(folder, reading, RAW_IMAGE);
+        return read_image(loading, reading);
     case PART_KIND_DOSE:
         if (reading->format == PART_SERA_DOSE)
             return plan_read_chd(&loading->folder, reading->path, &reading->doses, &reading->report, &reading->err);

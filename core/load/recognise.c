@@ -10,6 +10,7 @@
 #include "core/formats/sera_rst.h"
 #include "core/formats/text.h"
 #include "core/load/dicom_parts.h"
+#include "core/load/dose_files.h"
 #include "core/load/label_lists.h"
 #include "core/load/nifti_parts.h"
 #include "core/load/nrrd_parts.h"
@@ -25,25 +26,32 @@ struct recognition {
     char **dicom; /* [n_dicom] names of files that may be DICOM; borrowed from the tree */
     size_t n_dicom;
     struct name_lists *lists;
+    struct dose_files doses;
     struct error reason; /* why the first file that looked like a part was not used */
 };
 
-/* Properties of a grid's values, from its header. */
+/* Properties of a grid, from its header. */
 struct grid_facts {
-    bool is_whole, has_segments;
+    struct grid grid;
+    bool has_segments;
 };
 
-/* True for a grid of whole numbers whose name contains a word for labels, or that names its own segments. */
-static bool is_label_map(const char *name, const struct grid_facts *facts)
+/* True if nnU-Net's images of the same case lie beside a file: case_0000.nii.gz beside case.nii.gz, its prediction. */
+static bool has_channels_beside(const struct folder *folder, const char *name)
 {
-    static const char *const words[] = { "label", "seg", "univel", "mask" };
-    return facts->is_whole && (facts->has_segments || part_name_has_word(name, words, sizeof words / sizeof words[0]));
+    char channel[FOLDER_NAME_SIZE];
+    const char *base = part_base_name(name);
+    int stem = (int)(base - name) + part_stem_length(base);
+    int n = snprintf(channel, sizeof channel, "%.*s_0000%s", stem, name, name + stem);
+    return n > 0 && n < (int)sizeof channel && folder_look(folder, channel, NULL) == FOLDER_FILE;
 }
 
-static bool is_dose_map(const char *name)
+/* True for a grid that names its own segments, or whose name hints at labels; its values decide when they are read. */
+static bool is_label_map(const struct folder *folder, const char *name, const struct grid_facts *facts)
 {
-    static const char *const words[] = { "dose" };
-    return part_name_has_word(part_base_name(name), words, 1);
+    static const char *const words[] = { "label", "seg", "univel", "mask" };
+    return facts->has_segments || part_name_has_word(name, words, sizeof words / sizeof words[0]) ||
+           has_channels_beside(folder, name);
 }
 
 static bool is_rst(const struct folder *folder, const char *name)
@@ -123,11 +131,13 @@ static bool has_good_header(struct recognition *all, const char *name, enum part
     bool is_good = false;
     if (format == PART_NRRD) {
         is_good = plan_nrrd_peek(all->folder, name, &nrrd, &err);
-        *facts = (struct grid_facts){ nrrd.type != RAW_F32 && nrrd.type != RAW_F64, nrrd.n_segments > 0 };
+        *facts = (struct grid_facts){ nrrd.grid, nrrd.n_segments > 0 };
         nrrd_header_finish(&nrrd);
     } else {
         is_good = plan_nifti_peek(all->folder, name, &nifti, &err);
-        *facts = (struct grid_facts){ is_good && nifti.type != RAW_F32 && nifti.type != RAW_F64, false };
+        *facts = (struct grid_facts){ .has_segments = false };
+        if (is_good)
+            facts->grid = nifti.grid;
     }
     if (is_good)
         return true;
@@ -155,13 +165,21 @@ static void add_grid(struct recognition *all, const char *name, enum part_format
     struct grid_facts facts;
     if (is_second_of_pair(all->folder, name) || !has_good_header(all, name, format, &facts))
         return;
-    if (name_lists_has_map(all->lists, name) || is_label_map(name, &facts)) {
+    struct dose_words words;
+    if (name_lists_has_map(all->lists, name) || is_label_map(all->folder, name, &facts))
         (void)add_region(all, name);
-    } else if (is_dose_map(name)) {
-        add_dose(all, name);
-    } else {
+    else if (!dose_files_is_name(name, &words) || !dose_files_add(&all->doses, name, &facts.grid, &words))
         add_image(all, name, "");
-    }
+}
+
+/* Joins the files that are doses by their names; those that are none after all become images. */
+static void add_doses(struct recognition *all)
+{
+    dose_files_join(&all->doses, all->file, all->report);
+    for (size_t i = 0; i < all->doses.n; i++)
+        if (!all->doses.files[i].is_taken)
+            add_image(all, all->doses.files[i].path, "");
+    dose_files_finish(&all->doses);
 }
 
 static void add_qsh(struct recognition *all, const char *name)
@@ -293,9 +311,10 @@ static bool recognise_tree(const struct folder *folder, const struct folder_tree
     struct recognition all = { folder, parts->file,
                                report, mem_new((tree->n_files + 1) * sizeof(char *)),
                                0,      name_lists_find(folder, tree, progress ? progress->cancel : NULL, report),
-                               { 0 } };
+                               { 0 },  { 0 } };
     for (size_t i = 0; i < tree->n_files && !(progress && progress->cancel && atomic_load(progress->cancel)); i++)
         recognise_file(&all, tree->files[i].name);
+    add_doses(&all);
     name_lists_assign(all.lists, folder, parts->file, report);
     name_lists_destroy(all.lists);
     bool is_scanned = plan_dicom_recognise(folder, all.dicom, all.n_dicom, parts, progress, report, err);
@@ -333,9 +352,7 @@ bool plan_recognise(const struct folder *folder, const struct dicom_progress *pr
         is_known = false;
     } else if (is_known) {
         report_add(report, REPORT_NOTE, "plan.recognised", "",
-                   "The folder has no plan.json; its parts were found by names and contents: "
-                   "%zu images, %zu files of regions, %zu files of doses.",
-                   file->n_images, file->n_regions, file->n_doses);
+                   "The folder has no plan.json; its parts were found by names and contents.");
     }
     folder_tree_finish(&tree);
     return is_known;

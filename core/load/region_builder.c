@@ -220,6 +220,8 @@ bool region_builder_add_labels(struct region_builder *builder, struct volume *la
         free(counts);
         return false;
     }
+    if (labels->low == 0 && labels->high == 0)
+        report_add(builder->report, REPORT_WARNING, "region.none", where, "Every voxel is 0, so it holds no region.");
     bool *is_named = mem_new(65536);
     bool is_added = true;
     size_t n_unused = 0;

@@ -35,8 +35,11 @@
       "Check distances along the slices.") \
     X("image.precision", "Whole numbers too large to be held exactly were rounded.", \
       "Store the image with a smaller range.") \
-    X("image.may-be-region", "An image holds nothing but 0 and 1, so it may be the mask of a region.", \
-      "Give it a name with _mask where the line says so, or name it and the other files in a plan.json.") \
+    X("image.may-be-region", "An image holds a few whole numbers, so it may be the labels or the mask of regions.", \
+      "Give it a name with _seg or _mask where the line says so, or name it and the other files in a plan.json.") \
+    X("image.by-content", "A file is named like labels or a dose, but its values are those of an image.", \
+      "Rename the file, or say in a plan.json what it is.") \
+    X("image.constant", "Every voxel of an image has the same value.", "Check the file.") \
     X("image.bytes-behind", "A file holds more bytes than its header speaks of.", \
       "Check that the header belongs to these voxels.") \
     X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.") \
@@ -86,6 +89,7 @@
     X("geometry.cosines", "The directions of rows and columns are not at right angles or not of length 1.", \
       "They were corrected; check angles.") \
     X("region.empty", "A region has no voxel.", "Nothing to show for it; check the file.") \
+    X("region.none", "A label map is 0 everywhere.", "Nothing to show for it; check the file.") \
     X("region.unnamed", "A label has no name.", "It is listed under its number; add it to the list of names.") \
     X("region.names-elsewhere", "A list of label names is of another map, or of a map that is not there.", \
       "Check the names; say in plan.json which list belongs to which map.") \
@@ -181,6 +185,9 @@
     X("dose.all-zero", "A dose is 0 everywhere.", "It is not listed; export it again if it should not be.") \
     X("dose.components", "Several objects are the components of one dose, by their descriptions.", \
       "Check the assignment.") \
+    X("dose.words-not-joined", \
+      "Doses are called like the components of one dose, but nothing else says that they are one.", \
+      "Join them as \"components\" in a plan.json if they are.") \
     X("dose.per-ppm", "A boron dose for a known concentration was divided by it.", \
       "Nothing; the concentration in blood is set beside the picture.") \
     X("dose.no-ppm", "Nothing says for which concentration a boron dose holds.", \

@@ -30,6 +30,7 @@ static bool is_about_loss(const struct report_line *line)
 {
     static const char *const codes[] = { "plan.ignored-file",
                                          "plan.too-many-files",
+                                         "part.unreadable",
                                          "dicom.unreadable",
                                          "dicom.not-used",
                                          "dicom.duplicate",
@@ -41,6 +42,8 @@ static bool is_about_loss(const struct report_line *line)
                                          "region.contours-left-out",
                                          "hierarchy.cycle",
                                          "hierarchy.line",
+                                         "region.none",
+                                         "dose.all-zero",
                                          "dose.left-out",
                                          "dose.weight-zero",
                                          "beam.left-out",

@@ -358,6 +358,43 @@ static void a_word_alone_makes_no_component_and_beams_are_not_added(void **state
     dose_finish(&doses[0]);
 }
 
+/* A photon plan and a neutron boost, whose words are those of gamma and fast dose, stay two doses and a question; with
+ * boron on the same grid words join, on another grid they do not. */
+static void words_join_only_with_boron_or_nitrogen_and_on_one_grid(void **state)
+{
+    (void)state;
+    struct made_dose made[3] = { plain, plain, plain };
+    struct report report = { 0 };
+    struct dose doses[8];
+    made[0].description = "Photon plan";
+    made[1].description = "Neutron boost";
+    size_t n = group(made, 2, doses, &report);
+    assert_int_equal(n, 2);
+    for (size_t i = 0; i < n; i++) {
+        assert_int_equal(doses[i].components[0].quantity, DOSE_TOTAL);
+        dose_finish(&doses[i]);
+    }
+    assert_non_null(strstr(report_said(&report, "dose.words-not-joined"), "Neutron boost"));
+    report_finish(&report);
+    made[0].description = "ホウ素線量";
+    made[1].description = "γ線";
+    made[2].description = "速中性子";
+    n = group(made, 3, doses, &report);
+    assert_int_equal(n, 1);
+    assert_int_equal(doses[0].n_components, 3);
+    assert_false(report_has(&report, "dose.words-not-joined"));
+    assert_non_null(strstr(report_said(&report, "dose.components"), "plan.json"));
+    dose_finish(&doses[0]);
+    report_finish(&report);
+    made[1].spacing = "2\\2";
+    n = group(made, 2, doses, &report);
+    assert_int_equal(n, 2);
+    assert_non_null(strstr(report_said(&report, "dose.words-not-joined"), "different grids"));
+    for (size_t i = 0; i < n; i++)
+        dose_finish(&doses[i]);
+    report_finish(&report);
+}
+
 static void the_oncentra_doses_have_their_maxima(void **state)
 {
     (void)state;
@@ -537,6 +574,7 @@ int main(void)
         cmocka_unit_test(descriptions_name_components),
         cmocka_unit_test(components_that_agree_become_one_dose),
         cmocka_unit_test(a_word_alone_makes_no_component_and_beams_are_not_added),
+        cmocka_unit_test(words_join_only_with_boron_or_nitrogen_and_on_one_grid),
         cmocka_unit_test(the_oncentra_doses_have_their_maxima),
         cmocka_unit_test(cut_and_flipped_copies_of_real_files_are_read_or_refused),
     };

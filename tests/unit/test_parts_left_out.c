@@ -47,9 +47,12 @@ static void put_cut(const char *folder, const char *name)
 
 static void put_many_labels(const char *folder, const char *name)
 {
-    struct volume *volume = make_volume(VOXEL_U16);
-    for (int i = 0; i < SIDE * SIDE * SIDE; i++)
-        ((uint16_t *)volume->voxels)[i] = (uint16_t)(i < 1500 ? i + 1 : 0);
+    struct grid grid = made_cube_grid(20); /* 20^3 voxels, 4 a label */
+    struct error err = { 0 };
+    struct volume *volume = volume_create(&grid, VOXEL_U16, &err);
+    assert_non_null(volume);
+    for (int i = 0; i < 6000; i++)
+        ((uint16_t *)volume->voxels)[i] = (uint16_t)(i / 4 + 1);
     volume_measure(volume);
     folder_put_volume(folder, name, volume);
 }

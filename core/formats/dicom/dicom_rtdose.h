@@ -58,8 +58,9 @@ typedef const char *(*rtdose_beam_name)(void *context, int64_t number);
 
 /* Turns objects into doses. Objects become the components of one dose if they agree in plan, type, summation, units,
  * frame of reference and beams, and their descriptions state components, or suggest at least two different ones by
- * their words. Every other object becomes a dose of its own, named by description and beam. Nothing is ever added up.
- * Boron for a known ppm is divided by it (boron per ppm). All-zero objects are left out.
+ * their words (dose_words.h): boron or nitrogen among them, and all on one grid. Every other object becomes a dose of
+ * its own, named by description and beam. Nothing is ever added up. Boron for a known ppm is divided by it (boron per
+ * ppm). All-zero objects are left out.
  *
  *   objects  consumed: their volumes move into the doses or are released
  *   from     NULL, or room for `most`: of each dose the index of its first object

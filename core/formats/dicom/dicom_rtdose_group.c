@@ -27,20 +27,61 @@ static bool agree(const struct rtdose *a, const struct rtdose *b)
            memcmp(a->beams, b->beams, a->n_beams * sizeof *a->beams) == 0;
 }
 
-/* A component suggested by words only counts if another object has a different one: "photons" in a plan's description
- * is no gamma component. */
+/* Words join on one grid only; stated components may have several. */
+static bool may_be_joined(const struct rtdose *a, const struct rtdose *b)
+{
+    return agree(a, b) && ((a->is_stated && b->is_stated) || grid_is_same(&a->values->grid, &b->values->grid));
+}
+
+/* Components that only BNCT has; photon and neutron doses may be of two treatments. */
+static bool is_of_bnct(enum dose_quantity quantity)
+{
+    return quantity == DOSE_BORON || quantity == DOSE_NITROGEN;
+}
+
+/* True if the other is another component by its words. */
+static bool is_other_component(const struct rtdose *object, const struct rtdose *other)
+{
+    return other != object && other->values && other->is_component && other->quantity != object->quantity &&
+           other->quantity != DOSE_TOTAL && object->quantity != DOSE_TOTAL;
+}
+
+/* A component suggested by words only counts if another object has a different one, and boron or nitrogen is among
+ * them: "photons" in a plan's description is no gamma component, and "photon plan" beside "neutron boost" no dose of
+ * BNCT. */
 static bool is_component(const struct grouping *grouping, const struct rtdose *object)
 {
     if (!object->is_component || object->is_stated)
         return object->is_component;
+    bool has_other = false, has_bnct = is_of_bnct(object->quantity);
     for (size_t i = 0; i < grouping->n_objects; i++) {
         const struct rtdose *other = &grouping->objects[i];
-        bool is_other = other->values && other->is_component && other->quantity != object->quantity &&
-                        other->quantity != DOSE_TOTAL;
-        if (is_other && object->quantity != DOSE_TOTAL && agree(object, other))
-            return true;
+        if (!is_other_component(object, other) || !may_be_joined(object, other))
+            continue;
+        has_other = true;
+        has_bnct |= is_of_bnct(other->quantity);
     }
-    return false;
+    return has_other && has_bnct;
+}
+
+/* Reports the first two objects whose words are of two components, but which were not joined. Before any is consumed.
+ */
+static void report_not_joined(const struct grouping *grouping, const bool *is_given)
+{
+    for (size_t i = 0; i < grouping->n_objects; i++)
+        for (size_t o = i + 1; o < grouping->n_objects; o++) {
+            const struct rtdose *a = &grouping->objects[i], *b = &grouping->objects[o];
+            if (!a->values || !a->is_component || !is_other_component(a, b) || !agree(a, b) ||
+                (is_given[i] && is_given[o] && may_be_joined(a, b)))
+                continue;
+            report_add(
+                grouping->report, REPORT_WARNING, "dose.words-not-joined", grouping->where,
+                "\"%.60s\" and \"%.60s\" sound like %s and %s of one dose, but %s: each is a dose of its own. If they are "
+                "one, name them as \"components\" in a plan.json.",
+                a->description, b->description, dose_quantity_word(a->quantity), dose_quantity_word(b->quantity),
+                may_be_joined(a, b) ? "nothing but these words says so" : "they lie on different grids");
+            return;
+        }
 }
 
 static const char *unit_of(const struct rtdose *object)
@@ -184,7 +225,7 @@ static void add_components(struct grouping *grouping, size_t first, const bool *
     char words[200] = "";
     for (size_t i = first; i < grouping->n_objects; i++) {
         struct rtdose *other = &grouping->objects[i];
-        if (!other->values || !is_given[i] || !agree(&like, other) || has_quantity(dose, other->quantity))
+        if (!other->values || !is_given[i] || !may_be_joined(&like, other) || has_quantity(dose, other->quantity))
             continue;
         size_t n = strlen(words);
         snprintf(words + n, sizeof words - n, "%s%s", n ? ", " : "", dose_quantity_word(other->quantity));
@@ -197,9 +238,11 @@ static void add_components(struct grouping *grouping, size_t first, const bool *
                        "\"%s\": the boron dose holds for %g ppm and was divided by that.", dose->id, other->ppm);
         add_component(dose, other, other->quantity);
     }
-    report_add(grouping->report, REPORT_NOTE, "dose.components", grouping->where,
-               "\"%s\" is put together from %zu objects by their %s: %s.", dose->id, dose->n_components,
-               like.is_stated ? "descriptions" : "descriptions' words", words);
+    report_add(
+        grouping->report, REPORT_NOTE, "dose.components", grouping->where,
+        "\"%s\" is put together from %zu objects by their %s: %s. A plan.json that names each as a dose keeps them "
+        "apart.",
+        dose->id, dose->n_components, like.is_stated ? "descriptions" : "descriptions' words", words);
 }
 
 static void add_alone(struct grouping *grouping, struct rtdose *object)
@@ -246,6 +289,7 @@ size_t rtdose_group(struct rtdose *objects, size_t n_objects, rtdose_beam_name b
         n_beam_doses += objects[i].values && !is_given[i] && strcmp(objects[i].summation, "BEAM") == 0;
         has_plan_dose |= objects[i].values && strcmp(objects[i].summation, "PLAN") == 0;
     }
+    report_not_joined(&grouping, is_given);
     for (size_t i = 0; i < n_objects; i++) {
         if (objects[i].values && is_given[i])
             add_components(&grouping, i, is_given);
