@@ -132,8 +132,8 @@ static void picture_came(void *context, struct packet *answer, const struct prob
 }
 
 void api_picture_request(struct api *api, struct call *call, const char *plan_id, const cJSON *scene,
-                         const uint32_t *revision, const cJSON *view, const char *format, double quality,
-                         bool annotations, const char *shared_as)
+                         const cJSON *acceptances, const uint32_t *revision, const cJSON *view, const char *format,
+                         double quality, bool annotations, const char *shared_as)
 {
     struct problem problem;
     bool is_jpeg = format && strcmp(format, "jpeg") == 0;
@@ -159,6 +159,7 @@ void api_picture_request(struct api *api, struct call *call, const char *plan_id
     struct packet packet;
     packet_init(&packet, PACKET_RENDER);
     packet.render.shown.scene = scene;
+    packet.render.shown.acceptances = acceptances;
     packet.render.shown.has_scene_revision = revision != NULL;
     packet.render.shown.scene_revision = revision ? *revision : 0;
     packet.render.shown.view = view;

@@ -136,9 +136,10 @@ static void question_call_destroy(struct question_call *question)
     free(question);
 }
 
-/* Sends a question about a scene once the plan is loaded: scene is the room's, or the plan's own. */
+/* Sends a question about a scene once the plan is loaded: scene is the room's with its acceptances, or the plan's own.
+ */
 static void send_with_scene(struct call *call, struct question_call *question, const struct fleet_plan *plan,
-                            const cJSON *scene)
+                            const cJSON *scene, const cJSON *acceptances)
 {
     struct problem problem;
     cJSON *shown = scene_document_for_view(plan->document, plan->default_scene, scene, question->view, &problem);
@@ -150,6 +151,7 @@ static void send_with_scene(struct call *call, struct question_call *question, c
     struct packet_snapshot *snapshot =
         (void *)((char *)&question->packet + packet_descriptions[question->packet.type].snapshot_offset);
     snapshot->scene = shown;
+    snapshot->acceptances = acceptances;
     snapshot->view = question->view;
     api_query_send(call->api, call, question->plan_id, &question->packet, api_query_answer);
     cJSON_Delete(shown);
@@ -177,7 +179,8 @@ static void plan_is_ready(void *context, struct packet *answer, const struct pro
         call_answer_problem(call, &problem);
     } else {
         const cJSON *scene = room ? room_scene(room, &revision) : NULL;
-        send_with_scene(call, question, &plan, scene ? scene : plan.default_scene);
+        send_with_scene(call, question, &plan, scene ? scene : plan.default_scene,
+                        scene ? room_acceptances(room) : NULL);
     }
     question_call_destroy(question);
 }

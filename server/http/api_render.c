@@ -9,6 +9,7 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_pictures.h"
 #include "server/http/api_queries.h"
+#include "server/room/acceptance_body.h"
 
 struct render_call {
     char plan_id[64];
@@ -23,7 +24,8 @@ static void render_call_destroy(struct render_call *request)
 
 static bool check_body(const cJSON *body, struct problem *problem)
 {
-    static const char *const known[] = { "scene", "view", "format", "quality", "annotations", "only_loaded" };
+    static const char *const known[] = { "scene",       "view",        "format",     "quality",
+                                         "annotations", "only_loaded", "acceptances" };
     const cJSON *item;
     cJSON_ArrayForEach(item, body)
     {
@@ -39,11 +41,55 @@ static bool check_body(const cJSON *body, struct problem *problem)
                      : strcmp(item->string, "quality") == 0     ? cJSON_IsNumber(item)
                      : strcmp(item->string, "annotations") == 0 ? cJSON_IsBool(item)
                      : strcmp(item->string, "only_loaded") == 0 ? cJSON_IsBool(item)
+                     : strcmp(item->string, "acceptances") == 0 ? cJSON_IsArray(item)
                                                                 : cJSON_IsObject(item);
         if (!right)
             return problem_set(problem, PROBLEM_VALIDATION, pointer, "type", "%.60s has the wrong type", item->string);
     }
     return true;
+}
+
+/* The acceptances of the body, checked as those of a room, for the renderer: {thing, with, by, words}. NULL with
+ * problem. */
+static cJSON *read_acceptances(const cJSON *list, const cJSON *plan, struct problem *problem)
+{
+    cJSON *read = cJSON_CreateArray();
+    const cJSON *entry;
+    int at = 0;
+    if (cJSON_GetArraySize(list) > ACCEPTANCE_MAX) {
+        problem_set(problem, PROBLEM_VALIDATION, "/acceptances", "count", "at most %d acceptances are allowed",
+                    ACCEPTANCE_MAX);
+        cJSON_Delete(read);
+        return NULL;
+    }
+    cJSON_ArrayForEach(entry, list)
+    {
+        static const char *const names[] = { "thing", "with", "words" };
+        char where[32];
+        (void)snprintf(where, sizeof where, "/acceptances/%d", at++);
+        if (!acceptance_check(plan, entry, where, problem)) {
+            cJSON_Delete(read);
+            return NULL;
+        }
+        cJSON *told = cJSON_CreateObject();
+        for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+            cJSON_AddStringToObject(told, names[i], json_text(entry, names[i]));
+        cJSON_AddStringToObject(told, "by", "a call of the API");
+        json_append(read, told);
+    }
+    return read;
+}
+
+/* Each is a row of the audit, as one of a room is. */
+static void audit_acceptances(struct api *api, const struct call *call, const char *plan_id, const cJSON *list)
+{
+    const cJSON *entry;
+    cJSON_ArrayForEach(entry, list)
+    {
+        cJSON *detail = cJSON_Duplicate(entry, true);
+        cJSON_AddStringToObject(detail, "what", "picture");
+        net_audit(api->net, call->client, "", plan_id, "acceptance", detail);
+    }
 }
 
 static void render_when_ready(void *context, struct packet *answer, const struct problem *not_ready)
@@ -59,7 +105,7 @@ static void render_when_ready(void *context, struct packet *answer, const struct
         call_answer_problem(call, not_ready);
         return;
     }
-    cJSON *scene = NULL, *view = NULL, *shown = NULL, *nothing = cJSON_CreateObject();
+    cJSON *scene = NULL, *view = NULL, *shown = NULL, *acceptances = NULL, *nothing = cJSON_CreateObject();
     if (!fleet_plan_find(net_fleet(api->net), request->plan_id, &plan) || !plan.document || !plan.default_scene) {
         problem_set(&problem, PROBLEM_BUSY, "", "", "the plan was closed meanwhile");
         goto refuse;
@@ -78,7 +124,12 @@ static void render_when_ready(void *context, struct packet *answer, const struct
         problem_below(&problem, "/view");
         goto refuse;
     }
-    api_picture_request(api, call, request->plan_id, shown, NULL, view, json_text(request->body, "format"),
+    const cJSON *accepted = cJSON_GetObjectItemCaseSensitive(request->body, "acceptances");
+    acceptances = read_acceptances(accepted, plan.document, &problem);
+    if (!acceptances)
+        goto refuse;
+    audit_acceptances(api, call, request->plan_id, accepted);
+    api_picture_request(api, call, request->plan_id, shown, acceptances, NULL, view, json_text(request->body, "format"),
                         json_number(request->body, "quality", 92), json_flag(request->body, "annotations", false),
                         NULL);
     goto done;
@@ -89,6 +140,7 @@ done:
     cJSON_Delete(scene);
     cJSON_Delete(view);
     cJSON_Delete(shown);
+    cJSON_Delete(acceptances);
     render_call_destroy(request);
 }
 

@@ -314,8 +314,8 @@ void api_room_snapshot(struct api *api, struct call *call)
     }
     cJSON *shown = room_scene_for_view(room, view, &problem);
     if (shown) {
-        api_picture_request(api, call, plan_id, shown, &revision, view, call_query(call, "format"), quality,
-                            annotations, NULL);
+        api_picture_request(api, call, plan_id, shown, room_acceptances(room), &revision, view,
+                            call_query(call, "format"), quality, annotations, NULL);
     } else {
         problem_below(&problem, "/view");
         call_answer_problem(call, &problem);

@@ -121,6 +121,7 @@ static bool send_scene(struct net_room *entry)
     (void)snprintf(packet.scene.room, sizeof packet.scene.room, "%s", room_id(entry->room));
     packet.scene.revision = revision;
     packet.scene.scene = scene;
+    packet.scene.acceptances = room_acceptances(entry->room);
     entry->renderer_has_scene = fleet_tell(entry->net->fleet, room_plan_id(entry->room), &packet);
     return entry->renderer_has_scene;
 }
@@ -136,7 +137,9 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
     packet_init(&packet, PACKET_RENDER);
     struct packet_render *render = &packet.render;
     render->shown.scene = scene;
-    if (!scene)
+    if (scene)
+        render->shown.acceptances = room_acceptances(room);
+    else
         (void)snprintf(render->shown.room, sizeof render->shown.room, "%s", room_id(room));
     render->shown.view = request->view;
     /* the renderer serves sources in turn: one member's own pictures, or a room's shared ones */

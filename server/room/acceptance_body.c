@@ -7,7 +7,7 @@
 #include "server/room/body_check.h"
 #include "wire_gen.h"
 
-static const char *const kinds[] = { "image", "region", "dose", "beam", "tracks" };
+static const char *const kinds[] = { "image", "regions", "dose", "beam" };
 
 /* ---- the plan --------------------------------------------------------------------------------------------------- */
 
@@ -33,6 +33,8 @@ const cJSON *acceptance_fit(const cJSON *plan, const char *thing, const char *wi
 static bool is_part(const char *text)
 {
     const char *colon = text ? strchr(text, ':') : NULL;
+    if (text && strcmp(text, "tracks") == 0)
+        return true;
     for (size_t i = 0; colon && i < sizeof kinds / sizeof kinds[0]; i++)
         if (strlen(kinds[i]) == (size_t)(colon - text) && memcmp(kinds[i], text, strlen(kinds[i])) == 0)
             return id_is_valid(colon + 1);
@@ -44,9 +46,10 @@ static bool check_part(const cJSON *body, const char *name, const char *where, s
     const char *text = json_text(body, name);
     char pointer[96];
     (void)snprintf(pointer, sizeof pointer, "%.64s/%s", where, name);
-    return is_part(text) || problem_set(problem, PROBLEM_VALIDATION, pointer, text ? "pattern" : "required",
-                                        "%s is \"%.80s\", expected image:ID, region:ID, dose:ID, beam:ID or tracks:ID",
-                                        pointer, text ? text : "");
+    return is_part(text) ||
+           problem_set(problem, PROBLEM_VALIDATION, pointer, text ? "pattern" : "required",
+                       "%s is \"%.80s\", expected image:ID, dose:ID, beam:ID, regions:NUMBER or tracks", pointer,
+                       text ? text : "");
 }
 
 /* Letters and digits: of ASCII, and every character beyond it. */

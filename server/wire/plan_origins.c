@@ -105,6 +105,7 @@ static void add_to_regions(const cJSON *document, const struct plan *plan, const
         bool is_known = region->origin > 0 && region->origin <= plan->n_region_origins;
         const struct part_origin *origin = is_known ? &plan->region_origins[region->origin - 1] : &unknown;
         add_origin(part, plan, numbers, origin);
+        json_add(part, "source", is_known ? cJSON_CreateNumber((double)region->origin) : cJSON_CreateNull());
         json_add(part, "structs", number_of(&numbers->structs, origin->structs_uid));
     }
 }

@@ -296,6 +296,50 @@ static void a_room_that_begins_with_a_saved_view_begins_unaccepted(void **state)
     fake_page_end(&eve);
 }
 
+static void a_room_kept_when_the_scene_held_acceptances_loads_without_them_and_keeps_the_rest(void **state)
+{
+    (void)state;
+    struct room_kept kept;
+    enter();
+    fake_say(&fake, &ann,
+             "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.25}}}}");
+    assert_true(room_keep(fake.room, ROOM_ALL_PARTS, &kept));
+    cJSON *scene = cJSON_Parse(kept.scene);
+    cJSON *old = cJSON_Parse("{\"d-0\":{\"accepted\":true}}");
+    cJSON_AddItemToObject(cJSON_GetObjectItem(scene, "dose"), "accepted", old);
+    free(kept.scene);
+    kept.scene = cJSON_PrintUnformatted(scene);
+    cJSON_Delete(scene);
+    fake_room_start(&other, 3);
+    room_restore(other.room, &kept, other.now_us);
+    room_kept_finish(&kept);
+    plan_ready(&other);
+    const cJSON *woken = room_scene(other.room, NULL);
+    assert_null(cJSON_GetObjectItem(cJSON_GetObjectItem(woken, "dose"), "accepted"));
+    assert_near(json_number(cJSON_GetObjectItem(cJSON_GetObjectItem(woken, "regions"), "brain"), "opacity", 1), 0.25,
+                1e-9);
+    fake_room_end(&other);
+}
+
+static void a_saved_view_of_that_time_opens_with_a_note(void **state)
+{
+    (void)state;
+    enter();
+    cJSON *body = cJSON_Parse("{\"format\":\"beamroom-bookmark\",\"version\":1,\"name\":\"old\",\"plan\":\"head\","
+                              "\"scene\":{\"dose\":{\"accepted\":{\"d-0\":{\"accepted\":true}},\"blood_ppm\":12}},"
+                              "\"views\":[]}");
+    struct problem problem = { 0 };
+    cJSON *opened = room_bookmark_open(fake.room, body, &problem);
+    assert_non_null(opened);
+    const cJSON *dose = cJSON_GetObjectItem(cJSON_GetObjectItem(opened, "scene"), "dose");
+    assert_null(cJSON_GetObjectItem(dose, "accepted"));
+    assert_near(json_number(dose, "blood_ppm", 0), 12, 1e-9);
+    const cJSON *note = cJSON_GetArrayItem(cJSON_GetObjectItem(opened, "report"), 0);
+    assert_string_equal(json_text(note, "pointer"), "/scene/dose/accepted");
+    cJSON_Delete(opened);
+    cJSON_Delete(body);
+}
+
 /* ---- random acts ------------------------------------------------------------------------------------------------ */
 
 static unsigned next(unsigned *seed)
@@ -369,6 +413,8 @@ int main(void)
         ROOM_TEST(the_record_lists_them_with_fact_words_and_person),
         ROOM_TEST(it_is_woken_with_its_room_and_counts_once_the_files_are_known_to_be_the_same),
         ROOM_TEST(a_room_that_begins_with_a_saved_view_begins_unaccepted),
+        ROOM_TEST(a_room_kept_when_the_scene_held_acceptances_loads_without_them_and_keeps_the_rest),
+        ROOM_TEST(a_saved_view_of_that_time_opens_with_a_note),
         ROOM_TEST(after_any_acts_the_renderer_is_told_exactly_what_was_accepted_for_these_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -246,28 +246,48 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  once('a dose that may not belong to the image is not drawn before a person accepts it, is marked then, and can be taken back', async () => {
+  once('a dose that does not fit is not used before a person has it used, is marked then everywhere, and is withdrawn', async () => {
     await open('stray-dose');
     await page.locator('[data-dose="far"] .eye').click();
     await comes(({ id, quantity, wash }) => [id, quantity, wash.visible], ['far', 'total', true]);
     const { fit_reason: reason, drawn } = await ask('dose', 'stray-dose');
     assert.equal(drawn, false);
-    const bar = page.locator('.dose-bar');
+    const bar = page.locator('.fit-bar');
     await shows(bar, reason);
+    await shows(page.locator('[data-dose="far"]'), 'not used');
     assert.equal(await page.locator('.dose-legend').count(), 0);
     assert.deepEqual(await axe(page), []);
-    await shoot(page, 'dose-stray');
-    await bar.getByRole('button', { name: 'Show it all the same' }).press('Enter');
-    await comes(({ accepted }) => accepted, { far: { accepted: true } });
+    await shoot(page, 'fit-bar');
+    await bar.getByRole('button', { name: 'Use it all the same …' }).press('Enter');
+    const form = page.locator('.fit-block');
+    await shows(form, 'does not fit');
+    const use = form.getByRole('button', { name: 'Use it in this room' });
+    await form.getByLabel('Why it may be used').selectOption('compared-on-anatomy');
+    await form.getByLabel('In your words, at least 10 letters').fill('too short');
+    assert.equal(await use.isDisabled(), true);
+    await form.getByLabel('In your words, at least 10 letters').fill('a metre away, to see that it is');
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'fit-form');
+    await use.click();
     await bar.waitFor({ state: 'detached' });
-    for (const view of [2, 3, 4]) await shows(page.locator(`[data-view="${view}"] .dose-legend`), 'may not belong');
-    await shows(page.locator('.dose-basis.aside'), 'may not belong');
+    for (const view of [1, 2, 3, 4]) await shows(page.locator(`[data-view="${view}"] .pane-head .fit-mark`), 'lies apart');
+    for (const view of [2, 3, 4]) await shows(page.locator(`[data-view="${view}"] .dose-legend`), 'lies apart');
+    await shows(page.locator('.dose-basis.aside'), 'lies apart');
+    await shows(page.locator('[data-dose="far"]'), 'lies apart');
+    await shows(page.locator('#tab-panel'), 'a metre away, to see that it is');
+    await shoot(page, 'fit-used');
     await page.getByRole('tab', { name: 'Probe', exact: true }).click();
-    await shows(page.locator('#tab-panel'), 'may not belong');
+    await shows(page.locator('#tab-panel'), 'Used though it does not fit');
     await shows(page.locator('#tab-panel'), 'outside the dose grid');
+    await page.getByRole('tab', { name: 'Plan', exact: true }).click();
+    await shows(page.locator('.fit-table'), 'apart');
     await page.locator('[data-dose="far"] button.name').click();
-    await page.locator('.dose-stranger').getByRole('button', { name: 'Do not show it' }).click();
-    await comes(({ accepted }) => accepted, { far: { accepted: false } });
+    await page.locator('#tab-panel').getByRole('button', { name: 'Withdraw' }).click();
+    await bar.waitFor();
+    assert.equal(await page.locator('.pane-head .fit-mark').count(), 0);
+    await page.keyboard.press('Control+z'); // the withdrawal is undone
+    await bar.waitFor({ state: 'detached' });
+    await page.keyboard.press('Control+Shift+z');
     await bar.waitFor();
   });
 

@@ -24,7 +24,7 @@ const scene = {
   regions: { scalp: style(0.5), brain: style(0.3), tumour: style(1) },
   image: { id: 'ct', volume: { visible: false, clipped: true }, slices: { axial: { visible: true, position_mm: 0 }, coronal: { visible: false, position_mm: 0 }, sagittal: { visible: false, position_mm: 0 } }, obliques: {} },
   clip: { axial_low: off, axial_high: { ...off, enabled: true }, coronal_low: off, coronal_high: off, sagittal_low: off, sagittal_high: off, beam: { enabled: false, id: '', along_mm: 0, cap: true }, free: { enabled: false } },
-  dose: { id: 'd', quantity: 'weighted', tissue: '', reference: { kind: 'body', region: '' }, accepted: {}, levels: { l90: level(90, false), l50: level(50, true) }, surfaces: { visible: false }, wash: { visible: false, volume: false } },
+  dose: { id: 'd', quantity: 'weighted', tissue: '', reference: { kind: 'body', region: '' }, levels: { l90: level(90, false), l50: level(50, true) }, surfaces: { visible: false }, wash: { visible: false, volume: false } },
   beam: { id: '', looks: {}, slice: { visible: false, along_mm: 0 }, draft: { enabled: false, line: { entry_mm: [0, 0, 0], target_mm: [0, 0, 0], aperture_mm: null } } },
 };
 const after = (change) => mergePatch(scene, change.patch);
@@ -98,9 +98,6 @@ test('a preset that the plan cannot have says why', () => {
   assert.deepEqual(whys({ ...plan, beams: [] }), { 'beam-slice': 'no beam', ninety: '', 'washed-volume': '', 'beams-eye': 'no beam' });
   assert.deepEqual(whys({ ...plan, doses: [] }), { 'beam-slice': '', ninety: 'no dose', 'washed-volume': 'no dose', 'beams-eye': '' });
   assert.deepEqual(whys({ ...plan, regions: [], images: [] }), { 'beam-slice': 'no image', ninety: 'no target', 'washed-volume': 'no image', 'beams-eye': '' });
-  const apart = { ...plan, doses: [{ ...plan.doses[0], fit: 'apart' }] };
-  assert.equal(whys(apart).ninety, 'dose not accepted');
-  assert.equal(whys(apart, mergePatch(scene, { dose: { accepted: { d: { accepted: true } } } })).ninety, '');
 });
 
 test('a preset is one step of undo, of scene and camera', () => {

@@ -1,9 +1,9 @@
-// The page's side of dose: what can be shown, units, what is missing, levels in both units, weights by name, acceptance, pins and their file.
+// The page's side of dose: what can be shown, units, what is missing, levels in both units, weights by name, pins and their file.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-const { acceptedWords, basisWords, choosePatch, dependsOnBlood, isAccepted, missingOf, missingWords, needsAcceptance, quantitiesOf, strangers, toggledPatch, unitOf } = await load('state/dose.js');
+const { basisWords, choosePatch, dependsOnBlood, missingOf, missingWords, quantitiesOf, toggledPatch, unitOf } = await load('state/dose.js');
 const { addedLevel, convertedLevel, doseOf, levelsOf, percentOf } = await load('state/dose_levels.js');
 const { levelTables, tableOf, tablePatch } = await load('state/dose_tables.js');
 const { choosePresetPatch, editPatch, isEdited, presetOf, presetsFor, tissueFor, weightPresets, weightsOf } = await load('state/dose_weights.js');
@@ -18,7 +18,7 @@ const two = { id: 'two', name: '', unit: 'Gy', per: '', fit: 'apart', components
 const regions = [{ id: 'scalp', name: 'scalp', parent: null, voxels: 9 }, { id: 'brain', name: 'Brain_L', parent: 'scalp', voxels: 5 }, { id: 'ptv', name: 'PTV56', parent: 'brain', voxels: 2, is_target: true }, { id: 'bone', name: 'mandible', parent: null, voxels: 2 }];
 const plan = { doses: [full, total, two], regions };
 const level = (value, unit = 'percent', color = '#ff0000') => ({ value, unit, color, visible: true, line: true, wash: true, surface: false, opacity: 0.4 });
-const dose = (more = {}) => ({ dose: { id: 'mc', quantity: 'weighted', factor: 1, sum: {}, accepted: {}, tissue: '', blood_ppm: 15, weights: {}, weights_name: '', levels: {}, lines: { visible: false }, wash: { visible: false }, surfaces: { visible: false }, coverage: { visible: false }, compare: { mode: 'none' }, reference: { kind: 'body', region: '' }, ...more } });
+const dose = (more = {}) => ({ dose: { id: 'mc', quantity: 'weighted', factor: 1, sum: {}, tissue: '', blood_ppm: 15, weights: {}, weights_name: '', levels: {}, lines: { visible: false }, wash: { visible: false }, surfaces: { visible: false }, coverage: { visible: false }, compare: { mode: 'none' }, reference: { kind: 'body', region: '' }, ...more } });
 
 test('sums are offered only where there is something to sum, in Gy(w) only where weights are in', () => {
   assert.deepEqual(quantitiesOf(full), ['weighted', 'total', 'boron', 'nitrogen', 'fast', 'gamma', 'isoeffective', 'thermal-fluence']);
@@ -41,15 +41,6 @@ test('the basis names unit, per what, blood, weights and tissue', () => {
   assert.equal(basisWords(plan, dose({ weights_name: 'BPA example', tissue: 'brain' })), 'Gy(w) per 250 kW-min · blood 15 ppm · weights: BPA example · isodose as Brain_L');
   assert.equal(basisWords(plan, dose({ id: 'plan', quantity: 'total', factor: 30 })), 'cGy for 30 × fraction · physical total');
   assert.match(basisWords(plan, dose({ id: 'two' })), /weights: edited · without nitrogen, fast neutron$/);
-});
-
-test('a dose that may not belong waits for a person, and is marked once accepted', () => {
-  assert.deepEqual([full, total, two].map(needsAcceptance), [false, true, true]);
-  assert.deepEqual(strangers(plan, dose({ sum: { two: { factor: 1 } } })).map(({ id }) => id), ['two']);
-  assert.equal(acceptedWords(plan, dose({ id: 'plan' })), '');
-  const accepted = dose({ id: 'plan', accepted: { plan: { accepted: true } } });
-  assert.equal(isAccepted(accepted, total), true);
-  assert.match(acceptedWords(plan, accepted), /may not belong/);
 });
 
 test('another dose is shown with a quantity that it has, and is no longer added to itself', () => {

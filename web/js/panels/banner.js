@@ -6,6 +6,7 @@ import { icon } from './icons.js';
 import { Lazy, styled } from './lazy.js';
 import { variables } from './mount.js';
 import { initials } from './pane.js';
+import { approval, patientButton } from './patient.js';
 import { roomChip } from './room_chip.js';
 import { roving } from './roving.js';
 import { stripEnd } from './tools.js';
@@ -44,10 +45,10 @@ export function banner(world) {
   const members = room.members.value.filter((member) => member.connected !== false);
   const own = members.find((member) => member.id === you);
   const others = members.filter((member) => member.id !== you);
-  return html`${brand()}<i class="rule"></i>
-    <div class="plan-name"><h1 title=${plan?.name ?? ''}><span>${plan?.name ?? room.planId.value}</span>${plan?.isPhantom ? html`<span class="tag phantom">PHANTOM</span>` : nothing}</h1>
+  return html`${brand()}<i class="rule"></i>${patientButton(world)}
+    <div class="plan-name"><h1 title=${plan?.name ?? ''}><span>${plan?.name ?? room.planId.value}</span></h1>
       <span class="dim plan-id">Plan <code>${room.planId.value}</code></span>${ofDose(room)?.doseBasis(world, 'below')}</div>
-    ${ofDose(room)?.doseBasis(world, 'aside')}
+    ${approval(world)}${ofDose(room)?.doseBasis(world, 'aside')}
     ${warnings(world)}
     <span class="grow"></span>
     ${own ? html`<div class="you" title=${`${own.name} (you)`}><span class="avatar own">${initials(own.name)}</span><span class="you-words"><b>${own.name} (you)</b>

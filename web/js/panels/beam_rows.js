@@ -7,6 +7,7 @@ import { beamWords } from '../state/plan.js';
 import { toggleMove } from './beam_lazy.js';
 import { presetRows } from './beam_presets_later.js';
 import { draftWords } from './beam_words.js';
+import { ofFits } from './fit_later.js';
 import { icon } from './icons.js';
 import { swatch } from './probe.js';
 import { eye, name, treeRow } from './tree_row.js';
@@ -28,8 +29,8 @@ function beamRow(world, beam) {
   const about = beamWords(beam);
   const tail = beam === chosenBeam(plan, scene) ? 'chosen' : about;
   const toggle = (event) => room.patchScene(lookPatch(room.scene.value, beam.id, { visible: !look.visible }), { view: ui.active.value, at: event.timeStamp });
-  return treeRow(world, { kind: 'beam', id: beam.id, words: [words, tail], more: tail === about ? [] : [about].filter(Boolean), title: [words, about].filter(Boolean).join(', '), isOn: look.visible, toggle }, html`
-    ${eye(look.visible, `Show ${words}`, `${look.visible ? 'Hide' : 'Show'} its line and aperture`, !room.canChange.value, toggle)}${swatch(look.color)}${name(words)} <span class="tail clipped">${tail}</span>`);
+  return treeRow(world, { kind: 'beam', id: beam.id, words: [words, ofFits(room)?.rowWords(world, 'beam', beam.id) ?? '', tail], more: tail === about ? [] : [about].filter(Boolean), title: [words, about].filter(Boolean).join(', '), isOn: look.visible, toggle }, html`
+    ${eye(look.visible, `Show ${words}`, `${look.visible ? 'Hide' : 'Show'} its line and aperture`, !room.canChange.value, toggle)}${swatch(look.color)}${name(words)} ${ofFits(room)?.rowMark(world, 'beam', beam.id) ?? nothing}<span class="tail clipped">${tail}</span>`);
 }
 
 /** The draft, or where one is begun. */

@@ -36,4 +36,4 @@ export const staleMark = (isOld) => (isOld ? html`<span class="chart-stale warn"
 export const withoutMark = (missing) => (missing?.length ? html`<span class="chart-without warn">${icon('warning', 12)} without ${missing.join(', ')}</span>` : nothing);
 
 /** A dose that may not belong to the image and that a person let be shown is marked wherever its numbers stand. */
-export const doubtMark = (result) => (result?.isAccepted ? html`<span class="chart-without warn" title="A person accepted that this dose is shown with this image">${icon('warning', 12)} may not belong to the image</span>` : nothing);
+export const doubtMark = (result) => (result?.isAccepted ? html`<span class="chart-without warn" title="Used though it does not fit, by a person's word: Selection says whose">${icon('warning', 12)} does not fit, accepted</span>` : nothing);

@@ -23,7 +23,7 @@ export function basisRows({ room }, quantity, answer) {
     ['plan', plan.name, room.planId.value], ['revision', room.revision.value], ['dose', doseName(plan, dose.id), ...Object.keys(dose.sum ?? {}).map((id) => `with ${doseName(plan, id)}`)],
     ['quantity', quantityName(quantity)], ['unit', unitPer(answer)], ...(dose.factor === 1 || dose.factor === undefined ? [] : [['factor', dose.factor]]), ...(perPpm ? [['boron in blood (ppm)', dose.blood_ppm]] : []),
     ...(weightWords(plan, { ...dose, quantity }) ? [['weights', weightWords(plan, { ...dose, quantity }), dose.weights_name || 'edited'], ...weights] : []),
-    ...(answer?.missing?.length ? [['without', ...answer.missing]] : []), ...(answer?.isAccepted ? [['warning', 'the dose may not belong to the image; a person let it be shown']] : []), ...(answer?.method ? [['method', answer.method]] : []),
+    ...(answer?.missing?.length ? [['without', ...answer.missing]] : []), ...(answer?.isAccepted ? [['warning', 'the dose does not fit the image; a person had it used']] : []), ...(answer?.method ? [['method', answer.method]] : []),
     ['use', 'for research and plan review, not for treatment decisions'],
   ];
 }

@@ -1,7 +1,8 @@
 // A dose in Selection: what is shown of it, on which basis, its reference, how it is drawn; below it weights, sum, comparison, coverage.
 import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
-import { acceptPatch, basisWords, choosePatch, doseName, isAccepted, isWeighted, missingOf, missingWords, needsAcceptance, quantityName, shownDose, summedDoses } from '../state/dose.js';
+import { basisWords, choosePatch, doseName, isWeighted, missingOf, missingWords, quantityName, shownDose, summedDoses } from '../state/dose.js';
+import { joinReason } from '../state/fits.js';
 import { doseWords } from '../state/plan.js';
 import { compareBlock, coverageBlock } from './dose_compare.js';
 import { levelBlock, tableSelect } from './dose_level.js';
@@ -26,7 +27,7 @@ export function doseBlock(world, isDisabled, change) {
   if (other) return otherBlock(other, isDisabled, change, scene);
   const { quantity } = scene.dose;
   return html`<section class="block"><h3>${icon('dose')} ${quantityName(quantity)} <span class="dim">dose ${doseName(shown)}</span></h3>
-      <p class="note">${aboutWords(plan, scene)}</p>${fitBlock(shown, scene, isDisabled, change)}${reasonNote(world)}
+      <p class="note">${aboutWords(plan, scene)}</p>${reasonNote(world)}
       <dl class="dose-list"><dt>Quantity</dt><dd>${quantitySelect(world, shown, { tabindex: 0 })}</dd>
         <dt>100 % is</dt><dd>${referenceSelect(world, { tabindex: 0 })}</dd>${referenceMore(world, isDisabled, change)}
         <dt>Weights</dt><dd>${tissueSelect(world, { tabindex: 0 })}</dd>
@@ -36,7 +37,7 @@ export function doseBlock(world, isDisabled, change) {
     ${quantity === 'isoeffective' ? isoeffectiveBlock(world, isDisabled, change) : nothing}
     ${drawnBlock(scene, isDisabled, change)}
     ${coverageBlock(world, isDisabled, change)}
-    ${plan.doses.length > 1 ? html`${sumBlock(plan, scene, shown, isDisabled, change)}${compareBlock(world, isDisabled, change)}` : sumBlock(plan, scene, shown, isDisabled, change)}
+    ${plan.doses.length > 1 ? html`${sumBlock(world, shown, isDisabled, change)}${compareBlock(world, isDisabled, change)}` : sumBlock(world, shown, isDisabled, change)}
     ${fileBlock(scene, shown, isDisabled, change)}`;
 }
 
@@ -51,15 +52,6 @@ function aboutWords(plan, scene) {
   return `${isSum ? `${parts.join(' + ')}, ${totals[quantity]}. ` : ''}${basisWords(plan, scene)}.`;
 }
 
-/** Whether the dose belongs to the image, and what a person decided. */
-export function fitBlock(dose, scene, isDisabled, change) {
-  if (!dose.fit_reason || dose.fit === 'same') return nothing;
-  if (!needsAcceptance(dose)) return html`<p class="note">${dose.fit_reason}</p>`;
-  const isOn = isAccepted(scene, dose);
-  return html`<div class="dose-stranger"><p>${icon('warning')} <span>${isOn ? 'Drawn all the same. ' : 'Not drawn. '}${dose.fit_reason}</span></p>
-    <button ?disabled=${isDisabled} @click=${(event) => change(acceptPatch([dose], !isOn), event)}>${isOn ? 'Do not show it' : 'Show it all the same'}</button></div>`;
-}
-
 /** Why nothing is drawn, when it is for another reason. */
 function reasonNote({ room, doses }) {
   const { result, error } = doses.scale.value;
@@ -68,7 +60,7 @@ function reasonNote({ room, doses }) {
 }
 
 function otherBlock(dose, isDisabled, change, scene) {
-  return html`<section class="block"><h3>${icon('dose')} Dose ${doseName(dose)}</h3><p class="note">${doseWords(dose)}.</p>${fitBlock(dose, scene, isDisabled, change)}
+  return html`<section class="block"><h3>${icon('dose')} Dose ${doseName(dose)}</h3><p class="note">${doseWords(dose)}.</p>
       <div class="buttons"><button ?disabled=${isDisabled} @click=${(event) => change(choosePatch(scene, dose), event)}>Show this dose</button></div></section>${factsBlock(dose)}`;
 }
 
@@ -91,7 +83,8 @@ function drawnBlock(scene, isDisabled, changeScene) {
 }
 
 /** How many times the dose counts, and which others are added. */
-function sumBlock(plan, scene, shown, isDisabled, change) {
+function sumBlock({ room }, shown, isDisabled, change) {
+  const [plan, scene] = [room.plan.value, room.scene.value];
   const { factor, sum, quantity } = scene.dose;
   const per = shown.per ? unitText(shown.per.replace(/^per /, '')) : '';
   const others = plan.doses.filter((dose) => dose !== shown);
@@ -100,8 +93,9 @@ function sumBlock(plan, scene, shown, isDisabled, change) {
     <dl class="dose-list"><dt>${doseName(shown)} ×</dt><dd>${numberField(`Factor of ${doseName(shown)}`, factor, '', isDisabled, (value, event) => change({ dose: { factor: Math.min(Math.max(value, 1e-9), 1e9) } }, event))}</dd></dl>
     ${others.map((dose) => {
       const part = sum[dose.id];
-      return html`<div class="dose-part">${checkbox(`+ ${doseName(dose)}`, Boolean(part), isDisabled, (on, event) => change({ dose: { sum: { [dose.id]: on ? { factor: 1 } : null } } }, event), doseWords(dose))}
-        ${part ? html`<span>×</span>${numberField(`Factor of ${doseName(dose)}`, part.factor, '', isDisabled, (value, event) => change({ dose: { sum: { [dose.id]: { factor: Math.min(Math.max(value, 0), 1000) } } } }, event))}` : nothing}</div>`;
+      const why = joinReason(plan, scene, shown, dose, true, room.accepted.value);
+      return html`<div class="dose-part" title=${why?.reason ?? nothing}>${checkbox(`+ ${doseName(dose)}`, Boolean(part), isDisabled || Boolean(why && !part), (on, event) => change({ dose: { sum: { [dose.id]: on ? { factor: 1 } : null } } }, event), doseWords(dose))}
+        ${part ? html`<span>×</span>${numberField(`Factor of ${doseName(dose)}`, part.factor, '', isDisabled, (value, event) => change({ dose: { sum: { [dose.id]: { factor: Math.min(Math.max(value, 0), 1000) } } } }, event))}` : nothing}${why ? html`<span class="dim">${why.words}</span>` : nothing}</div>`;
     })}${missing ? html`<p class="note why">${icon('warning', 12)} The sum is ${missing}.</p>` : nothing}</section>`;
 }
 

@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
 import { doseName, shownDose, unitOf } from '../state/dose.js';
+import { joinReason } from '../state/fits.js';
 import { checkbox, numberField, segment } from './fields.js';
 import { number, signed, significant, volume } from './format.js';
 import { icon } from './icons.js';
@@ -17,12 +18,13 @@ export function compareBlock(world, isDisabled, changeScene) {
   const { compare } = scene.dose;
   const second = others.find(({ id }) => id === compare.id);
   const change = (patch, event) => changeScene({ dose: { compare: patch } }, event);
-  const choose = (mode, event) => change({ mode, ...(!second && mode !== 'none' && { id: others[0].id }) }, event);
+  const why = (dose) => joinReason(plan, scene, shown, dose, false, room.accepted.value);
+  const choose = (mode, event) => change({ mode, ...(!second && mode !== 'none' && { id: (others.find((dose) => !why(dose)) ?? others[0]).id }) }, event);
   const field = (name, words, unit, low, high) => html`<dt>${words}</dt><dd>${numberField(words, compare[name], unit, isDisabled, (value, event) => change({ [name]: clamp(value, low, high) }, event))}</dd>`;
   return html`<section class="block"><h3>Compare <span class="dim">${second && compare.mode !== 'none' ? `with ${doseName(second)}` : ''}</span></h3>
     <div class="shown-as">${segment('Comparison', modes, compare.mode, isDisabled, choose)}</div>
     <dl class="dose-list"><dt>Second dose</dt><dd><select class="dose-select" aria-label="Second dose" ?disabled=${isDisabled} @change=${(event) => change({ id: event.target.value, ...(!event.target.value && { mode: 'none' }) }, event)}>
-        <option value="" ?selected=${!second} .selected=${live(!second)}>none</option>${others.map((dose) => html`<option value=${dose.id} ?selected=${dose === second} .selected=${live(dose === second)}>${doseName(dose)}, ${unitOf(dose, scene.dose.quantity)}</option>`)}</select></dd>
+        <option value="" ?selected=${!second} .selected=${live(!second)}>none</option>${others.map((dose) => html`<option value=${dose.id} ?disabled=${Boolean(why(dose))} title=${why(dose)?.reason ?? nothing} ?selected=${dose === second} .selected=${live(dose === second)}>${doseName(dose)}, ${why(dose)?.words ?? unitOf(dose, scene.dose.quantity)}</option>`)}</select></dd>
       ${compare.mode === 'difference' ? field('span_percent', 'Strongest colour at ±', '%', 0.01, 1000) : nothing}
       ${compare.mode === 'gamma' ? html`${field('dose_percent', 'Dose difference', '%', 0.01, 100)}${field('distance_mm', 'Distance to agreement', 'mm', 0.01, 50)}${field('threshold_percent', 'Leave out below', '%', 0, 100)}
         <dt>Difference is of</dt><dd>${segment('Normalization of gamma', [['global', 'reference'], ['local', 'point']], compare.normalization, isDisabled, (normalization, event) => change({ normalization }, event))}</dd>` : nothing}</dl>

@@ -1,10 +1,11 @@
 // What a picture with dose must say: its levels with colour, value and unit, its reference, and whether it may not belong.
 import { html, nothing } from '../../lib/lit-html.js';
-import { acceptedWords, isOn, missingWords, referenceWords, shownDose, unitOf } from '../state/dose.js';
+import { isOn, missingWords, referenceWords, shownDose, unitOf } from '../state/dose.js';
 import { levelsOf, percentOf, doseOf } from '../state/dose_levels.js';
 import { isTarget } from '../state/plan.js';
 import { isInSpace } from '../view/kinds.js';
 import { toPicture } from '../view/vec.js';
+import { ofFits } from './fit_later.js';
 import { number, significant } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
@@ -28,11 +29,12 @@ export function doseLegend({ room, ui, doses }, view, [width, height], isLeftTak
   const most = Math.max(1, Math.floor((height - besidesPx) / 2 / rowPx) - 1);
   const levels = all.slice(0, all.length > most ? Math.max(1, most - 1) : most);
   const words = referenceWords(plan, scene.dose.reference);
-  const notes = [acceptedWords(plan, scene), missingWords(answer.missing ?? [])].filter(Boolean);
+  const notes = [missingWords(answer.missing ?? [])].filter(Boolean);
+  const mark = ofFits(room)?.wordMark({ room }, ['dose']) ?? nothing;
   const isLeft = !isLeftTaken && isAtRight(plan, view);
   const place = width < narrow ? 'foot' : isLeft ? 'left' : '';
   return html`<div class=${`legend dose-legend ${place}${isOld ? ' old' : ''}`} role="group" aria-label="Dose">
-    ${notes.map((text) => html`<p class="warn">${icon('warning', 12)} ${text}</p>`)}
+    ${mark === nothing ? nothing : html`<p>${mark}</p>`}${notes.map((text) => html`<p class="warn">${icon('warning', 12)} ${text}</p>`)}
     ${all.length ? html`<p class="dose-legend-head"><span>% of ${words}</span> <span>${unit}</span></p>` : nothing}
     <ul>${levels.map((level) => html`<li><i class=${level.wash && wash.visible ? 'area' : 'line'} ${variables({ '--color': level.color })}></i><span>${number(percentOf(level, reference), isWhole(percentOf(level, reference)) ? 0 : 1)} %</span><span>${significant(doseOf(level, reference))}</span></li>`)}
       ${all.length > levels.length ? html`<li class="dim">and ${all.length - levels.length} lower</li>` : nothing}</ul>

@@ -1,7 +1,7 @@
 // The dose in the Probe: what is shown first and in full, with the weights that were used beside each number; other doses folded.
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
-import { acceptedWords, doseName, isFluence, missingWords, quantityName, referenceWords, shownDose } from '../state/dose.js';
+import { doseName, isFluence, missingWords, quantityName, referenceWords, shownDose } from '../state/dose.js';
 import { count, number, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 
@@ -95,7 +95,7 @@ function noteWords(plan, answer, hasWeights) {
 /** What a number must not be read without. */
 function marks(plan, scene, answer) {
   const missing = missingWords(answer?.missing ?? []);
-  const words = [missing && `The total is ${missing}.`, acceptedWords(plan, scene) && `${acceptedWords(plan, scene)}; it is shown all the same.`, answer && !answer.drawn && answer.reason].filter(Boolean);
+  const words = [missing && `The total is ${missing}.`, answer?.accepted && `Used though it does not fit, by ${answer.accepted.by}: ${answer.accepted.words}`, answer && !answer.drawn && answer.reason].filter(Boolean);
   return words.map((text) => html`<p class="note why">${icon('warning', 12)} ${text}</p>`);
 }
 

@@ -2,12 +2,13 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { choosePatch, dependsOnBlood, doseName, isAccepted, isOn, isWeighted, missingOf, missingWords, needsAcceptance, quantitiesOf, quantityName, referenceWords, shownDose, toggledPatch, unitOf } from '../state/dose.js';
+import { choosePatch, dependsOnBlood, doseName, isOn, isWeighted, missingOf, missingWords, quantitiesOf, quantityName, referenceWords, shownDose, toggledPatch, unitOf } from '../state/dose.js';
 import { doseWords } from '../state/plan.js';
 import { levelActions, levelRows } from './dose_levels.js';
 import { referenceSelect, tissueSelect } from './dose_reference.js';
 import { typed } from './fields.js';
 import { number } from './format.js';
+import { ofFits } from './fit_later.js';
 import { icon } from './icons.js';
 import { eye, name, treeRow } from './tree_row.js';
 
@@ -33,9 +34,6 @@ export function doseRows(world) {
     ${switchRow(world, 'lines', 'Isodose lines', 'I')}${washRow(world)}${switchRow(world, 'surfaces', 'Isodose surfaces', '')}`;
 }
 
-/** Whether the dose may belong to another image. */
-const mark = (scene, dose) => (needsAcceptance(dose) ? html`<span class="refused warn" role="img" aria-label=${dose.fit_reason} title=${`${dose.fit_reason}${isAccepted(scene, dose) ? ' Accepted.' : ''}`}>${icon('warning')}</span>` : nothing);
-
 function doseRow(world, dose, isShown) {
   const { room, ui } = world;
   const scene = room.scene.value;
@@ -45,8 +43,8 @@ function doseRow(world, dose, isShown) {
   const tail = isShown && room.plan.value.doses.length > 1 ? 'chosen' : dose.unit;
   const toggle = (event) => room.patchScene(toggledPatch(room.scene.value, dose, isShown), how(ui, event));
   const choose = (event) => !isShown && room.patchScene(choosePatch(room.scene.value, dose), how(ui, event));
-  return treeRow(world, { kind: 'dose', id: dose.id, words: [words, tail], more: [doseWords(dose)], title: doseWords(dose), isOn: isVisible, toggle, choose }, html`
-    ${eye(isVisible, `Show ${words}`, isVisible ? 'Hide lines, wash and surfaces' : 'Show its isodose lines and wash', !room.canChange.value, toggle)}${name(words)} ${mark(scene, dose)}
+  return treeRow(world, { kind: 'dose', id: dose.id, words: [words, ofFits(room)?.rowWords(world, 'dose', dose.id) ?? '', tail], more: [doseWords(dose)], title: doseWords(dose), isOn: isVisible, toggle, choose }, html`
+    ${eye(isVisible, `Show ${words}`, isVisible ? 'Hide lines, wash and surfaces' : 'Show its isodose lines and wash', !room.canChange.value, toggle)}${name(words)} ${ofFits(room)?.rowMark(world, 'dose', dose.id) ?? nothing}
     <span class="tail">${tail}</span>`);
 }
 

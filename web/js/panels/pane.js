@@ -13,6 +13,7 @@ import { letters } from '../view/letters.js';
 import { overlay } from '../view/overlay.js';
 import { Painter } from '../view/painter.js';
 import { PointerReader } from '../view/pointer.js';
+import { ofFits } from './fit_later.js';
 import { millimetres, number, windowText } from './format.js';
 import { ofDose, ofDrawnDose } from './dose_later.js';
 import { icon } from './icons.js';
@@ -136,7 +137,7 @@ export class Pane {
     const tools = this.actions.tools.draw(this.place);
     return html`
       <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
-        ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${tools.where ?? this.#whereInHead()}</span>${tools.head ?? nothing}<span class="grow"></span>
+        ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${tools.where ?? this.#whereInHead()}</span>${ofFits(this.#room)?.wordMark({ room: this.#room }) ?? nothing}${tools.head ?? nothing}<span class="grow"></span>
         ${followMark(this.#room)}${this.#badgeButton()}
         <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
           title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${name}`}>

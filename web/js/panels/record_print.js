@@ -59,7 +59,7 @@ function parts(record) {
   const rows = [...asRows(record.checklist, 'check'), ...asRows(record.decisions, 'decision'), ...asRows(record.signatures, 'signature')];
   const revisions = [...new Set([record.plan_revision, ...rows.map(({ body }) => body.plan_revision).reverse()])];
   return html`${revisions.map((revision, at) => html`${at ? html`<h2>Earlier revision <code>${revision.slice(0, 12)}</code></h2><p class="values">Written before the plan’s files were changed.</p>` : nothing}${under(rows, revision, at > 0)}`)}
-    ${present(record)}${notes(record)}`;
+    ${accepted(record)}${present(record)}${notes(record)}`;
 }
 
 function under(rows, revision, isEarlier) {
@@ -73,6 +73,12 @@ function under(rows, revision, isEarlier) {
 
 /** @param {number[]} widths of the columns, in per cent: by their contents a long text would leave a few letters for a name */
 const table = (names, widths, rows) => html`<table class="record-table"><colgroup>${widths.map((width) => html`<col width=${`${width}%`}>`)}</colgroup><thead><tr>${names.map((name) => html`<th scope="col">${name}</th>`)}</tr></thead><tbody>${rows.map(([first, ...rest]) => html`<tr><th scope="row">${first}</th>${rest.map((value) => html`<td>${value}</td>`)}</tr>`)}</tbody></table>`;
+
+function accepted({ acceptances: rows = [] }) {
+  if (!rows.length) return nothing;
+  const reason = { 'registered-elsewhere': 'registered elsewhere', 'same-session': 'same session and couch', 'compared-on-anatomy': 'compared on the anatomy', other: 'other' };
+  return html`<h2>Parts used though they do not fit</h2>${table(['Parts', 'Fact', 'In words', 'By, at (UTC)'], [18, 34, 28, 20], rows.map((row) => [`${row.thing} with ${row.with}${row.counts ? '' : ' (void: other files)'}`, row.fact, `${reason[row.reason] ?? row.reason}: ${row.words}`, `${row.author_name}, ${time(row.created_ms)}`]))}`;
+}
 
 const present = ({ present: stays, n_present_dropped: nDropped }) => html`<h2>Present</h2>${table(['Name', 'Role', 'From (UTC)', 'To'], [40, 16, 22, 22], stays.map(({ name, role, entered_ms: from, left_ms: to, here }) => [name, role, time(from), to ? time(to) : here ? 'still there' : 'until the server ended']))}
   ${nDropped ? html`<p class="values">${nDropped} earlier stays are not kept.</p>` : nothing}`;

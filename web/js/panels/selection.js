@@ -5,6 +5,7 @@ import { drawBookmark } from './bookmark_lazy.js';
 import { clipBlock } from './clip_plane.js';
 import { doseBlock, levelBlock } from './dose_block.js';
 import { drawingBlocks } from './drawing.js';
+import { ofFits } from './fit_later.js';
 import { icon } from './icons.js';
 import { imageBlock } from './image.js';
 import { measureBlock, measuresBlock } from './measure.js';
@@ -22,7 +23,7 @@ export function selection(world) {
   const { room, ui } = world;
   const isDisabled = !room.canChange.value;
   const change = (patch, event) => room.patchScene(patch, { view: ui.active.value, at: event.timeStamp });
-  return kinds[ui.selection.value.kind](world, isDisabled, change);
+  return html`${ofFits(room)?.fitBlock(world) ?? nothing}${kinds[ui.selection.value.kind](world, isDisabled, change)}`;
 }
 
 const chosen = ({ room, ui }, list) => room.plan.value[list].find(({ id }) => id === ui.selection.value.id);

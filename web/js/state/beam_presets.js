@@ -3,7 +3,7 @@ import { batch } from '../../lib/signals-core.js';
 import { isObject, joinPatches, mergePatch } from '../wire/merge.js';
 import { add, cross, dot, length, scale, subtract, unit } from '../view/vec.js';
 import { beamShown } from './beam_line.js';
-import { isAccepted, isWeighted, needsAcceptance, shownDose } from './dose.js';
+import { isWeighted, shownDose } from './dose.js';
 import { crosshair, isTarget } from './plan.js';
 
 const usualApertureMm = 100; // of the ring, where the plan says none
@@ -87,11 +87,7 @@ const lacks = {
   beam: (plan, scene) => (beamShown(plan, scene) ? '' : 'no beam'),
   image: (plan) => (plan.images.length ? '' : 'no image'),
   target: (plan) => (targetsOf(plan).length ? '' : 'no target'),
-  dose: (plan, scene) => {
-    const dose = shownDose(plan, scene);
-    if (!dose) return 'no dose';
-    return needsAcceptance(dose) && !isAccepted(scene, dose) ? 'dose not accepted' : '';
-  },
+  dose: (plan, scene) => (shownDose(plan, scene) ? '' : 'no dose'), // one that does not fit is said above the panes
 };
 
 /** The level of 90 %: the scene's, or a new one; surfaces of the others off. */

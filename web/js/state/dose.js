@@ -1,4 +1,4 @@
-// The dose that a scene shows: its quantities, whether it may be drawn, its basis in words, the patches that change it. Pure.
+// The dose that a scene shows: its quantities, its basis in words, the patches that change it. Pure.
 import { number, unitText } from '../panels/format.js';
 
 const names = {
@@ -57,25 +57,11 @@ export function quantityFor(scene, dose) {
   return ['total', 'weighted-total'].find((other) => componentOf(dose, other)) ?? all[0];
 }
 
-// ---- whether it may be drawn --------------------------------------------------------------------------------------------
-
-/** True if a person must accept the dose before it is drawn: core/plan/dose_fit.h. */
-export const needsAcceptance = ({ fit }) => !['same', 'registered', 'unstated'].includes(fit);
-export const isAccepted = () => false;
 /** The doses of a sum, the shown one first. */
 export const summedDoses = (plan, scene) => {
   const shown = shownDose(plan, scene);
   return [shown, ...plan.doses.filter((dose) => dose !== shown && dose.id in scene.dose.sum)].filter(Boolean);
 };
-/** Doses that are, or would be, shown although they may not belong to the image. */
-export const strangers = (plan, scene) => summedDoses(plan, scene).filter(needsAcceptance);
-/** "Accepted by hand: dose plan may not belong to this image"; '' when nothing of it is drawn. */
-export function acceptedWords(plan, scene) {
-  const accepted = strangers(plan, scene).filter((dose) => isAccepted(scene, dose));
-  return accepted.length ? 'Dose may not belong to this image' : '';
-}
-export const acceptPatch = (doses, accepted) => ({ dose: { accepted: Object.fromEntries(doses.map(({ id }) => [id, { accepted }])) } });
-
 /** True if anything of the dose is switched on. */
 export const isOn = ({ dose }) => dose.wash.visible || dose.lines.visible || dose.surfaces.visible || dose.coverage.visible || dose.compare.mode !== 'none';
 

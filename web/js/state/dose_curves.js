@@ -82,7 +82,7 @@ export class DoseCurves {
     const view = { override: Object.keys(more).length ? mergePatch(own, { dose: more }) : own };
     const plan = planId.value;
     if (!this.#room.plan.value.doses.length) return null;
-    const key = JSON.stringify([plan, name, numbersOf(mergePatch(scene.value.dose, more)), keyed, parameters]);
+    const key = JSON.stringify([plan, name, this.#room.fitKey.value, numbersOf(mergePatch(scene.value.dose, more)), keyed, parameters]);
     return { key, ask: (aborted) => this.#api.ofScene(plan, name, this.#room.id, view, parameters, aborted) };
   }
 

@@ -39,7 +39,7 @@ export class DoseFacts {
   start(clock) {
     const room = this.#room;
     const isReady = computed(() => room.renderer.value.state === 'ready' && Boolean(room.plan.value?.doses.length) && Boolean(room.scene.value));
-    const style = computed(() => (isReady.value ? JSON.stringify(scaleStyle(room.scene.value.dose)) : ''));
+    const style = computed(() => (isReady.value ? JSON.stringify([scaleStyle(room.scene.value.dose), room.fitKey.value]) : ''));
     const place = computed(() => (isReady.value ? crosshair(room.scene.value).join(' ') : ''));
     const pinned = computed(() => (isReady.value ? JSON.stringify(room.scene.value.probes) : '{}'));
     const covered = computed(() => (isReady.value && room.scene.value.dose.coverage.visible ? JSON.stringify([style.value, room.scene.value.dose.coverage]) : ''));

@@ -3,6 +3,7 @@ import { batch, computed, signal } from '../../lib/signals-core.js';
 import { readDocument } from '../wire/check.js';
 import { mergePatch } from '../wire/merge.js';
 import { Control } from './control.js';
+import { acceptedPairs } from './accepted.js';
 import { Following } from './following.js';
 import { Items } from './items.js';
 import { views as allViews } from './layout.js';
@@ -66,6 +67,11 @@ export class RoomState {
     this.#sending = new Sending({ connection, clock, schedule: sendSoon, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
     this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
     this.items = new Items((message) => this.#sending.act(message));
+    /** Which acceptances count, as the server says; the items of kind acceptance hold the rest. */
+    this.acceptances = signal({ known: false, items: [] });
+    this.accepted = computed(() => acceptedPairs(this.items.rows.value, this.acceptances.value.items));
+    /** What numbers and pictures depend on beside the fields of dose: the shown image decides what fits, and people what is used all the same. */
+    this.fitKey = computed(() => [this.scene.value?.image?.id ?? '', ...this.acceptances.value.items].join(' '));
     this.saved = new Saved(this);
     this.following = new Following(this, (message) => this.#sending.act(message));
     this.control = new Control(this, (message) => this.#connection.send(message));
@@ -271,6 +277,7 @@ export class RoomState {
       'pointer.at': () => this.pointers.moved(message),
       look: () => this.pointers.looked(message),
       control: () => this.control.changed(message),
+      acceptances: () => { this.acceptances.value = { known: message.known, items: message.items }; },
       recording: () => { this.recording.running.value = message.state === 'running' ? message : null; },
       replay: () => { this.recording.replay.value = message; },
       'replay.members': () => { this.recording.members.value = message.members; },

@@ -64,6 +64,14 @@ export class Undo {
     this.#gesture = 0;
   }
 
+  /** Notes an act of the presenter that no patch makes, such as an item. @param {{name: string, undo: () => Promise<unknown>, redo: () => Promise<unknown>}} act */
+  noteAct(act) {
+    const step = { changes: new Map(), act, gesture: 0, at: -Infinity, place: 'room' };
+    this.#done = [...this.#done, step].slice(-maxSteps);
+    this.#undone = [];
+    this.#tell();
+  }
+
   undo() {
     this.#move(this.#done, this.#undone, 'before', 'after', 'undone');
   }
@@ -113,7 +121,8 @@ export class Undo {
     if (!this.#room.canChange.value) return;
     let step = null;
     let open = [];
-    while (!open.length && this.#reaches(from.at(-1))) { // a step that was refused, or already is as wanted, is passed over
+    if (from.at(-1)?.act && this.#reaches(from.at(-1))) return this.#moveAct(from, to, wanted);
+    while (!open.length && !from.at(-1)?.act && this.#reaches(from.at(-1))) { // a step that was refused, or already is as wanted, is passed over
       step = from.pop();
       open = [...step.changes.values()].filter((change) => !isSame(this.#now(change), change[wanted]));
     }
@@ -122,6 +131,17 @@ export class Undo {
     if (mine.length) to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity, place: step.place });
     if (mine.length < open.length)
       this.#notify('warn', mine.length ? `Only in part ${word}: the rest was changed by somebody else since.` : `Not ${word}: it was changed by somebody else since.`, 'undo');
+    this.#tell();
+  }
+
+  /** An act that the server refuses, as one that was taken back since, is no step any more. */
+  #moveAct(from, to, wanted) {
+    const step = from.pop();
+    const act = wanted === 'before' ? step.act.undo : step.act.redo;
+    act().then(() => {
+      to.push(step);
+      this.#tell();
+    }, (problem) => this.#notify('warn', problem?.detail || 'The server refused it.', 'undo'));
     this.#tell();
   }
 
@@ -168,7 +188,7 @@ export class Undo {
   }
 
   #tell() {
-    const changes = (step) => (this.#reaches(step) ? [...step.changes.values()] : null);
+    const changes = (step) => (this.#reaches(step) ? (step.act ? [{ of: 'act', path: [step.act.name] }] : [...step.changes.values()]) : null);
     batch(() => {
       this.next.value = changes(this.#done.at(-1));
       this.nextAgain.value = changes(this.#undone.at(-1));

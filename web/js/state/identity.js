@@ -1,0 +1,36 @@
+// Whose plan it is: the masked patient, the shown treatment plan and its approval. The full name is never here. Pure.
+import { shownDose } from './dose.js';
+import { shownImage } from './plan.js';
+
+export const unknownWords = 'no patient identity in these files';
+
+/** "A. V. …417" of a number of the plan's patients; '' where the files do not say. */
+export const patientOf = (plan, index) => plan.patients[index]?.masked ?? '';
+
+/** The patient whose parts are shown; null: the files name nobody. */
+export function shownPatient(plan, scene) {
+  if (!plan?.patients.length) return null;
+  const index = plan.shownPatient ?? shownDose(plan, scene)?.patient ?? shownImage(plan, scene)?.patient ?? 0;
+  return plan.patients[index] ?? null;
+}
+
+/** Parts of other patients than the one shown: [{kind, id, name, masked}]. */
+export function partsOfOthers(plan, scene) {
+  const shown = shownPatient(plan, scene);
+  if (!shown || plan.patients.length < 2) return [];
+  const lists = [['image', plan.images], ['dose', plan.doses], ['beam', plan.beams], ['region', plan.regions]];
+  return lists.flatMap(([kind, list]) => list.filter(({ patient }) => plan.patients[patient] && plan.patients[patient] !== shown)
+    .map(({ id, name, modality, patient }) => ({ kind, id, name: name || modality || id, masked: plan.patients[patient].masked })));
+}
+
+/** The treatment plan that the shown dose belongs to, else the first; null: none. */
+export function shownTreatmentPlan(plan, scene) {
+  return plan?.treatmentPlans[shownDose(plan, scene)?.plan] ?? plan?.treatmentPlans[plan.shownPlan ?? 0] ?? null;
+}
+
+const approvals = { APPROVED: ['Approved', 'ok', 'check'], UNAPPROVED: ['Unapproved', 'warn', 'warning'], REJECTED: ['Rejected', 'err', 'error'] };
+/** [word, class, icon] */
+export const approvalOf = (treatment) => approvals[(treatment?.approval ?? '').toUpperCase()] ?? ['approval not stated', 'dim', ''];
+
+/** "20261112" as 2026-11-12. */
+export const dateWords = (date) => (/^\d{8}$/.test(date ?? '') ? `${date.slice(0, 4)}-${date.slice(4, 6)}-${date.slice(6)}` : date ?? '');
