@@ -43,6 +43,8 @@
     X("image.bytes-behind", "A file holds more bytes than its header speaks of.", \
       "Check that the header belongs to these voxels.") \
     X("image.not-finite", "Some values are not numbers.", "They are drawn as nothing and probed as nothing.") \
+    X("image.padding", "Pixels of a DICOM image hold its padding value: nothing was measured there.", \
+      "Nothing; they have no value, and are drawn as nothing.") \
     X("image.hu-doubtful", "A CT has no value below zero, so its numbers may not be HU.", \
       "Check the rescale slope and intercept.") \
     X("dicom.unreadable", "A DICOM file cannot be read.", \
@@ -53,6 +55,8 @@
       "Nothing; they are left out: the line says what they are.") \
     X("dicom.bad-number", "A value of a DICOM file is no number, or cannot be what it stands for.", \
       "The file is damaged: copy or export it again.") \
+    X("dicom.surplus-pixels", "A DICOM file holds more pixels than the frames it declares.", \
+      "The declared frames are shown; check how the file was written.") \
     X("dicom.duplicate", "A DICOM object is there more than once.", "Nothing; the first by name was used.") \
     X("dicom.too-many", "There are more DICOM objects than are kept.", \
       "Open a folder that holds one patient's plan alone.") \

@@ -86,6 +86,8 @@ void made_slice_bytes(struct made_dicom *made, const struct made_slice *slice)
     made_u16(made, DICOM_TAG(0x0028, 0x0101), (uint16_t)slice->stored);
     made_u16(made, DICOM_TAG(0x0028, 0x0102), (uint16_t)(slice->stored - 1));
     made_u16(made, DICOM_TAG(0x0028, 0x0103), (uint16_t)slice->is_signed);
+    for (int i = 0; i < slice->n_padding; i++)
+        made_u16(made, DICOM_TAG(0x0028, 0x0120 + i), (uint16_t)slice->padding[i]);
     if (slice->has_rescale) {
         made_number(made, DICOM_TAG(0x0028, 0x1052), "DS", &slice->offset, 1);
         made_number(made, DICOM_TAG(0x0028, 0x1053), "DS", &slice->slope, 1);

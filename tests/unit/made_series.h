@@ -11,6 +11,7 @@ struct made_slice {
     int number, echo, rows, columns, bits, stored, is_signed, base;
     bool has_rescale;
     double slope, offset;
+    int n_padding, padding[2]; /* 0: not given; 1: the padding value; 2: and its range limit; as US */
 };
 /* A CT slice of 3 columns and 2 rows of 16 signed bits, axial, at the origin, 1 x 1 mm. */
 extern const struct made_slice made_slice_defaults;

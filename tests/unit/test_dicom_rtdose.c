@@ -17,7 +17,7 @@
 /* A grid of 3 rows, 4 columns and some frames. The stored value is 100 k + 10 j + i (times 1000 for 32 bits). */
 struct made_dose {
     const char *position, *orientation, *spacing, *offsets, *scaling, *type, *summation, *description, *comment;
-    uint32_t n_frames;
+    uint32_t n_frames, n_surplus; /* frames declared, and those in the pixel data beyond them */
     int bits;
     bool is_zero;
     int beam;
@@ -89,7 +89,7 @@ static void put_dose(struct made_dicom *made, const struct made_dose *dose)
     }
     uint8_t bytes[3 * 4 * 8 * 4];
     size_t n = 0;
-    for (uint32_t k = 0; k < dose->n_frames; k++)
+    for (uint32_t k = 0; k < dose->n_frames + dose->n_surplus; k++)
         for (uint32_t at = 0; at < 12; at++) {
             uint32_t value = dose->is_zero ? 0 : (100 * k + 10 * (at / 4) + at % 4) * (dose->bits == 32 ? 1000 : 1);
             for (int byte = 0; byte < dose->bits / 8; byte++)
@@ -199,6 +199,24 @@ static void uneven_frames_are_interpolated_and_said(void **state)
     assert_true(report_has(&report, "dose.single-plane"));
     rtdose_finish(&dose);
     report_finish(&report);
+}
+
+static void frames_beyond_the_declared_ones_are_said(void **state)
+{
+    (void)state;
+    for (uint32_t n_surplus = 0; n_surplus < 3; n_surplus++) {
+        struct report report = { 0 };
+        struct made_dose made = plain;
+        made.n_surplus = n_surplus;
+        struct rtdose read = read_good(&made, &report);
+        assert_int_equal(read.values->grid.size[2], 3);
+        size_t n = 0;
+        for (size_t i = 0; i < report.n_lines; i++)
+            n += strcmp(report.lines[i].code, "dicom.surplus-pixels") == 0;
+        assert_int_equal(n, n_surplus > 0);
+        rtdose_finish(&read);
+        report_finish(&report);
+    }
 }
 
 static void what_is_no_dose_is_refused_with_a_sentence(void **state)
@@ -570,6 +588,7 @@ int main(void)
         cmocka_unit_test(values_lie_where_rows_columns_and_offsets_put_them),
         cmocka_unit_test(a_dose_in_jpeg_2000_keeps_its_frames_apart_and_says_loss_and_other_bits),
         cmocka_unit_test(uneven_frames_are_interpolated_and_said),
+        cmocka_unit_test(frames_beyond_the_declared_ones_are_said),
         cmocka_unit_test(what_is_no_dose_is_refused_with_a_sentence),
         cmocka_unit_test(descriptions_name_components),
         cmocka_unit_test(components_that_agree_become_one_dose),

@@ -249,6 +249,109 @@ static void values_are_rescaled_whatever_their_bits_and_sign(void **state)
         }
 }
 
+/* Stored values are base + 10 y + x: 0, 1, 2 and 10, 11, 12 more. */
+static void pixels_with_the_padding_value_have_no_value(void **state)
+{
+    (void)state;
+    static const struct {
+        int is_signed, bits, base, n_padding, padding[2];
+        double low_slope_of_second; /* of the second slice; 1: all alike */
+        double low, high;
+        size_t n_padded; /* pixels of a slice */
+    } cases[] = {
+        { 1, 16, -2000, 1, { -2000, 0 }, 1, -1999, -1988, 1 }, /* written as US: 63536 */
+        { 1, 16, -2000, 2, { -2000, -1990 }, 1, -1989, -1988, 4 },
+        { 1, 16, -2000, 2, { -1990, -2000 }, 1, -1989, -1988, 4 }, /* the limit may be the lower one */
+        { 0, 16, 60000, 1, { 60012, 0 }, 1, 60000, 60011, 1 },
+        { 0, 8, 200, 1, { 211, 0 }, 1, 200, 212, 1 },
+        { 1, 16, -1000, 1, { -1000, 0 }, 2, -1998, -988, 1 }, /* slices with a scale of their own */
+        { 1, 16, -1000, 1, { -3000, 0 }, 1, -1000, -988, 0 },
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        struct scanned s = { 0 };
+        folder_make(s.path);
+        for (int k = 0; k < 2; k++) {
+            struct made_slice slice = made_slice_defaults;
+            slice.bits = slice.stored = cases[c].bits;
+            slice.is_signed = cases[c].is_signed;
+            slice.base = cases[c].base;
+            slice.n_padding = cases[c].n_padding;
+            memcpy(slice.padding, cases[c].padding, sizeof slice.padding);
+            slice.has_rescale = true;
+            slice.slope = k == 1 ? cases[c].low_slope_of_second : 1;
+            slice.position[2] = 2 * k;
+            slice.number = k + 1;
+            made_slice_put(s.path, k ? "b" : "a", &slice);
+        }
+        scanned_open(&s);
+        struct volume *volume = scanned_read(&s, 0);
+        size_t n = 0;
+        for (uint32_t k = 0; k < 2; k++)
+            for (uint32_t j = 0; j < 2; j++)
+                for (uint32_t i = 0; i < 3; i++) {
+                    double value = volume_value(volume, i, j, k);
+                    n += isnan(value) ? 1 : 0;
+                    if (!isnan(value))
+                        assert_close(value, (cases[c].base + 10.0 * j + i) * (k ? cases[c].low_slope_of_second : 1), 0);
+                }
+        assert_int_equal(n, 2 * cases[c].n_padded);
+        assert_close(volume->low, cases[c].low, 0);
+        assert_close(volume->high, cases[c].high, 0);
+        assert_int_equal(scanned_said(&s, "image.padding") != NULL, n > 0);
+        volume_unref(volume);
+        scanned_finish(&s);
+    }
+}
+
+static void an_image_of_padding_alone_keeps_its_values(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    struct made_slice slice = made_slice_defaults;
+    slice.base = -50;
+    slice.n_padding = 2;
+    slice.padding[0] = -100;
+    slice.padding[1] = 100;
+    made_slice_put(s.path, "one", &slice);
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_close(volume_value(volume, 1, 1, 0), -39, 0);
+    assert_int_equal(scanned_said(&s, "image.padding")->severity, REPORT_WARNING);
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
+static void pixel_data_with_more_than_the_declared_frames_are_said(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    struct made_slice slice = made_slice_defaults;
+    for (int k = 0; k < 2; k++) { /* the second one has the pixels of 3 frames: 3 x 2 of 16 bits each */
+        struct made_dicom made;
+        slice.position[2] = 2 * k;
+        slice.number = k + 1;
+        made_slice_bytes(&made, &slice);
+        if (k == 1) {
+            made.data[made.size - 12 - 4] = 36;
+            made_raw(&made, (uint8_t[24]){ 0 }, 24);
+        }
+        folder_put(s.path, k ? "b" : "a", made.data, made.size);
+        made_finish(&made);
+    }
+    scanned_open(&s);
+    struct volume *volume = scanned_read(&s, 0);
+    assert_int_equal(volume->grid.size[2], 2);
+    const struct report_line *line = scanned_said(&s, "dicom.surplus-pixels");
+    assert_non_null(line);
+    assert_string_equal(line->where, "b");
+    assert_non_null(strstr(line->sentence, "1 of 2 files"));
+    assert_non_null(strstr(line->sentence, "24 bytes more than 1 frames"));
+    volume_unref(volume);
+    scanned_finish(&s);
+}
+
 static void slices_with_a_scale_of_their_own_are_brought_to_one_unit(void **state)
 {
     (void)state;
@@ -545,6 +648,9 @@ int main(void)
         cmocka_unit_test(a_slice_a_tenth_off_its_place_is_not_taken_as_even),
         cmocka_unit_test(slices_that_lie_on_no_line_are_refused),
         cmocka_unit_test(values_are_rescaled_whatever_their_bits_and_sign),
+        cmocka_unit_test(pixels_with_the_padding_value_have_no_value),
+        cmocka_unit_test(an_image_of_padding_alone_keeps_its_values),
+        cmocka_unit_test(pixel_data_with_more_than_the_declared_frames_are_said),
         cmocka_unit_test(slices_with_a_scale_of_their_own_are_brought_to_one_unit),
         cmocka_unit_test(a_slope_of_nothing_is_not_believed),
         cmocka_unit_test(inverted_pictures_keep_their_values_and_it_is_said),

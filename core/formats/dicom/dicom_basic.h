@@ -25,7 +25,8 @@ struct dicom_pixels {
     uint32_t bits_allocated;          /* 8, 16 or 32 */
     uint32_t bits_stored, high_bit;
     bool is_signed, is_monochrome1;
-    uint32_t n_samples; /* always 1; colour is refused */
+    uint32_t n_samples;     /* always 1; colour is refused */
+    uint64_t surplus_bytes; /* of native pixel data beyond the frames, without the byte that makes it even */
 };
 
 /* Properties of the values in the JPEG 2000 codestream of the last frame read. n_bits is 0 for every other encoding. */

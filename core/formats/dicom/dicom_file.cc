@@ -365,7 +365,22 @@ const char *dicom_transfer_syntax(const struct dicom_file *file)
 
 const char *dicom_uid_word(const char *uid)
 {
+    // newer than DCMTK's dictionary. Source: DICOM PS3.6, table A-1
+    static const struct {
+        const char *uid, *word;
+    } newer[] = { { "1.2.840.10008.1.2.4.110", "JPEG XL lossless" },
+                  { "1.2.840.10008.1.2.4.111", "JPEG XL recompressed JPEG" },
+                  { "1.2.840.10008.1.2.4.112", "JPEG XL" },
+                  { "1.2.840.10008.1.2.4.201", "High-Throughput JPEG 2000 lossless" },
+                  { "1.2.840.10008.1.2.4.202", "High-Throughput JPEG 2000 lossless, RPCL" },
+                  { "1.2.840.10008.1.2.4.203", "High-Throughput JPEG 2000" },
+                  { "1.2.840.10008.1.2.8.1", "deflated image frames" },
+                  { "1.2.840.10008.5.1.4.1.1.66.7", "LabelMapSegmentationStorage" },
+                  { "1.2.840.10008.5.1.4.1.1.66.8", "HeightMapSegmentationStorage" } };
     const char *word = dcmFindNameOfUID(uid, "");
+    for (const auto &each : newer)
+        if ((!word || !word[0]) && std::strcmp(uid, each.uid) == 0)
+            return each.word;
     return word ? word : "";
 }
 

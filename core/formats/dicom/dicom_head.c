@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "core/formats/dicom/dicom_padding.h"
 #include "core/formats/dicom/dicom_patients.h"
 #include "core/formats/dicom/dicom_tags.h"
 
@@ -164,6 +165,7 @@ static void note_bad_number(const struct dicom_item *root, struct dicom_image *i
 
 static void read_image_facts(const struct dicom_item *root, struct dicom_image *image)
 {
+    image->padding = dicom_padding_read(root, &image->pixels);
     image->thickness_mm = fmax(0, number_or(root, TAG_THICKNESS, 0));
     if (!dicom_text(root, TAG_RESCALE_TYPE, image->unit, sizeof image->unit))
         (void)dicom_text(root, TAG_UNITS, image->unit, sizeof image->unit);

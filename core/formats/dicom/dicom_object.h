@@ -28,9 +28,16 @@ struct dicom_patient {
     bool has_conflict; /* files with this ID differ in name or birth date: they are several patients of the index */
 };
 
+/* Stored values low .. high are padding: nothing was measured there. */
+struct dicom_padding {
+    bool is_given;
+    double low, high;
+};
+
 /* The head of an image file. */
 struct dicom_image {
     struct dicom_pixels pixels;
+    struct dicom_padding padding;
     bool has_place;        /* position and orientation are elements of the file itself; false: each frame has its own */
     double position_mm[3]; /* centre of the first pixel, patient LPS */
     double row[3], column[3]; /* direction cosines along a row and down a column, as in the file */

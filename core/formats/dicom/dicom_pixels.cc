@@ -101,6 +101,8 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
                          layout.pixels_at, static_cast<unsigned long long>(layout.pixels_size), pixels->columns,
                          pixels->rows, pixels->n_frames, pixels->bits_allocated,
                          static_cast<unsigned long long>(needed));
+    uint64_t even = needed + needed % 2;
+    pixels->surplus_bytes = layout.pixels_size > even ? layout.pixels_size - even : 0;
     return true;
 }
 

@@ -320,6 +320,17 @@ static struct volume *read_values(const struct reading *reading, const struct di
     return read_uneven(file, pixels, planes, &grid, step_mm, scaling, coded, err);
 }
 
+static void report_surplus(const struct reading *reading, const struct dicom_pixels *pixels)
+{
+    double frame = (double)pixels->rows * pixels->columns * (pixels->bits_allocated / 8);
+    if (pixels->surplus_bytes > 0)
+        report_add(
+            reading->report, REPORT_WARNING, "dicom.surplus-pixels", reading->where,
+            "The pixel data hold %llu bytes more than the %u frames that the file declares (%.4g frames more); they "
+            "are not shown.",
+            (unsigned long long)pixels->surplus_bytes, pixels->n_frames, (double)pixels->surplus_bytes / frame);
+}
+
 /* ---- one object ------------------------------------------------------------------------------------------------- */
 
 static void add_beams(struct rtdose *dose, const struct dicom_item *item)
@@ -409,6 +420,7 @@ bool rtdose_read(const struct dicom_file *file, const char *where, struct rtdose
     if (!read.values)
         return false;
     dicom_coded_report(&coded, file, &pixels, where, report);
+    report_surplus(&reading, &pixels);
     read_words(&read, root);
     read_references(&read, root);
     if (!rtdose_read_dvhs(&read, root, where, report, err)) {

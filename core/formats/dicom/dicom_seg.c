@@ -177,12 +177,16 @@ static bool look_at_bits(struct reading *reading, struct error *err)
         needed += needed % 2; /* with words, the last byte may be in the upper half */
     if (!reading->bits)
         return error_set(err, ERROR_UNSUPPORTED,
-                         "%s: its bits are compressed (%s), or not there; only plain ones are read", reading->where,
-                         dicom_transfer_syntax(reading->file));
+                         "%s: its bits are compressed (%s, %s), or not there; only plain ones are read", reading->where,
+                         dicom_uid_word(dicom_transfer_syntax(reading->file)), dicom_transfer_syntax(reading->file));
     if (size < needed)
         return error_set(err, ERROR_FORMAT, "%s: pixel data of %llu bytes; %u x %u x %u pixels of 1 bit need %llu",
                          reading->where, (unsigned long long)size, grid->columns, grid->rows, grid->n_frames,
                          (unsigned long long)needed);
+    if (size > needed + needed % 2)
+        report_add(reading->report, REPORT_WARNING, "dicom.surplus-pixels", reading->where,
+                   "The pixel data hold %llu bytes more than the %u frames that the file declares; they are not shown.",
+                   (unsigned long long)(size - needed), grid->n_frames);
     return true;
 }
 

@@ -8,6 +8,8 @@
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
+#include "core/formats/dicom/dicom_mix.h"
+#include "core/formats/dicom/dicom_padding.h"
 #include "core/formats/dicom/dicom_slices.h"
 #include "core/formats/dicom/dicom_tags.h"
 #include "core/formats/dicom/dicom_unpack.h"
@@ -30,6 +32,7 @@ struct reader {
     uint8_t *scratch;        /* one plane of stored values */
     struct coded coded;
     int32_t range[2];
+    size_t n_padding;
 };
 
 /* A stack while it is read. */
@@ -47,6 +50,7 @@ struct series {
     uint8_t *cells;     /* cells of all slices, [n_slices][plane_cells] of type */
     struct bytes whole; /* the multi-frame file, when its frames must be decoded from memory */
     int32_t range[2];   /* smallest and largest integer cell */
+    size_t n_padding;   /* cells without a value */
     struct coded coded;
     atomic_size_t next, n_done;
     size_t n_reported; /* slices reported to progress->step, by the calling thread alone */
@@ -124,6 +128,28 @@ static void report_coded(const struct series *series, struct report *report)
                    pixels->bits_stored, coded->n_other_bits, series->n_slices, coded->n_bits);
 }
 
+/* Reports pixel data that hold at least a frame more than declared; a few bytes behind the pixels are usual. */
+static void report_surplus(const struct series *series, struct report *report)
+{
+    size_t n = 0;
+    const struct dicom_object *first = NULL;
+    for (size_t i = 0; i < series->stack->n_objects; i++) {
+        const struct dicom_object *object = &series->index->objects[series->stack->objects[i]];
+        const struct dicom_pixels *pixels = &object->image->pixels;
+        if (pixels->surplus_bytes < (uint64_t)pixels->rows * pixels->columns * (pixels->bits_allocated / 8))
+            continue;
+        first = first ? first : object;
+        n++;
+    }
+    if (n > 0)
+        report_add(
+            report, REPORT_WARNING, "dicom.surplus-pixels", first->path,
+            "The pixel data of %zu of %zu files hold more frames than the files declare (here %llu bytes more than "
+            "%u frames need); they are not shown.",
+            n, series->stack->n_objects, (unsigned long long)first->image->pixels.surplus_bytes,
+            first->image->pixels.n_frames);
+}
+
 /* Reads the stored values of a slice: native ones straight from the file, compressed ones by decoding. */
 static bool read_stored(struct series *series, struct reader *reader, const struct dicom_slice *slice, void *out,
                         struct error *err)
@@ -179,9 +205,23 @@ static void convert(const struct series *series, const struct dicom_slice *slice
             to[i] = ((const int8_t *)stored)[i];
         return;
     }
+    const struct dicom_padding *padding = &object_of(series, slice)->image->padding;
     float *to = out;
-    for (size_t i = 0; i < series->plane_cells; i++)
-        to[i] = (float)(stored_value(pixels, stored, i) * slope + offset);
+    for (size_t i = 0; i < series->plane_cells; i++) {
+        double value = stored_value(pixels, stored, i);
+        to[i] = dicom_is_padding(padding, value) ? NAN : (float)(value * slope + offset);
+    }
+}
+
+static size_t count_padding(const struct series *series, const struct dicom_slice *slice, const uint8_t *cells)
+{
+    const struct dicom_padding *padding = &object_of(series, slice)->image->padding;
+    if (series->type != VOXEL_F32)
+        return dicom_padding_count(padding, series->type, cells, series->plane_cells);
+    size_t n = 0;
+    for (size_t i = 0; padding->is_given && i < series->plane_cells; i++)
+        n += isnan(((const float *)(const void *)cells)[i]) ? 1 : 0;
+    return n;
 }
 
 static bool is_kept_as_stored(const struct series *series, const struct dicom_pixels *pixels)
@@ -205,6 +245,7 @@ static bool read_slice(struct series *series, struct reader *reader, size_t at, 
     if (!is_direct)
         convert(series, slice, reader->scratch, out);
     dicom_cells_measure(voxel_size(series->type), series->type == VOXEL_I16, out, series->plane_cells, reader->range);
+    reader->n_padding += count_padding(series, slice, out);
     return true;
 }
 
@@ -262,6 +303,7 @@ static void join_results(struct series *series, int n_parts)
         const struct reader *reader = &series->readers[part];
         series->range[0] = reader->range[0] < series->range[0] ? reader->range[0] : series->range[0];
         series->range[1] = reader->range[1] > series->range[1] ? reader->range[1] : series->range[1];
+        series->n_padding += reader->n_padding;
         series->coded.n_unsaid += reader->coded.n_unsaid;
         series->coded.n_other_sign += reader->coded.n_other_sign;
         series->coded.n_other_bits += reader->coded.n_other_bits;
@@ -451,24 +493,6 @@ static bool read_cells(struct series *series, struct error *err)
     return false;
 }
 
-#define MIX(type, nearest) \
-    do { \
-        const type *a = low, *b = high; \
-        type *to = out; \
-        for (size_t i = 0; i < n; i++) \
-            to[i] = (type)nearest((double)a[i] + weight * ((double)b[i] - (double)a[i])); \
-    } while (0)
-
-static void mix_planes(enum voxel_type type, const void *low, const void *high, double weight, void *out, size_t n)
-{
-    switch (type) {
-    case VOXEL_U8: MIX(uint8_t, lrint); break;
-    case VOXEL_I16: MIX(int16_t, lrint); break;
-    case VOXEL_U16: MIX(uint16_t, lrint); break;
-    case VOXEL_F32: MIX(float, ); break;
-    }
-}
-
 static void interpolate(const struct series *series, const struct dicom_slice_layout *layout, struct volume *volume)
 {
     size_t bytes = series->plane_cells * voxel_size(series->type);
@@ -478,8 +502,8 @@ static void interpolate(const struct series *series, const struct dicom_slice_la
         if (plane->a == plane->b)
             memcpy(out, series->cells + plane->a * bytes, bytes);
         else
-            mix_planes(series->type, series->cells + plane->a * bytes, series->cells + plane->b * bytes, plane->weight,
-                       out, series->plane_cells);
+            dicom_planes_mix(series->type, series->cells + plane->a * bytes, series->cells + plane->b * bytes,
+                             plane->weight, out, series->plane_cells);
     }
 }
 
@@ -494,31 +518,82 @@ static void measure(const struct series *series, struct volume *volume)
     volume->high = fmax(a, b);
 }
 
-static struct volume *read_volume(struct series *series, const struct dicom_slice_layout *layout, struct error *err)
+/* Converts stored cells of all slices to values, with NaN for padding. */
+static void cells_without_padding(const struct series *series, enum voxel_type type, const uint8_t *stored, float *out)
 {
-    struct volume *volume = volume_create_unset(&layout->grid, series->type, err);
-    if (!volume)
-        return NULL;
-    uint8_t *own = NULL;
-    series->cells = volume->voxels;
+    size_t bytes = series->plane_cells * voxel_size(type);
+    for (size_t i = 0; i < series->n_slices; i++) {
+        const struct dicom_slice *slice = &series->slices[i];
+        dicom_padding_convert(&object_of(series, slice)->image->padding, type, stored + i * bytes, series->plane_cells,
+                              slice->slope, slice->offset, out + i * series->plane_cells);
+    }
+}
+
+/* The cells of all slices while a volume is made of them. */
+struct made_volume {
+    struct volume *volume;
+    uint8_t *own; /* cells of uneven slices; NULL: cells are the volume's */
+};
+
+static bool make_room(struct series *series, const struct dicom_slice_layout *layout, struct made_volume *made,
+                      struct error *err)
+{
+    made->volume = volume_create_unset(&layout->grid, series->type, err);
+    if (!made->volume)
+        return false;
+    series->cells = made->volume->voxels;
     if (!layout->is_exact) {
-        own = mem_large_array(series->n_slices, series->plane_cells * voxel_size(series->type), VOLUME_MAX_BYTES, err);
-        series->cells = own;
+        made->own =
+            mem_large_array(series->n_slices, series->plane_cells * voxel_size(series->type), VOLUME_MAX_BYTES, err);
+        series->cells = made->own;
     }
-    if (!series->cells || !read_cells(series, err)) {
-        free(own);
-        volume_unref(volume);
+    return series->cells != NULL;
+}
+
+/* Replaces whole numbers by values, as whole numbers have none for padding. */
+static bool take_padding_out(struct series *series, const struct dicom_slice_layout *layout, struct made_volume *made,
+                             struct error *err)
+{
+    struct made_volume before = *made;
+    const enum voxel_type type = series->type;
+    const uint8_t *stored = series->cells;
+    *made = (struct made_volume){ NULL, NULL };
+    series->type = VOXEL_F32;
+    series->is_uniform = false;
+    bool is_made = make_room(series, layout, made, err);
+    if (is_made)
+        cells_without_padding(series, type, stored, (float *)(void *)series->cells);
+    volume_unref(before.volume);
+    free(before.own);
+    return is_made;
+}
+
+static struct volume *read_volume(struct series *series, const struct dicom_slice_layout *layout, struct report *report,
+                                  struct error *err)
+{
+    struct made_volume made = { NULL, NULL };
+    bool is_read = make_room(series, layout, &made, err) && read_cells(series, err);
+    bool is_all = series->n_padding == series->n_slices * series->plane_cells;
+    const struct dicom_object *first = object_of(series, &series->slices[0]);
+    if (is_read && series->n_padding > 0)
+        dicom_padding_report(&first->image->padding, series->n_padding, series->n_slices * series->plane_cells,
+                             series->type == VOXEL_F32, first->path, report);
+    if (is_read && series->n_padding > 0 && !is_all && series->type != VOXEL_F32)
+        is_read = take_padding_out(series, layout, &made, err);
+    if (!is_read) {
+        free(made.own);
+        volume_unref(made.volume);
         return NULL;
     }
-    if (own)
-        interpolate(series, layout, volume);
-    free(own);
+    if (made.own)
+        interpolate(series, layout, made.volume);
+    free(made.own);
     if (series->is_uniform) {
-        volume->slope = series->slices[0].slope;
-        volume->offset = series->slices[0].offset;
+        made.volume->slope = series->slices[0].slope;
+        made.volume->offset = series->slices[0].offset;
     }
-    measure(series, volume);
-    return volume;
+    measure(series, made.volume);
+    return made.volume;
 }
 
 struct volume *dicom_series_read(const struct folder *folder, const struct dicom_index *index, size_t stack,
@@ -538,8 +613,9 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
         check_scales(&series, report);
         dicom_slices_compare(index, series.stack, report);
         choose_type(&series, facts, report);
-        volume = read_volume(&series, &layout, err);
+        volume = read_volume(&series, &layout, report, err);
         report_coded(&series, report);
+        report_surplus(&series, report);
     }
     free(layout.planes);
     free(series.slices);

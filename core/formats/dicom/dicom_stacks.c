@@ -212,16 +212,18 @@ static uint64_t bytes_of(const struct group *group)
 {
     const struct dicom_image *first = group->members[0].image;
     uint64_t voxels = 0;
-    bool is_wide = first->pixels.bits_allocated == 32 || !first->has_place;
+    bool is_wide = first->pixels.bits_allocated == 32 || !first->has_place, is_padded = false;
     for (size_t i = 0; i < group->n; i++) {
         const struct dicom_image *image = group->members[i].image;
         voxels += (uint64_t)image->pixels.rows * image->pixels.columns * image->pixels.n_frames;
+        is_padded |= image->padding.is_given;
         is_wide = is_wide || image->slope != first->slope || image->offset != first->offset ||
                   image->pixels.is_signed != first->pixels.is_signed ||
                   image->pixels.bits_allocated != first->pixels.bits_allocated;
     }
     bool is_bytes = first->pixels.bits_allocated == 8 && !first->pixels.is_signed;
-    return voxels * (is_wide ? 4 : is_bytes ? 1 : 2);
+    uint64_t stored = is_wide ? 4 : is_bytes ? 1 : 2;
+    return voxels * (is_padded && !is_wide ? stored + 4 : stored); /* values are made beside the stored cells */
 }
 
 static void add_stack(struct dicom_index *index, const struct group *group, const char *apart, size_t *n_left_out)
