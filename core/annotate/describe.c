@@ -337,7 +337,7 @@ static void add_methods(struct annotations *annotations, const struct snapshot *
         add_words(annotations, ANNOTATION_METHODS, outline_words(snapshot->scene.outline.method));
     if (snapshot_is_pane(snapshot) && snapshot->scene.check.visible)
         add_words(annotations, ANNOTATION_METHODS, "Check of the segmentation: differences are marked");
-    if (snapshot->scene.dose.grid && snapshot->dose >= 0) {
+    if (snapshot->scene.dose.grid && snapshot->dose >= 0 && fit_is_used(&snapshot->fits.doses[snapshot->dose])) {
         const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
         (void)snprintf(annotation_add(annotations, ANNOTATION_METHODS)->text, ANNOTATION_TEXT_SIZE,
                        "Grid of the dose %s%s%s%s%s", dose->name[0] ? dose->name : dose->id, dose->unit[0] ? ", " : "",
@@ -368,10 +368,9 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
     struct camera camera;
     size_t n_missing = visible_missing(snapshot, SURFACE_FULL, missing);
     *annotations = (struct annotations){ .n_items = 0 };
-    annotations->items =
-        mem_array(plan->regions.n_regions + MAX_OTHER_ITEMS + DESCRIBE_BEAM_MAX_ITEMS + DESCRIBE_DOSE_MAX_ITEMS +
-                      DESCRIBE_FITS_MAX_ITEMS,
-                  sizeof annotations->items[0], UINT64_MAX, err);
+    annotations->items = mem_array(plan->regions.n_regions + MAX_OTHER_ITEMS + DESCRIBE_BEAM_MAX_ITEMS +
+                                       DESCRIBE_DOSE_MAX_ITEMS + DESCRIBE_FITS_MAX_ITEMS,
+                                   sizeof annotations->items[0], UINT64_MAX, err);
     if (!annotations->items)
         return false;
     camera_resolve(snapshot, &camera);

@@ -64,7 +64,8 @@ void fits_describe(struct annotations *annotations, const struct snapshot *snaps
     if (snapshot->fits.acceptances.n == 0)
         return;
     if (snapshot->blend >= 0)
-        add_use(&listing, (struct fit_part){ FIT_IMAGE, (size_t)snapshot->blend }, &snapshot->fits.blended);
+        add_use(&listing, (struct fit_part){ FIT_IMAGE, (size_t)snapshot->blend },
+                &snapshot->fits.beside[snapshot->blend]);
     add_doses(&listing);
     add_regions(&listing);
     for (size_t i = 0; i < snapshot->plan->n_beams; i++)

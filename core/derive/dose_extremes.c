@@ -67,9 +67,14 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
         extremes->body_high = NAN;
         for (size_t r = 0; r < REGION_MAX; r++)
             extremes->high[r] = extremes->mean[r] = NAN;
+        const struct dose_choice *choice = &((const struct extremes_recipe *)base)->choice;
+        size_t n_used = 0;
         for (size_t r = 0; is_good && r < set->n_regions; r++)
-            is_good = read_region(extremes, derive, &((const struct extremes_recipe *)base)->choice, r, err);
-        if (set->n_regions == 0)
+            if (!dose_leaves_out(choice, r)) {
+                is_good = read_region(extremes, derive, choice, r, err);
+                n_used++;
+            }
+        if (n_used == 0)
             read_grid(extremes, field);
     }
     if (field)

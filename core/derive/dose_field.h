@@ -24,7 +24,12 @@ struct dose_choice {
     size_t n_rows;
     bool is_everywhere;                /* rows[0] holds at every point; else: */
     uint8_t row_of_region[REGION_MAX]; /* by region index; DOSE_NO_ROW: no region around it has weights either */
+    uint8_t left_out[REGION_MAX / 8];  /* bits by region index: not used with this dose, and in none of its figures */
 };
+static inline bool dose_leaves_out(const struct dose_choice *choice, size_t region)
+{
+    return choice->left_out[region / 8] >> region % 8 & 1;
+}
 
 /* Which row holds at each univel. */
 struct tissue_rows {
@@ -36,7 +41,8 @@ struct tissue_rows {
 
 struct dose_field {
     struct derive_result base;
-    struct volume *rows[DOSE_MAX_ROWS]; /* F32, slope 1, all on one grid: the first component's of the first part. NaN
+    struct volume *rows[DOSE_MAX_ROWS]; /* F32, slope 1, all on one grid: the one with the smallest voxels of
+                                           the components and parts, of equal ones that of the first in the plan. NaN
                                            where there is no value: a voxel under the dose's mask, beside another
                                            component's or part's grid, or not finite in a file */
     size_t n_rows;

@@ -43,6 +43,35 @@ struct dose_filling {
     atomic_bool is_complete;   /* all rows of all bricks are done, and measured */
 };
 
+/* True if the voxels of a grid are smaller by more than what the rounding of files does. */
+static bool is_finer(const struct grid *a, const struct grid *b)
+{
+    return grid_voxel_mm3(a) < grid_voxel_mm3(b) * (1 - 1e-6);
+}
+
+/* Tells which volumes lie on the field's grid. */
+static void note_grids(struct dose_filling *filling)
+{
+    for (size_t i = 0; i < filling->n; i++) {
+        struct summand *summand = &filling->summands[i];
+        summand->is_on_grid = grid_is_same(filling->grid, &summand->values->grid);
+        summand->is_mask_on_grid = summand->mask && grid_is_same(filling->grid, &summand->mask->grid);
+        filling->is_resampled |= !summand->is_on_grid;
+    }
+}
+
+/* The part with the next greater index of dose; n_parts: none. A sum is then the same whatever the order of its parts.
+ */
+static size_t next_part(const struct dose_choice *choice, size_t from_dose)
+{
+    size_t next = choice->n_parts;
+    for (size_t p = 0; p < choice->n_parts; p++)
+        if (choice->parts[p].dose >= from_dose &&
+            (next == choice->n_parts || choice->parts[p].dose < choice->parts[next].dose))
+            next = p;
+    return next;
+}
+
 /* Lists what a part adds. */
 static bool list_part(struct dose_filling *filling, const struct plan *plan, const struct dose_choice *choice,
                       size_t part, struct error *err)
@@ -51,7 +80,8 @@ static bool list_part(struct dose_filling *filling, const struct plan *plan, con
     const struct dose *first = &plan->doses[choice->unit_of];
     size_t n_before = filling->n;
     double unit = 1;
-    if (dose != first && !dose_quantity_is_fluence(choice->quantity) && !fit_unit_factor(dose->unit, first->unit, &unit))
+    if (dose != first && !dose_quantity_is_fluence(choice->quantity) &&
+        !fit_unit_factor(dose->unit, first->unit, &unit))
         return error_set(err, ERROR_RANGE, "dose \"%s\" is in \"%s\", dose \"%s\" in \"%s\": they cannot be added",
                          first->id, first->unit, dose->id, dose->unit);
     for (size_t c = 0; c < dose->n_components; c++) {
@@ -71,11 +101,8 @@ static bool list_part(struct dose_filling *filling, const struct plan *plan, con
         }
         if (!is_used)
             continue;
-        if (!filling->grid)
+        if (!filling->grid || is_finer(&component->values->grid, filling->grid))
             filling->grid = &component->values->grid;
-        summand.is_on_grid = grid_is_same(filling->grid, &component->values->grid);
-        summand.is_mask_on_grid = dose->mask && grid_is_same(filling->grid, &dose->mask->grid);
-        filling->is_resampled |= !summand.is_on_grid;
         filling->summands[filling->n++] = summand;
     }
     if (filling->n > n_before)
@@ -91,10 +118,13 @@ struct dose_filling *dose_filling_create(const struct plan *plan, const struct d
 {
     struct dose_filling *filling = mem_array(1, sizeof *filling, UINT64_MAX, err);
     bool is_good = filling != NULL;
-    for (size_t p = 0; is_good && p < choice->n_parts; p++)
+    for (size_t p = next_part(choice, 0); is_good && p < choice->n_parts;
+         p = next_part(choice, choice->parts[p].dose + 1))
         is_good = list_part(filling, plan, choice, p, err);
-    if (is_good)
+    if (is_good) {
+        note_grids(filling);
         return filling;
+    }
     dose_filling_destroy(filling);
     return NULL;
 }

@@ -237,6 +237,8 @@ bool dose_histogram_get(struct derive *derive, const struct dose_choice *choice,
 {
     const struct region_set *set = &derive_plan(derive)->regions;
     memset(dvh, 0, sizeof *dvh);
+    if (dose_leaves_out(choice, region))
+        return error_set(err, ERROR_STATE, "%s is not used with this dose", set->regions[region].name);
     if (weighing == DOSE_BY_REGION && dose_row_of_region(set, choice, region, err) == DOSE_NO_ROW)
         return false;
     bool is_label = population_is_label(set, region, population);
@@ -263,7 +265,7 @@ bool dose_histogram_of_body(struct derive *derive, const struct dose_choice *cho
     for (size_t l = 0; l < set->n_layers; l++) {
         double volume_cm3 = 0;
         for (size_t r = 0; r < set->n_regions; r++)
-            volume_cm3 += set->regions[r].layer == l ? set->regions[r].volume_cm3 : 0;
+            volume_cm3 += set->regions[r].layer == l && !dose_leaves_out(choice, r) ? set->regions[r].volume_cm3 : 0;
         if (volume_cm3 > most) {
             most = volume_cm3;
             *layer = l;
@@ -272,7 +274,8 @@ bool dose_histogram_of_body(struct derive *derive, const struct dose_choice *cho
     struct dose_histograms *histograms = get(derive, choice, (uint32_t)*layer, 1, DOSE_BY_TISSUE, err);
     bool is_good = histograms != NULL;
     for (size_t r = 0; is_good && r < set->n_regions; r++)
-        is_good = set->regions[r].layer != *layer || dvh_add(dvh, &histograms->dvhs[r], err);
+        is_good =
+            set->regions[r].layer != *layer || dose_leaves_out(choice, r) || dvh_add(dvh, &histograms->dvhs[r], err);
     if (histograms)
         derive_result_unref(&histograms->base);
     if (!is_good)

@@ -96,7 +96,7 @@ static int innermost_at(const struct region_set *set, struct vec3 point)
             labels[layer] = volume_label(set->layers[layer], at[0], at[1], at[2]);
     }
     for (size_t r = 0; r < set->n_regions; r++) {
-        if (labels[set->regions[r].layer] != set->regions[r].label)
+        if (labels[set->regions[r].layer] != set->regions[r].label || set->regions[r].label == 0)
             continue;
         int depth = region_depth(set, r);
         if (depth > best_depth || (depth == best_depth && set->regions[r].n_voxels < set->regions[best].n_voxels)) {

@@ -10,23 +10,23 @@
 #define FARTHEST_MM 100000.0 /* a draft's limit on any coordinate (proto/scene.json) */
 
 /* The distance along a line at which it enters the first region; NaN: none. */
-static bool find_skin(const struct plan *plan, struct vec3 from_lps_mm, struct vec3 direction, double *along_mm,
-                      struct error *err)
+static bool find_skin(const struct region_set *regions, struct vec3 from_lps_mm, struct vec3 direction,
+                      double *along_mm, struct error *err)
 {
     struct ray_band *bands;
     size_t n;
-    if (!ray_bands_all(&plan->regions, from_lps_mm, direction, &bands, &n, err))
+    if (!ray_bands_all(regions, from_lps_mm, direction, &bands, &n, err))
         return false;
     *along_mm = n > 0 ? bands[0].from_mm : NAN;
     free(bands);
     return true;
 }
 
-bool beam_skin_of(const struct plan *plan, struct vec3 entry_lps_mm, struct vec3 target_lps_mm, struct beam_skin *skin,
-                  struct error *err)
+bool beam_skin_of(const struct region_set *regions, struct vec3 entry_lps_mm, struct vec3 target_lps_mm,
+                  struct beam_skin *skin, struct error *err)
 {
     struct vec3 line = vec3_sub(target_lps_mm, entry_lps_mm);
-    if (!find_skin(plan, entry_lps_mm, vec3_normalize(line), &skin->gap_mm, err))
+    if (!find_skin(regions, entry_lps_mm, vec3_normalize(line), &skin->gap_mm, err))
         return false;
     skin->depth_mm = vec3_length(line) - skin->gap_mm;
     return true;
@@ -43,17 +43,17 @@ static bool put_entry(const struct beam_shown *beam, struct vec3 towards_source,
 }
 
 /* needs_skin: the line must meet a region. */
-static bool put_before_skin(const struct plan *plan, const struct beam_shown *beam, struct vec3 towards_source,
+static bool put_before_skin(const struct region_set *regions, const struct beam_shown *beam, struct vec3 towards_source,
                             double gap_mm, bool needs_skin, struct vec3 *entry_lps_mm, struct error *err)
 {
     double skin_mm; /* from the target */
     if (isnan(gap_mm)) {
         struct beam_skin skin;
-        if (!beam_skin_of(plan, beam->entry_lps_mm, beam->target_lps_mm, &skin, err))
+        if (!beam_skin_of(regions, beam->entry_lps_mm, beam->target_lps_mm, &skin, err))
             return false;
         gap_mm = skin.gap_mm < 0 ? 0 : skin.gap_mm;
     }
-    if (!find_skin(plan, beam->target_lps_mm, vec3_scale(towards_source, -1), &skin_mm, err))
+    if (!find_skin(regions, beam->target_lps_mm, vec3_scale(towards_source, -1), &skin_mm, err))
         return false;
     if (isnan(skin_mm) && needs_skin)
         return error_set(err, ERROR_RANGE, "The beam's axis meets no region, so there is no skin to keep a gap to.");
@@ -74,32 +74,32 @@ bool beam_place_angles(const struct beam_shown *beam, double phi_deg, double the
     return put_entry(beam, sera_angles_towards_source(phi_deg, theta_deg), beam->length_mm, entry_lps_mm, err);
 }
 
-bool beam_place_gap(const struct plan *plan, const struct beam_shown *beam, double gap_mm, struct vec3 *entry_lps_mm,
-                    struct error *err)
+bool beam_place_gap(const struct region_set *regions, const struct beam_shown *beam, double gap_mm,
+                    struct vec3 *entry_lps_mm, struct error *err)
 {
-    return put_before_skin(plan, beam, vec3_scale(beam->direction, -1), gap_mm, true, entry_lps_mm, err);
+    return put_before_skin(regions, beam, vec3_scale(beam->direction, -1), gap_mm, true, entry_lps_mm, err);
 }
 
-bool beam_place_through(const struct plan *plan, const struct beam_shown *beam, struct vec3 point_lps_mm, double gap_mm,
-                        struct vec3 *entry_lps_mm, struct error *err)
+bool beam_place_through(const struct region_set *regions, const struct beam_shown *beam, struct vec3 point_lps_mm,
+                        double gap_mm, struct vec3 *entry_lps_mm, struct error *err)
 {
     struct vec3 way = vec3_sub(point_lps_mm, beam->target_lps_mm);
     if (vec3_length(way) < BEAM_SHOWN_MIN_LENGTH_MM)
         return error_set(err, ERROR_RANGE, "The point is the target itself: any beam runs through it.");
-    return put_before_skin(plan, beam, vec3_normalize(way), gap_mm, false, entry_lps_mm, err);
+    return put_before_skin(regions, beam, vec3_normalize(way), gap_mm, false, entry_lps_mm, err);
 }
 
-bool beam_place_shortest(const struct plan *plan, const struct beam_shown *beam, double gap_mm,
+bool beam_place_shortest(const struct region_set *regions, const struct beam_shown *beam, double gap_mm,
                          struct vec3 *entry_lps_mm, struct error *err)
 {
     struct shortest_way way;
     struct error why = { 0 };
-    if (!regions_shortest_way(&plan->regions, beam->target_lps_mm, &way, &why)) {
+    if (!regions_shortest_way(regions, beam->target_lps_mm, &way, &why)) {
         if (why.code == ERROR_NOT_FOUND)
             return error_set(err, ERROR_RANGE, "The plan has no regions, so there is no skin to start from.");
         return error_set(err, why.code, "%s", why.text);
     }
     if (!(way.depth_mm > 0))
         return error_set(err, ERROR_RANGE, "The target lies outside of every region, with a free way to it.");
-    return put_before_skin(plan, beam, way.outwards, gap_mm, true, entry_lps_mm, err);
+    return put_before_skin(regions, beam, way.outwards, gap_mm, true, entry_lps_mm, err);
 }

@@ -8,7 +8,7 @@ struct beam_skin {
     double gap_mm;   /* from the entry to the skin; negative: the entry lies behind it */
     double depth_mm; /* from the skin to the target; negative: the target lies before it */
 };
-NODISCARD bool beam_skin_of(const struct plan *plan, struct vec3 entry_lps_mm, struct vec3 target_lps_mm,
+NODISCARD bool beam_skin_of(const struct region_set *regions, struct vec3 entry_lps_mm, struct vec3 target_lps_mm,
                             struct beam_skin *skin, struct error *err);
 
 /* Where the entry comes to lie. Errors of all: ERROR_MEMORY; and ERROR_RANGE, with a sentence for people, when the beam
@@ -22,11 +22,12 @@ NODISCARD bool beam_skin_of(const struct plan *plan, struct vec3 entry_lps_mm, s
 NODISCARD bool beam_place_angles(const struct beam_shown *beam, double phi_deg, double theta_deg,
                                  struct vec3 *entry_lps_mm, struct error *err);
 /* Keeps the direction. gap_mm is a number. */
-NODISCARD bool beam_place_gap(const struct plan *plan, const struct beam_shown *beam, double gap_mm,
+NODISCARD bool beam_place_gap(const struct region_set *regions, const struct beam_shown *beam, double gap_mm,
                               struct vec3 *entry_lps_mm, struct error *err);
 /* From the side on which the point lies, through it to the target. */
-NODISCARD bool beam_place_through(const struct plan *plan, const struct beam_shown *beam, struct vec3 point_lps_mm,
-                                  double gap_mm, struct vec3 *entry_lps_mm, struct error *err);
+NODISCARD bool beam_place_through(const struct region_set *regions, const struct beam_shown *beam,
+                                  struct vec3 point_lps_mm, double gap_mm, struct vec3 *entry_lps_mm,
+                                  struct error *err);
 /* In the direction of the least depth (core/region/shortest.h). Takes up to a second. */
-NODISCARD bool beam_place_shortest(const struct plan *plan, const struct beam_shown *beam, double gap_mm,
+NODISCARD bool beam_place_shortest(const struct region_set *regions, const struct beam_shown *beam, double gap_mm,
                                    struct vec3 *entry_lps_mm, struct error *err);

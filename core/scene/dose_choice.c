@@ -111,6 +111,9 @@ static bool add_rows(const struct snapshot *snapshot, const char *tissue, struct
     for (size_t p = 0; p < choice->n_parts; p++)
         is_on_tissue |= dose_depends_on_tissue(&plan->doses[choice->parts[p].dose], choice->shown, choice->quantity);
     memset(choice->row_of_region, DOSE_NO_ROW, sizeof choice->row_of_region);
+    for (size_t r = 0; r < plan->regions.n_regions; r++)
+        if (!fit_is_used(region_use(&snapshot->fits, r)))
+            choice->left_out[r / 8] |= (uint8_t)(1 << r % 8);
     if (!is_on_tissue) {
         choice->is_everywhere = true;
         choice->n_rows = 1;

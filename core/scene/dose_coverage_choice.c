@@ -10,12 +10,19 @@
 
 static bool find_region(const struct snapshot *snapshot, size_t *index, struct error *why)
 {
-    const struct region_set *set = &snapshot->plan->regions;
+    const struct region_set *set = &snapshot->fits.used;
     const char *id = snapshot->scene.dose.coverage.region;
     const struct region *region = id[0] ? region_find(set, id) : NULL;
     int target = id[0] ? -1 : region_first_target(set);
     if (!region && target < 0)
         return error_set(why, ERROR_NOT_FOUND, "the coverage's region is not chosen, and the plan has no target");
+    if (region && !fit_is_used(region_use(&snapshot->fits, (size_t)(region - set->regions)))) {
+        char sentence[FIT_WHY_SIZE];
+        size_t r = (size_t)(region - set->regions);
+        fit_use_sentence(&snapshot->fits, fit_part_of_region(snapshot->plan, r), region_use(&snapshot->fits, r),
+                         sentence);
+        return error_set(why, ERROR_STATE, "%s", sentence);
+    }
     *index = region ? (size_t)(region - set->regions) : (size_t)target;
     return true;
 }

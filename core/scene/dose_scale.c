@@ -31,19 +31,23 @@ static double file_reference(const struct snapshot *snapshot, struct dose_scale 
 static double measured_reference(const struct snapshot *snapshot, struct dose_scale *scale)
 {
     const struct scene_dose_reference *wanted = &snapshot->scene.dose.reference;
-    const struct region_set *set = &snapshot->plan->regions;
-    bool is_body = wanted->kind == SCENE_DOSE_REFERENCE_KIND_BODY;
+    const struct region_set *set = &snapshot->fits.used;
+    bool is_body = wanted->kind == SCENE_DOSE_REFERENCE_KIND_BODY, has_used = false;
+    for (size_t r = 0; r < set->n_regions; r++)
+        has_used |= fit_is_used(region_use(&snapshot->fits, r));
     const struct region *region = wanted->region[0] ? region_find(set, wanted->region) : NULL;
     if (!wanted->region[0] && region_first_target(set) >= 0)
         region = &set->regions[region_first_target(set)];
     bool is_mean = wanted->kind == SCENE_DOSE_REFERENCE_KIND_REGION_MEAN;
     if (is_body)
-        snprintf(scale->words, sizeof scale->words, set->n_regions ? "maximum in the body" : "maximum of the grid");
+        snprintf(scale->words, sizeof scale->words, has_used ? "maximum in the body" : "maximum of the grid");
     else
         snprintf(scale->words, sizeof scale->words, "%s of %.64s", is_mean ? "mean" : "maximum",
                  region ? region->name : "a region");
     if (!is_body && !region)
         return unknown(scale, "the reference's region is not chosen, and the plan has no target");
+    if (!is_body && !fit_is_used(region_use(&snapshot->fits, (size_t)(region - set->regions))))
+        return unknown(scale, "the reference's region is not used with this dose");
     struct dose_extremes *extremes =
         dose_extremes_get(snapshot->derived, &snapshot->dose_choice, &scale->why_no_reference);
     if (!extremes)

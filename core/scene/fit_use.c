@@ -112,6 +112,34 @@ static struct fit_use use_in_scene(const struct scene_fits *fits, struct fit_par
     return fit.reasons ? worse_of(use, use_of(fits, thing, dose, fit)) : use;
 }
 
+/* Copies the regions, if some are not used, and makes those empty. */
+static bool set_used_regions(struct scene_fits *fits, struct error *err)
+{
+    const struct region_set *set = &fits->plan->regions;
+    bool is_any = false;
+    fits->used = *set;
+    for (size_t r = 0; r < set->n_regions; r++)
+        is_any |= !fit_is_used(region_use(fits, r));
+    if (!is_any)
+        return true;
+    fits->used.regions = mem_array(set->n_regions, sizeof *set->regions, UINT64_MAX, err);
+    fits->has_unused_regions = fits->used.regions != NULL;
+    if (!fits->has_unused_regions)
+        return false;
+    memcpy(fits->used.regions, set->regions, set->n_regions * sizeof *set->regions);
+    for (size_t r = 0; r < set->n_regions; r++) {
+        struct region *region = &fits->used.regions[r];
+        if (fit_is_used(region_use(fits, r)))
+            continue;
+        region->n_voxels = 0;
+        region->volume_cm3 = 0;
+        region->label = 0;
+        region->name[0] = 0;
+        region->is_target = false;
+    }
+    return true;
+}
+
 bool scene_fits_of(const struct plan *plan, int image, int blend, int dose, const struct acceptances *acceptances,
                    struct scene_fits *fits, struct error *err)
 {
@@ -126,14 +154,15 @@ bool scene_fits_of(const struct plan *plan, int image, int blend, int dose, cons
     }
     for (size_t i = 0; i < plan->n_doses; i++)
         fits->doses[i] = use_in_scene(fits, (struct fit_part){ FIT_DOSE, i });
-    if (blend >= 0)
-        fits->blended = use_in_scene(fits, (struct fit_part){ FIT_IMAGE, (size_t)blend });
+    for (size_t i = 0; i < plan->n_images; i++)
+        fits->beside[i] =
+            i == (size_t)fits->image ? fits->images[i] : use_in_scene(fits, (struct fit_part){ FIT_IMAGE, i });
     for (size_t i = 0; i < plan->n_beams; i++)
         fits->beams[i] = use_in_scene(fits, (struct fit_part){ FIT_BEAM, i });
     fits->tracks = use_in_scene(fits, (struct fit_part){ FIT_TRACKS, 0 });
     for (size_t i = 0; i <= plan->n_region_origins; i++)
         fits->regions[i] = use_in_scene(fits, (struct fit_part){ FIT_REGIONS, i });
-    return true;
+    return set_used_regions(fits, err);
 }
 
 void scene_fits_finish(struct scene_fits *fits)
@@ -141,6 +170,9 @@ void scene_fits_finish(struct scene_fits *fits)
     acceptances_finish(&fits->acceptances);
     free(fits->regions);
     fits->regions = NULL;
+    if (fits->has_unused_regions)
+        free(fits->used.regions);
+    fits->has_unused_regions = false;
 }
 
 /* What a dose is per, when it counts so many times. */

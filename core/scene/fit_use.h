@@ -37,11 +37,13 @@ struct scene_fits {
     struct acceptances acceptances;
     int image, blend, dose;                 /* as the scene names them; -1: none */
     struct fit_use images[PLAN_MAX_IMAGES]; /* as the shown image: of another patient or not */
-    struct fit_use blended;                 /* the blended image with the shown one */
+    struct fit_use beside[PLAN_MAX_IMAGES]; /* beside the shown image: blended, read at a point */
     struct fit_use doses[PLAN_MAX_DOSES];   /* shown with the image */
     struct fit_use beams[PLAN_MAX_BEAMS];
     struct fit_use tracks;
     struct fit_use *regions; /* owned; [n_region_origins + 1], by index of FIT_REGIONS */
+    struct region_set used;  /* the plan's regions; those that are not used are empty: no univels, label 0, no name */
+    bool has_unused_regions; /* used.regions is owned, else the plan's */
 };
 /* Decides for a scene that shows, blends and doses these parts (indices, or -1). acceptances: NULL: none; copied.
  * scene_fits_finish afterwards, on failure too.

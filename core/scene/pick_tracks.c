@@ -182,7 +182,7 @@ bool pick_track(const struct snapshot *snapshot, double px, double py, struct pi
 {
     const struct scene_track_style *style = &snapshot->scene.tracks;
     const struct track_set *set = &snapshot->plan->tracks;
-    if (snapshot_is_pane(snapshot) || !style->visible)
+    if (snapshot_is_pane(snapshot) || !style->visible || !fit_is_used(&snapshot->fits.tracks))
         return false;
     struct search search = { .snapshot = snapshot,
                              .px = px,

@@ -119,7 +119,7 @@ static bool resolve_fits(struct snapshot *snapshot, const struct acceptances *ac
                        err))
         return false;
     snapshot->image = snapshot->fits.image;
-    if (snapshot->blend >= 0 && !fit_is_used(&snapshot->fits.blended))
+    if (snapshot->blend >= 0 && !fit_is_used(&snapshot->fits.beside[snapshot->blend]))
         snapshot->blend = -1;
     for (size_t r = 0; r < snapshot->plan->regions.n_regions; r++)
         snapshot->styles[r].visible &= fit_is_used(region_use(&snapshot->fits, r));

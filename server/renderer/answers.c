@@ -5,6 +5,7 @@
 
 #include "core/derive/shapes.h"
 #include "core/scene/pick.h"
+#include "core/scene/scene_probe.h"
 #include "server/wire/document.h"
 #include "server/wire/plan_origins.h"
 #include "server/wire/shape_query.h"
@@ -110,7 +111,7 @@ cJSON *answer_probe(struct question *question, struct derive *derived, struct pr
     const struct vec3 point_lps_mm = question->packet.probe.point_lps_mm;
     struct plan_probe probe;
     (void)problem;
-    plan_probe(plan, point_lps_mm, &probe);
+    scene_probe(question->snapshot, point_lps_mm, &probe);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddItemToObject(json, "point_lps_mm", point(point_lps_mm));
     cJSON *regions = cJSON_AddArrayToObject(json, "regions");

@@ -28,6 +28,7 @@ static const double SAME_DIAMETER_MM = 0.005; /* figures are given to 0.1 mm */
 /* A beam and what its axis crosses. */
 struct beam_asked {
     const struct plan *plan;
+    const struct region_set *regions; /* those that are used */
     struct beam_shown shown;
     const struct beam *planned; /* NULL: of a draft in a plan without beams */
     double cylinder_mm;         /* diameter in which univels are counted; NaN: none */
@@ -44,7 +45,7 @@ static bool beam_asked_fill(struct beam_asked *asked, double ring_mm, struct pro
     asked->cylinder_mm = ring_mm > 0 ? ring_mm : own_mm;
     asked->is_ring = ring_mm > 0 && !(fabs(ring_mm - own_mm) <= SAME_DIAMETER_MM);
     asked->planned = asked->shown.beam >= 0 ? &asked->plan->beams[asked->shown.beam] : NULL;
-    return ray_bands_all(&asked->plan->regions, asked->shown.entry_lps_mm, asked->shown.direction, &asked->bands,
+    return ray_bands_all(asked->regions, asked->shown.entry_lps_mm, asked->shown.direction, &asked->bands,
                          &asked->n_bands, &err) ||
            problem_set(problem, PROBLEM_MEMORY, "", "", "%s", err.text);
 }
@@ -96,7 +97,7 @@ static void add_angles(cJSON *json, const struct beam_asked *asked)
 
 static void add_crossed(cJSON *json, const struct beam_asked *asked)
 {
-    const struct region_set *set = &asked->plan->regions;
+    const struct region_set *set = asked->regions;
     cJSON *bands = cJSON_AddArrayToObject(json, "bands"), *crossed = cJSON_AddArrayToObject(json, "crossed");
     for (size_t i = 0; i < asked->n_bands; i++) {
         const struct ray_band *band = &asked->bands[i];
@@ -135,7 +136,7 @@ static void add_depths(cJSON *json, const struct beam_asked *asked)
     add_number(json, "depth_mm", asked->shown.length_mm - skin);
     cJSON_AddItemToObject(json, "skin_reason",
                           asked->n_bands ? cJSON_CreateNull()
-                          : asked->plan->regions.n_regions
+                          : asked->regions->n_regions
                               ? cJSON_CreateString("The beam's axis meets no region.")
                               : cJSON_CreateString("The plan has no regions that a beam could meet."));
     add_crossed(json, asked);
@@ -156,7 +157,7 @@ static void add_outline(cJSON *json, const struct beam_asked *asked)
 /* The univels of regions inside the aperture or the ring, the first met first. */
 static bool add_aperture(cJSON *json, const struct beam_asked *asked, struct problem *problem)
 {
-    const struct region_set *set = &asked->plan->regions;
+    const struct region_set *set = asked->regions;
     struct error err = { 0 };
     if (!(asked->cylinder_mm > 0)) {
         cJSON_AddNullToObject(json, "aperture");
@@ -236,7 +237,7 @@ cJSON *answer_beam(struct question *question, struct derive *derived, struct pro
 {
     const struct snapshot *snapshot = question->snapshot;
     const struct plan *plan = snapshot->plan;
-    struct beam_asked asked = { .plan = plan };
+    struct beam_asked asked = { .plan = plan, .regions = &snapshot->fits.used };
     (void)derived;
     if (!find_beam(snapshot, question->packet.beam.beam, &asked.shown, problem))
         return NULL;
@@ -251,7 +252,9 @@ cJSON *answer_beam(struct question *question, struct derive *derived, struct pro
         cJSON_AddNullToObject(json, "moved");
         return json;
     }
-    struct beam_asked before = { .plan = plan, .shown = beam_planned(plan, (size_t)asked.shown.beam) };
+    struct beam_asked before = { .plan = plan,
+                                 .regions = &snapshot->fits.used,
+                                 .shown = beam_planned(plan, (size_t)asked.shown.beam) };
     cJSON *planned = beam_json(&before, ring_mm, problem);
     if (!planned) {
         cJSON_Delete(json);
@@ -275,18 +278,18 @@ static bool needs(bool has, const char *name, const char *mode, struct problem *
 }
 
 /* False with problem, or with err: the beam cannot be placed so. */
-static bool place(const struct plan *plan, const struct packet_beam_place *asked, const struct beam_shown *beam,
-                  struct vec3 *entry_lps_mm, struct problem *problem, struct error *err)
+static bool place(const struct region_set *regions, const struct packet_beam_place *asked,
+                  const struct beam_shown *beam, struct vec3 *entry_lps_mm, struct problem *problem, struct error *err)
 {
     double gap_mm = asked->has_gap_mm ? asked->gap_mm : NAN;
     switch (asked->mode) {
     case PACKET_BEAM_PLACE_MODE_GAP:
         return needs(asked->has_gap_mm, "gap_mm", "gap", problem) &&
-               beam_place_gap(plan, beam, gap_mm, entry_lps_mm, err);
+               beam_place_gap(regions, beam, gap_mm, entry_lps_mm, err);
     case PACKET_BEAM_PLACE_MODE_THROUGH:
         return needs(asked->has_point_lps_mm, "point_lps_mm", "through", problem) &&
-               beam_place_through(plan, beam, asked->point_lps_mm, gap_mm, entry_lps_mm, err);
-    case PACKET_BEAM_PLACE_MODE_SHORTEST: return beam_place_shortest(plan, beam, gap_mm, entry_lps_mm, err);
+               beam_place_through(regions, beam, asked->point_lps_mm, gap_mm, entry_lps_mm, err);
+    case PACKET_BEAM_PLACE_MODE_SHORTEST: return beam_place_shortest(regions, beam, gap_mm, entry_lps_mm, err);
     default:
         return needs(asked->has_phi_deg, "phi_deg", "angles", problem) &&
                needs(asked->has_theta_deg, "theta_deg", "angles", problem) &&
@@ -297,7 +300,7 @@ static bool place(const struct plan *plan, const struct packet_beam_place *asked
 /* {entry_mm, target_mm, gap_mm, depth_mm, why} */
 cJSON *answer_beam_place(struct question *question, struct derive *derived, struct problem *problem)
 {
-    const struct plan *plan = question->snapshot->plan;
+    const struct region_set *regions = &question->snapshot->fits.used;
     const struct packet_beam_place *asked = &question->packet.beam_place;
     struct beam_shown beam;
     struct beam_skin skin = { NAN, NAN };
@@ -306,8 +309,8 @@ cJSON *answer_beam_place(struct question *question, struct derive *derived, stru
     (void)derived;
     if (!find_beam(question->snapshot, asked->beam, &beam, problem))
         return NULL;
-    bool is_placed = place(plan, asked, &beam, &entry_lps_mm, problem, &why) &&
-                     beam_skin_of(plan, entry_lps_mm, beam.target_lps_mm, &skin, &why);
+    bool is_placed = place(regions, asked, &beam, &entry_lps_mm, problem, &why) &&
+                     beam_skin_of(regions, entry_lps_mm, beam.target_lps_mm, &skin, &why);
     if (!is_placed && why.code != ERROR_RANGE) {
         if (why.code)
             (void)problem_from_error(problem, &why);

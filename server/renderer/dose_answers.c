@@ -6,6 +6,7 @@
 
 #include "core/base/mem.h"
 #include "core/scene/dose_scale.h"
+#include "core/scene/scene_probe.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
 #include "server/wire/document.h"
@@ -176,9 +177,8 @@ bool dose_asked_in(const struct snapshot *snapshot, size_t dose, enum scene_dose
                    struct dose_asked *asked, struct error *why)
 {
     asked->dose = dose;
-    if (!(dose == (size_t)snapshot->dose
-              ? dose_choice_in(snapshot, dose, quantity, tissue, &asked->choice, why)
-              : dose_choice_compared(snapshot, dose, quantity, tissue, &asked->choice, why)))
+    if (!(dose == (size_t)snapshot->dose ? dose_choice_in(snapshot, dose, quantity, tissue, &asked->choice, why)
+                                         : dose_choice_compared(snapshot, dose, quantity, tissue, &asked->choice, why)))
         return false;
     dose_shown_unit(&snapshot->plan->doses[asked->choice.unit_of], asked->choice.shown, asked->choice.quantity,
                     asked->unit);
@@ -410,7 +410,7 @@ cJSON *answer_dose_probe(struct question *question, struct derive *derived, stru
     (void)dose_scale_of(snapshot, &scale);
     if (!is_whole(&scale, problem))
         return NULL;
-    plan_probe(plan, at, &probe);
+    scene_probe(snapshot, at, &probe);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddItemToObject(json, "point_lps_mm", cJSON_CreateDoubleArray((double[3]){ at.x, at.y, at.z }, 3));
     add_place(json, plan, &probe);

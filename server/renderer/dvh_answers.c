@@ -195,14 +195,17 @@ static cJSON *stated_object(const struct asking *asking, const struct curve *cur
 {
     const struct dose *dose = &asking->snapshot->plan->doses[curve->dose->dose];
     const struct dose_choice *choice = &curve->dose->choice;
+    const struct dose *in = &asking->snapshot->plan->doses[choice->unit_of];
     bool is_same = choice->shown == DOSE_SHOWN_QUANTITY && choice->n_parts == 1 && dose->n_components == 1 &&
                    choice->quantity == dose->components[0].quantity;
+    double unit = 1; /* the curve is in the unit of the dose shown */
+    is_same &= dose == in || fit_unit_factor(dose->unit, in->unit, &unit);
     for (size_t i = 0; is_same && i < dose->n_stated; i++) {
         const struct dose_stated *stated = &dose->stated[i];
         if (strcmp(stated->region, curve->region->name) != 0)
             continue;
         cJSON *json = cJSON_CreateObject();
-        double factor = choice->parts[0].factor, mean = curve->dvh.n > 0 ? curve->dvh.sum / curve->dvh.n : NAN;
+        double factor = choice->parts[0].factor * unit, mean = curve->dvh.n > 0 ? curve->dvh.sum / curve->dvh.n : NAN;
         dose_add_number(json, "min", stated->low * factor);
         dose_add_number(json, "mean", stated->mean * factor);
         dose_add_number(json, "max", stated->high * factor);
@@ -291,12 +294,17 @@ static cJSON *curve_object(const struct asking *asking, const struct curve *curv
     return json;
 }
 
-/* False with a row of without_curves: the region has no weights. */
+/* False with a row of without_curves: the region is not used, or has no weights. */
 static bool has_curve(cJSON *json, const struct asking *asking, const struct dose_asked *dose, size_t region)
 {
     const struct plan *plan = asking->snapshot->plan;
+    const struct scene_fits *fits = &asking->snapshot->fits;
     struct error why = { 0 };
-    if (dose_row_of_region(&plan->regions, &dose->choice, region, &why) != DOSE_NO_ROW)
+    if (!fit_is_used(region_use(fits, region))) {
+        char sentence[FIT_WHY_SIZE];
+        fit_use_sentence(fits, fit_part_of_region(plan, region), region_use(fits, region), sentence);
+        (void)error_set(&why, ERROR_STATE, "%s", sentence);
+    } else if (dose_row_of_region(&plan->regions, &dose->choice, region, &why) != DOSE_NO_ROW)
         return true;
     cJSON *row = json ? cJSON_CreateObject() : NULL;
     if (row) {

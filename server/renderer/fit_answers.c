@@ -62,9 +62,7 @@ cJSON *answer_fits(struct question *question, struct derive *derived, struct pro
     dose_add_text(json, "dose", snapshot->dose >= 0 ? plan->doses[snapshot->dose].id : NULL);
     cJSON *parts = cJSON_AddArrayToObject(json, "parts");
     for (size_t i = 0; i < plan->n_images; i++)
-        add_use(parts, fits, (struct fit_part){ FIT_IMAGE, i }, &fits->images[i]);
-    if (fits->blend >= 0)
-        add_use(parts, fits, (struct fit_part){ FIT_IMAGE, (size_t)fits->blend }, &fits->blended);
+        add_use(parts, fits, (struct fit_part){ FIT_IMAGE, i }, &fits->beside[i]);
     for (size_t i = 0; i < plan->n_doses; i++)
         add_use(parts, fits, (struct fit_part){ FIT_DOSE, i }, &fits->doses[i]);
     for (size_t i = 0; i < plan->n_beams; i++)

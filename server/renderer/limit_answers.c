@@ -117,6 +117,13 @@ static bool find_figure(const struct snapshot *snapshot, const struct scene_cons
         return error_set(why, ERROR_NOT_FOUND, "no region is chosen");
     if (region->n_voxels == 0)
         return error_set(why, ERROR_NOT_FOUND, "the region has no univels");
+    const struct scene_fits *fits = &snapshot->fits;
+    if (!fit_is_used(region_use(fits, (size_t)(region - set->regions)))) {
+        char sentence[FIT_WHY_SIZE];
+        size_t r = (size_t)(region - set->regions);
+        fit_use_sentence(fits, fit_part_of_region(snapshot->plan, r), region_use(fits, r), sentence);
+        return error_set(why, ERROR_STATE, "%s", sentence);
+    }
     if (!dose_histogram_get(snapshot->derived, &asked->choice, (size_t)(region - set->regions),
                             scene_population(snapshot->plan, &snapshot->scene), DOSE_BY_REGION, 1, dvh, why))
         return false;

@@ -127,7 +127,7 @@ static double normal_high(const struct profile *profile, struct scene *scene, en
     for (size_t b = 0; b < profile->n_bands; b++) {
         int region = normal_around(set, (int)profile->bands[b].region);
         struct dose_choice choice;
-        if (region < 0)
+        if (region < 0 || !fit_is_used(region_use(&profile->snapshot->fits, (size_t)region)))
             continue;
         memcpy(scene->dose.tissue, set->regions[region].id, sizeof set->regions[region].id);
         struct dose_field *field = fill_values(profile, scene, quantity, &choice, profile->values, NULL);
@@ -151,7 +151,7 @@ static bool find_advantage(const struct profile *profile, cJSON *json, double *d
                                             ? SCENE_DOSE_QUANTITY_ISOEFFECTIVE
                                             : SCENE_DOSE_QUANTITY_WEIGHTED;
     struct dose_choice choice;
-    int target = region_first_target(&plan->regions);
+    int target = region_first_target(&profile->snapshot->fits.used);
     if (target < 0)
         return error_set(why, ERROR_NOT_FOUND, "the plan has no target whose weights a tumour would have");
     cJSON_AddStringToObject(json, "target", plan->regions.regions[target].id);
@@ -250,13 +250,13 @@ cJSON *answer_profile(struct question *question, struct derive *derived, struct 
     if (!dose_is_there(snapshot, problem))
         return NULL;
     struct profile profile = { .snapshot = snapshot, .dose = &plan->doses[snapshot->dose] };
-    if (!profile_line_find(plan, profile.dose, &question->packet.profile, &profile.line, problem))
+    if (!profile_line_find(snapshot, profile.dose, &question->packet.profile, &profile.line, problem))
         return NULL;
     profile.values = mem_array(profile.line.n, sizeof(double), UINT64_MAX, &err);
     profile.weighted = mem_array(profile.line.n, sizeof(double), UINT64_MAX, &err);
     cJSON *json = NULL;
     if (profile.values && profile.weighted &&
-        ray_bands(&plan->regions, &profile.line.ray, &profile.bands, &profile.n_bands, &err)) {
+        ray_bands(&snapshot->fits.used, &profile.line.ray, &profile.bands, &profile.n_bands, &err)) {
         const struct vec3 from = profile.line.ray.from_lps_mm, way = profile.line.ray.direction;
         cJSON *notes = cJSON_CreateArray();
         json = cJSON_CreateObject();

@@ -42,13 +42,13 @@ static bool follow_beam(const struct plan *plan, const struct beam *beam, const 
 }
 
 /* Leaves out what lies more than a margin before the first and behind the last region. */
-static bool narrow(const struct plan *plan, struct profile_line *line, struct problem *problem)
+static bool narrow(const struct region_set *regions, struct profile_line *line, struct problem *problem)
 {
     const double margin_mm = 10;
     struct ray_band *bands;
     size_t n;
     struct error err = { 0 };
-    if (!ray_bands(&plan->regions, &line->ray, &bands, &n, &err))
+    if (!ray_bands(regions, &line->ray, &bands, &n, &err))
         return problem_set(problem, PROBLEM_MEMORY, "", "", "%s", err.text);
     if (n > 0) {
         line->ray.low_mm = fmax(line->ray.low_mm, bands[0].from_mm - margin_mm);
@@ -58,14 +58,24 @@ static bool narrow(const struct plan *plan, struct profile_line *line, struct pr
     return true;
 }
 
-bool profile_line_find(const struct plan *plan, const struct dose *dose, const struct packet_profile *asked,
+static bool is_used(const struct snapshot *snapshot, size_t beam, struct problem *problem)
+{
+    const struct fit_use *use = &snapshot->fits.beams[beam];
+    char why[FIT_WHY_SIZE];
+    fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_BEAM, beam }, use, why);
+    return fit_is_used(use) || problem_set(problem, PROBLEM_VALIDATION, "/beam", "not-used", "%s", why);
+}
+
+bool profile_line_find(const struct snapshot *snapshot, const struct dose *dose, const struct packet_profile *asked,
                        struct profile_line *line, struct problem *problem)
 {
+    const struct plan *plan = snapshot->plan;
     line->n = (size_t)asked->samples;
     if (asked->has_beam) {
         for (size_t i = 0; i < plan->n_beams; i++)
             if (strcmp(plan->beams[i].id, asked->beam) == 0)
-                return follow_beam(plan, &plan->beams[i], dose, line, problem) && narrow(plan, line, problem);
+                return is_used(snapshot, i, problem) && follow_beam(plan, &plan->beams[i], dose, line, problem) &&
+                       narrow(&snapshot->fits.used, line, problem);
         return problem_set(problem, PROBLEM_NOT_FOUND, "/beam", "", "the plan has no beam \"%.64s\"", asked->beam);
     }
     struct vec3 to;

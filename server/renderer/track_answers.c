@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/scene/pick_tracks.h"
+#include "core/scene/scene_probe.h"
 #include "core/scene/tracks_shown.h"
 #include "server/renderer/answers.h"
 
@@ -22,12 +23,12 @@ static void add_number(cJSON *json, const char *name, double value)
 }
 
 /* The innermost region at a point. Adds its id, or null; false: the point is outside all regions. */
-static bool add_region(cJSON *json, const char *name, const struct plan *plan, struct vec3 at)
+static bool add_region(cJSON *json, const char *name, const struct snapshot *snapshot, struct vec3 at)
 {
     struct plan_probe probe;
-    plan_probe(plan, at, &probe);
+    scene_probe(snapshot, at, &probe);
     cJSON_AddItemToObject(json, name,
-                          probe.n_regions ? cJSON_CreateString(plan->regions.regions[probe.regions[0]].id)
+                          probe.n_regions ? cJSON_CreateString(snapshot->plan->regions.regions[probe.regions[0]].id)
                                           : cJSON_CreateNull());
     return probe.n_regions > 0;
 }
@@ -72,9 +73,9 @@ static void add_files(cJSON *json, const struct track_set *set)
     }
 }
 
-static void add_lost(cJSON *json, const struct plan *plan, size_t most)
+static void add_lost(cJSON *json, const struct snapshot *snapshot, size_t most)
 {
-    const struct track_set *set = &plan->tracks;
+    const struct track_set *set = &snapshot->plan->tracks;
     cJSON *lost = cJSON_AddArrayToObject(json, "lost");
     size_t n = 0, n_all = set->n_of_class[TRACK_LOST];
     for (size_t i = 0; i < set->n_segments && n < most && n < n_all; i++) {
@@ -84,7 +85,7 @@ static void add_lost(cJSON *json, const struct plan *plan, size_t most)
         const struct vec3 from = point_of(segment->from_lps_mm), to = point_of(segment->to_lps_mm);
         cJSON *item = cJSON_CreateObject();
         add_number(item, "segment", (double)i);
-        bool is_inside = add_region(item, "region", plan, from);
+        bool is_inside = add_region(item, "region", snapshot, from);
         cJSON_AddItemToObject(item, "reason",
                               is_inside ? cJSON_CreateNull() : cJSON_CreateString("outside all regions"));
         cJSON_AddItemToObject(item, "from_lps_mm", point(from));
@@ -103,19 +104,24 @@ cJSON *answer_tracks(struct question *question, struct derive *derived, struct p
     const struct plan *plan = derive_plan(derived);
     const struct track_set *set = &plan->tracks;
     const struct track_counts counted = count(question->snapshot);
+    const struct scene_fits *fits = &question->snapshot->fits;
+    bool is_used = fit_is_used(&fits->tracks);
+    char why[FIT_WHY_SIZE];
     cJSON *json = cJSON_CreateObject();
     (void)problem;
     add_number(json, "segments", (double)set->n_segments);
     cJSON *counts = cJSON_AddObjectToObject(json, "counts");
     for (int class = 0; class < TRACK_N_CLASSES; class ++)
         add_number(counts, track_class_word((enum track_class) class), (double)set->n_of_class[class]);
-    add_number(json, "shown", (double)counted.n_shown);
+    add_number(json, "shown", is_used ? (double)counted.n_shown : 0);
+    fit_use_sentence(fits, (struct fit_part){ FIT_TRACKS, 0 }, &fits->tracks, why);
+    cJSON_AddItemToObject(json, "reason", is_used ? cJSON_CreateNull() : cJSON_CreateString(why));
     cJSON *energies = cJSON_AddObjectToObject(json, "energies");
     add_number(energies, "segments", (double)counted.n_with_energy);
     add_number(energies, "low_mev", counted.energy_low_mev);
     add_number(energies, "high_mev", counted.energy_high_mev);
     add_files(json, set);
-    add_lost(json, plan, (size_t)question->packet.tracks.lost);
+    add_lost(json, question->snapshot, is_used ? (size_t)question->packet.tracks.lost : 0);
     return json;
 }
 
@@ -143,8 +149,8 @@ cJSON *answer_track(struct question *question, struct derive *derived, struct pr
     add_number(json, "length_mm", vec3_length(vec3_sub(to, from)));
     cJSON_AddItemToObject(json, "from_lps_mm", point(from));
     cJSON_AddItemToObject(json, "to_lps_mm", point(to));
-    (void)add_region(json, "from_region", plan, from);
-    (void)add_region(json, "to_region", plan, to);
+    (void)add_region(json, "from_region", question->snapshot, from);
+    (void)add_region(json, "to_region", question->snapshot, to);
     size_t file = 0, in_file = hit.segment;
     while (file < plan->tracks.n_files && in_file >= plan->tracks.files[file].n_segments)
         in_file -= plan->tracks.files[file++].n_segments;

@@ -72,9 +72,9 @@ test('levels are parts of the reference that the scene names', async () => {
   assert.deepEqual(levels.slice(0, 2).map(({ value, percent }) => [value, percent]), [[11.25, 90], [5, 40]]);
 });
 
-test('ids that the plan does not have are refused in weights, sums, acceptance and comparison', async () => {
+test('ids that the plan does not have are refused in weights, sums and comparison', async () => {
   const room = await makeRoom('phantom');
-  for (const dose of [{ weights: { nobody: {} } }, { sum: { nobody: {} } }, { accepted: { nobody: { accepted: true } } }, { compare: { id: 'nobody' } }, { tissue: 'nobody' }, { reference: { region: 'nobody' } }, { coverage: { region: 'nobody' } }]) {
+  for (const dose of [{ weights: { nobody: {} } }, { sum: { nobody: {} } }, { compare: { id: 'nobody' } }, { tissue: 'nobody' }, { reference: { region: 'nobody' } }, { coverage: { region: 'nobody' } }]) {
     const answer = await call(`${api}/rooms/${room}/scene`, 'PATCH', { dose }, { 'If-Match': '*' });
     assert.equal(answer.status, 422, JSON.stringify(dose));
     assert.match(answer.text, /unknown-id/);

@@ -217,19 +217,19 @@ static void a_gap_moves_the_entry_along_the_axis(void **state)
     struct beam_skin skin;
     struct vec3 entry;
     struct error err = { 0 };
-    assert_true(beam_skin_of(plan, beam.entry_lps_mm, beam.target_lps_mm, &skin, &err));
+    assert_true(beam_skin_of(&plan->regions, beam.entry_lps_mm, beam.target_lps_mm, &skin, &err));
     assert_close(skin.gap_mm, 30, 1e-9);
     assert_close(skin.depth_mm, 40, 1e-9);
     for (double gap = 0; gap <= 200; gap += 50) {
-        assert_true(beam_place_gap(plan, &beam, gap, &entry, &err));
+        assert_true(beam_place_gap(&plan->regions, &beam, gap, &entry, &err));
         struct vec3 expected = point_at(40, -0.5 - gap / 1.5, 40);
         assert_point(entry, expected.x, expected.y, expected.z, 1e-9);
     }
     /* an entry inside comes out */
     struct beam_shown inside = beam_from_to(point_at(40, 10, 40), point_at(40, 30, 40));
-    assert_true(beam_skin_of(plan, inside.entry_lps_mm, inside.target_lps_mm, &skin, &err));
+    assert_true(beam_skin_of(&plan->regions, inside.entry_lps_mm, inside.target_lps_mm, &skin, &err));
     assert_close(skin.gap_mm, -10.5 * 1.5, 1e-9);
-    assert_true(beam_place_gap(plan, &inside, 12, &entry, &err));
+    assert_true(beam_place_gap(&plan->regions, &inside, 12, &entry, &err));
     struct vec3 expected = point_at(40, -0.5 - 8, 40);
     assert_point(entry, expected.x, expected.y, expected.z, 1e-9);
     plan_destroy(plan);
@@ -243,17 +243,17 @@ static void a_beam_through_a_point_comes_from_its_side_and_keeps_the_gap(void **
     struct beam_skin skin;
     struct vec3 entry, point = point_at(46, 5, 34);
     struct error err = { 0 };
-    assert_true(beam_place_through(plan, &beam, point, NAN, &entry, &err));
-    assert_true(beam_skin_of(plan, entry, beam.target_lps_mm, &skin, &err));
+    assert_true(beam_place_through(&plan->regions, &beam, point, NAN, &entry, &err));
+    assert_true(beam_skin_of(&plan->regions, entry, beam.target_lps_mm, &skin, &err));
     assert_close(skin.gap_mm, 30, 1e-9);
     struct vec3 direction = vec3_normalize(vec3_sub(beam.target_lps_mm, entry)), way = vec3_sub(point, entry);
     assert_close(vec3_length(vec3_cross(way, direction)), 0, 1e-9);
     assert_true(vec3_dot(way, direction) > 0 &&
                 vec3_dot(way, direction) < vec3_length(vec3_sub(beam.target_lps_mm, entry)));
-    assert_true(beam_place_through(plan, &beam, point, 5, &entry, &err));
-    assert_true(beam_skin_of(plan, entry, beam.target_lps_mm, &skin, &err));
+    assert_true(beam_place_through(&plan->regions, &beam, point, 5, &entry, &err));
+    assert_true(beam_skin_of(&plan->regions, entry, beam.target_lps_mm, &skin, &err));
     assert_close(skin.gap_mm, 5, 1e-9);
-    assert_false(beam_place_through(plan, &beam, beam.target_lps_mm, NAN, &entry, &err));
+    assert_false(beam_place_through(&plan->regions, &beam, beam.target_lps_mm, NAN, &entry, &err));
     assert_non_null(strstr(err.text, "the target itself"));
     plan_destroy(plan);
 }
@@ -281,8 +281,8 @@ static void the_shortest_beam_has_the_least_depth_and_its_gap(void **state)
     struct beam_skin skin;
     struct vec3 entry;
     struct error err = { 0 };
-    assert_true(beam_place_shortest(plan, &beam, 25, &entry, &err));
-    assert_true(beam_skin_of(plan, entry, beam.target_lps_mm, &skin, &err));
+    assert_true(beam_place_shortest(&plan->regions, &beam, 25, &entry, &err));
+    assert_true(beam_skin_of(&plan->regions, entry, beam.target_lps_mm, &skin, &err));
     assert_close(skin.gap_mm, 25, 1e-9);
     assert_close(skin.depth_mm, 20.8 * 1.5, 1e-3);
     plan_destroy(plan);
@@ -296,20 +296,20 @@ static void what_cannot_be_done_is_said(void **state)
                       before = beam_from_to(point_at(40, -90, 40), point_at(40, -20.5, 40));
     struct vec3 entry;
     struct error err = { 0 };
-    assert_false(beam_place_gap(plan, &beside, 10, &entry, &err));
+    assert_false(beam_place_gap(&plan->regions, &beside, 10, &entry, &err));
     assert_string_equal(err.text, "The beam's axis meets no region, so there is no skin to keep a gap to.");
-    assert_false(beam_place_gap(empty, &inside, 10, &entry, &err));
-    assert_false(beam_place_shortest(empty, &inside, 10, &entry, &err));
+    assert_false(beam_place_gap(&empty->regions, &inside, 10, &entry, &err));
+    assert_false(beam_place_shortest(&empty->regions, &inside, 10, &entry, &err));
     assert_string_equal(err.text, "The plan has no regions, so there is no skin to start from.");
-    assert_false(beam_place_shortest(plan, &beside, 10, &entry, &err));
+    assert_false(beam_place_shortest(&plan->regions, &beside, 10, &entry, &err));
     assert_string_equal(err.text, "The target lies outside of every region, with a free way to it.");
-    assert_false(beam_place_gap(plan, &before, 29, &entry, &err)); /* the target is 30 mm before the face */
+    assert_false(beam_place_gap(&plan->regions, &before, 29, &entry, &err)); /* the target is 30 mm before the face */
     assert_non_null(strstr(err.text, "30.0 mm before the skin: with a gap of 29.0 mm"));
-    assert_true(beam_place_gap(plan, &before, 31, &entry, &err));
+    assert_true(beam_place_gap(&plan->regions, &before, 31, &entry, &err));
     struct vec3 expected = point_at(40, -0.5 - 31 / 1.5, 40);
     assert_point(entry, expected.x, expected.y, expected.z, 1e-9);
     /* a beam that meets nothing keeps its length through a point */
-    assert_true(beam_place_through(plan, &beside, point_at(-50, 90, 40), NAN, &entry, &err));
+    assert_true(beam_place_through(&plan->regions, &beside, point_at(-50, 90, 40), NAN, &entry, &err));
     assert_close(vec3_length(vec3_sub(entry, beside.target_lps_mm)), 180, 1e-9);
     plan_destroy(empty);
     plan_destroy(plan);

@@ -109,7 +109,8 @@ bool draw_overlay(struct draw_list *list, const struct draw_scope *scope, struct
         return false;
     if (!is_pane && scene->axes.visible && !add_axes(list, err))
         return false;
-    if (scene->dose.grid && snapshot->dose >= 0 && !add_dose_grid(list, snapshot, err))
+    if (scene->dose.grid && snapshot->dose >= 0 && fit_is_used(&snapshot->fits.doses[snapshot->dose]) &&
+        !add_dose_grid(list, snapshot, err))
         return false;
     return add_beam_eye(list, scope, err);
 }

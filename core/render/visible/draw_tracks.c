@@ -25,7 +25,7 @@ bool draw_tracks(struct draw_list *list, const struct draw_scope *scope, struct 
     const struct snapshot *snapshot = scope->snapshot;
     const struct scene_track_style *style = &snapshot->scene.tracks;
     const struct track_set *set = &snapshot->plan->tracks;
-    if (snapshot_is_pane(snapshot) || !style->visible)
+    if (snapshot_is_pane(snapshot) || !style->visible || !fit_is_used(&snapshot->fits.tracks))
         return true;
     struct draw draw = {
         .pass = DRAW_PLANES,
