@@ -199,6 +199,15 @@ static bool end_choice(const struct snapshot *snapshot, const char *tissue, stru
     return true;
 }
 
+/* Contours of a structure set are each a whole region. */
+static enum region_population usual_population(const struct plan *plan)
+{
+    for (size_t i = 0; i < plan->n_region_origins; i++)
+        if (plan->region_origins[i].structs_uid[0])
+            return POPULATION_WHOLE;
+    return population_usual(&plan->regions);
+}
+
 enum region_population scene_population(const struct plan *plan, const struct scene *scene)
 {
     switch (scene->dose.population) {
@@ -206,13 +215,13 @@ enum region_population scene_population(const struct plan *plan, const struct sc
     case SCENE_DOSE_POPULATION_WHOLE: return POPULATION_WHOLE;
     case SCENE_DOSE_POPULATION_USUAL: break;
     }
-    return population_usual(&plan->regions);
+    return usual_population(plan);
 }
 
 bool population_from_word(const struct plan *plan, const char *word, enum region_population *population)
 {
     bool is_own = strcmp(word, "own") == 0, is_whole = strcmp(word, "whole") == 0;
-    *population = is_own ? POPULATION_OWN : is_whole ? POPULATION_WHOLE : population_usual(&plan->regions);
+    *population = is_own ? POPULATION_OWN : is_whole ? POPULATION_WHOLE : usual_population(plan);
     return is_own || is_whole || !word[0] || strcmp(word, "usual") == 0;
 }
 

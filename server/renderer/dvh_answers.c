@@ -116,17 +116,19 @@ static void find_doses(struct asking *asking, cJSON *json)
 
 static void add_method(cJSON *json, const struct asking *asking)
 {
-    char text[640];
+    char text[640], words[96];
     int per_side = (int)asking->packet->border;
     char border[128] = "";
     if (per_side > 1)
         snprintf(border, sizeof border, ", univels at a border in %d x %d x %d points", per_side, per_side, per_side);
+    const char *basis = asking->n_doses ? dose_basis_words(asking->snapshot->plan, &asking->doses[0].choice,
+                                                           asking->packet->tissue, words)
+                                        : NULL;
     snprintf(text, sizeof text,
-             "Regions: %s; the dose at a univel's centre%s, trilinear in the dose's own grid; %s. 100 %% is the whole "
+             "Regions: %s; the dose at a univel's centre%s, trilinear in the dose's own grid%s%s. 100 %% is the whole "
              "region. Univels without a value are counted in missing_cm3; from 0.1 %% of a region on its figures are "
              "bounds, for any dose there from 0 on. Figures: ICRU Report 83.",
-             population_words(asking->population), border,
-             asking->packet->tissue[0] ? "weights of one tissue everywhere" : "each region's own weights");
+             population_words(asking->population), border, basis ? "; " : "", basis ? basis : "");
     cJSON_AddStringToObject(json, "method", text);
 }
 
@@ -179,6 +181,8 @@ static void add_conformity(cJSON *json, const struct asking *asking, const struc
         struct dvh_conformity found =
             dvh_conformity((target->n + target->n_missing) * cm3, dvh_univels_from(body, value) * body->univel_cm3,
                            dvh_univels_from(target, value) * cm3);
+        if (dvh_is_partial(target))
+            found.covered_cm3 = found.paddick = NAN;
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "level", style->levels[i].id);
         dose_add_number(row, "value", value);

@@ -184,7 +184,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     await shoot(page, 'charts-limits');
     assert.deepEqual(await axe(page), []);
     const { text } = await saved(page, () => page.locator('.chart-limits button', { hasText: /^\s*CSV$/ }).click());
-    assert.match(text, /\r\ntumour,weighted,min,at-least,31,30,Gy\(w\),no,,tumour\r\n/);
+    assert.match(text, /\r\ntumour,weighted,min,at-least,31,30,Gy\(w\),no,,tumour,,,\r\n/);
 
     await page.locator('[data-limit="limit-2"] [aria-label^="Edit"]').click();
     await page.locator('#limit-limit').fill('29');
@@ -198,12 +198,17 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     await page.context().close();
   });
 
-  later('the report to print has plots and tables', async () => {
-    const { page } = await open();
+  later('the report to print has plots and tables, a band and bounds where a part has no dose, and says whose weights count', async () => {
+    const { page } = await open(sizes.wide, { partial: 'brain', constraints: {} });
     await page.locator('[aria-label="Snapshot"]').click();
     await page.getByRole('menuitem', { name: /Report to print/ }).click();
     await page.locator('.chart-paper').nth(1).waitFor();
-    assert.deepEqual(await page.locator('.chart-paper').evaluateAll((plots) => plots.map((plot) => plot.querySelectorAll('path').length)), [5, 5]);
+    assert.deepEqual(await page.locator('.chart-paper').evaluateAll((plots) => plots.map((plot) => plot.querySelectorAll('path:not(.chart-paper-band)').length)), [5, 5]);
+    assert.equal(await page.locator('.chart-paper-band').count(), 1);
+    assert.match(await page.locator('.chart-paper-key').first().textContent(), /brain: in the band, 50 % has no dose/);
+    const brain = (await cells(page, 'Figures of the histograms')).find(([name]) => name === 'brain');
+    assert.deepEqual([brain[2], ...brain.slice(4, 7)], ['719', '≤ 0.500', '≥ 2.13', '≥ 8.00']); // half of it, at 4.25 on average
+    assert.match(await page.locator('.chart-paper').first().evaluate((plot) => plot.previousElementSibling.textContent), /weights: each region's own weights.*own univels, without regions inside/);
     assert.ok((await cells(page, 'Figures of the histograms')).length === 5);
     assert.deepEqual(await axe(page), []);
     await shoot(page, 'charts-print');
@@ -218,11 +223,16 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     await page.locator('[aria-label="Histogram as a table"]').click();
     const { json: plan } = await call(`${world.daemon.url}/api/v1/plans/phantom`);
     await page.locator('[aria-label="Figures of the histograms"] tbody tr').nth(plan.regions.length - 1).waitFor();
-    const rows = new Map((await cells(page, 'Figures of the histograms')).map(([name, cm3, univels, , , max]) => [name.replace(' *', ''), { cm3: Number(cm3), univels: Number(univels.replace(/\D/g, '')), max: Number(max) }]));
+    const rows = new Map((await cells(page, 'Figures of the histograms')).map(([name, cm3, univels, , , max]) => [name.replace(/ [\d.]+ cm³ without dose$/, ''), { cm3: Number(cm3), univels: Number(univels.replace(/\D/g, '')), max: Number(max) }]));
     for (const { name, volume_cm3: cm3, voxels } of plan.regions) {
       assert.ok(Math.abs(rows.get(name).cm3 - cm3) < 0.006, name);
       assert.equal(rows.get(name).univels, voxels, name);
     }
+    const scene = async () => (await world.scene(room)).dose;
+    await page.locator('[aria-label="Univels of a region"]').selectOption({ label: 'whole region' });
+    await page.waitForFunction(([n]) => [...document.querySelectorAll('[aria-label="Figures of the histograms"] tbody tr')].some((row) => /^brain/.test(row.textContent.trim()) && Number(row.children[2].textContent.replace(/\D/g, '')) > n), [rows.get('brain').univels]);
+    assert.equal((await scene()).population, 'whole');
+    await page.locator('[aria-label="Univels of a region"]').selectOption({ label: 'own univels, without regions inside' });
     const { max } = rows.get('brain');
     await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { constraints: { a: { region: 'brain', quantity: 'weighted', metric: 'max', side: 'at-most', limit: max * 1.02 }, b: { region: 'brain', quantity: 'weighted', metric: 'max', side: 'at-most', limit: max * 0.98 }, c: { region: 'brain', quantity: 'isoeffective', metric: 'max', side: 'at-most', limit: 1 } } }, { 'If-Match': '*' });
     await page.getByRole('tab', { name: 'Plan', exact: true }).click();

@@ -6,12 +6,23 @@ export const evenly = { scalp: [0, 4, 455], cranium: [0, 5, 847], brain: [0.5, 8
 
 const bins = 100;
 
-export function dvhAnswer(regions, quantity = '') {
+/** The same of a region of which half has no dose: a histogram of the other half, and bounds. */
+function halved(curve) {
+  const { min, mean, max, metrics } = curve;
+  const none = Object.fromEntries(Object.keys(metrics).map((name) => [name, null]));
+  return {
+    ...curve, missing_cm3: curve.volume_cm3 / 2, is_partial: true, min: null, mean: null, max: null, metrics: none, counts_cm3: curve.counts_cm3.map((cm3) => cm3 / 2),
+    least: { min: 0, mean: mean / 2, max, metrics: { ...none, 'D98%': 0, 'D50%': 0, HI: 0 } }, most: { min, mean: null, max: null, metrics: { ...none, 'D98%': max } },
+  };
+}
+
+/** @param {string} partial region of which half has no dose */
+export function dvhAnswer(regions, quantity = '', partial = '') {
   const common = { dose: 'goorley', quantity: quantity || 'weighted', unit: 'Gy(w)' };
   return {
     id: 'goorley', ...common, method: 'Each univel at its centre, in closed form.', missing: [], reason: null, fit: 'same', accepted: false, without_curves: [], body_cm3: 2772,
-    curves: regions.map((region) => [region, ...evenly[region]]).map(([region, low, high, cm3]) => ({
-      ...common, region, volume_cm3: cm3, n_univels: Math.round(cm3 * 1000), missing_cm3: 0, min: low, mean: (low + high) / 2, max: high,
+    curves: regions.map((region) => [region, ...evenly[region]]).map(([region, low, high, cm3]) => (region === partial ? halved : (curve) => curve)({
+      ...common, region, volume_cm3: cm3, n_univels: Math.round(cm3 * 1000), missing_cm3: 0, is_partial: false, population: 'own', basis: "each region's own weights", min: low, mean: (low + high) / 2, max: high,
       metrics: { ...Object.fromEntries([['D98%', 98], ['D50%', 50], ['D2%', 2], ['D0.03cc', 3 / cm3]].map(([name, percent]) => [name, high - ((high - low) * percent) / 100])), HI: (0.96 * (high - low)) / ((low + high) / 2) },
       ...(region === 'tumour' ? { conformity: [{ level: '90', value: 36, isodose_cm3: 8, covered_cm3: 0.7 * cm3, paddick: (0.7 * cm3) ** 2 / (cm3 * 8), rtog: 8 / cm3 }] } : {}),
       bin_from: 0, bin_width: high / bins, counts_cm3: Array.from({ length: bins }, (_, bin) => (cm3 * Math.max(0, Math.min(high, ((bin + 1) * high) / bins) - Math.max(low, (bin * high) / bins))) / (high - low)),
@@ -41,9 +52,9 @@ export function constraintsAnswer(constraints) {
 }
 
 /** @param {import('playwright-core').Page} page @returns {Promise<{question: string}[]>} what was asked, growing */
-export async function stubDose(page, { dose = 42, constraints = {} } = {}) {
+export async function stubDose(page, { dose = 42, constraints = {}, partial = '' } = {}) {
   const asked = [];
-  const answers = { dvh: ({ regions, quantity }) => dvhAnswer(regions.split(','), quantity), profile: profileAnswer, constraints: () => constraintsAnswer(constraints) };
+  const answers = { dvh: ({ regions, quantity }) => dvhAnswer(regions.split(','), quantity, partial), profile: profileAnswer, constraints: () => constraintsAnswer(constraints) };
   await page.route(/\/plans\/[^/]+\/dose\/probe\?/, async (route) => {
     try {
       const response = await route.fetch();

@@ -3,16 +3,18 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-const { axisEnd, densityAt, dvhCsv, plotPoints, readAt, volumeFrom, withSums } = await load('state/dose_dvh.js');
+const { axisEnd, boundsWords, densityAt, dvhCsv, dvhJson, plotPoints, readAt, shareWords, volumeFrom, withSums } = await load('state/dose_dvh.js');
+const { readDvh } = await load('state/dose_answers.js');
 const { aligned, depthOf, linesOf, pointAt, referenceGroups, valueAt } = await load('state/dose_profile.js');
-const { constraintsCsv, constraintsFromCsv, freeConstraintId, limitAt, metricWords, mostConstraints, readMetric, verdictOf } = await load('state/dose_constraints.js');
+const { byState, constraintsCsv, constraintsFromCsv, freeConstraintId, limitAt, metricWords, mostConstraints, readMetric, verdictOf } = await load('state/dose_constraints.js');
 const { csvRows, csvText } = await load('state/dose_csv.js');
 const { Asked, restMs } = await load('state/dose_asked.js');
 const { signal } = await load('../lib/signals-core.js');
 
 const near = (value, expected, tolerance = 1e-9) => assert.ok(Math.abs(value - expected) <= tolerance, `${value} is not ${expected}`);
+const known = (figures) => Object.fromEntries(Object.entries(figures).map(([name, value]) => [name, [value, value]]));
 /** A region in which the dose is spread evenly from low to high. */
-const even = (region, low, high, cm3, more = {}) => withSums({ region, dose: 'd', of: 0, volume: cm3, cm3, univels: 1000, missing: 0, conformity: [], low, mean: (low + high) / 2, high, figures: { 'D98%': low, 'D50%': low, 'D2%': high, 'D0.03cc': high, HI: 1 }, from: low, width: (high - low) / 10, counts: Array(10).fill(cm3 / 10), ...more });
+const even = (region, low, high, cm3, more = {}) => withSums({ region, dose: 'd', of: 0, volume: cm3, cm3, univels: 1000, missing: 0, isPartial: false, population: 'own', basis: "each region's own weights", conformity: [], high, figures: known({ min: low, mean: (low + high) / 2, max: high, 'D98%': low, 'D50%': low, 'D2%': high, 'D0.03cc': high, HI: 1 }), from: low, width: (high - low) / 10, counts: Array(10).fill(cm3 / 10), ...more });
 
 test('of a dose that is spread evenly the volume above a value falls in a straight line', () => {
   const curve = even('a', 10, 30, 50);
@@ -23,7 +25,7 @@ test('of a dose that is spread evenly the volume above a value falls in a straig
 });
 
 test('a constant dose is a step', () => {
-  const curve = withSums({ region: 'a', of: 0, cm3: 8, low: 2, high: 2, from: 2, width: 1e-6, counts: [8] });
+  const curve = withSums({ region: 'a', of: 0, volume: 8, cm3: 8, low: 2, high: 2, from: 2, width: 1e-6, counts: [8] });
   near(volumeFrom(curve, 2), 8);
   near(volumeFrom(curve, 2.1), 0);
 });
@@ -44,6 +46,54 @@ test('under a dose each region has its share and its volume', () => {
   const [{ percent, cm3 }] = readAt([even('a', 0, 40, 20)], 10);
   near(percent, 75);
   near(cm3, 15);
+});
+
+const words = (value) => value.toFixed(1);
+
+test('a figure that a part without a dose could change is said as bounds', () => {
+  assert.equal(boundsWords([6.73, 6.73], words), '6.7');
+  assert.equal(boundsWords([6.73, Infinity], words), '≥ 6.7');
+  assert.equal(boundsWords([0, Infinity], words), 'not known');
+  assert.equal(boundsWords([0, 1.2], words), '≤ 1.2');
+  assert.equal(boundsWords([18, 99.9], words), '18.0 to 99.9');
+  assert.equal(boundsWords([NaN, NaN], words), '–');
+});
+
+test('the band of a region of which a part has no dose holds its curve with that part at 0 and at twice the maximum', () => {
+  // 20 of 80 cm3 have a dose, spread evenly from 0 to 40
+  const partial = even('a', 0, 40, 20, { volume: 80, missing: 60, isPartial: true });
+  const atZero = (dose) => (dose <= 0 ? 100 : (100 * 20 * Math.max(0, 40 - dose)) / 40 / 80);
+  const atTwice = (dose) => (100 * (60 * (dose <= 80) + 20 * Math.min(1, Math.max(0, (40 - dose) / 40)))) / 80;
+  const { doses, values: [low], tops: [high] } = plotPoints([partial], { isDifferential: false, unit: 'percent', nPoints: 100 });
+  doses.forEach((dose, at) => {
+    for (const filled of [atZero(dose), atTwice(dose)]) assert.ok(dose === 0 || (low[at] <= filled + 1e-9 && filled <= high[at] + 1e-9), `${dose}: ${low[at]} ${filled} ${high[at]}`);
+  });
+  near(low[0], 25);
+  near(high[0], 100);
+  assert.deepEqual(plotPoints([partial], { isDifferential: true, unit: 'percent' }).tops, [null]);
+  assert.deepEqual(plotPoints([even('a', 0, 40, 20)], { isDifferential: false, unit: 'percent' }).tops, [null]);
+  assert.equal(shareWords(partial, 10, words), '12.5 to 87.5 %');
+  assert.equal(shareWords(even('a', 0, 40, 20), 10, words), '50.0 %');
+});
+
+test('an answer with bounds is read with them, in the plot and in both files', () => {
+  const answer = { id: 'd', unit: 'Gy', without_curves: [{ dose: 'd', region: 'mucosa', reason: 'no weights for mucosa' }, { dose: 'e', reason: 'no such quantity' }], curves: [{
+    region: 'a', dose: 'd', unit: 'Gy', quantity: 'total', basis: 'weights of brain', population: 'whole', n_univels: 10, volume_cm3: 80, missing_cm3: 60, is_partial: true, min: null, mean: null, max: null,
+    metrics: { 'D98%': null, 'D50%': null, 'D2%': null, 'D0.03cc': null, HI: null }, least: { min: 0, mean: 5, max: 40, metrics: { 'D98%': 0, 'D50%': 0, 'D2%': 30, 'D0.03cc': 39, HI: 0 } }, most: { min: 1, mean: null, max: null, metrics: { 'D98%': 12, 'D50%': null, 'D2%': null, 'D0.03cc': null, HI: null } },
+    bin_from: 0, bin_width: 10, counts_cm3: [5, 5, 5, 5] }] };
+  const { curves, left, reason } = readDvh(answer);
+  assert.deepEqual(left, [{ region: 'mucosa', reason: 'no weights for mucosa' }]);
+  assert.equal(reason, 'e: no such quantity');
+  assert.deepEqual([curves[0].figures.mean, curves[0].figures.min, curves[0].figures['D98%'], curves[0].high], [[5, Infinity], [0, 1], [0, 12], 40]);
+  const about = { words: [], regionName: (id) => id, unit: 'Gy' };
+  const rows = csvRows(dvhCsv(curves, about)).map(({ cells }) => cells);
+  assert.deepEqual(rows[0].slice(0, 7), ['region', 'cm3', 'univels', 'missing_cm3', 'min (Gy)', 'mean (Gy)', 'max (Gy)']);
+  assert.deepEqual(rows[1].slice(0, 7), ['a', '80', '10', '60', '≤ 1', '≥ 5', '≥ 40']);
+  assert.deepEqual(rows[1].slice(-2), ['whole region', 'weights of brain']);
+  assert.equal(rows[2].length, 3, 'dose, least, most');
+  assert.deepEqual(rows[3].map(Number), [0, 25, 100]);
+  const json = JSON.parse(dvhJson(curves, about)).histograms[0];
+  assert.deepEqual([json.missing_cm3, json.is_partial, json.figures.mean], [60, true, { least: 5, most: null }]);
 });
 
 test('a file of histograms says what it depends on, and has the curves', () => {
@@ -102,6 +152,10 @@ test('limits of a file: by id or name, and what we write we read', () => {
   assert.deepEqual(limits, [{ region: 'brain', quantity: 'weighted', metric: 'max', side: 'at-most', limit: 10 }, { region: 'tumour', quantity: 'boron', metric: 'D95%', side: 'at-least', limit: 20 }]);
   const rows = limits.map((constraint, at) => ({ id: String(at), constraint, verdict: verdictOf(at ? undefined : { value: 8, unit: 'Gy(w)', met: true }) }));
   assert.deepEqual(constraintsFromCsv(constraintsCsv(rows, plan), plan), limits);
+  const weighed = constraintsFromCsv('region,quantity,metric,side,limit,tissue\nbrain,weighted,max,at-most,10,Tumour\n', plan);
+  assert.equal(weighed[0].tissue, 'tumour');
+  assert.deepEqual(constraintsFromCsv(constraintsCsv([{ ...rows[0], constraint: weighed[0] }], plan), plan), weighed);
+  assert.throws(() => constraintsFromCsv('region,quantity,metric,side,limit,tissue\nbrain,weighted,max,at-most,10,liver\n', plan), /no region “liver” whose weights/);
 });
 
 test('a file of limits with anything wrong is refused whole, with its lines', () => {
@@ -125,7 +179,11 @@ test('a file of limits with anything wrong is refused whole, with its lines', ()
 });
 
 test('what the server does not know is said with its reason, and is never met', () => {
-  assert.deepEqual(verdictOf({ value: 8, unit: 'Gy', met: false }), { word: 'not met', value: 8, unit: 'Gy', reason: '' });
+  assert.deepEqual(verdictOf({ value: 8, unit: 'Gy', met: false }), { word: 'not met', value: 8, bounds: [8, 8], unit: 'Gy', reason: '', basis: '', population: '' });
+  const bound = verdictOf({ value: null, least: 13.1, most: null, unit: 'Gy', met: false, basis: 'weights of brain', population: 'own' });
+  assert.deepEqual([bound.word, bound.value, bound.bounds, bound.basis], ['not met', null, [13.1, Infinity], 'weights of brain']);
+  assert.equal(verdictOf({ value: null, least: 6.73, most: null, met: null, reason: '18 % of the region have no dose' }).word, 'not known');
+  assert.deepEqual(byState(['met', 'not known', 'not met', 'met'].map((word, id) => ({ id, verdict: { word } }))).map(({ id }) => id), [2, 1, 0, 3]);
   assert.equal(verdictOf({ value: null, met: null, reason: 'There is no boron.' }).word, 'not known');
   assert.equal(verdictOf({ value: 8 }).word, 'not known');
   assert.equal(verdictOf(undefined, 'The server does not answer.').reason, 'The server does not answer.');

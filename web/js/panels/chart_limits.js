@@ -3,7 +3,9 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { enums } from '../../gen/wire.js';
-import { constraintsCsv, constraintsFromCsv, freeConstraintId, measureOf, metricWords, mostConstraints, readConstraint, verdictOf } from '../state/dose_constraints.js';
+import { boundsWords } from '../state/dose_dvh.js';
+import { populationWords } from '../state/dose_population.js';
+import { byState, constraintsCsv, constraintsFromCsv, freeConstraintId, measureOf, metricWords, mostConstraints, readConstraint, readMetric, verdictOf } from '../state/dose_constraints.js';
 import { quantityName, regionName } from './chart_words.js';
 import { exportFile } from './exports.js';
 import { count, significant, unitText } from './format.js';
@@ -25,7 +27,7 @@ const limitUnit = (world, { metric, quantity }) => ({ dose: unitOfQuantity(world
 /** All of the scene with what is known of them. */
 export function limitRows({ room, curves }) {
   const { result, error } = curves.limits.value;
-  return Object.entries(room.scene.value.constraints ?? {}).map(([id, constraint]) => ({ id, constraint, verdict: verdictOf(result?.constraints?.find((row) => row.id === id), error) }));
+  return byState(Object.entries(room.scene.value.constraints ?? {}).map(([id, constraint]) => ({ id, constraint, verdict: verdictOf(result?.constraints?.find((row) => row.id === id), error) })));
 }
 
 export const verdictSign = ({ word }) => html`<span class=${`chart-verdict ${icons[word][1]}`}>${icon(icons[word][0], 12)} ${word}</span>`;
@@ -34,7 +36,20 @@ export const verdictSign = ({ word }) => html`<span class=${`chart-verdict ${ico
 export const limitWords = (world, { constraint }) => [regionName(world.room.plan.value)(constraint.region),
   `${metricWords(constraint.metric, unitOfQuantity(world, constraint.quantity))} ${sides[constraint.side]} ${significant(constraint.limit)} ${limitUnit(world, constraint)}`];
 
-export const valueWords = ({ verdict }) => (verdict.value === null ? '–' : `${significant(verdict.value)} ${unitText(verdict.unit)}`);
+export function valueWords({ verdict }) {
+  const words = boundsWords(verdict.bounds, significant);
+  return Number.isFinite(verdict.bounds[0]) && words !== 'not known' ? `${words} ${unitText(verdict.unit)}` : words;
+}
+
+/** Whose weights count: "each region's own weights", "weights of brain"; '' none. */
+export function limitBasis({ room }, { constraint, verdict }) {
+  const { tissue = '', quantity } = constraint;
+  if (verdict.basis) return verdict.basis;
+  return ['weighted', 'isoeffective'].includes(quantity) ? (tissue ? `weights of ${regionName(room.plan.value)(tissue)}` : "each region's own weights") : '';
+}
+
+/** Which univels count in all limits. */
+export const limitPopulation = ({ curves }) => populationWords(curves.limits.value.result?.constraints?.find(({ population }) => population)?.population ?? '');
 
 export function limitsBlock(world) {
   const { room, curves } = world;
@@ -48,8 +63,9 @@ export function limitsBlock(world) {
     curves.editing.value = { id, values, error: '' };
   };
   return html`<section class="block chart-limits" aria-label="Limits of dose"><h3>Limits of dose <span class="dim">${tally}</span>${isOld ? html` <span class="chart-stale warn">${icon('stale', 12)} old</span>` : nothing}</h3>
+    ${rows.length && limitPopulation(world) ? html`<p class="note">Univels: ${limitPopulation(world)}.</p>` : nothing}
     ${rows.length ? html`<ul>${repeat(rows, ({ id }) => id, (row) => one(world, row, isDisabled, start))}</ul>` : html`<p class="empty">None. A limit says, for example, that the brain may have at most 10 Gy(w).</p>`}
-    ${editing ? form(world, isDisabled) : html`<div class="buttons"><button ?disabled=${isDisabled || rows.length >= mostConstraints || !plan.regions.length} @click=${() => start('', { region: plan.regions[0].id, quantity: room.scene.value.dose.quantity, metric: 'D95%', side: 'at-least', limit: '' })}>Add a limit</button>
+    ${editing ? form(world, isDisabled) : html`<div class="buttons"><button ?disabled=${isDisabled || rows.length >= mostConstraints || !plan.regions.length} @click=${() => start('', { region: plan.regions[0].id, quantity: room.scene.value.dose.quantity, metric: 'D95%', side: 'at-least', limit: '', tissue: '' })}>Add a limit</button>
       <button ?disabled=${isDisabled} title="Columns: region, quantity, metric, side, limit" @click=${(event) => event.currentTarget.nextElementSibling.click()}>${icon('upload', 12)}<span>Import CSV</span></button><input class="hidden" type="file" accept=".csv,text/csv" tabindex="-1" aria-hidden="true" @change=${(event) => read(world, event)}>
       <button ?disabled=${!rows.length} @click=${() => exportFile(world, 'limits', `${room.planId.value}-limits.csv`, constraintsCsv(rows, plan), 'text/csv')}>${icon('download', 12)}<span>CSV</span></button></div>`}
     ${curves.importError.value ? html`<div class="refusal" role="alert">${icon('error', 16)}<p>${curves.importError.value}</p><button class="icon-button small" aria-label="Dismiss" @click=${() => { curves.importError.value = ''; }}>${icon('close', 12)}</button></div>` : nothing}</section>`;
@@ -62,7 +78,7 @@ function one(world, row, isDisabled, start) {
   const remove = (event) => patch(world, { [id]: null }, event);
   return html`<li class="chart-limit" data-limit=${id}><b title=${constraint.author ? `${region}, by ${constraint.author}` : region}>${region}</b>${verdictSign(verdict)}<span><button class="icon-button small" title="Edit" aria-label=${`Edit the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${() => start(id, { ...constraint })}>${icon('sliders', 12)}</button><button
       class="icon-button small" title="Remove" aria-label=${`Remove the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${remove}>${icon('trash', 12)}</button></span>
-    <span>${words} <span class="note">${quantityName(constraint.quantity)}${constraint.author && constraint.author !== room.identity?.name ? `, by ${constraint.author}` : ''}</span></span><b class="chart-value">${valueWords(row)}</b>${verdict.reason ? html`<span class="dim">${verdict.reason}</span>` : nothing}</li>`;
+    <span>${words} <span class="note">${[quantityName(constraint.quantity), limitBasis(world, row)].filter(Boolean).join(', ')}${constraint.author && constraint.author !== room.identity?.name ? `, by ${constraint.author}` : ''}</span></span><b class="chart-value">${valueWords(row)}</b>${verdict.reason ? html`<span class="dim">${verdict.word === 'not known' ? `not known: ${verdict.reason}` : verdict.reason}</span>` : nothing}</li>`;
 }
 
 /** On one's own, a limit of the room is not taken away by leaving it out of the override, but by null there. */
@@ -90,9 +106,10 @@ function form(world, isDisabled) {
   const choice = (name, label, options) => html`<label for=${`limit-${name}`}>${label}</label><select id=${`limit-${name}`} @change=${set(name)}>${options.map(([value, words]) => html`<option value=${value} .selected=${live(value === values[name])}>${words}</option>`)}</select>`;
   return html`<form class="chart-form" aria-label=${id ? 'Edit a limit' : 'A new limit'} @submit=${keep}>
     ${choice('region', 'Region', plan.regions.map((region) => [region.id, region.name]))}${choice('quantity', 'Quantity', enums.dose_quantity.map((quantity) => [quantity, quantityName(quantity)]))}
+    ${choice('tissue', 'Weights', [['', "the region's own"], ...plan.regions.map((region) => [region.id, `of ${region.name}`])])}
     <label for="limit-metric">Figure</label><input id="limit-metric" maxlength="24" list="limit-metrics" title="mean, min, max, D95%, D2cc, V20, V20cc" .value=${live(values.metric)} @input=${set('metric')}><datalist id="limit-metrics">${['mean', 'min', 'max', 'D98%', 'D95%', 'D50%', 'D2%', 'D0.03cc', 'V20'].map((metric) => html`<option value=${metric}></option>`)}</datalist>
     ${choice('side', 'Keeps it', [['at-most', 'at most'], ['at-least', 'at least']])}
-    <label for="limit-limit">Limit</label><input id="limit-limit" inputmode="decimal" .value=${live(String(values.limit))} @input=${set('limit')}>
+    <label for="limit-limit">Limit</label><span class="pair"><input id="limit-limit" inputmode="decimal" .value=${live(String(values.limit))} @input=${set('limit')}><span class="dim">${readMetric(values.metric) ? limitUnit(world, { ...values, metric: readMetric(values.metric) }) : ''}</span></span>
     ${error ? html`<div class="refusal" role="alert">${icon('error', 16)}<p>${error}</p></div>` : nothing}
     <span></span><div class="buttons"><button class="primary" type="submit" ?disabled=${isDisabled}>${id ? 'Change it' : 'Add it'}</button><button type="button" @click=${() => { curves.editing.value = null; }}>Cancel</button></div></form>`;
 }
@@ -118,4 +135,4 @@ async function read(world, event) {
   }
 }
 
-const isSame = (a, b) => ['region', 'quantity', 'metric', 'side', 'limit'].every((name) => a[name] === b[name]);
+const isSame = (a, b) => ['region', 'quantity', 'metric', 'side', 'limit', 'tissue'].every((name) => (a[name] ?? '') === (b[name] ?? ''));

@@ -113,6 +113,31 @@ export function dotted(chart, pen, px, x) {
   pen.setLineDash([]);
 }
 
+/** A slanted hatching between two edges over the same places. @param {number[]} xs @param {number[]} lows @param {number[]} highs */
+export function hatched(pen, px, xs, lows, highs, color) {
+  pen.save();
+  pen.beginPath();
+  xs.forEach((x, at) => (at ? pen.lineTo(x, highs[at]) : pen.moveTo(x, highs[at])));
+  for (let at = xs.length - 1; at >= 0; at--) pen.lineTo(xs[at], lows[at]);
+  pen.closePath();
+  pen.clip();
+  [pen.strokeStyle, pen.lineWidth, pen.globalAlpha] = [color, px, 0.55];
+  const [top, bottom] = [Math.min(...highs), Math.max(...lows)];
+  pen.beginPath();
+  for (let x = xs[0] - (bottom - top); x < xs[xs.length - 1]; x += 7 * px) {
+    pen.moveTo(x, bottom);
+    pen.lineTo(x + bottom - top, top);
+  }
+  pen.stroke();
+  pen.restore();
+  [pen.strokeStyle, pen.lineWidth] = [color, px];
+  pen.setLineDash([3 * px, 3 * px]);
+  pen.beginPath();
+  xs.forEach((x, at) => (at ? pen.lineTo(x, highs[at]) : pen.moveTo(x, highs[at])));
+  pen.stroke();
+  pen.setLineDash([]);
+}
+
 export function dot(pen, px, x, y, color) {
   [pen.fillStyle, pen.strokeStyle, pen.lineWidth] = [color, '#14171b', 1.5 * px];
   pen.beginPath();

@@ -2,7 +2,7 @@
 import { significant, unitText } from './format.js';
 
 const names = { weighted: 'weighted total', 'weighted-total': 'weighted total of the file', isoeffective: 'photon-isoeffective' };
-export const quantityName = (quantity) => names[quantity] ?? quantity.replaceAll('-', ' ').replace(/ fluence$/, '');
+export const quantityName = (quantity) => names[quantity] ?? quantity.replaceAll('-', ' ');
 
 export const doseName = (plan, id) => plan.doses.find((dose) => dose.id === id)?.name || id || plan.doses[0]?.name || plan.doses[0]?.id || '';
 export const regionOf = (plan, id) => plan.regions.find((region) => region.id === id);
@@ -14,15 +14,16 @@ export function weightWords(plan, { quantity, tissue }) {
   return tissue ? `as ${regionName(plan)(tissue)}` : 'own weights';
 }
 
-/** What the numbers depend on, as rows of a file: [name, value, ...]. */
-export function basisRows({ room }, quantity, answer) {
+/** What the numbers depend on, as rows of a file: [name, value, ...]. of: figures of regions: whose weights count, and which univels. @param {{basis: string, population: string}} [of] */
+export function basisRows({ room }, quantity, answer, of) {
   const [plan, { dose }] = [room.plan.value, room.scene.value];
   const perPpm = plan.doses.some(({ components }) => components.some((part) => part.per_ppm));
   const weights = weightRows(plan, dose);
+  const whose = of ? of.basis : weightWords(plan, { ...dose, quantity });
   return [
     ['plan', plan.name, room.planId.value], ['revision', room.revision.value], ['dose', doseName(plan, dose.id), ...Object.keys(dose.sum ?? {}).map((id) => `with ${doseName(plan, id)}`)],
     ['quantity', quantityName(quantity)], ['unit', unitPer(answer)], ...(dose.factor === 1 || dose.factor === undefined ? [] : [['factor', dose.factor]]), ...(perPpm ? [['boron in blood (ppm)', dose.blood_ppm]] : []),
-    ...(weightWords(plan, { ...dose, quantity }) ? [['weights', weightWords(plan, { ...dose, quantity }), dose.weights_name || 'edited'], ...weights] : []),
+    ...(whose ? [['weights', whose, dose.weights_name || 'edited'], ...weights] : []), ...(of?.population ? [['univels of a region', of.population]] : []),
     ...(answer?.missing?.length ? [['without', ...answer.missing]] : []), ...(answer?.isAccepted ? [['warning', 'the dose does not fit the image; a person had it used']] : []), ...(answer?.method ? [['method', answer.method]] : []),
     ['use', 'for research and plan review, not for treatment decisions'],
   ];

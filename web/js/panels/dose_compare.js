@@ -1,7 +1,8 @@
 // A second dose beside the one shown, and the part of a region within limits: in Selection.
 import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
-import { doseName, shownDose, unitOf } from '../state/dose.js';
+import { doseName, quantityName, shownDose, unitOf } from '../state/dose.js';
+import { populationWords } from '../state/dose_population.js';
 import { joinReason } from '../state/fits.js';
 import { checkbox, numberField, segment } from './fields.js';
 import { number, signed, significant, volume } from './format.js';
@@ -51,8 +52,9 @@ export function coverageBlock(world, isDisabled, changeScene) {
   const regions = plan.regions.filter(({ voxels }) => voxels > 0);
   if (!regions.length) return nothing;
   const { coverage } = scene.dose;
-  const unit = unitOf(shownDose(plan, scene), scene.dose.quantity);
+  const unit = unitOf(shownDose(plan, scene), coverage.quantity || scene.dose.quantity);
   const change = (patch, event) => changeScene({ dose: { coverage: patch } }, event);
+  const others = [coverage.quantity && quantityName(coverage.quantity), coverage.tissue && `weights of ${plan.regions.find(({ id }) => id === coverage.tissue)?.name ?? coverage.tissue}`].filter(Boolean); // as of the histogram it was chosen in
   const [low, high] = [coverage.low ?? null, coverage.high ?? null]; // a merge patch with null takes the field away
   const isBelow = low === null;
   const level = (isBelow ? high : low) ?? 95;
@@ -64,6 +66,7 @@ export function coverageBlock(world, isDisabled, changeScene) {
     <div class="checks dose-checks">${checkbox('Highlight the part', coverage.visible, isDisabled, toggle, 'Univels of the region within the limits, on slices and in 3-D')}</div>
     <dl class="dose-list"><dt>Region</dt><dd><select class="dose-select" aria-label="Region of the coverage" ?disabled=${isDisabled} @change=${(event) => change({ region: event.target.value }, event)}>
         ${regions.map(({ id, name }) => html`<option value=${id} ?selected=${id === of.id} .selected=${live(id === of.id)}>${name}</option>`)}</select></dd>
+      ${others.length ? html`<dt>Of</dt><dd>${others.join(', ')} <button class="small" ?disabled=${isDisabled} @click=${(event) => change({ quantity: '', tissue: '' }, event)}>As the dose shown</button></dd>` : nothing}
       <dt>Dose is</dt><dd>${segment('Side of the coverage', [[true, 'below'], [false, 'at least']], isBelow, isDisabled, (below, event) => change(limits(below, level), event))}</dd>
       <dt>Level</dt><dd class="dose-pair">${numberField('Level of the coverage', Number(level.toPrecision(6)), '', isDisabled, (value, event) => value >= 0 && change(limits(isBelow, value), event))}
         ${segment('Unit of the coverage', [['percent', '%'], ['dose', unit]], coverage.unit, isDisabled, (id, event) => change({ unit: id }, event))}</dd>
@@ -76,6 +79,7 @@ function coverageWords({ doses }) {
   if (error) return html`<p class="note err">${error}</p>`;
   if (!result) return html`<p class="note">Counting …</p>`;
   if (result.coverage_reason) return html`<p class="note why">${icon('warning', 12)} ${result.coverage_reason}</p>`;
-  return html`<p class=${`dose-result${isOld ? ' old' : ''}`}><b>${number(result.share * 100, 1)} %</b> of the region, <b>${volume(result.volume_cm3)}</b></p>
-    ${result.missing_cm3 > 0 ? html`<p class="note">${volume(result.missing_cm3)} of it have no dose and are not counted.</p>` : nothing}`;
+  const share = Number.isFinite(result.share) ? number(result.share * 100, 1) : [result.share_least, result.share_most].map((part) => number(part * 100, 1)).join(' to ');
+  return html`<p class=${`dose-result${isOld ? ' old' : ''}`}><b>${share} %</b> of the region, <b>${Number.isFinite(result.share) ? '' : 'at least '}${volume(result.volume_cm3)}</b></p>
+    <p class="note">${[populationWords(result.population), result.basis].filter(Boolean).join(', ')}.${result.missing_cm3 > 0 ? ` ${volume(result.missing_cm3)} of it have no dose.` : ''}</p>`;
 }

@@ -8,7 +8,7 @@ const blendWords = { id: 'second image', opacity: 'opacity of the second image' 
 const regionWords = { visible: 'visibility', clipped: 'clipping', color: 'colour', representation: 'form' };
 const units = { _mm: 'mm', _px: 'px', _deg: '°' };
 
-const doseWords = { id: 'dose shown', quantity: 'quantity of dose', grid: 'grid of the dose', factor: 'factor of the dose', sum: 'sum of doses', tissue: 'weights of isodoses', blood_ppm: 'boron in blood', weights: 'weights', weights_name: 'weights', error: 'statistical error', interpolation: 'values between dose voxels', reference: 'reference of dose', levels: 'isodose levels', wash: 'wash', lines: 'isodose lines', surfaces: 'isodose surfaces', coverage: 'coverage', compare: 'comparison of doses' };
+const doseWords = { id: 'dose shown', quantity: 'quantity of dose', grid: 'grid of the dose', factor: 'factor of the dose', sum: 'sum of doses', population: 'univels of regions', tissue: 'weights of isodoses', blood_ppm: 'boron in blood', weights: 'weights', weights_name: 'weights', error: 'statistical error', interpolation: 'values between dose voxels', reference: 'reference of dose', levels: 'isodose levels', wash: 'wash', lines: 'isodose lines', surfaces: 'isodose surfaces', coverage: 'coverage', compare: 'comparison of doses' };
 
 const beamWords = { id: 'chosen beam', looks: 'look of a beam', opacity: 'opacity of openings', slice: 'beam slice', draft: 'draft beam', kept: 'kept draft' };
 

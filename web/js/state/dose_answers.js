@@ -1,19 +1,30 @@
 // The server's answers to dvh, profile and constraints (proto/packets.json), in the form that the plots draw.
 import { figureNames, withSums } from './dose_dvh.js';
 
+/** Least and most of a figure; one that is known has one value. */
+function boundsOf(row, read) {
+  const value = read(row);
+  if (Number.isFinite(value)) return [value, value];
+  const [least, most] = [row.least && read(row.least), row.most && read(row.most)];
+  return Number.isFinite(least) ? [least, most ?? Infinity] : [NaN, NaN];
+}
+
 const finite = (value) => (Number.isFinite(value) ? value : NaN);
 
 /** Of the dose shown and of the one that it is compared with. @returns {DvhAnswer}
- *  @typedef {{unit: string, quantity: string, method: string, missing: string[], reason: string, per: string, isAccepted: boolean, curves: import('./dose_dvh.js').DvhCurve[]}} DvhAnswer
- *  isAccepted: the dose may not belong to the image, and a person let it be shown */
+ *  @typedef {{unit: string, quantity: string, method: string, missing: string[], reason: string, per: string, isAccepted: boolean, left: {region: string, reason: string}[], curves: import('./dose_dvh.js').DvhCurve[]}} DvhAnswer
+ *  left: regions without a curve of the dose shown. isAccepted: the dose may not belong to the image, and a person let it be shown */
 export function readDvh(answer) {
-  const without = (answer.without_curves ?? []).map(({ dose, reason }) => `${dose}: ${reason}`).join('. ');
+  const rows = answer.without_curves ?? [];
+  const without = rows.filter(({ region }) => !region).map(({ dose, reason }) => `${dose}: ${reason}`).join('. ');
   return {
     unit: answer.curves[0]?.unit ?? answer.unit ?? '', quantity: answer.curves[0]?.quantity ?? answer.quantity ?? '', method: answer.method ?? '', missing: answer.missing ?? [],
     reason: without || answer.reason || '', per: answer.per ?? '', isAccepted: Boolean(answer.accepted),
+    left: rows.filter(({ region, dose }) => region && dose === answer.id).map(({ region, reason }) => ({ region, reason })),
     curves: answer.curves.map((row) => withSums({
       region: row.region, dose: row.dose, of: row.dose === answer.id ? 0 : 1, volume: row.volume_cm3, cm3: row.volume_cm3 - row.missing_cm3, missing: row.missing_cm3, univels: row.n_univels,
-      low: finite(row.min), mean: finite(row.mean), high: finite(row.max), figures: Object.fromEntries(figureNames.map((name) => [name, finite(row.metrics[name])])),
+      isPartial: row.is_partial === true, population: row.population ?? '', basis: row.basis ?? '', high: finite(row.least?.max ?? row.max),
+      figures: Object.fromEntries([...['min', 'mean', 'max'].map((name) => [name, boundsOf(row, (of) => of[name])]), ...figureNames.map((name) => [name, boundsOf(row, (of) => of.metrics?.[name])])]),
       conformity: row.conformity ?? [], from: row.bin_from, width: row.bin_width, counts: row.counts_cm3,
     })),
   };

@@ -1,12 +1,14 @@
 // Limits on doses, scene.constraints: their checks, their files, and what the server says of them.
 import { enums } from '../../gen/wire.js';
 import { csvRows, csvText } from './dose_csv.js';
+import { boundsWords } from './dose_dvh.js';
+import { populationWords } from './dose_population.js';
 import { freeNumber } from './marks.js';
 
 export const mostConstraints = 64;
 const mostCharacters = 200000;
 const needed = ['region', 'quantity', 'metric', 'side', 'limit'];
-const told = ['value', 'unit', 'met', 'reason', 'region name']; // columns of our own files that say what came out
+const told = ['value', 'unit', 'met', 'reason', 'region name', 'weights', 'population']; // columns of our own files that say what came out
 const metricPattern = /^(mean|min|max|D(\d+(?:\.\d+)?)(%|cc)|V(\d+(?:\.\d+)?)(cc)?)$/;
 
 /** @typedef {{region: string, quantity: string, metric: string, side: 'at-most'|'at-least', limit: number}} Constraint */
@@ -41,11 +43,15 @@ export function limitAt({ metric, limit }) {
 /** An id that none of them has. suffix: of the ids of who does not present, so that two people's do not meet. */
 export const freeConstraintId = (constraints, taken = [], suffix = '') => `limit-${freeNumber([...Object.keys(constraints ?? {}), ...taken], 'limit-')}${suffix}`;
 
+const regionOf = (plan, word) => plan.regions.find(({ id }) => id === word) ?? plan.regions.find(({ name }) => name === word);
+
 /** Checks one by the rules of the scene. Throws an Error with a sentence. @returns {Constraint} */
-export function readConstraint({ region, quantity, metric, side, limit }, plan) {
-  const found = plan.regions.find(({ id }) => id === region) ?? plan.regions.find(({ name }) => name === region);
+export function readConstraint({ region, quantity, metric, side, limit, tissue = '' }, plan) {
+  const found = regionOf(plan, region);
   if (!region) throw new Error('There is no region.');
   if (!found) throw new Error(`The plan has no region “${region}”.`);
+  const weighing = tissue && regionOf(plan, tissue);
+  if (tissue && !weighing) throw new Error(`The plan has no region “${tissue}” whose weights could count.`);
   if (!enums.dose_quantity.includes(quantity)) throw new Error(`“${quantity}” is no quantity; there are ${enums.dose_quantity.join(', ')}.`);
   const known = readMetric(metric);
   if (!known) throw new Error(`“${metric}” is no figure; there are mean, min, max, D95%, D2cc, V20 and V20cc with any number, doses in the unit of the dose.`);
@@ -54,7 +60,7 @@ export function readConstraint({ region, quantity, metric, side, limit }, plan) 
   const value = Number(text);
   if (text === '' || !Number.isFinite(value) || value < 0 || value > 1e30) throw new Error(`The limit “${limit}” is not a number from 0 on.`);
   if (measureOf(known) === 'percent' && value > 100) throw new Error(`The limit ${value} % of a volume is over 100 %.`);
-  return { region: found.id, quantity, metric: known, side, limit: value };
+  return { region: found.id, quantity, metric: known, side, limit: value, ...(weighing && { tissue: weighing.id }) };
 }
 
 /** Reads a file whole or not at all: throws an Error with one sentence for each line that is wrong. @returns {Constraint[]} */
@@ -64,7 +70,7 @@ export function constraintsFromCsv(text, plan) {
   const columns = head?.cells.map((name) => name.toLowerCase()) ?? [];
   const missing = needed.filter((name) => !columns.includes(name));
   if (missing.length) throw new Error(`The first line has to name the columns ${needed.join(', ')}; ${missing.join(', ')} ${missing.length > 1 ? 'are' : 'is'} not there.`);
-  const unknown = columns.filter((name) => !needed.includes(name) && !told.includes(name));
+  const unknown = columns.filter((name) => !needed.includes(name) && !told.includes(name) && name !== 'tissue');
   if (unknown.length) throw new Error(`The column “${unknown[0]}” is not known.`);
   const twice = columns.find((name, index) => columns.indexOf(name) !== index);
   if (twice) throw new Error(`The column “${twice}” is there twice.`);
@@ -85,16 +91,28 @@ export function constraintsFromCsv(text, plan) {
 }
 
 /** @param {{id: string, constraint: Constraint, verdict: Verdict}[]} rows */
-export const constraintsCsv = (rows, plan) => csvText([[...needed, 'value', 'unit', 'met', 'reason', 'region name'],
-  ...rows.map(({ constraint: { region, quantity, metric, side, limit }, verdict }) => [region, quantity, metric, side, limit, verdict.value, verdict.unit,
-    { met: 'yes', 'not met': 'no' }[verdict.word] ?? 'not known', verdict.reason, plan.regions.find(({ id }) => id === region)?.name ?? ''])]);
+export const constraintsCsv = (rows, plan) => csvText([[...needed, 'value', 'unit', 'met', 'reason', 'region name', 'tissue', 'weights', 'population'],
+  ...rows.map(({ constraint: { region, quantity, metric, side, limit, tissue = '' }, verdict }) => [region, quantity, metric, side, limit,
+    verdict.value ?? (Number.isFinite(verdict.bounds[0]) ? boundsWords(verdict.bounds, (value) => String(Number(value.toPrecision(9)))) : ''), verdict.unit,
+    { met: 'yes', 'not met': 'no' }[verdict.word] ?? 'not known', verdict.reason, plan.regions.find(({ id }) => id === region)?.name ?? '', tissue, verdict.basis, populationWords(verdict.population)])]);
 
 /**
- * What is known of a limit. @typedef {{word: 'met'|'not met'|'not known', value: number|null, unit: string, reason: string}} Verdict
+ * What is known of a limit. @typedef {{word: 'met'|'not met'|'not known', value: number|null, bounds: [number, number], unit: string, reason: string, basis: string, population: string}} Verdict
+ * bounds of the figure, as in dose_dvh.js; value null unless they are one. basis: whose weights count, '' none.
  * @param {object|undefined} row of the server's answer
  */
 export function verdictOf(row, error = '') {
-  if (!row) return { word: 'not known', value: null, unit: '', reason: error || 'The server has not answered yet.' };
-  const isKnown = Number.isFinite(row.value) && typeof row.met === 'boolean';
-  return { word: isKnown ? (row.met ? 'met' : 'not met') : 'not known', value: isKnown ? row.value : null, unit: row.unit ?? '', reason: isKnown ? '' : row.reason || 'The server gave no reason.' };
+  const none = { value: null, bounds: [NaN, NaN], unit: '', basis: '', population: '' };
+  if (!row) return { ...none, word: 'not known', reason: error || 'The server has not answered yet.' };
+  const isNumber = Number.isFinite(row.value);
+  const bounds = isNumber ? [row.value, row.value] : Number.isFinite(row.least) ? [row.least, row.most ?? Infinity] : none.bounds;
+  const isKnown = typeof row.met === 'boolean' && Number.isFinite(bounds[0]);
+  return {
+    word: isKnown ? (row.met ? 'met' : 'not met') : 'not known', value: isNumber ? row.value : null, bounds, unit: row.unit ?? '', basis: row.basis ?? '', population: row.population ?? '',
+    reason: isKnown ? '' : row.reason || 'The server gave no reason.',
+  };
 }
+
+const order = ['not met', 'not known', 'met'];
+/** Limits in the order in which people need them: not met, not known, met. @param {{verdict: Verdict}[]} rows */
+export const byState = (rows) => [...rows].sort((a, b) => order.indexOf(a.verdict.word) - order.indexOf(b.verdict.word));

@@ -30,7 +30,7 @@ export class DoseCurves {
     this.quantity = signal(''); // of the histograms; '' that of the scene
     this.isDifferential = signal(false);
     this.unit = signal('percent'); // percent | cm3
-    this.areInnerCounted = signal(false); // a region's univels are also those of the regions inside it
+    this.tissue = signal(''); // the region whose weights the histograms have; '' each region's own
     this.hidden = signal(new Set()); // regions without a curve, of those that the scene shows
     this.line = signal(''); // key of a line; '' the first
     this.reference = signal(''); // key of a group of reference curves that stand beside the profile; '' none
@@ -90,7 +90,7 @@ export class DoseCurves {
     const regions = this.regions.value.map(({ id }) => id);
     const bins = Math.max(16, Math.min(mostBins, Math.floor(allBins / (2 * Math.max(1, regions.length)))));
     const levels = this.#room.scene.value?.dose?.levels; // of which targets have their conformity
-    return regions.length ? this.#question('dvh', [regions, levels], {}, { quantity: this.quantity.value, descendants: this.areInnerCounted.value, bins, ...(regions.join().length <= mostIds ? { regions: regions.join() } : {}) }) : null;
+    return regions.length ? this.#question('dvh', [regions, levels], {}, { quantity: this.quantity.value, ...(this.tissue.value && { tissue: this.tissue.value }), bins, ...(regions.join().length <= mostIds ? { regions: regions.join() } : {}) }) : null;
   }
 
   #along() {
@@ -100,6 +100,12 @@ export class DoseCurves {
     const question = this.#question('profile', null, {}, place);
     const isFromEntry = line.kind === 'beam';
     return question && { ...question, ask: (aborted) => question.ask(aborted).then((answer) => ({ ...answer, isFromEntry })) };
+  }
+
+  /** Which univels of a region count in everything that is said of it: the scene's choice. @returns {'own'|'whole'|''} */
+  get population() {
+    const { population } = this.#room.scene.value?.dose ?? {};
+    return ['own', 'whole'].includes(population) ? population : this.dvh.value.result?.curves[0]?.population ?? '';
   }
 
   #kept() {
