@@ -10,6 +10,7 @@
 #include "core/base/mem.h"
 #include "core/load/assemble.h"
 #include "core/load/estimate.h"
+#include "core/load/file_notes.h"
 #include "core/load/find_parts.h"
 #include "core/load/loading.h"
 #include "core/load/part_list.h"
@@ -116,7 +117,8 @@ static bool load(struct loading *loading)
     bool is_found = plan_find_parts(&loading->folder, &looking, &loading->parts, &plan->report, err);
     loading->file = loading->parts.file;
     if (!is_found || !plan_list_parts(loading, err) || !plan_check_estimate(loading, err) ||
-        !plan_read_parts(loading, err) || !settle_and_assemble(loading, err) || !has_anything(loading, err)) {
+        !plan_read_parts(loading, err) || !settle_and_assemble(loading, err) || !has_anything(loading, err) ||
+        !plan_note_files(loading, err)) {
         if (error_n_memory() != n_lacked && err->code != ERROR_MEMORY)
             error_set(err, ERROR_MEMORY, "no memory, or too many open files, to read the plan");
         return false;

@@ -81,6 +81,13 @@ bool part_find_data(const struct folder *folder, const char *header, const char 
     return false;
 }
 
+bool part_is_plan_folder(const struct folder *folder, const char *name)
+{
+    char inner[FOLDER_NAME_SIZE];
+    int n = snprintf(inner, sizeof inner, "%s/plan.json", name);
+    return n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE;
+}
+
 void plan_folder_name(const char *path, char *out, size_t size)
 {
     size_t end = strlen(path), from;

@@ -16,5 +16,8 @@ bool part_name_has_whole_word(const char *name, const char *word);
  * nothing, in that order. Returns false when there is none. */
 bool part_find_data(const struct folder *folder, const char *header, const char *ending, char data[FOLDER_NAME_SIZE]);
 
+/* True if the folder below the plan's has a plan.json, so that it is a plan of its own. */
+bool part_is_plan_folder(const struct folder *folder, const char *name);
+
 /* The last part of a folder's path, as the name of a plan that gives no name. */
 void plan_folder_name(const char *path, char *out, size_t size);

@@ -295,14 +295,6 @@ static void explain_nothing(const struct folder *folder, const struct folder_tre
     folder_free_names(names, n_names);
 }
 
-/* True if the folder has a plan.json, so it is a plan of its own. */
-static bool is_plan(const struct folder *folder, const char *name)
-{
-    char inner[FOLDER_NAME_SIZE];
-    int n = snprintf(inner, sizeof inner, "%s/plan.json", name);
-    return n > 0 && n < (int)sizeof inner && folder_look(folder, inner, NULL) == FOLDER_FILE;
-}
-
 /* Recognises all files of the tree: by name one after the other, then those that may be DICOM together. */
 static bool recognise_tree(const struct folder *folder, const struct folder_tree *tree,
                            const struct dicom_progress *progress, struct plan_parts *parts, struct error *reason,
@@ -328,7 +320,7 @@ bool plan_recognise(const struct folder *folder, const struct dicom_progress *pr
 {
     struct folder_tree tree;
     struct error reason = { 0 };
-    if (!folder_walk(folder, "", is_plan, &tree, err)) {
+    if (!folder_walk(folder, "", part_is_plan_folder, &tree, err)) {
         folder_tree_finish(&tree);
         return false;
     }

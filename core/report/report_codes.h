@@ -6,6 +6,9 @@
       "Check the parts; write a plan.json to name them and to give units.") \
     X("plan.ignored-file", "A file in the folder looks like a part but was not used.", \
       "Name it in plan.json if it belongs to it.") \
+    X("file.read", "What a file of the folder was read as.", "Nothing.") \
+    X("file.not-read", "A file of the folder is of a kind that is not read, or is not named in plan.json.", \
+      "If it belongs to the plan, convert it to a format that is read, or name it in plan.json.") \
     X("plan.too-many-files", "The folder holds more files or deeper folders than are looked at.", \
       "Move what does not belong to the plan elsewhere, or name the parts in a plan.json.") \
     X("plan.unknown-key", "plan.json has a key that is not known.", "Check its spelling.") \

@@ -30,6 +30,7 @@ static bool is_about_loss(const struct report_line *line)
 {
     static const char *const codes[] = { "plan.ignored-file",
                                          "plan.too-many-files",
+                                         "file.not-read",
                                          "part.unreadable",
                                          "dicom.unreadable",
                                          "dicom.not-used",

@@ -101,6 +101,15 @@ static const struct bad {
     { "a.dose", NULL, "no table\n", "a.dose" },
     { "a.hdr", NULL, "x", "a.hdr" },
     { "slice.dcm", NULL, "not one", "DICOM" },
+    { "meshtal", NULL, "mcnp version 6\n", "mesh tally of MCNP" },
+    { "deposit.out", NULL, "[ T - Deposit ]\n", "output of a program" },
+    { "dose.vti", NULL, "<?xml?>", "grid of VTK" },
+    { "brain.stl", NULL, "solid a\n", "surface mesh" },
+    { "case.mat", NULL, "MATLAB 5.0 MAT-file", "MATLAB" },
+    { "DoseAtPhantom.csv", NULL, "x,y,z,dose\n", "table without the columns of tracks" },
+    { "notes", NULL, "what was done\n", "text of an unknown kind" },
+    { "blob", NULL, "\x01\x02", "binary data" },
+    { "nothing", NULL, "", "empty" },
 };
 
 static void a_bad_part_hides_no_other_and_is_named(void **state)
@@ -133,6 +142,41 @@ static void a_bad_part_hides_no_other_and_is_named(void **state)
     }
 }
 
+static void every_file_has_a_line_and_their_number_is_bounded(void **state)
+{
+    (void)state;
+    char folder[256], name[32];
+    struct error err;
+    folder_make(folder);
+    put_image(folder);
+    folder_put_text(folder, "labels.json", "{\"labels\": [{\"value\": 1, \"name\": \"brain\"}]}");
+    struct volume *mask = make_volume(VOXEL_U8);
+    memset((uint8_t *)mask->voxels + 300, 1, 300);
+    volume_measure(mask);
+    folder_put_volume(folder, "parts_seg.nii.gz", mask);
+    for (int i = 0; i < 100; i++) {
+        snprintf(name, sizeof name, "unknown-%03d.stl", i);
+        folder_put_text(folder, name, "x");
+    }
+    struct plan *plan = plan_of_folder(folder, &err);
+    assert_string_equal(err.text, "");
+    size_t n_read = 0, n_not_read = 0;
+    bool has_rest = false;
+    for (size_t i = 0; i < plan->report.n_lines; i++) {
+        const struct report_line *line = &plan->report.lines[i];
+        n_read += strcmp(line->code, "file.read") == 0;
+        n_not_read += strcmp(line->code, "file.not-read") == 0 && line->where[0];
+        has_rest |= strcmp(line->sentence, "40 more files were not read.") == 0;
+        if (strcmp(line->code, "file.read") == 0 && strcmp(line->where, "labels.json") == 0)
+            assert_string_equal(line->sentence, "Read as names of labels.");
+    }
+    assert_int_equal(n_read, 3);
+    assert_int_equal(n_not_read, 60);
+    assert_true(has_rest);
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
 static void names_keep_everything_but_the_endings_of_their_format(void **state)
 {
     (void)state;
@@ -159,6 +203,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bad_part_hides_no_other_and_is_named),
+        cmocka_unit_test(every_file_has_a_line_and_their_number_is_bounded),
         cmocka_unit_test(names_keep_everything_but_the_endings_of_their_format),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
