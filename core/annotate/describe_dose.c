@@ -7,8 +7,10 @@
 #include <string.h>
 
 #include "core/annotate/words.h"
+#include "core/render/visible/draw_compare.h"
 #include "core/render/visible/isoline_labels.h"
 #include "core/scene/dose_scale.h"
+#include "dose_presets.h"
 
 static char *add_text(struct annotations *annotations, enum annotation_row row)
 {
@@ -103,54 +105,119 @@ static void add_reference(struct annotations *annotations, const struct dose_sca
     (void)snprintf(text, ANNOTATION_TEXT_SIZE, "100 %% = %s %s, %s", value, scale->field->unit, scale->words);
 }
 
-static void add_levels(struct annotations *annotations, const struct snapshot *snapshot, const struct dose_scale *scale)
+/* What the wash shows: levels, or instead of them a comparison or the statistical error (draw_wash_shown). */
+enum wash_kind { WASH_NONE, WASH_LEVELS, WASH_ERROR, WASH_DIFFERENCE, WASH_GAMMA };
+
+static enum wash_kind wash_kind(const struct scene_dose_style *style, bool is_compared)
+{
+    if (draw_compare_is_asked(style))
+        return !is_compared                                              ? WASH_NONE
+               : style->compare.mode == SCENE_DOSE_COMPARISON_DIFFERENCE ? WASH_DIFFERENCE
+                                                                         : WASH_GAMMA;
+    return !style->wash.visible ? WASH_NONE : style->error ? WASH_ERROR : WASH_LEVELS;
+}
+
+/* The text of a new item of the row of levels, with a square of the colour; ANNOTATION_TEXT_SIZE. */
+static char *add_color(struct annotations *annotations, uint32_t rgb)
+{
+    struct annotation_item *item = annotation_add(annotations, ANNOTATION_LEVELS);
+    item->has_chip = true;
+    for (int channel = 0; channel < 3; channel++)
+        item->rgb[channel] = (uint8_t)(rgb >> (16 - 8 * channel));
+    return item->text;
+}
+
+static void add_difference_scale(struct annotations *annotations, const struct snapshot *snapshot,
+                                 const struct dose_scale *scale)
+{
+    const struct color_stop *stops = difference_scale.stops;
+    const char *unit = scale->field->unit;
+    char span[40];
+    words_significant(span, scale->reference * snapshot->scene.dose.compare.span_percent / 100);
+    (void)snprintf(add_color(annotations, stops[0].color_rgb), ANNOTATION_TEXT_SIZE, "\u2264 \u2212%s %s", span, unit);
+    (void)snprintf(add_color(annotations, stops[1].color_rgb), ANNOTATION_TEXT_SIZE, "0 %s", unit);
+    (void)snprintf(add_color(annotations, stops[2].color_rgb), ANNOTATION_TEXT_SIZE, "\u2265 +%s %s", span, unit);
+}
+
+/* The colours of a wash that is not one of levels. */
+static void add_scale(struct annotations *annotations, const struct snapshot *snapshot, const struct dose_scale *scale,
+                      enum wash_kind kind)
+{
+    static const char *const indices[] = { "gamma 0", "up to 1: passes", "above 1", "\u2265 2" };
+    if (kind == WASH_DIFFERENCE)
+        add_difference_scale(annotations, snapshot, scale);
+    for (size_t i = 0; kind == WASH_GAMMA && i < sizeof indices / sizeof *indices; i++)
+        (void)snprintf(add_color(annotations, gamma_scale.stops[i].color_rgb), ANNOTATION_TEXT_SIZE, "%s", indices[i]);
+    for (size_t i = 0; kind == WASH_ERROR && i < error_scale.n_stops; i++)
+        (void)snprintf(add_color(annotations, error_scale.stops[i].color_rgb), ANNOTATION_TEXT_SIZE, "%s%g %%%s",
+                       i + 1 < error_scale.n_stops ? "" : "\u2265 ", error_scale.stops[i].at,
+                       i == 0 ? " statistical error" : "");
+}
+
+static void add_levels(struct annotations *annotations, const struct snapshot *snapshot, const struct dose_scale *scale,
+                       bool is_compared, bool has_wash)
 {
     const struct scene_dose_style *style = &snapshot->scene.dose;
-    bool has_lines = style->lines.visible || style->compare.mode == SCENE_DOSE_COMPARISON_LINES ||
-                     style->compare.mode == SCENE_DOSE_COMPARISON_DIFFERENCE;
-    bool has_any = has_lines || style->wash.visible || style->surfaces.visible;
+    bool has_lines = style->lines.visible || (is_compared && style->compare.mode != SCENE_DOSE_COMPARISON_GAMMA);
+    bool has_any = has_lines || has_wash || style->surfaces.visible;
     for (size_t i = 0; has_any && i < style->n_levels; i++) {
         const struct scene_dose_level *level = &style->levels[i].value;
-        bool is_drawn = (level->line && has_lines) || (level->wash && style->wash.visible) ||
-                        (level->surface && style->surfaces.visible);
+        bool is_drawn =
+            (level->line && has_lines) || (level->wash && has_wash) || (level->surface && style->surfaces.visible);
         double value = dose_level_value(scale, level->unit, level->value);
         char number[40], percent[40];
         if (!level->visible || !is_drawn || isnan(value))
             continue;
-        struct annotation_item *item = annotation_add(annotations, ANNOTATION_LEVELS);
-        item->has_chip = true;
-        for (int channel = 0; channel < 3; channel++)
-            item->rgb[channel] = (uint8_t)(level->color_rgb >> (16 - 8 * channel));
         words_significant(number, value);
         words_significant(percent, 100 * value / scale->reference);
         if (level->unit == SCENE_DOSE_UNIT_PERCENT)
             (void)snprintf(percent, sizeof percent, "%.6g", level->value);
+        char *text = add_color(annotations, level->color_rgb);
         if (isnan(scale->reference))
-            (void)snprintf(item->text, sizeof item->text, "%s %s", number, scale->field->unit);
+            (void)snprintf(text, ANNOTATION_TEXT_SIZE, "%s %s", number, scale->field->unit);
         else
-            (void)snprintf(item->text, sizeof item->text, "%s %% = %s %s", percent, number, scale->field->unit);
+            (void)snprintf(text, ANNOTATION_TEXT_SIZE, "%s %% = %s %s", percent, number, scale->field->unit);
     }
 }
 
-static void add_comparison(struct annotations *annotations, const struct snapshot *snapshot)
+/* "second less first, colours to ±10 % of the reference", "gamma index, 3 % of the reference and 2 mm, from 10 %" */
+static void comparison_words(char text[WORDS_SIZE], const struct scene_dose_compare *compare)
 {
-    static const char *const ways[] = { [SCENE_DOSE_COMPARISON_NONE] = "",
-                                        [SCENE_DOSE_COMPARISON_LINES] = "its lines dashed",
-                                        [SCENE_DOSE_COMPARISON_DIFFERENCE] = "second less first, its lines dashed",
-                                        [SCENE_DOSE_COMPARISON_GAMMA] = "gamma index" };
+    switch (compare->mode) {
+    case SCENE_DOSE_COMPARISON_NONE: text[0] = 0; return;
+    case SCENE_DOSE_COMPARISON_LINES: (void)snprintf(text, WORDS_SIZE, "its lines dashed"); return;
+    case SCENE_DOSE_COMPARISON_DIFFERENCE:
+        (void)snprintf(text, WORDS_SIZE,
+                       "second less first, colours to \u00b1%.6g %% of the reference, its lines dashed",
+                       compare->span_percent);
+        return;
+    case SCENE_DOSE_COMPARISON_GAMMA:
+        (void)snprintf(text, WORDS_SIZE,
+                       "gamma index, %.6g %% of the %s and %.6g mm, where the first is at least %.6g %%",
+                       compare->dose_percent,
+                       compare->normalization == SCENE_GAMMA_NORMALIZATION_LOCAL ? "dose at the point" : "reference",
+                       compare->distance_mm, compare->threshold_percent);
+    }
+}
+
+/* False: there is no comparison. */
+static bool add_comparison(struct annotations *annotations, const struct snapshot *snapshot)
+{
     const struct scene_dose_compare *compare = &snapshot->scene.dose.compare;
     int second = compare->id[0] ? dose_index_of(snapshot->plan, compare->id) : -1;
     if (compare->mode == SCENE_DOSE_COMPARISON_NONE || second < 0)
-        return;
+        return false;
+    char way[WORDS_SIZE], why[FIT_WHY_SIZE];
     struct fit_use use = dose_compared_use(snapshot, (size_t)second);
     if (fit_is_used(&use)) {
-        (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Compared with %.64s: %s",
-                       name_of(&snapshot->plan->doses[second]), ways[compare->mode]);
-        return;
+        comparison_words(way, compare);
+        (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Compared with %.64s: %.150s",
+                       name_of(&snapshot->plan->doses[second]), way);
+        return true;
     }
-    char why[FIT_WHY_SIZE];
     fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, (size_t)second }, &use, why);
     (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Not compared: %.230s", why);
+    return false;
 }
 
 void dose_describe(struct annotations *annotations, const struct snapshot *snapshot)
@@ -175,8 +242,10 @@ void dose_describe(struct annotations *annotations, const struct snapshot *snaps
     add_reference(annotations, &scale);
     add_weights(annotations, snapshot);
     add_doubts(annotations, scale.field->missing);
-    add_comparison(annotations, snapshot);
-    add_levels(annotations, snapshot, &scale);
+    const bool is_compared = add_comparison(annotations, snapshot);
+    const enum wash_kind wash = wash_kind(&snapshot->scene.dose, is_compared);
+    add_scale(annotations, snapshot, &scale, wash);
+    add_levels(annotations, snapshot, &scale, is_compared, wash == WASH_LEVELS);
     dose_scale_finish(&scale);
 }
 

@@ -41,6 +41,10 @@ export function checkedDosePresets(presets, scene) {
       need(/^#[0-9a-f]{6}$/.test(color), name, 'a colour is #rrggbb');
     });
   }
+  for (const { name, stops } of presets.scales) {
+    need(stops.length > 1 && stops.every(({ at }, index) => index === 0 || at >= stops[index - 1].at), name, 'has stops in ascending order');
+    need(stops.every(({ color, opacity }) => /^#[0-9a-f]{6}$/.test(color) && opacity >= 0 && opacity <= 1), name, 'a colour is #rrggbb, an opacity 0 to 1');
+  }
   return presets;
 }
 
@@ -54,7 +58,11 @@ export const dosePresetsHeader = () => `#pragma once\n${notice}#include <stdbool
   '/* Isodose levels and their colours, highest first; is_percent: of the reference, else in the unit of the dose. */\n' +
   'struct level_preset {\n    double value;\n    uint32_t color_rgb; /* 0xrrggbb */\n};\n' +
   'struct level_table {\n    const char *name, *source;\n    bool is_percent;\n    const struct level_preset *levels;\n    size_t n_levels;\n};\n' +
-  'extern const struct level_table level_tables[];\nextern const size_t n_level_tables;\n';
+  'extern const struct level_table level_tables[];\nextern const size_t n_level_tables;\n\n' +
+  '/* Colours of a wash of a difference (in parts of its span), a gamma index, a statistical error (%); a jump where two\n * stops are at one value. opacity: a part of the wash\'s. */\n' +
+  'struct color_stop {\n    double at;\n    uint32_t color_rgb; /* 0xrrggbb */\n    double opacity;\n};\n' +
+  'struct color_scale {\n    const struct color_stop *stops;\n    size_t n_stops;\n};\n' +
+  'extern const struct color_scale difference_scale, gamma_scale, error_scale;\n';
 
 const text = (value) => JSON.stringify(value ?? '');
 const numbers = (object, names) => names.map((name) => `.${name} = ${object[name]}`).join(', ');
@@ -69,14 +77,16 @@ function tissueSource({ tissues }, preset) {
 const setRow = (set) => `    { .name = ${text(set.name)}, .tissue = ${text(set.tissue)}, .source = ${text(set.source)}, .repair_source = ${text(set.repair_source)},\n      ` +
   `${responses.map((of) => `.${of} = { ${set[of].alpha}, ${set[of].beta} }`).join(', ')}, ${numbers(set, repairNames)} },\n`;
 
-export function dosePresetsSource({ weights, isoeffective, level_tables: tables }) {
+const scaleSource = ({ name, stops }) => `static const struct color_stop ${name}_stops[] = { ${stops.map(({ at, color, opacity }) => `{ ${at}, 0x${color.slice(1)}, ${opacity} }`).join(', ')} };\nconst struct color_scale ${name}_scale = { ${name}_stops, ${stops.length} };\n`;
+
+export function dosePresetsSource({ weights, isoeffective, level_tables: tables, scales }) {
   const list = (type, name, count, rows) => `const struct ${type} ${name}[] = {\n${rows.join('')}};\nconst size_t n_${name} = ${count};\n\n`;
   const levels = tables.map((table, i) => `static const struct level_preset levels_${i}[] = { ${table.levels.map(({ value, color }) => `{ ${value}, 0x${color.slice(1)} }`).join(', ')} };\n`).join('');
   return `${notice}#include "dose_presets.h"\n\n${weights.map(tissueSource).join('')}\n` +
     list('weights_preset', 'weights_presets', weights.length, weights.map(({ name, source, note, tissues }, i) => `    { ${text(name)}, ${text(source)}, ${text(note)}, tissues_${i}, ${tissues.length} },\n`)) +
     list('isoeffective_set', 'isoeffective_sets', isoeffective.length, isoeffective.map(setRow)) + levels +
-    list('level_table', 'level_tables', tables.length, tables.map(({ name, source, unit, levels: of }, i) => `    { ${text(name)}, ${text(source)}, ${unit === 'percent'}, levels_${i}, ${of.length} },\n`));
+    list('level_table', 'level_tables', tables.length, tables.map(({ name, source, unit, levels: of }, i) => `    { ${text(name)}, ${text(source)}, ${unit === 'percent'}, levels_${i}, ${of.length} },\n`)) + scales.map(scaleSource).join('');
 }
 
-export const dosePresetsScript = ({ weights, isoeffective, level_tables: levelTables }) =>
-  `// Generated from proto/dose_presets.json; change it there.\nexport const dosePresets = ${JSON.stringify({ weights, isoeffective, levelTables }, null, 1)};\n`;
+export const dosePresetsScript = ({ weights, isoeffective, level_tables: levelTables, scales }) =>
+  `// Generated from proto/dose_presets.json; change it there.\nexport const dosePresets = ${JSON.stringify({ weights, isoeffective, levelTables, scales: Object.fromEntries(scales.map(({ name, stops }) => [name, stops])) }, null, 1)};\n`;

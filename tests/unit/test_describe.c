@@ -151,6 +151,69 @@ static void a_dose_is_described_with_what_it_lacks_and_its_levels(void **state)
     plan_and_derived_destroy(plan);
 }
 
+/* 100 % is 40 Gy: 5 % of it are 2 Gy. */
+static void a_comparison_is_described_with_its_colours_in_place_of_the_levels(void **state)
+{
+    (void)state;
+    static const struct {
+        enum scene_dose_comparison mode;
+        bool has_error;
+        const char *words, *colors;
+    } cases[] = {
+        { SCENE_DOSE_COMPARISON_DIFFERENCE, true,
+          "Compared with Run 2: second less first, colours to \u00b15 % of the reference, its lines dashed",
+          "\u2264 \u22122.00 Gy|0 Gy|\u2265 +2.00 Gy|90 % = 36.0 Gy" },
+        { SCENE_DOSE_COMPARISON_GAMMA, true,
+          "Compared with Run 2: gamma index, 3 % of the reference and 2 mm, where the first is at least 10 %",
+          "gamma 0|up to 1: passes|above 1|\u2265 2" },
+        { SCENE_DOSE_COMPARISON_LINES, false, "Compared with Run 2: its lines dashed", "90 % = 36.0 Gy" },
+        { SCENE_DOSE_COMPARISON_NONE, true, "", "0 % statistical error|5 %|10 %|\u2265 20 %" },
+        { SCENE_DOSE_COMPARISON_NONE, false, "", "90 % = 36.0 Gy" },
+    };
+    struct plan *plan = made_plan_in_hu();
+    const struct grid *grid = &plan->images[0].volume->grid;
+    for (; plan->n_doses < 2; plan->n_doses++) {
+        struct dose *dose = &plan->doses[plan->n_doses];
+        *dose = (struct dose){ .unit = "Gy", .has_frame = true, .frame = DOSE_FRAME_SAME };
+        snprintf(dose->id, sizeof dose->id, "run-%zu", plan->n_doses + 1);
+        snprintf(dose->name, sizeof dose->name, "Run %zu", plan->n_doses + 1);
+        dose->components[dose->n_components++] =
+            (struct dose_component){ .quantity = DOSE_TOTAL, .values = made_volume(grid, VOXEL_F32, ten) };
+    }
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct scene scene;
+        struct error err = { 0 };
+        char field[128];
+        scene_for_plan(plan, &scene);
+        scene.dose.quantity = SCENE_DOSE_QUANTITY_TOTAL;
+        scene.dose.wash.visible = true;
+        scene.dose.error = cases[i].has_error;
+        scene.dose.compare = scene_dose_compare_default;
+        scene.dose.compare.mode = cases[i].mode;
+        scene.dose.compare.span_percent = 5;
+        snprintf(scene.dose.compare.id, sizeof scene.dose.compare.id, "run-2");
+        scene.dose.reference = (struct scene_dose_reference){ .kind = SCENE_DOSE_REFERENCE_KIND_VALUE, .value = 40 };
+        free(scene.dose.levels);
+        scene.dose.levels = mem_new(sizeof *scene.dose.levels);
+        scene.dose.n_levels = 1;
+        snprintf(scene.dose.levels[0].id, sizeof scene.dose.levels[0].id, "l");
+        scene.dose.levels[0].value = scene_dose_level_default;
+        scene.dose.levels[0].value.value = 90;
+        struct view view = view_default;
+        view.kind = SCENE_KIND_AXIAL;
+        struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+        assert_non_null(snapshot);
+        struct annotations words;
+        assert_true(annotations_describe(&words, snapshot, 512, "", &err));
+        const char *said = row_text(&words, ANNOTATION_DOSE);
+        assert_true(cases[i].words[0] ? strstr(said, cases[i].words) != NULL : strstr(said, "ompared") == NULL);
+        assert_string_equal(row_text(&words, ANNOTATION_LEVELS), cases[i].colors);
+        annotations_finish(&words);
+        snapshot_unref(snapshot);
+    }
+    plan_and_derived_destroy(plan);
+}
+
 static void a_window_stands_in_the_caption_as_on_the_page(void **state)
 {
     (void)state;
@@ -293,6 +356,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_snapshot_is_described),
         cmocka_unit_test(a_dose_is_described_with_what_it_lacks_and_its_levels),
+        cmocka_unit_test(a_comparison_is_described_with_its_colours_in_place_of_the_levels),
         cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),
         cmocka_unit_test(an_oblique_pane_and_a_blended_image_are_described),
         cmocka_unit_test(cuts_caps_and_the_volume_are_described),

@@ -5,13 +5,7 @@
 
 #include "core/derive/dose_error.h"
 #include "core/scene/dose_compare.h"
-
-/* A colour at a value; opacity as a part of the wash's. */
-struct stop {
-    double value;
-    uint32_t rgb;
-    double opacity;
-};
+#include "dose_presets.h"
 
 bool draw_compare_is_asked(const struct scene_dose_style *style)
 {
@@ -19,22 +13,29 @@ bool draw_compare_is_asked(const struct scene_dose_style *style)
                                     style->compare.mode == SCENE_DOSE_COMPARISON_GAMMA);
 }
 
-/* Mixed between two stops with different values; a jump where they are equal. The last stop's colour holds above it. */
-static void fill_stops(struct draw_wash *wash, const struct stop *stops, size_t n, double opacity)
+/* Adds the colour from a value on, up to that of the next stop a width further on; width 0: it holds. */
+static void add_knot(struct draw_wash *wash, double value, double width, const struct color_stop *stop,
+                     const struct color_stop *next, double opacity)
 {
-    for (size_t i = 0; i < n; i++) {
-        const struct stop *stop = &stops[i], *next = i + 1 < n ? stop + 1 : stop;
-        if (i + 1 < n && next->value <= stop->value)
-            continue;
-        int knot = wash->n_knots++;
-        double width = next->value - stop->value;
-        wash->knots[knot] = (float)stop->value;
-        for (int c = 0; c < 4; c++) {
-            double here = c == 3 ? stop->opacity * opacity : (stop->rgb >> (16 - 8 * c) & 255) / 255.0,
-                   there = c == 3 ? next->opacity * opacity : (next->rgb >> (16 - 8 * c) & 255) / 255.0;
-            wash->colors[knot][c] = (float)here;
-            wash->rises[knot][c] = width > 0 ? (float)((there - here) / width) : 0;
-        }
+    int knot = wash->n_knots++;
+    wash->knots[knot] = (float)value;
+    for (int c = 0; c < 4; c++) {
+        double here = c == 3 ? stop->opacity * opacity : (stop->color_rgb >> (16 - 8 * c) & 255) / 255.0,
+               there = c == 3 ? next->opacity * opacity : (next->color_rgb >> (16 - 8 * c) & 255) / 255.0;
+        wash->colors[knot][c] = (float)here;
+        wash->rises[knot][c] = width > 0 ? (float)((there - here) / width) : 0;
+    }
+}
+
+/* Mixed between two stops at different values; a jump where they are equal. The first stop's colour holds below it, the
+ * last one's above. unit: the value that 1 of the scale stands for. */
+static void fill_scale(struct draw_wash *wash, const struct color_scale *scale, double unit, double opacity)
+{
+    add_knot(wash, -1e30, 0, &scale->stops[0], &scale->stops[0], opacity);
+    for (size_t i = 0; i < scale->n_stops; i++) {
+        const struct color_stop *stop = &scale->stops[i], *next = i + 1 < scale->n_stops ? stop + 1 : stop;
+        if (next == stop || next->at > stop->at)
+            add_knot(wash, stop->at * unit, (next->at - stop->at) * unit, stop, next, opacity);
     }
 }
 
@@ -52,15 +53,7 @@ bool draw_compare_fill(struct draw_wash *wash, const struct snapshot *snapshot, 
     struct dose_comparison *comparison = dose_comparison_get(snapshot->derived, &choice, err);
     if (!comparison)
         return false;
-    /* blue and red of ColorBrewer's RdBu, told apart with any colour vision; the first stop is below all values */
-    const struct stop differences[] = {
-        { -1e30, 0x2166ac, 1 }, { -span, 0x2166ac, 1 }, { 0, 0xf7f7f7, 0.1 }, { span, 0xb2182b, 1 }
-    };
-    const struct stop indices[] = { { 0, 0x2166ac, 0.35 }, { 1, 0x92c5de, 1 }, { 1, 0xfdae61, 1 }, { 2, 0xb2182b, 1 } };
-    if (is_gamma)
-        fill_stops(wash, indices, sizeof indices / sizeof *indices, style->wash.opacity);
-    else
-        fill_stops(wash, differences, sizeof differences / sizeof *differences, style->wash.opacity);
+    fill_scale(wash, is_gamma ? &gamma_scale : &difference_scale, is_gamma ? 1 : span, style->wash.opacity);
     wash->rows[0] = comparison->values;
     wash->n_rows = 1;
     wash->is_per_slice = style->interpolation == SCENE_DOSE_INTERPOLATION_SLICE;
@@ -74,8 +67,7 @@ bool draw_error_fill(struct draw_wash *wash, const struct snapshot *snapshot, st
     struct dose_error *error = dose_error_get(snapshot->derived, &snapshot->dose_choice, err);
     if (!error)
         return false;
-    const struct stop stops[] = { { 0, 0xffffcc, 1 }, { 5, 0xfecc5c, 1 }, { 10, 0xf03b20, 1 }, { 20, 0x800026, 1 } };
-    fill_stops(wash, stops, sizeof stops / sizeof *stops, style->wash.opacity);
+    fill_scale(wash, &error_scale, 1, style->wash.opacity);
     wash->rows[0] = error->percent;
     wash->n_rows = 1;
     wash->is_per_slice = style->interpolation == SCENE_DOSE_INTERPOLATION_SLICE;

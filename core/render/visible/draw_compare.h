@@ -7,9 +7,9 @@
 bool draw_compare_is_asked(const struct scene_dose_style *style);
 
 /* Fills a zeroed wash, which gets a reference to the comparison (wash->source). Difference: blue where the second dose
- * is lower, red where it is higher, nearly clear where they are equal; strongest from span_percent of the reference on.
- * Gamma: blue up to 1, from there orange to red at 2. Opacity: at most that of the wash. Returns false if there is
- * nothing to compare: err.code ERROR_MEMORY, or why. */
+ * is lower, orange where it is higher, nearly clear where they are equal; strongest from span_percent of the reference
+ * on. Gamma: blue up to 1, from there orange to 2. The colours are in proto/dose_presets.json. Opacity: at most that of
+ * the wash. Returns false if there is nothing to compare: err.code ERROR_MEMORY, or why. */
 bool draw_compare_fill(struct draw_wash *wash, const struct snapshot *snapshot, const struct dose_scale *scale,
                        struct error *err);
 

@@ -1,7 +1,8 @@
 // What a picture with dose must say: its levels with colour, value and unit, its reference, and whether it may not belong.
 import { html, nothing } from '../../lib/lit-html.js';
-import { isOn, missingWords, referenceWords, shownDose, unitOf } from '../state/dose.js';
+import { doseName, isOn, missingWords, referenceWords, shownDose, unitOf } from '../state/dose.js';
 import { levelsOf, percentOf, doseOf } from '../state/dose_levels.js';
+import { gradientOf, hasLines, shownScale, washKind } from '../state/dose_scales.js';
 import { isTarget } from '../state/plan.js';
 import { isInSpace } from '../view/kinds.js';
 import { toPicture } from '../view/vec.js';
@@ -12,6 +13,7 @@ import { variables } from './mount.js';
 
 const rowPx = 16;
 const [narrow, narrowest] = [320, 240]; // px: of a pane with the legend at its foot, and with one only while it is active
+const scaleRows = 4; // of the colours of a comparison or an error
 const besidesPx = 120; // of a pane: letters, scale, the other legends
 
 /** @param {object} world {room, doses} @param {import('../state/view.js').ViewState} view @param {[number, number]} size of the pane @param {boolean} isLeftTaken by another legend */
@@ -21,24 +23,27 @@ export function doseLegend({ room, ui, doses }, view, [width, height], isLeftTak
   const dose = shownDose(plan, scene);
   const { result: answer, isOld } = doses.scale.value;
   if (!dose || !answer?.drawn || !doses.isOfScene(answer) || !isShown(scene, is3d) || (width < narrowest && !is3d && ui.active.value !== view.number)) return nothing;
-  const { wash, lines, surfaces, error, compare } = scene.dose;
+  const { surfaces, compare } = scene.dose;
+  const isWash = washKind(plan, scene) === 'levels';
+  const isLines = hasLines(plan, scene);
   const reference = doses.reference.value;
   const unit = unitOf(dose, scene.dose.quantity);
-  const isUsed = (level) => level.visible && ((level.wash && wash.visible) || (level.line && lines.visible) || (is3d && level.surface && surfaces.visible));
+  const isUsed = (level) => level.visible && ((level.wash && isWash) || (level.line && isLines) || (is3d && level.surface && surfaces.visible));
   const all = levelsOf(scene, reference).filter(isUsed);
-  const most = Math.max(1, Math.floor((height - besidesPx) / 2 / rowPx) - 1);
+  const scale = shownScale(plan, scene, reference, significant);
+  const most = Math.max(1, Math.floor((height - besidesPx) / 2 / rowPx) - 1 - (scale ? scaleRows : 0));
   const levels = all.slice(0, all.length > most ? Math.max(1, most - 1) : most);
   const words = referenceWords(plan, scene.dose.reference);
   const notes = [missingWords(answer.missing ?? [])].filter(Boolean);
   const mark = ofFits(room)?.wordMark({ room }, ['dose']) ?? nothing;
   const isLeft = !isLeftTaken && isAtRight(plan, view);
   const place = width < narrow ? 'foot' : isLeft ? 'left' : '';
-  return html`<div class=${`legend dose-legend ${place}${isOld ? ' old' : ''}`} role="group" aria-label="Dose">
-    ${mark === nothing ? nothing : html`<p>${mark}</p>`}${notes.map((text) => html`<p class="warn">${icon('warning', 12)} ${text}</p>`)}
+  return html`<div class=${`legend dose-legend ${place}${scale ? ' scaled' : ''}${isOld ? ' old' : ''}`} role="group" aria-label="Dose">
+    ${mark === nothing ? nothing : html`<p>${mark}</p>`}${notes.map((text) => html`<p class="warn">${icon('warning', 12)} ${text}</p>`)}${scale ? scaleLegend(scale, doses.gamma.value) : nothing}
     ${all.length ? html`<p class="dose-legend-head"><span>% of ${words}</span> <span>${unit}</span></p>` : nothing}
-    <ul>${levels.map((level) => html`<li><i class=${level.wash && wash.visible ? 'area' : 'line'} ${variables({ '--color': level.color })}></i><span>${number(percentOf(level, reference), isWhole(percentOf(level, reference)) ? 0 : 1)} %</span><span>${significant(doseOf(level, reference))}</span></li>`)}
+    <ul>${levels.map((level) => html`<li><i class=${level.wash && isWash ? 'area' : 'line'} ${variables({ '--color': level.color })}></i><span>${number(percentOf(level, reference), isWhole(percentOf(level, reference)) ? 0 : 1)} %</span><span>${significant(doseOf(level, reference))}</span></li>`)}
       ${all.length > levels.length ? html`<li class="dim">and ${all.length - levels.length} lower</li>` : nothing}</ul>
-    ${error && wash.visible ? html`<p>Wash: statistical error, %</p>` : nothing}${compareWords(compare, plan)}</div>`;
+    ${compareWords(compare, plan)}</div>`;
 }
 
 /** True if the first target, where most dose is, stands in the right half of the picture. */
@@ -61,9 +66,17 @@ function isShown(scene, is3d) {
   return surfaces.visible || coverage.visible || (isFlat && (hasPlane || hasCap)) || (wash.visible && (hasTexture || (wash.volume && scene.image.volume.visible)));
 }
 
-function compareWords({ id, mode, span_percent: span, dose_percent: percent, distance_mm: mm, normalization }, plan) {
+/** Of the second dose, whose lines are dashed. */
+function compareWords({ id, mode }, plan) {
   const second = plan.doses.find((dose) => dose.id === id);
-  if (mode === 'none' || !second) return nothing;
-  const name = second.name || second.id;
-  return html`<p>${mode === 'gamma' ? `γ of ${name}: ${number(percent, percent % 1 ? 1 : 0)} % ${normalization}, ${number(mm, mm % 1 ? 1 : 0)} mm` : mode === 'difference' ? `${name} less the first, ± ${number(span, span % 1 ? 1 : 0)} %` : `dashed: ${name}`}</p>`;
+  return second && (mode === 'lines' || mode === 'difference') ? html`<p>dashed: ${doseName(second)}</p>` : nothing;
+}
+
+/** The colours of a wash that is none of levels, with their ends; how many voxels it is of, once the server has counted them. */
+function scaleLegend({ kind, title, ends, about, more }, { result, error, isOld }) {
+  const why = kind === 'error' ? '' : error || (!isOld && result?.comparison_reason) || '';
+  if (why) return html`<p class="warn">${icon('warning', 12)} Not compared: ${why}</p>`;
+  const n = isOld || kind === 'error' ? undefined : kind === 'gamma' ? result?.voxels : result?.difference?.voxels;
+  return html`<p class="dose-scale-title" title=${more || nothing}>${title}</p><i class="dose-scale" ${variables({ '--scale': gradientOf(kind) })}></i>
+    <p class="dose-scale-ends">${ends.map((words) => html`<span>${words}</span>`)}</p>${about ? html`<p class="dim">${about}${Number.isFinite(n) ? `; ${number(n)} voxels` : ''}</p><span class="hidden">${more}</span>` : nothing}`;
 }
