@@ -144,7 +144,7 @@ describe('beamroom info', () => {
     assert.equal(status, 0, stderr);
     const info = parseStrict(stdout);
     assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'is_phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
-      'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'preferences', 'report']);
+      'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'preferences', 'report', 'patients', 'treatment_plans', 'shown_patient', 'shown_plan']);
     assert.equal(info.id, 'head-one');
     assert.equal(info.is_phantom, true);
     const [image] = info.images;
@@ -173,7 +173,7 @@ describe('beamroom info', () => {
     near(high.gamma, 0.971, 1e-3); // the largest value of the table
     near(high.boron, 0.1016, 1e-6);
     assert.deepEqual(info.doses[0].components.map(({ per_ppm: perPpm }) => perPpm), [true, false, false, false]);
-    assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100, name: '', delivery: null }]);
+    assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100, name: '', delivery: null, patient: null, plan: null, is_plan_absent: false, frame: null, study: null }]);
     assert.equal(info.tracks.segments, Object.values(info.tracks.classes).reduce((sum, n) => sum + n, 0));
     assert.equal(Object.values(info.tracks.classes).filter((n) => n > 0).length, 8);
     assert.deepEqual(info.report, { lines: [], dropped: 0 });
