@@ -1,4 +1,4 @@
-// A plan of the demo head with two doses: its own, and one whose grid is a metre away from the head.
+// A plan of the demo head with three doses: its own, one whose grid is a metre away from the head, and a second one that fits.
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { gunzipSync, gzipSync } from 'node:zlib';
@@ -14,6 +14,6 @@ export function writeStrayDose(folder) {
   writeFileSync(join(to, 'far.nii.gz'), gzipSync(far));
   const parts = [['boron', { per_ppm: true }], ['fast', {}], ['gamma', {}]].map(([quantity, more]) => ({ quantity, ...more, path: `dose/${quantity}.nii.gz` }));
   writeFileSync(join(to, 'plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Stray dose', images: [{ id: 'ct', path: 'ct.nii.gz', modality: 'CT' }],
-    regions: [{ path: 'labels.nii.gz', names: 'labels.json' }], doses: [{ id: 'own', unit: 'Gy', per: 'fraction', components: parts }, { id: 'far', unit: 'Gy', components: [{ quantity: 'total', path: 'far.nii.gz' }] }] }));
+    regions: [{ path: 'labels.nii.gz', names: 'labels.json' }], doses: [{ id: 'own', unit: 'Gy', per: 'fraction', components: parts }, { id: 'far', unit: 'Gy', components: [{ quantity: 'total', path: 'far.nii.gz' }] }, { id: 'near', unit: 'Gy', per: 'fraction', components: [{ quantity: 'total', path: 'dose/gamma.nii.gz' }] }] }));
   return 'stray-dose';
 }

@@ -3,9 +3,9 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-const { byWordOf, joinReason, leftOffPatch, nLetters, partName, questionsOf, regionsOf, selectedUse, selectionOf, usesOf, voidRows } = await load('state/fits.js');
+const { byWordOf, factOf, inNumbersOf, joinReason, leftOffPatch, nLetters, partName, questionsOf, regionsOf, selectedUse, selectionOf, usesOf, voidRows } = await load('state/fits.js');
 const { acceptedPairs, pairKey } = await load('state/accepted.js');
-const { approvalOf, partsOfOthers, shownPatient, shownTreatmentPlan } = await load('state/identity.js');
+const { approvalOf, isOfOther, partsOfOthers, shownPatient, shownTreatmentPlan } = await load('state/identity.js');
 const { Undo } = await load('state/undo.js');
 const { stepTitle } = await load('panels/undo_words.js');
 const { mergePatch } = await load('wire/merge.js');
@@ -86,6 +86,19 @@ test('a part is found by what is selected, a source of regions by each of its re
   assert.equal(partName(plan, 'image:mr'), 'MR');
 });
 
+test('numbers are marked by what enters them, whether it is drawn or not', () => {
+  const off = { wash: { visible: false }, lines: { visible: false } };
+  const accepted = acceptedPairs(new Map([row('i-1', 'dose:boost'), row('i-2', 'beam:b1')]), ['i-1', 'i-2']);
+  const marked = (dose) => inNumbersOf(plan, scene(dose), usesOf(plan, scene(dose), accepted)).map(({ thing }) => thing);
+  assert.deepEqual(marked(off), ['dose:boost']);
+  assert.deepEqual(marked({ ...off, id: 'own' }), [], 'another dose is chosen');
+  assert.deepEqual(marked({ ...off, id: 'own', sum: { boost: { factor: 1 } } }), ['dose:boost'], 'a sum is marked when one part is');
+});
+
+test('what is used is described by the fact, not as not used', () => {
+  assert.equal(factOf('Dose “Boost” is not used with MR: it was computed in another frame of reference. It may be shifted.'), 'It was computed in another frame of reference. It may be shifted.');
+});
+
 test('own words have at least ten letters, counted as the server counts', () => {
   assert.equal(nLetters('a b c !!!'), 3);
   assert.equal(nLetters('頭蓋底を比べて確認した'), 11);
@@ -110,6 +123,8 @@ test('the patient is the shown plan’s, and parts of others are listed, masked'
   assert.equal(shownPatient({ ...plan, shownPatient: 1 }, scene()).masked, 'K. M. …902');
   assert.equal(shownPatient({ ...plan, patients: [] }, scene()), null);
   assert.deepEqual(partsOfOthers(plan, scene()).map(({ kind, id, masked }) => [kind, id, masked]), [['image', 'ct', 'K. M. …902'], ['dose', 'other', 'K. M. …902']]);
+  assert.deepEqual(plan.images.map((image) => isOfOther(plan, scene(), image)), [false, true]);
+  assert.equal(isOfOther(plan, scene(), {}), false, 'nobody is named');
   assert.equal(shownTreatmentPlan(plan, scene({ id: 'own' })).label, 'BNCT-2');
   assert.equal(shownTreatmentPlan(plan, scene({ id: 'raw' })).label, 'BNCT-2', 'the one that is shown first');
   assert.deepEqual(['APPROVED', 'REJECTED', ''].map((approval) => approvalOf({ approval })[0]), ['Approved', 'Rejected', 'approval not stated']);

@@ -6,6 +6,7 @@ import { enums } from '../../gen/wire.js';
 import { boundsWords } from '../state/dose_dvh.js';
 import { populationWords } from '../state/dose_population.js';
 import { byState, constraintsCsv, constraintsFromCsv, freeConstraintId, measureOf, metricWords, mostConstraints, readConstraint, readMetric, verdictOf } from '../state/dose_constraints.js';
+import { doubtMark } from './chart_parts.js';
 import { quantityName, regionName } from './chart_words.js';
 import { exportFile } from './exports.js';
 import { count, significant, unitText } from './format.js';
@@ -62,7 +63,7 @@ export function limitsBlock(world) {
   const start = (id, values) => {
     curves.editing.value = { id, values, error: '' };
   };
-  return html`<section class="block chart-limits" aria-label="Limits of dose"><h3>Limits of dose <span class="dim">${tally}</span>${isOld ? html` <span class="chart-stale warn">${icon('stale', 12)} old</span>` : nothing}</h3>
+  return html`<section class="block chart-limits" aria-label="Limits of dose"><h3>Limits of dose <span class="dim">${tally}</span> ${rows.length ? doubtMark(world) : nothing}${isOld ? html` <span class="chart-stale warn">${icon('stale', 12)} old</span>` : nothing}</h3>
     ${rows.length && limitPopulation(world) ? html`<p class="note">Univels: ${limitPopulation(world)}.</p>` : nothing}
     ${rows.length ? html`<ul>${repeat(rows, ({ id }) => id, (row) => one(world, row, isDisabled, start))}</ul>` : html`<p class="empty">None. A limit says, for example, that the brain may have at most 10 Gy(w).</p>`}
     ${editing ? form(world, isDisabled) : html`<div class="buttons"><button ?disabled=${isDisabled || rows.length >= mostConstraints || !plan.regions.length} @click=${() => start('', { region: plan.regions[0].id, quantity: room.scene.value.dose.quantity, metric: 'D95%', side: 'at-least', limit: '', tissue: '' })}>Add a limit</button>
@@ -78,7 +79,7 @@ function one(world, row, isDisabled, start) {
   const remove = (event) => patch(world, { [id]: null }, event);
   return html`<li class="chart-limit" data-limit=${id}><b title=${constraint.author ? `${region}, by ${constraint.author}` : region}>${region}</b>${verdictSign(verdict)}<span><button class="icon-button small" title="Edit" aria-label=${`Edit the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${() => start(id, { ...constraint })}>${icon('sliders', 12)}</button><button
       class="icon-button small" title="Remove" aria-label=${`Remove the limit ${region} ${words}`} ?disabled=${isDisabled} @click=${remove}>${icon('trash', 12)}</button></span>
-    <span>${words} <span class="note">${[quantityName(constraint.quantity), limitBasis(world, row)].filter(Boolean).join(', ')}${constraint.author && constraint.author !== room.identity?.name ? `, by ${constraint.author}` : ''}</span></span><b class="chart-value">${valueWords(row)}</b>${verdict.reason ? html`<span class="dim">${verdict.word === 'not known' ? `not known: ${verdict.reason}` : verdict.reason}</span>` : nothing}</li>`;
+    <span>${words} <span class="note">${[quantityName(constraint.quantity), limitBasis(world, row)].filter(Boolean).join(', ')}${constraint.author && constraint.author !== room.identity?.name ? `, by ${constraint.author}` : ''}</span></span><b class="chart-value">${valueWords(row)} ${doubtMark(world)}</b>${verdict.reason ? html`<span class="dim">${verdict.word === 'not known' ? `not known: ${verdict.reason}` : verdict.reason}</span>` : nothing}</li>`;
 }
 
 /** On one's own, a limit of the room is not taken away by leaving it out of the override, but by null there. */

@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { exportFile } from './exports.js';
+import { ofFits } from './fit_later.js';
 import { icon } from './icons.js';
 
 /** @param {'dvh'|'profile'} id @param {{csv: () => string, json: () => string}|null} files null: there is nothing to save */
@@ -35,5 +36,5 @@ export function instead(state, { empty }) {
 export const staleMark = (isOld) => (isOld ? html`<span class="chart-stale warn" title="Being computed anew">${icon('stale', 12)} old</span>` : nothing);
 export const withoutMark = (missing) => (missing?.length ? html`<span class="chart-without warn">${icon('warning', 12)} without ${missing.join(', ')}</span>` : nothing);
 
-/** A dose that may not belong to the image and that a person let be shown is marked wherever its numbers stand. */
-export const doubtMark = (result) => (result?.isAccepted ? html`<span class="chart-without warn" title="Used though it does not fit, by a person's word: Selection says whose">${icon('warning', 12)} does not fit, accepted</span>` : nothing);
+/** What does not fit and is used by a person's word is marked wherever its numbers stand. */
+export const doubtMark = ({ room }) => ofFits(room)?.numberMark({ room }) ?? nothing;

@@ -4,7 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { aligned, depthOf, lookOf, pointAt, profileCsv, profileJson, referenceGroups, valueAt } from '../state/dose_profile.js';
 import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
-import { downloads, instead, options, staleMark, tableButton, withoutMark } from './chart_parts.js';
+import { doubtMark, downloads, instead, options, staleMark, tableButton, withoutMark } from './chart_parts.js';
 import { dot, dotted, legible, plot, write } from './chart_plot.js';
 import { basisRows, inUnit, quantityName, regionName, unitPer, weightWords } from './chart_words.js';
 import { number, significant, unitText } from './format.js';
@@ -201,7 +201,7 @@ export function profilePart(world, { isInline, close = nothing }) {
   const warning = warnings.length ? html`<span class="warn" title=${warnings.join(' ')}>${icon('warning', 12)} ${warnings.join(' ')}</span>` : nothing;
   const facts = reason ? nothing : html`<p class="chart-method chart-facts">${readOuts(state.result)}</p>`;
   return html`<section class=${classMap({ 'chart-part': true, 'chart-profile': true, old: state.isOld && hasLine })} aria-label="Depth profile">
-    <header class="chart-head"><h2>${isInline ? 'Depth profile' : 'Depth'}</h2>${lineChoice(world)}${hasLine ? staleMark(state.isOld) : nothing}${withoutMark(state.result?.missing)}<span class="grow"></span>
+    <header class="chart-head"><h2>${isInline ? 'Depth profile' : 'Depth'}</h2>${lineChoice(world)}${hasLine ? staleMark(state.isOld) : nothing}${withoutMark(state.result?.missing)}${doubtMark(world)}<span class="grow"></span>
       ${value === null ? nothing : html`<span class="chart-here">${mm(here)} <b>${inUnit(value, state.result.unit)}</b></span>`}
       ${isInline ? nothing : html`${options(world, 'profile', 'Choices of the profile', html`${controls(world)}${facts}<p class="chart-method">${state.result?.method ?? ''} ${warning}</p>`)}${tableButton(world, 'profile', 'Profile as a table')}`}${close}</header>
     ${isInline ? controls(world) : nothing}

@@ -1,4 +1,5 @@
 // Words of plots of dose, the same in drawer, tables, files and print.
+import { ofFits } from './fit_later.js';
 import { significant, unitText } from './format.js';
 
 const names = { weighted: 'weighted total', 'weighted-total': 'weighted total of the file', isoeffective: 'photon-isoeffective' };
@@ -24,7 +25,7 @@ export function basisRows({ room }, quantity, answer, of) {
     ['plan', plan.name, room.planId.value], ['revision', room.revision.value], ['dose', doseName(plan, dose.id), ...Object.keys(dose.sum ?? {}).map((id) => `with ${doseName(plan, id)}`)],
     ['quantity', quantityName(quantity)], ['unit', unitPer(answer)], ...(dose.factor === 1 || dose.factor === undefined ? [] : [['factor', dose.factor]]), ...(perPpm ? [['boron in blood (ppm)', dose.blood_ppm]] : []),
     ...(whose ? [['weights', whose, dose.weights_name || 'edited'], ...weights] : []), ...(of?.population ? [['univels of a region', of.population]] : []),
-    ...(answer?.missing?.length ? [['without', ...answer.missing]] : []), ...(answer?.isAccepted ? [['warning', 'the dose does not fit the image; a person had it used']] : []), ...(answer?.method ? [['method', answer.method]] : []),
+    ...(answer?.missing?.length ? [['without', ...answer.missing]] : []), ...(ofFits(room)?.usedRows({ room }) ?? []), ...(answer?.method ? [['method', answer.method]] : []),
     ['use', 'for research and plan review, not for treatment decisions'],
   ];
 }

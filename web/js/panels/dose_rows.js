@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { choosePatch, dependsOnBlood, doseName, isOn, isWeighted, missingOf, missingWords, quantitiesOf, quantityName, referenceWords, shownDose, toggledPatch, unitOf } from '../state/dose.js';
+import { approvalOf, isOfOther, shownTreatmentPlan } from '../state/identity.js';
 import { doseWords } from '../state/plan.js';
 import { levelActions, levelRows } from './dose_levels.js';
 import { referenceSelect, tissueSelect } from './dose_reference.js';
@@ -26,12 +27,24 @@ export function doseRows(world) {
   const scene = room.scene.value;
   const dose = shownDose(room.plan.value, scene);
   if (!scene || !dose) return nothing;
-  return html`${room.plan.value.doses.map((one) => doseRow(world, one, one === dose))}
+  return html`${grouped(world, dose)}
     ${world.ui.arrangement.value.tree === 'tree' ? quantityRow(world, dose) : quantitiesOf(dose).map((quantity) => radioRow(world, dose, quantity))}
     ${controlRow(world, 'reference', html`<span class="dose-word">100 %</span>${referenceSelect(world, { tabindex: -1 })}`, '100 % is')}
     ${isWeighted(scene.dose.quantity) || dependsOnBlood(dose, scene.dose.quantity) ? controlRow(world, 'tissue', html`<span class="dose-word">Weights</span>${tissueSelect(world, { tabindex: -1 })}`, 'Weights of') : nothing}
     ${levelRows(world)}${levelActions(world)}
     ${switchRow(world, 'lines', 'Isodose lines', 'I')}${washRow(world)}${switchRow(world, 'surfaces', 'Isodose surfaces', '')}`;
+}
+
+/** The doses; of several treatment plans under the name of each, the shown plan's first. Those of other patients stand elsewhere. */
+function grouped(world, shown) {
+  const [plan, scene] = [world.room.plan.value, world.room.scene.value];
+  const own = plan.doses.filter((dose) => !isOfOther(plan, scene, dose));
+  const row = (dose) => doseRow(world, dose, dose === shown);
+  if (plan.treatmentPlans.length < 2) return own.map(row);
+  const first = shownTreatmentPlan(plan, scene);
+  const groups = [first, ...plan.treatmentPlans.filter((one) => one !== first), undefined];
+  return groups.map((treatment) => [treatment, own.filter((dose) => plan.treatmentPlans[dose.plan] === treatment)]).filter(([, doses]) => doses.length)
+    .map(([treatment, doses]) => html`<li class="row-group" role="presentation">${treatment ? `Plan ${treatment.label} · ${approvalOf(treatment)[0].toLowerCase()}` : 'No plan stated'}${treatment && treatment !== first ? html` <span class="dim">compare only</span>` : nothing}</li>${doses.map(row)}`);
 }
 
 function doseRow(world, dose, isShown) {

@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { signal } from '../../lib/signals-core.js';
-import { byWordOf, leftOffPatch, markWords, minLetters, nLetters, partName, partOf, questionsOf, reasonName, reasons, selectedUse, selectionOf, usesOf, voidRows } from '../state/fits.js';
+import { byWordOf, factOf, inNumbersOf, leftOffPatch, markWords, minLetters, nLetters, partName, partOf, questionsOf, reasonName, reasons, selectedUse, selectionOf, usesOf, voidRows } from '../state/fits.js';
 import { patientOf } from '../state/identity.js';
 import { icon } from './icons.js';
 
@@ -56,7 +56,7 @@ export function rowMark(world, kind, id) {
   const use = selectedUse(world.room.plan.value, worldUses(world), { kind, id });
   if (!use) return nothing;
   const text = useWords(use);
-  return html`<span class="fit-mark warn" title=${use.state === 'by-word' ? `${use.reason} ${byWords(use)}` : use.reason}>${icon('warning', 12)} ${text}</span>`;
+  return html`<span class="fit-mark warn" title=${use.state === 'by-word' ? `${factOf(use.reason)} ${byWords(use)}` : use.reason}>${icon('warning', 12)} ${text}</span>`;
 }
 
 const useWords = (use) => (use.state === 'by-word' ? markWords(use.relation) : 'not used');
@@ -74,8 +74,29 @@ export function wordMark(world, kinds = []) {
   const { room } = world;
   const used = byWordOf(room.plan.value, room.scene.value, worldUses(world)).filter(({ kind }) => !kinds.length || kinds.includes(kind));
   if (!used.length) return nothing;
-  const title = used.map((use) => `${use.reason} ${byWords(use)}`).join('\n');
-  return html`<span class="fit-mark warn" title=${title}>${icon('warning', 12)} ${markWords(used[0].relation)}</span>`;
+  return mark(used);
+}
+
+const mark = (used) => html`<span class="fit-mark warn" title=${used.map((use) => `${factOf(use.reason)} ${byWords(use)}`).join('\n')}>${icon('warning', 12)} ${markWords(used[0].relation)}</span>`;
+
+const inNumbers = ({ room }) => inNumbersOf(room.plan.value, room.scene.value, worldUses({ room }));
+
+/** The mark of numbers of dose: plots, limits. */
+export function numberMark(world) {
+  const used = inNumbers(world);
+  return used.length ? mark(used) : nothing;
+}
+
+/** The same as rows of a file: [name, parts, fact, who, words]. */
+export const usedRows = ({ room }) => inNumbers({ room }).map((use) => ['used though it does not fit', `${partName(room.plan.value, use.thing)} with ${partName(room.plan.value, use.with)}`, factOf(use.reason), `${use.by.author_name}, ${new Date(use.by.created_ms).toISOString()}`, use.by.body.words]);
+
+/** On paper: what is used though it does not fit, with who said so. */
+export function usedSheet({ room }) {
+  const plan = room.plan.value;
+  const rows = [...room.accepted.value.values()];
+  if (!rows.length) return nothing;
+  return html`<h2>Parts used though they do not fit</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label="Parts used though they do not fit"><table class="numbers-table"><thead><tr><th scope="col">Parts</th><th scope="col">Fact</th><th scope="col">In words</th><th scope="col">By, at</th></tr></thead>
+    <tbody>${rows.map((row) => html`<tr><th scope="row">${partName(plan, row.body.thing)} with ${partName(plan, row.body.with)}</th><td>${factOf(row.body.fact)}</td><td>${reasonName(row.body.reason)}: ${row.body.words}</td><td>${row.author_name}, ${time(row.created_ms)}</td></tr>`)}</tbody></table></div>`;
 }
 
 // ---- Selection ----------------------------------------------------------------------------------------------------------------
@@ -156,7 +177,7 @@ async function withdraw(world, row) {
   }
 }
 
-const usedBlock = (world, use) => html`<section class="block fit-block"><h3 class="warn">${icon('warning')} ${markWords(use.relation)}</h3><p class="note">${use.reason}</p></section>${listBlock(world)}`;
+const usedBlock = (world, use) => html`<section class="block fit-block"><h3 class="warn">${icon('warning')} ${markWords(use.relation)}</h3><p class="note">${factOf(use.reason)}</p></section>${listBlock(world)}`;
 
 /** What is used all the same in this room, with who said so; and what was accepted for other files. */
 export function listBlock(world) {

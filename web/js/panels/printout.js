@@ -9,6 +9,7 @@ import { volumeDifference } from '../state/shapes.js';
 import { draftBelongs, draftWords } from './beam_words.js';
 import { hasCharts } from './chart_loader.js';
 import { printable } from './exports.js';
+import { ofFits } from './fit_later.js';
 import { count, number, signed, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 import { measureName, valueText } from './measure_words.js';
@@ -41,7 +42,7 @@ export function printoutDialog(world) {
 }
 
 /** A table of layout: its foot stands on every printed page. */
-const sheet = (world, plan) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${hasCharts(plan) ? world.charts.draw('printed') : nothing}${measures(world)}${warnings(plan)}</div>
+const sheet = (world, plan) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${hasCharts(plan) ? world.charts.draw('printed') : nothing}${ofFits(world.room)?.usedSheet(world) ?? nothing}${measures(world)}${warnings(plan)}</div>
   <footer class="sheet-foot"><div>${plan.name} · printed ${new Date().toISOString().slice(0, 16).replace('T', ' ')} UTC · revision ${world.room.revision.value}<br><b>${research}</b></div></footer></article>`;
 
 function head({ room }, plan) {

@@ -1,7 +1,7 @@
 // The sections of the tree: a row of the table for each. A section without rows is not shown; to add one, add a row.
 import { html } from '../../lib/lit-html.js';
 import { blendedImage } from '../state/image_look.js';
-import { partsOfOthers } from '../state/identity.js';
+import { isOfOther, partsOfOthers } from '../state/identity.js';
 import { shownImage } from '../state/plan.js';
 import { bookmarkNote, bookmarkRows, hasBookmarks } from './bookmark_lazy.js';
 import { hasBeams, ofBeams } from './beam_lazy.js';
@@ -46,7 +46,7 @@ function images(world) {
   const scene = room.scene.value;
   const shown = shownImage(plan, scene);
   const blended = blendedImage(plan, scene);
-  const rows = plan.images.map((image) => {
+  const rows = plan.images.filter((image) => !isOfOther(plan, scene, image)).map((image) => {
     const isShown = image === shown;
     const show = (event) => showImage(world, image, event);
     const words = imageName(plan, image);

@@ -12,14 +12,14 @@ function boundsOf(row, read) {
 const finite = (value) => (Number.isFinite(value) ? value : NaN);
 
 /** Of the dose shown and of the one that it is compared with. @returns {DvhAnswer}
- *  @typedef {{unit: string, quantity: string, method: string, missing: string[], reason: string, per: string, isAccepted: boolean, left: {region: string, reason: string}[], curves: import('./dose_dvh.js').DvhCurve[]}} DvhAnswer
- *  left: regions without a curve of the dose shown. isAccepted: the dose may not belong to the image, and a person let it be shown */
+ *  @typedef {{unit: string, quantity: string, method: string, missing: string[], reason: string, per: string, left: {region: string, reason: string}[], curves: import('./dose_dvh.js').DvhCurve[]}} DvhAnswer
+ *  left: regions without a curve of the dose shown. */
 export function readDvh(answer) {
   const rows = answer.without_curves ?? [];
   const without = rows.filter(({ region }) => !region).map(({ dose, reason }) => `${dose}: ${reason}`).join('. ');
   return {
     unit: answer.curves[0]?.unit ?? answer.unit ?? '', quantity: answer.curves[0]?.quantity ?? answer.quantity ?? '', method: answer.method ?? '', missing: answer.missing ?? [],
-    reason: without || answer.reason || '', per: answer.per ?? '', isAccepted: Boolean(answer.accepted),
+    reason: without || answer.reason || '', per: answer.per ?? '',
     left: rows.filter(({ region, dose }) => region && dose === answer.id).map(({ region, reason }) => ({ region, reason })),
     curves: answer.curves.map((row) => withSums({
       region: row.region, dose: row.dose, of: row.dose === answer.id ? 0 : 1, volume: row.volume_cm3, cm3: row.volume_cm3 - row.missing_cm3, missing: row.missing_cm3, univels: row.n_univels,

@@ -22,12 +22,16 @@ export const markWords = (relation) => marks[relation] ?? 'does not fit';
 /** Acceptances that do not count any more, or not yet. */
 export const voidRows = (rows, counting) => [...rows.values()].filter(({ kind, id }) => kind === 'acceptance' && !counting.includes(id));
 
+const isOfSource = ({ thing }) => (region) => region.source === undefined || `regions:${region.source ?? 0}` === thing;
+const regionWords = ([first, ...others]) => (!first ? '' : others.length ? `${first.name} and ${others.length} more` : first.name || first.id);
+
 /** "dose:boost" as {kind, id, word, name}. */
 export function partOf(plan, key) {
   const [kind, id = ''] = key.split(/:(.*)/);
-  const part = plan[lists[kind]]?.find((one) => one.id === id);
+  const regions = kind === 'regions' ? plan.regions.filter((region) => isOfSource({ thing: key })(region)) : [];
+  const part = kind === 'regions' ? regions[0] : plan[lists[kind]]?.find((one) => one.id === id);
   const image = kind === 'image' && part && (part.name || (plan.images.length > 1 ? `${part.modality} ${part.id}` : part.modality));
-  return { key, kind, id, word: words[kind] ?? kind, name: image || part?.name || (kind === 'regions' || kind === 'tracks' ? '' : id), part: part ?? null };
+  return { key, kind, id, word: words[kind] ?? kind, name: kind === 'regions' ? regionWords(regions) : image || part?.name || (kind === 'tracks' ? '' : id), part: part ?? null };
 }
 
 /** Dose “Boost”, Regions, MR */
@@ -61,7 +65,6 @@ export function usesOf(plan, scene, accepted) {
   return plan.fits.filter(concerns).map((fit) => useOf(fit, accepted)).sort(compare);
 }
 
-const isOfSource = (use) => (region) => region.source === undefined || `regions:${region.source ?? 0}` === use.thing;
 export const regionsOf = (plan, use) => plan.regions.filter(isOfSource(use));
 
 /** True if the scene shows the part, or would if it fitted. */
@@ -77,6 +80,18 @@ export function isWanted(plan, scene, { kind, id, ...use }) {
 export const questionsOf = (plan, scene, uses) => uses.filter((use) => use.state === 'not-used' && use.needs === 'acceptance' && isWanted(plan, scene, use));
 /** What is shown by a person's word: each picture and number is marked. */
 export const byWordOf = (plan, scene, uses) => uses.filter((use) => use.state === 'by-word' && isWanted(plan, scene, use));
+
+/** What enters the numbers of dose by a person's word, whether anything of it is drawn or not. */
+export function inNumbersOf(plan, scene, uses) {
+  const isChosen = ({ kind, id }) => kind !== 'dose' || shownDose(plan, scene)?.id === id || id in scene.dose.sum || (scene.dose.compare.mode !== 'none' && scene.dose.compare.id === id);
+  return uses.filter((use) => use.state === 'by-word' && ['dose', 'regions'].includes(use.kind) && isChosen(use));
+}
+
+/** "Dose “Boost” is not used with MR: it was …" as what is so: "It was …". */
+export function factOf(reason) {
+  const fact = reason.slice(reason.indexOf(': ') + (reason.includes(': ') ? 2 : 0));
+  return `${fact.slice(0, 1).toUpperCase()}${fact.slice(1)}`;
+}
 
 /** The patch that hides a part. */
 export function leftOffPatch(plan, scene, { kind, id, ...use }) {

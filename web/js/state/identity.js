@@ -14,6 +14,12 @@ export function shownPatient(plan, scene) {
   return plan.patients[index] ?? null;
 }
 
+/** True for a part of another patient than the one shown: it is never used. */
+export function isOfOther(plan, scene, part) {
+  const of = plan.patients[part.patient];
+  return Boolean(of) && plan.patients.length > 1 && of !== shownPatient(plan, scene);
+}
+
 /** Parts of other patients than the one shown: [{kind, id, name, masked}]. */
 export function partsOfOthers(plan, scene) {
   const shown = shownPatient(plan, scene);

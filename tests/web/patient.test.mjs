@@ -1,0 +1,65 @@
+// Whose plan it is: masked in the banner for everybody, shown to one person who asks, parts of another patient in a section of their own. Made-up DICOM; nobody's data.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { until } from '../api/daemon.mjs';
+import { putDose, putWhole } from '../api/made_dicom.mjs';
+import { axe } from './axe.mjs';
+import { full, missing, shoot, startWorld } from './browser.mjs';
+
+const quirin = { id: '77-30419', name: 'Zweifel^Quirin', birthDate: '19610412' };
+const other = { id: '88-50327', name: 'Morgen^Ottilie', birthDate: '19550723', study: '1.2.32', frame: '1.2.42' };
+
+describe('whose plan it is', { skip: missing && `${missing} is not there` }, () => {
+  const folder = mkdtempSync(join(tmpdir(), 'beamroom-patient-'));
+  let world;
+  let page;
+  before(async () => {
+    putWhole(join(folder, 'case-1'), quirin, { approval: 'APPROVED' });
+    putDose(join(folder, 'case-1'), other, { uid: '1.2.89', file: 'other.dcm' });
+    world = await startWorld({ plans: [folder] });
+    page = await world.newPage(`#/rooms/${await world.newRoom('case-1')}`, { viewport: { width: 1440, height: 900 } });
+    await full(page, 2);
+  });
+  after(async () => {
+    await world?.stop();
+    rmSync(folder, { recursive: true, force: true });
+    assert.deepEqual(world?.errors ?? [], []);
+  });
+  const shows = (locator, text) => until(() => locator.textContent(), (now) => now.includes(text), 30000).then((now) => assert.ok(now.includes(text), `"${now}" has no "${text}"`));
+
+  it('the banner has the masked patient and the approval; another patient’s dose is named in red and stands in the last section', async () => {
+    await shows(page.locator('.banner .patient-button'), 'Q. Z. …419');
+    await shows(page.locator('.banner .approval'), 'Approved');
+    await shows(page.locator('.fit-bar.err'), 'This folder holds parts of 2 patients. Shown: Q. Z. …419');
+    await shows(page.locator('.not-this-patient').last(), 'O. M. …327');
+    await page.getByRole('tab', { name: 'Plan', exact: true }).click();
+    await shows(page.locator('#tab-panel'), 'Q. Z. …419');
+    await shows(page.locator('.fit-table'), 'other');
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'patient-masked');
+    const text = await page.evaluate(() => document.documentElement.outerHTML + document.title);
+    for (const secret of ['Quirin', 'Zweifel', '77-30419', '1961', 'Ottilie']) assert.ok(!text.includes(secret), secret);
+  });
+
+  it('who asks is shown the name, alone, until it is masked again', async () => {
+    await page.locator('.patient-button').click();
+    await page.getByRole('button', { name: 'Show to me' }).click();
+    await shows(page.locator('.patient-button'), 'ZWEIFEL, Quirin');
+    await shows(page.locator('.patient-card'), '1961-04-12');
+    assert.deepEqual(await axe(page), []);
+    await shoot(page, 'patient-shown');
+    assert.ok(!(await page.title()).includes('Zweifel'));
+    await page.getByRole('button', { name: 'Mask it again' }).click();
+    await shows(page.locator('.patient-button'), 'Q. Z. …419');
+    assert.ok(!(await page.evaluate(() => document.documentElement.outerHTML)).includes('Quirin'));
+  });
+
+  it('a plan without DICOM says that it names nobody; the phantom says that it is one', async () => {
+    const second = await world.newPage(`#/rooms/${await world.newRoom('phantom')}`, { viewport: { width: 1440, height: 900 } });
+    await shows(second.locator('.banner .patient'), 'PHANTOM');
+    await second.context().close();
+  });
+});
