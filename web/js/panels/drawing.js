@@ -1,6 +1,7 @@
 // Below a selected region: how the surfaces, outlines, points and splines of all regions are drawn, and the check of a segmentation.
 import { html, nothing } from '../../lib/lit-html.js';
 import { algorithms } from '../state/shapes.js';
+import { textureOf, texturePatch, textures } from '../state/textures.js';
 import { checkbox, numberField, segment } from './fields.js';
 
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
@@ -10,16 +11,18 @@ export function drawingBlocks({ room, ui }, isDisabled, change) {
   const plan = room.plan.value;
   if (!plan.regions.length) return nothing;
   const isUsed = (...words) => plan.regions.some((region) => words.includes(scene.regions[region.id]?.representation));
-  return html`${surfaces(scene.surface, isDisabled, change)}${outlines(scene.outline, isDisabled, change)}
+  return html`${surfaces(scene.surface, plan, scene, isDisabled, change)}${outlines(scene.outline, isDisabled, change)}
     ${isUsed('points', 'solid') ? points(scene.points, isDisabled, change) : nothing}
     ${isUsed('nurbs') ? splines(scene.nurbs, isDisabled, change) : nothing}
     ${check(scene.check, plan.regions.find((region) => region.id === ui.region.value), plan, isDisabled, change)}`;
 }
 
-function surfaces(surface, isDisabled, change) {
+function surfaces(surface, plan, scene, isDisabled, change) {
+  const texture = textureOf(scene, plan.regions);
   return html`<section class="block"><h3>Surfaces <span class="dim">of all regions</span></h3>
     <dl><dt>Made by</dt><dd>${segment('Surface', algorithms, surface.algorithm, isDisabled, (algorithm, event) => change({ surface: { algorithm } }, event))}</dd>
-      <dt>Shading</dt><dd>${segment('Shading', [['vertex', 'Smooth'], ['face', 'Faceted']], surface.normals, isDisabled, (normals, event) => change({ surface: { normals } }, event))}</dd></dl></section>`;
+      <dt>Shading</dt><dd>${segment('Shading', [['vertex', 'Smooth'], ['face', 'Faceted']], surface.normals, isDisabled, (normals, event) => change({ surface: { normals } }, event))}</dd>
+      <dt>Coloured by</dt><dd>${segment('All regions coloured by', textures(plan, texture), texture, isDisabled, (wanted, event) => change(texturePatch(plan.regions, wanted), event))}</dd></dl></section>`;
 }
 
 function outlines(outline, isDisabled, change) {

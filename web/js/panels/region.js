@@ -5,6 +5,7 @@ import { live } from '../../lib/directives/live.js';
 import { enabledClips } from '../state/clip.js';
 import { crosshairPatch, shownImage, soloPatch } from '../state/plan.js';
 import { isExportable, representations, shapeQuery, volumeDifference } from '../state/shapes.js';
+import { textureNote, textureOf, texturePatch, textures, withInner } from '../state/textures.js';
 import { checkbox, numberField, segment } from './fields.js';
 import { number, seconds, signed, significant, volume } from './format.js';
 import { icon } from './icons.js';
@@ -34,12 +35,27 @@ export function regionBlock(world, region) {
       <dt title="Higher lies on top where regions overlap">Order</dt><dd>${numberField('Order, higher lies on top', style.order, '', isDisabled, (value, event) => change({ order: Math.min(Math.max(Math.round(value), -1000), 1000) }, event))}</dd></dl>
     ${style.clipped && !enabledClips(plan, scene).length ? nothing : html`<div class="checks">${checkbox('Not cut by clip planes', style.clipped === false, isDisabled, (on, event) => change({ clipped: !on }, event), 'The region is whole before the cut')}</div>`}
     <div class="shown-as"><span class="dim">Shown as</span>${segment('Shown as', representations, style.representation, isDisabled || !region.voxels, (representation, event) => change({ representation }, event))}</div>
+    ${coloured(world, region, isDisabled, how)}
     ${region.voxels ? figures(world, region, style.representation) : nothing}
     <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(plan.regions, scene, region.id), how(event))}>${icon('solo')}<span>Solo</span></button>
       ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}
       ${plan.regions.length > 1 ? html`<button ?disabled=${isDisabled || isShared} @click=${share}><span>All regions like this</span></button>` : nothing}
       ${region.voxels ? html`<button aria-haspopup="dialog" @click=${() => { ui.popover.value = 'figures'; }}><span>Compare methods</span></button>` : nothing}</div>
     ${region.voxels && isExportable(style.representation) && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
+}
+
+/** By what the region is coloured in 3-D, and those inside it. */
+function coloured({ room }, region, isDisabled, how) {
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const { texture } = scene.regions[region.id];
+  const inner = withInner(plan, region);
+  const note = textureNote(scene, region);
+  const isOff = note.startsWith('The wash');
+  return html`<div class="shown-as"><span class="dim">Coloured by</span>${segment('Coloured by', textures(plan, texture), texture, isDisabled || !region.voxels, (wanted, event) => room.patchScene(texturePatch([region], wanted), how(event)))}</div>
+    ${note ? html`<p class="note why">${icon('warning', 12)} ${note}</p>` : nothing}
+    ${isOff || (inner.length > 1 && textureOf(scene, inner) !== texture) ? html`<div class="buttons">
+      ${isOff ? html`<button ?disabled=${isDisabled} @click=${(event) => room.patchScene({ dose: { wash: { visible: true } } }, how(event))}><span>Show the wash</span></button>` : nothing}
+      ${inner.length > 1 && textureOf(scene, inner) !== texture ? html`<button ?disabled=${isDisabled} @click=${(event) => room.patchScene(texturePatch(inner, texture), how(event))}><span>Those inside it too</span></button>` : nothing}</div>` : nothing}`;
 }
 
 /** True when the server cannot build the shape, so there is no file to save either. */
