@@ -337,7 +337,7 @@ static bool add_part(struct contour_combining *combining, size_t layer, bool is_
 /* Puts the outlines that stay into one layer; n_members counts the members so far. */
 static void add_layer(struct contour_combining *combining, struct outline *outlines, size_t n, size_t *n_members)
 {
-    struct contour_layer layer = { .first = *n_members };
+    struct even_odd_layer layer = { .first = *n_members };
     for (size_t i = 0; i < n; i++)
         if (!outlines[i].is_left_out) {
             combining->members[(*n_members)++] = outlines[i].contour;
@@ -426,7 +426,7 @@ static bool combine_plane(struct contour_combining *combining, const struct cont
     struct contour const **contours = planes->contours + plane->first;
     if (n == 1) {
         combining->members[*n_members] = contours[0];
-        combining->layers[combining->n_layers] = (struct contour_layer){ *n_members, *n_members + 1 };
+        combining->layers[combining->n_layers] = (struct even_odd_layer){ *n_members, *n_members + 1 };
         ++*n_members;
         return add_part(combining, combining->n_layers++, false, err);
     }

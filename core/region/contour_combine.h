@@ -12,7 +12,7 @@
 #include "core/region/contour_planes.h"
 
 /* Contours that are filled together by even-odd. */
-struct contour_layer {
+struct even_odd_layer {
     size_t first, end; /* members[first .. end) */
 };
 
@@ -23,7 +23,7 @@ struct contour_part {
 
 struct contour_combining {
     const struct contour **members; /* the contours that stay, layer by layer; each once */
-    struct contour_layer *layers;
+    struct even_odd_layer *layers;
     size_t n_layers;
     struct contour_part *parts;
     size_t n_parts, parts_room;
@@ -33,8 +33,9 @@ struct contour_combining {
 };
 
 #define CONTOUR_MAX_COMPARED ((uint64_t)1 << 28) /* steps of comparing contours, per filling */
-#define CONTOUR_SAME_MM 0.05 /* a contour that leaves another by less than this, on the mean of its length, is inside \
-                              */
+#define CONTOUR_SAME_MM \
+    0.05 /* a contour that leaves another by less than this, on the mean of its length, is inside \
+          */
 
 /* u_lps, v_lps: unit vectors that span the planes. Errors: ERROR_LIMIT (more than CONTOUR_MAX_COMPARED steps),
  * ERROR_MEMORY. */

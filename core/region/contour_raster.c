@@ -104,7 +104,7 @@ static bool layer_sort(struct plane_edges *layer, double row_mm, struct error *e
 }
 
 static bool layer_init(struct plane_edges *layer, const struct contour_raster *raster,
-                       const struct contour_layer *range, double row_mm, struct error *err)
+                       const struct even_odd_layer *range, double row_mm, struct error *err)
 {
     struct contour const **members = raster->combining.members;
     size_t n_points = 0;

@@ -96,3 +96,24 @@ void dicom_slices_compare(const struct dicom_index *index, const struct dicom_st
             tag >> 16, tag & 0xFFFF, traits[t].name, found, expected, n_others, stack->n_objects);
     }
 }
+
+void dicom_slices_report_surplus(const struct dicom_index *index, const struct dicom_stack *stack,
+                                 struct report *report)
+{
+    size_t n = 0;
+    const struct dicom_object *first = NULL;
+    for (size_t i = 0; i < stack->n_objects; i++) {
+        const struct dicom_object *object = &index->objects[stack->objects[i]];
+        const struct dicom_pixels *pixels = &object->image->pixels;
+        if (pixels->surplus_bytes < (uint64_t)pixels->rows * pixels->columns * (pixels->bits_allocated / 8))
+            continue;
+        first = first ? first : object;
+        n++;
+    }
+    if (n > 0)
+        report_add(
+            report, REPORT_WARNING, "dicom.surplus-pixels", first->path,
+            "The pixel data of %zu of %zu files hold more frames than the files declare (here %llu bytes more than "
+            "%u frames need); they are not shown.",
+            n, stack->n_objects, (unsigned long long)first->image->pixels.surplus_bytes, first->image->pixels.n_frames);
+}

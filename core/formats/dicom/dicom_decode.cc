@@ -2,7 +2,6 @@
 #include "core/formats/dicom/dicom_decode.hh"
 
 extern "C" {
-#include "core/formats/dicom/dicom_file.h"
 #include "core/formats/dicom/dicom_j2k.h"
 #include "core/formats/dicom/dicom_unpack.h"
 }
@@ -139,9 +138,7 @@ bool describe(DcmDataset &image, const dicom_pixels &pixels)
 
 bool dicom_can_decode(const char *transfer_syntax, const char **name)
 {
-    const DcmXfer xfer(transfer_syntax);
-    const char *word = dicom_uid_word(transfer_syntax);
-    *name = xfer.getXfer() == EXS_Unknown && word[0] ? word : xfer.getXferName();
+    *name = DcmXfer(transfer_syntax).getXferName();
     return find_encoding(transfer_syntax) != nullptr;
 }
 

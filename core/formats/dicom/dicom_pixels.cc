@@ -83,7 +83,10 @@ bool look(const dicom_file *file, dicom_pixels *pixels, error *err)
         return false;
     if (layout.is_encapsulated) {
         const char *encoding;
-        if (!dicom_can_decode(layout.transfer_syntax, &encoding))
+        bool can_decode = dicom_can_decode(layout.transfer_syntax, &encoding);
+        if (DcmXfer(layout.transfer_syntax).getXfer() == EXS_Unknown && dicom_uid_word(layout.transfer_syntax)[0])
+            encoding = dicom_uid_word(layout.transfer_syntax);
+        if (!can_decode)
             return error_set(err, ERROR_UNSUPPORTED, "%s: its pixels are encoded as %s (%s), which is not read", name,
                              encoding, layout.transfer_syntax);
         return true;

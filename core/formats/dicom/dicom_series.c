@@ -128,28 +128,6 @@ static void report_coded(const struct series *series, struct report *report)
                    pixels->bits_stored, coded->n_other_bits, series->n_slices, coded->n_bits);
 }
 
-/* Reports pixel data that hold at least a frame more than declared; a few bytes behind the pixels are usual. */
-static void report_surplus(const struct series *series, struct report *report)
-{
-    size_t n = 0;
-    const struct dicom_object *first = NULL;
-    for (size_t i = 0; i < series->stack->n_objects; i++) {
-        const struct dicom_object *object = &series->index->objects[series->stack->objects[i]];
-        const struct dicom_pixels *pixels = &object->image->pixels;
-        if (pixels->surplus_bytes < (uint64_t)pixels->rows * pixels->columns * (pixels->bits_allocated / 8))
-            continue;
-        first = first ? first : object;
-        n++;
-    }
-    if (n > 0)
-        report_add(
-            report, REPORT_WARNING, "dicom.surplus-pixels", first->path,
-            "The pixel data of %zu of %zu files hold more frames than the files declare (here %llu bytes more than "
-            "%u frames need); they are not shown.",
-            n, series->stack->n_objects, (unsigned long long)first->image->pixels.surplus_bytes,
-            first->image->pixels.n_frames);
-}
-
 /* Reads the stored values of a slice: native ones straight from the file, compressed ones by decoding. */
 static bool read_stored(struct series *series, struct reader *reader, const struct dicom_slice *slice, void *out,
                         struct error *err)
@@ -615,7 +593,7 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
         choose_type(&series, facts, report);
         volume = read_volume(&series, &layout, report, err);
         report_coded(&series, report);
-        report_surplus(&series, report);
+        dicom_slices_report_surplus(index, series.stack, report);
     }
     free(layout.planes);
     free(series.slices);

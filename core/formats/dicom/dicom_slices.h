@@ -72,3 +72,6 @@ NODISCARD bool dicom_frames_find(const struct dicom_file *file, const char *path
 void dicom_slices_compare(const struct dicom_index *index, const struct dicom_stack *stack, struct report *report);
 /* Sorts by along_mm and drops every slice at the position of another; returns how many remain. */
 size_t dicom_slices_sort(struct dicom_slice *slices, size_t n, size_t *n_repeated);
+/* Reports pixel data that hold at least a frame more than declared; a few bytes behind the pixels are usual. */
+void dicom_slices_report_surplus(const struct dicom_index *index, const struct dicom_stack *stack,
+                                 struct report *report);
