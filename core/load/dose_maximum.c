@@ -3,7 +3,18 @@
 
 #include <math.h>
 
-static bool is_in_region(const struct region_set *set, struct vec3 point_lps_mm)
+#include "core/plan/fit.h"
+
+/* True by region: of the dose's patient and frame. */
+static void find_belonging(const struct plan *plan, size_t dose, bool belongs[REGION_MAX])
+{
+    for (size_t r = 0; r < plan->regions.n_regions; r++) {
+        struct fit fit = fit_of(plan, fit_part_of_region(plan, r), (struct fit_part){ FIT_DOSE, dose });
+        belongs[r] = !(fit.reasons & (1U << FIT_FRAME | 1U << FIT_PATIENT));
+    }
+}
+
+static bool is_in_region(const struct region_set *set, const bool *belongs, struct vec3 point_lps_mm)
 {
     for (size_t layer = 0; layer < set->n_layers; layer++) {
         uint32_t at[3];
@@ -12,7 +23,7 @@ static bool is_in_region(const struct region_set *set, struct vec3 point_lps_mm)
         uint16_t label = volume_label(set->layers[layer], at[0], at[1], at[2]);
         for (size_t r = 0; label != 0 && r < set->n_regions;
              r++) /* a label that is no region is the filling around the patient */
-            if (set->regions[r].layer == layer && set->regions[r].label == label)
+            if (set->regions[r].layer == layer && set->regions[r].label == label && belongs[r])
                 return true;
     }
     return false;
@@ -24,7 +35,8 @@ static bool is_valid(const struct volume *mask, struct vec3 point_lps_mm)
     return !mask || (volume_voxel_at(mask, point_lps_mm, at) && volume_label(mask, at[0], at[1], at[2]) != 0);
 }
 
-static void measure(const struct plan *plan, struct dose *dose, const struct dose_component *component)
+static void measure(const struct plan *plan, struct dose *dose, const struct dose_component *component,
+                    const bool *belongs)
 {
     const struct volume *values = component->values;
     const uint32_t *size = values->grid.size;
@@ -38,7 +50,7 @@ static void measure(const struct plan *plan, struct dose *dose, const struct dos
                 if (!(value > high)) /* tested first because it is quick */
                     continue;
                 struct vec3 point = affine_point(&values->grid.lps_mm_from_ijk, vec3(i, j, k));
-                if (is_in_region(&plan->regions, point) && is_valid(dose->mask, point))
+                if (is_in_region(&plan->regions, belongs, point) && is_valid(dose->mask, point))
                     high = value;
             }
     dose->body_high[component->quantity] = high;
@@ -70,8 +82,10 @@ static void note_absurd(struct plan *plan, const struct dose *dose)
 void plan_measure_body(struct plan *plan)
 {
     for (size_t d = 0; d < plan->n_doses && plan->regions.n_regions > 0; d++) {
+        bool belongs[REGION_MAX];
+        find_belonging(plan, d, belongs);
         for (size_t c = 0; c < plan->doses[d].n_components; c++)
-            measure(plan, &plan->doses[d], &plan->doses[d].components[c]);
+            measure(plan, &plan->doses[d], &plan->doses[d].components[c], belongs);
         note_absurd(plan, &plan->doses[d]);
     }
 }

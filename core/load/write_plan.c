@@ -17,6 +17,7 @@
 #include "core/formats/nifti_write.h"
 #include "core/formats/plan_json.h"
 #include "core/load/write_sera_texts.h"
+#include "core/plan/fit.h"
 
 static const char *const folders[] = { "images", "regions", "doses", "curves" };
 enum {
@@ -61,10 +62,55 @@ static struct voxel_file *add_output(struct plan_writing *writing, const struct 
 
 /* ---- lists of files to write ------------------------------------------------------------------------------------ */
 
+/* A part of another patient, or, unless plan.json can say so, of another frame of reference than the first image, would
+ * lie on it without a word in the new folder. */
+static bool is_carried(const struct plan_writing *writing, struct fit_part part)
+{
+    const struct plan *plan = writing->plan;
+    int image = fit_first_image(plan);
+    struct fit fit =
+        image < 0 ? fit_alone(plan, part) : fit_of(plan, part, (struct fit_part){ FIT_IMAGE, (size_t)image });
+    bool is_frame = part.kind != FIT_DOSE && fit.reasons >> FIT_FRAME & 1;
+    return !is_frame && !(fit.reasons >> FIT_PATIENT & 1);
+}
+
+static bool is_region_carried(const struct plan_writing *writing, size_t region)
+{
+    return is_carried(writing, fit_part_of_region(writing->plan, region));
+}
+
+static void report_part(const struct plan_writing *writing, struct report *lost, struct fit_part part,
+                        const char *where)
+{
+    char why[FIT_WHY_SIZE];
+    int image = fit_first_image(writing->plan);
+    struct fit_part with = image < 0 ? part : (struct fit_part){ FIT_IMAGE, (size_t)image };
+    if (is_carried(writing, part))
+        return;
+    struct fit fit = image < 0 ? fit_alone(writing->plan, part) : fit_of(writing->plan, part, with);
+    fit_sentence(writing->plan, part, with, fit.relation, why);
+    report_add(lost, REPORT_WARNING, "write.does-not-fit", where, "%s", why);
+}
+
+static void report_left_out(const struct plan_writing *writing, struct report *lost)
+{
+    const struct plan *plan = writing->plan;
+    for (size_t i = 0; i < plan->n_images; i++)
+        report_part(writing, lost, (struct fit_part){ FIT_IMAGE, i }, plan->images[i].id);
+    for (size_t i = 0; i < plan->n_doses; i++)
+        report_part(writing, lost, (struct fit_part){ FIT_DOSE, i }, plan->doses[i].id);
+    for (size_t i = 0; i < plan->n_beams; i++)
+        report_part(writing, lost, (struct fit_part){ FIT_BEAM, i }, plan->beams[i].id);
+    for (size_t r = 0; r < plan->regions.n_regions; r++)
+        report_part(writing, lost, fit_part_of_region(plan, r), plan->regions.regions[r].id);
+}
+
 static void list_images(struct plan_writing *writing)
 {
     const struct plan *plan = writing->plan;
     for (size_t i = 0; i < plan->n_images; i++) {
+        if (!is_carried(writing, (struct fit_part){ FIT_IMAGE, i }))
+            continue;
         struct plan_file_image *image = &writing->file->images[writing->file->n_images++];
         memcpy(image->id, plan->images[i].id, sizeof image->id);
         memcpy(image->name, plan->images[i].name, sizeof image->name);
@@ -86,7 +132,7 @@ static bool write_names(const struct plan_writing *writing, uint32_t layer, cons
     char path[PATH_MAX];
     for (size_t r = 0; r < set->n_regions; r++) {
         const struct region *region = &set->regions[r];
-        if (region->layer != layer)
+        if (region->layer != layer || !is_region_carried(writing, r))
             continue;
         struct label_name *label = &names.labels[names.n++];
         label->value = region->label;
@@ -117,7 +163,7 @@ static bool list_regions(struct plan_writing *writing, bool (*is_kept)[65536], s
     for (uint32_t layer = 0; layer < set->n_layers; layer++) {
         bool is_used = false;
         for (size_t r = 0; r < set->n_regions; r++)
-            is_used |= set->regions[r].layer == layer;
+            is_used |= set->regions[r].layer == layer && is_region_carried(writing, r);
         if (!is_used)
             continue;
         struct plan_file_region *region = &file->regions[file->n_regions++];
@@ -129,7 +175,8 @@ static bool list_regions(struct plan_writing *writing, bool (*is_kept)[65536], s
     }
     for (size_t r = 0; set->hierarchy == HIERARCHY_FILE && r < set->n_regions; r++) {
         int parent = set->regions[r].parent;
-        if (parent < 0 || file->n_pairs >= PLAN_FILE_MAX_PAIRS)
+        if (parent < 0 || file->n_pairs >= PLAN_FILE_MAX_PAIRS || !is_region_carried(writing, r) ||
+            !is_region_carried(writing, (size_t)parent))
             continue;
         struct plan_file_pair *pair = &file->pairs[file->n_pairs++];
         snprintf(pair->outer, sizeof pair->outer, "%s", set->regions[parent].id);
@@ -138,19 +185,36 @@ static bool list_regions(struct plan_writing *writing, bool (*is_kept)[65536], s
     return true;
 }
 
+/* Whether the dose lies on the first image; the frames of reference themselves are not written. */
+static void state_frame(const struct plan *plan, size_t dose, struct plan_file_dose *entry)
+{
+    int image = fit_first_image(plan);
+    struct fit_part part = { FIT_DOSE, dose };
+    struct fit fit =
+        image < 0 ? fit_alone(plan, part) : fit_of(plan, part, (struct fit_part){ FIT_IMAGE, (size_t)image });
+    bool is_known = image >= 0 && plan->dose_origins[dose].frame_uid[0] && plan->image_origins[image].frame_uid[0];
+    entry->has_frame = plan->doses[dose].has_frame;
+    entry->frame = plan->doses[dose].frame;
+    if (fit.reasons >> FIT_FRAME & 1 || is_known) {
+        entry->has_frame = true;
+        entry->frame = fit.reasons >> FIT_FRAME & 1 ? DOSE_FRAME_DIFFERS : DOSE_FRAME_SAME;
+    }
+}
+
 /* Files are called id_quantity; ids have no '_', so no two are called the same. */
 static void list_doses(struct plan_writing *writing)
 {
     const struct plan *plan = writing->plan;
     for (size_t i = 0; i < plan->n_doses; i++) {
         const struct dose *dose = &plan->doses[i];
+        if (!is_carried(writing, (struct fit_part){ FIT_DOSE, i }))
+            continue;
         struct plan_file_dose *entry = &writing->file->doses[writing->file->n_doses++];
         memcpy(entry->id, dose->id, sizeof entry->id);
         memcpy(entry->name, dose->name, sizeof entry->name);
         memcpy(entry->unit, dose->unit, sizeof entry->unit);
         memcpy(entry->per, dose->per, sizeof entry->per);
-        entry->has_frame = dose->has_frame;
-        entry->frame = dose->frame;
+        state_frame(plan, i, entry);
         for (size_t c = 0; c < dose->n_components; c++) {
             struct plan_file_component *component = &entry->components[entry->n_components++];
             component->quantity = dose->components[c].quantity;
@@ -262,8 +326,9 @@ static bool write_contents(struct plan_writing *writing, struct error *err)
     list_images(writing);
     bool is_written = list_regions(writing, is_kept, err);
     list_doses(writing);
-    memcpy(file->beams, plan->beams, sizeof file->beams);
-    file->n_beams = plan->n_beams;
+    for (size_t i = 0; i < plan->n_beams; i++)
+        if (is_carried(writing, (struct fit_part){ FIT_BEAM, i }))
+            file->beams[file->n_beams++] = plan->beams[i];
     is_written = is_written && write_volumes(writing, err) && plan_write_texts(plan, writing->folder, file, err) &&
                  write_plan_json(writing, err);
     free(is_kept);
@@ -384,6 +449,7 @@ bool plan_write(const struct plan *plan, const char *folder, struct report *lost
             is_written = error_set(err, ERROR_IO, "%.180s: cannot be created: %s", place, strerror(errno));
     }
     if (is_written) {
+        report_left_out(&writing, lost);
         report_cleared(&writing, lost);
     } else {
         remove_all(writing.folder);

@@ -9,7 +9,9 @@
  * preferences. A voxel of a label layer that belongs to no region (SERA's filling around the patient) is written as 0.
  *
  *   folder  a new name in an existing folder, or an empty folder
- *   lost    gets a line for each label layer with voxels that are written as 0; NULL: not wanted
+ *   lost    gets a line for each label layer with voxels that are written as 0, and for each part that is left out
+ *           because it is of another patient or, but for doses, which say so, of another frame of reference than the
+ *           first image; NULL: not wanted
  *   errors  ERROR_STATE the folder exists and holds something; ERROR_MEMORY; ERROR_IO; those of plan_file_parse, when
  *           the plan could not be opened again
  *   thread  any; uses all cores; equal plans give equal bytes */

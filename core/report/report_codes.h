@@ -261,6 +261,8 @@
       "Check that the regions fit the image; put the series they were drawn on into the folder.") \
     X("geometry.apart", "Two parts of the plan do not overlap anywhere.", \
       "One of them may be flipped, shifted or of another patient.") \
+    X("write.does-not-fit", "A part of another patient or frame of reference was not written.", \
+      "Convert the parts of each patient and frame apart.") \
     X("write.labels-cleared", "Voxels of a label map that belong to no region were not written.", \
       "Nothing; no region loses a voxel.") \
     X("header.unknown-key", "A header has keys that are not known.", "They are ignored.") \

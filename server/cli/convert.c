@@ -64,7 +64,8 @@ static bool is_about_loss(const struct report_line *line)
                                          "dose.mask-unread",
                                          "image.slices-repeated",
                                          "preferences.map",
-                                         "write.labels-cleared" };
+                                         "write.labels-cleared",
+                                         "write.does-not-fit" };
     bool is_one = line->severity == REPORT_ERROR;
     for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++)
         is_one |= strcmp(line->code, codes[i]) == 0;
