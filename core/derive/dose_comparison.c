@@ -46,13 +46,76 @@ static struct volume *merge(const struct dose_field *field, struct error *err)
     return volume;
 }
 
+/* ---- where they are compared ------------------------------------------------------------------------------------------ */
+struct limiting {
+    const struct volume *body; /* NULL: all of the grid */
+    const float *from;
+    struct volume *to;
+    struct {
+        uint64_t n_domain, n_outside;
+    } parts[MAX_THREADS];
+};
+
+static void limit_some(void *context, int part, int n_parts)
+{
+    struct limiting *limiting = context;
+    const struct grid *grid = &limiting->to->grid;
+    float *to = limiting->to->voxels;
+    uint64_t n_domain = 0, n_outside = 0;
+    for (uint32_t k = (uint32_t)part; k < grid->size[2]; k += (uint32_t)n_parts)
+        for (uint32_t j = 0; j < grid->size[1]; j++)
+            for (uint32_t i = 0; i < grid->size[0]; i++) {
+                size_t at = i + (size_t)grid->size[0] * (j + (size_t)grid->size[1] * k);
+                uint32_t univel[3];
+                to[at] = limiting->from[at];
+                if (!isfinite(to[at]))
+                    continue;
+                bool is_in =
+                    !limiting->body ||
+                    (volume_voxel_at(limiting->body, affine_point(&grid->lps_mm_from_ijk, vec3(i, j, k)), univel) &&
+                     volume_label(limiting->body, univel[0], univel[1], univel[2]));
+                if (!is_in)
+                    to[at] = NAN;
+                n_domain += is_in;
+                n_outside += !is_in;
+            }
+    limiting->parts[part].n_domain = n_domain;
+    limiting->parts[part].n_outside = n_outside;
+}
+
+/* The values of the first dose, without those outside the body. One reference; takes over `values`. */
+static struct volume *in_domain(struct dose_comparison *comparison, struct volume *values,
+                                const struct dose_comparison_choice *choice, const struct region_set *set,
+                                struct error *err)
+{
+    struct volume *body = choice->is_in_body ? body_labels(set, &choice->body, err) : NULL;
+    struct volume *limited = body || !choice->is_in_body ? volume_create_unset(&values->grid, VOXEL_F32, err) : NULL;
+    if (limited) {
+        struct limiting *limiting = mem_new(sizeof *limiting);
+        *limiting = (struct limiting){ .body = body, .from = values->voxels, .to = limited };
+        int n_parts = parallel_cores();
+        parallel_run(n_parts, limit_some, limiting);
+        for (int part = 0; part < n_parts; part++) {
+            comparison->n_domain += limiting->parts[part].n_domain;
+            comparison->n_outside += limiting->parts[part].n_outside;
+        }
+        free(limiting);
+        volume_measure(limited);
+    }
+    if (body)
+        volume_unref(body);
+    volume_unref(values);
+    return limited;
+}
+
 /* ---- difference ------------------------------------------------------------------------------------------------------- */
 struct subtracting {
     const struct volume *first;
     const struct dose_field *second;
     float *values;
+    double threshold;
     struct {
-        uint64_t n, n_without;
+        uint64_t n, n_without, n_below;
         double sum, squares, low, high;
     } parts[MAX_THREADS];
 };
@@ -61,7 +124,7 @@ static void subtract_some(void *context, int part, int n_parts)
 {
     struct subtracting *subtracting = context;
     const struct grid *grid = &subtracting->first->grid;
-    uint64_t n = 0, n_without = 0;
+    uint64_t n = 0, n_without = 0, n_below = 0;
     double sum = 0, squares = 0, low = INFINITY, high = -INFINITY;
     for (uint32_t k = (uint32_t)part; k < grid->size[2]; k += (uint32_t)n_parts)
         for (uint32_t j = 0; j < grid->size[1]; j++)
@@ -71,6 +134,10 @@ static void subtract_some(void *context, int part, int n_parts)
                 subtracting->values[at] = NAN;
                 if (!isfinite(first))
                     continue;
+                if (first < subtracting->threshold) {
+                    n_below++;
+                    continue;
+                }
                 if (!dose_field_value(subtracting->second, affine_point(&grid->lps_mm_from_ijk, vec3(i, j, k)),
                                       &second)) {
                     n_without++;
@@ -86,6 +153,7 @@ static void subtract_some(void *context, int part, int n_parts)
             }
     subtracting->parts[part].n = n;
     subtracting->parts[part].n_without = n_without;
+    subtracting->parts[part].n_below = n_below;
     subtracting->parts[part].sum = sum;
     subtracting->parts[part].squares = squares;
     subtracting->parts[part].low = low;
@@ -93,13 +161,15 @@ static void subtract_some(void *context, int part, int n_parts)
 }
 
 static bool subtract(struct dose_comparison *comparison, const struct volume *first, const struct dose_field *second,
-                     struct error *err)
+                     double threshold, struct error *err)
 {
     comparison->values = volume_create_unset(&first->grid, VOXEL_F32, err);
     struct subtracting *subtracting = comparison->values ? mem_new(sizeof *subtracting) : NULL;
     if (!subtracting)
         return false;
-    *subtracting = (struct subtracting){ .first = first, .second = second, .values = comparison->values->voxels };
+    *subtracting = (struct subtracting){
+        .first = first, .second = second, .values = comparison->values->voxels, .threshold = threshold
+    };
     int n_parts = parallel_cores();
     parallel_run(n_parts, subtract_some, subtracting);
     double sum = 0, squares = 0;
@@ -108,6 +178,7 @@ static bool subtract(struct dose_comparison *comparison, const struct volume *fi
     for (int part = 0; part < n_parts; part++) {
         comparison->n += subtracting->parts[part].n;
         comparison->n_without += subtracting->parts[part].n_without;
+        comparison->n_below += subtracting->parts[part].n_below;
         sum += subtracting->parts[part].sum;
         squares += subtracting->parts[part].squares;
         comparison->low = fmin(comparison->low, subtracting->parts[part].low);
@@ -124,18 +195,20 @@ static bool subtract(struct dose_comparison *comparison, const struct volume *fi
 
 /* ---- results ---------------------------------------------------------------------------------------------------------- */
 static bool fill(struct dose_comparison *comparison, const struct dose_field *first, const struct dose_field *second,
-                 const struct dose_comparison_choice *choice, struct error *err)
+                 const struct dose_comparison_choice *choice, const struct region_set *set, struct error *err)
 {
     if (strcmp(first->unit, second->unit) != 0)
         return error_set(err, ERROR_RANGE, "one dose is in \"%s\", the other in \"%s\": they cannot be compared",
                          first->unit, second->unit);
     struct volume *merged = merge(first, err), *other = NULL;
+    if (merged)
+        merged = in_domain(comparison, merged, choice, set, err);
     if (!merged)
         return false;
     if (choice->is_gamma) {
         if ((other = merge(second, err)))
             comparison->values = gamma_index(merged, other, &choice->gamma, &comparison->gamma, err);
-    } else if (subtract(comparison, merged, second, err))
+    } else if (subtract(comparison, merged, second, choice->gamma.threshold, err))
         memcpy(comparison->unit, first->unit, sizeof comparison->unit);
     volume_unref(merged);
     if (other)
@@ -172,7 +245,7 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
     (void)way;
     if (comparison) {
         derive_result_init(&comparison->base, &kind, 0);
-        if (fill(comparison, first, second, choice, err))
+        if (fill(comparison, first, second, choice, &derive_plan(derive)->regions, err))
             comparison->base.n_bytes = sizeof *comparison + grid_n_voxels(&comparison->values->grid) * sizeof(float);
         else {
             destroy(&comparison->base);

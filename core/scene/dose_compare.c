@@ -21,6 +21,11 @@ bool dose_compare_of(const struct snapshot *snapshot, const struct dose_scale *s
                               &choice->second, why))
         return false;
     choice->is_gamma = is_gamma;
+    choice->is_in_body = asked->domain == SCENE_COMPARE_DOMAIN_BODY && body_find(&snapshot->fits.used, &choice->body);
+    if (!choice->is_in_body)
+        memset(&choice->body, 0, sizeof choice->body);
+    choice->gamma.threshold =
+        isfinite(scale->reference) ? scale->reference * asked->threshold_percent / 100 : -INFINITY;
     if (!is_gamma)
         return true;
     if (!isfinite(scale->reference))
@@ -29,7 +34,6 @@ bool dose_compare_of(const struct snapshot *snapshot, const struct dose_scale *s
     choice->gamma.is_local = asked->normalization == SCENE_GAMMA_NORMALIZATION_LOCAL;
     choice->gamma.reference = scale->reference;
     choice->gamma.distance_mm = asked->distance_mm;
-    choice->gamma.threshold = scale->reference * asked->threshold_percent / 100;
     choice->gamma.most = most_gamma;
     return true;
 }

@@ -17,6 +17,7 @@ static void add_gamma(cJSON *json, const struct dose_comparison *comparison, dou
     dose_add_number(json, "mean", has_any ? facts->mean : NAN);
     dose_add_number(json, "max", has_any ? facts->max : NAN);
     cJSON *left_out = cJSON_AddObjectToObject(json, "left_out");
+    dose_add_number(left_out, "outside", comparison ? (double)comparison->n_outside : NAN);
     dose_add_number(left_out, "below", facts ? (double)facts->n_below : NAN);
     dose_add_number(left_out, "without", facts ? (double)facts->n_without : NAN);
     cJSON *histogram = cJSON_AddObjectToObject(json, "histogram");
@@ -38,15 +39,29 @@ static void add_difference(cJSON *json, const struct dose_comparison *comparison
     dose_add_number(difference, "high", comparison ? comparison->high : NAN);
 }
 
-static void add_method(cJSON *json, const struct scene_dose_compare *asked, const char *reference)
+/* {kind, words, voxels, all_voxels} of the difference, which the gamma index shares. */
+static void add_domain(cJSON *json, const struct snapshot *snapshot, const struct dose_comparison_choice *choice,
+                       const struct dose_comparison *comparison)
+{
+    char words[REGION_NAME_SIZE + 32] = "the whole grid of the first dose";
+    cJSON *domain = cJSON_AddObjectToObject(json, "domain");
+    if (choice->is_in_body)
+        body_words(&snapshot->plan->regions, &choice->body, words);
+    cJSON_AddStringToObject(domain, "kind", choice->is_in_body ? "body" : "grid");
+    cJSON_AddStringToObject(domain, "words", words);
+    dose_add_number(domain, "voxels", comparison ? (double)(comparison->n_domain - comparison->n_below) : NAN);
+    dose_add_number(domain, "all_voxels", comparison ? (double)comparison->n_domain : NAN);
+}
+
+static void add_method(cJSON *json, const struct scene_dose_compare *asked, bool is_in_body, const char *reference)
 {
     bool is_local = asked->normalization == SCENE_GAMMA_NORMALIZATION_LOCAL;
     char text[512];
     snprintf(text, sizeof text,
-             "Gamma index (Low et al. 1998), %s: %g %% of %s, %g mm; at the voxels of the first dose of at least %g %% "
-             "of the reference (%s); the second dose tri-linear between its voxels.",
+             "Gamma index (Low et al. 1998), %s: %g %% of %s, %g mm; at the voxels of the first dose %sof at least %g "
+             "%% of the reference (%s), the difference likewise; the second dose tri-linear between its voxels.",
              is_local ? "local" : "global", asked->dose_percent, is_local ? "the first dose at the voxel" : reference,
-             asked->distance_mm, asked->threshold_percent, reference);
+             asked->distance_mm, is_in_body ? "in the body " : "", asked->threshold_percent, reference);
     cJSON_AddStringToObject(json, "method", text);
 }
 
@@ -56,7 +71,7 @@ cJSON *answer_gamma(struct question *question, struct derive *derived, struct pr
 {
     const struct snapshot *snapshot = question->snapshot;
     const struct scene_dose_compare *asked = &snapshot->scene.dose.compare;
-    struct dose_comparison_choice index = { 0 }, difference;
+    struct dose_comparison_choice index = { 0 }, difference = { 0 };
     struct dose_comparison *comparisons[2] = { NULL, NULL };
     struct dose_scale scale;
     struct error why = { 0 };
@@ -79,9 +94,10 @@ cJSON *answer_gamma(struct question *question, struct derive *derived, struct pr
         dose_add_number(json, "distance_mm", asked->distance_mm);
         cJSON_AddStringToObject(json, "normalization", scene_gamma_normalization_words.words[asked->normalization]);
         dose_add_number(json, "threshold", scale.reference * asked->threshold_percent / 100);
+        add_domain(json, snapshot, &difference, comparisons[1]);
         add_gamma(json, comparisons[0], index.gamma.most);
         add_difference(json, comparisons[1]);
-        add_method(json, asked, scale.words);
+        add_method(json, asked, difference.is_in_body, scale.words);
         dose_add_text(json, "comparison_reason", why.code ? why.text : NULL);
     }
     for (int i = 0; i < 2; i++)

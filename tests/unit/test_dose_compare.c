@@ -22,6 +22,19 @@ static double second_dose(struct vec3 p)
     return 60 + gradient * (p.x - shift) + slope * p.y;
 }
 
+/* True if the univel that holds the point, of 1 mm with its centre at x.5, is one of the body. */
+static bool is_in_body(struct vec3 p)
+{
+    return label(vec3(floor(p.x) + 0.5, floor(p.y) + 0.5, floor(p.z) + 0.5)) > 0;
+}
+
+/* Far off outside the body, as beside a couch or in air. */
+static double wild_dose(struct vec3 p)
+{
+    double far_mm = sqrt(vec3_dot(p, p));
+    return second_dose(p) + (far_mm > 26 ? 1000 : 0); /* the second dose's voxels are up to 2.5 mm apart */
+}
+
 static void add_dose(struct plan *plan, const char *id, const struct grid *grid, double (*value)(struct vec3))
 {
     struct dose *dose = &plan->doses[plan->n_doses++];
@@ -89,18 +102,27 @@ static void a_difference_is_second_less_first_at_the_voxels_of_the_first(void **
     struct dose_comparison *difference = comparison_of(snapshot, false);
     const struct volume *values = difference->values;
     double sum = 0;
+    int n = 0, n_body = 0;
     assert_true(grid_is_same(&values->grid, &plan->doses[0].components[0].values->grid));
     assert_string_equal(difference->unit, "Gy");
     for (uint32_t at = 0; at < 14 * 12 * 10; at++) {
         struct vec3 p =
             affine_point(&values->grid.lps_mm_from_ijk, vec3(at % 14, (double)(at / 14 % 12), (double)(at / 168)));
         double expected = -gradient * shift + slope * p.y, found = (double)((const float *)values->voxels)[at];
+        n_body += is_in_body(p);
+        if (!is_in_body(p) || first_dose(p) < 8) {
+            assert_true(isnan(found));
+            continue;
+        }
         assert_close(found, expected, 2e-5);
         sum += found;
+        n++;
     }
-    assert_int_equal(difference->n, 14 * 12 * 10);
+    assert_int_equal(difference->n, n);
+    assert_int_equal(difference->n_domain, n_body);
+    assert_int_equal(difference->n_outside, 14 * 12 * 10 - n_body);
     assert_int_equal(difference->n_without, 0);
-    assert_close(difference->mean, sum / (14 * 12 * 10), 1e-6);
+    assert_close(difference->mean, sum / n, 1e-6);
     derive_result_unref(&difference->base);
     snapshot_unref(snapshot);
     plan_and_derived_destroy(plan);
@@ -117,7 +139,7 @@ static void a_gamma_index_has_the_closed_form_of_a_shifted_gradient(void **state
         struct vec3 p = affine_point(&gamma->values->grid.lps_mm_from_ijk,
                                      vec3(at % 14, (double)(at / 14 % 12), (double)(at / 168)));
         double found = (double)((const float *)gamma->values->voxels)[at];
-        if (first_dose(p) < 8) { /* 10 % of 80 */
+        if (!is_in_body(p) || first_dose(p) < 8) { /* 10 % of 80 */
             assert_true(isnan(found));
             continue;
         }
@@ -131,6 +153,64 @@ static void a_gamma_index_has_the_closed_form_of_a_shifted_gradient(void **state
     derive_result_unref(&gamma->base);
     snapshot_unref(snapshot);
     plan_and_derived_destroy(plan);
+}
+
+static void outside_the_body_nothing_is_compared_unless_asked(void **state)
+{
+    (void)state;
+    struct plan *plan = make_plan();
+    const struct grid fine = plan->doses[1].components[0].values->grid;
+    add_dose(plan, "wild", &fine, wild_dose);
+    for (int is_gamma = 0; is_gamma < 2; is_gamma++) {
+        struct snapshot *snapshots[2] = { compare(plan, SCENE_DOSE_COMPARISON_DIFFERENCE, "two"),
+                                          compare(plan, SCENE_DOSE_COMPARISON_DIFFERENCE, "wild") };
+        struct dose_comparison *same = comparison_of(snapshots[0], is_gamma),
+                               *wild = comparison_of(snapshots[1], is_gamma);
+        assert_int_equal(wild->n, same->n);
+        assert_int_equal(wild->gamma.n, same->gamma.n);
+        assert_int_equal(wild->gamma.n_passed, same->gamma.n_passed);
+        if (!is_gamma)
+            assert_close(wild->root_mean_square, same->root_mean_square, 1e-9);
+        derive_result_unref(&same->base);
+        derive_result_unref(&wild->base);
+        snapshot_unref(snapshots[0]);
+        snapshots[1]->scene.dose.compare.domain = SCENE_COMPARE_DOMAIN_GRID;
+        struct dose_comparison *all = comparison_of(snapshots[1], is_gamma);
+        assert_int_equal(all->n_domain, 14 * 12 * 10);
+        assert_int_equal(all->n_outside, 0);
+        if (!is_gamma)
+            assert_true(all->root_mean_square > 100);
+        derive_result_unref(&all->base);
+        snapshot_unref(snapshots[1]);
+    }
+    plan_and_derived_destroy(plan);
+}
+
+static void the_body_is_the_largest_region_with_those_inside_or_all_of_a_layer_of_organs(void **state)
+{
+    (void)state;
+    struct region regions_of[4] = { { .name = "scalp", .parent = -1, .label = 1, .volume_cm3 = 300 },
+                                    { .name = "brain", .parent = 0, .label = 2, .volume_cm3 = 1400 },
+                                    { .name = "couch", .parent = -1, .label = 3, .volume_cm3 = 500 },
+                                    { .name = "target", .parent = 1, .layer = 1, .label = 1, .volume_cm3 = 40 } };
+    struct region_set set = { .n_layers = 2, .regions = regions_of, .n_regions = 4 };
+    struct body body;
+    char words[REGION_NAME_SIZE + 32];
+    assert_true(body_find(&set, &body));
+    assert_int_equal(body.layer, 0);
+    assert_int_equal(body.region, 0);
+    body_words(&set, &body, words);
+    assert_string_equal(words, "scalp with the regions inside");
+    for (int r = 0; r < 3; r++) {
+        regions_of[r].parent = -1;
+        regions_of[r].volume_cm3 = 100;
+    }
+    assert_true(body_find(&set, &body));
+    assert_int_equal(body.region, -1);
+    body_words(&set, &body, words);
+    assert_string_equal(words, "all regions of the label layer");
+    set.n_regions = 0;
+    assert_false(body_find(&set, &body));
 }
 
 static void a_wash_of_differences_diverges_and_one_of_indices_parts_at_one(void **state)
@@ -218,6 +298,8 @@ int main(void)
         cmocka_unit_test(a_gamma_index_has_the_closed_form_of_a_shifted_gradient),
         cmocka_unit_test(a_wash_of_differences_diverges_and_one_of_indices_parts_at_one),
         cmocka_unit_test(the_wash_of_an_error_shows_it_in_percent_of_the_value),
+        cmocka_unit_test(outside_the_body_nothing_is_compared_unless_asked),
+        cmocka_unit_test(the_body_is_the_largest_region_with_those_inside_or_all_of_a_layer_of_organs),
         cmocka_unit_test(without_a_second_dose_there_is_a_sentence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -27,8 +27,9 @@ export function compareBlock(world, isDisabled, changeScene) {
     <dl class="dose-list"><dt>Second dose</dt><dd><select class="dose-select" aria-label="Second dose" ?disabled=${isDisabled} @change=${(event) => change({ id: event.target.value, ...(!event.target.value && { mode: 'none' }) }, event)}>
         <option value="" ?selected=${!second} .selected=${live(!second)}>none</option>${others.map((dose) => html`<option value=${dose.id} ?disabled=${Boolean(why(dose))} title=${why(dose)?.reason ?? nothing} ?selected=${dose === second} .selected=${live(dose === second)}>${doseName(dose)}, ${why(dose)?.words ?? unitOf(dose, scene.dose.quantity)}</option>`)}</select></dd>
       ${compare.mode === 'difference' ? field('span_percent', 'Strongest colour at ±', '%', 0.01, 1000) : nothing}
-      ${compare.mode === 'gamma' ? html`${field('dose_percent', 'Dose difference', '%', 0.01, 100)}${field('distance_mm', 'Distance to agreement', 'mm', 0.01, 50)}${field('threshold_percent', 'Leave out below', '%', 0, 100)}
-        <dt>Difference is of</dt><dd>${segment('Normalization of gamma', [['global', 'reference'], ['local', 'point']], compare.normalization, isDisabled, (normalization, event) => change({ normalization }, event))}</dd>` : nothing}</dl>
+      ${compare.mode === 'gamma' ? html`${field('dose_percent', 'Dose difference', '%', 0.01, 100)}${field('distance_mm', 'Distance to agreement', 'mm', 0.01, 50)}
+        <dt>Difference is of</dt><dd>${segment('Normalization of gamma', [['global', 'reference'], ['local', 'point']], compare.normalization, isDisabled, (normalization, event) => change({ normalization }, event))}</dd>` : nothing}
+      ${['gamma', 'difference'].includes(compare.mode) ? html`${field('threshold_percent', 'Leave out below', '%', 0, 100)}<dt>Compared in</dt><dd>${segment('Domain of the comparison', [['body', 'the body', 'The largest region of the label layer with those inside it'], ['grid', 'the whole grid']], compare.domain, isDisabled, (domain, event) => change({ domain }, event))}</dd>` : nothing}</dl>
     ${['gamma', 'difference'].includes(compare.mode) && second ? comparedWords(world) : nothing}</section>`;
 }
 
@@ -40,10 +41,12 @@ function comparedWords({ room, doses }) {
   if (!result) return html`<p class="note">Comparing …</p>`;
   if (result.comparison_reason) return html`<p class="note why">${icon('warning', 12)} ${result.comparison_reason}</p>`;
   const { difference, unit } = result;
+  const { domain } = result;
+  const where = domain ? html`<p class="note">${number(domain.voxels)} of ${number(domain.all_voxels)} voxels ${domain.kind === 'body' ? `in the body (${domain.words})` : 'of the whole grid'} have at least ${number(compare.threshold_percent, compare.threshold_percent % 1 ? 1 : 0)} % of the reference.${domain.kind === 'body' ? ' Outside the body nothing is compared.' : ''}</p>` : nothing;
   return html`<div class=${`dose-result${isOld ? ' old' : ''}`}>${compare.mode === 'gamma'
     ? html`<p>Pass rate <b>${number(result.pass_percent, 1)} %</b> of ${number(result.voxels)} voxels</p><p class="note">γ ≤ 1 passes; mean ${significant(result.mean)}, largest ${significant(result.max)}${result.max >= 2 ? ' or more' : ''}.</p>`
     : html`<p>Mean difference <b>${signed(difference.mean, 3)} ${difference.unit || unit}</b></p><p class="note">From ${signed(difference.low, 3)} to ${signed(difference.high, 3)} ${difference.unit || unit}, root mean square ${significant(difference.root_mean_square)}.</p>`}
-    ${result.method ? html`<p class="note">${result.method}</p>` : nothing}</div>`;
+    ${where}${result.method ? html`<p class="note">${result.method}</p>` : nothing}</div>`;
 }
 
 export function coverageBlock(world, isDisabled, changeScene) {
