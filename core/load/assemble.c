@@ -20,6 +20,7 @@
 #include "core/load/plan_ids.h"
 #include "core/load/region_builder.h"
 #include "core/load/region_hierarchy.h"
+#include "core/load/registrations.h"
 #include "core/load/settle_parts.h"
 #include "core/plan/plan_bounds.h"
 
@@ -362,6 +363,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
     bool is_whole = true;
     uint64_t n_rois = 0;
     origins_begin(loading);
+    registrations_read(loading);
     for (size_t i = 0; i < loading->n_readings; i++)
         n_rois += loading->readings[i].structs ? loading->readings[i].structs->n_rois : 0;
     loading_begin(loading, n_rois);
@@ -378,6 +380,8 @@ bool plan_assemble(struct loading *loading, struct error *err)
     if (is_whole) {
         loading_phase(loading, "measuring regions", "", 95, 100);
         region_builder_order(&builder);
+        registrations_move_images_and_regions(plan);
+        registrations_warn(plan);
         region_set_measure(&plan->regions);
         note_empty_regions(plan);
         is_whole = apply_hierarchy(loading, &builder, err);
@@ -387,6 +391,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
         return false;
     plan_add_preferences(plan, &loading->folder, loading->file);
     add_doses(loading);
+    registrations_move_doses(plan);
     plan_add_curves(plan, &loading->folder, loading->file);
     plan_measure_body(plan);
     add_beams(loading);

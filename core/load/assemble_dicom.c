@@ -12,6 +12,7 @@
 #include "core/load/dicom_parts.h"
 #include "core/load/origins.h"
 #include "core/load/plan_ids.h"
+#include "core/load/registrations.h"
 
 /* ---- structure sets --------------------------------------------------------------------------------------------- */
 
@@ -271,6 +272,7 @@ void plan_dicom_add_beams(struct loading *loading)
             struct beam *beam = &plan->beams[plan->n_beams];
             *beam = from->beams[b];
             plan->beam_origins[plan->n_beams] = origin_of_reading(loading, &loading->readings[i]);
+            registrations_move_beam(plan, plan->n_beams);
             double outside_mm = outside_images_mm(plan, beam->target_lps_mm);
             if (outside_mm > 0)
                 report_add(&plan->report, REPORT_WARNING, "beam.outside", loading->readings[i].path,

@@ -79,22 +79,10 @@ static size_t count_studies(const struct dicom_index *index)
 
 static void report_studies(const struct dicom_index *index, struct report *report)
 {
-    size_t n_studies = count_studies(index), n_frames = 0;
-    for (size_t s = 0; s < index->n_stacks; s++) {
-        const char *frame = index->stacks[s].frame_of_reference;
-        bool is_new = frame[0] != 0;
-        for (size_t before = 0; is_new && before < s; before++)
-            is_new = strcmp(index->stacks[before].frame_of_reference, frame) != 0;
-        n_frames += is_new;
-    }
+    size_t n_studies = count_studies(index);
     if (n_studies > 1)
         report_add(report, REPORT_NOTE, "dicom.several-studies", "",
                    "The DICOM files are of %zu studies; all of them are shown together.", n_studies);
-    if (n_frames > 1)
-        report_add(report, REPORT_WARNING, "geometry.frames-differ", "",
-                   "The image series have %zu frames of reference; nothing says how "
-                   "they lie to each other, and their coordinates were taken as they are.",
-                   n_frames);
 }
 
 /* ---- a folder without plan.json --------------------------------------------------------------------------------- */

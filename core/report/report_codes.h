@@ -30,6 +30,12 @@
     X("geometry.centred", \
       "The header does not say where the picture lies across its plane; it was centred on the axes.", \
       "Check that image and regions fit.") \
+    X("registration.read", "The folder says how two frames of reference lie to each other.", \
+      "Nothing; it is applied where a part needs it.") \
+    X("registration.applied", "A part was brought into the image's frame of reference by a registration.", \
+      "Check on anatomy that the two fit.") \
+    X("registration.not-applied", "A registration is not rigid, or cannot be used.", \
+      "Parts of the two frames of reference are not used together.") \
     X("image.slices-differ", "The header's number of slices is not what the data holds.", \
       "The data was believed; correct the header.") \
     X("image.locations-differ", "Slice positions and reference location with spacing disagree.", \

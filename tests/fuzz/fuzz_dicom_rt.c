@@ -1,6 +1,7 @@
-/* RT objects, segmentations and contours, chosen by the first byte. A DICOM file is read as all four kinds, and its
- * regions are filled, also on an image that may not contain them. Other input gives points, contours and a grid
- * directly. */
+/* RT objects, registrations, segmentations and contours, chosen by the first byte. A DICOM file is read as all five
+ * kinds, and its regions are filled, also on an image that may not contain them. Other input gives points, contours and
+ * a grid directly. */
+#include "core/formats/dicom/dicom_registration.h"
 #include "core/formats/dicom/dicom_rtdose.h"
 #include "core/formats/dicom/dicom_rtplan.h"
 #include "core/formats/dicom/dicom_rtstruct.h"
@@ -85,6 +86,10 @@ static void read_objects(const struct dicom_file *file)
         fill(&set->rois[0].contours, 1, grid_init(&image, (uint32_t[3]){ 20, 20, 2 }, &map, NULL) ? &image : NULL);
     }
     rtstruct_destroy(set);
+    struct dicom_registration found[4];
+    size_t n_found = dicom_registration_read(file, "fuzz.dcm", found, 4, &report);
+    for (size_t i = 0; i < n_found; i++)
+        REQUIRE(fabs(affine_determinant(&found[i].to_from_lps_mm) - 1) < 0.01);
     struct nrrd_layers layers;
     err = (struct error){ 0 };
     if (dicom_seg_read(file, "fuzz.dcm", "", &layers, &report, &err)) {

@@ -198,3 +198,27 @@ void made_part_structs(const char *folder, const char *file, const struct made_o
     refer_end(&made);
     end(&made, folder, file);
 }
+
+void made_part_registration(const char *folder, const char *file, const struct made_owner *owner, const char *from,
+                            const char *to, const char *type, const char *matrix)
+{
+    struct made_dicom made;
+    begin(&made, owner, CLASSES "66.1", "1.2.91", "REG", NULL, NULL);
+    put_text(&made, TAG(0x0020, 0x0052), "UI", to);
+    made_sequence(&made, TAG(0x0070, 0x0308));
+    made_item(&made); /* the frame itself, as most programs write it */
+    put_text(&made, TAG(0x0020, 0x0052), "UI", to);
+    made_item_end(&made);
+    made_item(&made);
+    put_text(&made, TAG(0x0020, 0x0052), "UI", from);
+    made_sequence(&made, TAG(0x0070, 0x0309));
+    made_item(&made);
+    made_sequence(&made, TAG(0x0070, 0x030a));
+    made_item(&made);
+    made_text(&made, TAG(0x0070, 0x030c), "CS", type);
+    made_text(&made, TAG(0x3006, 0x00c6), "DS", matrix);
+    refer_end(&made);
+    refer_end(&made);
+    refer_end(&made);
+    end(&made, folder, file);
+}

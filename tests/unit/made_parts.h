@@ -33,3 +33,7 @@ void made_part_plan(const char *folder, const char *file, const struct made_owne
 /* A structure set with one box, "Box", of 6 x 6 mm on the slices at 3 and 6 mm. */
 void made_part_structs(const char *folder, const char *file, const struct made_owner *owner, const char *uid,
                        const char *series);
+
+/* A registration of frame `from` to frame `to` by a matrix of 16 numbers, rows first, as text. */
+void made_part_registration(const char *folder, const char *file, const struct made_owner *owner, const char *from,
+                            const char *to, const char *type, const char *matrix);

@@ -49,7 +49,7 @@ static const struct {
     { "12.1", DICOM_KIND_OTHER, "picture of blood vessels" },
     { "30", DICOM_KIND_OTHER, "parametric map" },
     { "66", DICOM_KIND_OTHER, "set of raw data" },
-    { "66.1", DICOM_KIND_OTHER, "registration" },
+    { "66.1", DICOM_KIND_REGISTRATION, "registration" },
     { "66.3", DICOM_KIND_OTHER, "deformable registration" },
     { "66.4", DICOM_KIND_SEGMENTATION, "segmentation" },
     { "88.11", DICOM_KIND_OTHER, "report" },

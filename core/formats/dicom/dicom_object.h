@@ -15,8 +15,9 @@ enum dicom_kind {
     DICOM_KIND_STRUCT, /* RTSTRUCT */
     DICOM_KIND_DOSE,   /* RTDOSE */
     DICOM_KIND_SEGMENTATION,
-    DICOM_KIND_PLAN, /* RTPLAN, photons, electrons or ions */
-    DICOM_KIND_OTHER /* not used; reason says why not */
+    DICOM_KIND_PLAN,         /* RTPLAN, photons, electrons or ions */
+    DICOM_KIND_REGISTRATION, /* REG, rigid or affine */
+    DICOM_KIND_OTHER         /* not used; reason says why not */
 };
 
 /* One person, as files of the folder say. Text is UTF-8; "" not given. */

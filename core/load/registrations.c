@@ -1,0 +1,238 @@
+/* Reads registrations and applies them. */
+#include "core/load/registrations.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/formats/dicom/dicom_registration.h"
+#include "core/load/dicom_parts.h"
+
+/* ---- reading ---------------------------------------------------------------------------------------------------- */
+
+static void add_registration(struct plan *plan, const struct dicom_registration *from, int patient)
+{
+    struct plan_registration *added = &plan->registrations[plan->n_registrations++];
+    snprintf(added->from_uid, sizeof added->from_uid, "%.64s", from->from_uid);
+    snprintf(added->to_uid, sizeof added->to_uid, "%.64s", from->to_uid);
+    added->to_from_lps_mm = from->to_from_lps_mm;
+    added->patient = patient;
+}
+
+static void read_object(struct loading *loading, const struct dicom_object *object)
+{
+    struct plan *plan = loading->plan;
+    struct plan_dicom_file opened;
+    struct dicom_registration found[ORIGIN_MAX_REGISTRATIONS];
+    struct error err = { 0 };
+    if (!plan_dicom_open(&loading->folder, object->path, &opened, &err)) {
+        report_add(&plan->report, REPORT_ERROR, "dicom.unreadable", object->path, "%s", err.text);
+        return;
+    }
+    size_t n = dicom_registration_read(opened.file, object->path, found,
+                                       ORIGIN_MAX_REGISTRATIONS - plan->n_registrations, &plan->report);
+    plan_dicom_close(&opened);
+    for (size_t i = 0; i < n; i++)
+        add_registration(plan, &found[i], object->patient);
+    report_add(&plan->report, REPORT_NOTE, "registration.read", object->path,
+               "A registration of frames of reference with %zu rigid transformation%s.", n, n == 1 ? "" : "s");
+}
+
+void registrations_read(struct loading *loading)
+{
+    const struct dicom_index *index = loading->parts.dicom;
+    for (size_t i = 0; index && i < index->n_objects; i++)
+        if (index->objects[i].kind == DICOM_KIND_REGISTRATION)
+            read_object(loading, &index->objects[i]);
+}
+
+/* ---- applying --------------------------------------------------------------------------------------------------- */
+
+static const char *world_frame(const struct plan *plan)
+{
+    return plan->n_images > 0 ? plan->image_origins[0].frame_uid : "";
+}
+
+/* The map from the part's frame of reference to that of the first image, over one registration, in its direction or
+ * against it. NULL: there is none, or none is needed. */
+static const struct plan_registration *find_map(const struct plan *plan, const struct part_origin *origin,
+                                                struct affine *map)
+{
+    const char *world = world_frame(plan);
+    if (!world[0] || !origin->frame_uid[0] || strcmp(origin->frame_uid, world) == 0)
+        return NULL;
+    for (size_t i = 0; i < plan->n_registrations; i++) {
+        const struct plan_registration *registration = &plan->registrations[i];
+        if (registration->patient != origin->patient)
+            continue;
+        if (strcmp(registration->from_uid, origin->frame_uid) == 0 && strcmp(registration->to_uid, world) == 0) {
+            *map = registration->to_from_lps_mm;
+            return registration;
+        }
+        if (strcmp(registration->to_uid, origin->frame_uid) == 0 && strcmp(registration->from_uid, world) == 0 &&
+            affine_invert(&registration->to_from_lps_mm, map))
+            return registration;
+    }
+    return NULL;
+}
+
+static bool move_grid(struct volume *volume, const struct affine *map)
+{
+    struct affine moved = affine_compose(map, &volume->grid.lps_mm_from_ijk);
+    struct grid grid;
+    if (!grid_init(&grid, volume->grid.size, &moved, NULL))
+        return false;
+    volume->grid = grid;
+    return true;
+}
+
+static void say(struct plan *plan, const char *what, const char *name, const char *where, const struct affine *map)
+{
+    double cosine = (map->columns[0].x + map->columns[1].y + map->columns[2].z - 1) / 2;
+    double angle_deg = acos(fmax(-1, fmin(1, cosine))) * 180 / 3.14159265358979323846;
+    report_add(&plan->report, REPORT_NOTE, "registration.applied", where,
+               "%s \"%s\" lies in another frame of reference than the image \"%s\"; the registration of the two was "
+               "applied: a turn of %.3g degrees and a shift of (%.4g, %.4g, %.4g) mm.",
+               what, name, plan->images[0].id, angle_deg, map->origin.x, map->origin.y, map->origin.z);
+}
+
+static void mark(struct plan *plan, struct part_origin *origin)
+{
+    snprintf(origin->frame_uid, sizeof origin->frame_uid, "%s", world_frame(plan));
+    origin->is_registered = true;
+}
+
+static bool refuse(struct plan *plan, const char *what, const char *name, const char *where, const char *why)
+{
+    report_add(&plan->report, REPORT_WARNING, "registration.not-applied", where,
+               "The registration was not applied to %s \"%s\": %s.", what, name, why);
+    return false;
+}
+
+static const struct part_origin *origin_of_region(const struct plan *plan, const struct region *region)
+{
+    return region->origin > 0 && region->origin <= plan->n_region_origins ? &plan->region_origins[region->origin - 1]
+                                                                          : NULL;
+}
+
+static bool is_of_frame(const struct part_origin *origin, const struct part_origin *as)
+{
+    return origin && origin->patient == as->patient && strcmp(origin->frame_uid, as->frame_uid) == 0;
+}
+
+/* True if every region of the layer is of the frame of reference and patient of `as`. */
+static bool is_of_one_frame(const struct plan *plan, size_t layer, const struct part_origin *as)
+{
+    for (size_t r = 0; r < plan->regions.n_regions; r++)
+        if (plan->regions.regions[r].layer == layer &&
+            !is_of_frame(origin_of_region(plan, &plan->regions.regions[r]), as))
+            return false;
+    return true;
+}
+
+/* Moves every layer with a region of the frame and patient of `as`, or none. */
+static bool move_layers(struct plan *plan, const struct part_origin *as, const struct affine *map)
+{
+    bool is_moved[REGION_MAX_LAYERS] = { false };
+    for (size_t r = 0; r < plan->regions.n_regions; r++) {
+        const struct region *region = &plan->regions.regions[r];
+        if (!is_of_frame(origin_of_region(plan, region), as))
+            continue;
+        if (!is_of_one_frame(plan, region->layer, as))
+            return refuse(plan, "regions", region->name, as->path,
+                          "they share a layer with regions of another frame of reference");
+        is_moved[region->layer] = true;
+    }
+    for (size_t l = 0; l < plan->regions.n_layers; l++)
+        if (is_moved[l] && !move_grid(plan->regions.layers[l], map))
+            return refuse(plan, "regions", "", as->path, "the grid would lie out of bounds");
+    return true;
+}
+
+/* Sources of one frame of reference may share layers, and are moved together. */
+static void move_regions(struct plan *plan)
+{
+    for (size_t s = 0; s < plan->n_region_origins; s++) {
+        struct affine map;
+        const struct part_origin as = plan->region_origins[s];
+        if (!find_map(plan, &as, &map) || !move_layers(plan, &as, &map))
+            continue;
+        say(plan, "Regions of", as.path, as.path, &map);
+        for (size_t other = s; other < plan->n_region_origins; other++)
+            if (is_of_frame(&plan->region_origins[other], &as))
+                mark(plan, &plan->region_origins[other]);
+    }
+}
+
+void registrations_move_images_and_regions(struct plan *plan)
+{
+    for (size_t i = 1; i < plan->n_images; i++) {
+        struct affine map;
+        struct part_origin *origin = &plan->image_origins[i];
+        if (!find_map(plan, origin, &map))
+            continue;
+        if (!move_grid(plan->images[i].volume, &map)) {
+            (void)refuse(plan, "image", plan->images[i].id, origin->path, "it would lie out of bounds");
+            continue;
+        }
+        say(plan, "Image", plan->images[i].id, origin->path, &map);
+        mark(plan, origin);
+    }
+    move_regions(plan);
+}
+
+static bool move_dose(struct dose *dose, const struct affine *map)
+{
+    bool is_moved = !dose->mask || move_grid(dose->mask, map);
+    for (size_t c = 0; is_moved && c < dose->n_components; c++)
+        is_moved = move_grid(dose->components[c].values, map) &&
+                   (!dose->components[c].error || move_grid(dose->components[c].error, map));
+    return is_moved;
+}
+
+void registrations_move_doses(struct plan *plan)
+{
+    for (size_t d = 0; d < plan->n_doses; d++) {
+        struct affine map;
+        struct part_origin *origin = &plan->dose_origins[d];
+        if (origin->is_stated_other || !find_map(plan, origin, &map))
+            continue;
+        if (!move_dose(&plan->doses[d], &map)) { /* some of its grids may have moved: it fits nothing */
+            origin->is_stated_other = !refuse(plan, "dose", plan->doses[d].id, origin->path, "out of bounds");
+            continue;
+        }
+        say(plan, "Dose", plan->doses[d].name, origin->path, &map);
+        mark(plan, origin);
+    }
+}
+
+void registrations_move_beam(struct plan *plan, size_t index)
+{
+    struct affine map;
+    struct beam *beam = &plan->beams[index];
+    if (!find_map(plan, &plan->beam_origins[index], &map))
+        return;
+    beam->entry_lps_mm = affine_point(&map, beam->entry_lps_mm);
+    beam->target_lps_mm = affine_point(&map, beam->target_lps_mm);
+    beam->delivery.collimator_x_lps = affine_vector(&map, beam->delivery.collimator_x_lps);
+    beam->delivery.collimator_y_lps = affine_vector(&map, beam->delivery.collimator_y_lps);
+    say(plan, "Beam", beam->name, plan->beam_origins[index].path, &map);
+    mark(plan, &plan->beam_origins[index]);
+}
+
+void registrations_warn(struct plan *plan)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < plan->n_images; i++) {
+        const char *frame = plan->image_origins[i].frame_uid;
+        bool is_new = frame[0] != 0;
+        for (size_t before = 0; is_new && before < i; before++)
+            is_new = strcmp(plan->image_origins[before].frame_uid, frame) != 0;
+        n += is_new;
+    }
+    if (n > 1)
+        report_add(&plan->report, REPORT_WARNING, "geometry.frames-differ", "",
+                   "The image series have %zu frames of reference; nothing says how they lie to each other, and their "
+                   "coordinates were taken as they are.",
+                   n);
+}
