@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/annotate/describe_fits.h"
 #include "core/annotate/words.h"
 #include "core/render/visible/draw_compare.h"
 #include "core/render/visible/isoline_labels.h"
@@ -216,7 +217,7 @@ static bool add_comparison(struct annotations *annotations, const struct snapsho
         return true;
     }
     fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, (size_t)second }, &use, why);
-    (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Not compared: %.230s", why);
+    fits_add_sentence(annotations, ANNOTATION_DOSE, why);
     return false;
 }
 
@@ -226,8 +227,9 @@ void dose_describe(struct annotations *annotations, const struct snapshot *snaps
     if (!dose_is_described(snapshot))
         return;
     if (!dose_scale_of(snapshot, &scale)) {
-        (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Dose not drawn: %.200s",
-                       scale.why.text);
+        char sentence[sizeof scale.why.text + 20];
+        (void)snprintf(sentence, sizeof sentence, "Dose not drawn: %s", scale.why.text);
+        fits_add_sentence(annotations, ANNOTATION_DOSE, sentence);
         dose_scale_finish(&scale);
         return;
     }

@@ -4,7 +4,7 @@
 #include "core/annotate/annotate.h"
 #include "core/scene/snapshot.h"
 
-enum { DESCRIBE_DOSE_MAX_ITEMS = 96 };
+enum { DESCRIBE_DOSE_MAX_ITEMS = 104 };
 /* Adds items of the rows ANNOTATION_DOSE and ANNOTATION_LEVELS, at most DESCRIBE_DOSE_MAX_ITEMS; none if the scene
  * shows nothing of a dose. */
 void dose_describe(struct annotations *annotations, const struct snapshot *snapshot);

@@ -11,6 +11,7 @@
 #include "core/annotate/describe.h"
 #include "core/base/clock.h"
 #include "core/base/file_write.h"
+#include "core/base/mem.h"
 #include "core/encode/encode.h"
 #include "core/render/render.h"
 #include "core/render/visible/visible.h"
@@ -41,7 +42,42 @@ struct render_arguments {
     double from_deg[2];
     int quality;
     bool has_annotations;
+    const char *accepted[ACCEPTANCES_MAX]; /* "THING=WITH" */
+    size_t n_accepted;
 };
+
+/* False: that is one too many, or has no '='. */
+static bool add_acceptance(struct render_arguments *arguments, const char *pair)
+{
+    const char *equals = strchr(pair, '=');
+    if (arguments->n_accepted == ACCEPTANCES_MAX || !equals || equals == pair || !equals[1]) {
+        fprintf(stderr, "beamroom render: --accept '%.100s' is not THING=WITH, such as dose:plan=image:ct\n", pair);
+        return false;
+    }
+    arguments->accepted[arguments->n_accepted++] = pair;
+    return true;
+}
+
+/* False with err: a part that the plan does not have, or no memory. */
+static bool list_acceptances(const struct render_arguments *arguments, const struct plan *plan,
+                             struct acceptances *accepted, struct error *err)
+{
+    *accepted = (struct acceptances){ 0 };
+    accepted->items = mem_array(arguments->n_accepted + 1, sizeof *accepted->items, UINT64_MAX, err);
+    if (!accepted->items)
+        return false;
+    for (size_t i = 0; i < arguments->n_accepted; i++) {
+        struct acceptance *item = &accepted->items[accepted->n++];
+        struct fit_part part;
+        const char *pair = arguments->accepted[i], *equals = strchr(pair, '=');
+        snprintf(item->thing, sizeof item->thing, "%.*s", (int)(equals - pair), pair);
+        snprintf(item->with, sizeof item->with, "%s", equals + 1);
+        snprintf(item->by, sizeof item->by, "the command line");
+        if (!fit_part_read(plan, item->thing, &part) || !fit_part_read(plan, item->with, &part))
+            return error_set(err, ERROR_NOT_FOUND, "--accept '%.100s' names a part that the plan does not have", pair);
+    }
+    return true;
+}
 
 static void print_help(void)
 {
@@ -62,7 +98,9 @@ static void print_help(void)
         "                    its entry, and what lies before; given again: one more plane\n"
         "  --no-caps         leaves cuts of --clip open, so that they show what is hollow\n"
         "  --window C/W      the image's window: centre and width, in its unit\n"
-        "  --dose ID         the dose that is shown; --accept-dose: also if it may not belong to the image\n"
+        "  --dose ID         the dose that is shown\n"
+        "  --accept A=B      uses two parts though they do not fit, such as dose:plan=image:ct; the caption says so; given\n"
+        "                    again: one more pair\n"
         "  --quantity WORD   weighted, total, boron, nitrogen, fast, gamma, isoeffective and others of the scene\n"
         "  --ppm N           boron in blood; --tissue ID: the weights of this region everywhere\n"
         "  --reference R     what 100 %% is: body, file, value=N, region-max=ID, region-mean=ID or point=X,Y,Z\n"
@@ -243,6 +281,7 @@ static struct snapshot *make_snapshot(struct derive *derived, const struct rende
     struct view view = { 0 };
     struct problem problem = { 0 };
     struct snapshot *snapshot = NULL;
+    struct acceptances accepted = { 0 };
     char field[128] = "";
 
     scene_for_plan(plan, &scene);
@@ -265,10 +304,16 @@ static struct snapshot *make_snapshot(struct derive *derived, const struct rende
         refuse_problem("view", &problem, err);
         goto done;
     }
-    snapshot = snapshot_create(derived, &scene, &view, 0, field, err);
+    if (!list_acceptances(arguments, plan, &accepted, err)) {
+        scene_finish(&scene);
+        view_finish(&view);
+        goto done;
+    }
+    snapshot = snapshot_create_accepted(derived, &scene, &view, &accepted, 0, field, err);
     if (!snapshot && *field)
         error_prefix(err, "%s", field);
 done:
+    acceptances_finish(&accepted);
     cJSON_Delete(document);
     cJSON_Delete(defaults);
     cJSON_Delete(scene_json);
@@ -415,11 +460,9 @@ static bool codec_from_path(const char *path, enum encode_codec *codec)
 /* Checks the words of the options, before the plan is open. */
 static bool check_words(const struct render_arguments *arguments, struct error *err)
 {
-    struct render_dose dose = arguments->dose;
-    dose.is_accepted = false; /* of which dose is known once the plan is open */
     cJSON *nothing = cJSON_CreateObject(), *view = cJSON_CreateObject();
     cJSON *shown = render_show_patch(&arguments->show, nothing, err);
-    cJSON *dosed = shown ? render_dose_patch(&dose, nothing, err) : NULL;
+    cJSON *dosed = shown ? render_dose_patch(&arguments->dose, nothing, err) : NULL;
     cJSON *beam = dosed ? render_beam_patch(&arguments->beam, NULL, nothing, err) : NULL;
     bool is_good = beam && render_beam_add_view(&arguments->beam, view, err);
     cJSON_Delete(shown);
@@ -447,7 +490,7 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
         { "clip", required_argument, NULL, 'c' },
         { "no-caps", no_argument, NULL, 'n' },
         { "dose", required_argument, NULL, 'd' },
-        { "accept-dose", no_argument, NULL, 'A' },
+        { "accept", required_argument, NULL, 'A' },
         { "quantity", required_argument, NULL, 'Q' },
         { "ppm", required_argument, NULL, 'P' },
         { "tissue", required_argument, NULL, 'T' },
@@ -498,7 +541,10 @@ static bool parse_arguments(int argc, char **argv, struct render_arguments *argu
             break;
         case 'n': arguments->show.is_uncapped = true; break;
         case 'd': arguments->dose.dose = optarg; break;
-        case 'A': arguments->dose.is_accepted = true; break;
+        case 'A':
+            if (!add_acceptance(arguments, optarg))
+                return false;
+            break;
         case 'Q': arguments->dose.quantity = optarg; break;
         case 'P': arguments->dose.ppm = optarg; break;
         case 'T': arguments->dose.tissue = optarg; break;

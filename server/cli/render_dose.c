@@ -128,7 +128,7 @@ static void add_texture(const char *texture, const cJSON *scene, cJSON *patch)
         cJSON_AddStringToObject(render_member(render_member(patch, "regions"), region->string), "texture", texture);
 }
 
-static bool add_plain(const struct render_dose *options, const cJSON *scene, cJSON *dose, struct error *err)
+static bool add_plain(const struct render_dose *options, cJSON *dose, struct error *err)
 {
     double ppm;
     if (options->dose)
@@ -148,18 +148,13 @@ static bool add_plain(const struct render_dose *options, const cJSON *scene, cJS
         cJSON_AddTrueToObject(render_member(dose, "surfaces"), "visible");
         cJSON_AddStringToObject(render_member(dose, "surfaces"), "grid", options->isodoses);
     }
-    const char *id = options->dose ? options->dose : json_text(render_field(scene, "dose"), "id");
-    if (options->is_accepted && (!id || !*id))
-        return error_set(err, ERROR_RANGE, "--accept-dose needs --dose ID: a person accepts one dose");
-    if (options->is_accepted)
-        cJSON_AddTrueToObject(render_member(render_member(dose, "accepted"), id), "accepted");
     return true;
 }
 
 cJSON *render_dose_patch(const struct render_dose *options, const cJSON *scene, struct error *err)
 {
     cJSON *patch = cJSON_CreateObject(), *dose = cJSON_CreateObject();
-    bool is_good = add_plain(options, scene, dose, err) &&
+    bool is_good = add_plain(options, dose, err) &&
                    (!options->reference || add_reference(options->reference, dose, err)) &&
                    (!options->wash || add_wash(options->wash, dose, err)) &&
                    (!(options->n_levels > 0 || options->isodoses) || add_levels(options, scene, dose, err));

@@ -18,7 +18,7 @@ struct render_dose {
     const char *texture;                        /* "none", "image", "dose": of the regions that are visible */
     const char *levels[RENDER_DOSE_MAX_LEVELS]; /* "VALUE", "VALUE%" or "VALUEGy", perhaps "=#rrggbb": these alone */
     int n_levels;
-    bool has_lines, is_accepted;
+    bool has_lines;
 };
 
 /* scene: the document of a whole scene, after all other options. The patch is the caller's. NULL with err: ERROR_RANGE

@@ -136,7 +136,8 @@ describe('the figures of the thesis, by one command each', () => {
     assert.match(fails('--reference', 'point=1,2'), /--reference 'point=1,2' is not/);
     assert.match(fails('--ppm', 'many'), /--ppm 'many' is not a number/);
     assert.match(fails('--dose', 'mine'), /dose/);
-    assert.match(fails('--accept-dose'), /--accept-dose needs --dose/);
+    assert.match(fails('--accept', 'dose:none'), /--accept 'dose:none' is not THING=WITH/);
+    assert.match(fails('--accept', 'dose:none=image:ct'), /names a part that the plan does not have/);
   });
 
   // Cut through the middle: from above, the rim of the ellipse at S 0, from the front half of the scalp.

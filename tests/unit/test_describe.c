@@ -139,7 +139,8 @@ static void a_dose_is_described_with_what_it_lacks_and_its_levels(void **state)
             assert_string_equal(said, "Dose Run 1 \u00d7 30|weighted dose in Gy(w) per fraction|"
                                       "100 % = 40.0 Gy(w), prescription|weights: Set A|without nitrogen|without fast");
             assert_non_null(strstr(row_text(&words, ANNOTATION_MISSING),
-                                   "though it does not fit: it was computed in another frame of reference"));
+                                   "though it does not fit:|it was computed in another frame of reference.|It may be "
+                                   "shifted against this image,|or be another patient's.|Accepted by Anna Weiss."));
             assert_string_equal(row_text(&words, ANNOTATION_LEVELS), "90 % = 36.0 Gy(w)|25.0 % = 10.0 Gy(w)");
         } else {
             assert_non_null(strstr(said, "it was computed in another frame of reference"));
