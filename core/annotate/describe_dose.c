@@ -233,10 +233,10 @@ void dose_describe(struct annotations *annotations, const struct snapshot *snaps
         dose_scale_finish(&scale);
         return;
     }
-    const char *per = scale.field->per;
+    const char *per = scale.field->per, *unit = scale.field->unit;
     add_parts(annotations, snapshot);
-    (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "%s in %s%s%s",
-                   quantity_words(snapshot->scene.dose.quantity), scale.field->unit,
+    (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "%s%s%s%s%s",
+                   quantity_words(snapshot->scene.dose.quantity), unit[0] ? " in " : ", unit not known", unit,
                    per[0] == 0                    ? ""
                    : strncmp(per, "per ", 4) == 0 ? " "
                                                   : " per ",

@@ -51,6 +51,19 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     await page.context().close();
   });
 
+  once('without a visible region the drawer says so, from the first', async () => {
+    const page = await world.newPage('healthz', sizes.wide);
+    const room = await world.newRoom();
+    const { regions } = await world.scene(room);
+    await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { regions: Object.fromEntries(Object.keys(regions).map((id) => [id, { visible: false }])) }, { 'If-Match': '*' });
+    await page.goto(`${world.daemon.url}/#/rooms/${room}`);
+    await full(page);
+    await page.locator(plots).click();
+    await page.locator('.chart-dvh').getByText('No region is shown.').waitFor();
+    await shoot(page, 'charts-no-region');
+    await page.context().close();
+  });
+
   once('the tables have the figures, the read-out the share and volume under the pointer, and a region goes with its chip', async () => {
     const { page, asked } = await open();
     await page.locator(plots).click();

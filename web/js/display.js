@@ -8,6 +8,8 @@ import { isId } from './wire/check.js';
 const lostMs = 5000; // without a part; the server sends one every 2 s
 const lateMs = 3500;
 const retryMs = 2000;
+const firstMs = 20000; // after which a first picture is not only late
+const begunAt = performance.now();
 const tickMs = 250;
 const factsMs = 5000;
 const viewNames = { '3d': '3-D', axial: 'Axial', coronal: 'Coronal', sagittal: 'Sagittal', oblique: 'Oblique', beam: 'Beam\'s eye', 'beam-slice': 'Beam slice' };
@@ -55,7 +57,7 @@ function words(silentMs) {
   const { facts, header, problem } = state;
   if (problem && silentMs > lateMs) return { notice: problem, kind: header ? 'lost' : 'waiting' };
   if (header && silentMs > lostMs) return { notice: `Connection lost. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
-  if (!header) return { notice: rendererWords[facts?.renderer] ?? 'Waiting for the first picture …', kind: 'waiting' };
+  if (!header) return { notice: rendererWords[facts?.renderer] ?? (performance.now() - begunAt < firstMs ? 'Waiting for the first picture …' : 'No picture comes: the room\'s page says why the view is not drawn.'), kind: 'waiting' };
   if (state.isOld && (!facts || facts.renderer === 'ready')) return { notice: `The room shows something newer, which is not drawn yet. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
   return { notice: facts && facts.renderer !== 'ready' ? rendererWords[facts.renderer] ?? '' : '', kind: 'lost' };
 }

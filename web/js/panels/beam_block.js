@@ -5,6 +5,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { beamFacts } from '../state/beam_facts.js';
 import { beamName, chosenBeam, keptName, lookOf, lookPatch } from '../state/beams.js';
 import { isDraftOn } from '../state/beam_ui.js';
+import { waitReason } from '../state/waits.js';
 import { changeBeam, choose, openBeamsEye, resetDraft, selectedBeam, startDraft, useKept } from './beam_actions.js';
 import { placeBlock } from './beam_place.js';
 import { regionBlocks } from './beam_regions.js';
@@ -24,8 +25,9 @@ export function beamBlock(world, isDisabled) {
     <div class="buttons"><button class="primary" ?disabled=${isDisabled} @click=${(event) => startDraft(world, event)}>Draft a new position</button></div></section>`;
   const { result, error, isOld } = beamFacts(world, isChosen ? '' : beam.id).answer.value;
   const facts = result && result.is_draft === isDraft ? result : null;
+  const why = error || (facts ? '' : waitReason(room));
   return html`<section class="block beam-block"><h3>${icon('target')} <span>${beam ? `Beam ${beamName(beam)}` : 'Draft beam'}</span>${isChosen && plan.beams.length > 1 ? html` <span class="dim">chosen</span>` : nothing}</h3>
-      ${geometry(world, beam, isDraft, facts, isOld)}${error ? html`<p class="note why" role="status">${icon('warning', 12)} ${error}</p>` : nothing}
+      ${geometry(world, beam, isDraft, facts, isOld)}${why ? html`<p class="note why" role="status">${icon('warning', 12)} ${why}</p>` : nothing}
       <div class="buttons"><button title="Look along the beam (B)" @click=${() => eyeOf(world, beam, isChosen)}>Beam's eye</button>
         ${isChosen ? nothing : html`<button title="The beam's-eye view, the beam slice and the read-outs are of the chosen beam" ?disabled=${isDisabled} @click=${(event) => choose(world, beam.id, event)}>Choose</button>`}
         ${!isChosen ? nothing : isDraft ? html`<button ?disabled=${isDisabled} @click=${(event) => resetDraft(world, event)}>${beam ? 'Reset to planned' : 'Put away'}</button>`

@@ -5,11 +5,12 @@ import { live } from '../../lib/directives/live.js';
 import { limitAt, metricWords } from '../state/dose_constraints.js';
 import { boundsWords, densityAt, dvhCsv, dvhJson, figureNames, openOf, readAt, shareOf, shareWords, volumeFrom } from '../state/dose_dvh.js';
 import { populationWords } from '../state/dose_population.js';
+import { doseWaitReason } from '../state/waits.js';
 import { doubtMark, downloads, instead, options, staleMark, tableButton, withoutMark } from './chart_parts.js';
 import { dot, dotted, hatched, legible, plot, write } from './chart_plot.js';
 import { basisRows, doseName, quantityName, regionName, regionOf, unitPer } from './chart_words.js';
 import { numberField, segment } from './fields.js';
-import { number, significant, unitText } from './format.js';
+import { listed, number, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
 
@@ -224,7 +225,7 @@ export function conformityTable(world) {
   const rows = curves.curves.value.flatMap((curve) => curve.conformity.map((row) => ({ curve, ...row })));
   if (!rows.length) return nothing;
   const unit = unitOf(world);
-  return html`<details class="more chart-more"><summary>${icon('chevronDown', 12)} Conformity of the targets</summary><div class="chart-table" role="group" tabindex="0" aria-label="Conformity of the targets"><table><thead><tr><th scope="col">Target</th><th scope="col">level, ${unit}</th><th scope="col">isodose, cm³</th><th scope="col">covered, cm³</th><th scope="col" title="covered² / (target × isodose)">Paddick</th><th scope="col" title="isodose / target">RTOG</th></tr></thead>
+  return html`<details class="more chart-more"><summary>${icon('chevronDown', 12)} Conformity of the targets</summary><div class="chart-table" role="group" tabindex="0" aria-label="Conformity of the targets"><table><thead><tr><th scope="col">Target</th><th scope="col">${listed('level', unit)}</th><th scope="col">isodose, cm³</th><th scope="col">covered, cm³</th><th scope="col" title="covered² / (target × isodose)">Paddick</th><th scope="col" title="isodose / target">RTOG</th></tr></thead>
     <tbody>${rows.map((row) => html`<tr><th scope="row">${regionName(room.plan.value)(row.curve.region)}</th>${[row.value, row.isodose_cm3, row.covered_cm3, row.paddick, row.rtog].map((value) => html`<td>${significant(value ?? NaN)}</td>`)}</tr>`)}</tbody></table></div>
     <p class="chart-method">Paddick: covered² / (target × isodose); RTOG: isodose / target. HI: (D2 % − D98 %) / D50 %.</p></details>`;
 }
@@ -242,7 +243,8 @@ export const basisWords = ({ curves }) => curves.curves.value[0]?.basis ?? '';
 export function dvhPart(world, { isInline }) {
   const { room, curves } = world;
   const state = curves.dvh.value;
-  const reason = instead(state, { empty: state.result && !curves.curves.value.length && (curves.regions.value.length ? leftWords(world) || state.result.reason || 'None of the regions chosen has univels with a dose.' : 'No region is shown. Show one in the tree to see its histogram.') });
+  const noRegion = curves.regions.value.length ? '' : 'No region is shown. Show one in the tree to see its histogram.';
+  const reason = instead(state, { empty: state.result && !curves.curves.value.length && (noRegion || leftWords(world) || state.result.reason || 'None of the regions chosen has univels with a dose.'), idle: doseWaitReason(room) || noRegion });
   const unit = unitOf(world);
   const isTable = curves.isTable.value.dvh && !isInline;
   const left = leftWords(world);

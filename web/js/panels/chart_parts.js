@@ -26,10 +26,11 @@ export function tableButton({ curves }, id, words) {
     @click=${() => { curves.isTable.value = { ...curves.isTable.value, [id]: !isOn }; }}>${icon('table', 12)}</button>`;
 }
 
-/** Says why there is no plot; null where there is one. @param {{result: object|null, error: string, isOld: boolean}} state */
-export function instead(state, { empty }) {
+/** Says why there is no plot; null where there is one. @param {{result: object|null, error: string, isOld: boolean}} state @param {{empty: string, idle: string}} words empty: of an answer
+ *  without curves; idle: why nothing is asked, '' where an answer will come */
+export function instead(state, { empty, idle }) {
   if (state.error) return html`<p class="chart-note refusal" role="alert">${icon('error', 16)}<span>${state.error}</span></p>`;
-  if (!state.result) return html`<p class="chart-note empty">Being computed …</p>`;
+  if (!state.result) return html`<p class="chart-note empty">${idle || 'Being computed …'}</p>`;
   return empty ? html`<p class="chart-note empty">${empty}</p>` : null;
 }
 

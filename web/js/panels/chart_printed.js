@@ -7,7 +7,7 @@ import { bandName, basisWords, leftWords } from './chart_dvh.js';
 import { limitBasis, limitPopulation, limitRows, limitWords, valueWords } from './chart_limits.js';
 import { readOuts } from './chart_profile.js';
 import { basisRows, doseName, quantityName, regionName, unitPer } from './chart_words.js';
-import { number, significant, unitText } from './format.js';
+import { listed, number, significant, unitText } from './format.js';
 
 const [width, height, left, foot] = [640, 240, 46, 34];
 /** Regions differ by dash, too: paper may be grey. */
@@ -71,8 +71,8 @@ function histograms(world, plan, scene) {
   const basis = basisRows(world, result.quantity || scene.dose.quantity, result, { basis: basisWords(world), population: populationWords(curves.population) }).filter(([word]) => !['plan', 'revision', 'use', 'method'].includes(word));
   return html`<h2>Dose-volume histogram</h2><p class="values">${basis.map(([word, ...value]) => `${word}: ${value.join(', ')}`).join('; ')}.</p>
     ${drawing('Dose-volume histogram', list.map((curve, at) => ({ name: bandName(curve, name(curve), curves.isDifferential.value), color: scene.regions[curve.region]?.color ?? '#888888', dash: dashes[regions.indexOf(curve.region) % dashes.length], isThin: curve.of > 0, xs: doses, ys: values[at], tops: tops[at] })),
-      { low: 0, high: end, top: isPercent ? 100 : Math.max(1e-9, ...values.flat(), ...tops.flatMap((one) => one ?? [])), xWords: `${unitPer(result)}, ${quantityName(result.quantity || scene.dose.quantity)}`, yWords: `${curves.unit.value === 'cm3' ? 'cm³' : '% of the whole volume'}${curves.isDifferential.value ? ` per ${unit}` : ''}` })}
-    <div class="numbers-scroll" role="group" tabindex="0" aria-label="Figures of the histograms"><table class="numbers-table chart-figures"><thead><tr><th scope="col">Region, ${unit}</th><th scope="col">cm³</th><th scope="col">without dose, cm³</th><th scope="col">Univels</th>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<th scope="col">${figure}</th>`)}</tr></thead>
+      { low: 0, high: end, top: isPercent ? 100 : Math.max(1e-9, ...values.flat(), ...tops.flatMap((one) => one ?? [])), xWords: listed(unitPer(result), quantityName(result.quantity || scene.dose.quantity)), yWords: `${curves.unit.value === 'cm3' ? 'cm³' : '% of the whole volume'}${curves.isDifferential.value ? ` per ${unit}` : ''}` })}
+    <div class="numbers-scroll" role="group" tabindex="0" aria-label="Figures of the histograms"><table class="numbers-table chart-figures"><thead><tr><th scope="col">${listed('Region', unit)}</th><th scope="col">cm³</th><th scope="col">without dose, cm³</th><th scope="col">Univels</th>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<th scope="col">${figure}</th>`)}</tr></thead>
       <tbody>${list.map((curve) => html`<tr><th scope="row">${name(curve)}</th><td>${number(curve.volume, 2)}</td><td>${curve.missing ? significant(curve.missing) : '0'}</td><td>${number(curve.univels)}</td>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<td>${boundsWords(curve.figures[figure], significant)}</td>`)}</tr>`)}</tbody></table></div>
     <p class="values">${result.method} ${leftWords(world)}</p>`;
 }
@@ -84,7 +84,7 @@ function profile({ curves, room }, scene) {
   const facts = [readOuts(result), ...result.bands.map(({ region, from, to }) => `${regionName(room.plan.value)(region)} ${number(from, 1)} to ${number(to, 1)} mm`)].filter(Boolean);
   return html`<h2>Depth profile, ${curves.chosenLine.value.name}</h2>
     ${drawing('Depth profile', result.curves.map(({ quantity, values }, at) => ({ name: lookOf(quantity).name, color: at === 0 ? '#222222' : lookOf(quantity).color, dash: lookOf(quantity).dash, xs: result.depths, ys: values })),
-      { low: result.depths[0], high: result.depths.at(-1), top, xWords: curves.chosenLine.value.kind === 'beam' ? 'mm from entry' : 'mm from the first point', yWords: `${unitPer(result)}, ${quantityName(scene.dose.quantity)}` })}
+      { low: result.depths[0], high: result.depths.at(-1), top, xWords: curves.chosenLine.value.kind === 'beam' ? 'mm from entry' : 'mm from the first point', yWords: listed(unitPer(result), quantityName(scene.dose.quantity)) })}
     <p class="values">${facts.join('; ')}. ${result.doubts.join(' ')} ${result.method}</p>`;
 }
 

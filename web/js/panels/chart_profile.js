@@ -4,6 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { aligned, depthOf, lookOf, pointAt, profileCsv, profileJson, referenceGroups, valueAt } from '../state/dose_profile.js';
 import { crosshair, crosshairPatch, shownImage } from '../state/plan.js';
+import { doseWaitReason } from '../state/waits.js';
 import { doubtMark, downloads, instead, options, staleMark, tableButton, withoutMark } from './chart_parts.js';
 import { dot, dotted, legible, plot, write } from './chart_plot.js';
 import { basisRows, inUnit, quantityName, regionName, unitPer, weightWords } from './chart_words.js';
@@ -44,7 +45,7 @@ function controls(world) {
   const { curves } = world;
   const groups = resultOf(world) ? referenceGroups(resultOf(world).references) : [];
   return html`<div class="chart-choices">${groups.length ? html`<select aria-label="Reference curves beside the profile" @change=${(event) => { curves.reference.value = event.target.value; }}><option value="" .selected=${live(!curves.reference.value)}>no reference curves</option>
-      ${groups.map(({ key, name, unit, curves: list }) => html`<option value=${key} .selected=${live(key === curves.reference.value)}>${name}: ${list.map(({ quantity }) => lookOf(quantity).name).join(', ')}, ${unitText(unit)}</option>`)}</select>` : nothing}${downloads(world, 'profile', files(world))}</div>`;
+      ${groups.map(({ key, name, unit, curves: list }) => html`<option value=${key} .selected=${live(key === curves.reference.value)}>${name}: ${list.map(({ quantity }) => lookOf(quantity).name).join(', ')}${unit ? `, ${unitText(unit)}` : ''}</option>`)}</select>` : nothing}${downloads(world, 'profile', files(world))}</div>`;
 }
 
 /** "entry 0.0 mm, peak 1.11 Gy(w) at 27.0 mm, advantage depth 85.0 mm" */
@@ -190,7 +191,7 @@ export function profilePart(world, { isInline, close = nothing }) {
   const { room, curves } = world;
   const state = curves.profile.value;
   const hasLine = curves.chosenLine.value !== null;
-  const reason = hasLine ? instead(state, { empty: state.result && !state.result.curves.length && (state.result.reason || 'There is no dose on this line.') })
+  const reason = hasLine ? instead(state, { empty: state.result && !state.result.curves.length && (state.result.reason || 'There is no dose on this line.'), idle: doseWaitReason(room) })
     : html`<p class="chart-note empty">The plan has no beam. Draw a distance measure (M): the profile runs along it.</p>`;
   const isTable = curves.isTable.value.profile && !isInline;
   const here = reason ? null : hereOn(world);

@@ -4,8 +4,9 @@ import { live } from '../../lib/directives/live.js';
 import { doseName, quantityName, shownDose, unitOf } from '../state/dose.js';
 import { populationWords } from '../state/dose_population.js';
 import { joinReason } from '../state/fits.js';
+import { doseWaitReason } from '../state/waits.js';
 import { checkbox, numberField, segment } from './fields.js';
-import { number, signed, significant, volume } from './format.js';
+import { listed, number, signed, significant, volume } from './format.js';
 import { icon } from './icons.js';
 
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
@@ -25,7 +26,7 @@ export function compareBlock(world, isDisabled, changeScene) {
   return html`<section class="block"><h3>Compare <span class="dim">${second && compare.mode !== 'none' ? `with ${doseName(second)}` : ''}</span></h3>
     <div class="shown-as">${segment('Comparison', modes, compare.mode, isDisabled, choose)}</div>
     <dl class="dose-list"><dt>Second dose</dt><dd><select class="dose-select" aria-label="Second dose" ?disabled=${isDisabled} @change=${(event) => change({ id: event.target.value, ...(!event.target.value && { mode: 'none' }) }, event)}>
-        <option value="" ?selected=${!second} .selected=${live(!second)}>none</option>${others.map((dose) => html`<option value=${dose.id} ?disabled=${Boolean(why(dose))} title=${why(dose)?.reason ?? nothing} ?selected=${dose === second} .selected=${live(dose === second)}>${doseName(dose)}, ${why(dose)?.words ?? unitOf(dose, scene.dose.quantity)}</option>`)}</select></dd>
+        <option value="" ?selected=${!second} .selected=${live(!second)}>none</option>${others.map((dose) => html`<option value=${dose.id} ?disabled=${Boolean(why(dose))} title=${why(dose)?.reason ?? nothing} ?selected=${dose === second} .selected=${live(dose === second)}>${listed(doseName(dose), why(dose)?.words ?? unitOf(dose, scene.dose.quantity))}</option>`)}</select></dd>
       ${compare.mode === 'difference' ? field('span_percent', 'Strongest colour at ±', '%', 0.01, 1000) : nothing}
       ${compare.mode === 'gamma' ? html`${field('dose_percent', 'Dose difference', '%', 0.01, 100)}${field('distance_mm', 'Distance to agreement', 'mm', 0.01, 50)}
         <dt>Difference is of</dt><dd>${segment('Normalization of gamma', [['global', 'reference'], ['local', 'point']], compare.normalization, isDisabled, (normalization, event) => change({ normalization }, event))}</dd>` : nothing}
@@ -38,7 +39,7 @@ function comparedWords({ room, doses }) {
   const { compare } = room.scene.value.dose;
   const { result, error, isOld } = doses.gamma.value;
   if (error) return html`<p class="note err">${error}</p>`;
-  if (!result) return html`<p class="note">Comparing …</p>`;
+  if (!result) return html`<p class="note">${doseWaitReason(room) || 'Comparing …'}</p>`;
   if (result.comparison_reason) return html`<p class="note why">${icon('warning', 12)} ${result.comparison_reason}</p>`;
   const { difference, unit } = result;
   const { domain } = result;
@@ -77,10 +78,10 @@ export function coverageBlock(world, isDisabled, changeScene) {
     ${coverage.visible ? coverageWords(world) : nothing}</section>`;
 }
 
-function coverageWords({ doses }) {
+function coverageWords({ room, doses }) {
   const { result, error, isOld } = doses.coverage.value;
   if (error) return html`<p class="note err">${error}</p>`;
-  if (!result) return html`<p class="note">Counting …</p>`;
+  if (!result) return html`<p class="note">${doseWaitReason(room) || 'Counting …'}</p>`;
   if (result.coverage_reason) return html`<p class="note why">${icon('warning', 12)} ${result.coverage_reason}</p>`;
   const share = Number.isFinite(result.share) ? number(result.share * 100, 1) : [result.share_least, result.share_most].map((part) => number(part * 100, 1)).join(' to ');
   return html`<p class=${`dose-result${isOld ? ' old' : ''}`}><b>${share} %</b> of the region, <b>${Number.isFinite(result.share) ? '' : 'at least '}${volume(result.volume_cm3)}</b></p>

@@ -8,7 +8,7 @@ import { doseWords } from '../state/plan.js';
 import { levelActions, levelRows } from './dose_levels.js';
 import { referenceSelect, tissueSelect } from './dose_reference.js';
 import { typed } from './fields.js';
-import { number } from './format.js';
+import { listed, number } from './format.js';
 import { ofFits } from './fit_later.js';
 import { icon } from './icons.js';
 import { eye, name, treeRow } from './tree_row.js';
@@ -85,7 +85,7 @@ export function quantitySelect({ room, ui }, dose, { tabindex }) {
   const change = (event) => room.patchScene({ dose: { quantity: event.target.value } }, how(ui, event));
   return html`<select class="dose-select" aria-label="Quantity" tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
     ${all.includes(quantity) ? nothing : html`<option value=${quantity} selected>${quantityName(quantity)}: not in this dose</option>`}
-    ${all.map((one) => html`<option value=${one} ?selected=${one === quantity} .selected=${live(one === quantity)}>${quantityName(one)}, ${unitOf(dose, one)}</option>`)}</select>`;
+    ${all.map((one) => html`<option value=${one} ?selected=${one === quantity} .selected=${live(one === quantity)}>${listed(quantityName(one), unitOf(dose, one) || 'unit not known')}</option>`)}</select>`;
 }
 
 /** A row around one control: Space moves the focus into it. */

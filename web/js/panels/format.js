@@ -61,6 +61,9 @@ export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 /** "1/cm²" for a unit as files write it, "1/cm2"; "Gy(w)" for a weighted dose under its older names. */
 export const unitText = (unit) => unit.replace(/\bGy[- ]?Eq\b|\bGyw\b/gi, 'Gy(w)').replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
 
+/** "Physical total, Gy"; without a comma where one is empty. */
+export const listed = (...words) => words.filter(Boolean).join(', ');
+
 /** "C 40  W 400 HU", the form of a window everywhere on the page; a narrow window has the digits that tell its greys apart. */
 export const windowText = ({ center, width }, unit, isInverted = false) => {
   const digits = width < 10 ? Math.min(2 - Math.floor(Math.log10(width)), 20) : 0;

@@ -6,6 +6,7 @@ import { enabledClips } from '../state/clip.js';
 import { crosshairPatch, shownImage, soloPatch } from '../state/plan.js';
 import { isExportable, representations, shapeQuery, volumeDifference } from '../state/shapes.js';
 import { textureNote, textureOf, texturePatch, textures, withInner } from '../state/textures.js';
+import { waitReason } from '../state/waits.js';
 import { checkbox, numberField, segment } from './fields.js';
 import { number, seconds, signed, significant, volume } from './format.js';
 import { icon } from './icons.js';
@@ -71,9 +72,9 @@ function downloads({ api, room }, region, representation) {
 }
 
 /** The server's figures of the shape that is shown. */
-function figures({ shaped }, region, representation) {
+function figures({ room, shaped }, region, representation) {
   const { region: of, representation: as, result, error } = shaped.value;
-  if (of !== region.id || as !== representation || (!result && !error)) return html`<p class="note figures">Working out its figures …</p>`;
+  if (of !== region.id || as !== representation || (!result && !error)) return html`<p class="note figures">${waitReason(room) || 'Working out its figures …'}</p>`;
   if (error) return html`<p class="figures err" role="status">${icon('error')} ${error}</p>`;
   const counts = [['triangles', 'triangles'], ['lines', 'outlines'], ['points', 'points'], ['vertices', 'vertices']]
     .filter(([name]) => result[name]).map(([name, word]) => `${number(result[name])} ${word}`);

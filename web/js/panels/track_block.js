@@ -5,6 +5,7 @@ import { className } from '../state/plan.js';
 import { trackFacts } from '../state/track_facts.js';
 import { durations } from '../state/track_play.js';
 import { countPatch, isChosenClass, isShownClass, isWhole, rangeOf } from '../state/tracks.js';
+import { waitReason } from '../state/waits.js';
 import { checkbox, numberField, typed } from './fields.js';
 import { count, millimetres, number, position, significant } from './format.js';
 import { icon } from './icons.js';
@@ -18,14 +19,14 @@ const energyWords = (mev) => (mev === null ? 'not given' : mev < 1e-3 ? `${signi
 export function trackBlock(world, isDisabled, change) {
   const facts = trackFacts(world);
   const { result, error } = facts.want();
-  return html`${counts(world, facts, result)}${error ? html`<p class="note why" role="status">${icon('warning', 12)} ${error}</p>` : nothing}
+  return html`${counts(world, facts, result, error || waitReason(world.room))}${error ? html`<p class="note why" role="status">${icon('warning', 12)} ${error}</p>` : nothing}
     ${playBlock(world, facts, isDisabled, change)}${lookBlock(world, isDisabled, change)}${result ? html`${energyBlock(world, result, isDisabled, change)}${filesBlock(result)}${lostBlock(world, result)}` : nothing}`;
 }
 
-function counts({ room, ui }, facts, result) {
+function counts({ room, ui }, facts, result, why) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   const { visible } = scene.tracks;
-  const words = !visible ? 'hidden' : isWhole(scene) && plan.trackClasses.every(({ id }) => isChosenClass(scene, id)) ? 'all shown' : result && facts.isNew ? `${number(result.shown)} shown` : '…';
+  const words = !visible ? 'hidden' : isWhole(scene) && plan.trackClasses.every(({ id }) => isChosenClass(scene, id)) ? 'all shown' : result && facts.isNew ? `${number(result.shown)} shown` : why ? 'not counted' : '…';
   return html`<section class="block"><h3>${icon('tracks')} Particle tracks <span class="dim">${count(plan.nTracks, 'segment')}, <span id="track-shown">${words}</span></span></h3>
     <table class="track-counts"><thead><tr><th scope="col">Class</th><th scope="col">Segments</th><th scope="col">Share</th></tr></thead>
       <tbody>${plan.trackClasses.map((one) => html`<tr class=${[one.id === ui.selection.value.id ? 'total' : '', isShownClass(scene, one.id) ? '' : 'track-off'].join(' ')}><th scope="row">${trackSwatch(one)}${className(one.id)}</th><td>${number(one.n)}</td><td>${number((100 * one.n) / plan.nTracks, 1)} %</td></tr>`)}</tbody></table></section>`;
