@@ -1,11 +1,12 @@
 // Acceptances, from the room to the renderer: what is accepted is drawn in that room alone, for those files; nothing else carries it.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { call, sleep, startDaemon, until } from './daemon.mjs';
+import { bin, call, sleep, startDaemon, until } from './daemon.mjs';
 import { writeOtherFrame } from './other_frame.mjs';
 import { Client } from './ws_client.mjs';
 
@@ -132,6 +133,16 @@ test('/render takes acceptances in its body, checked as those of a room, each a 
   assert.equal(await render(), unaccepted, 'no call carries them to another');
   assert.equal((await render([{ ...boost, words: 'short' }])).pointer, '/acceptances/0/words');
   assert.equal((await render([{ ...boost, thing: 'dose:own' }])).pointer, '/acceptances/0/thing');
+});
+
+test('the command line draws the same by --accept, and nothing of the dose without', () => {
+  const drawn = (...options) => {
+    const out = join(data, 'picture.png');
+    execFileSync(join(bin, 'beamroom'), ['render', join(plans, plan), '-o', out, '--scene', JSON.stringify(patch), '--view', JSON.stringify(view), ...options], { stdio: 'pipe' });
+    return digest(readFileSync(out));
+  };
+  assert.notEqual(drawn('--accept', 'dose:boost=image:ct'), drawn());
+  assert.equal(drawn('--accept', 'dose:own=image:ct'), drawn(), 'of another pair');
 });
 
 test('a member who does not present accepts nothing', async () => {
