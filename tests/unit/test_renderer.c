@@ -294,13 +294,13 @@ static void a_plan_that_cannot_be_read_fails_with_the_loaders_sentence(void **st
     (void)state;
     struct world world;
     begin_head(&world, true, small);
-    folder_put_text(world.plans, PLAN "/labels.nii.gz", "no image at all");
-    world_start(&world, 1);
-    struct fleet_plan plan = world_plan_of(&world, PLAN);
+    folder_put_text(world.plans, "lone/labels.nii.gz", "no image at all"); /* beside other parts it would be left out */
+    world_start(&world, 2);
+    struct fleet_plan plan = world_plan_of(&world, "lone");
     if (plan.state == FLEET_CLOSED) { /* seen only when it is read */
-        world_open_plan(&world, PLAN);
-        world_wait_for_state(&world, PLAN, FLEET_FAILED);
-        plan = world_plan_of(&world, PLAN);
+        world_open_plan(&world, "lone");
+        world_wait_for_state(&world, "lone", FLEET_FAILED);
+        plan = world_plan_of(&world, "lone");
     }
     assert_int_equal(plan.problem->type, PROBLEM_PLAN_UNREADABLE);
     assert_non_null(strstr(plan.problem->detail, "labels.nii.gz"));
