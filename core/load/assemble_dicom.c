@@ -109,70 +109,91 @@ static bool is_target_type(const char *kind)
     return text_equal(kind, "GTV") || text_equal(kind, "CTV") || text_equal(kind, "PTV");
 }
 
-static bool fill_roi(struct loading *loading, struct region_builder *builder, const struct part_reading *reading,
-                     const struct rtstruct_roi *roi, const struct contour_choice *choice,
-                     const struct contour_options *options, struct error *err)
+/* The regions of one structure set while they are filled. */
+struct filling {
+    struct loading *loading;
+    struct region_builder *builder;
+    const struct part_reading *reading;
+    const struct contour_options *options;
+    const char *first_left; /* the first region that the plan has no room for; NULL: none */
+    size_t n_left;
+};
+
+static void leave_out(struct filling *filling, const struct rtstruct_roi *roi)
 {
-    const struct plan_file_region *entry = &loading->file->regions[reading->index];
-    struct contour_facts facts;
+    filling->first_left = filling->n_left++ == 0 ? roi->name : filling->first_left;
+}
+
+/* Adds a filled region to the plan, if there is room. */
+static bool add_roi(struct filling *filling, const struct mask *mask, const struct rtstruct_roi *roi,
+                    const struct contour_choice *choice, struct error *err)
+{
+    struct plan *plan = filling->loading->plan;
+    const struct part_reading *reading = filling->reading;
+    const struct plan_file_region *entry = &filling->loading->file->regions[reading->index];
     const uint8_t *rgb = entry->has_color ? entry->rgb : roi->has_color ? roi->rgb : NULL;
-    struct mask *mask = contour_fill(&roi->contours, &choice->grid, options, &facts, err);
-    if (!mask)
-        return false;
-    rtstruct_report_fill(roi, choice, &facts, reading->path, &loading->plan->report);
-    bool is_added = region_builder_add_bits(builder, mask, &choice->grid, roi->name, rgb, reading->path, err);
-    mask_destroy(mask);
-    struct region_set *set = &loading->plan->regions;
-    if (!is_added)
-        return false;
-    set->regions[set->n_regions - 1].is_target = is_target_type(roi->kind);
-    struct part_origin origin = origin_of_roi(loading, reading, roi->frame_uid);
-    return origins_add_regions(loading->plan, &origin, set->n_regions - 1, err);
+    struct error why = { 0 };
+    if (!region_builder_add_bits(filling->builder, mask, &choice->grid, roi->name, rgb, reading->path, &why)) {
+        if (why.code == ERROR_LIMIT)
+            leave_out(filling, roi);
+        else if (err)
+            *err = why;
+        return why.code == ERROR_LIMIT;
+    }
+    plan->regions.regions[plan->regions.n_regions - 1].is_target = is_target_type(roi->kind);
+    struct part_origin origin = origin_of_roi(filling->loading, reading, roi->frame_uid);
+    return origins_add_regions(plan, &origin, plan->regions.n_regions - 1, err);
 }
 
 /* Fills a region; one that is beyond a limit is reported and left out. */
-static bool fill_or_leave_out(struct loading *loading, struct region_builder *builder,
-                              const struct part_reading *reading, const struct rtstruct_roi *roi,
-                              const struct contour_choice *choice, const struct contour_options *options,
-                              struct error *err)
+static bool fill_roi(struct filling *filling, const struct rtstruct_roi *roi, const struct contour_choice *choice,
+                     struct error *err)
 {
+    struct report *report = &filling->loading->plan->report;
+    const char *path = filling->reading->path;
+    struct contour_facts facts;
     struct error why = { 0 };
-    if (fill_roi(loading, builder, reading, roi, choice, options, &why))
-        return true;
-    if (why.code == ERROR_LIMIT) {
-        report_add(&loading->plan->report, REPORT_ERROR, "region.contours-refused", reading->path,
-                   "\"%s\" was left out: %s.", roi->name, why.text);
+    if (filling->builder->set->n_regions >= REGION_MAX) {
+        leave_out(filling, roi);
         return true;
     }
-    error_prefix(&why, "%s: %s", reading->path, roi->name);
+    struct mask *mask = contour_fill(&roi->contours, &choice->grid, filling->options, &facts, &why);
+    if (!mask && why.code == ERROR_LIMIT) {
+        report_add(report, REPORT_ERROR, "region.contours-refused", path, "\"%s\" was left out: %s.", roi->name,
+                   why.text);
+        return true;
+    }
+    if (mask)
+        rtstruct_report_fill(roi, choice, &facts, path, report);
+    bool is_added = mask && add_roi(filling, mask, roi, choice, &why);
+    mask_destroy(mask);
+    if (is_added)
+        return true;
+    error_prefix(&why, "%s: %s", path, roi->name);
     if (err)
         *err = why;
     return false;
 }
 
-static bool fill_rois(struct loading *loading, struct region_builder *builder, const struct part_reading *reading,
-                      const struct contour_choice *choices, const struct contour_options *options, struct error *err)
+static bool fill_rois(struct filling *filling, const struct contour_choice *choices, struct error *err)
 {
-    const struct rtstruct *structs = reading->structs;
-    const struct plan_file_region *entry = &loading->file->regions[reading->index];
-    const char *first_left = NULL;
-    size_t n_left = 0;
+    struct loading *loading = filling->loading;
+    const struct rtstruct *structs = filling->reading->structs;
+    const struct region_set *set = filling->builder->set;
+    const struct plan_file_region *entry = &loading->file->regions[filling->reading->index];
     for (size_t r = 0; r < structs->n_rois; r++) {
         if (loading_is_cancelled(loading))
             return error_set(err, ERROR_CANCELLED, "loading was cancelled");
         loading_phase(loading, "filling contours of", structs->rois[r].name, 80, 95);
-        if (is_selected(entry, &structs->rois[r]) && builder->set->n_regions >= REGION_MAX) {
-            first_left = n_left++ == 0 ? structs->rois[r].name : first_left;
-        } else if (is_selected(entry, &structs->rois[r]) &&
-                   !fill_or_leave_out(loading, builder, reading, &structs->rois[r], &choices[r], options, err)) {
+        if (is_selected(entry, &structs->rois[r]) && !fill_roi(filling, &structs->rois[r], &choices[r], err))
             return false;
-        }
         loading_work(loading, 1);
     }
-    if (n_left > 0)
-        report_add(&loading->plan->report, REPORT_ERROR, "region.too-many", reading->path,
-                   "The plan has %d regions, the most it holds; %zu more of this file were left out, from \"%s\" on.",
-                   REGION_MAX, n_left, first_left);
+    if (filling->n_left > 0)
+        report_add(&loading->plan->report, REPORT_ERROR, "region.too-many", filling->reading->path,
+                   "The plan has no room for %zu regions of this file, the first is \"%s\": it has %zu regions on %zu "
+                   "layers of labels, and holds %d on %d.",
+                   filling->n_left, filling->first_left, set->n_regions, set->n_layers, REGION_MAX, REGION_MAX_LAYERS);
     return true;
 }
 
@@ -201,7 +222,8 @@ bool plan_dicom_add_regions(struct loading *loading, struct region_builder *buil
     if (is_added && image >= 0)
         rtstruct_report_reach(structs, choices, loading->file->regions[reading->index].name, plan->images[image].id,
                               reading->path, &plan->report);
-    is_added = is_added && fill_rois(loading, builder, reading, choices, &options, err);
+    struct filling filling = { loading, builder, reading, &options, NULL, 0 };
+    is_added = is_added && fill_rois(&filling, choices, err);
     free(sets);
     free(choices);
     return is_added;

@@ -2,6 +2,7 @@
 #include "core/report/report.h"
 
 #include <assert.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,16 +20,30 @@ bool report_code_is_known(const char *code)
     return false;
 }
 
+/* Makes room in a full report by removing the last line of the least severity, if that is below severity. */
+static bool make_room(struct report *report, enum report_severity severity)
+{
+    size_t at = SIZE_MAX;
+    for (size_t i = 0; i < report->n_lines; i++)
+        if (report->lines[i].severity < severity &&
+            (at == SIZE_MAX || report->lines[i].severity <= report->lines[at].severity))
+            at = i;
+    report->n_dropped++;
+    if (at == SIZE_MAX)
+        return false;
+    report->n_lines--;
+    memmove(&report->lines[at], &report->lines[at + 1], (report->n_lines - at) * sizeof *report->lines);
+    return true;
+}
+
 void report_add(struct report *report, enum report_severity severity, const char *code, const char *where,
                 const char *format, ...)
 {
     assert(report_code_is_known(code));
     if (!report)
         return;
-    if (report->n_lines >= REPORT_MAX) {
-        report->n_dropped++;
+    if (report->n_lines >= REPORT_MAX && !make_room(report, severity))
         return;
-    }
     if (!report->lines)
         report->lines = mem_new(REPORT_MAX * sizeof *report->lines);
     struct report_line *line = &report->lines[report->n_lines++];

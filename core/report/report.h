@@ -20,7 +20,8 @@ struct report {
     size_t n_lines, n_dropped;
 };
 
-/* Adds a line. code must be in report_codes.h; does nothing when report is NULL. */
+/* Adds a line; in a full report it takes the place of the last one of less severity, if there is one. code must be in
+ * report_codes.h; does nothing when report is NULL. */
 void report_add(struct report *report, enum report_severity severity, const char *code, const char *where,
                 const char *format, ...) PRINTF_LIKE(5, 6);
 /* Appends all lines of from to to, and empties from. */

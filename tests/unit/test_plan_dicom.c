@@ -1,4 +1,5 @@
 /* Plans of made-up DICOM files: what a folder becomes as a whole. */
+#include "core/region/contour.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_series.h"
@@ -24,8 +25,8 @@ static void put_slices(const char *folder, int n, double pitch_mm)
 }
 
 /* Boxes of 20 x 30 mm around (39, 40) on n planes each, every region above the one before; region 0 on the first
- * slices. */
-static void put_boxes(const char *folder, int n_regions, int n_planes, double pitch_mm)
+ * slices, or on n_of_first planes that lie up to there in steps of a tenth of a millimetre. */
+static void put_boxes_but_first(const char *folder, int n_regions, int n_planes, double pitch_mm, int n_of_first)
 {
     struct made_dicom made;
     made_rt_begin(&made, "1.2.840.10008.5.1.4.1.1.481.3", "RTSTRUCT", NULL);
@@ -44,8 +45,8 @@ static void put_boxes(const char *folder, int n_regions, int n_planes, double pi
     for (int r = 0; r < n_regions; r++) {
         made_item(&made);
         made_sequence(&made, TAG(0x3006, 0x0040));
-        for (int k = 0; k < n_planes; k++) {
-            double z = pitch_mm * (r * n_planes + k);
+        for (int k = 0; k < (r == 0 && n_of_first > 0 ? n_of_first : n_planes); k++) {
+            double z = r == 0 && n_of_first > 0 ? -0.1 * k : pitch_mm * (r * n_planes + k);
             double box[] = { 29, 25, z, 49, 25, z, 49, 55, z, 29, 55, z };
             made_item(&made);
             made_text(&made, TAG(0x3006, 0x0042), "CS", "CLOSED_PLANAR");
@@ -68,6 +69,55 @@ static void put_boxes(const char *folder, int n_regions, int n_planes, double pi
     made_sequence_end(&made);
     folder_put(folder, "rtstruct.dcm", made.data, made.size);
     made_finish(&made);
+}
+
+static void put_boxes(const char *folder, int n_regions, int n_planes, double pitch_mm)
+{
+    put_boxes_but_first(folder, n_regions, n_planes, pitch_mm, 0);
+}
+
+static void a_region_beyond_a_limit_hides_no_other(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    put_slices(folder, 9, 3);
+    put_boxes_but_first(folder, 2, 3, 3, CONTOUR_MAX_PLANES + 1);
+    struct plan *plan = plan_of_folder(folder, &err);
+    if (!plan)
+        fail_msg("%s", err.text);
+    assert_int_equal(plan->regions.n_regions, 1);
+    assert_near(region_of(plan, "box-1")->volume_cm3, 20 * 30 * 9 / 1000.0, 0.01);
+    assert_string_equal(report_said(&plan->report, "region.contours-refused"),
+                        "\"Box 0\" was left out: contours on 8193 planes; the limit is 8192.");
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+/* All on one slice, so that each needs a layer of its own. */
+static void regions_that_the_plan_has_no_room_for_are_counted(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    put_slices(folder, 2, 3);
+    put_boxes(folder, 1100, 1, 0);
+    struct plan *plan = plan_of_folder(folder, &err);
+    if (!plan)
+        fail_msg("%s", err.text);
+    assert_int_equal(plan->n_images, 1);
+    assert_int_equal(plan->regions.n_regions, REGION_MAX_LAYERS);
+    bool has_both[2] = { false, false };
+    for (size_t i = 0; i < plan->report.n_lines; i++) {
+        has_both[0] |= strstr(plan->report.lines[i].sentence, "76 were left out: Box 1024, Box 1025") != NULL;
+        has_both[1] |= strstr(plan->report.lines[i].sentence,
+                              "no room for 768 regions of this file, the first is \"Box 256\"") != NULL;
+    }
+    assert_true(has_both[0] && has_both[1]);
+    plan_destroy(plan);
+    folder_remove(folder);
 }
 
 static void regions_drawn_on_slices_that_are_not_there_are_whole(void **state)
@@ -150,6 +200,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_isocentre_outside_the_image_is_said),
+        cmocka_unit_test(a_region_beyond_a_limit_hides_no_other),
+        cmocka_unit_test(regions_that_the_plan_has_no_room_for_are_counted),
         cmocka_unit_test(regions_drawn_on_slices_that_are_not_there_are_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -24,6 +24,26 @@ static void lines_keep_their_order_and_further_ones_are_counted(void **state)
     report_add(NULL, REPORT_NOTE, "region.empty", "", "nobody listens");
 }
 
+static void an_error_is_never_lost_among_notes(void **state)
+{
+    (void)state;
+    struct report report = { 0 };
+    for (int i = 0; i < REPORT_MAX; i++)
+        report_add(&report, i % 2 ? REPORT_NOTE : REPORT_WARNING, "region.unnamed", "", "%d", i);
+    report_add(&report, REPORT_ERROR, "region.too-many", "a.dcm", "left out");
+    report_add(&report, REPORT_NOTE, "region.unnamed", "", "one more");
+    assert_int_equal(report.n_lines, REPORT_MAX);
+    assert_int_equal(report.n_dropped, 2);
+    assert_string_equal(report.lines[REPORT_MAX - 1].sentence, "left out");
+    assert_string_equal(report.lines[REPORT_MAX - 2].sentence, "498"); /* 499, the last note, gave way */
+    for (int i = 0; i < REPORT_MAX; i++)
+        report_add(&report, REPORT_ERROR, "region.too-many", "a.dcm", "left out %d", i);
+    for (int i = 0; i < REPORT_MAX; i++)
+        assert_int_equal(report.lines[i].severity, REPORT_ERROR);
+    assert_string_equal(report.lines[0].sentence, "left out");
+    report_finish(&report);
+}
+
 static void a_code_is_there_once_fits_and_says_what_to_do(void **state)
 {
     (void)state;
@@ -49,6 +69,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_keep_their_order_and_further_ones_are_counted),
+        cmocka_unit_test(an_error_is_never_lost_among_notes),
         cmocka_unit_test(a_code_is_there_once_fits_and_says_what_to_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
