@@ -62,6 +62,7 @@ static void update_list(struct fleet *fleet)
     if (!lister_take(fleet->lister, &found))
         return;
     fleet->is_listing = false;
+    fleet->n_lists++;
     fleet->list_has_changed |= !fleet->is_listed;
     fleet->is_listed = true;
     plan_list_update(fleet, &found);

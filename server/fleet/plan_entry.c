@@ -51,6 +51,18 @@ void fleet_rescan(struct fleet *fleet)
     fleet->is_listing = true;
 }
 
+uint64_t fleet_n_lists(const struct fleet *fleet)
+{
+    return fleet->n_lists;
+}
+
+uint64_t fleet_list_again(struct fleet *fleet)
+{
+    const uint64_t number = fleet->n_lists + (fleet->is_listing ? 2 : 1); /* the one under way began before */
+    fleet_rescan(fleet);
+    return number;
+}
+
 struct plan_entry *plan_entry_find(const struct fleet *fleet, const char *id)
 {
     for (size_t i = 0; i < fleet->n_plans; i++)

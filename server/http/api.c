@@ -49,6 +49,8 @@ static const struct api_route api_routes[] = {
     { "POST", "/api/v1/rooms/{room}/links", api_room_link_new },
     { "GET", "/api/v1/rooms/{room}/stream", api_room_stream },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
+    { "GET", "/api/v1/records", api_records },
+    { "GET", "/api/v1/records/{record}", api_record },
     { "GET", "/p/{saved}", api_permalink },
 };
 static const char in_room[] = "/api/v1/rooms/{room}";
@@ -157,6 +159,30 @@ static bool wakes_room(struct api *api, struct call *call, const struct api_rout
     return true;
 }
 
+static void plans_were_listed(void *context)
+{
+    struct call *call = context;
+    api_handle(call->api, call);
+}
+
+bool api_lists_first(struct api *api, struct call *call)
+{
+    if (call->has_listed || !fleet_is_listed(net_fleet(api->net)))
+        return false;
+    call->has_listed = true;
+    net_list_plans(api->net, plans_were_listed, call);
+    return true;
+}
+
+/* True: the call is about a plan that is not known, and waits until the folders are looked at. */
+static bool looks_for_plan(struct api *api, struct call *call, const struct api_route *route)
+{
+    static const char of_plan[] = "/api/v1/plans/{plan}";
+    struct fleet_plan plan;
+    return strncmp(route->path, of_plan, strlen(of_plan)) == 0 &&
+           !fleet_plan_find(net_fleet(api->net), call->ids[0], &plan) && api_lists_first(api, call);
+}
+
 /* False with problem: the call is about a room or a bookmark that may be on the disk, which cannot be read yet. */
 static bool room_can_be_looked_for(struct api *api, const struct call *call, const struct api_route *route,
                                    struct problem *problem)
@@ -194,7 +220,7 @@ void api_handle(struct api *api, struct call *call)
                     return;
                 }
             call->route = route.path;
-            if (wakes_room(api, call, &route))
+            if (wakes_room(api, call, &route) || looks_for_plan(api, call, &route))
                 return;
             if (!room_can_be_looked_for(api, call, &route, &problem) || !has_right(api, call, &route, &problem)) {
                 call_answer_problem(call, &problem);

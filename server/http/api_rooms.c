@@ -125,6 +125,13 @@ void api_room_new(struct api *api, struct call *call)
         cJSON_Delete(body);
         return;
     }
+    struct fleet_plan known;
+    if (problem.type == PROBLEM_NONE && !fleet_plan_find(net_fleet(api->net), plan_id, &known) &&
+        api_lists_first(api, call)) {
+        cJSON_Delete(bookmark);
+        cJSON_Delete(body);
+        return;
+    }
     struct room *room = problem.type == PROBLEM_NONE ? net_room_create(api->net, plan_id, bookmark, &problem) : NULL;
     cJSON_Delete(bookmark);
     cJSON_Delete(body);
@@ -147,11 +154,16 @@ void api_room_delete(struct api *api, struct call *call)
     if (!net_room_is_asleep(api->net, call->ids[0]) && !find_room(api, call))
         return;
     struct room *room = net_room_find(api->net, call->ids[0]);
+    char reason[200] = "the room was deleted";
+    if (!api_may_delete(call, net_n_decided(api->net, call->ids[0]), "this room"))
+        return;
+    if (room && room_caller_name(room, call->member)[0])
+        (void)snprintf(reason, sizeof reason, "the room was ended by %.160s", room_caller_name(room, call->member));
     if (room)
         room_audit_call(room, call->member, call->client, "deleted", NULL, false, clock_now_us());
     else
         net_audit(api->net, call->client, call->ids[0], "", "deleted", NULL);
-    net_room_delete(api->net, call->ids[0]);
+    net_room_delete(api->net, call->ids[0], reason);
     call_answer_nothing(call, 204);
 }
 

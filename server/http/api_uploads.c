@@ -1,4 +1,5 @@
 /* Uploading an archive as a plan, and deleting an uploaded plan. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -31,14 +32,38 @@ void api_plan_upload(struct api *api, struct call *call)
     api_job_answer(api, call, job);
 }
 
+static bool is_plain_text(const char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ' || *text == 127)
+            return false;
+    return true;
+}
+
 void api_plan_delete(struct api *api, struct call *call)
 {
     struct fleet *fleet = net_fleet(api->net);
     struct fleet_plan plan;
     struct problem problem = { 0 };
+    char reason[200] = "the plan was deleted";
+    const char *by = call_query(call, "by");
+    if (by && (strlen(by) > 160 || !is_plain_text(by))) {
+        problem_set(&problem, PROBLEM_VALIDATION, "/by", "length",
+                    "by is not a name of 160 bytes without control characters");
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (by && by[0])
+        (void)snprintf(reason, sizeof reason, "the plan was deleted by “%.160s”", by);
     /* closes the plan's rooms first, but only if the plan can be deleted */
-    if (fleet_plan_find(fleet, call->ids[0], &plan) && plan.is_uploaded)
-        net_rooms_delete_of_plan(api->net, call->ids[0]);
+    if (fleet_plan_find(fleet, call->ids[0], &plan) && plan.is_uploaded) {
+        if (!api_may_delete(call, net_n_decided_of_plan(api->net, call->ids[0]), "rooms of this plan"))
+            return;
+        cJSON *detail = cJSON_CreateObject();
+        cJSON_AddStringToObject(detail, "why", reason);
+        net_audit(api->net, call->client, "", call->ids[0], "deleted", detail);
+        net_rooms_delete_of_plan(api->net, call->ids[0], call->client, reason);
+    }
     if (fleet_remove_plan(fleet, call->ids[0], &problem))
         call_answer_nothing(call, 204);
     else

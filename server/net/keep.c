@@ -393,6 +393,8 @@ void keep_write_due(struct net *net, bool is_last)
 
 void keep_delete(struct net *net, const char *id)
 {
+    if (net->store && net->n_audit)
+        keep_audit_write(net); /* the row that says so is on disk before */
     if (!net->store || store_delete(net->store, id, 0))
         return;
     void *more = realloc(net->undeleted, (net->n_undeleted + 1) * sizeof net->undeleted[0]);

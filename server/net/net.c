@@ -37,6 +37,31 @@ struct task {
     void *argument;
 };
 
+/* ---- the list of plans ------------------------------------------------------------------------------------------ */
+
+/* The list with this number is there. */
+static void tell_listed(struct net *net, uint64_t number)
+{
+    for (struct list_waiter **at = &net->list_waiters; *at;) {
+        struct list_waiter *waiter = *at;
+        if (waiter->number > number) {
+            at = &waiter->next;
+            continue;
+        }
+        *at = waiter->next;
+        waiter->done(waiter->context);
+        free(waiter);
+        at = &net->list_waiters; /* done may have added one */
+    }
+}
+
+void net_list_plans(struct net *net, void (*done)(void *context), void *context)
+{
+    struct list_waiter *waiter = mem_new(sizeof *waiter);
+    *waiter = (struct list_waiter){ net->list_waiters, fleet_list_again(net->fleet), done, context };
+    net->list_waiters = waiter;
+}
+
 /* ---- time ------------------------------------------------------------------------------------------------------- */
 
 static void schedule_all(struct net *net)
@@ -122,8 +147,7 @@ static void let_in(void *context, const char *id, const struct problem *problem)
         visitor->room = room;
         if (!room) {
             free_early(visitor);
-            ws_bye(visitor->connection, WS_CLOSE_NORMAL,
-                   problem && problem->type != PROBLEM_NOT_FOUND ? problem->detail : "the room is closed",
+            ws_bye(visitor->connection, WS_CLOSE_NORMAL, problem ? problem->detail : "the room is closed",
                    problem && problem->type != PROBLEM_NOT_FOUND ? WS_RETRY_MS : -1);
             continue;
         }
@@ -308,6 +332,7 @@ static void woken(void *context)
 {
     struct net *net = context;
     fleet_handle_events(net->fleet);
+    tell_listed(net, fleet_n_lists(net->fleet));
     tick_within(net, CALM_TICK_US);
     if (run_tasks(net)) { /* a task may have changed any room */
         leave_calm(net);
@@ -402,6 +427,7 @@ static void *work(void *context)
     asleep_tell(net, NULL, &stops);
     keep_readers_finish(net);
     keep_record_readers_finish(net);
+    tell_listed(net, UINT64_MAX);
     while (net->n_rooms)
         rooms_close(net, 0);
     keep_write_due(net, true); /* what was recorded while rooms were closed */

@@ -56,9 +56,15 @@ struct fleet *net_fleet(struct net *net);
  * the plan's own scene. NULL with problem. */
 struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem);
 struct room *net_room_find(struct net *net, const char *room_id);
-/* For good, also of one that sleeps. */
-void net_room_delete(struct net *net, const char *room_id);
-void net_rooms_delete_of_plan(struct net *net, const char *plan_id);
+/* For good, also of one that sleeps; records of decisions stay. reason: as in room_end_because. */
+void net_room_delete(struct net *net, const char *room_id, const char *reason);
+/* Each is a row of the audit; address as in net_audit. */
+void net_rooms_delete_of_plan(struct net *net, const char *plan_id, const char *address, const char *reason);
+/* Decisions and signatures in this room, awake or not; in all rooms of this plan. */
+size_t net_n_decided(const struct net *net, const char *room_id);
+size_t net_n_decided_of_plan(const struct net *net, const char *plan_id);
+/* Has the plan folders listed; done is called once, when the list is one that was begun after this call. */
+void net_list_plans(struct net *net, void (*done)(void *context), void *context);
 /* A room that sleeps is on disk alone: net_room_find does not find it. Whoever needs it wakes it; done is called once,
  * with NULL when it is awake. */
 bool net_room_is_asleep(const struct net *net, const char *room_id);

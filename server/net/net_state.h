@@ -85,6 +85,13 @@ struct waiter { /* for a room that is being read */
     void *context;
 };
 
+struct list_waiter { /* for a list of the plan folders */
+    struct list_waiter *next;
+    uint64_t number; /* of the list */
+    void (*done)(void *context);
+    void *context;
+};
+
 struct record_reader { /* waits for records */
     struct record_reader *next;
     uint64_t ticket;
@@ -116,6 +123,7 @@ struct net {
     struct waiter *waiters;
     struct part_reader *readers;
     struct record_reader *record_readers;
+    struct list_waiter *list_waiters;
     char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */
     size_t n_undeleted;
     uint64_t n_tickets;

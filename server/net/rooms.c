@@ -104,16 +104,17 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
     return room;
 }
 
-void rooms_close(struct net *net, size_t index)
+static void close_because(struct net *net, size_t index, const char *reason)
 {
     struct net_room *room = net->rooms[index];
+    room_end_because(room->room, reason);
     room_audit_flush(room->room, clock_now_us());
     net->rooms[index] = net->rooms[--net->n_rooms];
     bridge_close_room(room);
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
         if (visitor->room == room) {
             if (!room_has_member(room->room, visitor->connection)) /* members get theirs from room_destroy */
-                ws_bye(visitor->connection, WS_CLOSE_NORMAL, "the room is closed", -1);
+                ws_bye(visitor->connection, WS_CLOSE_NORMAL, reason, -1);
             bridge_leave(visitor);
             visitor->room = NULL;
         }
@@ -121,6 +122,11 @@ void rooms_close(struct net *net, size_t index)
     room_destroy(room->room);
     keep_room_finish(room);
     free(room);
+}
+
+void rooms_close(struct net *net, size_t index)
+{
+    close_because(net, index, "the room is closed");
 }
 
 /* Puts the room to sleep: it was used, nobody is connected, and it is on disk as it is. False: not now. */
@@ -137,6 +143,7 @@ static bool put_to_sleep(struct net *net, size_t index)
                                    .used_ms =
                                        (int64_t)time(NULL) * 1000 - (clock_now_us() - room->empty_since_us) / 1000,
                                    .revision = kept.revision,
+                                   .n_decided = (uint32_t)room_n_decided(room->room),
                                    .n_members = (uint32_t)kept.n_members };
     (void)snprintf(facts.id, sizeof facts.id, "%s", room_id(room->room));
     (void)snprintf(facts.plan, sizeof facts.plan, "%s", room_plan_id(room->room));
@@ -169,7 +176,7 @@ void rooms_close_idle(struct net *net)
             log_info("room put to sleep: nobody there for %d s", net->room_idle_close_s);
         } else if (!net->store || !room_was_used(room->room)) {
             log_info("room closed: nobody there for %d s", net->room_idle_close_s);
-            net_room_delete(net, room_id(room->room));
+            net_room_delete(net, room_id(room->room), "nobody was in the room for a long time");
         }
     }
 }
@@ -262,7 +269,7 @@ struct room *net_room_find(struct net *net, const char *id)
     return room ? room->room : NULL;
 }
 
-void net_room_delete(struct net *net, const char *id)
+void net_room_delete(struct net *net, const char *id, const char *reason)
 {
     struct problem gone;
     char deleted[64]; /* id may be the room's own */
@@ -271,23 +278,53 @@ void net_room_delete(struct net *net, const char *id)
     while (index < net->n_rooms && strcmp(room_id(net->rooms[index]->room), deleted) != 0)
         index++;
     if (index < net->n_rooms)
-        rooms_close(net, index);
+        close_because(net, index, reason);
     else if (!asleep_find(net, deleted))
         return;
     asleep_remove(net, deleted);
     keep_delete(net, deleted);
-    problem_set(&gone, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", deleted);
+    problem_set(&gone, PROBLEM_NOT_FOUND, "", "", "%s", reason);
     asleep_tell(net, deleted, &gone);
 }
 
-void net_rooms_delete_of_plan(struct net *net, const char *plan_id)
+static void delete_of_plan(struct net *net, const char *id, const char *plan_id, const char *address,
+                           const char *reason)
+{
+    char deleted[64];
+    cJSON *detail = cJSON_CreateObject();
+    (void)snprintf(deleted, sizeof deleted, "%s", id);
+    cJSON_AddStringToObject(detail, "why", reason);
+    net_audit(net, address, deleted, plan_id, "deleted", detail);
+    net_room_delete(net, deleted, reason);
+}
+
+void net_rooms_delete_of_plan(struct net *net, const char *plan_id, const char *address, const char *reason)
 {
     for (size_t i = net->n_rooms; i-- > 0;)
         if (strcmp(room_plan_id(net->rooms[i]->room), plan_id) == 0)
-            net_room_delete(net, room_id(net->rooms[i]->room));
+            delete_of_plan(net, room_id(net->rooms[i]->room), plan_id, address, reason);
     for (size_t i = net->n_asleep; i-- > 0;)
         if (strcmp(net->asleep[i].facts.plan, plan_id) == 0)
-            net_room_delete(net, net->asleep[i].facts.id);
+            delete_of_plan(net, net->asleep[i].facts.id, plan_id, address, reason);
+}
+
+size_t net_n_decided(const struct net *net, const char *id)
+{
+    const struct net_room *room = rooms_find(net, id);
+    const struct asleep_room *asleep = room ? NULL : asleep_find(net, id);
+    return room ? room_n_decided(room->room) : asleep ? asleep->facts.n_decided : 0;
+}
+
+size_t net_n_decided_of_plan(const struct net *net, const char *plan_id)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < net->n_rooms; i++)
+        if (strcmp(room_plan_id(net->rooms[i]->room), plan_id) == 0)
+            n += room_n_decided(net->rooms[i]->room);
+    for (size_t i = 0; i < net->n_asleep; i++)
+        if (strcmp(net->asleep[i].facts.plan, plan_id) == 0)
+            n += net->asleep[i].facts.n_decided;
+    return n;
 }
 
 bool net_room_is_asleep(const struct net *net, const char *id)

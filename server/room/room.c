@@ -25,6 +25,7 @@
 #include "server/room/member_view.h"
 #include "server/room/pointers.h"
 #include "server/room/presenter.h"
+#include "server/room/record_body.h"
 #include "server/room/recording.h"
 #include "server/room/replay.h"
 #include "server/room/roles.h"
@@ -71,7 +72,7 @@ void room_destroy(struct room *room)
     recordings_finish(room);
     for (int i = 0; i < room->n_members; i++)
         if (room->members[i]->connection)
-            send_bye(room, room->members[i]->connection, -1, room_is_closed);
+            send_bye(room, room->members[i]->connection, -1, room->end_reason[0] ? room->end_reason : room_is_closed);
     audit_free(room);
     members_free(room);
     while (room->streams)
@@ -392,6 +393,25 @@ static struct member *find_caller(const struct room *room, const char *member)
         if (strcmp(room->members[i]->id, id) == 0 && secret_matches(member + n + 1, room->members[i]->secret_hash))
             return room->members[i];
     return NULL;
+}
+
+const char *room_caller_name(const struct room *room, const char *member)
+{
+    const struct member *caller = find_caller(room, member);
+    return caller ? caller->name : "";
+}
+
+void room_end_because(struct room *room, const char *reason)
+{
+    (void)snprintf(room->end_reason, sizeof room->end_reason, "%s", reason);
+}
+
+size_t room_n_decided(const struct room *room)
+{
+    size_t n = 0;
+    for (const struct item *item = room->items; item; item = item->next)
+        n += record_is_wanted(item->kind);
+    return n;
 }
 
 uint32_t room_n_named(const struct room *room)

@@ -205,6 +205,12 @@ struct room_limits {
 struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks,
                          const struct room_limits *limits);
 void room_destroy(struct room *room); /* says bye to every connection first */
+/* What bye says is the reason of the end, in a sentence without its dot; else "the room is closed". */
+void room_end_because(struct room *room, const char *reason);
+/* Decisions and signatures in the room. */
+size_t room_n_decided(const struct room *room);
+/* The name of the member who makes a call, "" for nobody of the room; member: as in room_call_may. */
+const char *room_caller_name(const struct room *room, const char *member);
 const char *room_id(const struct room *room);
 const char *room_plan_id(const struct room *room);
 

@@ -323,6 +323,7 @@ static bool read_summary(sqlite3_stmt *row, void *to)
     room->used_ms = sqlite3_column_int64(row, 3);
     room->revision = (uint32_t)sqlite3_column_int64(row, 4);
     room->n_members = (uint32_t)sqlite3_column_int64(row, 5);
+    room->n_decided = (uint32_t)sqlite3_column_int64(row, 6);
     return true;
 }
 
@@ -378,7 +379,8 @@ struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struc
     *n = 0;
     if (read_list(db,
                   "SELECT id, plan, created_ms, used_ms, revision,"
-                  " (SELECT count(*) FROM members WHERE members.room = rooms.id) FROM rooms ORDER BY used_ms DESC, id",
+                  " (SELECT count(*) FROM members WHERE members.room = rooms.id),"
+                  " (SELECT count(*) FROM records WHERE records.room = rooms.id) FROM rooms ORDER BY used_ms DESC, id",
                   NULL, sizeof(struct store_summary), most, read_summary, &list, n, err))
         return list;
     free(list);

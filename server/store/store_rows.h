@@ -95,7 +95,7 @@ struct store_room {
 struct store_summary {
     char id[64], plan[64];
     int64_t created_ms, used_ms;
-    uint32_t revision, n_members;
+    uint32_t revision, n_members, n_decided; /* n_decided: decisions and signatures */
 };
 
 void store_room_free(struct store_room *room);

@@ -92,7 +92,7 @@ describe('an archive', () => {
 
       assert.equal((await call(`${api}/plans/${job.plan}`, 'DELETE')).status, 204);
       assert.equal((await call(`${api}/plans/${job.plan}`)).status, 404);
-      assert.match((await client.message('bye')).reason, /closed/);
+      assert.match((await client.message('bye')).reason, /plan was deleted/);
       assert.equal((await call(`${api}/rooms/${room.id}`)).status, 404);
       assert.ok(!uploaded().includes(job.plan));
       assert.deepEqual(await settled(), []);

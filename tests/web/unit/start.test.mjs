@@ -66,6 +66,21 @@ test('a deletion is asked about with the rooms as they are now', async () => {
   assert.deepEqual(state.deleting.value.rooms.map(({ id }) => id), ['r-1']);
 });
 
+test('a deletion that would leave records behind is asked about once more, with what was decided', async () => {
+  const said = [];
+  const detail = '2 decisions and signatures were written in rooms of this plan; their records stay when it is deleted, at /api/v1/records: say records=keep';
+  const { state } = start({ removePlan: async (id, how) => { said.push([id, how.keepsRecords, how.by]); if (!how.keepsRecords) throw new Problem({ status: 409, code: 'records', detail }); } });
+  state.start();
+  await later();
+  await state.askToRemove('head');
+  await state.remove('head', { by: 'Ann' });
+  assert.equal(state.deleting.value.records, detail);
+  await state.remove('head', { keepsRecords: true, by: 'Ann' });
+  state.stop();
+  assert.equal(state.deleting.value, null);
+  assert.deepEqual(said, [['head', false, 'Ann'], ['head', true, 'Ann']]);
+});
+
 test('thumbnails are made of loaded plans alone, one at a time and once', async () => {
   let running = 0;
   const calls = [];

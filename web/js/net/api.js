@@ -9,6 +9,7 @@ export class Problem extends Error {
     super(problem.detail || problem.title || 'The server refused without a reason.');
     this.type = problem.type ?? '';
     this.status = problem.status ?? 0;
+    this.code = problem.code ?? '';
   }
 }
 
@@ -41,7 +42,7 @@ export function makeApi(fetch, base = 'api/v1') {
     plans: (signal) => call('GET', 'plans', { signal }),
     plan: (plan, signal) => call('GET', `plans/${id(plan)}`, { signal }),
     openPlan: (plan) => call('POST', `plans/${id(plan)}/open`, { body: {} }),
-    removePlan: (plan) => call('DELETE', `plans/${id(plan)}`),
+    removePlan: (plan, { keepsRecords = false, by = '' } = {}) => call('DELETE', `plans/${id(plan)}?by=${id(by)}${keepsRecords ? '&records=keep' : ''}`),
     uploadUrl: (name) => (name ? `${base}/plans?name=${id(name)}` : `${base}/plans`),
     job: (job, signal) => call('GET', `jobs/${id(job)}`, { signal }),
     cancelJob: (job) => call('DELETE', `jobs/${id(job)}`),

@@ -7,15 +7,15 @@ import { icon } from './icons.js';
 import { whoIn } from './lobby.js';
 
 /** Always in the page, empty and closed until a deletion is asked for: so the browser gives the focus back afterwards. */
-export function deleteDialog(state) {
+export function deleteDialog(state, ownName) {
   const asked = state.deleting.value;
   const cancel = (event) => {
     event.preventDefault();
     state.deleting.value = null;
   };
   return html`<dialog class="card modal" role="alertdialog" aria-labelledby="delete-head" aria-describedby="delete-text" @cancel=${cancel}>${asked ? html`
-    <h2 id="delete-head">Delete ${asked.plan.name}?</h2><div id="delete-text">${looking(asked.rooms)}<p>The plan <code>${asked.plan.id}</code> and all its files are deleted from this server for good.</p></div>
-    <div class="buttons"><button autofocus @click=${() => { state.deleting.value = null; }}>Keep</button><span class="grow"></span><button class="danger" ?disabled=${!asked.rooms} @click=${() => state.remove(asked.plan.id)}>Delete for good</button></div>` : nothing}</dialog>`;
+    <h2 id="delete-head">Delete ${asked.plan.name}?</h2><div id="delete-text">${asked.records ? html`<p class="warn">${icon('warning')}<b>${asked.records.split(';')[0]}.</b> Their records stay on the server.</p>` : looking(asked.rooms)}<p>The plan <code>${asked.plan.id}</code> and all its files are deleted from this server for good.</p></div>
+    <div class="buttons"><button autofocus @click=${() => { state.deleting.value = null; }}>Keep</button><span class="grow"></span><button class="danger" ?disabled=${!asked.rooms} @click=${() => state.remove(asked.plan.id, { keepsRecords: Boolean(asked.records), by: ownName.value.value })}>${asked.records ? 'Delete, keep the records' : 'Delete for good'}</button></div>` : nothing}</dialog>`;
 }
 
 function looking(rooms) {

@@ -111,14 +111,16 @@ export class PlansState {
     if (this.deleting.value?.plan === plan) this.deleting.value = { plan, rooms: rooms.filter((room) => room.plan === id) };
   }
 
-  /** Deletes an uploaded plan with all its files. */
-  async remove(id) {
+  /** Deletes an uploaded plan with all its files. keepsRecords: said by the person, where something was decided on it; by: their name. */
+  async remove(id, { keepsRecords = false, by = '' } = {}) {
+    const asked = this.deleting.peek();
     this.deleting.value = null;
     try {
-      await this.#api.removePlan(id);
+      await this.#api.removePlan(id, { keepsRecords, by });
       if (this.chosen.value === id) this.chosen.value = '';
     } catch (error) {
-      this.#refuse(id, error.message);
+      if (error.code === 'records' && asked) this.deleting.value = { ...asked, records: error.message }; // asked once more
+      else this.#refuse(id, error.message);
     }
     await this.#list();
   }

@@ -1,0 +1,89 @@
+/* Records of decisions and signatures, which outlive their rooms and plans. */
+#include <stdio.h>
+#include <string.h>
+
+#include "server/http/api_audit.h"
+#include "server/http/api_handlers.h"
+
+bool api_may_delete(struct call *call, size_t n_decided, const char *where)
+{
+    struct problem problem;
+    const char *records = call_query(call, "records");
+    if (records && strcmp(records, "keep") != 0) {
+        problem_set(&problem, PROBLEM_VALIDATION, "/records", "enum", "records is \"%.20s\", expected keep", records);
+        call_answer_problem(call, &problem);
+        return false;
+    }
+    if (!n_decided || records)
+        return true;
+    if (n_decided == 1)
+        problem_set(
+            &problem, PROBLEM_CONFLICT, "/records", "records",
+            "1 decision or signature was written in %s; its record stays when it is deleted, at /api/v1/records: say "
+            "records=keep",
+            where);
+    else
+        problem_set(&problem, PROBLEM_CONFLICT, "/records", "records",
+                    "%zu decisions and signatures were written in %s; their records stay when it is deleted, at "
+                    "/api/v1/records: say records=keep",
+                    n_decided, where);
+    call_answer_problem(call, &problem);
+    return false;
+}
+
+static cJSON *describe(const struct net_record *record)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "id", record->id);
+    cJSON_AddStringToObject(json, "kind", record->kind);
+    cJSON_AddStringToObject(json, "room", record->room);
+    cJSON_AddStringToObject(json, "plan", record->plan);
+    cJSON_AddStringToObject(json, "author", record->author);
+    cJSON_AddStringToObject(json, "author_name", record->author_name);
+    cJSON_AddNumberToObject(json, "time_ms", (double)record->time_ms);
+    cJSON_AddStringToObject(json, "sha256", record->hash);
+    return json;
+}
+
+static void list_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
+{
+    if (problem) {
+        call_answer_problem(context, problem);
+        return;
+    }
+    cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "records");
+    for (size_t i = 0; i < n; i++)
+        json_append(list, describe(&records[i]));
+    call_answer_json(context, 200, answer);
+}
+
+static void one_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
+{
+    if (problem || n == 0) {
+        call_answer_problem(context, problem);
+        return;
+    }
+    cJSON *answer = describe(&records[0]);
+    json_add(answer, "item", cJSON_CreateRaw(records[0].item));
+    json_add(answer, "body", cJSON_CreateRaw(records[0].body));
+    call_answer_json(context, 200, answer);
+}
+
+void api_records(struct api *api, struct call *call)
+{
+    struct problem problem = { 0 };
+    const char *before = call_query(call, "before");
+    if (before && !id_is_valid(before))
+        problem_set(&problem, PROBLEM_VALIDATION, "/before", "pattern", "before must be the id of a record");
+    if (problem.type != PROBLEM_NONE ||
+        !net_read_records(api->net, "", before ? before : "", list_was_read, call, &problem))
+        call_answer_problem(call, &problem);
+}
+
+void api_record(struct api *api, struct call *call)
+{
+    struct problem problem;
+    if (api_audit_export(api, call, "record") &&
+        !net_read_records(api->net, call->ids[0], "", one_was_read, call, &problem))
+        call_answer_problem(call, &problem);
+}
