@@ -8,6 +8,7 @@
 #include "core/base/mem.h"
 #include "core/formats/hierarchy.h"
 #include "core/formats/text.h"
+#include "core/load/alike.h"
 #include "core/load/assemble_dicom.h"
 #include "core/load/assemble_dicom_doses.h"
 #include "core/load/assemble_tracks.h"
@@ -15,6 +16,7 @@
 #include "core/load/dose_entry.h"
 #include "core/load/dose_maximum.h"
 #include "core/load/image_window.h"
+#include "core/load/origin_notes.h"
 #include "core/load/origins.h"
 #include "core/load/part_names.h"
 #include "core/load/plan_ids.h"
@@ -288,6 +290,10 @@ static void add_doses(struct loading *loading)
         add_dose(loading, i);
     if (loading->parts.is_all_dicom)
         plan_dicom_add_doses(loading, PART_WITHOUT_ENTRY, NULL);
+    if (loading->parts.is_recognised) {
+        plan_name_alike_doses(loading->plan);
+        plan_order_doses(loading->plan);
+    }
 }
 
 static bool apply_hierarchy_file(struct loading *loading, const char *path, struct error *err)
@@ -354,6 +360,8 @@ static void add_beams(struct loading *loading)
         plan->n_beams++;
     }
     plan_dicom_add_beams(loading);
+    if (loading->parts.is_recognised)
+        plan_name_alike_beams(loading->plan);
 }
 
 bool plan_assemble(struct loading *loading, struct error *err)
@@ -396,6 +404,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
     plan_measure_body(plan);
     add_beams(loading);
     plan_measure_bounds(plan);
+    plan_note_origins(loading);
     if (loading->file->n_tracks > 0)
         snprintf(plan->tracks_origin.path, sizeof plan->tracks_origin.path, "%s", loading->file->tracks[0].path);
     return plan_add_tracks(loading, err);

@@ -36,6 +36,16 @@
       "Check on anatomy that the two fit.") \
     X("registration.not-applied", "A registration is not rigid, or cannot be used.", \
       "Parts of the two frames of reference are not used together.") \
+    X("patient.several", "The files name several patients.", \
+      "Open a folder that holds one patient's plan alone, or compare the identities.") \
+    X("patient.conflict", "Files with one patient ID differ in name or birth date.", \
+      "Find out whose files they are before the plan is used.") \
+    X("patient.none", "The files, or some of them, do not say whose they are.", \
+      "Check by other means that the parts are of one person.") \
+    X("plan.structs-absent", "A treatment plan was made for a structure set that is not in the folder.", \
+      "Add the structure set.") \
+    X("dose.plan-absent", "A dose refers to a treatment plan that is not in the folder.", \
+      "Add the plan, or accept the dose in the room.") \
     X("image.slices-differ", "The header's number of slices is not what the data holds.", \
       "The data was believed; correct the header.") \
     X("image.locations-differ", "Slice positions and reference location with spacing disagree.", \
@@ -208,7 +218,8 @@
     X("dose.not-summed", "Doses of single beams stand one beside the other.", \
       "Nothing was added; export the plan's dose for the sum.") \
     X("dose.type", "A dose object is of a type that may not be a dose.", "Check what the numbers mean.") \
-    X("dose.left-out", "There are more doses than the limit.", "Some are not listed.") \
+    X("dose.left-out", "There are more doses than the limit, or files of several patients in one.", \
+      "Some are not listed.") \
     X("dose.no-frame", "Nothing says that dose and image share a frame of reference.", "Check that they fit.") \
     X("dose.frame-differs", "A dose is in another frame of reference than the image.", \
       "It may be shifted: check that it fits.") \

@@ -204,6 +204,153 @@ static void files_without_a_patient_are_of_none(void **state)
     folder_remove(folder);
 }
 
+static const char *said(const struct plan *plan, const char *code)
+{
+    return report_said(&plan->report, code);
+}
+
+static void the_report_names_patients_masked(void **state)
+{
+    (void)state;
+    char folder[256];
+    folder_make(folder);
+    put_case(folder);
+    struct plan *plan = open_plan(folder);
+    assert_string_equal(said(plan, "patient.several"),
+                        "This folder holds files of 2 patients: A. V. \u2026417 and B. R. \u20269. Shown is A. V. "
+                        "\u2026417; parts of the others are not used.");
+    assert_false(report_has(&plan->report, "patient.conflict"));
+    assert_false(report_has(&plan->report, "patient.none"));
+    assert_string_equal(said(plan, "dose.plan-absent"),
+                        "The dose \"plan not here, Dose\" refers to a treatment plan (RTPLAN) that is not in this "
+                        "folder.");
+    assert_false(report_has(&plan->report, "plan.structs-absent"));
+    for (size_t i = 0; i < plan->report.n_lines; i++) {
+        const char *sentence = plan->report.lines[i].sentence;
+        static const char *const secrets[] = { "Voss", "Anna", "Ruf", "Bert", "20417", "1961" };
+        for (size_t s = 0; s < sizeof secrets / sizeof secrets[0]; s++)
+            assert_null(strstr(sentence, secrets[s]));
+    }
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+static void a_conflict_a_missing_identity_and_an_absent_structure_set_are_said(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct made_owner other = anna;
+    const struct made_owner nobody = { .study = "1.2.31", .frame = "1.2.41" };
+    other.birth_date = "19610413";
+    folder_make(folder);
+    made_part_images(folder, "ct", &anna, "1.2.51", 2);
+    made_part_plan(folder, "plan.dcm", &anna,
+                   &(struct made_part_plan){ .uid = "1.2.71", .structs_uid = "1.2.69", .label = "BNCT-2" });
+    made_part_structs(folder, "structs.dcm", &anna, "1.2.61", "1.2.51");
+    made_part_dose(folder, "a.dcm", &other, &(struct made_part_dose){ .uid = "1.2.81", .summation = "PLAN" });
+    made_part_dose(folder, "b.dcm", &nobody, &(struct made_part_dose){ .uid = "1.2.82", .summation = "PLAN" });
+    struct plan *plan = open_plan(folder);
+    assert_non_null(strstr(said(plan, "patient.conflict"), "A. V. \u2026417 and A. V. \u2026417"));
+    assert_non_null(strstr(said(plan, "patient.none"), "1 part of the plan names no patient"));
+    assert_non_null(strstr(said(plan, "plan.structs-absent"), "\"BNCT-2\""));
+    plan_destroy(plan);
+    folder_remove(folder);
+
+    folder_make(folder);
+    made_part_images(folder, "ct", &nobody, "1.2.51", 2);
+    plan = open_plan(folder);
+    assert_string_equal(said(plan, "patient.none"), "No patient identity in these files.");
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+static void put_two_plans(const char *folder, const char *label_a, const char *label_b, const char *date_b)
+{
+    made_part_images(folder, "ct", &anna, "1.2.51", 2);
+    made_part_plan(folder, "pa.dcm", &anna,
+                   &(struct made_part_plan){
+                       .uid = "1.2.71", .label = label_a, .date = "20261101", .beams = { "B1" } });
+    made_part_plan(folder, "pb.dcm", &anna,
+                   &(struct made_part_plan){
+                       .uid = "1.2.72", .label = label_b, .date = date_b, .approval = "APPROVED", .beams = { "B1" } });
+    made_part_dose(folder, "da.dcm", &anna,
+                   &(struct made_part_dose){ .uid = "1.2.81", .plan_uid = "1.2.71", .summation = "PLAN" });
+    made_part_dose(folder, "db.dcm", &anna,
+                   &(struct made_part_dose){
+                       .uid = "1.2.82", .plan_uid = "1.2.72", .summation = "PLAN", .scaling = "0.25" });
+}
+
+static void doses_and_beams_named_alike_are_told_apart_by_their_plans(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *labels[2], *date, *doses[2], *ids[2], *beams[2];
+    } cases[] = {
+        /* the approved plan is the second one: its dose comes first */
+        { { "planA", "planB" },
+          "20261102",
+          { "planB, Dose", "planA, Dose" },
+          { "planb-dose", "plana-dose" },
+          { "planA, B1", "planB, B1" } },
+        { { "P", "P" },
+          "20261102",
+          { "P, Dose, 2026-11-02", "P, Dose, 2026-11-01" },
+          { "p-dose-2026-11-02", "p-dose-2026-11-01" },
+          { "P, B1, 2026-11-01", "P, B1, 2026-11-02" } },
+        { { "P", "P" },
+          "20261101",
+          { "P, Dose, 2026-11-01, db.dcm", "P, Dose, 2026-11-01, da.dcm" },
+          { "p-dose-2026-11-01-db-dcm", "p-dose-2026-11-01-da-dcm" },
+          { "P, B1, 2026-11-01, pa.dcm", "P, B1, 2026-11-01, pb.dcm" } },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char folder[256];
+        folder_make(folder);
+        put_two_plans(folder, cases[i].labels[0], cases[i].labels[1], cases[i].date);
+        struct plan *plan = open_plan(folder);
+        assert_int_equal(plan->n_doses, 2);
+        assert_int_equal(plan->n_beams, 2);
+        for (int p = 0; p < 2; p++) {
+            assert_string_equal(plan->doses[p].name, cases[i].doses[p]);
+            assert_string_equal(plan->doses[p].id, cases[i].ids[p]);
+            assert_int_equal(plan->dose_origins[p].treatment_plan, 1 - p);
+            assert_string_equal(plan->beams[p].name, cases[i].beams[p]);
+            assert_int_equal(plan->beam_origins[p].treatment_plan, p);
+        }
+        assert_close(plan->doses[0].components[0].values->high, 8 * 0.25, 1e-6);
+        plan_destroy(plan);
+        folder_remove(folder);
+    }
+}
+
+static void the_first_dose_is_that_of_the_whole_plan(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct made_part_dose beam1 = { .uid = "1.2.81", .plan_uid = "1.2.71", .summation = "BEAM", .beam = 1 },
+                          beam2 = { .uid = "1.2.82", .plan_uid = "1.2.71", .summation = "BEAM", .beam = 2 },
+                          fraction = { .uid = "1.2.83", .plan_uid = "1.2.71", .summation = "FRACTION" },
+                          whole = { .uid = "1.2.84", .plan_uid = "1.2.71", .summation = "PLAN" },
+                          others = { .uid = "1.2.85", .summation = "PLAN", .description = "Old" };
+    folder_make(folder);
+    made_part_images(folder, "ct", &anna, "1.2.51", 2);
+    made_part_plan(folder, "plan.dcm", &anna,
+                   &(struct made_part_plan){ .uid = "1.2.71", .label = "P", .beams = { "B1", "B2" } });
+    made_part_dose(folder, "a.dcm", &bert, &(struct made_part_dose){ .uid = "1.2.80", .summation = "PLAN" });
+    made_part_dose(folder, "b.dcm", &anna, &others);
+    made_part_dose(folder, "c.dcm", &anna, &beam1);
+    made_part_dose(folder, "d.dcm", &anna, &beam2);
+    made_part_dose(folder, "e.dcm", &anna, &fraction);
+    made_part_dose(folder, "f.dcm", &anna, &whole);
+    struct plan *plan = open_plan(folder);
+    static const char *const files[] = { "f.dcm", "e.dcm", "c.dcm", "d.dcm", "b.dcm", "a.dcm" };
+    assert_int_equal(plan->n_doses, 6);
+    for (int d = 0; d < 6; d++)
+        assert_string_equal(plan->dose_origins[d].path, files[d]);
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -212,6 +359,10 @@ int main(void)
         cmocka_unit_test(patients_are_told_apart_by_id_name_and_birth_date),
         cmocka_unit_test(slices_of_two_patients_make_two_images),
         cmocka_unit_test(files_without_a_patient_are_of_none),
+        cmocka_unit_test(the_report_names_patients_masked),
+        cmocka_unit_test(a_conflict_a_missing_identity_and_an_absent_structure_set_are_said),
+        cmocka_unit_test(doses_and_beams_named_alike_are_told_apart_by_their_plans),
+        cmocka_unit_test(the_first_dose_is_that_of_the_whole_plan),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
