@@ -24,6 +24,7 @@
 #include "core/load/region_hierarchy.h"
 #include "core/load/registrations.h"
 #include "core/load/settle_parts.h"
+#include "core/plan/fit.h"
 #include "core/plan/plan_bounds.h"
 
 /* Lists of the plan file are copied into the plan's without a check of their length. */
@@ -347,6 +348,20 @@ static void note_empty_regions(struct plan *plan)
                        plan->regions.regions[i].name);
 }
 
+/* A region lies in none of another frame of reference or patient, whatever encloses it: in the next one around that. */
+static void cut_hierarchy(struct plan *plan)
+{
+    struct region *regions = plan->regions.regions;
+    for (size_t r = 0; r < plan->regions.n_regions; r++)
+        while (regions[r].parent >= 0) {
+            struct fit fit =
+                fit_of(plan, fit_part_of_region(plan, r), fit_part_of_region(plan, (size_t)regions[r].parent));
+            if (!(fit.reasons & (1U << FIT_FRAME | 1U << FIT_PATIENT)))
+                break;
+            regions[r].parent = regions[regions[r].parent].parent;
+        }
+}
+
 static void add_beams(struct loading *loading)
 {
     struct plan *plan = loading->plan;
@@ -393,6 +408,7 @@ bool plan_assemble(struct loading *loading, struct error *err)
         region_set_measure(&plan->regions);
         note_empty_regions(plan);
         is_whole = apply_hierarchy(loading, &builder, err);
+        cut_hierarchy(plan);
     }
     region_builder_finish(&builder);
     if (!is_whole)

@@ -112,7 +112,9 @@ static void print_fit(const struct plan *plan, size_t index)
         struct fit_part image = { FIT_IMAGE, i };
         struct fit fit = fit_of(plan, part, image);
         fit_sentence(plan, part, image, fit.relation, why);
-        printf("  fit %s: %s%s\n", fit_relation_word(fit.relation), why, until[fit_pair_needs(&fit)]);
+        char line[FIT_WHY_SIZE + 80];
+        snprintf(line, sizeof line, "fit %s: %s%s", fit_relation_word(fit.relation), why, until[fit_pair_needs(&fit)]);
+        text_print_wrapped(stdout, line, 2, 100);
     }
     uint32_t missing = dose_missing_summands(dose);
     bool has_summands = false;

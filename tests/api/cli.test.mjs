@@ -144,7 +144,7 @@ describe('beamroom info', () => {
     assert.equal(status, 0, stderr);
     const info = parseStrict(stdout);
     assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'is_phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
-      'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'preferences', 'report', 'patients', 'treatment_plans', 'shown_patient', 'shown_plan']);
+      'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'fits', 'preferences', 'report', 'patients', 'treatment_plans', 'shown_patient', 'shown_plan']);
     assert.equal(info.id, 'head-one');
     assert.equal(info.is_phantom, true);
     const [image] = info.images;

@@ -58,18 +58,17 @@ test('beams are summed at a point, each with its factor, and the parts are said'
   const { doses } = (await call(`${api}/plans/${plan}`)).json;
   const ids = doses.filter(({ per }) => per === 'beam').map(({ id }) => id);
   assert.equal(ids.length, 3);
-  const accepted = Object.fromEntries(ids.map((id) => [id, { accepted: true }]));
   const at = [[0.29, 0.59, 0], [12, -20, 4], [-31, 15, -6]];
   const single = {};
   for (const id of ids) {
-    const room = await makeRoom(plan, { dose: { id, quantity: 'total', accepted } });
+    const room = await makeRoom(plan, { dose: { id, quantity: 'total' } });
     single[id] = await Promise.all(at.map(async (point) => (await probeOf(plan, room, point)).value));
   }
   const sum = { [ids[1]]: { factor: 2 }, [ids[2]]: { factor: 0.5 } };
-  const room = await makeRoom(plan, { dose: { id: ids[0], quantity: 'total', sum, accepted } });
+  const room = await makeRoom(plan, { dose: { id: ids[0], quantity: 'total', sum } });
   for (const [i, point] of at.entries()) {
     const probe = await probeOf(plan, room, point);
     near(probe.value, single[ids[0]][i] + 2 * single[ids[1]][i] + 0.5 * single[ids[2]][i], `sum at ${point}`);
-    assert.deepEqual(probe.parts, [{ id: ids[0], factor: 1 }, { id: ids[1], factor: 2 }, { id: ids[2], factor: 0.5 }]);
+    assert.deepEqual(probe.parts.map(({ id, factor, used }) => ({ id, factor, used })), [{ id: ids[0], factor: 1, used: true }, { id: ids[1], factor: 2, used: true }, { id: ids[2], factor: 0.5, used: true }]);
   }
 });

@@ -65,20 +65,20 @@ export function putStructs(folder, owner, { uid = '1.2.61', series = '1.2.51', f
 }
 
 /** A plan with one beam from the front. */
-export function putPlan(folder, owner, { uid = '1.2.71', structs = '1.2.61', label = 'BNCT-2', approval, date = '20261101', file = 'plan.dcm', beam = 'Front' } = {}) {
-  const points = sequence(0x300a0111, [[0x300a011e, 'DS', 0], [0x300a012c, 'DS', '14\\14\\9']]);
+export function putPlan(folder, owner, { uid = '1.2.71', structs = '1.2.61', label = 'BNCT-2', approval, date = '20261101', file = 'plan.dcm', beam = 'Front', isocenter = '14\\14\\9' } = {}) {
+  const points = sequence(0x300a0111, [[0x300a011e, 'DS', 0], [0x300a012c, 'DS', isocenter]]);
   writeFileSync(join(folder, file), dicomFile([...owned(owner, '481.5', uid, 'RTPLAN', '1.2.72'), [0x300a0002, 'SH', label], [0x300a0006, 'DA', date], [0x300e0002, 'CS', approval],
     sequence(0x300a00b0, [[0x300a00b4, 'DS', 1000], [0x300a00c0, 'IS', 1], [0x300a00c2, 'LO', beam], points]), refer(0x300c0060, '481.3', structs)]));
 }
 
 /** 8 x 8 x 6 voxels of 4 mm from the origin on, values 0.1 Gy times 1 + i + j + k. plan: SOP Instance UID of the plan that it refers to. */
-export function putDose(folder, owner, { uid = '1.2.81', plan, summation = 'PLAN', units = 'GY', file = 'dose.dcm', description } = {}) {
+export function putDose(folder, owner, { uid = '1.2.81', plan, summation = 'PLAN', units = 'GY', file = 'dose.dcm', description, origin = '0\\0\\0' } = {}) {
   const pixels = Buffer.alloc(2 * 8 * 8 * 6);
   for (let k = 0, at = 0; k < 6; k++)
     for (let j = 0; j < 8; j++)
       for (let i = 0; i < 8; i++, at += 2) pixels.writeUInt16LE(1 + i + j + k, at);
   writeFileSync(join(folder, file), dicomFile([...owned(owner, '481.2', uid, 'RTDOSE', '1.2.82'), [0x0008103e, 'LO', description], ...grid(8, 8), [0x00280103, 'US', 0], [0x00280008, 'IS', 6], [0x00280030, 'DS', '4\\4'],
-    [0x00200032, 'DS', '0\\0\\0'], [0x30040002, 'CS', units], [0x30040004, 'CS', 'PHYSICAL'], [0x3004000a, 'CS', summation], [0x3004000c, 'DS', '0\\4\\8\\12\\16\\20'], [0x3004000e, 'DS', '0.1'],
+    [0x00200032, 'DS', origin], [0x30040002, 'CS', units], [0x30040004, 'CS', 'PHYSICAL'], [0x3004000a, 'CS', summation], [0x3004000c, 'DS', '0\\4\\8\\12\\16\\20'], [0x3004000e, 'DS', '0.1'],
     ...(plan ? [refer(0x300c0002, '481.5', plan)] : []), [0x7fe00010, 'OW', pixels]]));
 }
 

@@ -45,7 +45,7 @@ async function newRoom() {
 
 describe('a name the plan does not have', () => {
   test('can stand in these fields', () => {
-    assert.deepEqual(references().map(({ pointer }) => pointer).sort(), ['/beam/id', '/beam/looks/nowhere', '/check/region', '/clip/beam/id', '/dose/compare/id', '/dose/coverage/region', '/dose/id', '/dose/reference/region', '/dose/sum/nowhere', '/dose/tissue', '/dose/weights/nowhere', '/image/blend/id', '/image/id', '/image/looks/nowhere', '/regions/nowhere']);
+    assert.deepEqual(references().map(({ pointer }) => pointer).sort(), ['/beam/id', '/beam/looks/nowhere', '/check/region', '/clip/beam/id', '/dose/compare/id', '/dose/coverage/region', '/dose/coverage/tissue', '/dose/id', '/dose/reference/region', '/dose/sum/nowhere', '/dose/tissue', '/dose/weights/nowhere', '/image/blend/id', '/image/id', '/image/looks/nowhere', '/regions/nowhere']);
   });
 
   test('is refused in a picture over HTTP, in the scene and in the view\'s override', async () => {
