@@ -17,30 +17,40 @@ struct comparison_recipe {
 /* ---- one volume of a field -------------------------------------------------------------------------------------------- */
 struct merging {
     const struct dose_field *field;
+    const struct grid *grid;
     float *values;
 };
 
 static void merge_some(void *context, int part, int n_parts)
 {
     const struct merging *merging = context;
-    const struct grid *grid = &merging->field->rows[0]->grid;
+    const struct grid *grid = merging->grid;
+    bool is_of_rows = grid != &merging->field->grid || !merging->field->exact;
     for (uint32_t k = (uint32_t)part; k < grid->size[2]; k += (uint32_t)n_parts)
         for (uint32_t j = 0; j < grid->size[1]; j++)
             for (uint32_t i = 0; i < grid->size[0]; i++) {
                 size_t at = i + grid->size[0] * (j + (size_t)grid->size[1] * k);
-                uint8_t row = dose_field_row(merging->field, affine_point(&grid->lps_mm_from_ijk, vec3(i, j, k)));
-                merging->values[at] = row == DOSE_NO_ROW ? NAN : ((const float *)merging->field->rows[row]->voxels)[at];
+                struct vec3 point = affine_point(&grid->lps_mm_from_ijk, vec3(i, j, k));
+                uint8_t row = dose_field_row(merging->field, point);
+                double value = NAN;
+                if (row != DOSE_NO_ROW && is_of_rows)
+                    value = (double)((const float *)merging->field->rows[row]->voxels)[at];
+                else if (row != DOSE_NO_ROW && !dose_field_value_in(merging->field, row, point, &value))
+                    value = NAN;
+                merging->values[at] = (float)value;
             }
 }
 
-/* The field's values with the tissue at each voxel's centre. One reference. */
-static struct volume *merge(const struct dose_field *field, struct error *err)
+/* The field's values with the tissue at each voxel's centre, on the dose's own grid or on that of its rows. One
+ * reference. */
+static struct volume *merge(const struct dose_field *field, bool is_on_own_grid, struct error *err)
 {
-    if (!field->tissue)
+    const struct grid *grid = is_on_own_grid ? &field->grid : &field->rows[0]->grid;
+    if (!field->tissue && (!field->exact || !is_on_own_grid))
         return volume_ref(field->rows[0]);
-    struct volume *volume = volume_create_unset(&field->rows[0]->grid, VOXEL_F32, err);
+    struct volume *volume = volume_create_unset(grid, VOXEL_F32, err);
     if (volume) {
-        struct merging merging = { field, volume->voxels };
+        struct merging merging = { field, grid, volume->voxels };
         parallel_run(parallel_cores(), merge_some, &merging);
     }
     return volume;
@@ -200,13 +210,13 @@ static bool fill(struct dose_comparison *comparison, const struct dose_field *fi
     if (strcmp(first->unit, second->unit) != 0)
         return error_set(err, ERROR_RANGE, "one dose is in \"%s\", the other in \"%s\": they cannot be compared",
                          first->unit, second->unit);
-    struct volume *merged = merge(first, err), *other = NULL;
+    struct volume *merged = merge(first, true, err), *other = NULL;
     if (merged)
         merged = in_domain(comparison, merged, choice, set, err);
     if (!merged)
         return false;
     if (choice->is_gamma) {
-        if ((other = merge(second, err)))
+        if ((other = merge(second, false, err)))
             comparison->values = gamma_index(merged, other, &choice->gamma, &comparison->gamma, err);
     } else if (subtract(comparison, merged, second, choice->gamma.threshold, err))
         memcpy(comparison->unit, first->unit, sizeof comparison->unit);

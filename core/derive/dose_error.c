@@ -49,7 +49,7 @@ static double percent_at(const struct working *working, struct vec3 point)
 static void work_some(void *context, int part, int n_parts)
 {
     const struct working *working = context;
-    const struct grid *grid = &working->field->rows[0]->grid;
+    const struct grid *grid = &working->field->grid;
     for (uint32_t k = (uint32_t)part; k < grid->size[2]; k += (uint32_t)n_parts)
         for (uint32_t j = 0; j < grid->size[1]; j++)
             for (uint32_t i = 0; i < grid->size[0]; i++)
@@ -80,7 +80,7 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
     const struct dose_choice *choice = &((const struct error_recipe *)base)->choice;
     const struct dose *dose = &derive_plan(derive)->doses[choice->parts[0].dose];
     struct dose_field *field = dose_field_get(derive, choice, err);
-    struct volume *percent = field ? volume_create_unset(&field->rows[0]->grid, VOXEL_F32, err) : NULL;
+    struct volume *percent = field ? volume_create_unset(&field->grid, VOXEL_F32, err) : NULL;
     struct dose_error *error = percent ? mem_array(1, sizeof *error, UINT64_MAX, err) : NULL;
     struct working *working = error ? mem_new(sizeof *working) : NULL;
     (void)way;

@@ -110,6 +110,7 @@ static void destroy(struct derive_result *base)
 {
     struct dose_field *field = (struct dose_field *)base;
     dose_filling_destroy(field->filling); /* before the last reference to the rows is dropped */
+    isoeffective_rows_destroy(field->exact);
     for (size_t r = 0; r < field->n_rows; r++)
         drop_row(field->rows[r]);
     if (field->tissue)
@@ -121,6 +122,28 @@ static const struct derive_kind kind = {
     .recipe_size = sizeof(struct field_recipe), .is_equal = is_equal, .build = build, .destroy = destroy
 };
 
+enum { MOST_FINE_VOXELS = 24 << 20 }; /* of all rows of an isoeffective dose: 96 MiB */
+
+static bool fill_isoeffective(struct derive *derive, struct dose_field *field, const struct dose_choice *choice,
+                              struct error *err)
+{
+    struct grid fine;
+    uint32_t factors[3];
+    dose_filling_destroy(field->filling);
+    field->filling = NULL;
+    field->exact = isoeffective_rows_create(derive, choice, dose_field_get, err);
+    if (!field->exact ||
+        !isoeffective_rows_grid(field->exact, MOST_FINE_VOXELS, &fine, factors, &field->row_error, err))
+        return false;
+    for (; field->n_rows < choice->n_rows; field->n_rows++)
+        if (!(field->rows[field->n_rows] = create_row(&fine, err)))
+            return false;
+    for (size_t r = 0; r < field->n_rows; r++)
+        if (!isoeffective_rows_fill(field->exact, r, factors, field->rows[r], err))
+            return false;
+    return true;
+}
+
 static bool fill(struct derive *derive, struct dose_field *field, const struct dose_choice *choice, struct error *err)
 {
     const struct plan *plan = derive_plan(derive);
@@ -130,19 +153,13 @@ static bool fill(struct derive *derive, struct dose_field *field, const struct d
     if (!field->filling ||
         (!choice->is_everywhere && !(field->tissue = tissue_rows_get(derive, choice->row_of_region, err))))
         return false;
-    const struct grid *grid = dose_filling_grid(field->filling, &field->is_resampled);
+    field->grid = *dose_filling_grid(field->filling, &field->is_resampled);
+    if (choice->shown == DOSE_SHOWN_ISOEFFECTIVE) /* at once */
+        return fill_isoeffective(derive, field, choice, err);
+    const struct grid *grid = &field->grid;
     for (; field->n_rows < choice->n_rows; field->n_rows++)
         if (!(field->rows[field->n_rows] = create_row(grid, err)))
             return false;
-    if (choice->shown == DOSE_SHOWN_ISOEFFECTIVE) { /* at once */
-        dose_filling_destroy(field->filling);
-        field->filling = NULL;
-        if (!isoeffective_rows_fill(derive, choice, field->rows, dose_field_get, err))
-            return false;
-        for (size_t r = 0; r < field->n_rows; r++)
-            volume_measure(field->rows[r]);
-        return true;
-    }
     if (field->tissue && !(near = dose_bricks_get(derive, choice, grid, field->tissue, err)))
         return false;
     return dose_filling_start(field->filling, field->rows, field->n_rows, near, err);
@@ -237,10 +254,11 @@ bool dose_field_value(const struct dose_field *field, struct vec3 point_lps_mm, 
         return false;
     if (field->filling && !dose_filling_is_complete(field->filling))
         dose_field_need_box(field, &(struct box3){ point_lps_mm, point_lps_mm });
-    return volume_sample(field->rows[row], point_lps_mm, value);
+    return dose_field_value_in(field, row, point_lps_mm, value);
 }
 
 bool dose_field_value_in(const struct dose_field *field, uint8_t row, struct vec3 point_lps_mm, double *value)
 {
-    return volume_sample(field->rows[row], point_lps_mm, value);
+    return field->exact ? isoeffective_rows_value(field->exact, row, point_lps_mm, value)
+                        : volume_sample(field->rows[row], point_lps_mm, value);
 }

@@ -169,6 +169,53 @@ test('a region without weights has no curve, coverage or limit, with the reason'
   assert.equal((await ask('coverage', override, '&region=brain&low=1&unit=dose')).json.coverage_reason, reason);
 });
 
+/** The photon dose of the same effect, by the equation of Gonzalez and Santa Cruz with two repair times, solved by bisection. */
+function photonDose(set, doses, minutes) {
+  const lea = (tau, t) => (2 / (t / tau) ** 2) * (t / tau - 1 + Math.exp(-t / tau));
+  const [fast, slow] = [set.repair_fast_min, set.repair_slow_min].map((tau) => lea(tau, minutes));
+  const parts = [['boron', doses.boron], ['nitrogen', doses.nitrogen], ['fast', doses.fast + doses.other], ['photon', doses.gamma]].map(([name, gy]) => ({ ...set[name], gy, isLow: name === 'photon' }));
+  let effect = parts.reduce((sum, { alpha, gy }) => sum + alpha * gy, 0);
+  const [boron, , , photon] = parts;
+  const high = parts[1].gy + parts[2].gy;
+  for (const a of parts)
+    for (const b of parts) {
+      // of photons and a neutron component, the neutron components count together
+      const of = (one) => (one === boron || one.isLow ? one.gy : high);
+      const share = a.isLow === b.isLow ? (a.isLow ? 1 : 0) : photon.gy / (of(a) + of(b));
+      const part = set.high_let_fast_part + (set.low_let_fast_part - set.high_let_fast_part) * share;
+      effect += (slow - part * (slow - fast)) * Math.sqrt(a.beta * b.beta) * a.gy * b.gy;
+    }
+  const beta = set.photon.beta * (lea(set.repair_slow_min, set.photon_min) - set.low_let_fast_part * (lea(set.repair_slow_min, set.photon_min) - lea(set.repair_fast_min, set.photon_min)));
+  let [low, top] = [0, 1e4];
+  for (let step = 0; step < 200; step++) {
+    const middle = (low + top) / 2;
+    if (set.photon.alpha * middle + beta * middle ** 2 < effect) low = middle;
+    else top = middle;
+  }
+  return low;
+}
+
+test('an isoeffective dose is that of the components beside it, wherever the point lies between voxels', async () => {
+  const sets = JSON.parse(readFileSync('proto/dose_presets.json', 'utf8')).isoeffective;
+  const set = sets[4];
+  const { json: scene } = await api(`phantom/dose?room=${room}`);
+  const weights = Object.fromEntries(scene.weights.map(({ region }) => [region, { isoeffective: set.name }]));
+  const minutes = 40;
+  const factor = 30; // the phantom's dose is per minute
+  const view = encodeURIComponent(JSON.stringify({ override: { dose: { quantity: 'isoeffective', weights, irradiation_min: minutes, factor } } }));
+  let n = 0;
+  for (let at = 0; at < 40; at++) {
+    const [x, y, z] = [13, 7, 29].map((step, axis) => (((at * step + 0.37 * at * axis) % 80) - 40) * 1.013);
+    const { json } = await api(`phantom/dose/probe?room=${room}&view=${view}&x=${x}&y=${y}&z=${z}`);
+    if (json.value === null) continue;
+    const of = (quantity) => json.components.find((part) => part.quantity === quantity)?.value ?? 0;
+    const expected = photonDose(set, { boron: of('boron'), nitrogen: of('nitrogen'), fast: of('fast'), gamma: of('gamma'), other: of('other') }, minutes);
+    near(json.value, expected, 2e-6);
+    n++;
+  }
+  assert.ok(n > 10, `${n} points`);
+});
+
 test('of a region mostly outside the grid of the dose figures are bounds, and limits that the rest could decide are not known', { skip: smaller && existsSync(smaller) ? false : 'no made cases on this machine' }, async () => {
   const sent = await fetch(`${daemon.url}/api/v1/plans?name=smaller`, { method: 'POST', body: readFileSync(smaller), headers: { 'Content-Type': 'application/zip' } });
   const { id } = await sent.json();
