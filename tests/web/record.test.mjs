@@ -52,7 +52,7 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   await ann.getByRole('combobox', { name: 'Decision' }).selectOption('accept-with-changes');
   await ann.getByLabel('In words').fill('Less gap');
   await ann.getByRole('button', { name: 'Write down' }).click();
-  await ann.getByText(/^Kept \d\d:\d\d/).waitFor();
+  await ann.locator('section', { hasText: 'Decision' }).getByText(/^Kept \d\d:\d\d/).last().waitFor();
   await ben.locator('.record-lines').getByText('Accept with changes').waitFor();
   await ben.getByRole('textbox', { name: 'Name' }).fill('B. Example');
   await ben.getByRole('button', { name: 'Sign' }).click();
