@@ -228,6 +228,7 @@ static bool verify_audit(const struct options *options, struct error *err)
         print_time("first", facts.first_ms);
         print_time("last", facts.last_ms);
     }
+    printf("items %lld\n", (long long)facts.n_items);
     printf("head %s\n", facts.head);
     return true;
 }

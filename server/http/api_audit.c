@@ -35,6 +35,16 @@ bool api_audit_has_place(const struct api *api, struct problem *problem)
     return false;
 }
 
+void api_audit_add_head(const struct api *api, struct call *call)
+{
+    const struct net_audit_head head = net_audit_head(api->net);
+    char text[96];
+    if (!head.hash[0])
+        return;
+    (void)snprintf(text, sizeof text, "%lld %s", (long long)head.n, head.hash);
+    call_add_header(call, "Audit-Head", text);
+}
+
 bool api_audit_export(struct api *api, struct call *call, const char *what)
 {
     struct problem problem;
@@ -42,6 +52,8 @@ bool api_audit_export(struct api *api, struct call *call, const char *what)
         call_answer_problem(call, &problem);
         return false;
     }
+    if (!call->exported)
+        api_audit_add_head(api, call);
     call->exported = what;
     call->answering = record;
     return true;

@@ -94,6 +94,8 @@ void api_room_export(struct api *api, struct call *call)
     const bool ok = record_told(api, call, body, &problem);
     cJSON_Delete(body);
     if (ok)
+        api_audit_add_head(api, call);
+    if (ok)
         call_answer_nothing(call, 204);
     else
         call_answer_problem(call, &problem);

@@ -46,6 +46,19 @@ bool audit_read_head(sqlite3 *db, struct audit_head *head, struct error *err)
     return ok;
 }
 
+bool audit_has_row(sqlite3 *db, const struct audit_head *wanted)
+{
+    char hash[STORE_AUDIT_HASH] = "";
+    sqlite3_stmt *row = sql_prepare(db, "SELECT hash FROM audit WHERE n = ?1", NULL);
+    if (!row)
+        return false;
+    (void)sqlite3_bind_int64(row, 1, wanted->n);
+    if (sqlite3_step(row) == SQLITE_ROW)
+        sql_text(row, 0, hash, sizeof hash);
+    (void)sqlite3_finalize(row);
+    return strcmp(hash, wanted->hash) == 0;
+}
+
 /* The newest row's number and hash, beside the table. */
 static bool write_head(sqlite3 *db, const struct audit_head *head, struct error *err)
 {

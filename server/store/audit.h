@@ -14,6 +14,7 @@ struct audit_head { /* the newest row */
 
 /* Errors of both: those of sql_fail. */
 NODISCARD bool audit_read_head(sqlite3 *db, struct audit_head *head, struct error *err);
+bool audit_has_row(sqlite3 *db, const struct audit_head *row); /* with this number and hash */
 /* Adds rows inside a transaction of the caller's. Each is a JSON object without n, which becomes its first field:
  * {"n":17,"time_ms":...}. */
 NODISCARD bool audit_append(sqlite3 *db, char *const *rows, size_t n, struct error *err);

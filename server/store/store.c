@@ -14,6 +14,7 @@
 #include "core/base/queue.h"
 #include "server/store/audit.h"
 #include "server/store/database.h"
+#include "server/store/heads.h"
 #include "server/store/recordings.h"
 #include "server/store/records.h"
 #include "server/store/rows.h"
@@ -46,6 +47,9 @@ struct store {
     bool is_failing, was_open;
     struct error failure; /* as last told */
     int64_t retry_us, pause_ms;
+    struct audit_head head; /* of the audit on disk */
+    int64_t logged_n;       /* its number when it was last logged */
+    int64_t log_us;         /* when it is logged next, if it is another then */
 };
 
 void store_answer_free(struct store_answer *answer)
@@ -75,6 +79,53 @@ static void answer(struct store *store, const struct store_answer *said)
     store->options.answered(store->options.context, copy);
 }
 
+/* The head goes to the log, where nobody who changes the database reaches it. */
+static void log_head(struct store *store)
+{
+    if (store->head.n != store->logged_n)
+        log_info("audit: %lld rows, head %s", (long long)store->head.n, store->head.hash);
+    store->logged_n = store->head.n;
+    store->log_us = clock_now_us() + STORE_LOG_HEAD_S * INT64_C(1000000);
+}
+
+/* Rows that were there once are not: that itself is recorded, once. */
+static void record_loss(struct store *store, const struct audit_head *noted)
+{
+    char row[400], *rows[] = { row };
+    struct error err = { 0 };
+    log_error("the audit ends with row %lld, and row %lld with the hash %s was there: rows were removed or changed, or "
+              "another database was put in its place",
+              (long long)store->head.n, (long long)noted->n, noted->hash);
+    (void)snprintf(row, sizeof row,
+                   "{\"time_ms\":%lld,\"room\":\"\",\"plan\":\"\",\"member\":\"\",\"name\":\"\",\"role\":\"\","
+                   "\"address\":\"\",\"action\":\"head-missing\",\"detail\":{\"rows\":%lld,\"head\":\"%s\"},"
+                   "\"revision_before\":null,\"revision_after\":null,\"result\":\"done\"}",
+                   (long long)clock_wall_ms(), (long long)noted->n, noted->hash);
+    bool ok = sql_run(store->db, "BEGIN IMMEDIATE", &err) && audit_append(store->db, rows, 1, &err) &&
+              sql_run(store->db, "COMMIT", &err);
+    if (!ok) {
+        log_error("the audit: %s", err.text);
+        (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+    } else if (audit_read_head(store->db, &store->head, &err)) {
+        heads_write(store->path, &store->head);
+    }
+}
+
+/* Compares the audit with its newest row as it was noted beside the database. */
+static void compare_head(struct store *store)
+{
+    struct audit_head noted;
+    struct error err = { 0 };
+    heads_read(store->path, &noted);
+    if (!audit_read_head(store->db, &store->head, &err))
+        return;
+    if (noted.n && !audit_has_row(store->db, &noted))
+        record_loss(store, &noted);
+    else if (store->head.n)
+        heads_write(store->path, &store->head);
+    log_head(store);
+}
+
 /* The newest row of the audit; without one, or when it cannot be read, none. */
 static void read_head(struct store *store, struct store_answer *said)
 {
@@ -82,6 +133,8 @@ static void read_head(struct store *store, struct store_answer *said)
     struct error err = { 0 };
     if (!audit_read_head(store->db, &head, &err))
         log_error("%s", err.text);
+    else
+        store->head = head;
     said->audit_n = head.n;
     memcpy(said->audit_hash, head.hash, sizeof said->audit_hash);
 }
@@ -127,6 +180,7 @@ static bool open_database(struct store *store, struct error *err)
         store->db = NULL;
         return false;
     }
+    compare_head(store);
     read_head(store, &opened);
     opened.is_new = store->was_open && moved[0] != 0;
     store->was_open = true;
@@ -161,8 +215,11 @@ static bool commit(struct store *store, size_t n, struct error *err)
 static void finish(struct store *store, size_t n, const struct error *err)
 {
     struct store_answer head = { 0 };
+    const int64_t n_before = store->head.n;
     if (!err)
         read_head(store, &head);
+    if (store->head.n > n_before)
+        heads_write(store->path, &store->head);
     while (n-- > 0) {
         struct request *request = store->first;
         store->first = request->next;
@@ -306,12 +363,12 @@ static void take(struct store *store, struct request *request)
     store->n_pending++;
 }
 
-/* How long to wait for a request: until the next try, while there is one to make. */
+/* How long to wait for a request: until the next try, while there is one to make, or the next line in the log. */
 static int64_t wait_ms(const struct store *store)
 {
-    if (!store->is_failing)
+    if (!store->is_failing && store->head.n == store->logged_n)
         return -1;
-    int64_t left_us = store->retry_us - clock_now_us();
+    int64_t left_us = (store->is_failing ? store->retry_us : store->log_us) - clock_now_us();
     return left_us > 0 ? left_us / 1000 + 1 : 0;
 }
 
@@ -339,6 +396,8 @@ static void *work(void *context)
             }
             take(store, request);
         }
+        if (!ends && clock_now_us() >= store->log_us)
+            log_head(store);
         if (ends || (store->is_failing ? clock_now_us() >= store->retry_us : store->n_pending > 0))
             write_pending(store);
     }
@@ -440,6 +499,7 @@ void store_destroy(struct store *store)
         store->first = request->next;
         request_free(request);
     }
+    log_head(store);
     database_close(store->db);
     queue_destroy(store->queue);
     free(store);

@@ -11,7 +11,8 @@ enum {
     STORE_QUEUE = 4096,      /* requests that may wait */
     STORE_MAX_ROOMS = 10000, /* listed; a caller keeps no more */
     STORE_RECORDS_AT_ONCE = 1000,
-    STORE_RETRY_MS = 500, /* pause after a failed commit; doubled each time up to */
+    STORE_LOG_HEAD_S = 3600, /* the newest row of the audit goes to the log, if there are new ones */
+    STORE_RETRY_MS = 500,    /* pause after a failed commit; doubled each time up to */
     STORE_RETRY_AT_MOST_MS = 4000
 };
 

@@ -9,7 +9,11 @@
 
 #include "server/store/audit.h"
 #include "server/store/database.h"
+#include "server/store/heads.h"
 #include "server/store/sql.h"
+#include "server/store/verify_items.h"
+
+enum { VERSION_WITH_AUDIT = 4, VERSION_WITH_HEAD = 6 }; /* of the database */
 
 /* The number and the time with which a row's text begins; false: it begins otherwise. */
 static bool read_beginning(const char *text, int64_t *n, int64_t *time_ms)
@@ -72,12 +76,22 @@ static bool check_rows(sqlite3 *db, const char *head, bool *has_head, struct aud
     return ok;
 }
 
-static bool has_audit(sqlite3 *db, struct error *err)
+static int64_t read_number(sqlite3 *db, const char *sql)
+{
+    sqlite3_stmt *row = sql_prepare(db, sql, NULL);
+    const int64_t number = row && sqlite3_step(row) == SQLITE_ROW ? sqlite3_column_int64(row, 0) : -1;
+    (void)sqlite3_finalize(row);
+    return number;
+}
+
+static bool has_audit(sqlite3 *db, int64_t version, struct error *err)
 {
     sqlite3_stmt *row = sql_prepare(db, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = 'audit'", err);
     int step = row ? sqlite3_step(row) : SQLITE_ERROR;
     bool ok = step == SQLITE_ROW;
-    if (step == SQLITE_DONE)
+    if (step == SQLITE_DONE && version >= VERSION_WITH_AUDIT)
+        error_set(err, ERROR_FORMAT, "the table of the audit was removed");
+    else if (step == SQLITE_DONE)
         error_set(err, ERROR_NOT_FOUND, "the database has no audit: it is older, or not the daemon's");
     else if (row && !ok)
         (void)sql_fail(db, "reading", err);
@@ -85,20 +99,71 @@ static bool has_audit(sqlite3 *db, struct error *err)
     return ok;
 }
 
+/* The newest row as it stands in the database beside the table. */
+static bool check_kept_head(sqlite3 *db, const struct audit_facts *facts, struct error *err)
+{
+    char hash[STORE_AUDIT_HASH] = "";
+    sqlite3_stmt *row = sql_prepare(db, "SELECT n, hash FROM audit_head", NULL);
+    const bool is_there = row && sqlite3_step(row) == SQLITE_ROW;
+    const int64_t n = is_there ? sqlite3_column_int64(row, 0) : 0;
+    if (is_there)
+        sql_text(row, 1, hash, sizeof hash);
+    (void)sqlite3_finalize(row);
+    if (!is_there)
+        return error_set(err, ERROR_FORMAT, "the number and hash of the newest row (audit_head) were removed");
+    if (n > facts->n_rows)
+        return error_set(err, ERROR_FORMAT, "rows %lld to %lld were removed at the end", (long long)facts->n_rows + 1,
+                         (long long)n);
+    if (n < facts->n_rows || strcmp(hash, facts->head) != 0)
+        return error_set(
+            err, ERROR_FORMAT,
+            "the newest row is %lld with the hash %.64s, and audit_head says row %lld with %.64s: the chain "
+            "was written anew",
+            (long long)facts->n_rows, facts->head, (long long)n, hash);
+    return true;
+}
+
+/* The newest row as it was noted in the file beside the database. */
+static bool check_noted_head(sqlite3 *db, const struct audit_facts *facts, const struct audit_head *noted,
+                             struct error *err)
+{
+    if (noted->n > facts->n_rows)
+        return error_set(err, ERROR_FORMAT,
+                         "rows %lld to %lld were removed at the end: the file beside the database knows them",
+                         (long long)facts->n_rows + 1, (long long)noted->n);
+    return !noted->n || audit_has_row(db, noted) ||
+           error_set(err, ERROR_FORMAT,
+                     "row %lld has not the hash %.64s, which the file beside the database knows: the chain was written "
+                     "anew",
+                     (long long)noted->n, noted->hash);
+}
+
+static bool check_all(sqlite3 *db, const char *head, const struct audit_head *noted, struct audit_facts *facts,
+                      struct error *err)
+{
+    bool has_head = !head || strcmp(head, audit_no_hash) == 0;
+    const int64_t version = read_number(db, "PRAGMA user_version");
+    if (!has_audit(db, version, err) || !check_rows(db, head, &has_head, facts, err) ||
+        (version >= VERSION_WITH_HEAD && !check_kept_head(db, facts, err)) || !check_noted_head(db, facts, noted, err))
+        return false;
+    if (!has_head)
+        return error_set(err, ERROR_FORMAT,
+                         "none of the %lld rows has the hash given: rows at the end were removed, or the chain was "
+                         "written anew",
+                         (long long)facts->n_rows);
+    return version < VERSION_WITH_HEAD || verify_items(db, &facts->n_items, err);
+}
+
 bool store_verify_audit(const char *path, const char *head, struct audit_facts *facts, struct error *err)
 {
+    struct audit_head noted;
     *facts = (struct audit_facts){ 0 };
     memcpy(facts->head, audit_no_hash, sizeof facts->head);
     if (access(path, F_OK) != 0)
         return error_set(err, ERROR_NOT_FOUND, "%.150s: %s", path, strerror(errno));
+    heads_read(path, &noted); /* before the database, which goes on growing while a daemon writes it */
     sqlite3 *db = database_open_to_read(path, err);
-    bool has_head = !head || strcmp(head, audit_no_hash) == 0;
-    bool ok = db && has_audit(db, err) && check_rows(db, head, &has_head, facts, err);
+    const bool ok = db && sql_run(db, "BEGIN", err) && check_all(db, head, &noted, facts, err);
     database_close(db);
-    if (ok && !has_head)
-        ok = error_set(err, ERROR_FORMAT,
-                       "none of the %lld rows has the hash given: rows at the end were removed, or the chain was "
-                       "written anew",
-                       (long long)facts->n_rows);
     return ok;
 }

@@ -203,15 +203,64 @@ static void a_row_rewritten_with_a_hash_that_fits_breaks_the_next(void **state)
     assert_non_null(strstr(said, "row 3 does not fit"));
 }
 
-static void a_cut_tail_is_found_with_a_hash_that_was_given_away(void **state)
+/* The newest row stands in the database itself; who removes that, too, is told by the file beside it; who removes both,
+ * by a hash that was given away. */
+static void a_cut_tail_is_found_without_a_hash(void **state)
 {
     (void)state;
-    assert_string_equal(after("DELETE FROM audit WHERE n = 3", NULL), ""); /* not by itself */
+    char beside[320];
     struct audit_facts facts;
     struct error err = { 0 };
+    assert_string_equal(after("DELETE FROM audit WHERE n = 3", NULL), "rows 3 to 3 were removed at the end");
+    store_file_run(world.path,
+                   "DROP TRIGGER audit_head_order; UPDATE audit_head SET n = 2, hash = (SELECT hash FROM audit"
+                   " WHERE n = 2)");
+    assert_false(store_verify_audit(world.path, NULL, &facts, &err));
+    assert_string_equal(err.text, "rows 3 to 3 were removed at the end: the file beside the database knows them");
+    (void)snprintf(beside, sizeof beside, "%s-audit", world.path);
+    assert_int_equal(remove(beside), 0);
+    err = (struct error){ 0 };
+    assert_true(store_verify_audit(world.path, NULL, &facts, &err));
     assert_true(store_verify_audit(world.path, hashes[1], &facts, &err));
     assert_false(store_verify_audit(world.path, hashes[2], &facts, &err));
     assert_non_null(strstr(err.text, "none of the 2 rows has the hash given"));
+}
+
+static void an_emptied_or_removed_audit_is_named(void **state)
+{
+    (void)state;
+    struct audit_facts facts;
+    struct error err = { 0 };
+    assert_string_equal(after("DELETE FROM audit", NULL), "rows 1 to 3 were removed at the end");
+    store_file_run(world.path, "DROP TABLE audit_head");
+    assert_false(store_verify_audit(world.path, NULL, &facts, &err));
+    assert_non_null(strstr(err.text, "(audit_head) were removed"));
+    store_file_run(world.path, "DROP TABLE audit");
+    err = (struct error){ 0 };
+    assert_false(store_verify_audit(world.path, NULL, &facts, &err));
+    assert_int_equal(err.code, ERROR_FORMAT);
+    assert_string_equal(err.text, "the table of the audit was removed");
+}
+
+/* A daemon that starts with such a database goes on, and the loss itself is a row. */
+static void a_lost_end_is_recorded_when_the_database_is_opened(void **state)
+{
+    (void)state;
+    (void)after(
+        "DELETE FROM audit WHERE n = 3; DROP TRIGGER audit_head_order; UPDATE audit_head SET n = 2, hash = (SELECT"
+        " hash FROM audit WHERE n = 2)",
+        NULL);
+    store_world_open(&world);
+    struct store_answer *opened = store_world_await(&world, STORE_OPENED);
+    assert_int_equal(opened->audit_n, 3);
+    store_answer_free(opened);
+    assert_int_equal(store_file_number(world.path,
+                                       "SELECT row LIKE '%\"action\":\"head-missing\"%\"rows\":3%' FROM audit"
+                                       " WHERE n = 3"),
+                     1);
+    struct audit_facts facts;
+    struct error err = { 0 };
+    assert_true(store_verify_audit(world.path, NULL, &facts, &err));
 }
 
 static void a_database_of_the_version_before_gets_an_audit(void **state)
@@ -245,7 +294,13 @@ static void a_database_without_audit_or_none_is_said(void **state)
     (void)state;
     struct audit_facts facts;
     struct error err = { 0 };
-    assert_non_null(strstr(after("DROP TABLE audit", NULL), "the database has no audit"));
+    store_world_close(&world);
+    folder_remove(world.folder);
+    folder_make(world.folder);
+    (void)snprintf(world.path, sizeof world.path, "%s/beamroom.db", world.folder);
+    store_file_run_file(world.path, "tests/data/store/version3.sql");
+    assert_false(store_verify_audit(world.path, NULL, &facts, &err));
+    assert_non_null(strstr(err.text, "the database has no audit"));
     assert_false(store_verify_audit("/nowhere/at.db", NULL, &facts, &err));
     assert_int_equal(err.code, ERROR_NOT_FOUND);
 }
@@ -266,7 +321,9 @@ int main(void)
         TEST(a_changed_order_is_named),
         TEST(a_rewritten_hash_is_named),
         TEST(a_row_rewritten_with_a_hash_that_fits_breaks_the_next),
-        TEST(a_cut_tail_is_found_with_a_hash_that_was_given_away),
+        TEST(a_cut_tail_is_found_without_a_hash),
+        TEST(an_emptied_or_removed_audit_is_named),
+        TEST(a_lost_end_is_recorded_when_the_database_is_opened),
         TEST(a_database_of_the_version_before_gets_an_audit),
         TEST(a_database_without_audit_or_none_is_said),
     };
