@@ -130,6 +130,22 @@ static bool end_at_gap(struct store_part *part, int64_t last_ms, int64_t t_ms, s
     return true;
 }
 
+/* How many batches the recording has by its facts, which are written with each of them; 0: not known. */
+static int64_t read_n_batches(sqlite3 *db, const char *room, const char *recording)
+{
+    sqlite3_stmt *row = sql_prepare(db,
+                                    "SELECT json_extract(facts, '$.n_batches') FROM recordings WHERE room = ?1 AND id ="
+                                    " ?2 AND json_valid(facts)",
+                                    NULL);
+    if (!row)
+        return 0;
+    sql_bind_text(row, 1, room);
+    sql_bind_text(row, 2, recording);
+    const int64_t n = sqlite3_step(row) == SQLITE_ROW ? sqlite3_column_int64(row, 0) : 0;
+    (void)sqlite3_finalize(row);
+    return n;
+}
+
 struct store_part *recordings_read_part(sqlite3 *db, const char *room, const char *recording, int64_t t_ms,
                                         struct error *err)
 {
@@ -165,6 +181,8 @@ struct store_part *recordings_read_part(sqlite3 *db, const char *room, const cha
         }
     }
     (void)sqlite3_finalize(row);
+    if (ok && part->next_ms == INT64_MAX && first + (int64_t)part->n < read_n_batches(db, room, recording))
+        ok = end_at_gap(part, last_ms, t_ms, err); /* its end is missing */
     if (ok)
         return part;
     store_part_free(part);

@@ -84,6 +84,14 @@ static bool refuse_missing(sqlite3_stmt *row, struct error *err)
                      found.kind, found.id, found.room, found.n);
 }
 
+static bool refuse_cut(sqlite3_stmt *row, struct error *err)
+{
+    struct found found;
+    read_found(row, &found);
+    return error_set(err, ERROR_FORMAT, "recording %s of room %s has %lld of its %lld parts: the others were removed",
+                     found.id, found.room, (long long)sqlite3_column_int64(row, 5), found.n);
+}
+
 static bool for_each(sqlite3 *db, const char *sql, double number, bool (*check)(sqlite3_stmt *row, struct error *err),
                      int64_t *n, struct error *err)
 {
@@ -116,6 +124,11 @@ bool verify_items(sqlite3 *db, int64_t *n, struct error *err)
     static const char missing_records[] =
         "SELECT action, item, room, n FROM said AS a WHERE action IN ('decision', 'signature') AND record IS NOT NULL AND"
         " NOT EXISTS(SELECT 1 FROM records WHERE records.room = a.room AND records.id = a.item)";
+    static const char cut_recordings[] =
+        "SELECT 'recording', id, room, json_extract(facts, '$.n_batches'), '', (SELECT count(*) FROM recording_batches AS"
+        " b WHERE b.room = r.room AND b.recording = r.id) FROM recordings AS r WHERE json_valid(facts) AND (SELECT"
+        " count(*) FROM recording_batches AS b WHERE b.room = r.room AND b.recording = r.id) <"
+        " json_extract(facts, '$.n_batches')";
     int64_t n_missing = 0;
     *n = 0;
     sqlite3_stmt *row = sql_run(db, collect, err) ? sql_prepare(db, since, err) : NULL;
@@ -124,5 +137,6 @@ bool verify_items(sqlite3 *db, int64_t *n, struct error *err)
     (void)sqlite3_finalize(row);
     return ok && for_each(db, items, since_ms, check_item, n, err) && for_each(db, records, 0, check_record, n, err) &&
            for_each(db, missing_items, 0, refuse_missing, &n_missing, err) &&
-           for_each(db, missing_records, 0, refuse_missing, &n_missing, err);
+           for_each(db, missing_records, 0, refuse_missing, &n_missing, err) &&
+           for_each(db, cut_recordings, 0, refuse_cut, &n_missing, err);
 }

@@ -5,6 +5,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/store/verify.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/store_files.h"
@@ -136,9 +137,8 @@ static void the_database_refuses_to_change_or_delete_a_record(void **state)
     assert_string_equal(refusal("DELETE FROM audit_head"), "the audit is never deleted");
 }
 
-static void a_database_of_version_5_keeps_its_recording_and_gets_records(void **state)
+static struct store_answer *open_version_5(void)
 {
-    (void)state;
     store_world_close(&world);
     folder_remove(world.folder);
     world.folder[0] = 0;
@@ -146,7 +146,36 @@ static void a_database_of_version_5_keeps_its_recording_and_gets_records(void **
     (void)snprintf(world.path, sizeof world.path, "%s/beamroom.db", world.folder);
     store_file_run_file(world.path, "tests/data/store/version5.sql");
     store_world_open(&world);
-    struct store_answer *opened = store_world_await(&world, STORE_OPENED);
+    return store_world_await(&world, STORE_OPENED);
+}
+
+/* Of three parts the last is removed: what is left is read, a time behind it is an error, and the check names it. */
+static void a_recording_without_its_end_says_so(void **state)
+{
+    (void)state;
+    struct audit_facts facts;
+    struct error err = { 0 };
+    store_answer_free(open_version_5());
+    store_file_run(world.path, "DELETE FROM recording_batches WHERE place = 2");
+    assert_true(store_read_part(world.store, "8nvg-ytgm", "rec-ecbd595060", 0, 8));
+    struct store_answer *part = store_world_await(&world, STORE_PART);
+    assert_int_equal(part->part->n, 2);
+    assert_int_equal(part->part->next_ms, 101); /* the second part begins at 100 ms */
+    store_answer_free(part);
+    assert_true(store_read_part(world.store, "8nvg-ytgm", "rec-ecbd595060", 1500, 9));
+    part = store_world_await(&world, STORE_PART);
+    assert_null(part->part);
+    assert_string_equal(part->error.text, "what was recorded after 100 ms is missing, up to the next whole state");
+    store_answer_free(part);
+    assert_false(store_verify_audit(world.path, NULL, &facts, &err));
+    assert_string_equal(err.text,
+                        "recording rec-ecbd595060 of room 8nvg-ytgm has 2 of its 3 parts: the others were removed");
+}
+
+static void a_database_of_version_5_keeps_its_recording_and_gets_records(void **state)
+{
+    (void)state;
+    struct store_answer *opened = open_version_5();
     assert_int_equal(opened->n_rooms, 1);
     assert_int_equal(opened->audit_n, 7);
     store_answer_free(opened);
@@ -176,6 +205,7 @@ int main(void)
         TEST(what_cannot_be_written_leaves_nothing),
         TEST(records_are_listed_from_the_newest_on),
         TEST(the_database_refuses_to_change_or_delete_a_record),
+        TEST(a_recording_without_its_end_says_so),
         TEST(a_database_of_version_5_keeps_its_recording_and_gets_records),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
