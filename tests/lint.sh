@@ -30,6 +30,20 @@ planted() { # planted FILE INCLUDE EXPECTED-WORDS
     echo "$out"
     return 1
 }
+# And the one for the doors of the gate: a way past it has to be found.
+planted_door() {
+    local folder out status
+    folder=$(mktemp -d)
+    mkdir -p "$folder/core/scene"
+    printf 'double f(const struct dose *dose) { return dose->components[0].values->low; }\n' >"$folder/core/scene/planted.c"
+    out=$(DOORS=$PWD/tests/doors.txt tests/doors.sh "$folder")
+    status=$?
+    rm -rf "$folder"
+    [ $status = 1 ] && grep -q '^core/scene/planted.c:1:' <<<"$out" && return 0
+    echo "a planted way to a dose's values; the check said (exit $status):"
+    echo "$out"
+    return 1
+}
 # So is the one for circles: two folders that include each other, and two files that call each other, have to be found.
 planted_circle() {
     local copy out
@@ -85,6 +99,8 @@ check "a core file that includes a server header is found" planted core/base/pla
 check "an edge against the direction is found" planted core/math/planted.c '"core/volume/volume.h"' 'core/math may not include'
 check "a library outside its home is found" planted core/plan/planted.c '<GL/gl.h>' 'only core/render/gl'
 check "an include that is not from the root is found" planted core/volume/planted.c '"../base/error.h"' 'not a path from the root'
+check "what the gate guards is reached through its doors (tests/doors.txt)" tests/doors.sh
+check "a way past the gate is found" planted_door
 check "no folder and no file of a folder is in a circle" tests/circles.sh "${BEAMROOM_BIN:-build/release}"
 check "a circle of folders and one of files are found" planted_circle
 check "no banned calls" no_calls

@@ -22,6 +22,25 @@ struct annotation_item *annotation_add(struct annotations *annotations, enum ann
     return item;
 }
 
+/* Bytes of the first clause: up to and with its ':', '.' or ',' before a space. */
+static size_t first_clause(const char *text)
+{
+    for (size_t i = 0; text[i]; i++)
+        if (strchr(":.,", text[i]) && text[i + 1] == ' ')
+            return i + 1;
+    return strlen(text);
+}
+
+void annotation_add_sentence(struct annotations *annotations, enum annotation_row row, const char *sentence)
+{
+    for (int i = 1; *sentence; i++) {
+        size_t n = i < ANNOTATION_MAX_CLAUSES ? first_clause(sentence) : strlen(sentence);
+        struct annotation_item *item = annotation_add(annotations, row);
+        (void)snprintf(item->text, sizeof item->text, "%.*s", (int)n, sentence);
+        sentence += n + (sentence[n] == ' ');
+    }
+}
+
 void annotations_finish(struct annotations *annotations)
 {
     free(annotations->items);

@@ -52,6 +52,10 @@ struct annotations {
 };
 /* Appends an item, of the row of the last one or of a later row; the caller has made room for it. */
 struct annotation_item *annotation_add(struct annotations *annotations, enum annotation_row row);
+/* Adds a sentence by its clauses, so that a narrow caption breaks it and elides nothing; at most ANNOTATION_MAX_CLAUSES
+ * items. */
+enum { ANNOTATION_MAX_CLAUSES = 4 };
+void annotation_add_sentence(struct annotations *annotations, enum annotation_row row, const char *sentence);
 void annotations_finish(struct annotations *annotations);
 
 /* Lines of a row before its last one says how many more items there are. */

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/annotate/describe_fits.h"
 #include "core/annotate/words.h"
 #include "core/render/visible/draw_compare.h"
 #include "core/render/visible/isoline_labels.h"
@@ -217,7 +216,7 @@ static bool add_comparison(struct annotations *annotations, const struct snapsho
         return true;
     }
     fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, (size_t)second }, &use, why);
-    fits_add_sentence(annotations, ANNOTATION_DOSE, why);
+    annotation_add_sentence(annotations, ANNOTATION_DOSE, why);
     return false;
 }
 
@@ -229,7 +228,7 @@ void dose_describe(struct annotations *annotations, const struct snapshot *snaps
     if (!dose_scale_of(snapshot, &scale)) {
         char sentence[sizeof scale.why.text + 20];
         (void)snprintf(sentence, sizeof sentence, "Dose not drawn: %s", scale.why.text);
-        fits_add_sentence(annotations, ANNOTATION_DOSE, sentence);
+        annotation_add_sentence(annotations, ANNOTATION_DOSE, sentence);
         dose_scale_finish(&scale);
         return;
     }

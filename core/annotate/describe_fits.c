@@ -12,36 +12,17 @@ struct listing {
     size_t n;
 };
 
-/* Bytes of the first clause: up to and with its ':', '.' or ',' before a space. */
-static size_t first_clause(const char *text)
-{
-    for (size_t i = 0; text[i]; i++)
-        if (strchr(":.,", text[i]) && text[i + 1] == ' ')
-            return i + 1;
-    return strlen(text);
-}
-
-void fits_add_sentence(struct annotations *annotations, enum annotation_row row, const char *sentence)
-{
-    for (int i = 1; *sentence; i++) {
-        size_t n = i < FITS_MAX_CLAUSES ? first_clause(sentence) : strlen(sentence);
-        struct annotation_item *item = annotation_add(annotations, row);
-        (void)snprintf(item->text, sizeof item->text, "%.*s", (int)n, sentence);
-        sentence += n + (sentence[n] == ' ');
-    }
-}
-
 static void add_use(struct listing *listing, struct fit_part thing, const struct fit_use *use)
 {
     char why[FIT_WHY_SIZE];
-    if (use->state != FIT_USED_BY_WORD || listing->n + FITS_MAX_CLAUSES + 1 > DESCRIBE_FITS_MAX_ITEMS)
+    if (use->state != FIT_USED_BY_WORD || listing->n + ANNOTATION_MAX_CLAUSES + 1 > DESCRIBE_FITS_MAX_ITEMS)
         return;
     fit_use_sentence(&listing->snapshot->fits, thing, use, why);
-    fits_add_sentence(listing->annotations, ANNOTATION_MISSING, why);
+    annotation_add_sentence(listing->annotations, ANNOTATION_MISSING, why);
     const char *by = use->acceptance->by;
     (void)snprintf(annotation_add(listing->annotations, ANNOTATION_MISSING)->text, ANNOTATION_TEXT_SIZE,
                    "Accepted by %.160s.", by[0] ? by : "a person");
-    listing->n += FITS_MAX_CLAUSES + 1;
+    listing->n += ANNOTATION_MAX_CLAUSES + 1;
 }
 
 static void add_doses(struct listing *listing)

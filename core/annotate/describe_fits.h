@@ -3,9 +3,6 @@
 #include "core/annotate/annotate.h"
 #include "core/scene/snapshot.h"
 
-enum { DESCRIBE_FITS_MAX_ITEMS = 64, FITS_MAX_CLAUSES = 4 };
-/* Adds a sentence by its clauses, so that a narrow caption breaks it and elides nothing; at most FITS_MAX_CLAUSES items.
- */
-void fits_add_sentence(struct annotations *annotations, enum annotation_row row, const char *sentence);
+enum { DESCRIBE_FITS_MAX_ITEMS = 64 };
 /* Adds at most DESCRIBE_FITS_MAX_ITEMS items. */
 void fits_describe(struct annotations *annotations, const struct snapshot *snapshot);

@@ -371,7 +371,7 @@ static void add_components(cJSON *json, const struct snapshot *snapshot, struct 
                                                    : NAN);
         dose_add_number(item, "weight", weight);
         dose_add_number(item, "weighted", value * weight);
-        dose_add_number(item, "error_percent", 100 * error_share(component, point));
+        dose_add_number(item, "error_percent", isnan(value) ? NAN : 100 * error_share(component, point));
         cJSON_AddItemToArray(list, item);
     }
 }
