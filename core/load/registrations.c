@@ -7,6 +7,7 @@
 
 #include "core/formats/dicom/dicom_registration.h"
 #include "core/load/dicom_parts.h"
+#include "core/plan/fit.h"
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 
@@ -48,32 +49,34 @@ void registrations_read(struct loading *loading)
 
 /* ---- applying --------------------------------------------------------------------------------------------------- */
 
-static const char *world_frame(const struct plan *plan)
+/* The first image that is not of another patient than the one that is shown; NULL: none. */
+static const struct part_origin *world_of(const struct plan *plan)
 {
-    return plan->n_images > 0 ? plan->image_origins[0].frame_uid : "";
+    int image = fit_first_image(plan);
+    return image >= 0 ? &plan->image_origins[image] : NULL;
 }
 
-/* The map from the part's frame of reference to that of the first image, over one registration, in its direction or
- * against it. NULL: there is none, or none is needed. */
-static const struct plan_registration *find_map(const struct plan *plan, const struct part_origin *origin,
-                                                struct affine *map)
+/* The map from the part's frame of reference to that of the world's image, over one registration, in its direction or
+ * against it. False: there is none, or none is needed. */
+static bool find_map(const struct plan *plan, const struct part_origin *origin, struct affine *map)
 {
-    const char *world = world_frame(plan);
-    if (!world[0] || !origin->frame_uid[0] || strcmp(origin->frame_uid, world) == 0)
-        return NULL;
+    const struct part_origin *world = world_of(plan);
+    if (!world || !world->frame_uid[0] || !origin->frame_uid[0] || strcmp(origin->frame_uid, world->frame_uid) == 0 ||
+        origin->patient != world->patient)
+        return false;
     for (size_t i = 0; i < plan->n_registrations; i++) {
         const struct plan_registration *registration = &plan->registrations[i];
+        const char *from = registration->from_uid, *to = registration->to_uid;
         if (registration->patient != origin->patient)
             continue;
-        if (strcmp(registration->from_uid, origin->frame_uid) == 0 && strcmp(registration->to_uid, world) == 0) {
+        if (strcmp(from, origin->frame_uid) == 0 && strcmp(to, world->frame_uid) == 0) {
             *map = registration->to_from_lps_mm;
-            return registration;
+            return true;
         }
-        if (strcmp(registration->to_uid, origin->frame_uid) == 0 && strcmp(registration->from_uid, world) == 0 &&
-            affine_invert(&registration->to_from_lps_mm, map))
-            return registration;
+        if (strcmp(to, origin->frame_uid) == 0 && strcmp(from, world->frame_uid) == 0)
+            return affine_invert(&registration->to_from_lps_mm, map);
     }
-    return NULL;
+    return false;
 }
 
 static bool move_grid(struct volume *volume, const struct affine *map)
@@ -93,12 +96,13 @@ static void say(struct plan *plan, const char *what, const char *name, const cha
     report_add(&plan->report, REPORT_NOTE, "registration.applied", where,
                "%s \"%s\" lies in another frame of reference than the image \"%s\"; the registration of the two was "
                "applied: a turn of %.3g degrees and a shift of (%.4g, %.4g, %.4g) mm.",
-               what, name, plan->images[0].id, angle_deg, map->origin.x, map->origin.y, map->origin.z);
+               what, name, plan->images[fit_first_image(plan)].id, angle_deg, map->origin.x, map->origin.y,
+               map->origin.z);
 }
 
 static void mark(struct plan *plan, struct part_origin *origin)
 {
-    snprintf(origin->frame_uid, sizeof origin->frame_uid, "%s", world_frame(plan));
+    memcpy(origin->frame_uid, world_of(plan)->frame_uid, sizeof origin->frame_uid);
     origin->is_registered = true;
 }
 
@@ -166,7 +170,7 @@ static void move_regions(struct plan *plan)
 
 void registrations_move_images_and_regions(struct plan *plan)
 {
-    for (size_t i = 1; i < plan->n_images; i++) {
+    for (size_t i = 0; i < plan->n_images; i++) {
         struct affine map;
         struct part_origin *origin = &plan->image_origins[i];
         if (!find_map(plan, origin, &map))

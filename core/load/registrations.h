@@ -1,6 +1,6 @@
 #pragma once
-/* Brings the parts of a plan into one frame of reference, that of its first image, where a registration object of the
- * folder says how. A registration of another patient is not used for a part. */
+/* Brings the parts of a plan into one frame of reference, that of the first image of the shown patient, where a
+ * registration object of the folder says how. Part, image and registration have to be of one patient. */
 #include "core/load/loading.h"
 
 /* Reads the registration objects of the folder into plan->registrations. */

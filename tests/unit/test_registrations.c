@@ -129,12 +129,32 @@ static void a_registration_moves_no_part_of_another_patient(void **state)
     assert_nothing_moved(&other, "RIGID", TURN, false);
 }
 
+static void parts_come_to_the_first_image_of_the_shown_patient(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct made_owner stranger = other;
+    stranger.frame = "1.2.49";
+    folder_make(folder);
+    put_case(folder, &mr);                                  /* the treatment plan is of this patient */
+    made_part_images(folder, "aa", &stranger, "1.2.50", 9); /* the first image */
+    made_part_registration(folder, "reg.dcm", &ct, "1.2.42", "1.2.41", "RIGID", TURN);
+    struct plan *plan = open_plan(folder);
+    assert_int_equal(plan->n_images, 3);
+    assert_string_equal(plan->image_origins[0].frame_uid, "1.2.49");
+    assert_string_equal(plan->dose_origins[0].frame_uid, "1.2.41");
+    assert_at(affine_point(&plan->doses[0].components[0].values->grid.lps_mm_from_ijk, vec3(1, 0, 0)), 10, 8, 1);
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_are_brought_into_the_first_images_frame_in_both_directions),
         cmocka_unit_test(what_is_not_rigid_or_not_a_number_is_not_applied),
         cmocka_unit_test(a_registration_moves_no_part_of_another_patient),
+        cmocka_unit_test(parts_come_to_the_first_image_of_the_shown_patient),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
