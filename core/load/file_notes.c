@@ -167,11 +167,14 @@ static void note_read(struct notes *notes, const struct known *known)
 
 static void note_not_read(struct notes *notes, const char *path)
 {
-    const struct loading *loading = notes->loading;
+    struct loading *loading = notes->loading;
     if (notes->n_not_read++ >= FILE_NOTES_MAX)
         return;
-    report_add(&notes->loading->plan->report, REPORT_NOTE, "file.not-read", path, "Not read: %s.",
-               file_kind_words(&loading->folder, path));
+    enum part_format format = part_format_of(&loading->folder, path);
+    bool is_known = format != PART_UNKNOWN && format != PART_ABSENT;
+    report_add(&loading->plan->report, REPORT_NOTE, "file.not-read", path, "Not read%s: %s.",
+               loading->parts.is_recognised ? "" : ", as plan.json does not name it",
+               is_known ? part_format_word(format) : file_kind_words(&loading->folder, path));
 }
 
 static void note_rest(struct notes *notes)

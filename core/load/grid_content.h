@@ -8,7 +8,8 @@ struct grid_content {
     double alike;    /* share of neighbours along i, both above 0, that are equal; 1 when there are none */
 };
 
-void grid_content_measure(const struct volume *volume, struct grid_content *content);
+/* is_named: as below; without it counting ends when there are too many values for labels. */
+void grid_content_measure(const struct volume *volume, bool is_named, struct grid_content *content);
 /* True if the values can be labels: whole numbers of which neighbours are mostly equal, as they are within a region and
  * not within a picture. is_named: the file's name says labels, so that a few scattered values are believed. All 0
  * counts as labels when named. */

@@ -123,7 +123,7 @@ static bool read_by_content(const struct folder *folder, struct part_reading *re
     }
     if (!is_read)
         return false;
-    grid_content_measure(reading->volume, &reading->content);
+    grid_content_measure(reading->volume, true, &reading->content);
     reading->is_no_labels = !grid_content_is_labels(&reading->content, true);
     return true;
 }
@@ -133,7 +133,7 @@ static bool read_image(const struct loading *loading, struct part_reading *readi
     if (!read_grid(&loading->folder, reading, RAW_IMAGE))
         return false;
     if (loading->parts.is_recognised) {
-        grid_content_measure(reading->volume, &reading->content);
+        grid_content_measure(reading->volume, false, &reading->content);
         reading->is_label_like = grid_content_is_labels(&reading->content, false);
     }
     return true;
