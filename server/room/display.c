@@ -3,8 +3,6 @@
 
 #include <stdlib.h>
 
-#include "server/room/stream.h"
-
 /* A member who takes pictures acknowledges within this time; beyond it, all who look have stalled. */
 static const int64_t DISPLAY_ALONE_US = 2000000;
 
@@ -61,7 +59,7 @@ void displays_send(const struct room *room, const struct stream *stream)
         give(display, picture);
 }
 
-void display_show(struct room *room, struct room_display *display, struct stream *stream)
+bool display_show(const struct room *room, struct room_display *display, struct stream *stream)
 {
     display->next = stream->displays;
     display->stream = stream;
@@ -69,8 +67,7 @@ void display_show(struct room *room, struct room_display *display, struct stream
     struct room_picture *picture = picture_for_displays(room, stream);
     if (picture)
         give(display, picture);
-    else if (shows_draft(room, stream))
-        stream_again(room, stream); /* what is there or on its way was requested without the words */
+    return picture || !shows_draft(room, stream);
 }
 
 static void tell_late(const struct stream *stream, bool is_late)

@@ -27,8 +27,9 @@ int64_t display_alone_us(const struct stream *stream);
 /* Gives the stream's latest picture to its displays. Of a scene with a draft they are given pictures with words for it
  * alone: nothing else says so on a screen. */
 void displays_send(const struct room *room, const struct stream *stream);
-/* The display shows this stream from now on. */
-void display_show(struct room *room, struct room_display *display, struct stream *stream);
+/* The display shows this stream from now on. Returns false when the picture that is there or on its way was requested
+ * without the words for a draft: it is to be requested again. */
+NODISCARD bool display_show(const struct room *room, struct room_display *display, struct stream *stream);
 /* Tells displays whether their picture is late; when the next may be. */
 int64_t displays_tick(struct room *room);
 /* The room's main view is another one: the displays that show it go over. */

@@ -40,6 +40,12 @@ static struct room_display **find_main(struct stream *stream)
     return at;
 }
 
+static void show(struct room *room, struct room_display *display, struct stream *stream)
+{
+    if (!display_show(room, display, stream))
+        stream_again(room, stream);
+}
+
 void displays_follow(struct room *room)
 {
     struct stream *stream = room->streams;
@@ -50,7 +56,7 @@ void displays_follow(struct room *room)
             continue;
         }
         *at = display->next;
-        display_show(room, display, room->main);
+        show(room, display, room->main);
         stream_left(room, stream);
         stream = room->streams; /* that one may be gone */
     }
@@ -117,7 +123,7 @@ struct room_display *room_display_add(struct room *room, const char *view,
         return NULL;
     struct room_display *display = mem_new(sizeof *display);
     *display = (struct room_display){ .room = room, .callbacks = *callbacks, .is_main = !view };
-    display_show(room, display, stream);
+    show(room, display, stream);
     (void)streams_request_due(room);
     return display;
 }
