@@ -528,10 +528,6 @@ static void report_doubts(const char *name, const struct contour_facts *facts, c
                    facts->n_overlap_planes > 0 ? " Overlaps count twice there."
                    : facts->n_outside > 0      ? " Part of it lies outside the image."
                                                : " An outline may cross itself, or touch another.");
-    if (facts->n_moved_planes > 0)
-        report_add(report, REPORT_NOTE, "region.contours-moved", where,
-                   "\"%s\": %zu of %zu planes lie beside the slices that they were filled on, by up to %.3g mm.", name,
-                   facts->n_moved_planes, facts->n_planes, facts->moved_mm);
     if (facts->n_close_planes > 0)
         report_add(report, REPORT_WARNING, "region.contours-moved", where,
                    "\"%s\": %zu times a contour lies so near to the plane of others that it was moved into it.", name,
@@ -565,6 +561,10 @@ void rtstruct_report_fill(const struct rtstruct_roi *roi, const struct contour_c
                "\"%s\": %zu planes %.4g mm apart, filled at the centres of %s: %.4g cm3; %s.", name, facts->n_planes,
                facts->spacing_mm, grid, facts->filled_cm3, check);
     report_doubts(name, facts, where, report);
+    if (facts->n_moved_planes > 0 && s[0] * s[1] * s[2] == 1) /* finer slices are nearer than the image's */
+        report_add(report, REPORT_NOTE, "region.contours-moved", where,
+                   "\"%s\": %zu of %zu planes lie beside the slices that they were filled on, by up to %.3g mm.", name,
+                   facts->n_moved_planes, facts->n_planes, facts->moved_mm);
     if (facts->n_gaps > 0)
         report_add(
             report, REPORT_NOTE, "region.contours-gap", where,
