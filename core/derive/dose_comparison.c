@@ -130,6 +130,18 @@ struct subtracting {
     } parts[MAX_THREADS];
 };
 
+/* True if a point lies between centres of voxels. Nearer to a grid's outer faces the value of the last centre stands
+ * for the dose, which would differ from the other dose by half a voxel of its gradient. */
+static bool is_between_centres(const struct grid *grid, struct vec3 point_lps_mm)
+{
+    struct vec3 at = affine_point(&grid->ijk_from_lps_mm, point_lps_mm);
+    const double ijk[3] = { at.x, at.y, at.z }, slack = 1e-4;
+    for (int axis = 0; axis < 3; axis++)
+        if (grid->size[axis] > 1 && (ijk[axis] < -slack || ijk[axis] > grid->size[axis] - 1 + slack))
+            return false;
+    return true;
+}
+
 static void subtract_some(void *context, int part, int n_parts)
 {
     struct subtracting *subtracting = context;
@@ -148,8 +160,9 @@ static void subtract_some(void *context, int part, int n_parts)
                     n_below++;
                     continue;
                 }
-                if (!dose_field_value(subtracting->second, affine_point(&grid->lps_mm_from_ijk, vec3(i, j, k)),
-                                      &second)) {
+                struct vec3 point = affine_point(&grid->lps_mm_from_ijk, vec3(i, j, k));
+                if (!is_between_centres(&subtracting->second->rows[0]->grid, point) ||
+                    !dose_field_value(subtracting->second, point, &second)) {
                     n_without++;
                     continue;
                 }

@@ -274,6 +274,21 @@ static uint32_t dose_reasons(const struct dose *a, const struct dose *b)
 
 /* ---- the pair --------------------------------------------------------------------------------------------------- */
 
+/* True if a dose refers to a treatment plan that is not among those of the folder, or to a structure set that is not
+ * among those of the folder. A folder without any of them holds nothing that the dose could be mistaken to belong to.
+ */
+static bool refers_to_absent(const struct plan *plan, const struct part_origin *origin)
+{
+    if (treatment_plan_of(plan, origin))
+        return false;
+    if (origin->plan_uid[0] && plan->n_treatment_plans > 0)
+        return true;
+    bool has_any = false;
+    for (size_t i = 0; i < plan->n_region_origins; i++)
+        has_any |= plan->region_origins[i].structs_uid[0] != 0;
+    return has_any && origin->structs_uid[0] && !has_structs(plan, origin->structs_uid);
+}
+
 struct fit fit_of(const struct plan *plan, struct fit_part thing, struct fit_part with)
 {
     const struct part_origin *a = origin_of(plan, thing), *b = origin_of(plan, with);
@@ -298,11 +313,8 @@ struct fit fit_of(const struct plan *plan, struct fit_part thing, struct fit_par
         if (thing.kind == FIT_DOSE)
             fit.reasons |= dose_reasons(&plan->doses[thing.index], &plan->doses[with.index]);
     }
-    if (thing.kind == FIT_DOSE) {
-        const struct treatment_plan *treatment = treatment_plan_of(plan, a);
-        if ((a->plan_uid[0] && !treatment) || (!treatment && a->structs_uid[0] && !has_structs(plan, a->structs_uid)))
-            fit.reasons |= 1U << FIT_ABSENT;
-    }
+    if (thing.kind == FIT_DOSE && refers_to_absent(plan, a))
+        fit.reasons |= 1U << FIT_ABSENT;
     for (int r = FIT_ABSENT; r < FIT_N_RELATIONS; r++)
         if (fit.reasons >> r & 1)
             fit.relation = (enum fit_relation)r;
@@ -313,6 +325,7 @@ struct fit fit_alone(const struct plan *plan, struct fit_part thing)
 {
     struct fit fit = fit_of(plan, thing, thing);
     fit.reasons &= 1U << FIT_PATIENT | 1U << FIT_ABSENT;
+    fit.relation = frames_of(plan, thing, thing);
     if (is_stated(plan, thing, false))
         fit.reasons |= 1U << FIT_FRAME;
     if (thing.kind == FIT_DOSE && !dose_meets_regions(plan, thing.index))
@@ -426,8 +439,9 @@ static void write_sentence(const struct plan *plan, struct fit_part thing, struc
         break;
     case FIT_ABSENT:
         snprintf(fact, sizeof fact,
-                 origin_of(plan, thing)->plan_uid[0] ? "it refers to a plan that is not in this folder"
-                                                     : "it refers to a structure set that is not in this folder");
+                 origin_of(plan, thing)->plan_uid[0] && plan->n_treatment_plans > 0
+                     ? "it refers to a plan that is not in this folder"
+                     : "it refers to a structure set that is not in this folder");
         break;
     case FIT_PER:
         snprintf(fact, sizeof fact, "it is per %.64s, that one per %.64s", per_words(&plan->doses[thing.index]),

@@ -74,6 +74,8 @@
       "Nothing; they are left out: the line says what they are.") \
     X("dicom.bad-number", "A value of a DICOM file is no number, or cannot be what it stands for.", \
       "The file is damaged: copy or export it again.") \
+    X("dicom.same-uid", "Two DICOM objects have one SOP Instance UID and other contents.", \
+      "Both are used. Keep the one that is meant: what refers to that UID may mean either.") \
     X("dicom.surplus-pixels", "A DICOM file holds more pixels than the frames it declares.", \
       "The declared frames are shown; check how the file was written.") \
     X("dicom.duplicate", "A DICOM object is there more than once.", "Nothing; the first by name was used.") \

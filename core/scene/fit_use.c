@@ -147,11 +147,8 @@ bool scene_fits_of(const struct plan *plan, int image, int blend, int dose, cons
     fits->regions = mem_array(plan->n_region_origins + 1, sizeof *fits->regions, UINT64_MAX, err);
     if (!fits->regions || !acceptances_copy(acceptances, &fits->acceptances, err))
         return false;
-    for (size_t i = 0; i < plan->n_images; i++) {
+    for (size_t i = 0; i < plan->n_images; i++)
         fits->images[i] = alone(fits, (struct fit_part){ FIT_IMAGE, i });
-        if (i == (size_t)image && !fit_is_used(&fits->images[i]))
-            fits->image = -1;
-    }
     for (size_t i = 0; i < plan->n_doses; i++)
         fits->doses[i] = use_in_scene(fits, (struct fit_part){ FIT_DOSE, i });
     for (size_t i = 0; i < plan->n_images; i++)

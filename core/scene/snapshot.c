@@ -118,7 +118,8 @@ static bool resolve_fits(struct snapshot *snapshot, const struct acceptances *ac
     if (!scene_fits_of(snapshot->plan, snapshot->image, snapshot->blend, snapshot->dose, acceptances, &snapshot->fits,
                        err))
         return false;
-    snapshot->image = snapshot->fits.image;
+    if (snapshot->image >= 0 && !fit_is_used(&snapshot->fits.images[snapshot->image]))
+        snapshot->image = -1;
     if (snapshot->blend >= 0 && !fit_is_used(&snapshot->fits.beside[snapshot->blend]))
         snapshot->blend = -1;
     for (size_t r = 0; r < snapshot->plan->regions.n_regions; r++)

@@ -94,6 +94,22 @@ static bool refuse_memory(struct unpacker *unpacker)
     return problem_set(&unpacker->problem, PROBLEM_INTERNAL, "", "", "no memory to read the archive");
 }
 
+/* Refuses an entry of a zip whose method of compression libarchive does not read; it is not damaged. words:
+ * libarchive's. */
+static bool refuse_method(struct unpacker *unpacker, const char *shown, const char *words)
+{
+    const char *method = strchr(words, '(');
+    if (strstr(words, "64"))
+        return problem_set(
+            &unpacker->problem, PROBLEM_VALIDATION, "", "unsupported",
+            "entry \"%s\": compressed by Deflate64, which is not read here (Windows uses it for large archives); expected is a zip with Deflate, or a tar.gz",
+            shown);
+    return problem_set(
+        &unpacker->problem, PROBLEM_VALIDATION, "", "unsupported",
+        "entry \"%s\": its method of compression %s is not read here; expected is a zip with Deflate, or a tar.gz",
+        shown, method ? method : "");
+}
+
 /* Refuses with what the source or libarchive found wrong. */
 static bool refuse_damaged(struct unpacker *unpacker, const char *name)
 {
@@ -107,6 +123,8 @@ static bool refuse_damaged(struct unpacker *unpacker, const char *name)
     const char *message = archive_error_string(unpacker->archive);
     unpack_show(name, shown);
     unpack_show(message ? message : "it cannot be read", words);
+    if (*shown && strstr(words, "nsupported ZIP compression method"))
+        return refuse_method(unpacker, shown, words);
     if (*shown)
         return problem_set(&unpacker->problem, PROBLEM_VALIDATION, "", "format",
                            "entry \"%s\": damaged: %s; expected is an archive that is whole", shown, words);

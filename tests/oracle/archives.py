@@ -63,6 +63,11 @@ def zip_link(info):
     info.external_attr = (stat.S_IFLNK | 0o777) << 16
 
 
+def with_method(data, number):  # the method of compression of the first entry, in the local header and in the directory (APPNOTE 4.4.5)
+    at = data.index(b"PK\1\2")
+    return data[:8] + struct.pack("<H", number) + data[10:at + 10] + struct.pack("<H", number) + data[at + 12:]
+
+
 def encrypted(data):  # bit 0 of the flags, in the local header and in the directory (APPNOTE 4.4.4)
     data = bytearray(data)
     data[6] |= 1
@@ -133,6 +138,8 @@ put("socket.zip", make_zip([("s", b"x")], change=lambda info: setattr(info, "ext
 put("sparse.tar", make_tar([("holes", b"x" * 512, {"pax_headers": {"GNU.sparse.name": "holes",
                                                                    "GNU.sparse.map": "1000000000000,512", "GNU.sparse.size": "1000000000512",
                                                                    "GNU.sparse.numblocks": "1"}})]))
+put("deflate64.zip", with_method(make_zip({"a": b"one two three" * 10}), 9))
+put("imploded.zip", with_method(make_zip({"a": b"one two three" * 10}), 6))
 put("encrypted.zip", encrypted(make_zip({"a": b"secret" * 10})))
 
 # ---- damage

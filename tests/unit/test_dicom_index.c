@@ -3,6 +3,7 @@
 
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
+#include "tests/unit/made_dose.h"
 #include "tests/unit/made_series.h"
 
 static const struct dicom_object *object_named(const struct scanned *s, const char *path)
@@ -217,6 +218,54 @@ static void copies_are_used_once_and_slices_at_one_place_too(void **state)
     assert_int_equal(volume->grid.size[2], 3);
     assert_close(volume_value(volume, 0, 0, 2), 200, 0); /* number 1, not 7 */
     volume_unref(volume);
+    scanned_finish(&s);
+}
+
+/* Three doses of one UID: a, a copy of it with another description, and one with another voxel. */
+static void one_number_given_to_other_values_drops_none(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    for (int i = 0; i < 12; i++) {
+        struct made_dicom made;
+        made_dose_begin(&made, 1);
+        if (i == 1) /* compares equal: another word for the same dose */
+            made_text(&made, DICOM_TAG(0x3004, 0x0012), "CS", "NONE");
+        made_dose_end(&made, 1);
+        if (i == 2)
+            made.data[made.size - 1] ^= 1;
+        char name[8];
+        snprintf(name, sizeof name, "%02d", i);
+        folder_put(s.path, name, made.data, made.size);
+        made_finish(&made);
+    }
+    scanned_open(&s);
+    size_t n_doses = 0;
+    for (size_t i = 0; i < s.index->n_objects; i++)
+        n_doses += s.index->objects[i].kind == DICOM_KIND_DOSE;
+    assert_int_equal(n_doses, 2);
+    assert_non_null(strstr(scanned_said(&s, "dicom.duplicate")->sentence, "10 objects are there more than once"));
+    const struct report_line *line = scanned_said(&s, "dicom.same-uid");
+    assert_non_null(line);
+    assert_string_equal(line->where, "02");
+    scanned_finish(&s);
+}
+
+/* Two slices of one place and number, but with other pixels, are no copies either. */
+static void a_slice_with_other_pixels_is_no_copy(void **state)
+{
+    (void)state;
+    struct scanned s = { 0 };
+    folder_make(s.path);
+    struct made_slice slice = made_slice_defaults;
+    slice.instance_uid = "1.2.3.4.5";
+    made_slice_put(s.path, "a", &slice);
+    slice.base += 1;
+    made_slice_put(s.path, "b", &slice);
+    scanned_open(&s);
+    assert_null(scanned_said(&s, "dicom.duplicate"));
+    assert_non_null(scanned_said(&s, "dicom.same-uid"));
     scanned_finish(&s);
 }
 
@@ -521,6 +570,8 @@ int main(void)
         cmocka_unit_test(a_file_without_preamble_and_without_header_is_found),
         cmocka_unit_test(structures_doses_and_plans_are_told_with_what_they_refer_to),
         cmocka_unit_test(copies_are_used_once_and_slices_at_one_place_too),
+        cmocka_unit_test(one_number_given_to_other_values_drops_none),
+        cmocka_unit_test(a_slice_with_other_pixels_is_no_copy),
         cmocka_unit_test(one_number_given_to_different_slices_by_mistake_drops_none),
         cmocka_unit_test(mixed_pictures_become_a_stack_for_each_series_size_and_orientation),
         cmocka_unit_test(echoes_and_passes_at_the_same_places_become_stacks_of_their_own),

@@ -94,6 +94,65 @@ static struct dose_comparison *comparison_of(const struct snapshot *snapshot, bo
     return comparison;
 }
 
+/* A linear dose on a grid and on another one that ends between its last two centres: equal wherever both are known.
+ * Between the last centre and the outer face the second would be half a voxel of its gradient off: 2 Gy here. */
+static void a_difference_has_no_edge_where_a_grid_ends(void **state)
+{
+    (void)state;
+    const uint32_t sizes[2][3] = { { 21, 9, 9 }, { 10, 9, 9 } };
+    struct grid univels = made_cube_grid(48);
+    struct grid wide =
+        made_grid(21, 9, 9, made_affine(vec3(1, 0, 0), vec3(0, 4, 0), vec3(0, 0, 4), sizes[0], vec3(0, 0, 0)));
+    struct grid narrow =
+        made_grid(10, 9, 9, made_affine(vec3(2, 0, 0), vec3(0, 4, 0), vec3(0, 0, 4), sizes[1], vec3(0, 0, 0)));
+    struct plan *plan = made_plan(&univels, label, regions, 1);
+    add_dose(plan, "one", &wide, first_dose);
+    add_dose(plan, "two", &narrow, first_dose);
+    struct snapshot *snapshot = compare(plan, SCENE_DOSE_COMPARISON_DIFFERENCE, "two");
+    snapshot->scene.dose.compare.domain = SCENE_COMPARE_DOMAIN_GRID;
+    snapshot->scene.dose.compare.threshold_percent = 0;
+    struct dose_comparison *difference = comparison_of(snapshot, false);
+    assert_close(difference->low, 0, 2e-5);
+    assert_close(difference->high, 0, 2e-5);
+    assert_int_equal(difference->n, 19 * 9 * 9); /* x from -9 to 9 mm */
+    assert_int_equal(difference->n_without, 2 * 9 * 9);
+    derive_result_unref(&difference->base);
+    snapshot_unref(snapshot);
+    plan_and_derived_destroy(plan);
+}
+
+/* The second dose is written in hundredths; the difference stays what it is, in the first one's unit. */
+static void doses_of_two_units_are_compared_in_that_of_the_first(void **state)
+{
+    (void)state;
+    double low[3], high[3];
+    for (int i = 0; i < 3; i++) { /* both in Gy; the second in cGy; the first in cGy */
+        struct plan *plan = make_plan();
+        for (int d = 0; d < 2; d++) {
+            struct volume *values = plan->doses[d].components[0].values;
+            bool is_cgy = (i == 1 && d == 1) || (i == 2 && d == 0);
+            if (!is_cgy)
+                continue;
+            snprintf(plan->doses[d].unit, sizeof plan->doses[d].unit, "cGy");
+            for (size_t v = 0; v < grid_n_voxels(&values->grid); v++)
+                ((float *)values->voxels)[v] *= 100;
+            volume_measure(values);
+        }
+        struct snapshot *snapshot = compare(plan, SCENE_DOSE_COMPARISON_DIFFERENCE, "two");
+        struct dose_comparison *difference = comparison_of(snapshot, false);
+        assert_string_equal(difference->unit, i == 2 ? "cGy" : "Gy");
+        low[i] = difference->low;
+        high[i] = difference->high;
+        derive_result_unref(&difference->base);
+        snapshot_unref(snapshot);
+        plan_and_derived_destroy(plan);
+    }
+    assert_close(low[1], low[0], 1e-4);
+    assert_close(high[1], high[0], 1e-4);
+    assert_close(low[2], 100 * low[0], 1e-2);
+    assert_close(high[2], 100 * high[0], 1e-2);
+}
+
 static void a_difference_is_second_less_first_at_the_voxels_of_the_first(void **state)
 {
     (void)state;
@@ -294,6 +353,8 @@ static void without_a_second_dose_there_is_a_sentence(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_difference_has_no_edge_where_a_grid_ends),
+        cmocka_unit_test(doses_of_two_units_are_compared_in_that_of_the_first),
         cmocka_unit_test(a_difference_is_second_less_first_at_the_voxels_of_the_first),
         cmocka_unit_test(a_gamma_index_has_the_closed_form_of_a_shifted_gradient),
         cmocka_unit_test(a_wash_of_differences_diverges_and_one_of_indices_parts_at_one),

@@ -94,6 +94,9 @@ static void each_mismatch_of_a_pair_has_its_relation(void **state)
     plan->dose_origins[0].treatment_plan = -1;
     set(plan->dose_origins[0].plan_uid, "2.9");
     assert_int_equal(fit_of(plan, dose_a, ct).relation, FIT_ABSENT);
+    plan->n_treatment_plans = 0; /* nothing here that it could be mistaken to belong to */
+    assert_int_equal(fit_of(plan, dose_a, ct).relation, FIT_SAME);
+    plan->n_treatment_plans = 2;
     plan->dose_origins[0].treatment_plan = 0;
 
     plan->dose_origins[1].treatment_plan = 1;
@@ -264,13 +267,15 @@ static void nothing_of_another_patient_is_used(void **state)
     plan->image_origins[1].patient = 1;
     plan->beam_origins[0] = (struct part_origin){ .patient = 1, .treatment_plan = -1, .frame_uid = "1.1" };
     plan->region_origins[0].patient = 1;
-    struct scene_fits fits = fits_of(plan, 1, 0, NULL);
-    assert_int_equal(fits.image, -1);
-    assert_int_equal(fits.images[0].state, FIT_USED);
-    assert_int_equal(fits.images[1].state, FIT_NOT_USED);
-    assert_int_equal(fits.beams[0].relation, FIT_PATIENT);
-    assert_int_equal(fits.regions[1].relation, FIT_PATIENT);
-    scene_fits_finish(&fits);
+    for (int image = 0; image < 2; image++) {
+        struct scene_fits fits = fits_of(plan, image, 0, NULL);
+        assert_int_equal(fits.images[0].state, FIT_USED);
+        assert_int_equal(fits.images[1].state, FIT_NOT_USED);
+        assert_int_equal(fits.beams[0].relation, FIT_PATIENT);
+        assert_int_equal(fits.regions[1].relation, FIT_PATIENT);
+        assert_int_equal(fits.doses[0].state, image == 0 ? FIT_USED : FIT_NOT_USED);
+        scene_fits_finish(&fits);
+    }
     plan_destroy(plan);
 }
 

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/formats/dicom/dicom_head.h"
 #include "core/formats/dicom/dicom_patients.h"
+#include "core/formats/dicom/dicom_same.h"
 #include "core/formats/dicom/dicom_stacks.h"
 #include "core/formats/text.h"
 
@@ -140,7 +141,8 @@ static bool list_files(const struct folder *folder, char *const *names, size_t n
     return true;
 }
 
-enum { MOST_LINES = 20 }; /* per kind of problem; further ones are counted */
+enum { MOST_LINES = 20 };     /* per kind of problem; further ones are counted */
+enum { MOST_OF_ONE_UID = 8 }; /* objects of one SOP Instance UID that another is compared with */
 
 /* Gives the object the number of its patient. */
 static void number_patient(struct dicom_index *index, struct dicom_object *object)
@@ -203,19 +205,87 @@ static int compare_instances(const void *a, const void *b)
     return order ? order : strcmp((*left)->path, (*right)->path);
 }
 
-/* Returns true for a second copy of an object. Images that share a SOP Instance UID by mistake differ in instance
- * number or position. */
-static bool is_copy(const struct dicom_object *a, const struct dicom_object *b)
+/* Returns true if the second object may be a copy of the first. Images that share a SOP Instance UID by mistake differ
+ * in instance number or position. */
+static bool may_be_copy(const struct dicom_object *a, const struct dicom_object *b)
 {
-    if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind ||
-        a->patient != b->patient)
+    if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind)
         return false;
     return a->kind != DICOM_KIND_IMAGE ||
            (a->image->instance == b->image->instance &&
             memcmp(a->image->position_mm, b->image->position_mm, sizeof a->image->position_mm) == 0);
 }
 
-static bool drop_copies(struct dicom_index *index, struct report *report, struct error *err)
+/* Objects that the report tells about by their number and one of them, the first by path. */
+struct told {
+    size_t n;
+    const struct dicom_object *example, *other;
+};
+
+static void tell(struct told *told, const struct dicom_object *object, const struct dicom_object *other)
+{
+    if (!told->example || strcmp(object->path, told->example->path) < 0) {
+        told->example = object;
+        told->other = other;
+    }
+    told->n++;
+}
+
+static void drop(struct dicom_object *copy, const struct dicom_object *first)
+{
+    copy->kind = DICOM_KIND_OTHER;
+    free(copy->image);
+    copy->image = NULL;
+    snprintf(copy->reason, sizeof copy->reason, "it is a copy of %.120s", first->path);
+}
+
+static void report_copies(const struct told *copies, const struct told *others, struct report *report)
+{
+    if (copies->n > 0)
+        report_add(report, REPORT_WARNING, "dicom.duplicate", copies->example->path,
+                   "%zu object%s more than once in the folder; this file: %s.", copies->n,
+                   copies->n == 1 ? " is there" : "s are there", copies->example->reason);
+    if (others->n > 0)
+        report_add(report, REPORT_WARNING, "dicom.same-uid", others->example->path,
+                   "%zu object%s the SOP Instance UID (0008,0018) of another, but not its contents; all are used. This "
+                   "file has that of %.120s.",
+                   others->n, others->n == 1 ? " has" : "s have", others->other->path);
+}
+
+/* The different objects of one SOP Instance UID. */
+struct namesakes {
+    const struct dicom_object *objects[MOST_OF_ONE_UID];
+    size_t n;
+};
+
+/* Compares an object with those before it. A copy is dropped; any other is added to them. */
+static bool compare_with(struct namesakes *before, const struct folder *folder, struct dicom_object *object,
+                         struct told *copies, struct told *others, struct error *err)
+{
+    const struct dicom_object *different = NULL;
+    for (size_t i = 0; i < before->n; i++) {
+        bool is_same = false;
+        if (!may_be_copy(before->objects[i], object))
+            continue;
+        if (!dicom_same_content(folder, before->objects[i], object, &is_same, err))
+            return false;
+        if (is_same) {
+            drop(object, before->objects[i]);
+            tell(copies, object, NULL);
+            return true;
+        }
+        different = before->objects[i];
+    }
+    if (different)
+        tell(others, object, different);
+    if (before->n < MOST_OF_ONE_UID)
+        before->objects[before->n++] = object;
+    return true;
+}
+
+/* Drops objects whose contents are there already. Objects that only share their SOP Instance UID stay. */
+static bool drop_copies(const struct folder *folder, struct dicom_index *index, struct report *report,
+                        struct error *err)
 {
     struct dicom_object **order = mem_array(index->n_objects, sizeof *order, UINT64_MAX, err);
     if (!order)
@@ -223,30 +293,18 @@ static bool drop_copies(struct dicom_index *index, struct report *report, struct
     for (size_t i = 0; i < index->n_objects; i++)
         order[i] = &index->objects[i];
     qsort(order, index->n_objects, sizeof *order, compare_instances);
-    size_t n_copies = 0;
-    const struct dicom_object *first = NULL, *example = NULL;
-    for (size_t i = 0; i < index->n_objects; i++) {
-        if (order[i]->kind == DICOM_KIND_OTHER)
-            continue;
-        if (first && is_copy(first, order[i])) {
-            struct dicom_object *copy = order[i];
-            copy->kind = DICOM_KIND_OTHER;
-            free(copy->image);
-            copy->image = NULL;
-            snprintf(copy->reason, sizeof copy->reason, "it is a copy of %.120s", first->path);
-            if (!example || strcmp(copy->path, example->path) < 0)
-                example = copy;
-            n_copies++;
-        } else {
-            first = order[i];
-        }
+    struct told copies = { 0 }, others = { 0 };
+    struct namesakes before = { .n = 0 };
+    bool is_compared = true;
+    for (size_t i = 0; is_compared && i < index->n_objects; i++) {
+        if (before.n > 0 && strcmp(before.objects[0]->sop_instance, order[i]->sop_instance) != 0)
+            before.n = 0;
+        if (order[i]->kind != DICOM_KIND_OTHER)
+            is_compared = compare_with(&before, folder, order[i], &copies, &others, err);
     }
-    if (n_copies > 0)
-        report_add(report, REPORT_WARNING, "dicom.duplicate", example->path,
-                   "%zu object%s more than once in the folder; this file: %s.", n_copies,
-                   n_copies == 1 ? " is there" : "s are there", example->reason);
     free(order);
-    return true;
+    report_copies(&copies, &others, report);
+    return is_compared;
 }
 
 /* Reports one line per reason: how many objects, and the path of the first. */
@@ -350,7 +408,7 @@ struct dicom_index *dicom_index_scan(const struct folder *folder, char *const *n
         error_set(err, ERROR_MEMORY, "no memory to look at %zu files", scan.n_files);
         goto fail;
     }
-    if (!collect(&scan, index, report, err) || !drop_copies(index, report, err))
+    if (!collect(&scan, index, report, err) || !drop_copies(folder, index, report, err))
         goto fail;
     report_unused(index, report);
     report_bad_numbers(index, report);
