@@ -10,6 +10,7 @@
 #include "server/http/api_pictures.h"
 #include "server/http/api_queries.h"
 #include "server/room/acceptance_body.h"
+#include "server/room/body_check.h"
 
 struct render_call {
     char plan_id[64];
@@ -62,12 +63,18 @@ static cJSON *read_acceptances(const cJSON *list, const cJSON *plan, struct prob
         cJSON_Delete(read);
         return NULL;
     }
+    if (!read) {
+        json_no_memory(problem, "acceptances");
+        return NULL;
+    }
     cJSON_ArrayForEach(entry, list)
     {
         static const char *const names[] = { "thing", "with", "words" };
+        static const char *const known_names[] = { "thing", "with", "reason", "words", NULL };
         char where[32];
         (void)snprintf(where, sizeof where, "/acceptances/%d", at++);
-        if (!acceptance_check(plan, entry, where, problem)) {
+        if (!(cJSON_IsObject(entry) || body_refuse_type(problem, where, "an object")) ||
+            !body_names_are(entry, known_names, where, problem) || !acceptance_check(plan, entry, where, problem)) {
             cJSON_Delete(read);
             return NULL;
         }
@@ -86,8 +93,11 @@ static void audit_acceptances(struct api *api, const struct call *call, const ch
     const cJSON *entry;
     cJSON_ArrayForEach(entry, list)
     {
-        cJSON *detail = cJSON_Duplicate(entry, true);
+        static const char *const names[] = { "thing", "with", "reason", "words" };
+        cJSON *detail = cJSON_CreateObject();
         cJSON_AddStringToObject(detail, "what", "picture");
+        for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+            cJSON_AddStringToObject(detail, names[i], json_text(entry, names[i]));
         net_audit(api->net, call->client, "", plan_id, "acceptance", detail);
     }
 }

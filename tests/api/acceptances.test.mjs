@@ -132,6 +132,8 @@ test('/render takes acceptances in its body, checked as those of a room, each a 
   assert.equal(await render([boost]), accepted);
   assert.equal(await render(), unaccepted, 'no call carries them to another');
   assert.equal((await render([{ ...boost, words: 'short' }])).pointer, '/acceptances/0/words');
+  assert.equal((await render([{ ...boost, by: 'Dr Keller' }])).pointer, '/acceptances/0/by', 'who says so is never taken from the body');
+  for (const wrong of [7, [1], null]) assert.equal((await render([wrong])).pointer, '/acceptances/0');
   assert.equal((await render([{ ...boost, thing: 'dose:own' }])).pointer, '/acceptances/0/thing');
 });
 

@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { beamName, chosenBeam, keptName, lookOf, lookPatch } from '../state/beams.js';
 import { isDraftOn } from '../state/beam_ui.js';
+import { isOfOther } from '../state/identity.js';
 import { beamWords } from '../state/plan.js';
 import { toggleMove } from './beam_lazy.js';
 import { presetRows } from './beam_presets_later.js';
@@ -18,7 +19,7 @@ export const beamNote = ({ room }) => (isDraftOn(room) ? 'draft' : '');
 export function beamRows(world) {
   const { room } = world;
   const { beams, curves } = room.plan.value;
-  return html`${beams.map((beam) => beamRow(world, beam))}${draftRow(world)}${Object.entries(room.scene.value.beam.kept).map(([id, line]) => keptRow(world, id, line))}${curves.map((curve) => curveRow(world, curve))}${presetRows(world)}`;
+  return html`${beams.filter((beam) => !isOfOther(room.plan.value, room.scene.value, beam)).map((beam) => beamRow(world, beam))}${draftRow(world)}${Object.entries(room.scene.value.beam.kept).map(([id, line]) => keptRow(world, id, line))}${curves.map((curve) => curveRow(world, curve))}${presetRows(world)}`;
 }
 
 function beamRow(world, beam) {
