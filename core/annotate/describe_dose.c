@@ -7,8 +7,10 @@
 #include <string.h>
 
 #include "core/annotate/words.h"
+#include "core/region/body.h"
 #include "core/render/visible/draw_compare.h"
 #include "core/render/visible/isoline_labels.h"
+#include "core/scene/dose_coverage_choice.h"
 #include "core/scene/dose_scale.h"
 #include "dose_presets.h"
 
@@ -181,22 +183,23 @@ static void add_levels(struct annotations *annotations, const struct snapshot *s
 }
 
 /* "second less first, colours to ±10 % of the reference", "gamma index, 3 % of the reference and 2 mm, from 10 %" */
-static void comparison_words(char text[WORDS_SIZE], const struct scene_dose_compare *compare)
+static void comparison_words(char text[WORDS_SIZE], const struct scene_dose_compare *compare, const char *where)
 {
     switch (compare->mode) {
     case SCENE_DOSE_COMPARISON_NONE: text[0] = 0; return;
     case SCENE_DOSE_COMPARISON_LINES: (void)snprintf(text, WORDS_SIZE, "its lines dashed"); return;
     case SCENE_DOSE_COMPARISON_DIFFERENCE:
         (void)snprintf(text, WORDS_SIZE,
-                       "second less first, colours to \u00b1%.6g %% of the reference, its lines dashed",
-                       compare->span_percent);
+                       "second less first%s where the first is at least %.6g %%, colours to \u00b1%.6g %% of the "
+                       "reference, its lines dashed",
+                       where, compare->threshold_percent, compare->span_percent);
         return;
     case SCENE_DOSE_COMPARISON_GAMMA:
         (void)snprintf(text, WORDS_SIZE,
-                       "gamma index, %.6g %% of the %s and %.6g mm, where the first is at least %.6g %%",
+                       "gamma index, %.6g %% of the %s and %.6g mm,%s where the first is at least %.6g %%",
                        compare->dose_percent,
                        compare->normalization == SCENE_GAMMA_NORMALIZATION_LOCAL ? "dose at the point" : "reference",
-                       compare->distance_mm, compare->threshold_percent);
+                       compare->distance_mm, where, compare->threshold_percent);
     }
 }
 
@@ -210,7 +213,9 @@ static bool add_comparison(struct annotations *annotations, const struct snapsho
     char way[WORDS_SIZE], why[FIT_WHY_SIZE];
     struct fit_use use = dose_compared_use(snapshot, (size_t)second);
     if (fit_is_used(&use)) {
-        comparison_words(way, compare);
+        struct body body;
+        bool is_in_body = compare->domain == SCENE_COMPARE_DOMAIN_BODY && body_find(&snapshot->fits.used, &body);
+        comparison_words(way, compare, is_in_body ? " in the body" : "");
         (void)snprintf(add_text(annotations, ANNOTATION_DOSE), ANNOTATION_TEXT_SIZE, "Compared with %.64s: %.150s",
                        name_of(&snapshot->plan->doses[second]), way);
         return true;
@@ -218,6 +223,30 @@ static bool add_comparison(struct annotations *annotations, const struct snapsho
     fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, (size_t)second }, &use, why);
     annotation_add_sentence(annotations, ANNOTATION_DOSE, why);
     return false;
+}
+
+/* The part of a region that is highlighted: "brain, univels of at least 5.00 Gy(w): own univels, without regions
+ * inside, each region's own weights". */
+static void add_coverage(struct annotations *annotations, const struct snapshot *snapshot,
+                         const struct dose_scale *scale)
+{
+    const struct scene_dose_coverage *coverage = &snapshot->scene.dose.coverage;
+    struct dose_coverage_choice choice;
+    struct error why = { 0 };
+    char low[48] = "", high[48] = "", words[96], unit[DOSE_UNIT_SIZE];
+    if (!coverage->visible || !dose_coverage_choice_of(snapshot, scale, &choice, &why))
+        return;
+    const struct region *region = &snapshot->plan->regions.regions[choice.region];
+    const char *basis = dose_basis_words(snapshot->plan, &choice.dose, coverage->tissue, words);
+    dose_shown_unit(&snapshot->plan->doses[snapshot->dose], choice.dose.shown, choice.dose.quantity, unit);
+    words_significant(low, choice.low);
+    words_significant(high, choice.high);
+    (void)snprintf(add_color(annotations, coverage->color_rgb), ANNOTATION_TEXT_SIZE,
+                   "%.40s, univels%s%.20s%s%.20s %.20s%s%.20s: %.40s%s%.40s", region->name[0] ? region->name : region->id,
+                   isfinite(choice.low) ? " of at least " : "", isfinite(choice.low) ? low : "",
+                   isfinite(choice.high) ? " below " : "", isfinite(choice.high) ? high : "", unit,
+                   coverage->quantity[0] ? " of " : "", coverage->quantity[0] ? coverage->quantity : "",
+                   population_words(choice.population), basis ? ", " : "", basis ? basis : "");
 }
 
 void dose_describe(struct annotations *annotations, const struct snapshot *snapshot)
@@ -247,6 +276,7 @@ void dose_describe(struct annotations *annotations, const struct snapshot *snaps
     const enum wash_kind wash = wash_kind(&snapshot->scene.dose, is_compared);
     add_scale(annotations, snapshot, &scale, wash);
     add_levels(annotations, snapshot, &scale, is_compared, wash == WASH_LEVELS);
+    add_coverage(annotations, snapshot, &scale);
     dose_scale_finish(&scale);
 }
 

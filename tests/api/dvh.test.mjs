@@ -127,6 +127,9 @@ test('one switch sets the population of histograms, limits and coverage, and eac
     near(limit.volume_cm3, curve.volume_cm3, 1e-9);
     near(limit.value, curve.mean, 1e-9);
     near(100 * coverage.share, curve.metrics.V5, 2e-3);
+    const highlighted = (await ask('coverage', { dose: { population } }, '&region=brain&low=4&unit=dose')).json; // 4 is the edge of a bin
+    const [at] = (await ask('dvh', { dose: { population } }, '&regions=brain&metrics=V4&bins=1')).json.curves;
+    assert.ok(Math.abs(highlighted.share_least - at.metrics.V4 / 100) * at.n_univels < 0.5, 'the highlighted univels are those of the histogram');
     const said = population === 'whole' ? 'whole' : 'own';
     assert.deepEqual([curve.population, coverage.population, limit.population], [said, said, said]);
     assert.deepEqual([curve.basis, coverage.basis, limit.basis], Array(3).fill("each region's own weights"));

@@ -152,6 +152,37 @@ static void a_dose_is_described_with_what_it_lacks_and_its_levels(void **state)
     plan_and_derived_destroy(plan);
 }
 
+static void a_highlighted_part_is_described_with_its_limits_its_univels_and_its_weights(void **state)
+{
+    (void)state;
+    struct plan *plan = made_plan_in_hu();
+    const struct grid *grid = &plan->images[0].volume->grid;
+    struct dose *dose = &plan->doses[plan->n_doses++];
+    *dose = (struct dose){ .unit = "Gy", .has_frame = true, .frame = DOSE_FRAME_SAME };
+    snprintf(dose->id, sizeof dose->id, "run-1");
+    dose->components[dose->n_components++] =
+        (struct dose_component){ .quantity = DOSE_TOTAL, .values = made_volume(grid, VOXEL_F32, ten) };
+    struct scene scene;
+    struct view view = view_default;
+    struct error err = { 0 };
+    char field[128];
+    scene_for_plan(plan, &scene);
+    scene.dose.quantity = SCENE_DOSE_QUANTITY_TOTAL;
+    scene.dose.coverage.visible = true;
+    scene.dose.coverage.unit = SCENE_DOSE_UNIT_DOSE;
+    scene.dose.coverage.has_low = true;
+    scene.dose.coverage.low = 5;
+    scene.dose.population = SCENE_DOSE_POPULATION_WHOLE;
+    snprintf(scene.dose.coverage.region, sizeof scene.dose.coverage.region, "%s", plan->regions.regions[0].id);
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+    struct annotations words;
+    assert_true(annotations_describe(&words, snapshot, 512, "", &err));
+    assert_non_null(strstr(row_text(&words, ANNOTATION_LEVELS), ", univels of at least 5.00 Gy: whole region"));
+    annotations_finish(&words);
+    snapshot_unref(snapshot);
+    plan_and_derived_destroy(plan);
+}
+
 /* 100 % is 40 Gy: 5 % of it are 2 Gy. */
 static void a_comparison_is_described_with_its_colours_in_place_of_the_levels(void **state)
 {
@@ -162,10 +193,11 @@ static void a_comparison_is_described_with_its_colours_in_place_of_the_levels(vo
         const char *words, *colors;
     } cases[] = {
         { SCENE_DOSE_COMPARISON_DIFFERENCE, true,
-          "Compared with Run 2: second less first, colours to \u00b15 % of the reference, its lines dashed",
+          "Compared with Run 2: second less first in the body where the first is at least 10 %, colours to \u00b15 % of the "
+          "reference, its lines dashed",
           "\u2264 \u22122.00 Gy|0 Gy|\u2265 +2.00 Gy|90 % = 36.0 Gy" },
         { SCENE_DOSE_COMPARISON_GAMMA, true,
-          "Compared with Run 2: gamma index, 3 % of the reference and 2 mm, where the first is at least 10 %",
+          "Compared with Run 2: gamma index, 3 % of the reference and 2 mm, in the body where the first is at least 10 %",
           "gamma 0|up to 1: passes|above 1|\u2265 2" },
         { SCENE_DOSE_COMPARISON_LINES, false, "Compared with Run 2: its lines dashed", "90 % = 36.0 Gy" },
         { SCENE_DOSE_COMPARISON_NONE, true, "", "0 % statistical error|5 %|10 %|\u2265 20 %" },
@@ -357,6 +389,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_snapshot_is_described),
         cmocka_unit_test(a_dose_is_described_with_what_it_lacks_and_its_levels),
+        cmocka_unit_test(a_highlighted_part_is_described_with_its_limits_its_univels_and_its_weights),
         cmocka_unit_test(a_comparison_is_described_with_its_colours_in_place_of_the_levels),
         cmocka_unit_test(a_window_stands_in_the_caption_as_on_the_page),
         cmocka_unit_test(an_oblique_pane_and_a_blended_image_are_described),
