@@ -1,6 +1,6 @@
 // Plans without use: they are closed, and loaded again when somebody enters their room. --stub: grey pictures, everything else is real.
 import assert from 'node:assert/strict';
-import { chmodSync, cpSync, existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { chmodSync, cpSync, existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -117,18 +117,19 @@ describe('a job that opens a plan', () => {
 
   test('stays failed when the plan was opened again since', () => withDaemon([], async ({ daemon, api }) => {
     await until(() => call(`${api}/plans/head-2`), (plan) => plan.json.parts.length); // else its scan may refuse it before it is opened
-    rmSync(join(folder, 'plans', 'head-2', 'ct.nii.gz'));
+    const head = join(folder, 'plans', 'head-2');
+    for (const name of readdirSync(head).filter((other) => other !== 'plan.json')) rmSync(join(head, name), { recursive: true }); // one part alone would be left out
     try {
       const first = await call(`${api}/plans/head-2/open`, 'POST');
       await until(() => daemon.log(), (log) => /warning: plan head-2/.test(log));
-      cpSync(join(demo, 'phantom', 'ct.nii.gz'), join(folder, 'plans', 'head-2', 'ct.nii.gz'));
+      cpSync(join(demo, 'phantom'), head, { recursive: true });
       const second = await call(`${api}/plans/head-2/open`, 'POST');
       assert.equal((await until(() => call(`${api}/jobs/${second.json.id}`), (job) => job.json.state !== 'running')).json.state, 'done');
       const job = (await call(`${api}/jobs/${first.json.id}`)).json;
       assert.equal(job.state, 'failed');
       assert.match(job.problem.detail, /ct\.nii\.gz/);
     } finally {
-      cpSync(join(demo, 'phantom', 'ct.nii.gz'), join(folder, 'plans', 'head-2', 'ct.nii.gz'));
+      cpSync(join(demo, 'phantom'), head, { recursive: true });
     }
   }));
 });
