@@ -72,11 +72,12 @@ function compareWords({ id, mode }, plan) {
   return second && (mode === 'lines' || mode === 'difference') ? html`<p>dashed: ${doseName(second)}</p>` : nothing;
 }
 
-/** The colours of a wash that is none of levels, with their ends; how many voxels it is of, once the server has counted them. */
+/** The colours of a wash that is none of levels, with their ends; of how many voxels, once the server has counted them. */
 function scaleLegend({ kind, title, ends, about, more }, { result, error, isOld }) {
   const why = kind === 'error' ? '' : error || (!isOld && result?.comparison_reason) || '';
   if (why) return html`<p class="warn">${icon('warning', 12)} Not compared: ${why}</p>`;
-  const n = isOld || kind === 'error' ? undefined : kind === 'gamma' ? result?.voxels : result?.difference?.voxels;
+  const domain = isOld || kind === 'error' ? null : result?.domain;
+  const counted = domain ? `; ${number(domain.voxels)} of ${number(domain.all_voxels)} voxels` : '';
   return html`<p class="dose-scale-title" title=${more || nothing}>${title}</p><i class="dose-scale" ${variables({ '--scale': gradientOf(kind) })}></i>
-    <p class="dose-scale-ends">${ends.map((words) => html`<span>${words}</span>`)}</p>${about ? html`<p class="dim">${about}${Number.isFinite(n) ? `; ${number(n)} voxels` : ''}</p><span class="hidden">${more}</span>` : nothing}`;
+    <p class="dose-scale-ends">${ends.map((words) => html`<span>${words}</span>`)}</p>${about ? html`<p class="dim">${about}${counted}</p><span class="hidden">${more}</span>` : nothing}`;
 }

@@ -34,13 +34,17 @@ export function shownScale(plan, scene, reference, significant) {
   if (kind !== 'difference' && kind !== 'gamma') return null;
   const { compare, quantity } = scene.dose;
   const [first, second] = [shownDose(plan, scene), plan.doses.find(({ id }) => id === compare.id)].map(doseName);
+  const isInBody = (compare.domain ?? 'body') === 'body' && plan.regions.length > 0;
+  const least = tidy(compare.threshold_percent);
+  const where = `${isInBody ? 'in the body, ' : ''}from ${least} %`;
+  const whole = `${isInBody ? 'in the body ' : ''}where ${first} has at least ${least} % of the reference`;
   if (kind === 'gamma') {
     const of = compare.normalization === 'local' ? ' of the point' : '';
-    return { kind, title: `γ of ${second}`, ends: ['0', '1 passes up to here', '≥ 2'], about: `${tidy(compare.dose_percent)} %${of}, ${tidy(compare.distance_mm)} mm, from ${tidy(compare.threshold_percent)} %`,
-      more: `Gamma index of ${second} against ${first}, where ${first} has at least ${tidy(compare.threshold_percent)} % of the reference` };
+    return { kind, title: `γ of ${second}`, ends: ['0', '1 passes up to here', '≥ 2'], about: `${tidy(compare.dose_percent)} %${of}, ${tidy(compare.distance_mm)} mm, ${where}`,
+      more: `Gamma index of ${second} against ${first}, ${whole}` };
   }
   const isKnown = Number.isFinite(reference);
   const end = isKnown ? significant((reference * compare.span_percent) / 100) : `${tidy(compare.span_percent)} %`;
   return { kind, title: `${second} − ${first}, ${isKnown ? unitOf(shownDose(plan, scene), quantity) : '% of the reference'}`, ends: [`≤ −${end}`, '0', `≥ +${end}`],
-    about: `to ±${tidy(compare.span_percent)} %`, more: `${second} less ${first}, where both have a dose; strongest colours from ±${tidy(compare.span_percent)} % of the reference on` };
+    about: `to ±${tidy(compare.span_percent)} %, ${where}`, more: `${second} less ${first}, ${whole}, where both have a dose; strongest colours from ±${tidy(compare.span_percent)} % of the reference on` };
 }
