@@ -212,6 +212,9 @@ static void describe(const struct fleet *fleet, const struct plan_entry *plan, s
         .load_ms = plan->load_ms,
         .pid = plan->pid,
         .revision = plan->revision.digest,
+        .files_read_ms = plan->revision.loaded_ms,
+        .files_changed_ms = plan->revision.loaded_generation == plan->generation ? plan->revision.changed_ms : 0,
+        .files_are_looked_at = plan->revision.program || plan->revision.is_wanted,
         .confined = plan->confined,
     };
 }

@@ -102,8 +102,11 @@ struct fleet_plan {
     const struct problem *failure;          /* why failed_opening failed */
     uint64_t memory_bytes;                  /* resident, of its process; 0: unknown */
     int64_t load_ms;
-    int pid;              /* 0: none */
-    const char *revision; /* of its files, as fleet_revision gave it last; "": not known */
+    int pid;                                 /* 0: none */
+    const char *revision;                    /* of its files, as fleet_revision gave it last; "": not known */
+    int64_t files_read_ms, files_changed_ms; /* since 1970: when the files were as the open plan was read; when they
+                                                were found to have changed since; 0: they have not */
+    bool files_are_looked_at;                /* a look is due or running */
     const char *confined; /* of its process: "landlock 3, seccomp, no-new-privs, no capabilities"; "": unknown */
 };
 struct fleet_revision {
@@ -116,6 +119,8 @@ struct fleet_revision {
  * ago or the folder has changed. False: it is not known, yet or at all. When it becomes known, or another one,
  * options.changed is called. */
 bool fleet_revision(struct fleet *fleet, const char *plan_id, struct fleet_revision *revision);
+/* Has the plan's files looked at now; options.changed is called afterwards. */
+void fleet_look_at_files(struct fleet *fleet, const char *plan_id);
 /* True once the plan folders have been listed. Before that, a plan that is not found gives PROBLEM_BUSY. */
 bool fleet_is_listed(const struct fleet *fleet);
 /* Fills in the problem of a plan that is not found: there is none, or the list is not known yet. Returns false. */

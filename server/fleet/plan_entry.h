@@ -48,6 +48,9 @@ struct plan_entry {
         uint32_t generation;  /* likewise */
         int64_t looked_us;    /* when the last one ended */
         bool is_wanted;
+        char loaded[65];               /* the first one of the process that draws the plan: what it has read */
+        uint32_t loaded_generation;    /* of that process */
+        int64_t loaded_ms, changed_ms; /* since 1970: when that was; when it was found to be another; 0: it is not */
     } revision;
 
     /* the renderer */

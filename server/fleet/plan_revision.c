@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/log.h"
 #include "server/fleet/plan_scan.h"
 #include "server/fleet/watch.h"
@@ -26,6 +27,15 @@ bool fleet_revision(struct fleet *fleet, const char *plan_id, struct fleet_revis
     revision->reason = plan->revision.reason;
     revision->is_current = !is_old && !plan->revision.program && !plan->revision.is_wanted;
     return plan->revision.digest[0] != 0;
+}
+
+void fleet_look_at_files(struct fleet *fleet, const char *plan_id)
+{
+    struct plan_entry *plan = plan_entry_find(fleet, plan_id);
+    if (!plan)
+        return;
+    plan->revision.is_wanted = true; /* a look that runs may have passed the file that changes now */
+    plan_revisions_start(fleet);
 }
 
 void plan_revisions_start(struct fleet *fleet)
@@ -54,6 +64,24 @@ static bool is_digest(const char *text)
     return text && strlen(text) == 64 && strspn(text, "0123456789abcdef") == 64;
 }
 
+/* The first digest of a process is what that process has read; another one later: the files have changed since. */
+static void compare_with_loaded(struct plan_entry *plan)
+{
+    if (!plan->revision.generation)
+        return;
+    if (plan->revision.loaded_generation != plan->revision.generation) {
+        memcpy(plan->revision.loaded, plan->revision.digest, sizeof plan->revision.loaded);
+        plan->revision.loaded_generation = plan->revision.generation;
+        plan->revision.loaded_ms = clock_wall_ms();
+        plan->revision.changed_ms = 0;
+    } else if (strcmp(plan->revision.loaded, plan->revision.digest) == 0) {
+        plan->revision.changed_ms = 0;
+    } else if (!plan->revision.changed_ms) {
+        plan->revision.changed_ms = clock_wall_ms();
+        log_warn("plan %s: its files have changed since they were read", plan->id);
+    }
+}
+
 bool plan_revision_ended(struct fleet *fleet, const struct watch_event *event)
 {
     struct plan_entry *plan = NULL;
@@ -74,6 +102,7 @@ bool plan_revision_ended(struct fleet *fleet, const struct watch_event *event)
             (void)snprintf(plan->revision.digest, sizeof plan->revision.digest, "%s", digest);
         plan->revision.n_files = (uint64_t)json_number(json, "n_files", 0);
         plan->revision.reason[0] = 0;
+        compare_with_loaded(plan);
     } else {
         plan->revision.digest[0] = 0;
         (void)snprintf(plan->revision.reason, sizeof plan->revision.reason, "%s",

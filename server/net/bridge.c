@@ -9,6 +9,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/net/keep.h"
 #include "server/net/schedule.h"
 #include "server/wire/missing.h"
 
@@ -265,6 +266,8 @@ void bridge_report_plan(struct net_room *entry)
         return;
     }
     room_plan_revision(entry->room, plan.revision);
+    room_files(entry->room, plan.files_changed_ms, plan.files_read_ms);
+    keep_files_looked(entry, &plan);
     bridge_tell_revision(entry);
     const char *phase = plan.phase ? plan.phase : "";
     bool is_same = plan.state == entry->state && strcmp(phase, entry->phase) == 0 && plan.percent == entry->percent;
@@ -319,6 +322,17 @@ void bridge_fleet_changed(void *context, const char *plan_id)
     for (size_t i = 0; i < net->n_rooms; i++)
         if (strcmp(room_plan_id(net->rooms[i]->room), id) == 0)
             bridge_report_plan(net->rooms[i]);
+}
+
+void bridge_look_at_files(struct net *net, int64_t now_us)
+{
+    struct fleet_revision revision;
+    if (now_us < net->look_us)
+        return;
+    net->look_us = now_us + LOOK_AT_FILES_S * INT64_C(1000000);
+    for (size_t i = 0; i < net->n_rooms; i++)
+        if (!net->rooms[i]->empty_since_us && net->rooms[i]->state == FLEET_READY)
+            (void)fleet_revision(net->fleet, room_plan_id(net->rooms[i]->room), &revision);
 }
 
 void bridge_close_room(struct net_room *entry)

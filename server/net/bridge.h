@@ -13,6 +13,9 @@ void bridge_fleet_changed(void *context, const char *plan_id);
 void bridge_tell_revision(struct net_room *room);
 /* Reports the plan's state to the room, if it differs from the one last reported. */
 void bridge_report_plan(struct net_room *room);
+/* Has the files of plans looked at that people have open, every LOOK_AT_FILES_S. */
+enum { LOOK_AT_FILES_S = 15 };
+void bridge_look_at_files(struct net *net, int64_t now_us);
 /* A connection entered its room: the plan is opened if it is closed, and held until bridge_leave. */
 void bridge_enter(struct visitor *visitor);
 void bridge_leave(struct visitor *visitor);

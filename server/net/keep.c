@@ -184,15 +184,58 @@ bool keep_item_first(void *context, struct room *room, uint64_t number, const st
     if (!row)
         free(audit);
     struct prompt_write *prompt = mem_new(sizeof *prompt);
-    *prompt = (struct prompt_write){ entry->keep.prompts, ++net->n_tickets, number };
-    if (!row || !fill_prompt(row, write, audit) || !store_write(net->store, row, prompt->ticket)) {
+    *prompt = (struct prompt_write){ .next = entry->keep.prompts, .ticket = ++net->n_tickets, .number = number };
+    if (!row || !fill_prompt(row, write, audit) || (!write->record && !store_write(net->store, row, prompt->ticket))) {
         store_room_free(row);
         free(prompt);
         return refuse_to_keep(net, false, problem);
     }
     net->n_audit_waiting++;
     entry->keep.prompts = prompt;
+    if (write->record) { /* what is decided about must be what is shown */
+        prompt->row = row;
+        fleet_look_at_files(net->fleet, room_plan_id(room));
+    }
     return true;
+}
+
+/* The next item that waits for a look at the plan's files, out of the list; NULL: none does. */
+static struct prompt_write *take_waiting(struct net_room *entry)
+{
+    for (struct prompt_write **at = &entry->keep.prompts; *at; at = &(*at)->next)
+        if ((*at)->row) {
+            struct prompt_write *prompt = *at;
+            *at = prompt->next;
+            return prompt;
+        }
+    return NULL;
+}
+
+void keep_files_looked(struct net_room *entry, const struct fleet_plan *plan)
+{
+    struct net *net = entry->net;
+    struct prompt_write *prompt;
+    while (!plan->files_are_looked_at && (prompt = take_waiting(entry))) {
+        struct problem problem = { 0 };
+        struct store_room *row = prompt->row;
+        prompt->row = NULL;
+        if (plan->files_changed_ms || !plan->revision[0])
+            problem_set(&problem, PROBLEM_CONFLICT, "", "files",
+                        "the plan's files %s: this was not kept and does not count; have them read anew",
+                        plan->files_changed_ms ? "have changed on the disk since they were read"
+                                               : "cannot be read now");
+        else if (!store_write(net->store, row, prompt->ticket))
+            (void)refuse_to_keep(net, false, &problem);
+        if (problem.type == PROBLEM_NONE) {
+            prompt->next = entry->keep.prompts;
+            entry->keep.prompts = prompt;
+            continue;
+        }
+        net->n_audit_waiting--;
+        store_room_free(row);
+        room_item_written(entry->room, prompt->number, &problem, clock_now_us());
+        free(prompt);
+    }
 }
 
 /* The answer to keep_item_first. True: it was one. */
@@ -250,6 +293,9 @@ void keep_room_finish(struct net_room *room)
     while (room->keep.prompts) {
         struct prompt_write *prompt = room->keep.prompts;
         room->keep.prompts = prompt->next;
+        if (prompt->row)
+            room->net->n_audit_waiting--;
+        store_room_free(prompt->row);
         free(prompt);
     }
     for (size_t i = 0; i < room->keep.n_items; i++)

@@ -101,6 +101,7 @@ static void timer_fired(void *context)
     int64_t now_us = clock_now_us();
     if (now_us >= net->fleet_tick_us) {
         fleet_tick(net->fleet);
+        bridge_look_at_files(net, now_us);
         rooms_close_idle(net);
         keep_write_due(net, false);
         net->fleet_tick_us = now_us + (now_us < net->calm_from_us ? FLEET_TICK_US : calm_tick_us(net, now_us));

@@ -42,6 +42,7 @@ struct picture_request { /* sent to the fleet and not yet answered */
 struct prompt_write { /* of one item, which counts when it is on disk */
     struct prompt_write *next;
     uint64_t ticket, number; /* of the store; of the room */
+    struct store_room *row;  /* waits until the plan's files were looked at; NULL: it is with the store */
 };
 
 struct net_room { /* a room and what the net thread keeps beside it */
@@ -133,6 +134,7 @@ struct net {
     uint64_t n_audit_lost;  /* rows that found neither disk nor memory since the last row that did */
     struct net_audit_head audit_head;
     bool store_was_open;                /* so the rooms that sleep are known */
+    int64_t look_us;                    /* when files of plans are looked at next */
     int64_t fleet_tick_us;              /* when fleet_tick is due */
     int64_t calm_from_us;               /* unless somebody does something before, fleet_tick is rare from then on */
     int64_t due_us;                     /* not after the earliest time that a room is due: schedule.h */

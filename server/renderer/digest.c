@@ -17,8 +17,8 @@
 enum { READ_BYTES = 1 << 20 };
 
 struct file {
-    char *path; /* below the folder */
-    int64_t size, time_s, time_ns;
+    char *path;                                           /* below the folder */
+    int64_t size, time_s, time_ns, changed_s, changed_ns; /* changed: of content or facts, which no program sets back */
     uint64_t inode;
 };
 
@@ -53,6 +53,8 @@ static bool add(struct files *files, const char *path, const struct stat *facts,
                                              .size = (int64_t)facts->st_size,
                                              .time_s = (int64_t)facts->st_mtim.tv_sec,
                                              .time_ns = (int64_t)facts->st_mtim.tv_nsec,
+                                             .changed_s = (int64_t)facts->st_ctim.tv_sec,
+                                             .changed_ns = (int64_t)facts->st_ctim.tv_nsec,
                                              .inode = (uint64_t)facts->st_ino };
     return true;
 }
@@ -104,9 +106,9 @@ static void make_key(const struct files *files, char key[65])
     (void)crypto_hash_sha256_init(&state);
     for (size_t i = 0; i < files->n; i++) {
         const struct file *file = &files->list[i];
-        char facts[128];
-        (void)snprintf(facts, sizeof facts, "%" PRId64 " %" PRId64 " %" PRId64 " %" PRIu64 "\n", file->size,
-                       file->time_s, file->time_ns, file->inode);
+        char facts[160];
+        (void)snprintf(facts, sizeof facts, "%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRIu64 "\n",
+                       file->size, file->time_s, file->time_ns, file->changed_s, file->changed_ns, file->inode);
         add_text(&state, file->path, strlen(file->path) + 1);
         add_text(&state, facts, strlen(facts));
     }

@@ -18,6 +18,7 @@
 #include "server/room/pointers.h"
 #include "server/room/presence.h"
 #include "server/room/presenter.h"
+#include "server/room/record_body.h"
 #include "server/room/recording.h"
 #include "server/room/replay.h"
 #include "server/room/roles.h"
@@ -230,6 +231,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     send_renderer_state(room, member);
     control_send(room, member);
     saved_show(room, member);
+    files_show(room, member);
     (void)presenter_settle(room);
     send_members_to_newcomer(room, member);
     pointers_show(room, member);

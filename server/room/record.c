@@ -5,7 +5,9 @@
 #include "server/room/acceptance.h"
 #include "server/room/presence.h"
 #include "server/room/record_body.h"
+#include "server/room/send.h"
 #include "server/wire/json.h"
+#include "server/wire/message.h"
 
 /* The rows of one kind, each as {..., body...}: what a record holds of an item. */
 static cJSON *rows_of(const struct room *room, enum wire_item_kind kind)
@@ -32,6 +34,36 @@ static cJSON *rows_of(const struct room *room, enum wire_item_kind kind)
         json_append(list, row);
     }
     return list;
+}
+
+/* To be finished. */
+static void fill_files(const struct room *room, struct message *message)
+{
+    *message = (struct message){ .type = MESSAGE_FILES };
+    message->files.changed_ms = (double)room->files_changed_ms;
+    message->files.read_ms = (double)room->files_read_ms;
+}
+
+void room_files(struct room *room, int64_t changed_ms, int64_t read_ms)
+{
+    struct message message;
+    if (room->files_changed_ms == changed_ms)
+        return;
+    room->files_changed_ms = changed_ms;
+    room->files_read_ms = read_ms;
+    fill_files(room, &message);
+    send_to_all(room, &message);
+    message_finish(&message);
+}
+
+void files_show(struct room *room, struct member *member)
+{
+    struct message message;
+    if (!room->files_changed_ms)
+        return;
+    fill_files(room, &message);
+    send_to_member(room, member, &message);
+    message_finish(&message);
 }
 
 bool record_is_wanted(enum wire_item_kind kind)

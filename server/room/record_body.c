@@ -206,6 +206,11 @@ bool record_may_write(const struct room *room, const struct member *member, enum
         problem->retry_after_ms = 1000;
         return false;
     }
+    if (is_append_only(kind) && room->files_changed_ms)
+        return problem_set(
+            problem, PROBLEM_CONFLICT, "", "files",
+            "the plan's files have changed on the disk since they were read: nothing is decided or signed "
+            "until they are read anew");
     return !is_append_only(kind) || audit_has_place(room, problem);
 }
 

@@ -29,6 +29,8 @@ bool record_may_change(const struct room *room, const struct item *item, struct 
 /* Records in the audit that `by` put this item: its id, version and the SHA-256 of its row; of a decision or signature
  * also its words, and the SHA-256 of the record of that moment (record; NULL: there is none). */
 void record_audit(struct room *room, const struct item *item, const struct member *by, const char *record);
+/* Tells a member who has come that the plan's files have changed, if they have. */
+void files_show(struct room *room, struct member *member);
 /* Whether a record of the room is kept with an item of this kind: it is a decision or signature. */
 bool record_is_wanted(enum wire_item_kind kind);
 /* The record of the room at this moment, with the item, scene and views, as JSON for free(). NULL: of another kind;

@@ -374,6 +374,9 @@ void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named,
 void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,
                       const struct problem *problem, int64_t now_us);
 bool room_replays(const struct room *room);
+/* The files of the open plan have changed on the disk since they were read: members are told, and nothing is decided or
+ * signed until they are read anew. Times since 1970; changed_ms 0: they are as they were read. */
+void room_files(struct room *room, int64_t changed_ms, int64_t read_ms);
 /* Whether the room has a use for the revision of the plan's files as they are now: it plays, or records and does not
  * know it yet. */
 bool room_wants_revision(const struct room *room);

@@ -217,10 +217,11 @@ struct room {
     int spoke;                /* index of the one that member_who_speaks found last */
     bool has_lost;            /* some is_lost */
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
-    char end_reason[200];     /* "": the room is closed */
-    char plan_revision[65];   /* of the plan's files; "": not known */
-    const struct member *writer; /* while the body of an item is read: who writes it */
-    struct presence *presences;  /* who was here, the first first; room for ROOM_MAX_PRESENCE */
+    int64_t files_changed_ms, files_read_ms; /* room_files */
+    char end_reason[200];                    /* "": the room is closed */
+    char plan_revision[65];                  /* of the plan's files; "": not known */
+    const struct member *writer;             /* while the body of an item is read: who writes it */
+    struct presence *presences;              /* who was here, the first first; room for ROOM_MAX_PRESENCE */
     int n_presences;
     unsigned n_presences_dropped;
     const struct member *caller;  /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */

@@ -20,6 +20,7 @@ import { draftBar } from './beam_lazy.js';
 import { leaveBookmarks, playBar, resumeBookmark } from './bookmark_lazy.js';
 import { ChartLoader } from './chart_loader.js';
 import { ended, watchEnd } from './ended.js';
+import { filesBar } from './files_bar.js';
 import { ofFits } from './fit_later.js';
 import { coverPage, help, toasts } from './float.js';
 import { inspector, selected } from './inspector.js';
@@ -90,7 +91,7 @@ export function roomPage(host, id, { api, connect, clock, redraw, decode, hooks,
   const world = { after, room, ui, api, clock, connection, decode, storage, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
   world.charts = new ChartLoader(world);
   stops.push(() => world.charts.stop());
-  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${ofFits(room)?.otherPatientsBar(world)}${ofFits(room)?.fitBar(world)}${draftBar(world)}${playBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', (shown) => html`${savedLine(shown)}${requestLines(shown)}${toasts(shown)}`], ['.floating', floating]])
+  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${filesBar(world)}${ofFits(room)?.otherPatientsBar(world)}${ofFits(room)?.fitBar(world)}${draftBar(world)}${playBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', (shown) => html`${savedLine(shown)}${requestLines(shown)}${toasts(shown)}`], ['.floating', floating]])
     stops.push(mount(part(name), () => draw(world), redraw));
   if (!isBack) stops.push(offerName(world));
   stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), doses.start(clock));

@@ -68,6 +68,7 @@ export class RoomState {
     this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
     this.items = new Items((message) => this.#sending.act(message));
     /** Which acceptances count, as the server says; the items of kind acceptance hold the rest. */
+    this.files = signal(null); // {changed_ms, read_ms} while the plan's files are not what is shown
     this.acceptances = signal({ known: false, items: [] });
     this.accepted = computed(() => acceptedPairs(this.items.rows.value, this.acceptances.value.items));
     /** What numbers and pictures depend on beside the fields of dose: the shown image decides what fits, and people what is used all the same. */
@@ -271,6 +272,7 @@ export class RoomState {
         this.items.changed(message, this.member.value);
       },
       saved: () => this.saved.told(message),
+      files: () => { this.files.value = message.changed_ms ? message : null; },
       members: () => {
         if (Array.isArray(message.members)) this.#membersChanged(message.members);
       },
@@ -297,6 +299,7 @@ export class RoomState {
     this.#sending.hold();
     this.pointers.restart();
     this.saved.restart();
+    this.files.value = null;
     this.recording.running.value = this.recording.replay.value = null;
     this.recording.members.value = [];
     this.member.value = message.member;
