@@ -209,7 +209,8 @@ static int compare_instances(const void *a, const void *b)
  * in instance number or position. */
 static bool may_be_copy(const struct dicom_object *a, const struct dicom_object *b)
 {
-    if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind)
+    if (!a->sop_instance[0] || strcmp(a->sop_instance, b->sop_instance) != 0 || a->kind != b->kind ||
+        a->patient != b->patient)
         return false;
     return a->kind != DICOM_KIND_IMAGE ||
            (a->image->instance == b->image->instance &&
