@@ -11,61 +11,14 @@
 #include "core/base/mem.h"
 #include "server/room/acceptance.h"
 #include "server/room/audit.h"
-#include "server/room/bookmark_body.h"
 #include "server/room/item_list.h"
+#include "server/room/item_row.h"
 #include "server/room/member.h"
-#include "server/room/note_body.h"
 #include "server/room/record_body.h"
 #include "server/room/recording.h"
 
 #include "server/room/roles.h"
 #include "server/room/send.h"
-
-/* ---- kinds ------------------------------------------------------------------------------------------------------ */
-
-/* From kind to what its body may be. read: the body, checked and complete, as a new document, as note_body_read. */
-static const struct {
-    size_t max_bytes;
-    cJSON *(*read)(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
-                   struct problem *problem);
-} kinds[] = {
-    [WIRE_ITEM_KIND_NOTE] = { NOTE_MAX_BYTES, note_body_read },
-    [WIRE_ITEM_KIND_BOOKMARK] = { ROOM_MAX_ITEM_BYTES, bookmark_body_read },
-    [WIRE_ITEM_KIND_CHECK] = { RECORD_MAX_BYTES, record_read_check },
-    [WIRE_ITEM_KIND_DECISION] = { RECORD_MAX_BYTES, record_read_decision },
-    [WIRE_ITEM_KIND_SIGNATURE] = { RECORD_MAX_BYTES, record_read_signature },
-    [WIRE_ITEM_KIND_ACCEPTANCE] = { ACCEPTANCE_MAX_BYTES, acceptance_read },
-};
-
-static const char *word_of(enum wire_item_kind kind)
-{
-    return wire_item_kind_words.words[kind];
-}
-
-/* The body's text, for free(). NULL with problem. */
-static char *read_body(const struct room *room, enum wire_item_kind kind, const cJSON *body, const struct item *before,
-                       bool is_restored, struct problem *problem)
-{
-    if (!cJSON_IsObject(body)) {
-        problem_set(problem, PROBLEM_VALIDATION, "/body", "type", "/body is not an object");
-        return NULL;
-    }
-    *problem = (struct problem){ 0 };
-    cJSON *read = kinds[kind].read(room, body, before, is_restored, problem);
-    if (!read && problem->type != PROBLEM_NONE)
-        return NULL;
-    char *text = json_print(read);
-    cJSON_Delete(read);
-    if (!text) {
-        json_no_memory(problem, "an item");
-    } else if (strlen(text) > kinds[kind].max_bytes) {
-        problem_set(problem, PROBLEM_TOO_LARGE, "/body", "", "the body has %zu bytes, a %s may have %zu", strlen(text),
-                    word_of(kind), kinds[kind].max_bytes);
-        free(text);
-        return NULL;
-    }
-    return text;
-}
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
@@ -82,25 +35,6 @@ static void make_id(const struct room *room, char id[16])
             abort(); /* as a member's secret */
         (void)snprintf(id, 16, "i-%02x%02x%02x%02x%02x", bytes[0], bytes[1], bytes[2], bytes[3], bytes[4]);
     } while (items_find(room, id));
-}
-
-/* The text of the row of an item with this body, for free(). NULL: no memory. */
-static char *write_row(const struct item *item, const char *body)
-{
-    cJSON *row = cJSON_CreateObject();
-    cJSON_AddStringToObject(row, "id", item->id);
-    cJSON_AddStringToObject(row, "kind", word_of(item->kind));
-    cJSON_AddNumberToObject(row, "version", item->version);
-    cJSON_AddStringToObject(row, "author", item->author);
-    cJSON_AddStringToObject(row, "author_name", item->author_name);
-    cJSON_AddStringToObject(row, "author_color", item->author_color);
-    cJSON_AddStringToObject(row, "changed_name", item->changed_name);
-    cJSON_AddNumberToObject(row, "created_ms", (double)item->created_ms);
-    cJSON_AddNumberToObject(row, "changed_ms", (double)item->changed_ms);
-    json_add(row, "body", cJSON_CreateRaw(body));
-    char *text = json_print(row);
-    cJSON_Delete(row);
-    return text;
 }
 
 static void copy_name(char to[161], const char *from)
@@ -151,20 +85,20 @@ static struct item *find_to_change(const struct room *room, const struct member 
         strcmp(item->author, member->id) != 0 && member->role != WIRE_MEMBER_ROLE_PRESENTER) {
         problem_set(problem, PROBLEM_FORBIDDEN, "/item", "",
                     "this %s is by %.40s: only its author or a member of role presenter changes or deletes it",
-                    word_of(item->kind), item->author_name);
+                    item_word(item->kind), item->author_name);
         return NULL;
     }
     for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
         if (strcmp(keeping->item.id, id) == 0) {
             problem_set(problem, PROBLEM_CONFLICT, "/item", "",
-                        "another change of this %s by %.40s is just being kept: try again", word_of(item->kind),
+                        "another change of this %s by %.40s is just being kept: try again", item_word(item->kind),
                         keeping->item.changed_name);
             return NULL;
         }
     if (version && version != item->version) {
         problem_set(problem, PROBLEM_CONFLICT, "/version", "",
                     "this %s was changed by %.40s meanwhile: it is at version %u, the change was made for %lld",
-                    word_of(item->kind), item->changed_name, item->version, (long long)version);
+                    item_word(item->kind), item->changed_name, item->version, (long long)version);
         return NULL;
     }
     return item;
@@ -194,7 +128,7 @@ static bool write_first(struct room *room, const struct keeping *keeping, const 
     acceptance_audit(room, item, member, false);
     room->apart = NULL;
     const struct room_item_write write = { .id = item->id,
-                                           .kind = word_of(item->kind),
+                                           .kind = item_word(item->kind),
                                            .row = item->row,
                                            .author = item->author,
                                            .author_name = item->author_name,
@@ -285,7 +219,7 @@ bool items_put(struct room *room, struct member *member, const struct message *m
             return false;
         if (before->kind != put->kind)
             return problem_set(problem, PROBLEM_VALIDATION, "/kind", "enum", "this item is a %s and stays one",
-                               word_of(before->kind));
+                               item_word(before->kind));
         if (!acceptance_may_write(room, member, put->kind, before, problem))
             return false;
         next = *before;
@@ -304,9 +238,9 @@ bool items_put(struct room *room, struct member *member, const struct message *m
     next.changed_ms = before ? clock_wall_ms() : next.created_ms;
     copy_name(next.changed_name, member->name);
     room->writer = member;
-    char *body = read_body(room, put->kind, put->body, before, false, problem);
+    char *body = item_body_text(room, put->kind, put->body, before, false, problem);
     room->writer = NULL;
-    char *row = body ? write_row(&next, body) : NULL;
+    char *row = body ? item_row_text(&next, body) : NULL;
     if (body && !row)
         json_no_memory(problem, "an item");
     free(body);
@@ -353,88 +287,4 @@ bool items_delete(struct room *room, struct member *member, const struct message
     if (was_accepted)
         acceptances_settle(room);
     return true;
-}
-
-/* ---- from the store --------------------------------------------------------------------------------------------- */
-
-static bool take_text(const cJSON *row, const char *name, char *to, size_t size, struct problem *problem)
-{
-    const char *text = json_text(row, name);
-    if (!text || strlen(text) >= size)
-        return problem_set(problem, PROBLEM_VALIDATION, name, "type", "%s of a kept item is not a text of %zu bytes",
-                           name, size - 1);
-    memcpy(to, text, strlen(text) + 1);
-    return true;
-}
-
-static bool take_number(const cJSON *row, const char *name, double most, int64_t *to, struct problem *problem)
-{
-    const double number = json_number(row, name, -1);
-    if (!(number >= 0 && number <= most))
-        return problem_set(problem, PROBLEM_VALIDATION, name, "range", "%s of a kept item is not 0 to %g", name, most);
-    *to = (int64_t)number;
-    return true;
-}
-
-static bool take_kind(const cJSON *row, enum wire_item_kind *kind, struct problem *problem)
-{
-    const char *word = json_text(row, "kind");
-    for (size_t i = 0; word && i < wire_item_kind_words.n; i++)
-        if (strcmp(word, wire_item_kind_words.words[i]) == 0) {
-            *kind = (enum wire_item_kind)i;
-            return true;
-        }
-    return problem_set(problem, PROBLEM_VALIDATION, "kind", "enum", "kind of a kept item is none of ours");
-}
-
-/* Members who come are not given the id of an item's author. */
-static void pass_id(struct room *room, const char *author)
-{
-    unsigned number;
-    if (sscanf(author, "m%9u", &number) == 1 && number > room->n_named)
-        room->n_named = number;
-}
-
-bool room_restore_item(struct room *room, const char *bytes, size_t n, struct problem *problem)
-{
-    struct item *item = NULL, read = { .version = 0 };
-    char *body = NULL, *text = NULL;
-    int64_t version = 0;
-    if (n > ROOM_MAX_ITEM_BYTES + ROOM_MAX_ITEM_FRAME)
-        return problem_set(problem, PROBLEM_TOO_LARGE, "", "", "a kept item has %zu bytes, at most %d are allowed", n,
-                           ROOM_MAX_ITEM_BYTES + ROOM_MAX_ITEM_FRAME);
-    cJSON *row = json_read(bytes, n, problem);
-    if (!row)
-        return false;
-    const char *parent = json_text(cJSON_GetObjectItemCaseSensitive(row, "body"), "parent");
-    if (take_kind(row, &read.kind, problem) && take_text(row, "id", read.id, sizeof read.id, problem) &&
-        take_text(row, "author", read.author, sizeof read.author, problem) &&
-        take_text(row, "author_name", read.author_name, sizeof read.author_name, problem) &&
-        take_text(row, "author_color", read.author_color, sizeof read.author_color, problem) &&
-        take_text(row, "changed_name", read.changed_name, sizeof read.changed_name, problem) &&
-        take_number(row, "version", UINT32_MAX - 1.0, &version, problem) &&
-        take_number(row, "created_ms", 9007199254740991.0, &read.created_ms, problem) &&
-        take_number(row, "changed_ms", 9007199254740991.0, &read.changed_ms, problem))
-        body = read_body(room, read.kind, cJSON_GetObjectItemCaseSensitive(row, "body"), NULL, true, problem);
-    if (body && (!id_is_valid(read.id) || version == 0 || items_find(room, read.id))) {
-        problem_set(problem, PROBLEM_VALIDATION, "id", "duplicate", "a kept item has no id or version of its own");
-    } else if (body) {
-        read.version = (uint32_t)version;
-        (void)snprintf(read.parent, sizeof read.parent, "%s",
-                       read.kind == WIRE_ITEM_KIND_NOTE && parent && strlen(parent) < sizeof read.parent ? parent : "");
-        text = write_row(&read, body);
-        if (!text)
-            json_no_memory(problem, "an item");
-    }
-    if (text && items_have_place(room, NULL, strlen(text), problem)) {
-        item = mem_new(sizeof *item);
-        *item = read;
-        items_keep(room, item, text);
-        pass_id(room, item->author);
-        text = NULL;
-    }
-    free(text);
-    free(body);
-    cJSON_Delete(row);
-    return item != NULL;
 }

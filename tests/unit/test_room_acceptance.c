@@ -301,8 +301,7 @@ static void a_room_kept_when_the_scene_held_acceptances_loads_without_them_and_k
     (void)state;
     struct room_kept kept;
     enter();
-    fake_say(&fake, &ann,
-             "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.25}}}}");
+    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.25}}}}");
     assert_true(room_keep(fake.room, ROOM_ALL_PARTS, &kept));
     cJSON *scene = cJSON_Parse(kept.scene);
     cJSON *old = cJSON_Parse("{\"d-0\":{\"accepted\":true}}");
