@@ -141,6 +141,19 @@ static cJSON *known(double value)
     return value > 0 ? number(value) : cJSON_CreateNull();
 }
 
+/* "same" or "differs" where the files give both frames, or plan.json says so; else what the dose says, null if nothing.
+ */
+static cJSON *frame_word(const struct plan *plan, size_t index, int image, const struct fit *fit)
+{
+    const struct dose *dose = &plan->doses[index];
+    bool is_known = image >= 0 && plan->dose_origins[index].frame_uid[0] && plan->image_origins[image].frame_uid[0];
+    enum dose_frame frame = fit->reasons >> FIT_FRAME & 1 ? DOSE_FRAME_DIFFERS
+                            : is_known                    ? DOSE_FRAME_SAME
+                                                          : dose->frame;
+    bool is_said = dose->has_frame || is_known || fit->reasons >> FIT_FRAME & 1;
+    return is_said ? cJSON_CreateString(dose_frame_word(frame)) : cJSON_CreateNull();
+}
+
 static cJSON *dose_object(const struct plan *plan, size_t index)
 {
     const struct dose *dose = &plan->doses[index];
@@ -149,13 +162,12 @@ static cJSON *dose_object(const struct plan *plan, size_t index)
     json_add(object, "name", cJSON_CreateString(dose->name));
     json_add(object, "unit", cJSON_CreateString(dose->unit));
     json_add(object, "per", cJSON_CreateString(dose->per));
-    json_add(object, "frame_of_reference",
-             dose->has_frame ? cJSON_CreateString(dose_frame_word(dose->frame)) : cJSON_CreateNull());
     char why[FIT_WHY_SIZE];
     int image = fit_first_image(plan);
     struct fit_part part = { FIT_DOSE, index }, with = { FIT_IMAGE, (size_t)(image < 0 ? 0 : image) };
     struct fit fit = image < 0 ? fit_alone(plan, part) : fit_of(plan, part, with);
     fit_sentence(plan, part, image < 0 ? part : with, fit.relation, why);
+    json_add(object, "frame_of_reference", frame_word(plan, index, image, &fit));
     json_add(object, "fit", cJSON_CreateString(fit_relation_word(fit.relation)));
     json_add(object, "fit_reason", cJSON_CreateString(why));
     json_add(object, "masked", cJSON_CreateBool(dose->mask != NULL));
