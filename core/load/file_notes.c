@@ -206,12 +206,9 @@ bool plan_note_files(struct loading *loading, struct error *err)
 {
     struct notes notes = { .loading = loading };
     struct folder_tree tree;
-    struct error why = { 0 };
-    if (!folder_walk(&loading->folder, "", part_is_plan_folder, &tree, &why)) {
+    if (!folder_walk(&loading->folder, "", part_is_plan_folder, &tree, err)) {
         folder_tree_finish(&tree);
-        if (err && why.code == ERROR_MEMORY)
-            *err = why;
-        return why.code != ERROR_MEMORY; /* a folder that went away keeps no plan from being shown */
+        return false;
     }
     bool is_added = add_known(&notes, err);
     if (is_added) {
