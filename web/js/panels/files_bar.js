@@ -18,6 +18,6 @@ export function filesBar(world) {
   const files = world.room.files.value;
   if (!files) return nothing;
   void styled('css/fit.css');
-  return html`<div class="fit-bar err" role="alert"><span class="err">${icon('error')}</span><p><b>The plan’s files changed on the disk at ${time(files.changed_ms)}.</b> Shown is what was read at ${time(files.read_ms)}. Nothing is decided or signed until then.</p>
+  return html`<div class="fit-bar err" role="alert"><span class="err">${icon('error')}</span><p><b>The plan’s files changed on the disk at ${time(files.changed_ms)}.</b> Shown is what was read at ${time(files.read_ms)}. Nothing is decided or signed until it is read anew.</p>
     <button @click=${() => void readAnew(world)}>Read anew</button></div>`;
 }
