@@ -159,28 +159,13 @@ static bool wakes_room(struct api *api, struct call *call, const struct api_rout
     return true;
 }
 
-static void plans_were_listed(void *context)
-{
-    struct call *call = context;
-    api_handle(call->api, call);
-}
-
-bool api_lists_first(struct api *api, struct call *call)
-{
-    if (call->has_listed || !fleet_is_listed(net_fleet(api->net)))
-        return false;
-    call->has_listed = true;
-    net_list_plans(api->net, plans_were_listed, call);
-    return true;
-}
-
 /* True: the call is about a plan that is not known, and waits until the folders are looked at. */
 static bool looks_for_plan(struct api *api, struct call *call, const struct api_route *route)
 {
     static const char of_plan[] = "/api/v1/plans/{plan}";
     struct fleet_plan plan;
     return strncmp(route->path, of_plan, strlen(of_plan)) == 0 &&
-           !fleet_plan_find(net_fleet(api->net), call->ids[0], &plan) && api_lists_first(api, call);
+           !fleet_plan_find(net_fleet(api->net), call->ids[0], &plan) && api_lists_first(api, call, api_handle);
 }
 
 /* False with problem: the call is about a room or a bookmark that may be on the disk, which cannot be read yet. */

@@ -35,8 +35,8 @@ void api_record(struct api *api, struct call *call);
 /* Whether a room or plan (what) with these many decisions and signatures may be deleted: records=keep was said where
  * there are any. False: the call was answered. */
 bool api_may_delete(struct call *call, size_t n_decided, const char *what);
-/* True: the plan folders are listed before the call is handled again, once for a call. */
-bool api_lists_first(struct api *api, struct call *call);
+/* True: the plan folders are listed before the call is handled by `again`, once for a call. */
+bool api_lists_first(struct api *api, struct call *call, void (*again)(struct api *api, struct call *call));
 void api_room_record(struct api *api, struct call *call);
 void api_room_recordings(struct api *api, struct call *call);
 void api_room_recording_delete(struct api *api, struct call *call);

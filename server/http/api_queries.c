@@ -2,6 +2,33 @@
 #include "server/http/api_queries.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+
+#include "core/base/mem.h"
+#include "server/http/api_handlers.h"
+
+struct listing { /* a call that waits for a list of the plan folders */
+    struct call *call;
+    void (*again)(struct api *api, struct call *call);
+};
+
+static void plans_were_listed(void *context)
+{
+    const struct listing listing = *(struct listing *)context;
+    free(context);
+    listing.again(listing.call->api, listing.call);
+}
+
+bool api_lists_first(struct api *api, struct call *call, void (*again)(struct api *api, struct call *call))
+{
+    if (call->has_listed || !fleet_is_listed(net_fleet(api->net)))
+        return false;
+    call->has_listed = true;
+    struct listing *listing = mem_new(sizeof *listing);
+    *listing = (struct listing){ call, again };
+    net_list_plans(api->net, plans_were_listed, listing);
+    return true;
+}
 
 bool api_find_plan(struct api *api, struct call *call, struct fleet_plan *plan)
 {

@@ -127,7 +127,7 @@ void api_room_new(struct api *api, struct call *call)
     }
     struct fleet_plan known;
     if (problem.type == PROBLEM_NONE && !fleet_plan_find(net_fleet(api->net), plan_id, &known) &&
-        api_lists_first(api, call)) {
+        api_lists_first(api, call, api_room_new)) {
         cJSON_Delete(bookmark);
         cJSON_Delete(body);
         return;

@@ -9,7 +9,6 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
-#include "server/net/keep.h"
 #include "server/net/schedule.h"
 #include "server/wire/missing.h"
 
@@ -267,7 +266,7 @@ void bridge_report_plan(struct net_room *entry)
     }
     room_plan_revision(entry->room, plan.revision);
     room_files(entry->room, plan.files_changed_ms, plan.files_read_ms);
-    keep_files_looked(entry, &plan);
+    entry->net->files_looked(entry, &plan);
     bridge_tell_revision(entry);
     const char *phase = plan.phase ? plan.phase : "";
     bool is_same = plan.state == entry->state && strcmp(phase, entry->phase) == 0 && plan.percent == entry->percent;

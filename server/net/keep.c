@@ -13,14 +13,6 @@
 #include "server/net/schedule.h"
 #include "server/wire/json.h"
 
-struct net_room *keep_find(const struct net *net, const struct room *room)
-{
-    for (size_t i = 0; net->store && i < net->n_rooms; i++)
-        if (net->rooms[i]->room == room)
-            return net->rooms[i];
-    return NULL;
-}
-
 void keep_changed(void *context, struct room *room, unsigned parts)
 {
     struct net_room *entry = keep_find(context, room);

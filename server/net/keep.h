@@ -9,8 +9,6 @@ enum { /* between the beginnings of two writes of one room */
        KEEP_REFUSED_PAUSE_MS = 10000 /* after one that the store dropped */
 };
 
-/* The room's entry; NULL: rooms are not kept. */
-struct net_room *keep_find(const struct net *net, const struct room *room);
 /* struct room_callbacks; context is the net */
 void keep_changed(void *context, struct room *room, unsigned parts);
 void keep_is_saved(void *context, const struct room *room, struct room_saved *saved);

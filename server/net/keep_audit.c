@@ -8,9 +8,16 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/net/keep.h"
 #include "server/net/schedule.h"
 #include "server/wire/json.h"
+
+struct net_room *keep_find(const struct net *net, const struct room *room)
+{
+    for (size_t i = 0; net->store && i < net->n_rooms; i++)
+        if (net->rooms[i]->room == room)
+            return net->rooms[i];
+    return NULL;
+}
 
 void keep_audit_add(struct net *net, char ***rows, size_t *n, char *row)
 {

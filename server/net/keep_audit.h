@@ -3,6 +3,8 @@
  * to server/net; net thread. */
 #include "server/net/net_state.h"
 
+/* The room's entry; NULL: rooms are not kept. */
+struct net_room *keep_find(const struct net *net, const struct room *room);
 /* struct room_callbacks; context is the net */
 void keep_audited(void *context, struct room *room, const struct room_audit *row);
 bool keep_audit_has_place(void *context);

@@ -448,6 +448,7 @@ static void *work(void *context)
 struct net *net_create(const struct net_options *options, struct error *err)
 {
     struct net *net = mem_new(sizeof *net);
+    net->files_looked = keep_files_looked;
     net->max_rooms = options->max_rooms > 0 ? options->max_rooms : 200;
     net->room_idle_close_s = options->room_idle_close_s;
     net->limits = options->room;

@@ -133,7 +133,8 @@ struct net {
     size_t n_audit_waiting; /* rows that are not on disk yet, of all rooms, those under way included */
     uint64_t n_audit_lost;  /* rows that found neither disk nor memory since the last row that did */
     struct net_audit_head audit_head;
-    bool store_was_open;                /* so the rooms that sleep are known */
+    bool store_was_open;                                                         /* so the rooms that sleep are known */
+    void (*files_looked)(struct net_room *entry, const struct fleet_plan *plan); /* keep_files_looked */
     int64_t look_us;                    /* when files of plans are looked at next */
     int64_t fleet_tick_us;              /* when fleet_tick is due */
     int64_t calm_from_us;               /* unless somebody does something before, fleet_tick is rare from then on */
