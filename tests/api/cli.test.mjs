@@ -176,7 +176,9 @@ describe('beamroom info', () => {
     assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100, name: '', delivery: null, patient: null, plan: null, is_plan_absent: false, frame: null, study: null }]);
     assert.equal(info.tracks.segments, Object.values(info.tracks.classes).reduce((sum, n) => sum + n, 0));
     assert.equal(Object.values(info.tracks.classes).filter((n) => n > 0).length, 8);
-    assert.deepEqual(info.report, { lines: [], dropped: 0 });
+    assert.equal(info.report.dropped, 0);
+    assert.deepEqual(info.report.lines.filter(({ code }) => !code.startsWith('file.')), []);
+    assert.deepEqual(info.report.lines.filter(({ code }) => code === 'file.not-read').map(({ where }) => where), ['README.txt'], 'every other file is read');
   });
 });
 
