@@ -242,11 +242,12 @@ static void add_coverage(struct annotations *annotations, const struct snapshot 
     words_significant(low, choice.low);
     words_significant(high, choice.high);
     (void)snprintf(add_color(annotations, coverage->color_rgb), ANNOTATION_TEXT_SIZE,
-                   "%.40s, univels%s%.20s%s%.20s %.20s%s%.20s: %.40s%s%.40s", region->name[0] ? region->name : region->id,
-                   isfinite(choice.low) ? " of at least " : "", isfinite(choice.low) ? low : "",
-                   isfinite(choice.high) ? " below " : "", isfinite(choice.high) ? high : "", unit,
-                   coverage->quantity[0] ? " of " : "", coverage->quantity[0] ? coverage->quantity : "",
-                   population_words(choice.population), basis ? ", " : "", basis ? basis : "");
+                   "%.40s, univels%s%.20s%s%.20s %.20s%s%.20s: %.40s%s%.40s",
+                   region->name[0] ? region->name : region->id, isfinite(choice.low) ? " of at least " : "",
+                   isfinite(choice.low) ? low : "", isfinite(choice.high) ? " below " : "",
+                   isfinite(choice.high) ? high : "", unit, coverage->quantity[0] ? " of " : "",
+                   coverage->quantity[0] ? coverage->quantity : "", population_words(choice.population),
+                   basis ? ", " : "", basis ? basis : "");
 }
 
 void dose_describe(struct annotations *annotations, const struct snapshot *snapshot)
