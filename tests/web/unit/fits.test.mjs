@@ -5,7 +5,7 @@ import { load } from './page.mjs';
 
 const { byWordOf, factOf, inNumbersOf, joinReason, leftOffPatch, nLetters, partName, questionsOf, regionsOf, selectedUse, selectionOf, usesOf, voidRows } = await load('state/fits.js');
 const { acceptedPairs, pairKey } = await load('state/accepted.js');
-const { approvalOf, isOfOther, partsOfOthers, shownPatient, shownTreatmentPlan } = await load('state/identity.js');
+const { approvalOf, identityOf, isOfOther, ownRegions, partsOfOthers, shownPatient, shownTreatmentPlan } = await load('state/identity.js');
 const { Undo } = await load('state/undo.js');
 const { stepTitle } = await load('panels/undo_words.js');
 const { mergePatch } = await load('wire/merge.js');
@@ -128,6 +128,26 @@ test('the patient is the shown plan’s, and parts of others are listed, masked'
   assert.equal(shownTreatmentPlan(plan, scene({ id: 'own' })).label, 'BNCT-2');
   assert.equal(shownTreatmentPlan(plan, scene({ id: 'raw' })).label, 'BNCT-2', 'the one that is shown first');
   assert.deepEqual(['APPROVED', 'REJECTED', ''].map((approval) => approvalOf({ approval })[0]), ['Approved', 'Rejected', 'approval not stated']);
+});
+
+test('of two patients that look alike when masked, the shown one is told by its place; of other files nobody is', () => {
+  const masked = 'A. V. …417';
+  const alike = { ...plan, patients: [{ masked }, { masked }], shownPatient: 1 };
+  const identities = [{ masked, name: 'Virtanen^Aino', id: '1417' }, { masked, name: 'Vainio^Aili', id: '2417' }];
+  assert.equal(identityOf(alike, scene(), identities).id, '2417');
+  assert.equal(identityOf({ ...alike, shownPatient: 0 }, scene(), identities).id, '1417');
+  assert.equal(identityOf(alike, scene(), identities.slice(0, 1)), null, 'a shorter list is of other files');
+  assert.equal(identityOf(alike, scene(), [...identities, identities[0]]), null, 'a longer one too');
+  assert.equal(identityOf(alike, scene(), [identities[0], { masked: 'K. M. …902', name: 'Meri^Kai' }]), null, 'somebody else at that place');
+  assert.equal(identityOf({ ...alike, patients: [] }, scene(), []), null, 'the files name nobody');
+});
+
+test('regions of another patient are in no list of regions', () => {
+  const regions = [{ id: 'brain', patient: 0 }, { id: 'spine', patient: 1 }, { id: 'mask', patient: null }];
+  assert.deepEqual(ownRegions({ ...plan, regions }, scene()).map(({ id }) => id), ['brain', 'mask']);
+  assert.deepEqual(ownRegions({ ...plan, regions, shownPatient: 1 }, scene()).map(({ id }) => id), ['spine', 'mask']);
+  assert.deepEqual(partsOfOthers({ ...plan, regions }, scene()).filter(({ kind }) => kind === 'region').map(({ id }) => id), ['spine']);
+  assert.deepEqual(ownRegions({ ...plan, regions, patients: [] }, scene()).length, 3, 'the files name nobody');
 });
 
 test('undo takes an acceptance back, and redo makes it again', async () => {

@@ -5,6 +5,7 @@ import { live } from '../../lib/directives/live.js';
 import { limitAt, metricWords } from '../state/dose_constraints.js';
 import { boundsWords, densityAt, dvhCsv, dvhJson, figureNames, openOf, readAt, shareOf, shareWords, volumeFrom } from '../state/dose_dvh.js';
 import { populationWords } from '../state/dose_population.js';
+import { ownRegions } from '../state/identity.js';
 import { doseWaitReason } from '../state/waits.js';
 import { doubtMark, downloads, instead, options, staleMark, tableButton, withoutMark } from './chart_parts.js';
 import { dot, dotted, hatched, legible, plot, write } from './chart_plot.js';
@@ -51,7 +52,7 @@ function controls(world) {
     ${segment('Kind of histogram', [['cumulative', 'Cumulative'], ['differential', 'Differential']], curves.isDifferential.value ? 'differential' : 'cumulative', false, (id) => { curves.isDifferential.value = id === 'differential'; })}
     ${segment('Unit of volume', [['percent', '%'], ['cm3', 'cm³']], curves.unit.value, false, (id) => { curves.unit.value = id; })}
     <select aria-label="Quantity of the histograms" @change=${(event) => { curves.quantity.value = event.target.value === quantity ? '' : event.target.value; }}>${quantities(world).map((id) => html`<option value=${id} .selected=${live(id === shownQuantity(world))}>${quantityName(id)}</option>`)}</select>
-    <label class="chart-basis"><span>Weights</span><select aria-label="Weights of the histograms" @change=${(event) => { curves.tissue.value = event.target.value; }}>${[['', "each region's own"], ...room.plan.value.regions.map(({ id, name }) => [id, `of ${name}`])].map(([id, words]) => html`<option value=${id} .selected=${live(id === curves.tissue.value)}>${words}</option>`)}</select></label>
+    <label class="chart-basis"><span>Weights</span><select aria-label="Weights of the histograms" @change=${(event) => { curves.tissue.value = event.target.value; }}>${[['', "each region's own"], ...ownRegions(room.plan.value, room.scene.value).map(({ id, name }) => [id, `of ${name}`])].map(([id, words]) => html`<option value=${id} .selected=${live(id === curves.tissue.value)}>${words}</option>`)}</select></label>
     ${downloads(world, 'dvh', files(world))}</div>
     <div class="chart-chips" role="group" aria-label="Regions in the histogram">${curves.regions.value.map(({ id, name }) => html`<button class="chart-chip" aria-pressed=${!curves.hidden.value.has(id)} @click=${() => toggle(id)}>
       <i class="swatch" ${variables({ '--color': legible(room.scene.value.regions[id].color) })}></i>${name}</button>`)}</div>`;

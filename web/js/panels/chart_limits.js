@@ -6,6 +6,7 @@ import { enums } from '../../gen/wire.js';
 import { boundsWords } from '../state/dose_dvh.js';
 import { populationWords } from '../state/dose_population.js';
 import { byState, constraintsCsv, constraintsFromCsv, freeConstraintId, measureOf, metricWords, mostConstraints, readConstraint, readMetric, verdictOf } from '../state/dose_constraints.js';
+import { ownRegions } from '../state/identity.js';
 import { doubtMark } from './chart_parts.js';
 import { quantityName, regionName } from './chart_words.js';
 import { exportFile } from './exports.js';
@@ -66,7 +67,7 @@ export function limitsBlock(world) {
   return html`<section class="block chart-limits" aria-label="Limits of dose"><h3>Limits of dose <span class="dim">${tally}</span> ${rows.length ? doubtMark(world) : nothing}${isOld ? html` <span class="chart-stale warn">${icon('stale', 12)} old</span>` : nothing}</h3>
     ${rows.length && limitPopulation(world) ? html`<p class="note">Univels: ${limitPopulation(world)}.</p>` : nothing}
     ${rows.length ? html`<ul>${repeat(rows, ({ id }) => id, (row) => one(world, row, isDisabled, start))}</ul>` : html`<p class="empty">None. A limit says, for example, that the brain may have at most 10 Gy(w).</p>`}
-    ${editing ? form(world, isDisabled) : html`<div class="buttons"><button ?disabled=${isDisabled || rows.length >= mostConstraints || !plan.regions.length} @click=${() => start('', { region: plan.regions[0].id, quantity: room.scene.value.dose.quantity, metric: 'D95%', side: 'at-least', limit: '', tissue: '' })}>Add a limit</button>
+    ${editing ? form(world, isDisabled) : html`<div class="buttons"><button ?disabled=${isDisabled || rows.length >= mostConstraints || !ownRegions(plan, room.scene.value).length} @click=${() => start('', { region: ownRegions(plan, room.scene.value)[0].id, quantity: room.scene.value.dose.quantity, metric: 'D95%', side: 'at-least', limit: '', tissue: '' })}>Add a limit</button>
       <button ?disabled=${isDisabled} title="Columns: region, quantity, metric, side, limit" @click=${(event) => event.currentTarget.nextElementSibling.click()}>${icon('upload', 12)}<span>Import CSV</span></button><input class="hidden" type="file" accept=".csv,text/csv" tabindex="-1" aria-hidden="true" @change=${(event) => read(world, event)}>
       <button ?disabled=${!rows.length} @click=${() => exportFile(world, 'limits', `${room.planId.value}-limits.csv`, constraintsCsv(rows, plan), 'text/csv')}>${icon('download', 12)}<span>CSV</span></button></div>`}
     ${curves.importError.value ? html`<div class="refusal" role="alert">${icon('error', 16)}<p>${curves.importError.value}</p><button class="icon-button small" aria-label="Dismiss" @click=${() => { curves.importError.value = ''; }}>${icon('close', 12)}</button></div>` : nothing}</section>`;
@@ -105,9 +106,10 @@ function form(world, isDisabled) {
     }
   };
   const choice = (name, label, options) => html`<label for=${`limit-${name}`}>${label}</label><select id=${`limit-${name}`} @change=${set(name)}>${options.map(([value, words]) => html`<option value=${value} .selected=${live(value === values[name])}>${words}</option>`)}</select>`;
+  const regions = ownRegions(plan, room.scene.value);
   return html`<form class="chart-form" aria-label=${id ? 'Edit a limit' : 'A new limit'} @submit=${keep}>
-    ${choice('region', 'Region', plan.regions.map((region) => [region.id, region.name]))}${choice('quantity', 'Quantity', enums.dose_quantity.map((quantity) => [quantity, quantityName(quantity)]))}
-    ${choice('tissue', 'Weights', [['', "the region's own"], ...plan.regions.map((region) => [region.id, `of ${region.name}`])])}
+    ${choice('region', 'Region', regions.map((region) => [region.id, region.name]))}${choice('quantity', 'Quantity', enums.dose_quantity.map((quantity) => [quantity, quantityName(quantity)]))}
+    ${choice('tissue', 'Weights', [['', "the region's own"], ...regions.map((region) => [region.id, `of ${region.name}`])])}
     <label for="limit-metric">Figure</label><input id="limit-metric" maxlength="24" list="limit-metrics" title="mean, min, max, D95%, D2cc, V20, V20cc" .value=${live(values.metric)} @input=${set('metric')}><datalist id="limit-metrics">${['mean', 'min', 'max', 'D98%', 'D95%', 'D50%', 'D2%', 'D0.03cc', 'V20'].map((metric) => html`<option value=${metric}></option>`)}</datalist>
     ${choice('side', 'Keeps it', [['at-most', 'at most'], ['at-least', 'at least']])}
     <label for="limit-limit">Limit</label><span class="pair"><input id="limit-limit" inputmode="decimal" .value=${live(String(values.limit))} @input=${set('limit')}><span class="dim">${readMetric(values.metric) ? limitUnit(world, { ...values, metric: readMetric(values.metric) }) : ''}</span></span>

@@ -1,6 +1,7 @@
 // The inspector's Selection of a clip plane: where it is, which side it keeps, caps, and what it does not cut.
 import { html, nothing } from '../../lib/lit-html.js';
 import { allThroughCrosshair, beamOf, clipName, clipRow, clipThrough, clipWords, clipsOf, enabledClips, flippedClip, freeByAngles, leavesNothing, movedClip, positionOfClip, rangeOfClip, switchedClip, toggledClips } from '../state/clip.js';
+import { ownRegions } from '../state/identity.js';
 import { replaced } from '../state/lists.js';
 import { alongBeam, anglesOf, facing } from '../state/obliques.js';
 import { crosshair, shownImage } from '../state/plan.js';
@@ -119,9 +120,10 @@ function capBlock({ row, plan, scene, isDisabled, change }) {
 }
 
 function exemptBlock({ plan, scene, isDisabled, change }) {
-  const names = plan.regions.map(({ id, name, color }) => html`<label><input type="checkbox" .checked=${!scene.regions[id]?.clipped} ?disabled=${isDisabled}
+  const regions = ownRegions(plan, scene);
+  const names = regions.map(({ id, name, color }) => html`<label><input type="checkbox" .checked=${!scene.regions[id]?.clipped} ?disabled=${isDisabled}
     @change=${(event) => change({ regions: { [id]: { clipped: !event.target.checked } } }, event)}>${swatch(scene.regions[id]?.color ?? color)}${name}</label>`);
-  const n = plan.regions.filter(({ id }) => scene.regions[id]?.clipped === false).length;
+  const n = regions.filter(({ id }) => scene.regions[id]?.clipped === false).length;
   return html`<section class="block"><h3>Not cut <span class="dim">by any plane</span></h3>
     ${names.length > manyRegions ? html`<details class="more"><summary>${icon('chevronDown', 12)}Regions <span class="dim">${n ? `${number(n)} not cut` : 'all are cut'}</span></summary><div class="clip-checks">${names}</div></details>` : html`<div class="clip-checks">${names}</div>`}
     <div class="clip-checks">${plan.images.length ? html`${checkbox('Slices', !scene.image.clipped, isDisabled, (on, event) => change({ image: { clipped: !on } }, event), 'The slices in the 3-D picture')}

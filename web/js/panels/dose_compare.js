@@ -4,6 +4,7 @@ import { live } from '../../lib/directives/live.js';
 import { doseName, quantityName, shownDose, unitOf } from '../state/dose.js';
 import { populationWords } from '../state/dose_population.js';
 import { joinReason } from '../state/fits.js';
+import { ownRegions } from '../state/identity.js';
 import { doseWaitReason } from '../state/waits.js';
 import { checkbox, numberField, segment } from './fields.js';
 import { listed, number, signed, significant, volume } from './format.js';
@@ -53,7 +54,7 @@ function comparedWords({ room, doses }) {
 export function coverageBlock(world, isDisabled, changeScene) {
   const { room } = world;
   const [plan, scene] = [room.plan.value, room.scene.value];
-  const regions = plan.regions.filter(({ voxels }) => voxels > 0);
+  const regions = ownRegions(plan, scene).filter(({ voxels }) => voxels > 0);
   if (!regions.length) return nothing;
   const { coverage } = scene.dose;
   const unit = unitOf(shownDose(plan, scene), coverage.quantity || scene.dose.quantity);
@@ -64,7 +65,7 @@ export function coverageBlock(world, isDisabled, changeScene) {
   const level = (isBelow ? high : low) ?? 95;
   const limits = (below, value) => (below ? { low: null, high: value } : { low: value, high: null });
   const toggle = (visible, event) => change({ visible, ...(low === null && high === null && limits(true, level)) }, event);
-  const target = plan.regions.find(({ is_target: is }) => is) ?? regions[0];
+  const target = ownRegions(plan, scene).find(({ is_target: is }) => is) ?? regions[0];
   const of = plan.regions.find(({ id }) => id === coverage.region) ?? target;
   return html`<section class="block"><h3>Coverage <span class="dim">of ${of.name}</span></h3>
     <div class="checks dose-checks">${checkbox('Highlight the part', coverage.visible, isDisabled, toggle, 'Univels of the region within the limits, on slices and in 3-D')}</div>

@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
 import { referenceWords, shownDose, unitOf } from '../state/dose.js';
+import { ownRegions } from '../state/identity.js';
 import { crosshair } from '../state/plan.js';
 import { numberField } from './fields.js';
 import { significant } from './format.js';
@@ -36,8 +37,9 @@ export function referenceSelect(world, { tabindex }) {
   const own = Number.isFinite(dose.components.find((part) => part.quantity === quantity)?.reference);
   const chosen = keyOf(reference);
   const option = (key, words) => html`<option value=${key} ?selected=${key === chosen} .selected=${live(key === chosen)}>${key === chosen ? referenceText(world) : words}</option>`;
-  const firstTarget = plan.regions.find(({ is_target: is }) => is);
-  const regions = plan.regions.filter(({ voxels }) => voxels > 0);
+  const choices = ownRegions(plan, scene);
+  const firstTarget = choices.find(({ is_target: is }) => is);
+  const regions = choices.filter(({ voxels }) => voxels > 0);
   const ofRegions = (kind, words) => (regions.length ? html`<optgroup label=${words}>${reference.kind === kind && !reference.region ? option(`${kind} `, firstTarget?.name) : nothing}
     ${regions.map(({ id, name }) => option(`${kind} ${id}`, name))}</optgroup>` : nothing);
   const change = (event) => room.patchScene(chosenPatch(world, event.target.value), { view: ui.active.value, at: event.timeStamp });
@@ -65,5 +67,5 @@ export function tissueSelect({ room, ui }, { tabindex }) {
   const change = (event) => room.patchScene({ dose: { tissue: event.target.value } }, { view: ui.active.value, at: event.timeStamp });
   return html`<select class="dose-select" aria-label="Weights of" title="Each tissue with its own weights, or one tissue's everywhere, so that isodoses do not jump at borders" tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
     <option value="" ?selected=${!tissue} .selected=${live(!tissue)}>each its own</option>
-    ${plan.regions.map(({ id, name }) => html`<option value=${id} ?selected=${id === tissue} .selected=${live(id === tissue)}>as ${name}</option>`)}</select>`;
+    ${ownRegions(plan, scene).map(({ id, name }) => html`<option value=${id} ?selected=${id === tissue} .selected=${live(id === tissue)}>as ${name}</option>`)}</select>`;
 }

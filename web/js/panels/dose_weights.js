@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
 import { dependsOnBlood } from '../state/dose.js';
 import { choosePresetPatch, editPatch, isEdited, isoeffectiveSets, presetOf, presetRow, presetsFor, tissueFor, weightsOf } from '../state/dose_weights.js';
+import { ownRegions } from '../state/identity.js';
 import { numberField, typed } from './fields.js';
 import { number } from './format.js';
 import { icon } from './icons.js';
@@ -36,7 +37,7 @@ export function weightsBlock({ room }, isDisabled, change) {
         ${presetsFor(plan).map(({ name }) => html`<option value=${name} ?selected=${!edited && preset?.name === name} .selected=${live(!edited && preset?.name === name)}>${name}</option>`)}</select>
       <button class="icon-button" title=${preset ? `Back to ${preset.name}` : 'The set is not known'} aria-label="Reset the weights" ?disabled=${isDisabled || !edited || !preset} @click=${(event) => change(choosePresetPatch(plan, scene, preset), event)}>${icon('reset')}</button></h3>
     <table class="dose-weights"><thead><tr><th scope="col">Tissue</th><th scope="col" title=${columns[0][1]}>¹⁰B to blood</th><th scope="col">ppm</th><th scope="col" title=${columns[1][1]}>CBE</th><th scope="col" title=${columns[2][1]}>RBE N</th><th scope="col" title=${columns[3][1]}>RBE fast</th><th scope="col" title=${columns[4][1]}>γ</th></tr></thead>
-      <tbody>${plan.regions.filter(({ voxels }) => voxels > 0).map((region) => weightRow(plan, scene, region, preset, isDisabled, change))}</tbody></table>
+      <tbody>${ownRegions(plan, scene).filter(({ voxels }) => voxels > 0).map((region) => weightRow(plan, scene, region, preset, isDisabled, change))}</tbody></table>
     <p class="note dose-warn">${icon('warning', 12)} Example values, not a prescription. The plan is not changed.</p>
     ${preset ? html`<p class="note">${preset.name}: ${preset.source}.</p>` : nothing}${hasOther ? html`<p class="note">Other recoils and captures count with weight 1 unless the set says otherwise.</p>` : nothing}</section>`;
 }
@@ -62,7 +63,7 @@ function weightRow(plan, scene, region, preset, isDisabled, change) {
 /** The photon-isoeffective dose: its formula, its sets of parameters by region, and where they come from. */
 export function isoeffectiveBlock({ room }, isDisabled, change) {
   const [plan, scene] = [room.plan.value, room.scene.value];
-  const rows = plan.regions.filter(({ voxels }) => voxels > 0);
+  const rows = ownRegions(plan, scene).filter(({ voxels }) => voxels > 0);
   const used = [...new Set(rows.map((region) => weightsOf(plan, scene, region)?.row.isoeffective).filter(Boolean))];
   return html`<section class="block"><h3>Photon-isoeffective dose</h3>
     <p class="note dose-formula">α<sub>R</sub> D + G<sub>R</sub> β<sub>R</sub> D² = Σ α<sub>i</sub> D<sub>i</sub> + Σ Σ G<sub>ij</sub> √(β<sub>i</sub> β<sub>j</sub>) D<sub>i</sub> D<sub>j</sub></p>

@@ -1,5 +1,6 @@
 // Below a selected region: how the surfaces, outlines, points and splines of all regions are drawn, and the check of a segmentation.
 import { html, nothing } from '../../lib/lit-html.js';
+import { ownRegions } from '../state/identity.js';
 import { algorithms } from '../state/shapes.js';
 import { textureOf, texturePatch, textures } from '../state/textures.js';
 import { checkbox, numberField, segment } from './fields.js';
@@ -18,11 +19,11 @@ export function drawingBlocks({ room, ui }, isDisabled, change) {
 }
 
 function surfaces(surface, plan, scene, isDisabled, change) {
-  const texture = textureOf(scene, plan.regions);
+  const texture = textureOf(scene, ownRegions(plan, scene));
   return html`<section class="block"><h3>Surfaces <span class="dim">of all regions</span></h3>
     <dl><dt>Made by</dt><dd>${segment('Surface', algorithms, surface.algorithm, isDisabled, (algorithm, event) => change({ surface: { algorithm } }, event))}</dd>
       <dt>Shading</dt><dd>${segment('Shading', [['vertex', 'Smooth'], ['face', 'Faceted']], surface.normals, isDisabled, (normals, event) => change({ surface: { normals } }, event))}</dd>
-      <dt>Coloured by</dt><dd>${segment('All regions coloured by', textures(plan, texture), texture, isDisabled, (wanted, event) => change(texturePatch(plan.regions, wanted), event))}</dd></dl></section>`;
+      <dt>Coloured by</dt><dd>${segment('All regions coloured by', textures(plan, texture), texture, isDisabled, (wanted, event) => change(texturePatch(ownRegions(plan, scene), wanted), event))}</dd></dl></section>`;
 }
 
 function outlines(outline, isDisabled, change) {

@@ -8,6 +8,7 @@ import { icon } from './icons.js';
 
 export { fitsTable, otherPatients, otherPatientsBar } from './fit_table.js';
 
+const onlyPresenter = 'Only who presents may have it used.';
 const retryMs = 1000;
 const tries = 20;
 const isOpen = signal(false); // the list of the bar
@@ -32,13 +33,14 @@ export function fitBar(world) {
   if (!waiting.length) return nothing;
   const [first, ...others] = waiting;
   const line = (use) => html`<p>${sentence(use.reason)}</p>${buttons(world, use)}`;
-  return html`<div class="fit-bar" role="alert"><span class="warn">${icon('warning')}</span>${line(first)}
+  return html`<div class="fit-bar" role="alert"><span class="warn">${icon('warning')}</span>${line(first)}${room.following.isPresenting.value ? nothing : html`<span class="note why">${onlyPresenter}</span>`}
     ${others.length ? html`<button class="ghost" aria-expanded=${isOpen.value} @click=${() => { isOpen.value = !isOpen.value; }}>and ${others.length} more</button>` : nothing}
     ${others.length && isOpen.value ? html`<ul>${others.map((use) => html`<li>${line(use)}</li>`)}</ul>` : nothing}</div>`;
 
   function buttons(of, use) {
     const change = (event) => room.patchScene(leftOffPatch(plan, scene, use), { view: ui.active.value, at: event.timeStamp });
-    return html`<button ?disabled=${!room.canChange.value} @click=${() => begin(of, use)}>Use it all the same …</button>
+    const mayAccept = room.following.isPresenting.value;
+    return html`<button ?disabled=${!room.canChange.value || !mayAccept} title=${mayAccept ? '' : onlyPresenter} @click=${() => begin(of, use)}>Use it all the same …</button>
       <button class="ghost" ?disabled=${!room.canChange.value} @click=${change}>Leave it off</button>`;
   }
 }
@@ -138,7 +140,7 @@ function formBlock(world, use) {
     <label class="fit-label" for="fit-words">In your words, at least ${minLetters} letters</label>
     <textarea id="fit-words" rows="2" maxlength="300" .value=${now.words} ?disabled=${!mayAccept || now.isSent} @input=${(event) => set({ words: event.target.value, error: '' })}></textarea>
     <p class="note">Everybody in this room sees, counts and prints it with the mark ${icon('warning', 12)} and your name. Another image or file asks again.</p>
-    ${now.error ? html`<p class="note err" role="alert">${now.error}</p>` : nothing}${mayAccept ? nothing : html`<p class="note why">${icon('warning', 12)} Only who presents has it used.</p>`}
+    ${now.error ? html`<p class="note err" role="alert">${now.error}</p>` : nothing}${mayAccept ? nothing : html`<p class="note why">${icon('warning', 12)} ${onlyPresenter}</p>`}
     <div class="buttons"><button class="primary" ?disabled=${!mayAccept || isShort || now.isSent} @click=${() => accept(world, use, now, set)}>Use it in this room</button><button class="ghost" @click=${cancel}>Cancel</button></div></section>
     ${listBlock(world)}`;
 }
@@ -190,6 +192,6 @@ export function listBlock(world) {
   const entry = (row, isVoid) => html`<dl class=${classMap({ 'fit-used': true, void: isVoid })}><dt>${partOf(plan, row.body.thing).word}</dt><dd>${partOf(plan, row.body.thing).name}, with ${partOf(plan, row.body.with).name}</dd>
       <dt>By</dt><dd>${row.author_name}, ${time(row.created_ms)}</dd><dt>Because</dt><dd>${reasonName(row.body.reason).toLowerCase()}: ${row.body.words}</dd></dl>
     ${isVoid ? html`<p class="note">${room.acceptances.value.known ? 'Void: the plan’s files are others than those it was said of.' : 'Does not count yet: the plan’s files are being read.'}</p>` : nothing}
-    <div class="buttons"><button ?disabled=${!mayWithdraw} @click=${() => withdraw(world, row)}>Withdraw</button></div>`;
+    <div class="buttons"><button ?disabled=${!mayWithdraw} title=${mayWithdraw ? '' : 'Only who presents may withdraw it.'} @click=${() => withdraw(world, row)}>Withdraw</button></div>`;
   return html`<section class="block"><h3>Used though it does not fit <span class="dim">${rows.length}</span></h3>${rows.map((row) => entry(row, false))}${old.map((row) => entry(row, true))}</section>`;
 }

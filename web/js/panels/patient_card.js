@@ -1,13 +1,13 @@
 // The card of the patient: shows the full identity to this person alone, for a while. It is kept in this module and nowhere else.
 import { html, nothing } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
-import { shownPatient } from '../state/identity.js';
+import { identityOf, shownPatient } from '../state/identity.js';
 import { icon } from './icons.js';
 
 const shownMs = 15 * 60 * 1000;
 const hiddenMs = 5 * 60 * 1000;
 
-/** {room: whose page, masked, name, id, birth}; null: masked. */
+/** {room: whose page, patient: of its plan, name, id, birth}; null: masked. */
 const identity = signal(null);
 const state = signal({ error: '', isAsked: false });
 let timer = null;
@@ -37,19 +37,22 @@ addEventListener('hashchange', hide);
 export function shownIdentity({ room }) {
   const patient = shownPatient(room.plan.value, room.scene.value);
   const known = identity.value;
-  return known && known.room === room && known.masked === patient?.masked ? known : null;
+  return known && patient && known.room === room && known.patient === patient ? known : null;
 }
 
 async function show({ room, api }) {
+  const asked = room.plan.peek();
   state.value = { error: '', isAsked: true };
   try {
     const { patients } = await api.call('GET', `plans/${encodeURIComponent(room.planId.peek())}/identity`);
-    const masked = shownPatient(room.plan.peek(), room.scene.peek())?.masked;
-    const found = patients.find((patient) => patient.masked === masked) ?? patients[0];
-    identity.value = found ? { room, masked, name: nameWords(found.name ?? ''), id: found.id ?? '', birth: found.birth_date ?? '' } : null;
-    clearTimeout(timer);
-    timer = setTimeout(hide, shownMs);
-    state.value = { error: found ? '' : 'The files name nobody.', isAsked: false };
+    const [plan, scene] = [room.plan.peek(), room.scene.peek()];
+    const found = plan === asked ? identityOf(plan, scene, patients) : null;
+    hide();
+    if (found) {
+      identity.value = { room, patient: shownPatient(plan, scene), name: nameWords(found.name ?? ''), id: found.id ?? '', birth: found.birth_date ?? '' };
+      timer = setTimeout(hide, shownMs);
+    }
+    state.value = { error: found ? '' : 'The files have changed since this page opened them. Open the plan again to read whose it is.', isAsked: false };
   } catch (problem) {
     state.value = { error: problem.message, isAsked: false };
   }

@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { enabledClips } from '../state/clip.js';
+import { ownRegions } from '../state/identity.js';
 import { crosshairPatch, shownImage, soloPatch } from '../state/plan.js';
 import { isExportable, representations, shapeQuery, volumeDifference } from '../state/shapes.js';
 import { textureNote, textureOf, texturePatch, textures, withInner } from '../state/textures.js';
@@ -24,9 +25,10 @@ export function regionBlock(world, region) {
   const change = (patch, event) => room.patchScene({ regions: { [region.id]: patch } }, how(event));
   const parent = plan.regions.find((other) => other.id === region.parent);
   const show = (event) => room.patchScene(crosshairPatch(plan, shownImage(plan, scene), region.center_mm), how(event));
-  const isAlone = plan.regions.every((other) => Boolean(scene.regions[other.id]?.visible) === (other.id === region.id));
-  const isShared = plan.regions.every((other) => scene.regions[other.id]?.representation === style.representation);
-  const share = (event) => room.patchScene({ regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { representation: style.representation }])) }, how(event));
+  const own = ownRegions(plan, scene);
+  const isAlone = own.every((other) => Boolean(scene.regions[other.id]?.visible) === (other.id === region.id));
+  const isShared = own.every((other) => scene.regions[other.id]?.representation === style.representation);
+  const share = (event) => room.patchScene({ regions: Object.fromEntries(own.map(({ id }) => [id, { representation: style.representation }])) }, how(event));
   return html`<section class="block"><h3>Region ${region.name} <span class="dim">${parent ? `in ${parent.name}` : ''}</span></h3>
     <dl><dt>Volume</dt><dd>${volume(region.volume_cm3)}, ${number(region.voxels)} univels</dd>
       ${region.touches_edge ? html`<dt>Edge</dt><dd>cut by the edge of the scan</dd>` : nothing}
@@ -38,9 +40,9 @@ export function regionBlock(world, region) {
     <div class="shown-as"><span class="dim">Shown as</span>${segment('Shown as', representations, style.representation, isDisabled || !region.voxels, (representation, event) => change({ representation }, event))}</div>
     ${coloured(world, region, isDisabled, how)}
     ${region.voxels ? figures(world, region, style.representation) : nothing}
-    <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(plan.regions, scene, region.id), how(event))}>${icon('solo')}<span>Solo</span></button>
+    <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(own, scene, region.id), how(event))}>${icon('solo')}<span>Solo</span></button>
       ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}
-      ${plan.regions.length > 1 ? html`<button ?disabled=${isDisabled || isShared} @click=${share}><span>All regions like this</span></button>` : nothing}
+      ${own.length > 1 ? html`<button ?disabled=${isDisabled || isShared} @click=${share}><span>All regions like this</span></button>` : nothing}
       ${region.voxels ? html`<button aria-haspopup="dialog" @click=${() => { ui.popover.value = 'figures'; }}><span>Compare methods</span></button>` : nothing}</div>
     ${region.voxels && isExportable(style.representation) && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
 }

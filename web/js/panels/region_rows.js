@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { repeat } from '../../lib/directives/repeat.js';
+import { ownRegions } from '../state/identity.js';
 import { isTarget, showPatch, soloPatch } from '../state/plan.js';
 import { count, number, volume } from './format.js';
 import { icon } from './icons.js';
@@ -13,7 +14,7 @@ import { eye, name, treeRow } from './tree_row.js';
 /** The regions whose names contain what was typed. */
 const listed = ({ room, ui }) => {
   const wanted = ui.filter.value.trim().toLowerCase();
-  return room.plan.value.regions.filter((region) => region.name.toLowerCase().includes(wanted));
+  return ownRegions(room.plan.value, room.scene.value).filter((region) => region.name.toLowerCase().includes(wanted));
 };
 
 export function regionRows(world) {
@@ -25,9 +26,9 @@ export function regionRows(world) {
 /** Filter, hide all, only targets. */
 export function regionTools(world) {
   const { room, ui } = world;
-  const { regions } = room.plan.value;
   const scene = room.scene.value;
-  if (regions.length < 2 || !scene) return nothing;
+  const regions = scene ? ownRegions(room.plan.value, scene) : [];
+  if (regions.length < 2) return nothing;
   const isDisabled = !room.canChange.value;
   const nShown = regions.filter(({ id }) => scene.regions[id]?.visible).length;
   const targets = regions.filter(isTarget);
@@ -53,7 +54,7 @@ function row(world, region) {
   const change = (patch, event) => room.patchScene({ regions: { [region.id]: patch } }, how(event));
   const setOpacity = (value, event) => Number.isFinite(value) && change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event);
   const percent = Math.round(style.opacity * 100);
-  const toggle = (event) => (event.altKey ? room.patchScene(soloPatch(room.plan.value.regions, scene, region.id), how(event)) : change({ visible: !style.visible }, event));
+  const toggle = (event) => (event.altKey ? room.patchScene(soloPatch(ownRegions(room.plan.value, scene), scene, region.id), how(event)) : change({ visible: !style.visible }, event));
   const still = (event) => event.stopPropagation();
   const size = region.voxels ? volume(region.volume_cm3) : 'empty';
   return treeRow(world, { kind: 'region', id: region.id, words: [region.name, size], more: [`opacity ${percent} %`], title: `${region.name}, ${number(region.volume_cm3, 2)} cm³`, depth: region.depth, isOn: style.visible, toggle, step: (by, event) => setOpacity(percent + 5 * by, event) }, html`

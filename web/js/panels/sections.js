@@ -1,7 +1,7 @@
 // The sections of the tree: a row of the table for each. A section without rows is not shown; to add one, add a row.
 import { html } from '../../lib/lit-html.js';
 import { blendedImage } from '../state/image_look.js';
-import { isOfOther, partsOfOthers } from '../state/identity.js';
+import { isOfOther, ownRegions, partsOfOthers } from '../state/identity.js';
 import { shownImage } from '../state/plan.js';
 import { bookmarkNote, bookmarkRows, hasBookmarks } from './bookmark_lazy.js';
 import { hasBeams, ofBeams } from './beam_lazy.js';
@@ -24,7 +24,7 @@ const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derive
 const table = [
   { id: 'images', name: 'Images', icon: 'image', has: (plan) => plan.images.length, note: () => '', rows: images },
   { id: 'planes', name: 'Planes', icon: 'plane', has: hasClips, note: obliqueNote, rows: obliqueRows },
-  { id: 'regions', name: 'Regions', icon: 'layers', has: (plan) => plan.regions.length, note: ({ room }) => hierarchyWords[room.plan.value.hierarchy] ?? '', rows: regionRows },
+  { id: 'regions', name: 'Regions', icon: 'layers', has: (plan, scene) => (scene ? ownRegions(plan, scene) : plan.regions).length, note: ({ room }) => hierarchyWords[room.plan.value.hierarchy] ?? '', rows: regionRows },
   { id: 'doses', name: 'Doses', icon: 'dose', has: (plan) => plan.doses.length, note: (world) => ofDose(world.room)?.doseNote(world) ?? '', rows: (world) => ofDose(world.room)?.doseRows(world) },
   { id: 'beams', name: 'Beams', icon: 'target', has: hasBeams, note: (world) => ofBeams(world.room)?.beamNote(world) ?? '', rows: (world) => ofBeams(world.room)?.beamRows(world) },
   { id: 'tracks', name: 'Tracks', icon: 'tracks', has: (plan) => plan.nTracks, note: (world) => ofTracks(world.room)?.trackNote(world) ?? '', rows: (world) => ofTracks(world.room)?.trackRows(world) },

@@ -6,6 +6,7 @@ import { readDvh, readProfile } from './dose_answers.js';
 import { Asked } from './dose_asked.js';
 import { plotPoints } from './dose_dvh.js';
 import { linesOf } from './dose_profile.js';
+import { ownRegions } from './identity.js';
 
 /** Fields of the dose on which no number depends. */
 const looks = ['grid', 'levels', 'wash', 'lines', 'surfaces', 'coverage', 'error', 'interpolation', 'weights_name'];
@@ -39,7 +40,7 @@ export class DoseCurves {
     this.lines = computed(() => linesOf(room.plan.value, room.scene.value));
     this.chosenLine = computed(() => this.lines.value.find(({ key }) => key === this.line.value) ?? this.lines.value[0] ?? null);
     /** The regions that the scene shows. */
-    this.regions = computed(() => (room.plan.value?.regions ?? []).filter(({ id, voxels }) => voxels > 0 && room.scene.value?.regions[id]?.visible));
+    this.regions = computed(() => (room.plan.value && room.scene.value ? ownRegions(room.plan.value, room.scene.value) : []).filter(({ id, voxels }) => voxels > 0 && room.scene.value.regions[id]?.visible));
     /** Those among them that have curves. */
     this.shownRegions = computed(() => this.regions.value.filter(({ id }) => !this.hidden.value.has(id)));
 

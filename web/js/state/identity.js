@@ -20,6 +20,17 @@ export function isOfOther(plan, scene, part) {
   return Boolean(of) && plan.patients.length > 1 && of !== shownPatient(plan, scene);
 }
 
+/** The regions without those of another patient: what lists and choices offer. */
+export const ownRegions = (plan, scene) => (plan.patients.length > 1 ? plan.regions.filter((region) => !isOfOther(plan, scene, region)) : plan.regions);
+
+/** The shown patient in the server's list of identities, which has the plan's order; null where the list is of other files than the plan. */
+export function identityOf(plan, scene, identities) {
+  const patient = shownPatient(plan, scene);
+  const found = identities[plan?.patients.indexOf(patient)];
+  const isSame = identities.length === plan?.patients.length && found?.masked === patient?.masked;
+  return isSame && found ? found : null;
+}
+
 /** Parts of other patients than the one shown: [{kind, id, name, masked}]. */
 export function partsOfOthers(plan, scene) {
   const shown = shownPatient(plan, scene);
