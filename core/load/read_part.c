@@ -95,6 +95,10 @@ static bool read_rt_object(const struct loading *loading, struct part_reading *r
         is_read = rtdose_read(opened.file, reading->path, &reading->rtdose, &reading->report, &reading->err);
     else
         is_read = (reading->rtplan = rtplan_read(opened.file, reading->path, &reading->report, &reading->err)) != NULL;
+    if (dicom_text_is_broken(opened.file))
+        report_add(&reading->report, REPORT_WARNING, "dicom.text", reading->path,
+                   "Names hold bytes without a meaning in the file's character set (0008,0005); these are shown as "
+                   "<0x8E> and the like.");
     plan_dicom_close(&opened);
     return is_read;
 }

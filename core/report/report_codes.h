@@ -74,6 +74,8 @@
       "Nothing; they are left out: the line says what they are.") \
     X("dicom.bad-number", "A value of a DICOM file is no number, or cannot be what it stands for.", \
       "The file is damaged: copy or export it again.") \
+    X("dicom.text", "Names in a DICOM file are not in the character set that the file states, or it is unknown.", \
+      "Bytes without a meaning are shown as their numbers; export again with the right character set.") \
     X("dicom.same-uid", "Two DICOM objects have one SOP Instance UID and other contents.", \
       "Both are used. Keep the one that is meant: what refers to that UID may mean either.") \
     X("dicom.surplus-pixels", "A DICOM file holds more pixels than the frames it declares.", \

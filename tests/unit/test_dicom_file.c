@@ -132,7 +132,19 @@ static void texts_come_out_as_utf8_whatever_the_character_set(void **state)
         { "GB18030", "\xCD\xF5", "\xE7\x8E\x8B" },
         { "", "T\xC3\xBCr", "T\xC3\xBCr" }, /* no character set, valid UTF-8 */
         { "", "T\xFCr", "T\xC3\xBCr" },     /* no character set, not UTF-8 */
-        { "NO SUCH SET", "T\xFCr", "T\xC3\xBCr" },
+        { "NO SUCH SET", "T\xFCr", "T<0xFC>r" },
+        { "NO SUCH SET", "T\xC3\xBCr", "T\xC3\xBCr" },
+        { "ISO_IR 192", "T\xFCr", "T<0xFC>r" },
+        { "ISO 2022 IR 13\\ISO 2022 IR 87", "\xBC\xAD\xD6\xB3 \x1B$B<pag\x1B(J", "ｼｭﾖｳ 腫瘍" },
+        { "ISO 2022 IR 13\\ISO 2022 IR 87", "\x1B$B<pag\x1B(J GTV", "腫瘍 GTV" },
+        { "\\ISO 2022 IR 87", "\x1B$B<pa\x1B(B", "腫<0x61>" },      /* half a character */
+        { "\\ISO 2022 IR 87", "\x8E\xEE GTV", "<0x8E><0xEE> GTV" }, /* Shift JIS under another set's name */
+        { "\\ISO 2022 IR 87", "\x1B%G GTV", "<0x1B>%G GTV" },       /* no sequence of DICOM's */
+        /* annex K.2 and K.3; pydicom 2.3 leaves these escape sequences in the text */
+        { "\\ISO 2022 IR 58", "Zhang^XiaoDong=\x1B$)A\xD5\xC5^\x1B$)A\xD0\xA1\xB6\xAB=", "Zhang^XiaoDong=张^小东=" },
+        { "\\ISO 2022 IR 58", "1. \x1B$)A\xB5\xDA\xD2\xBB\xD0\xD0\xCE\xC4\xD7\xD6\xA1\xA3", "1. 第一行文字。" },
+        { "GBK", "\xD6\xD7\xC1\xF6\x80\xFF", "肿瘤<0x80><0xFF>" },
+        { "ISO_IR 13", "\xBC\xAD\xD6\xB3~", "ｼｭﾖｳ‾" },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct made_dicom made;
@@ -144,6 +156,7 @@ static void texts_come_out_as_utf8_whatever_the_character_set(void **state)
         char text[64];
         assert_true(dicom_text(dicom_root(file), DICOM_TAG(0x0008, 0x103E), text, sizeof text));
         assert_string_equal(text, cases[i].utf8);
+        assert_int_equal(dicom_text_is_broken(file), strstr(text, "<0x") != NULL);
         dicom_file_destroy(file);
         made_finish(&made);
     }

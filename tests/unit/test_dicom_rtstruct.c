@@ -141,7 +141,8 @@ static void names_come_in_the_file_s_character_set(void **state)
                   { "ISO_IR 144", "\xbe\xdf\xe3\xe5\xde\xdb\xec", "Опухоль" },
                   { "ISO_IR 192", "\xe8\x85\xab\xe7\x98\xa4", "腫瘤" },
                   { "GB18030", "\xd6\xd7\xc1\xf6", "肿瘤" },
-                  { "\\ISO 2022 IR 87", "\x1b$B<pag\x1b(B", "腫瘍" } };
+                  { "\\ISO 2022 IR 87", "\x1b$B<pag\x1b(B", "腫瘍" },
+                  { "ISO 2022 IR 13\\ISO 2022 IR 87", "\xbc\xad\xd6\xb3 \x1b$B<pag\x1b(J", "ｼｭﾖｳ 腫瘍" } };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         struct made_dicom made;
         made_rt_begin(&made, RTSTRUCT, "RTSTRUCT", names[i].charset);

@@ -16,10 +16,10 @@ extern "C" {
 #include <dcmtk/config/osconfig.h>
 
 #include <dcmtk/dcmdata/dcistrmb.h>
-#include <dcmtk/dcmdata/dcspchrs.h>
 #include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/oflog/oflog.h>
 
+#include "core/formats/dicom/dicom_charset.hh"
 #include "core/formats/dicom/dicom_decode.hh"
 #include "core/formats/dicom/dicom_file.hh"
 #include "core/formats/dicom/dicom_text.hh"
@@ -111,18 +111,24 @@ std::string character_set_of(const dicom_item *item)
     return "";
 }
 
-std::string to_utf8(const dicom_item *item, std::string text)
+// Delimiters between values, and between parts of a person's name.
+const char *delimiters_of(DcmElement &element)
 {
-    dicom_file &file = *item->file;
-    std::string wanted = character_set_of(item);
-    if (!file.has_converter || file.character_set != wanted) {
-        file.converter = std::make_unique<DcmSpecificCharacterSet>();
-        if (wanted.empty() || file.converter->selectCharacterSet(wanted.c_str()).bad())
-            file.converter.reset();
-        file.character_set = wanted;
-        file.has_converter = true;
+    switch (element.ident()) {
+    case EVR_PN: return "\\^=";
+    case EVR_LT:
+    case EVR_ST:
+    case EVR_UT: return "";
+    default: return "\\";
     }
-    return dicom_text_to_utf8(file.converter.get(), std::move(text));
+}
+
+std::string to_utf8(const dicom_item *item, DcmElement &element, const std::string &text)
+{
+    bool is_whole = true;
+    std::string out = dicom_charset_to_utf8(character_set_of(item), text, delimiters_of(element), &is_whole);
+    item->file->has_broken_text = item->file->has_broken_text || !is_whole;
+    return out;
 }
 
 bool get_text(const dicom_item *item, uint32_t tag, bool is_one, size_t index, char *out, size_t size)
@@ -145,7 +151,7 @@ bool get_text(const dicom_item *item, uint32_t tag, bool is_one, size_t index, c
     }
     std::string text(raw, std::min<size_t>(raw_size, 1 << 20)); // 1 MiB: more than any description needs
     if (!dicom_text_is_ascii(text.data(), text.size()))
-        text = to_utf8(item, std::move(text));
+        text = to_utf8(item, *element, text);
     size_t from = 0;
     if (is_one) {
         for (; index > 0; index--) {
@@ -404,6 +410,11 @@ bool dicom_text(const struct dicom_item *item, uint32_t tag, char *out, size_t s
 bool dicom_text_at(const struct dicom_item *item, uint32_t tag, size_t index, char *out, size_t size)
 {
     return guarded(false, [&] { return get_text(item, tag, true, index, out, size); });
+}
+
+bool dicom_text_is_broken(const struct dicom_file *file)
+{
+    return file->has_broken_text;
 }
 
 size_t dicom_numbers(const struct dicom_item *item, uint32_t tag, double *out, size_t most)

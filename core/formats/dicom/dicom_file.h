@@ -30,10 +30,13 @@ bool dicom_is_cut(const struct dicom_file *file);
 
 bool dicom_has(const struct dicom_item *item, uint32_t tag); /* the element is present, with or without a value */
 /* Copies the whole value as UTF-8 (converted from SpecificCharacterSet), without padding, truncated at a whole
- * character. Control characters become blanks. Returns false and "" if the element is absent or empty. */
+ * character. Control characters become blanks, bytes without a meaning in the character set "<0x8E>". Returns false
+ * and "" if the element is absent or empty. */
 bool dicom_text(const struct dicom_item *item, uint32_t tag, char *out, size_t size);
 /* The same for value number index (from 0) of a multi-valued element. */
 bool dicom_text_at(const struct dicom_item *item, uint32_t tag, size_t index, char *out, size_t size);
+/* True if a text that was read so far has bytes without a meaning in its character set. */
+bool dicom_text_is_broken(const struct dicom_file *file);
 /* Values of DS, IS, FD, FL, US, SS, UL, SL or AT as numbers; a malformed value becomes NaN. Stores at most `most`
  * values and returns how many the element has. */
 size_t dicom_numbers(const struct dicom_item *item, uint32_t tag, double *values, size_t most);

@@ -14,7 +14,6 @@ extern "C" {
 
 #include <dcmtk/config/osconfig.h>
 
-#include <dcmtk/dcmdata/dcspchrs.h>
 #include <dcmtk/dcmdata/dctk.h>
 
 // Defines the struct that dicom_file.h declares: the data set or a sequence item, with the item around it.
@@ -30,9 +29,7 @@ struct dicom_file {
     DcmDataset data_set;
     dicom_item root{};
     std::unordered_map<const DcmObject *, std::vector<dicom_item>> sequences; // items of the sequences read so far
-    std::string character_set;                          // the character set that converter converts from
-    std::unique_ptr<DcmSpecificCharacterSet> converter; // NULL: an unknown set
-    bool has_converter = false;
+    bool has_broken_text = false;          // a text read so far has bytes without a meaning in its character set
     std::vector<dicom_fragment> fragments; // of compressed pixels, the offset table first
     std::vector<size_t> first_fragments;   // number of each frame's first fragment
     bool has_frames = false;

@@ -1,4 +1,4 @@
-// Converts text of any DICOM character set to UTF-8, and decimal strings to numbers.
+// Copies text without padding, and reads decimal strings as numbers.
 #include "core/formats/dicom/dicom_text.hh"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include <iconv.h>
+#include "core/formats/dicom/dicom_charset.hh"
 
 bool dicom_text_is_ascii(const char *text, size_t size)
 {
@@ -16,86 +16,12 @@ bool dicom_text_is_ascii(const char *text, size_t size)
 
 namespace {
 
-// Length of the UTF-8 character at p; 0 if it is not UTF-8. Source: RFC 3629, table 3-7 of the Unicode standard.
-size_t utf8_length(const unsigned char *p, size_t left)
-{
-    if (p[0] < 0x80)
-        return 1;
-    size_t n = p[0] >= 0xC2 && p[0] <= 0xDF ? 2 : (p[0] & 0xF0) == 0xE0 ? 3 : p[0] >= 0xF0 && p[0] <= 0xF4 ? 4 : 0;
-    if (n == 0 || n > left)
-        return 0;
-    unsigned low = p[0] == 0xE0   ? 0xA0
-                   : p[0] == 0xF0 ? 0x90
-                                  : 0x80,
-             high = p[0] == 0xED   ? 0x9F
-                    : p[0] == 0xF4 ? 0x8F
-                                   : 0xBF;
-    for (size_t i = 1; i < n; i++, low = 0x80, high = 0xBF)
-        if (p[i] < low || p[i] > high)
-            return 0;
-    return n;
-}
-
-bool is_utf8(const std::string &text)
-{
-    for (size_t at = 0, n; at < text.size(); at += n)
-        if ((n = utf8_length(reinterpret_cast<const unsigned char *>(text.data()) + at, text.size() - at)) == 0)
-            return false;
-    return true;
-}
-
-std::string from_latin1(const std::string &text)
-{
-    std::string out;
-    for (char c : text) {
-        auto byte = static_cast<unsigned char>(c);
-        if (byte < 128) {
-            out += c;
-        } else {
-            out += static_cast<char>(0xC0 | byte >> 6);
-            out += static_cast<char>(0x80 | (byte & 0x3F));
-        }
-    }
-    return out;
-}
-
-// Converts the escape sequences of Japanese sets (ISO-IR 6, 14, 87, 159), which DCMTK over the C library's iconv does
-// not know by their own names.
-bool from_iso2022(const std::string &text, std::string &out)
-{
-    iconv_t converter = iconv_open("UTF-8", "ISO-2022-JP-2");
-    if (converter == reinterpret_cast<iconv_t>(-1))
-        return false;
-    std::string from = text;
-    out.resize(4 * text.size() + 16);
-    char *in = from.data(), *to = out.data();
-    size_t in_left = from.size(), out_left = out.size();
-    bool is_converted = iconv(converter, &in, &in_left, &to, &out_left) != static_cast<size_t>(-1);
-    iconv_close(converter);
-    out.resize(out.size() - out_left);
-    return is_converted && is_utf8(out);
-}
-
 bool is_padding(char c)
 {
     return c == ' ' || c == 0 || c == '\t' || c == '\r' || c == '\n';
 }
 
 } // namespace
-
-std::string dicom_text_to_utf8(DcmSpecificCharacterSet *converter, std::string text)
-{
-    OFString converted;
-    if (converter && converter->convertString(text.data(), text.size(), converted, "\\^=").good()) {
-        std::string out(converted.c_str(), converted.size());
-        if (is_utf8(out))
-            return out;
-    }
-    std::string out;
-    if (text.find('\x1B') != std::string::npos && from_iso2022(text, out))
-        return out;
-    return is_utf8(text) ? text : from_latin1(text);
-}
 
 bool dicom_text_put(const std::string &text, char *out, size_t size)
 {
