@@ -77,9 +77,9 @@ static void add_group(struct loading *loading, struct rtdose *objects, const str
     size_t n_doses = rtdose_group(objects, n, of.plan ? rtplan_beam_name : NULL, of.context, where, doses, from,
                                   PLAN_MAX_DOSES, &plan->report);
     for (size_t i = 0; i < n_doses; i++) {
-        const char *others[PLAN_MAX_DOSES];
+        const char *others[PLAN_MAX_DOSES], *file = objects[from[i]].where;
         char name[64];
-        if (!plan_has_room_for_dose(plan, doses[i].id, where)) {
+        if (!plan_has_room_for_dose(plan, doses[i].id, file)) {
             dose_finish(&doses[i]);
             continue;
         }
@@ -92,16 +92,16 @@ static void add_group(struct loading *loading, struct rtdose *objects, const str
         if (entry)
             origin_state(&plan->dose_origins[plan->n_doses], entry);
         memcpy(dose->name, name, sizeof dose->name);
-        name_stated(loading, objects[0].structs_uid, dose);
+        name_stated(loading, objects[from[i]].structs_uid, dose);
         if (entry)
-            plan_dose_frame(dose, entry, where, &plan->report);
+            plan_dose_frame(dose, entry, file, &plan->report);
         plan_make_id(dose->id, entry && entry->id[0] && i == 0 ? entry->id : name, where, others, plan->n_doses++);
         if (entry && entry->unit[0])
             memcpy(dose->unit, entry->unit, sizeof dose->unit);
         if (entry && entry->per[0])
             memcpy(dose->per, entry->per, sizeof dose->per);
         if (!dose->unit[0])
-            report_add(&plan->report, REPORT_WARNING, "dose.no-unit", where,
+            report_add(&plan->report, REPORT_WARNING, "dose.no-unit", file,
                        "The file does not say the unit of the dose \"%s\".", dose->name);
     }
     free(doses);
@@ -125,7 +125,8 @@ void plan_dicom_add_doses(struct loading *loading, size_t index, const struct pl
                 continue;
             check_frame(loading, reading, &loading->plan->report);
             where = n == 0 ? reading->path : where;
-            objects[n++] = reading->rtdose;
+            objects[n] = reading->rtdose;
+            objects[n++].where = reading->path;
             reading->rtdose.values = NULL;
             reading->rtdose.stated = NULL;
             is_taken[i] = true;

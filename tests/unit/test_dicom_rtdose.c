@@ -312,6 +312,26 @@ static size_t group(const struct made_dose *made, size_t n, struct dose *doses, 
     return rtdose_group(objects, n, name_of_beam, NULL, "", doses, NULL, 8, report);
 }
 
+static void what_is_said_of_a_dose_names_its_own_file(void **state)
+{
+    (void)state;
+    struct made_dose made[2] = { plain, plain };
+    made[1].type = "ERROR";
+    struct report report = { 0 };
+    struct dose doses[8];
+    struct rtdose objects[2] = { read_good(&made[0], NULL), read_good(&made[1], NULL) };
+    objects[0].where = "a.dcm";
+    objects[1].where = "b.dcm";
+    assert_int_equal(rtdose_group(objects, 2, NULL, NULL, "a.dcm", doses, NULL, 8, &report), 2);
+    for (size_t i = 0; i < report.n_lines; i++)
+        if (strcmp(report.lines[i].code, "dose.type") == 0)
+            assert_string_equal(report.lines[i].where, "b.dcm");
+    assert_true(report_has(&report, "dose.type"));
+    dose_finish(&doses[0]);
+    dose_finish(&doses[1]);
+    report_finish(&report);
+}
+
 static void components_that_agree_become_one_dose(void **state)
 {
     (void)state;
@@ -591,6 +611,7 @@ int main(void)
         cmocka_unit_test(frames_beyond_the_declared_ones_are_said),
         cmocka_unit_test(what_is_no_dose_is_refused_with_a_sentence),
         cmocka_unit_test(descriptions_name_components),
+        cmocka_unit_test(what_is_said_of_a_dose_names_its_own_file),
         cmocka_unit_test(components_that_agree_become_one_dose),
         cmocka_unit_test(a_word_alone_makes_no_component_and_beams_are_not_added),
         cmocka_unit_test(words_join_only_with_boron_or_nitrogen_and_on_one_grid),

@@ -30,6 +30,7 @@ struct rtdose {
     char structs_uid[DICOM_UID_SIZE]; /* structure set of the stored histograms; "" if not given */
     struct dose_stated *stated;       /* [n_stated] of stored histograms, by ROI number; owned, as values; NULL: none */
     size_t n_stated;
+    const char *where; /* borrowed: the file's name in the report; NULL: the group's */
 };
 
 /* Reads values and geometry of one object. Frame offsets may be relative or absolute, ascending or descending. If they

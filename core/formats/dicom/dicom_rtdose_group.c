@@ -19,6 +19,11 @@ struct grouping {
     struct report *report;
 };
 
+static const char *where_of(const struct grouping *grouping, const struct rtdose *object)
+{
+    return object->where ? object->where : grouping->where;
+}
+
 static bool agree(const struct rtdose *a, const struct rtdose *b)
 {
     return strcmp(a->type, b->type) == 0 && strcmp(a->summation, b->summation) == 0 &&
@@ -75,7 +80,7 @@ static void report_not_joined(const struct grouping *grouping, const bool *is_gi
                 (is_given[i] && is_given[o] && may_be_joined(a, b)))
                 continue;
             report_add(
-                grouping->report, REPORT_WARNING, "dose.words-not-joined", grouping->where,
+                grouping->report, REPORT_WARNING, "dose.words-not-joined", where_of(grouping, a),
                 "\"%.60s\" and \"%.60s\" sound like %s and %s of one dose, but %s: each is a dose of its own. If they are "
                 "one, name them as \"components\" in a plan.json.",
                 a->description, b->description, dose_quantity_word(a->quantity), dose_quantity_word(b->quantity),
@@ -159,7 +164,7 @@ static void name_dose(const struct grouping *grouping, const struct rtdose *obje
 static struct dose *new_dose(struct grouping *grouping, const struct rtdose *object)
 {
     if (grouping->n_doses >= grouping->most) {
-        report_add(grouping->report, REPORT_WARNING, "dose.left-out", grouping->where,
+        report_add(grouping->report, REPORT_WARNING, "dose.left-out", where_of(grouping, object),
                    "More than %zu doses; \"%s\" is left out.", grouping->most, object->description);
         return NULL;
     }
@@ -172,13 +177,13 @@ static struct dose *new_dose(struct grouping *grouping, const struct rtdose *obj
     snprintf(dose->per, sizeof dose->per, "%s", per_of(object));
     grouping->n_doses++;
     if (!dose->unit[0])
-        report_add(grouping->report, REPORT_WARNING, "dose.no-unit", grouping->where,
+        report_add(grouping->report, REPORT_WARNING, "dose.no-unit", where_of(grouping, object),
                    "\"%s\": the dose's units are \"%s\".", dose->id, object->units);
     if (!dose->per[0])
-        report_add(grouping->report, REPORT_NOTE, "dose.no-per", grouping->where,
+        report_add(grouping->report, REPORT_NOTE, "dose.no-per", where_of(grouping, object),
                    "\"%s\": the file does not say what was summed.", dose->id);
     if (strcmp(object->type, "PHYSICAL") != 0 && strcmp(object->type, "EFFECTIVE") != 0)
-        report_add(grouping->report, REPORT_WARNING, "dose.type", grouping->where,
+        report_add(grouping->report, REPORT_WARNING, "dose.type", where_of(grouping, object),
                    "\"%s\" is of type \"%s\": it may not be a dose but a difference of two.", dose->id, object->type);
     return dose;
 }
@@ -230,16 +235,16 @@ static void add_components(struct grouping *grouping, size_t first, const bool *
         size_t n = strlen(words);
         snprintf(words + n, sizeof words - n, "%s%s", n ? ", " : "", dose_quantity_word(other->quantity));
         if (other->quantity == DOSE_BORON && !(other->ppm > 0))
-            report_add(grouping->report, REPORT_WARNING, "dose.no-ppm", grouping->where,
+            report_add(grouping->report, REPORT_WARNING, "dose.no-ppm", where_of(grouping, other),
                        "\"%s\": nothing says for how much boron-10 the boron dose holds; it is shown as it is.",
                        dose->id);
         if (other->quantity == DOSE_BORON && other->ppm > 0 && other->ppm != 1)
-            report_add(grouping->report, REPORT_NOTE, "dose.per-ppm", grouping->where,
+            report_add(grouping->report, REPORT_NOTE, "dose.per-ppm", where_of(grouping, other),
                        "\"%s\": the boron dose holds for %g ppm and was divided by that.", dose->id, other->ppm);
         add_component(dose, other, other->quantity);
     }
     report_add(
-        grouping->report, REPORT_NOTE, "dose.components", grouping->where,
+        grouping->report, REPORT_NOTE, "dose.components", where_of(grouping, &like),
         "\"%s\" is put together from %zu objects by their %s: %s. A plan.json that names each as a dose keeps them "
         "apart.",
         dose->id, dose->n_components, like.is_stated ? "descriptions" : "descriptions' words", words);
@@ -262,7 +267,7 @@ static void leave_out_zeros(struct grouping *grouping)
         struct rtdose *object = &grouping->objects[i];
         if (!object->values || !object->is_all_zero)
             continue;
-        report_add(grouping->report, REPORT_WARNING, "dose.all-zero", grouping->where,
+        report_add(grouping->report, REPORT_WARNING, "dose.all-zero", where_of(grouping, object),
                    "A dose (\"%s\", %s of %zu beams) is 0 everywhere and is not listed.", object->description,
                    object->summation, object->n_beams);
         rtdose_finish(object);
