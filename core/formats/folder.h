@@ -70,7 +70,10 @@ struct folder_file {
 struct folder_tree {
     struct folder_file *files; /* sorted by the bytes of their names */
     size_t n_files;
-    bool is_cut; /* there are more files than FOLDER_MAX_FILES, or deeper ones than FOLDER_MAX_DEPTH */
+    size_t n_passed;  /* names that were left out, other than hidden ones: links that lead out of the folder, to nothing
+                         or  to folders, what is no plain file, and names that folder_check_name refuses */
+    char passed[160]; /* the first of them */
+    bool is_cut;      /* there are more files than FOLDER_MAX_FILES, or deeper ones than FOLDER_MAX_DEPTH */
 };
 /* Lists all plain files below a folder inside, under, or below the whole folder for "". Leaves out names that begin
  * with a dot and folders for which is_skipped (may be NULL) returns true. Follows links to files that stay inside, and

@@ -11,6 +11,7 @@
 
 #include "core/base/mem.h"
 #include "core/formats/folder.h"
+#include "core/formats/text.h"
 
 struct walk {
     const struct folder *folder;
@@ -63,6 +64,12 @@ static bool look_behind_link(const struct folder *folder, const char *name, stru
     return folder_look(folder, name, NULL) == FOLDER_FILE && fstatat(folder->fd, name, about, 0) == 0;
 }
 
+static void pass_over(struct walk *walk, const char *name)
+{
+    if (walk->tree->n_passed++ == 0)
+        text_clean(name, walk->tree->passed, sizeof walk->tree->passed);
+}
+
 /* Folders that may not be entered, or are gone by now, are passed over. */
 static bool is_passed_over(int reason)
 {
@@ -91,10 +98,11 @@ static bool walk_into(struct walk *walk, int fd, const char *under, int depth)
         char name[FOLDER_NAME_SIZE];
         struct stat about;
         int n = snprintf(name, sizeof name, "%s%s%s", under, under[0] ? "/" : "", entry->d_name);
-        if (entry->d_name[0] == '.' || n < 0 || n >= (int)sizeof name || !folder_check_name(name, NULL) ||
-            fstatat(dirfd(directory), entry->d_name, &about, AT_SYMLINK_NOFOLLOW) != 0)
+        if (entry->d_name[0] == '.' || fstatat(dirfd(directory), entry->d_name, &about, AT_SYMLINK_NOFOLLOW) != 0)
             continue;
-        if (S_ISDIR(about.st_mode)) {
+        if (n < 0 || n >= (int)sizeof name || !folder_check_name(name, NULL)) {
+            pass_over(walk, entry->d_name);
+        } else if (S_ISDIR(about.st_mode)) {
             bool is_deep = depth >= FOLDER_MAX_DEPTH;
             walk->tree->is_cut |= is_deep;
             if (!is_deep && !(walk->is_skipped && walk->is_skipped(walk->folder, name)))
@@ -104,6 +112,8 @@ static bool walk_into(struct walk *walk, int fd, const char *under, int depth)
                               name, depth + 1);
         } else if (S_ISREG(about.st_mode) || (S_ISLNK(about.st_mode) && look_behind_link(walk->folder, name, &about))) {
             goes_on = add_file(walk, name, &about);
+        } else {
+            pass_over(walk, name);
         }
     }
     closedir(directory);

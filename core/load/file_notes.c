@@ -200,6 +200,12 @@ static void note_tree(struct notes *notes, const struct folder_tree *tree)
             note_read(notes, &notes->known[at]);
     }
     note_rest(notes);
+    if (tree->n_passed > 0)
+        report_add(
+            &notes->loading->plan->report, REPORT_WARNING, "file.not-read", "",
+            "%zu name%s of the folder %s not followed: links that lead out of it, to nothing or to a folder, what is "
+            "no plain file, or names that are too long or hold control characters; the first is \"%s\".",
+            tree->n_passed, tree->n_passed == 1 ? "" : "s", tree->n_passed == 1 ? "was" : "were", tree->passed);
 }
 
 bool plan_note_files(struct loading *loading, struct error *err)

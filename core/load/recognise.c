@@ -70,9 +70,10 @@ static bool is_rst(const struct folder *folder, const char *name)
     return rst_parse_header(text, n, name, &header, NULL);
 }
 
-static void set_name(char *out, size_t size, const char *name)
+/* The very bytes, so that the file opens, in whatever encoding its name is. */
+static void set_path(char *out, size_t size, const char *name)
 {
-    text_clean(name, out, size);
+    snprintf(out, size, "%s", name);
 }
 
 static void ignore_one(struct recognition *all, const char *name, const char *why)
@@ -89,8 +90,8 @@ static void add_image(struct recognition *all, const char *name, const char *hea
         return;
     }
     struct plan_file_image *image = &file->images[file->n_images++];
-    set_name(image->path, sizeof image->path, name);
-    set_name(image->header, sizeof image->header, header);
+    set_path(image->path, sizeof image->path, name);
+    set_path(image->header, sizeof image->header, header);
 }
 
 static struct plan_file_region *add_region(struct recognition *all, const char *name)
@@ -102,7 +103,7 @@ static struct plan_file_region *add_region(struct recognition *all, const char *
         return NULL;
     }
     struct plan_file_region *region = &file->regions[file->n_regions++];
-    set_name(region->path, sizeof region->path, name);
+    set_path(region->path, sizeof region->path, name);
     return region;
 }
 
@@ -115,7 +116,7 @@ static void add_dose(struct recognition *all, const char *name)
         return;
     }
     struct plan_file_dose *dose = &file->doses[file->n_doses++];
-    set_name(dose->components[0].path, FOLDER_NAME_SIZE, name);
+    set_path(dose->components[0].path, FOLDER_NAME_SIZE, name);
     dose->components[0].quantity = DOSE_TOTAL;
     dose->n_components = 1;
 }
@@ -211,7 +212,7 @@ static void recognise_file(struct recognition *all, char *name)
     case PART_PP:
     case PART_TRACK_CSV:
         if (file->n_tracks < PLAN_FILE_MAX_TRACKS)
-            set_name(file->tracks[file->n_tracks++].path, FOLDER_NAME_SIZE, name);
+            set_path(file->tracks[file->n_tracks++].path, FOLDER_NAME_SIZE, name);
         else
             ignore_one(all, name, "More files of tracks than are read.");
         break;
@@ -229,20 +230,20 @@ static void recognise_file(struct recognition *all, char *name)
         break;
     case PART_SERA_CURVE:
         if (file->n_curves < PLAN_MAX_CURVES)
-            set_name(file->curves[file->n_curves++].path, FOLDER_NAME_SIZE, name);
+            set_path(file->curves[file->n_curves++].path, FOLDER_NAME_SIZE, name);
         else
             ignore_one(all, name, "More curves than are read.");
         break;
     case PART_SERA_PREFERENCES:
         if (file->n_preferences < PLAN_FILE_MAX_PREFERENCES)
-            set_name(file->preferences[file->n_preferences++], FOLDER_NAME_SIZE, name);
+            set_path(file->preferences[file->n_preferences++], FOLDER_NAME_SIZE, name);
         else
             ignore_one(all, name, "More files of preferences than are read.");
         break;
     case PART_DICOM: all->dicom[all->n_dicom++] = name; break;
     default:
         if (text_has_ending(name, ".info") && !file->hierarchy[0])
-            set_name(file->hierarchy, sizeof file->hierarchy, name);
+            set_path(file->hierarchy, sizeof file->hierarchy, name);
     }
 }
 

@@ -68,8 +68,11 @@ static void files_of_all_folders_are_listed_in_order_with_what_tells_a_change(vo
     assert_int_equal(tree.files[1].inode, about.st_ino);
     assert_true(tree.files[1].modified_ns == (int64_t)about.st_mtim.tv_sec * 1000000000 + about.st_mtim.tv_nsec);
     assert_false(tree.is_cut);
+    assert_int_equal(tree.n_passed, 2); /* out, round */
+    assert_true(strcmp(tree.passed, "out") == 0 || strcmp(tree.passed, "round") == 0);
     folder_tree_finish(&tree);
     assert_true(folder_walk(&opened, "a", NULL, &tree, &err));
+    assert_int_equal(tree.n_passed, 0);
     assert_int_equal(tree.n_files, 1);
     assert_string_equal(tree.files[0].name, "a/z");
     folder_tree_finish(&tree);
