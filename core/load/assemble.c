@@ -1,6 +1,7 @@
 /* Builds the plan from the files that were read. */
 #include "core/load/assemble.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,6 +64,27 @@ static void note_labels(struct loading *loading, const struct part_reading *read
         what, is_mask ? "a region" : "regions", rename);
 }
 
+static bool has_number(const struct volume *volume)
+{
+    const uint32_t *size = volume->grid.size;
+    for (uint32_t k = 0; k < size[2]; k++)
+        for (uint32_t j = 0; j < size[1]; j++)
+            for (uint32_t i = 0; i < size[0]; i++)
+                if (isfinite(volume_value(volume, i, j, k)))
+                    return true;
+    return false;
+}
+
+static void note_constant(const struct volume *volume, const char *where, struct report *report)
+{
+    if (volume->low != volume->high)
+        return;
+    if (volume->low == 0 && !has_number(volume)) /* low and high of no number are 0, too */
+        report_add(report, REPORT_WARNING, "image.constant", where, "No voxel holds a number.");
+    else
+        report_add(report, REPORT_WARNING, "image.constant", where, "Every voxel is %g.", volume->low);
+}
+
 static void add_image(struct loading *loading, struct part_reading *reading)
 {
     struct plan *plan = loading->plan;
@@ -79,9 +101,7 @@ static void add_image(struct loading *loading, struct part_reading *reading)
     snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : reading->modality);
     image->volume = take_volume(reading);
     note_labels(loading, reading, image->volume->high);
-    if (image->volume->low == image->volume->high)
-        report_add(&plan->report, REPORT_WARNING, "image.constant", reading->path, "Every voxel is %g.",
-                   image->volume->low);
+    note_constant(image->volume, reading->path, &plan->report);
     if (text_equal(image->modality, "CT")) {
         snprintf(image->unit, sizeof image->unit, "HU");
         if (image->volume->low >= 0 && image->volume->high > 0)

@@ -206,6 +206,14 @@ static bool has_room_for_labels(const struct region_builder *builder, const uint
                      n_labels, builder->set->n_regions, REGION_MAX);
 }
 
+static bool has_a_label(const uint64_t *counts)
+{
+    for (uint32_t label = 1; label < 65536; label++)
+        if (counts[label])
+            return true;
+    return false;
+}
+
 bool region_builder_add_labels(struct region_builder *builder, struct volume *labels, const struct label_names *names,
                                const char *where, struct error *err)
 {
@@ -220,7 +228,7 @@ bool region_builder_add_labels(struct region_builder *builder, struct volume *la
         free(counts);
         return false;
     }
-    if (labels->low == 0 && labels->high == 0)
+    if (!has_a_label(counts))
         report_add(builder->report, REPORT_WARNING, "region.none", where, "Every voxel is 0, so it holds no region.");
     bool *is_named = mem_new(65536);
     bool is_added = true;

@@ -1,6 +1,9 @@
 /* One good image beside one bad or unknown file: the image opens, and the report names the file. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "core/plan/plan.h"
 #include "tests/check.h"
@@ -177,6 +180,67 @@ static void every_file_has_a_line_and_their_number_is_bounded(void **state)
     folder_remove(folder);
 }
 
+static void names_that_are_not_followed_are_counted(void **state)
+{
+    (void)state;
+    char folder[256], path[600];
+    struct error err;
+    folder_make(folder);
+    put_image(folder);
+    snprintf(path, sizeof path, "%s/gone_mask.nii.gz", folder);
+    assert_int_equal(symlink("nothing", path), 0);
+    snprintf(path, sizeof path, "%s/pipe_mask.nii.gz", folder);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    put_cut(folder, "two\nlines_mask.nii.gz");
+    struct plan *plan = plan_of_folder(folder, &err);
+    assert_string_equal(err.text, "");
+    assert_int_equal(plan->n_images, 1);
+    assert_non_null(strstr(report_said(&plan->report, "file.not-read"), "3 names of the folder were not followed"));
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+/* Archives of Windows keep names in Latin-1 or Shift-JIS. */
+static void names_that_are_not_utf_8_open(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    put_image(folder);
+    struct volume *mask = make_volume(VOXEL_U8);
+    memset((uint8_t *)mask->voxels + 300, 1, 300);
+    volume_measure(mask);
+    folder_put_volume(folder, "h\xfclle_mask.nii.gz", mask);
+    struct plan *plan = plan_of_folder(folder, &err);
+    assert_string_equal(err.text, "");
+    assert_int_equal(plan->regions.n_regions, 1);
+    assert_string_equal(plan->regions.regions[0].name, "h?lle_mask");
+    assert_int_equal(plan->regions.regions[0].n_voxels, 300);
+    assert_false(report_has(&plan->report, "part.unreadable"));
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
+static void an_image_without_a_number_is_not_said_to_be_0(void **state)
+{
+    (void)state;
+    char folder[256];
+    struct error err;
+    folder_make(folder);
+    put_image(folder);
+    struct volume *volume = make_volume(VOXEL_F32);
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++)
+        ((float *)volume->voxels)[i] = NAN;
+    volume_measure(volume);
+    folder_put_volume(folder, "t1.nii.gz", volume);
+    struct plan *plan = plan_of_folder(folder, &err);
+    assert_string_equal(err.text, "");
+    assert_string_equal(report_said(&plan->report, "image.constant"), "No voxel holds a number.");
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
 static void names_keep_everything_but_the_endings_of_their_format(void **state)
 {
     (void)state;
@@ -204,6 +268,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bad_part_hides_no_other_and_is_named),
         cmocka_unit_test(every_file_has_a_line_and_their_number_is_bounded),
+        cmocka_unit_test(names_that_are_not_followed_are_counted),
+        cmocka_unit_test(names_that_are_not_utf_8_open),
+        cmocka_unit_test(an_image_without_a_number_is_not_said_to_be_0),
         cmocka_unit_test(names_keep_everything_but_the_endings_of_their_format),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
