@@ -101,8 +101,7 @@ static bool has_structs(const struct plan *plan, const char *uid)
     return false;
 }
 
-/* True if a part is of another patient than the one that is shown. */
-static bool is_of_other(const struct plan *plan, struct fit_part part)
+bool fit_is_of_other(const struct plan *plan, struct fit_part part)
 {
     int patient = patient_of(plan, origin_of(plan, part)), shown = plan_shown_patient(plan);
     return patient >= 0 && shown >= 0 && patient != shown;
@@ -111,7 +110,7 @@ static bool is_of_other(const struct plan *plan, struct fit_part part)
 int fit_first_image(const struct plan *plan)
 {
     for (size_t i = 0; i < plan->n_images; i++)
-        if (!is_of_other(plan, (struct fit_part){ FIT_IMAGE, i }))
+        if (!fit_is_of_other(plan, (struct fit_part){ FIT_IMAGE, i }))
             return (int)i;
     return -1;
 }
@@ -243,6 +242,26 @@ bool fit_unit_factor(const char *from, const char *to, double *factor)
     return isfinite(*factor);
 }
 
+const char *fit_per(const struct dose *dose, char word[FIT_PER_SIZE])
+{
+    static const char *const fillers[] = { "per ", "the ", "a ", "one ", "whole ", "entire " };
+    static const char *const shorts[][2] = { { "min", "minute" }, { "fx", "fraction" } };
+    char low[FIT_PER_SIZE];
+    const char *rest = low;
+    size_t n = 0;
+    for (const char *at = dose->per; *at && n + 1 < sizeof low; at++)
+        if (*at != ' ' || (n > 0 && low[n - 1] != ' '))
+            low[n++] = *at >= 'A' && *at <= 'Z' ? (char)(*at + 'a' - 'A') : *at;
+    low[n > 0 && low[n - 1] == ' ' ? n - 1 : n] = 0;
+    for (size_t i = 0; i < sizeof fillers / sizeof *fillers; i++)
+        if (strncmp(rest, fillers[i], strlen(fillers[i])) == 0)
+            rest += strlen(fillers[i]);
+    for (size_t i = 0; i < sizeof shorts / sizeof *shorts; i++)
+        rest = strcmp(rest, shorts[i][0]) == 0 ? shorts[i][1] : rest;
+    snprintf(word, FIT_PER_SIZE, "%s", rest);
+    return word;
+}
+
 /* True if a dose has weighted values alone, so that nothing of it is physical. */
 static bool is_weighted_alone(const struct dose *dose)
 {
@@ -262,12 +281,13 @@ static bool has_weighted(const struct dose *dose)
 
 static uint32_t dose_reasons(const struct dose *a, const struct dose *b)
 {
+    char pers[2][FIT_PER_SIZE];
     uint32_t reasons = 0;
     double factor;
     if (!fit_unit_factor(a->unit, b->unit, &factor) || (is_weighted_alone(a) && !has_weighted(b)) ||
         (is_weighted_alone(b) && !has_weighted(a)))
         reasons |= 1U << FIT_UNIT;
-    if (strcmp(a->per, b->per) != 0)
+    if (strcmp(fit_per(a, pers[0]), fit_per(b, pers[1])) != 0)
         reasons |= 1U << FIT_PER;
     return reasons;
 }
@@ -296,8 +316,8 @@ struct fit fit_of(const struct plan *plan, struct fit_part thing, struct fit_par
     enum fit_relation frames = frames_of(plan, thing, with);
     struct fit fit = { frames, frames == FIT_FRAME ? 1U << FIT_FRAME : 0 };
 
-    if ((patients[0] >= 0 && patients[1] >= 0 && patients[0] != patients[1]) || is_of_other(plan, thing) ||
-        is_of_other(plan, with))
+    if ((patients[0] >= 0 && patients[1] >= 0 && patients[0] != patients[1]) || fit_is_of_other(plan, thing) ||
+        fit_is_of_other(plan, with))
         fit.reasons |= 1U << FIT_PATIENT;
     bool is_regions_with_dose =
         (thing.kind == FIT_REGIONS && with.kind == FIT_DOSE) || (thing.kind == FIT_DOSE && with.kind == FIT_REGIONS);
@@ -466,7 +486,7 @@ static void write_sentence(const struct plan *plan, struct fit_part thing, struc
     case FIT_N_RELATIONS:
         verb = is_many ? "are never used with" : "is never used with";
         snprintf(fact, sizeof fact, "%s",
-                 is_of_other(plan, thing) || !is_of_other(plan, with)
+                 fit_is_of_other(plan, thing) || !fit_is_of_other(plan, with)
                      ? is_many ? "they belong to another patient" : "it belongs to another patient"
                      : "that one belongs to another patient");
         break;

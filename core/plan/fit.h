@@ -58,6 +58,8 @@ void fit_sentence(const struct plan *plan, struct fit_part thing, struct fit_par
 void fit_accepted_sentence(const struct plan *plan, struct fit_part thing, struct fit_part with,
                            enum fit_relation relation, char why[FIT_WHY_SIZE]);
 
+/* True if a part is of another patient than the one that is shown: never drawn, counted or written. */
+bool fit_is_of_other(const struct plan *plan, struct fit_part part);
 /* The first image that is not of another patient; -1: none. */
 int fit_first_image(const struct plan *plan);
 
@@ -69,3 +71,6 @@ bool fit_part_read(const struct plan *plan, const char *text, struct fit_part *p
 /* The factor that brings a value from one unit to another: Gy, cGy and mGy. False: they do not convert, or one is
  * unknown. */
 bool fit_unit_factor(const char *from, const char *to, double *factor);
+/* What a dose is per, in one spelling: "plan" of "PLAN", "per plan" and "the whole plan". */
+enum { FIT_PER_SIZE = 80 };
+const char *fit_per(const struct dose *dose, char word[FIT_PER_SIZE]);

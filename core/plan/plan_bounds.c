@@ -1,5 +1,7 @@
-/* Computes the bounds of a plan from its regions, images, doses and beams. */
+/* Computes the bounds of a plan from its regions, images, doses and beams, without those of other patients. */
 #include "core/plan/plan_bounds.h"
+
+#include "core/plan/fit.h"
 
 static void add_box(struct box3 *bounds, const struct box3 *box)
 {
@@ -15,6 +17,8 @@ static struct box3 box_of_regions(const struct plan *plan)
     for (size_t i = 0; i < plan->regions.n_regions; i++) {
         const struct region *region = &plan->regions.regions[i];
         const struct affine *map = &plan->regions.layers[region->layer]->grid.lps_mm_from_ijk;
+        if (fit_is_of_other(plan, fit_part_of_region(plan, i)))
+            continue;
         for (int corner = 0; region->n_voxels > 0 && corner < 8; corner++)
             box3_add(&bounds,
                      affine_point(map, vec3(corner & 1 ? region->high_ijk[0] + 0.5 : region->low_ijk[0] - 0.5,
@@ -44,6 +48,8 @@ static struct box3 box_of_beams(const struct plan *plan)
     static const double half_mm = 150;
     struct box3 bounds = box3_empty();
     for (size_t i = 0; i < plan->n_beams; i++) {
+        if (fit_is_of_other(plan, (struct fit_part){ FIT_BEAM, i }))
+            continue;
         struct vec3 target = plan->beams[i].target_lps_mm;
         box3_add(&bounds, vec3(target.x - half_mm, target.y - half_mm, target.z - half_mm));
         box3_add(&bounds, vec3(target.x + half_mm, target.y + half_mm, target.z + half_mm));
@@ -55,12 +61,15 @@ void plan_measure_bounds(struct plan *plan)
 {
     struct box3 regions = box_of_regions(plan), others = box3_empty();
     for (size_t i = 0; i < plan->n_images; i++) {
+        if (fit_is_of_other(plan, (struct fit_part){ FIT_IMAGE, i }))
+            continue;
         struct box3 box = grid_bounds_lps_mm(&plan->images[i].volume->grid);
         check_part(plan, &regions, &box, "image", plan->images[i].id);
         add_box(&others, &box);
     }
     for (size_t i = 0; i < plan->n_doses; i++)
-        for (size_t c = 0; c < plan->doses[i].n_components; c++) {
+        for (size_t c = 0; !fit_is_of_other(plan, (struct fit_part){ FIT_DOSE, i }) && c < plan->doses[i].n_components;
+             c++) {
             struct box3 box = grid_bounds_lps_mm(&plan->doses[i].components[c].values->grid);
             if (c == 0)
                 check_part(plan, &regions, &box, "dose", plan->doses[i].id);

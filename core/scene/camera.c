@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "core/plan/fit.h"
+
 /* Extent of the home picture over that of the plan. */
 static const double home_margin = 1.08;
 /* The home camera of 3-D looks from the front, turned towards the patient's left, from above. web/js/view/home.js has
@@ -39,7 +41,8 @@ static struct vec3 box_centre(const struct box3 *box)
 
 static struct box3 pane_box(const struct plan *plan)
 {
-    return plan->n_images ? grid_bounds_lps_mm(&plan->images[0].volume->grid) : plan_box(plan);
+    int image = fit_first_image(plan);
+    return image >= 0 ? grid_bounds_lps_mm(&plan->images[image].volume->grid) : plan_box(plan);
 }
 
 static double box_diagonal(const struct box3 *box)

@@ -286,7 +286,8 @@ bool dose_choice_in(const struct snapshot *snapshot, size_t dose, enum scene_dos
 static double factor_beside(const struct snapshot *snapshot, size_t second)
 {
     const struct dose *first = &snapshot->plan->doses[snapshot->dose], *other = &snapshot->plan->doses[second];
-    return strcmp(first->per, other->per) == 0 ? snapshot->scene.dose.factor : 1;
+    char pers[2][FIT_PER_SIZE];
+    return strcmp(fit_per(first, pers[0]), fit_per(other, pers[1])) == 0 ? snapshot->scene.dose.factor : 1;
 }
 
 struct fit_use dose_compared_use(const struct snapshot *snapshot, size_t second)

@@ -9,6 +9,7 @@
 
 #include "core/base/mem.h"
 #include "core/dose/weights.h"
+#include "core/plan/fit.h"
 #include "core/region/target.h"
 #include "dose_presets.h" /* generated from proto/dose_presets.json */
 
@@ -99,7 +100,7 @@ static void first_weights(const struct plan *plan, struct scene_dose_style *styl
     const struct region_set *set = &plan->regions;
     bool is_from_file = false;
     for (size_t i = 0; i < set->n_regions; i++)
-        is_from_file |= has_tissue_data(&set->regions[i]);
+        is_from_file |= has_tissue_data(&set->regions[i]) && !fit_is_of_other(plan, fit_part_of_region(plan, i));
     if (set->n_regions == 0 || !has_summands(plan))
         return;
     style->weights = mem_new(set->n_regions * sizeof *style->weights); /* at most REGION_MAX */

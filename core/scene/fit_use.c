@@ -32,6 +32,7 @@ bool acceptances_copy(const struct acceptances *from, struct acceptances *to, st
     return true;
 }
 
+/* That of the pair, whichever of the two it names first. */
 static const struct acceptance *acceptance_of(const struct scene_fits *fits, struct fit_part thing,
                                               struct fit_part with)
 {
@@ -40,10 +41,12 @@ static const struct acceptance *acceptance_of(const struct scene_fits *fits, str
         return NULL;
     fit_part_write(fits->plan, thing, words[0]);
     fit_part_write(fits->plan, with, words[1]);
-    for (size_t i = 0; i < fits->acceptances.n; i++)
-        if (strcmp(fits->acceptances.items[i].thing, words[0]) == 0 &&
-            strcmp(fits->acceptances.items[i].with, words[1]) == 0)
-            return &fits->acceptances.items[i];
+    for (size_t i = 0; i < fits->acceptances.n; i++) {
+        const struct acceptance *item = &fits->acceptances.items[i];
+        if ((strcmp(item->thing, words[0]) == 0 && strcmp(item->with, words[1]) == 0) ||
+            (strcmp(item->thing, words[1]) == 0 && strcmp(item->with, words[0]) == 0))
+            return item;
+    }
     return NULL;
 }
 
@@ -172,11 +175,10 @@ void scene_fits_finish(struct scene_fits *fits)
     fits->has_unused_regions = false;
 }
 
-/* What a dose is per, when it counts so many times. */
-static const char *per_of(const struct dose *dose, double factor)
+const char *dose_per_counted(const struct dose *dose, double factor, char word[FIT_PER_SIZE])
 {
-    bool is_whole = strcmp(dose->per, "fraction") == 0 && factor > 1.5 && fabs(factor - round(factor)) < 1e-9;
-    return is_whole ? "plan" : dose->per;
+    bool is_whole = factor > 1.5 && fabs(factor - round(factor)) < 1e-9;
+    return strcmp(fit_per(dose, word), "fraction") == 0 && is_whole ? "plan" : word;
 }
 
 struct fit_use dose_join_of(const struct scene_fits *fits, size_t second, double second_factor, size_t first,
@@ -185,7 +187,9 @@ struct fit_use dose_join_of(const struct scene_fits *fits, size_t second, double
     const struct fit_part parts[2] = { { FIT_DOSE, second }, { FIT_DOSE, first } };
     const struct dose *doses[2] = { &fits->plan->doses[second], &fits->plan->doses[first] };
     struct fit fit = fit_of(fits->plan, parts[0], parts[1]);
-    if (strcmp(per_of(doses[0], second_factor), per_of(doses[1], first_factor)) == 0)
+    char pers[2][FIT_PER_SIZE];
+    if (strcmp(dose_per_counted(doses[0], second_factor, pers[0]), dose_per_counted(doses[1], first_factor, pers[1])) ==
+        0)
         fit.reasons &= ~(1U << FIT_PER);
     if (join == DOSE_JOIN_COMPARE)
         fit.reasons &= ~(1U << FIT_PLAN);

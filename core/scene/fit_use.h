@@ -57,13 +57,15 @@ static inline const struct fit_use *region_use(const struct scene_fits *fits, si
     return &fits->regions[fit_part_of_region(fits->plan, region).index];
 }
 
+/* What a dose is per when it counts so many times: a whole number above 1 of a dose per fraction makes it one of the
+ * whole plan. */
+const char *dose_per_counted(const struct dose *dose, double factor, char word[FIT_PER_SIZE]);
 /* How two doses are put together. */
 enum dose_join {
     DOSE_JOIN_SUM,    /* added: of one treatment plan, else a person's word */
     DOSE_JOIN_COMPARE /* beside each other: of any treatment plan of the same patient and frame */
 };
-/* Whether a second dose is used with the first one. factor: how many times each counts; a whole number above 1 of a
- * dose per fraction makes it one of the whole plan. */
+/* Whether a second dose is used with the first one. factor: how many times each counts. */
 struct fit_use dose_join_of(const struct scene_fits *fits, size_t second, double second_factor, size_t first,
                             double first_factor, enum dose_join join);
 /* The sentence of a use. */

@@ -198,11 +198,24 @@ static bool region_has_children(const struct region_set *set, size_t index)
     return false;
 }
 
-/* In the first target, else the image's centre, else the plan's; on the centre of a voxel of the first image. */
-static struct vec3 first_crosshair_lps_mm(const struct plan *plan)
+/* The first target that is used with the first image and dose; -1: none. */
+static int first_target(const struct plan *plan, int image)
 {
-    const struct grid *grid = plan->n_images ? &plan->images[0].volume->grid : NULL;
-    int target = region_first_target(&plan->regions);
+    struct scene_fits *fits = mem_new(sizeof *fits);
+    struct error err = { 0 };
+    int target = scene_fits_of(plan, image, -1, plan->n_doses ? 0 : -1, NULL, fits, &err)
+                     ? region_first_target(&fits->used)
+                     : -1;
+    scene_fits_finish(fits);
+    free(fits);
+    return target;
+}
+
+/* In the first target, else the image's centre, else the plan's; on the centre of a voxel of the first image. */
+static struct vec3 first_crosshair_lps_mm(const struct plan *plan, int image)
+{
+    const struct grid *grid = image >= 0 ? &plan->images[image].volume->grid : NULL;
+    int target = first_target(plan, image);
     struct vec3 at = vec3(0, 0, 0);
     if (target >= 0)
         at = region_middle_lps_mm(&plan->regions, (size_t)target);
@@ -250,20 +263,24 @@ void scene_for_plan(const struct plan *plan, struct scene *scene)
             entry->value.opacity = region->file_opacity;
     }
     scene_first_dose(plan, &scene->dose);
-    struct vec3 at = first_crosshair_lps_mm(plan);
+    int first = plan->n_images ? fit_first_image(plan) : -1;
+    struct vec3 at = first_crosshair_lps_mm(plan, first);
     scene->image.slices.sagittal.position_mm = at.x;
     scene->image.slices.coronal.position_mm = at.y;
     scene->image.slices.axial.position_mm = at.z;
-    if (plan->n_images) {
+    if (first >= 0) {
+        const struct plan_image *image = &plan->images[first];
+        if (first > 0) /* those before it are of another patient: it is named, so that nobody takes the first one */
+            snprintf(scene->image.id, sizeof scene->image.id, "%s", image->id);
         scene->image.slices.axial.visible = true;
         scene->image.slices.coronal.visible = scene->image.slices.sagittal.visible = set->n_regions == 0;
-        scene->image.window.center = plan->images[0].window_center;
-        scene->image.window.width = plan->images[0].window_width;
-        first_transfer_function(&plan->images[0], &scene->image.volume);
+        scene->image.window.center = image->window_center;
+        scene->image.window.width = image->window_width;
+        first_transfer_function(image, &scene->image.volume);
         const struct scene_window *window = &scene->image.window;
-        if (strcmp(plan->images[0].unit, "HU") == 0)
+        if (strcmp(image->unit, "HU") == 0)
             scene->image.cull_below = -500;
-        else if (!plan->images[0].is_inverted) /* in an inverted image low values are bright and not air */
+        else if (!image->is_inverted) /* in an inverted image low values are bright and not air */
             scene->image.cull_below = fmax(window->center - 0.45 * window->width, -WINDOW_CENTER_FARTHEST);
     }
 }

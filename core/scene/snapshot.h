@@ -52,7 +52,8 @@ struct snapshot *snapshot_ref(const struct snapshot *snapshot);
 void snapshot_unref(const struct snapshot *snapshot);
 
 /* The scene a new room starts with. Every region is visible in its own colour; regions that contain others are
- * translucent (opacity 0.35 if outermost, else 0.45), the others opaque. The window is that of the first image. Slices
+ * translucent (opacity 0.35 if outermost, else 0.45), the others opaque. The first image is the first that is not of
+ * another patient, the first target one that is used with it. The window is that of the first image. Slices
  * go through the middle of the first target (core/region/target.h), else of the first image, else of the plan, and
  * through the centre of the first image's voxel there. If there is an image the axial slice is visible in space, and
  * all three are in a plan without regions. Fills scene, which scene_finish frees. */

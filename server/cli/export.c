@@ -7,6 +7,7 @@
 
 #include "core/base/file_write.h"
 #include "core/derive/shapes.h"
+#include "core/plan/fit.h"
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/open_plan.h"
@@ -41,6 +42,10 @@ static void print_help(void)
 static const struct region *find_region(const struct plan *plan, const char *id, struct error *err)
 {
     const struct region *region = region_find(&plan->regions, id);
+    if (region && fit_is_of_other(plan, fit_part_of_region(plan, (size_t)(region - plan->regions.regions)))) {
+        error_set(err, ERROR_STATE, "the region \"%.63s\" belongs to another patient than the one shown", id);
+        return NULL;
+    }
     if (region)
         return region;
     char list[160] = "";

@@ -68,6 +68,11 @@ cJSON *answer_surface(struct question *question, struct derive *derived, struct 
         (void)problem_set(problem, PROBLEM_NOT_FOUND, "/region", "", "the plan has no region \"%.64s\"", id);
         return NULL;
     }
+    if (fit_is_of_other(plan, fit_part_of_region(plan, (size_t)(region - plan->regions.regions)))) {
+        (void)problem_set(problem, PROBLEM_NOT_FOUND, "/region", "not-used",
+                          "the region \"%.64s\" belongs to another patient than the one shown", id);
+        return NULL;
+    }
     if (!shape_query_read(question->packet.json, &query, problem))
         return NULL;
     struct error err = { 0 };

@@ -94,7 +94,7 @@ void dose_add_weights(cJSON *json, const struct snapshot *snapshot)
     cJSON *list = cJSON_AddArrayToObject(json, "weights");
     for (size_t r = 0; r < set->n_regions; r++) {
         const struct scene_tissue_weights *weights = scene_weights_of(snapshot->plan, &snapshot->scene, r);
-        if (!weights)
+        if (!weights || !fit_is_used(region_use(&snapshot->fits, r)))
             continue;
         cJSON *row = weights_object(weights, snapshot->scene.dose.blood_ppm);
         cJSON_AddStringToObject(row, "region", set->regions[r].id);
@@ -131,7 +131,8 @@ void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct d
 {
     const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
     const struct scene_dose_style *style = &snapshot->scene.dose;
-    char unit[DOSE_UNIT_SIZE];
+    char unit[DOSE_UNIT_SIZE], per[FIT_PER_SIZE];
+    bool is_whole = strcmp(dose_per_counted(dose, style->factor, per), fit_per(dose, per)) != 0;
     dose_shown_unit(dose,
                     style->quantity == SCENE_DOSE_QUANTITY_WEIGHTED       ? DOSE_SHOWN_WEIGHTED
                     : style->quantity == SCENE_DOSE_QUANTITY_ISOEFFECTIVE ? DOSE_SHOWN_ISOEFFECTIVE
@@ -139,7 +140,7 @@ void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct d
                     snapshot->dose_choice.quantity, unit);
     cJSON_AddStringToObject(json, "id", dose->id);
     cJSON_AddStringToObject(json, "name", dose->name);
-    cJSON_AddStringToObject(json, "per", dose->per);
+    cJSON_AddStringToObject(json, "per", is_whole ? "plan" : dose->per); /* fractions that are counted make the plan */
     cJSON_AddStringToObject(json, "quantity", scene_dose_quantity_words.words[style->quantity]);
     cJSON_AddStringToObject(json, "unit", unit);
     dose_add_text(json, "reason", scale->field ? NULL : scale->why.text);

@@ -204,6 +204,10 @@ static cJSON *stated_object(const struct asking *asking, const struct curve *cur
                    choice->quantity == dose->components[0].quantity;
     double unit = 1; /* the curve is in the unit of the dose shown */
     is_same &= dose == in || fit_unit_factor(dose->unit, in->unit, &unit);
+    const struct plan *plan = asking->snapshot->plan;
+    struct fit_part region = fit_part_of_region(plan, (size_t)(curve->region - plan->regions.regions));
+    struct fit fit = fit_of(plan, region, (struct fit_part){ FIT_DOSE, curve->dose->dose });
+    is_same &= !(fit.reasons & (1U << FIT_PLAN | 1U << FIT_PATIENT)); /* names are those of its own structure set */
     for (size_t i = 0; is_same && i < dose->n_stated; i++) {
         const struct dose_stated *stated = &dose->stated[i];
         if (strcmp(stated->region, curve->region->name) != 0)

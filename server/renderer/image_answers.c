@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/derive/image_histogram.h"
+#include "core/plan/fit.h"
 #include "core/volume/ellipse.h"
 #include "server/renderer/answers.h"
 #include "server/wire/document.h"
@@ -13,11 +14,15 @@ static void add_number(cJSON *json, const char *name, double value)
     cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
-/* NULL with problem: the plan has no such image. */
+/* NULL with problem: the plan has no such image, or it is of another patient. */
 static const struct plan_image *find_image(const struct plan *plan, const char *id, struct problem *problem)
 {
     for (size_t i = 0; i < plan->n_images; i++)
-        if (strcmp(plan->images[i].id, id) == 0)
+        if (strcmp(plan->images[i].id, id) == 0 && fit_is_of_other(plan, (struct fit_part){ FIT_IMAGE, i })) {
+            (void)problem_set(problem, PROBLEM_NOT_FOUND, "/image", "not-used",
+                              "the image \"%.64s\" belongs to another patient than the one shown", id);
+            return NULL;
+        } else if (strcmp(plan->images[i].id, id) == 0)
             return &plan->images[i];
     (void)problem_set(problem, PROBLEM_NOT_FOUND, "/image", "", "the plan has no image \"%.64s\"", id);
     return NULL;

@@ -18,17 +18,27 @@ static bool read_point(const char *text, struct vec3 *point)
     return true;
 }
 
-/* From the beam's entry through its target to where the dose's grid or the regions end. */
-static bool follow_beam(const struct plan *plan, const struct beam *beam, const struct dose *dose,
+static bool has_regions(const struct region_set *regions, size_t layer)
+{
+    for (size_t r = 0; r < regions->n_regions; r++)
+        if (regions->regions[r].n_voxels > 0 && regions->regions[r].layer == layer)
+            return true;
+    return false;
+}
+
+/* From the beam's entry through its target to where the dose's grid or the regions that are used end. */
+static bool follow_beam(const struct region_set *regions, const struct beam *beam, const struct dose *dose,
                         struct profile_line *line, struct problem *problem)
 {
     struct vec3 way = vec3_sub(beam->target_lps_mm, beam->entry_lps_mm);
     double low = INFINITY, high = -INFINITY;
     line->ray.from_lps_mm = beam->entry_lps_mm;
     line->ray.direction = vec3_normalize(way);
-    for (size_t i = 0; i < dose->n_components + plan->regions.n_layers; i++) {
+    for (size_t i = 0; i < dose->n_components + regions->n_layers; i++) {
+        if (i >= dose->n_components && !has_regions(regions, i - dose->n_components))
+            continue;
         const struct volume *volume =
-            i < dose->n_components ? dose->components[i].values : plan->regions.layers[i - dose->n_components];
+            i < dose->n_components ? dose->components[i].values : regions->layers[i - dose->n_components];
         double from = 0, to = 4 * GRID_FARTHEST_MM;
         if (vec3_length(way) > 0 && ray_clip(&line->ray, &volume->grid, &from, &to)) {
             low = fmin(low, from);
@@ -74,7 +84,8 @@ bool profile_line_find(const struct snapshot *snapshot, const struct dose *dose,
     if (asked->has_beam) {
         for (size_t i = 0; i < plan->n_beams; i++)
             if (strcmp(plan->beams[i].id, asked->beam) == 0)
-                return is_used(snapshot, i, problem) && follow_beam(plan, &plan->beams[i], dose, line, problem) &&
+                return is_used(snapshot, i, problem) &&
+                       follow_beam(&snapshot->fits.used, &plan->beams[i], dose, line, problem) &&
                        narrow(&snapshot->fits.used, line, problem);
         return problem_set(problem, PROBLEM_NOT_FOUND, "/beam", "", "the plan has no beam \"%.64s\"", asked->beam);
     }

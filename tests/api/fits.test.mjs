@@ -29,6 +29,8 @@ const beside = {
   'beam-frame': (folder) => putPlan(folder, elsewhere, { uid: '1.2.75', label: 'OTHER', file: 'plan-b.dcm', beam: 'Other', isocenter: '20\\8\\6', date: '20200101' }),
   'beam-patient': (folder) => putPlan(folder, berta, { uid: '1.2.75', label: 'OTHER', file: 'plan-b.dcm', beam: 'Other', isocenter: '20\\8\\6', date: '20200101' }),
   'image-frame': (folder) => putImages(folder, elsewhere, { series: '1.2.55', modality: 'MR', prefix: 'mr' }),
+  'target-patient': (folder) => putStructs(folder, berta, { uid: '1.2.65', file: 'structs-z.dcm', name: 'GTV', left: 300 }),
+  'image-patient-first': (folder) => putImages(folder, berta, { series: '1.2.11', modality: 'CT', prefix: 'aa', n: 4 }),
   'image-patient': (folder) => putImages(folder, berta, { series: '1.2.55', modality: 'MR', prefix: 'mr' }),
 };
 let daemon, api, root;
@@ -57,6 +59,8 @@ after(async () => { await daemon?.stop(); rmSync(root, { recursive: true, force:
 const idOf = (list, own) => list.find(({ id }) => id !== own)?.id;
 const first = (name) => plans[name].doses.find((dose) => (plans[name].doses.length > 1 ? dose.name === 'A' : true)).id;
 
+const ct = (name) => plans[name].images.find(({ modality, patient }) => modality === 'CT' && plans[name].patients[patient].masked === plans.alone.patients[0].masked);
+
 /** All that a scene can ask of a dose, regions, a beam and an image. */
 function asking(name) {
   const plan = plans[name], dose = first(name), other = idOf(plan.doses, dose);
@@ -68,7 +72,7 @@ function asking(name) {
     constraints: { c: { region: 'box', quantity: 'total', metric: 'mean', limit: 1 } },
     regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { visible: true, texture: 'dose', color: '#ff8800', opacity: 1 }])),
     beam: { looks: Object.fromEntries(plan.beams.map(({ id }) => [id, { visible: true }])) },
-    image: { id: plan.images.find(({ modality }) => modality === 'CT').id, ...(idOf(plan.images, 'ct') ? { blend: { id: idOf(plan.images, 'ct'), opacity: 0.5 } } : {}) },
+    image: { id: ct(name).id, ...(idOf(plan.images, ct(name).id) ? { blend: { id: idOf(plan.images, ct(name).id), opacity: 0.5 } } : {}) },
   };
 }
 
@@ -86,6 +90,33 @@ test('what does not fit changes no pixel of a pane or of a view into space', asy
   const expected = Object.fromEntries(await Promise.all(kinds.map(async (kind) => [kind, await picture('alone', asking('alone'), kind)])));
   for (const name of Object.keys(beside).filter((each) => each !== 'alone'))
     for (const kind of kinds) assert.equal((await picture(name, asking(name), kind)).equals(expected[kind]), !isUsed.includes(name), `${name}, ${kind}`);
+});
+
+test('a new room begins as without it: image, window, crosshair, dose and how far a view into space reaches', async () => {
+  const sceneOf = async (name) => {
+    await openPlan(daemon.url, `p-${name}`);
+    const room = (await call(`${api}/rooms`, 'POST', { plan: `p-${name}` })).json.id;
+    const { image, dose, beam } = (await call(`${api}/rooms/${room}/scene`)).json;
+    return { image: { ...image, id: image.id || plans[name].images[0].id }, dose, beam };
+  };
+  const expected = await sceneOf('alone');
+  for (const name of Object.keys(beside).filter((each) => each !== 'alone')) {
+    const found = await sceneOf(name);
+    assert.equal(found.image.id, ct(name).id, name);
+    assert.deepEqual({ ...found, image: { ...found.image, id: expected.image.id } }, expected, name);
+    if (!['regions-frame', 'regions-set'].includes(name)) assert.deepEqual(plans[name].bounds_mm, plans.alone.bounds_mm, name);
+    if (plans[name].regions.length > 1) continue; // their colours are given in turn
+    for (const kind of kinds) assert.ok((await picture(name, undefined, kind)).equals(await picture('alone', undefined, kind)), `${name}, ${kind}`);
+  }
+});
+
+test('no surface of a region and no values of an image of another patient are given out', async () => {
+  const region = plans['target-patient'].regions.find(({ name }) => name === 'GTV').id, image = plans['image-patient-first'].images.find(({ id }) => id !== ct('image-patient-first').id).id;
+  for (const path of [`p-target-patient/regions/${region}/surface`, `p-target-patient/regions/${region}/surface?format=stl`, `p-image-patient-first/images/${image}/histogram`]) {
+    const answer = await call(`${api}/plans/${path}`);
+    assert.equal(answer.status, 404, `${path}: ${answer.text}`);
+    assert.match(answer.text, /another patient/);
+  }
 });
 
 /** The numbers of every read-out of the first dose, its regions and its beam. */

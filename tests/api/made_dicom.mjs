@@ -54,10 +54,10 @@ export function putImages(folder, owner, { series = '1.2.51', modality = 'CT', p
   }
 }
 
-/** A box, named, of 12 x 12 mm on the slices from 3 to 15 mm. */
-export function putStructs(folder, owner, { uid = '1.2.61', series = '1.2.51', file = 'structs.dcm', name = 'Box' } = {}) {
+/** A box, named, of 12 x 12 mm on the slices from 3 to 15 mm, moved toward the left by `left` mm. */
+export function putStructs(folder, owner, { uid = '1.2.61', series = '1.2.51', file = 'structs.dcm', name = 'Box', left = 0 } = {}) {
   const frame = owner.frame ?? '1.2.41';
-  const contours = [1, 2, 3, 4, 5].map((k) => [[0x30060042, 'CS', 'CLOSED_PLANAR'], [0x30060046, 'IS', 4], [0x30060050, 'DS', [8, 8, 20, 8, 20, 20, 8, 20].flatMap((v, i) => (i % 2 ? [v, 3 * k] : [v])).join('\\')]]);
+  const contours = [1, 2, 3, 4, 5].map((k) => [[0x30060042, 'CS', 'CLOSED_PLANAR'], [0x30060046, 'IS', 4], [0x30060050, 'DS', [8, 8, 20, 8, 20, 20, 8, 20].flatMap((v, i) => (i % 2 ? [v, 3 * k] : [v + left])).join('\\')]]);
   const frames = sequence(0x30060010, [[0x00200052, 'UI', frame], sequence(0x30060012, [sequence(0x30060014, [[0x0020000e, 'UI', series]])])]);
   writeFileSync(join(folder, file), dicomFile([...owned(owner, '481.3', uid, 'RTSTRUCT', '1.2.62'), [0x30060002, 'SH', 'Set'], frames,
     sequence(0x30060020, [[0x30060022, 'IS', 1], [0x30060024, 'UI', frame], [0x30060026, 'LO', name]]),

@@ -130,6 +130,10 @@ static void two_doses_join_only_in_units_that_convert(void **state)
         { { "Gy", "Gy" }, { "plan", "plan" }, { DOSE_TOTAL, DOSE_WEIGHTED_TOTAL }, FIT_UNIT },
         { { "Gy", "Gy" }, { "plan", "fraction" }, { DOSE_TOTAL, DOSE_TOTAL }, FIT_PER },
         { { "Gy", "Gy" }, { "plan", "" }, { DOSE_TOTAL, DOSE_TOTAL }, FIT_PER },
+        { { "Gy", "Gy" }, { "plan", "PLAN" }, { DOSE_TOTAL, DOSE_TOTAL }, FIT_SAME },
+        { { "Gy", "Gy" }, { "plan", "per  the Whole plan " }, { DOSE_TOTAL, DOSE_TOTAL }, FIT_SAME },
+        { { "Gy", "Gy" }, { "a fraction", "fx" }, { DOSE_TOTAL, DOSE_TOTAL }, FIT_SAME },
+        { { "Gy", "Gy" }, { "the whole treatment", "plan" }, { DOSE_TOTAL, DOSE_TOTAL }, FIT_PER },
     };
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         struct plan *plan = make();
@@ -202,6 +206,10 @@ static void a_persons_word_counts_for_its_pair_alone(void **state)
     fits = fits_of(plan, 0, 0, &accepted);
     assert_int_equal(fits.doses[0].state, FIT_USED);
     scene_fits_finish(&fits);
+    struct acceptance turned = { .thing = "image:mr", .with = "dose:a", .by = "Anna" };
+    fits = fits_of(plan, 1, 0, &(struct acceptances){ &turned, 1 }); /* the pair counts, not which is named first */
+    assert_int_equal(fits.doses[0].state, FIT_USED_BY_WORD);
+    scene_fits_finish(&fits);
     plan->dose_origins[0].patient = 1; /* another patient is never accepted */
     fits = fits_of(plan, 1, 0, &accepted);
     assert_int_equal(fits.doses[0].state, FIT_NOT_USED);
@@ -234,6 +242,10 @@ static void a_dose_per_fraction_joins_the_plans_once_fractions_are_given(void **
         double factor;
         bool is_used;
     } cases[] = { { 1, false }, { 30, true }, { 2.5, false } };
+    char per[FIT_PER_SIZE];
+    assert_string_equal(dose_per_counted(&plan->doses[1], 30, per), "plan");
+    assert_string_equal(dose_per_counted(&plan->doses[1], 1, per), "fraction");
+    assert_string_equal(dose_per_counted(&plan->doses[0], 2, per), "plan");
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         struct fit_use use = dose_join_of(&fits, 1, cases[c].factor, 0, 1, DOSE_JOIN_SUM);
         assert_int_equal(fit_is_used(&use), cases[c].is_used);

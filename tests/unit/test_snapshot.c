@@ -1,4 +1,5 @@
 /* What a scene may name: only what the plan has. */
+#include "core/plan/plan_bounds.h"
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
@@ -76,6 +77,45 @@ static void a_new_room_leaves_out_air_and_not_what_is_white(void **state)
         assert_int_equal(scene.image.low_values, SCENE_LOW_VALUES_OWN);
         scene_finish(&scene);
     }
+    plan_and_derived_destroy(plan);
+}
+
+/* Image 1, the half and a beam are of another patient than the 20 mm of image 2, who has more slices. */
+static void a_new_room_begins_with_the_image_of_the_shown_patient(void **state)
+{
+    (void)state;
+    struct plan *plan = make_plan();
+    struct grid grid = made_cube_grid(20);
+    struct scene scene;
+    volume_unref(plan->images[1].volume);
+    plan->images[1].volume = made_volume(&grid, VOXEL_U8, label);
+    plan->n_patients = 2;
+    plan->image_origins[0] = (struct part_origin){ .patient = 0, .treatment_plan = -1 };
+    plan->image_origins[1] = (struct part_origin){ .patient = 1, .treatment_plan = -1 };
+    plan->region_origins = mem_new(sizeof *plan->region_origins);
+    plan->region_origins[0] = (struct part_origin){ .patient = 0, .treatment_plan = -1 };
+    plan->n_region_origins = 1;
+    plan->regions.regions[0].origin = 1;
+    plan->regions.regions[0].is_target = true;
+    for (int d = 0; d < 2; d++)
+        plan->dose_origins[d] = (struct part_origin){ .patient = 0, .treatment_plan = -1 };
+    plan->images[1].window_center = 77;
+
+    scene_for_plan(plan, &scene);
+    assert_string_equal(scene.image.id, "image-2");
+    assert_close(scene.image.window.center, 77, 1e-9);
+    assert_close(fabs(scene.image.slices.sagittal.position_mm), 0.5, 1e-9); /* the image's middle, not the target's 1 */
+    plan_measure_bounds(plan);
+    assert_close(plan->bounds_lps_mm.high.x, 10, 1e-9);
+    struct view view = view_default;
+    struct error err = { 0 };
+    char field[128];
+    struct snapshot *snapshot = snapshot_create(derived_of(plan), &scene, &view, 1, field, &err);
+    assert_string_equal(err.text, "");
+    assert_int_equal(snapshot->image, 1);
+    assert_false(snapshot->styles[0].visible);
+    assert_false(snapshot->has_dose_choice);
+    snapshot_unref(snapshot);
     plan_and_derived_destroy(plan);
 }
 
@@ -204,6 +244,7 @@ int main(void)
         cmocka_unit_test(a_plan_without_images_and_doses_has_neither),
         cmocka_unit_test(a_new_room_begins_at_a_voxel_in_the_first_target_or_in_the_images_middle),
         cmocka_unit_test(a_plan_without_regions_shows_its_three_slices_in_space),
+        cmocka_unit_test(a_new_room_begins_with_the_image_of_the_shown_patient),
         cmocka_unit_test(a_new_room_leaves_out_air_and_not_what_is_white),
         cmocka_unit_test(a_new_room_has_a_transfer_function_that_fits_the_first_image_and_shows_no_volume),
     };
