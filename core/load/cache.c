@@ -338,6 +338,7 @@ static void release_parts(struct plan *plan)
         volume_unref(plan->doses[d].mask);
     }
     track_set_finish(&plan->tracks);
+    free(plan->region_origins);
     for (size_t c = 0; c < PLAN_MAX_CURVES; c++)
         dose_curve_finish(&plan->curves[c]);
     report_finish(&plan->report);
