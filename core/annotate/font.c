@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/invisible.h"
 #include "core/base/mem.h"
 
 #ifndef ANNOTATE_FONT
@@ -115,12 +116,9 @@ int font_descent_px(const struct font *font)
 
 /* ---- characters ------------------------------------------------------------------------------------------------- */
 
-/* Controls, and characters that change the direction of text or break lines. */
 static bool is_printable(uint32_t c)
 {
-    return c >= 0x20 && !(c >= 0x7f && c < 0xa0) && c != 0xad && !(c >= 0x200b && c <= 0x200f) &&
-           !(c >= 0x2028 && c <= 0x202e) && !(c >= 0x2060 && c <= 0x206f) && !(c >= 0xd800 && c < 0xe000) &&
-           c != 0xfeff && c <= 0x10ffff;
+    return c >= 0x20 && !(c >= 0x7f && c < 0xa0) && c != 0x2065 && !(c >= 0xd800 && c < 0xe000) && c <= 0x10ffff;
 }
 
 /* Reads one character of UTF-8 and moves *at behind it, by at least one byte. REPLACEMENT for anything else. */
@@ -147,17 +145,49 @@ static bool load(struct font *font, uint32_t character, FT_Int32 flags, struct e
     return is_done(font, status, err);
 }
 
+enum { HALF = FONT_MAX_CHARACTERS / 2 };
+/* Characters of a text: the first HALF, and the last HALF of those after them. */
+struct kept {
+    uint32_t first[HALF], last[HALF]; /* last: a ring */
+    size_t n;                         /* all, also those given up */
+};
+
+static void keep(struct kept *kept, uint32_t c)
+{
+    *(kept->n < HALF ? &kept->first[kept->n] : &kept->last[kept->n % HALF]) = c;
+    kept->n++;
+}
+
+static void keep_ascii(struct kept *kept, const char *text)
+{
+    for (; *text; text++)
+        keep(kept, (unsigned char)*text);
+}
+
+/* Keeps the character, or the tag of one that does not show. */
+static void keep_visible(struct kept *kept, uint32_t c)
+{
+    const char *tag = invisible_tag(c);
+    if (!tag) {
+        keep(kept, c);
+        return;
+    }
+    keep(kept, 0xab); /* « */
+    keep_ascii(kept, tag);
+    keep(kept, 0xbb);
+}
+
 bool font_lay_out(struct font *font, const char *text, int max_width_px, struct font_line *line, struct error *err)
 {
-    enum { HALF = FONT_MAX_CHARACTERS / 2 };
-    uint32_t last[HALF]; /* a ring of the characters after the first HALF */
-    size_t n = 0;
+    struct kept kept;
+    kept.n = 0;
     *line = (struct font_line){ .n = 0 };
-    for (const unsigned char *at = (const unsigned char *)text; *at; n++)
-        *(n < HALF ? &line->characters[n] : &last[n % HALF]) = next_character(&at);
-    size_t n_first = n < HALF ? n : HALF, n_last = n - n_first < HALF ? n - n_first : HALF;
+    for (const unsigned char *at = (const unsigned char *)text; *at;)
+        keep_visible(&kept, next_character(&at));
+    size_t n = kept.n, n_first = n < HALF ? n : HALF, n_last = n - n_first < HALF ? n - n_first : HALF;
+    memcpy(line->characters, kept.first, n_first * sizeof kept.first[0]);
     for (size_t i = 0; i < n_last; i++)
-        line->characters[n_first + i] = last[(n - n_last + i) % HALF];
+        line->characters[n_first + i] = kept.last[(n - n_last + i) % HALF];
     int n_kept = line->n = (int)(n_first + n_last);
     for (int i = 0; i < n_kept; i++) {
         if (!load(font, line->characters[i], 0, err))

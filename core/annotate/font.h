@@ -1,7 +1,7 @@
 #pragma once
 /* Text as pixels, by FreeType, with the font DejaVu Sans, which is compiled in: the renderer is confined and reads no
- * font file. The only file with FreeType. Text is any bytes: what is not UTF-8, and characters that do not print, are
- * drawn as U+FFFD. No shaping: each character is drawn on its own, left to right. */
+ * font file. The only file with FreeType. Text is any bytes: what is not UTF-8, and control characters, are drawn as
+ * U+FFFD; other characters that do not show as tags, «RLO» (core/base/invisible.h). No shaping: each character is drawn on its own, left to right. */
 #include <stdint.h>
 
 #include "core/base/error.h"

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "core/base/invisible.h"
+
 /* Returns the bytes of the UTF-8 letter at text; *shown is the letter, or "?" for a control character or broken UTF-8.
  */
 static size_t letter(const unsigned char *text, const char **shown)
@@ -25,24 +27,31 @@ static size_t letter(const unsigned char *text, const char **shown)
     return 1;
 }
 
+/* The character that n bytes of UTF-8 are. */
+static uint32_t character_of(const unsigned char *text, size_t n)
+{
+    uint32_t c = n == 1 ? text[0] : text[0] & (0x7fU >> n);
+    for (size_t i = 1; i < n; i++)
+        c = c << 6 | (text[i] & 0x3fU);
+    return c;
+}
+
+/* Prints letters and returns how many there are. out: NULL only counts them. */
 static int print_letters(FILE *out, const char *text, size_t n_bytes)
 {
     int n_letters = 0;
-    for (size_t at = 0; at < n_bytes; n_letters++) {
+    for (size_t at = 0; at < n_bytes;) {
+        const unsigned char *from = (const unsigned char *)text + at;
         const char *shown;
-        size_t n = letter((const unsigned char *)text + at, &shown);
-        fwrite(shown, 1, *shown == '?' ? 1 : n, out);
+        size_t n = letter(from, &shown);
+        const char *tag = *shown == '?' ? NULL : invisible_tag(character_of(from, n));
+        n_letters += tag ? (int)strlen(tag) + 2 : 1;
+        if (out && tag)
+            fprintf(out, "«%s»", tag);
+        else if (out)
+            fwrite(shown, 1, *shown == '?' ? 1 : n, out);
         at += n;
     }
-    return n_letters;
-}
-
-static int count_letters(const char *text, size_t n_bytes)
-{
-    int n_letters = 0;
-    const char *shown;
-    for (size_t at = 0; at < n_bytes; n_letters++)
-        at += letter((const unsigned char *)text + at, &shown);
     return n_letters;
 }
 
@@ -61,7 +70,7 @@ void text_print_wrapped(FILE *out, const char *text, int indent, int width)
         size_t n_bytes = strcspn(text, " ");
         if (n_bytes == 0)
             break;
-        int n_letters = count_letters(text, n_bytes);
+        int n_letters = print_letters(NULL, text, n_bytes);
         if (column > 0 && column + 1 + n_letters > width) {
             fputc('\n', out);
             column = 0;

@@ -1,6 +1,6 @@
 #pragma once
 /* Text on a terminal. Names come from files: control characters, which could steer the terminal, are not printed, and
- * columns are counted in letters, not bytes. */
+ * columns are counted in letters, not bytes. Characters that do not show are printed as tags: core/base/invisible.h. */
 #include <stdio.h>
 
 /* Prints text with '?' for control characters and broken UTF-8, padded with blanks to at least width letters. */

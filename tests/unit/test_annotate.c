@@ -58,11 +58,11 @@ static double nothing(struct vec3 p)
     return 0 * p.x;
 }
 
-static cJSON *read_fixture(void)
+static cJSON *read_fixture(const char *path)
 {
     static char text[16384];
     struct problem problem;
-    FILE *file = fopen("tests/data/edge_letters.json", "rb");
+    FILE *file = fopen(path, "rb");
     assert_non_null(file);
     size_t n = fread(text, 1, sizeof text, file);
     fclose(file);
@@ -93,7 +93,7 @@ static void letters_are_those_of_the_planes_and_of_oblique_cameras(void **state)
     } kinds[] = { { "axial", SCENE_KIND_AXIAL },
                   { "coronal", SCENE_KIND_CORONAL },
                   { "sagittal", SCENE_KIND_SAGITTAL } };
-    cJSON *fixture = read_fixture(), *item;
+    cJSON *fixture = read_fixture("tests/data/edge_letters.json"), *item;
     int n = 0;
     cJSON_ArrayForEach(item, cJSON_GetObjectItem(fixture, "planes"))
     {
@@ -303,13 +303,38 @@ static void a_long_name_gives_way_in_the_middle(void **state)
     font_destroy(font);
 }
 
+static void characters_that_do_not_show_are_drawn_as_the_page_shows_them(void **state)
+{
+    (void)state;
+    struct error err = { 0 };
+    struct font *font = font_create(12, &err);
+    cJSON *fixture = read_fixture("tests/data/invisible_characters.json");
+    const cJSON *pair;
+    int n = 0;
+    cJSON_ArrayForEach(pair, cJSON_GetObjectItem(fixture, "cases"))
+    {
+        struct font_line line = lay_out(font, cJSON_GetArrayItem(pair, 0)->valuestring, 10000),
+                         expected = lay_out(font, cJSON_GetArrayItem(pair, 1)->valuestring, 10000);
+        assert_int_equal(line.n, expected.n);
+        assert_memory_equal(line.characters, expected.characters, (size_t)line.n * sizeof line.characters[0]);
+        n++;
+    }
+    assert_int_equal(n, 35);
+    struct font_line line = lay_out(font, "\xe2\x80\xae", 10000);
+    const uint32_t tag[] = { 0xab, 'R', 'L', 'O', 0xbb };
+    assert_int_equal(line.n, 5);
+    assert_memory_equal(line.characters, tag, sizeof tag);
+    cJSON_Delete(fixture);
+    font_destroy(font);
+}
+
 static void hostile_text_is_drawn_as_replacements(void **state)
 {
     (void)state;
     struct error err = { 0 };
     struct font *font = font_create(12, &err);
-    /* two controls, an overlong slash, a lone continuation, a surrogate, a right-to-left override, a cut character */
-    struct font_line line = lay_out(font, "\x01\x7f\xc0\xaf\x80\xed\xa0\x80\xe2\x80\xae\xe2\x82", 10000);
+    /* two controls, an overlong slash, a lone continuation, a surrogate, a cut character */
+    struct font_line line = lay_out(font, "\x01\x7f\xc0\xaf\x80\xed\xa0\x80\xe2\x82", 10000);
     assert_true(line.n >= 7);
     for (int i = 0; i < line.n; i++)
         assert_int_equal(line.characters[i], 0xfffd);
@@ -369,6 +394,7 @@ int main(void)
         cmocka_unit_test(a_caption_is_below_the_picture_with_a_chip_of_each_colour),
         cmocka_unit_test(more_regions_than_fit_are_counted_and_the_caption_stays_bounded),
         cmocka_unit_test(a_long_name_gives_way_in_the_middle),
+        cmocka_unit_test(characters_that_do_not_show_are_drawn_as_the_page_shows_them),
         cmocka_unit_test(hostile_text_is_drawn_as_replacements),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

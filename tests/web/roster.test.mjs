@@ -21,6 +21,24 @@ describe('the roster', { skip: missing && `${missing} is not there` }, () => {
 
   const enter = (...how) => enterAs(world, ...how);
 
+  it('characters that turn a text round are shown, not obeyed, wherever they come from', async () => {
+    const page = await enter(`#/rooms/${await world.newRoom()}`, 'Ann');
+    const shown = await page.evaluate(async () => {
+      const line = document.createElement('p');
+      line.append('Ann \u202enomiS');
+      line.title = 'PTV\u200b';
+      document.body.append(line);
+      await null;
+      const first = [line.textContent, line.title];
+      line.firstChild.data = 'Ben \u2066';
+      line.title = '\ufeff';
+      await null;
+      return [...first, line.textContent, line.title];
+    });
+    assert.deepEqual(shown, ['Ann «RLO»nomiS', 'PTV«ZWSP»', 'Ben «LRI»', '«BOM»']);
+    await page.close();
+  });
+
   for (const [size, options] of sizes)
     it(`control goes from one to the other at ${size}`, async () => {
       const room = await world.newRoom();

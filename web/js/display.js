@@ -3,7 +3,10 @@ import { Problem, makeApi } from './net/api.js';
 import { Parts, pictureHeader } from './net/parts.js';
 import { edgeLetters } from './view/letters.js';
 import { Painter } from './view/painter.js';
+import { keepTextVisible } from './view/visible_text.js';
 import { isId } from './wire/check.js';
+
+keepTextVisible(document.documentElement);
 
 const lostMs = 5000; // without a part; the server sends one every 2 s
 const lateMs = 3500;

@@ -8,7 +8,10 @@ import { OwnName } from './state/own_name.js';
 import { Thumbnails } from './state/thumbnails.js';
 import { Redraw } from './panels/redraw.js';
 import { Decoder } from './view/decoder.js';
+import { keepTextVisible } from './view/visible_text.js';
 import { isId } from './wire/check.js';
+
+keepTextVisible(document.documentElement);
 
 /** What the browser keeps between visits; null where it keeps nothing. */
 function storage() {

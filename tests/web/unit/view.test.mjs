@@ -12,6 +12,7 @@ const { barMm, fromPicture, toPicture } = await load('view/vec.js');
 const { homeCamera } = await load('view/home.js');
 const { Decoder } = await load('view/decoder.js');
 const { Painter } = await load('view/painter.js');
+const { visibleText } = await load('view/visible_text.js');
 
 const near = (actual, expected, tolerance = 1e-9) =>
   expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${actual} is not ${expected}`));
@@ -274,4 +275,11 @@ test('what the worker cannot decode is decoded here, and all of it once the work
 test('a browser that allows no worker decodes here', async () => {
   const { decode } = new Decoder({ makeWorker: () => { throw new Error('not allowed'); }, decodeHere: async () => 'here' });
   assert.equal(await decode(new Uint8Array(1), 'image/jpeg'), 'here');
+});
+
+test('characters that do not show are the tags that captions have', () => {
+  const { cases } = JSON.parse(readFileSync(new URL('../../data/invisible_characters.json', import.meta.url), 'utf8'));
+  for (const [text, shown] of cases)
+    assert.equal(visibleText(text), shown);
+  assert.equal(visibleText('\u202e'), '«RLO»');
 });

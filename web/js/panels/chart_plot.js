@@ -2,6 +2,7 @@
 import { nothing } from '../../lib/lit-html.js';
 import { Directive, directive } from '../../lib/directive.js';
 import UPlot from '../../lib/uplot.js';
+import { visibleText } from '../view/visible_text.js';
 
 const font = (weight = 400) => `${weight} 11px "Inter Variable", system-ui, sans-serif`;
 export const [axisInk, gridInk, faintInk, ink] = ['#929ba6', '#1f242b', '#39414b', '#eceef1'];
@@ -97,7 +98,7 @@ export function write(pen, px, text, x, y, { color = ink, align = 'left', weight
   [pen.textAlign, pen.textBaseline, pen.lineJoin, pen.lineWidth, pen.strokeStyle, pen.fillStyle] = [align, 'middle', 'round', 3 * px, '#14171b', color];
   pen.setLineDash([]);
   pen.strokeText(text, x, y);
-  pen.fillText(text, x, y);
+  pen.fillText(visibleText(text), x, y);
   return pen.measureText(text).width;
 }
 
