@@ -84,6 +84,8 @@ test('a part is found by what is selected, a source of regions by each of its re
   assert.deepEqual(regionsOf(plan, { thing: 'regions:0' }).map(({ id }) => id), ['eye']);
   assert.equal(partName(plan, 'dose:boost'), 'Dose “Boost”');
   assert.equal(partName(plan, 'image:mr'), 'MR');
+  const alike = { ...plan, images: [{ id: 'ct', name: 'CT' }, { id: 'ct-2', name: 'CT' }, { id: 'mr', modality: 'MR' }] };
+  assert.deepEqual(alike.images.map(({ id }) => partName(alike, `image:${id}`)), ['CT (ct)', 'CT (ct-2)', 'MR mr'], 'two alike are told by their ids');
 });
 
 test('numbers are marked by what enters them, whether it is drawn or not', () => {

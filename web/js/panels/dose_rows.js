@@ -44,7 +44,7 @@ function grouped(world, shown) {
   const first = shownTreatmentPlan(plan, scene);
   const groups = [first, ...plan.treatmentPlans.filter((one) => one !== first), undefined];
   return groups.map((treatment) => [treatment, own.filter((dose) => plan.treatmentPlans[dose.plan] === treatment)]).filter(([, doses]) => doses.length)
-    .map(([treatment, doses]) => html`<li class="row-group" role="presentation">${treatment ? `Plan ${treatment.label} · ${approvalOf(treatment)[0].toLowerCase()}` : 'No plan stated'}${treatment && treatment !== first ? html` <span class="dim">compare only</span>` : nothing}</li>${doses.map(row)}`);
+    .map(([treatment, doses]) => html`<li class="row-group" role="presentation">${treatment ? `Plan ${treatment.label} · ${approvalOf(treatment)[0].toLowerCase()}` : 'No plan stated'}${treatment && treatment !== first ? html`<span class="dim"> · compare only</span>` : nothing}</li>${doses.map(row)}`);
 }
 
 function doseRow(world, dose, isShown) {

@@ -1,8 +1,8 @@
 // What an image is called, and showing it: for its row in the tree and for Selection.
-import { shownImage } from '../state/plan.js';
+import { imageName, shownImage } from '../state/plan.js';
 import { showPatchWithVolume } from '../state/transfer.js';
 
-export const imageName = (plan, image) => image.name || (plan.images.length > 1 ? `${image.modality} ${image.id}` : image.modality);
+export { imageName };
 
 /** Shows an image as it was shown last. */
 export function showImage({ room, ui }, image, event) {

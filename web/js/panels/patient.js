@@ -17,7 +17,7 @@ export function patientButton(world) {
   const patient = shownPatient(plan, scene);
   if (!patient) return html`<span class="patient">${unknown}</span><i class="rule"></i>`;
   const shown = card.loaded.value?.shownIdentity(world);
-  return html`<span class="patient anchor"><button class="patient-button" aria-expanded=${ui.popover.value === 'patient'} title="The patient" @click=${() => ui.toggle('patient')}>
+  return html`<span class="patient masked anchor"><button class="patient-button" aria-expanded=${ui.popover.value === 'patient'} title="The patient" @click=${() => ui.toggle('patient')}>
       <b>${shown?.name ?? patient.masked}</b> ${icon(shown ? 'eye' : 'eyeOff', 12)}${shown ? html`<span class="dim">id ${shown.id} · born ${dateWords(shown.birth)}</span>` : nothing}</button>
       ${ui.popover.value === 'patient' ? card.draw(({ patientCard }) => patientCard(world)) : nothing}</span><i class="rule"></i>`;
 }

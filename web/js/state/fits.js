@@ -1,7 +1,7 @@
 // Which parts of the plan the scene uses together, and by whose word: the server's judgement of each pair (fits of the plan) and the acceptances of the room. Pure.
 import { pairKey } from './accepted.js';
 import { isOn as isDoseOn, shownDose } from './dose.js';
-import { shownImage } from './plan.js';
+import { imageName, shownImage } from './plan.js';
 
 /** Relations, the worst first; and the two words that mark what is used all the same. */
 const marks = { patient: 'other patient', frame: 'other frame', apart: 'lies apart', plan: 'other plan', unit: 'other unit', per: 'other “per”', absent: 'plan absent' };
@@ -30,7 +30,7 @@ export function partOf(plan, key) {
   const [kind, id = ''] = key.split(/:(.*)/);
   const regions = kind === 'regions' ? plan.regions.filter((region) => isOfSource({ thing: key })(region)) : [];
   const part = kind === 'regions' ? regions[0] : plan[lists[kind]]?.find((one) => one.id === id);
-  const image = kind === 'image' && part && (part.name || (plan.images.length > 1 ? `${part.modality} ${part.id}` : part.modality));
+  const image = kind === 'image' && part && imageName(plan, part);
   return { key, kind, id, word: words[kind] ?? kind, name: kind === 'regions' ? regionWords(regions) : image || part?.name || (kind === 'tracks' ? '' : id), part: part ?? null };
 }
 
