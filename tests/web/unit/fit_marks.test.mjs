@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import { load } from './page.mjs';
 
 globalThis.document = { createTreeWalker: () => ({}), createComment: () => ({}), addEventListener() {}, querySelector: () => null, head: { append() {} } };
-const { fitBar, numberMark, usedRows, usedSheet, wordMark } = await load('panels/fit_panels.js');
+const { fitBar, fitBlock, numberMark, usedRows, usedSheet, wordMark } = await load('panels/fit_panels.js');
 const { nothing } = await load('../lib/lit-html.js');
 const { pairKey } = await load('state/accepted.js');
 
@@ -21,16 +21,16 @@ const read = (part) => textOf(part).replace(/<[^>]*>/g, ' ').replace(/\s+/g, ' '
 const reason = 'Dose “Boost” is not used with MR: it was computed in another frame of reference. It may be shifted against this image.';
 const fact = 'It was computed in another frame of reference. It may be shifted against this image.';
 const plan = {
-  images: [{ id: 'mr', name: 'MR' }], regions: [], beams: [], patients: [], treatmentPlans: [],
-  doses: [{ id: 'boost', name: 'Boost' }, { id: 'own', name: 'Own' }],
+  images: [{ id: 'mr', name: 'MR', frame: 1 }], regions: [], beams: [], patients: [], treatmentPlans: [],
+  doses: [{ id: 'boost', name: 'Boost', frame: 0 }, { id: 'own', name: 'Own' }],
   fits: [{ thing: 'dose:boost', with: 'image:mr', relation: 'frame', needs: 'acceptance', reason }, { thing: 'dose:own', with: 'image:mr', relation: 'same', needs: 'nothing', reason: '' }],
 };
 const row = { id: 'i-1', kind: 'acceptance', author_name: 'Ann', created_ms: Date.UTC(2026, 10, 27, 9, 30), body: { thing: 'dose:boost', with: 'image:mr', reason: 'same-session', words: 'one couch, one hour', fact: reason } };
 
 function worldOf({ isAccepted = true, id = 'boost', isPresenting = true } = {}) {
   const scene = { image: { id: 'mr', blend: { id: '' } }, regions: {}, beam: { looks: {} }, tracks: { visible: false }, dose: { id, sum: {}, compare: { id: '', mode: 'none' }, wash: { visible: true }, lines: { visible: false }, surfaces: { visible: false }, coverage: { visible: false } } };
-  const room = { plan: { value: plan }, scene: { value: scene }, accepted: { value: new Map(isAccepted ? [[pairKey('dose:boost', 'image:mr'), row]] : []) }, canChange: { value: true }, following: { isPresenting: { value: isPresenting } } };
-  return { room, ui: { active: { value: 1 } } };
+  const room = { plan: { value: plan }, scene: { value: scene }, accepted: { value: new Map(isAccepted ? [[pairKey('dose:boost', 'image:mr'), row]] : []) }, canChange: { value: true }, following: { isPresenting: { value: isPresenting } }, items: { rows: { value: new Map() } }, acceptances: { value: { items: [], known: true } } };
+  return { room, ui: { selection: { value: { kind: 'dose', id: 'boost' } }, active: { value: 1 } } };
 }
 
 test('paper lists the parts, the fact, the words, who said it and when; nothing where all fits', () => {
@@ -59,4 +59,11 @@ test('who does not present is not offered to have a part used, and is told why',
   assert.match(other, /\?disabled=true title=Only who presents may have it used\.\s*@click=[^>]*>Use it all the same/);
   assert.ok(other.includes('<span class="note why">Only who presents may have it used.</span>'));
   assert.ok(!presenter.includes('Only who presents'));
+});
+
+test('the form names the frames of both sides, the first one too', () => {
+  const words = read(fitBlock(worldOf({ isAccepted: false })));
+  assert.match(words, /‘Boost’ does not fit MR/);
+  assert.match(words, /Frame of reference frame 1 frame 2/);
+  assert.match(words, /Patient not stated not stated/);
 });

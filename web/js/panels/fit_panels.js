@@ -115,10 +115,11 @@ export function fitBlock(world) {
 function factsTable(plan, use) {
   const [one, two] = [partOf(plan, use.thing), partOf(plan, use.with)];
   const of = (part, word) => ({ patient: patientOf(plan, part?.patient), frame: part?.frame ?? null, plan: plan.treatmentPlans[part?.plan]?.label ?? '' })[word];
-  const cell = (value, word) => (value === null || value === undefined || value === '' ? 'not stated' : word === 'frame' ? `frame ${Number(value) + 1}` : value);
+  const isStated = (value) => value !== null && value !== undefined && value !== '';
+  const cell = (value, word) => (!isStated(value) ? 'not stated' : word === 'frame' ? `frame ${Number(value) + 1}` : value);
   const rows = [['Patient', 'patient'], ['Frame of reference', 'frame'], ['Plan', 'plan']].map(([name, word]) => [name, word, of(one.part, word), of(two.part, word)]);
   return html`<table class="fit-facts"><thead><tr><td></td><th scope="col">${one.word.toLowerCase()}${one.name ? ` ‘${one.name}’` : ''}</th><th scope="col">${two.name}</th></tr></thead>
-    <tbody>${rows.map(([name, word, a, b]) => html`<tr class=${classMap({ warn: a !== b && Boolean(a ?? b) && word !== 'plan' })}><th scope="row">${name}</th><td>${cell(a, word)}</td><td>${cell(b, word)}</td></tr>`)}</tbody></table>`;
+    <tbody>${rows.map(([name, word, a, b]) => html`<tr class=${classMap({ warn: a !== b && (isStated(a) || isStated(b)) && word !== 'plan' })}><th scope="row">${name}</th><td>${cell(a, word)}</td><td>${cell(b, word)}</td></tr>`)}</tbody></table>`;
 }
 
 function formBlock(world, use) {
