@@ -67,12 +67,22 @@ void dose_files_finish(struct dose_files *files)
     *files = (struct dose_files){ 0 };
 }
 
-/* Same folder, same other words, same grid. */
-static bool belong_together(const struct dose_file *a, const struct dose_file *b)
+/* Same folder, same other words. */
+static bool names_agree(const struct dose_file *a, const struct dose_file *b)
 {
     size_t folder = (size_t)(part_base_name(a->path) - a->path);
     return folder == (size_t)(part_base_name(b->path) - b->path) && strncmp(a->path, b->path, folder) == 0 &&
-           strcmp(a->words.rest, b->words.rest) == 0 && grid_is_same(&a->grid, &b->grid);
+           strcmp(a->words.rest, b->words.rest) == 0;
+}
+
+static bool belong_together(const struct dose_file *a, const struct dose_file *b)
+{
+    return names_agree(a, b) && grid_is_same(&a->grid, &b->grid);
+}
+
+static bool is_of_bnct(const struct dose_file *file)
+{
+    return file->words.has_quantity && (file->words.quantity == DOSE_BORON || file->words.quantity == DOSE_NITROGEN);
 }
 
 static bool is_component(const struct dose_file *file)
@@ -92,7 +102,7 @@ static size_t collect(const struct dose_files *files, size_t first, size_t membe
             continue;
         has[file->words.quantity] = true;
         members[n++] = i;
-        *is_bnct |= file->words.quantity == DOSE_BORON || file->words.quantity == DOSE_NITROGEN;
+        *is_bnct |= is_of_bnct(file);
     }
     return n;
 }
@@ -194,13 +204,31 @@ static void join(struct dose_files *files, const size_t *members, size_t n, stru
         dose->name, n, list, errors);
 }
 
-/* A dose file that no other belongs to. Boron and nitrogen say what they are also alone. */
+/* The boron or nitrogen file that a component would be joined with if both had one grid; NULL: none. */
+static const struct dose_file *find_on_other_grid(const struct dose_files *files, const struct dose_file *file)
+{
+    for (size_t i = 0; i < files->n; i++) {
+        const struct dose_file *other = &files->files[i];
+        if (is_of_bnct(other) && !other->words.is_error && other->words.quantity != file->words.quantity &&
+            names_agree(file, other) && !grid_is_same(&file->grid, &other->grid))
+            return other;
+    }
+    return NULL;
+}
+
+/* A dose file that no other belongs to. Boron and nitrogen say what they are also alone; the rest does beside them. */
 static void add_alone(struct dose_files *files, struct dose_file *file, struct plan_file *plan, struct report *report)
 {
     struct plan_file_dose *dose = new_dose(file, plan, report);
-    bool is_of_bnct =
-        file->words.has_quantity && (file->words.quantity == DOSE_BORON || file->words.quantity == DOSE_NITROGEN);
-    if (!is_of_bnct) {
+    const struct dose_file *other = is_component(file) ? find_on_other_grid(files, file) : NULL;
+    if (dose && other)
+        report_add(
+            report, REPORT_WARNING, "dose.words-not-joined", file->path,
+            "By their names this and %.80s are %s and %s of one dose, but they lie on different grids: each is a "
+            "dose of its own. If they are one, name them as \"components\" in a plan.json.",
+            part_base_name(other->path), dose_quantity_word(file->words.quantity),
+            dose_quantity_word(other->words.quantity));
+    if (!is_of_bnct(file) && !other) {
         file->words.has_quantity = true;
         file->words.quantity = DOSE_TOTAL;
     }

@@ -39,9 +39,11 @@ static double dose(int i, int j, int k)
     return 2 + 0.1 * i + 0.05 * j + 0.2 * k;
 }
 
-static void put(const char *folder, const char *name, enum voxel_type type, value_at value, double factor)
+static void put_at(const char *folder, const char *name, enum voxel_type type, value_at value, double factor,
+                   double shift_mm)
 {
     struct grid grid = made_cube_grid(SIDE);
+    grid.lps_mm_from_ijk.origin.x += shift_mm; /* the inverse is not written */
     struct error err = { 0 };
     struct volume *volume = volume_create(&grid, type, &err);
     assert_non_null(volume);
@@ -56,6 +58,11 @@ static void put(const char *folder, const char *name, enum voxel_type type, valu
     }
     volume_measure(volume);
     folder_put_volume(folder, name, volume);
+}
+
+static void put(const char *folder, const char *name, enum voxel_type type, value_at value, double factor)
+{
+    put_at(folder, name, type, value, factor, 0);
 }
 
 static struct plan *open_and_remove(const char *folder)
@@ -197,6 +204,23 @@ static void names_join_no_doses_that_may_be_two(void **state)
     plan_destroy(plan);
 }
 
+static void a_component_on_another_grid_is_a_dose_of_its_own_and_never_a_total(void **state)
+{
+    (void)state;
+    char folder[256];
+    folder_make(folder);
+    put(folder, "dose_boron.nii.gz", VOXEL_F32, dose, 6);
+    put(folder, "dose_nitrogen.nii.gz", VOXEL_F32, dose, 1);
+    put_at(folder, "dose_fast.nii.gz", VOXEL_F32, dose, 1, 0.7);
+    struct plan *plan = open_and_remove(folder);
+    assert_int_equal(plan->n_doses, 2);
+    assert_int_equal(plan->doses[0].n_components, 2);
+    assert_int_equal(plan->doses[1].n_components, 1);
+    assert_int_equal(plan->doses[1].components[0].quantity, DOSE_FAST);
+    assert_non_null(strstr(report_said(&plan->report, "dose.words-not-joined"), "different grids"));
+    plan_destroy(plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -204,6 +228,7 @@ int main(void)
         cmocka_unit_test(a_prediction_beside_the_images_it_was_made_from_is_a_label_map),
         cmocka_unit_test(files_of_components_become_one_dose_with_their_errors),
         cmocka_unit_test(names_join_no_doses_that_may_be_two),
+        cmocka_unit_test(a_component_on_another_grid_is_a_dose_of_its_own_and_never_a_total),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
