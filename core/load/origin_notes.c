@@ -40,6 +40,19 @@ static size_t count_nameless(const struct part_origin *origins, size_t n)
     return n_nameless;
 }
 
+static bool are_masked_alike(const struct plan *plan)
+{
+    for (size_t i = 0; i < plan->n_patients; i++)
+        for (size_t other = 0; other < i; other++) {
+            char one[IDENTITY_MASK_SIZE], two[IDENTITY_MASK_SIZE];
+            identity_mask(&plan->patients[i], one);
+            identity_mask(&plan->patients[other], two);
+            if (strcmp(one, two) == 0)
+                return true;
+        }
+    return false;
+}
+
 static void note_patients(struct plan *plan, bool is_phantom)
 {
     char names[MOST_NAMED * (IDENTITY_MASK_SIZE + 8)], shown[IDENTITY_MASK_SIZE] = "";
@@ -53,8 +66,11 @@ static void note_patients(struct plan *plan, bool is_phantom)
     if (plan->n_patients > 1) {
         size_t n = list_patients(plan, false, names, sizeof names);
         report_add(&plan->report, REPORT_WARNING, "patient.several", "",
-                   "This folder holds files of %zu patients: %s. Shown is %s; parts of the others are not used.", n,
-                   names, shown);
+                   "This folder holds files of %zu patients: %s. Shown is %s; parts of the others are not used.%s", n,
+                   names, shown,
+                   are_masked_alike(plan) ? " Patients that are written alike here differ in ID, its issuer, name or "
+                                            "birth date."
+                                          : "");
     }
     if (list_patients(plan, true, names, sizeof names) > 0)
         report_add(&plan->report, REPORT_WARNING, "patient.conflict", "",

@@ -209,6 +209,26 @@ static const char *said(const struct plan *plan, const char *code)
     return report_said(&plan->report, code);
 }
 
+static void patients_that_are_masked_alike_are_told_apart_in_words(void **state)
+{
+    (void)state;
+    char folder[256];
+    const struct made_owner one = {
+        .id = "P1", .issuer = "north", .name = "Eins^A", .study = "1.2.31", .frame = "1.2.41"
+    };
+    const struct made_owner other = {
+        .id = "P1", .issuer = "south", .name = "Eins^A", .study = "1.2.32", .frame = "1.2.42"
+    };
+    folder_make(folder);
+    made_part_images(folder, "ct", &one, "1.2.51", 2);
+    made_part_images(folder, "other", &other, "1.2.52", 2);
+    struct plan *plan = open_plan(folder);
+    assert_int_equal(plan->n_patients, 2);
+    assert_non_null(strstr(said(plan, "patient.several"), "written alike here differ in ID, its issuer"));
+    plan_destroy(plan);
+    folder_remove(folder);
+}
+
 static void the_report_names_patients_masked(void **state)
 {
     (void)state;
@@ -359,6 +379,7 @@ int main(void)
         cmocka_unit_test(patients_are_told_apart_by_id_name_and_birth_date),
         cmocka_unit_test(slices_of_two_patients_make_two_images),
         cmocka_unit_test(files_without_a_patient_are_of_none),
+        cmocka_unit_test(patients_that_are_masked_alike_are_told_apart_in_words),
         cmocka_unit_test(the_report_names_patients_masked),
         cmocka_unit_test(a_conflict_a_missing_identity_and_an_absent_structure_set_are_said),
         cmocka_unit_test(doses_and_beams_named_alike_are_told_apart_by_their_plans),
