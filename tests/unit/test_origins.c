@@ -213,12 +213,8 @@ static void patients_that_are_masked_alike_are_told_apart_in_words(void **state)
 {
     (void)state;
     char folder[256];
-    const struct made_owner one = {
-        .id = "P1", .issuer = "north", .name = "Eins^A", .study = "1.2.31", .frame = "1.2.41"
-    };
-    const struct made_owner other = {
-        .id = "P1", .issuer = "south", .name = "Eins^A", .study = "1.2.32", .frame = "1.2.42"
-    };
+    const struct made_owner one = { .id = "A1", .name = "Eins^A", .study = "1.2.31", .frame = "1.2.41" };
+    const struct made_owner other = { .id = "B1", .name = "Eins^A", .study = "1.2.32", .frame = "1.2.42" };
     folder_make(folder);
     made_part_images(folder, "ct", &one, "1.2.51", 2);
     made_part_images(folder, "other", &other, "1.2.52", 2);
