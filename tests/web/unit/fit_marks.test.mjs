@@ -12,6 +12,7 @@ const { pairKey } = await load('state/accepted.js');
 function textOf(part) {
   if (part === nothing || part === null || part === undefined || typeof part === 'function') return '';
   if (Array.isArray(part)) return part.map(textOf).join('');
+  if (part._$litDirective$) return part.values.flatMap((names) => Object.keys(names).filter((name) => names[name])).join(' '); // classMap
   if (part.strings) return part.strings.map((text, at) => text + textOf(part.values[at])).join('');
   return typeof part === 'object' ? '' : String(part);
 }
@@ -62,7 +63,10 @@ test('who does not present is not offered to have a part used, and is told why',
 });
 
 test('the form names the frames of both sides, the first one too', () => {
-  const words = read(fitBlock(worldOf({ isAccepted: false })));
+  const form = fitBlock(worldOf({ isAccepted: false }));
+  const words = read(form);
+  assert.match(textOf(form), /<tr class=warn><th scope="row">Frame/);
+  assert.match(textOf(form), /<tr class=><th scope="row">Patient/);
   assert.match(words, /‘Boost’ does not fit MR/);
   assert.match(words, /Frame of reference frame 1 frame 2/);
   assert.match(words, /Patient not stated not stated/);
