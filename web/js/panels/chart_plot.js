@@ -97,7 +97,7 @@ export function write(pen, px, text, x, y, { color = ink, align = 'left', weight
   pen.font = `${weight} ${Math.round(11 * px)}px "Inter Variable", system-ui, sans-serif`;
   [pen.textAlign, pen.textBaseline, pen.lineJoin, pen.lineWidth, pen.strokeStyle, pen.fillStyle] = [align, 'middle', 'round', 3 * px, '#14171b', color];
   pen.setLineDash([]);
-  pen.strokeText(text, x, y);
+  pen.strokeText(visibleText(text), x, y);
   pen.fillText(visibleText(text), x, y);
   return pen.measureText(text).width;
 }

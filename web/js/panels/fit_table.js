@@ -43,8 +43,10 @@ export function otherPatientsBar({ room }) {
 
 /** The rows of the tree's last section. */
 export function otherPatients({ room }) {
-  return partsOfOthers(room.plan.value, room.scene.value).map(({ kind, name, masked }) => html`<li class="row off not-this-patient" role="treeitem" aria-level="2" aria-selected="false" aria-label=${`${names[kind]} ${name}, of ${masked}, never used`}>
-    ${icon('eyeOff')}<span class="name">${kind === 'image' ? name : `${names[kind]} ‘${name}’`}</span> <span class="tail">${masked}</span></li>`);
+  return partsOfOthers(room.plan.value, room.scene.value).map(({ kind, name, masked }) => {
+    const words = kind === 'image' ? name : `${names[kind]} ‘${name}’`;
+    return html`<li class="row off not-this-patient" role="treeitem" aria-level="2" aria-selected="false" aria-label=${`${words} ${masked}, never used`}>${icon('eyeOff')}<span class="name">${words}</span> <span class="tail">${masked}</span></li>`;
+  });
 }
 
 export { patientOf };

@@ -8,7 +8,7 @@ import { hasBeams, ofBeams } from './beam_lazy.js';
 import { clipNote, clipRows, hasClips } from './clip_rows.js';
 import { ofDose } from './dose_later.js';
 import { ofFits } from './fit_later.js';
-import { number, windowText } from './format.js';
+import { count, number, windowText } from './format.js';
 import { icon } from './icons.js';
 import { imageName, showImage } from './image_shown.js';
 import { hasMeasures, measureRows } from './measure_rows.js';
@@ -31,7 +31,7 @@ const table = [
   { id: 'clip', name: 'Clip', icon: 'clip', has: hasClips, note: clipNote, rows: clipRows },
   { id: 'measures', name: 'Measures', icon: 'measure', has: hasMeasures, note: () => '', rows: measureRows },
   { id: 'saved', name: 'Saved views', icon: 'bookmark', has: hasBookmarks, note: bookmarkNote, rows: bookmarkRows },
-  { id: 'others', name: 'Not this patient', icon: 'error', has: (plan, scene) => partsOfOthers(plan, scene).length, note: ({ room }) => `${partsOfOthers(room.plan.value, room.scene.value).length} parts, never drawn`, rows: (world) => ofFits(world.room)?.otherPatients(world) },
+  { id: 'others', name: 'Not this patient', icon: 'error', has: (plan, scene) => partsOfOthers(plan, scene).length, note: ({ room }) => `${count(partsOfOthers(room.plan.value, room.scene.value).length, 'part')}, never drawn`, rows: (world) => ofFits(world.room)?.otherPatients(world) },
 ];
 
 /** The sections of this plan, and of what the scene has besides. */

@@ -49,7 +49,7 @@ function folding(world, { id, name, note, rows }) {
     ui.fold(id, !isFolded);
   };
   // rows follow their section instead of standing inside it: a screen reader would read them all as its name
-  return html`<li class=${classMap({ section: true, 'section-head': true, folded: isFolded, current: ui.row.value === key })} role="treeitem" aria-level="1" aria-expanded=${!isFolded} aria-selected="false"
+  return html`<li class=${classMap({ section: true, 'section-head': true, 'not-this-patient': id === 'others', folded: isFolded, current: ui.row.value === key })} role="treeitem" aria-level="1" aria-expanded=${!isFolded} aria-selected="false"
       id=${`row-${key}`} data-key=${key} @click=${fold} @row-toggle=${fold}>${icon('chevronDown', 12)}<span>${name}</span><span class="grow"></span><span class="note">${note(world)}</span></li>
     ${isFolded ? nothing : rows(world)}`;
 }
