@@ -234,6 +234,13 @@ test('the crosshair snaps to voxels of an oblique image in all three coordinates
   found.forEach((value, axis) => assert.ok(Math.abs(value - centre[axis]) < 1e-4, `${found}, expected ${centre}`));
 });
 
+test('the first image is that of the shown patient, as on the server', () => {
+  const images = [{ id: 'a', patient: 1 }, { id: 'b', patient: 0 }, { id: 'c', patient: null }];
+  const idOf = (shownPatient, id = '') => shownImage({ images, shownPatient }, { image: { id } })?.id ?? null;
+  assert.deepEqual([idOf(0), idOf(1), idOf(null), idOf(2), idOf(0, 'a')], ['b', 'a', 'a', 'c', 'a']);
+  assert.equal(shownImage({ images: images.slice(0, 1), shownPatient: 0 }, { image: { id: '' } }), null);
+});
+
 test('without an image the crosshair is free within the plan', () => {
   const plan = readPlan({ id: 'p', bounds_mm: { low: [0, 0, 0], high: [10, 10, 10] } });
   assert.deepEqual(placed(crosshairPatch(plan, null, [3.14, 20, -1])), [3.1, 10, 0]);

@@ -1,6 +1,7 @@
 // The camera of a beam's-eye view: where its eye is, what it shows, and the patches that change it. Pure; LPS, mm. The server's side is core/scene/camera.c.
 import { add, dot, scale, subtract } from '../view/vec.js';
 import { beamPlane, beamPoint } from './beam_line.js';
+import { firstImage } from './plan.js';
 
 const margin = 1.08; // home_margin
 const usualFovDeg = 30; // scene.json
@@ -23,7 +24,7 @@ const diagonal = ({ low, high }) => Math.hypot(...high.map((value, axis) => valu
 
 /** The box that the home camera frames: that of the regions, of the first image where that is more than twice as long. */
 function homeBox(plan) {
-  const image = plan.images[0]?.bounds ?? plan.bounds;
+  const image = firstImage(plan)?.bounds ?? plan.bounds;
   return diagonal(plan.bounds) < 0.5 * diagonal(image) ? image : plan.bounds;
 }
 

@@ -113,10 +113,16 @@ export function reportSummary({ lines }) {
   return parts.join(', ') || 'no remarks';
 }
 
+/** The first image that is not of another patient, as the server takes it; null: none. */
+export function firstImage(plan) {
+  const shown = plan?.shownPatient ?? null;
+  return plan?.images.find(({ patient = null }) => patient === null || shown === null || patient === shown) ?? null;
+}
+
 /** The image that the scene shows. */
 export function shownImage(plan, scene) {
   const id = scene?.image?.id;
-  return plan?.images.find((image) => image.id === id) ?? plan?.images[0] ?? null;
+  return plan?.images.find((image) => image.id === id) ?? firstImage(plan);
 }
 
 /** The crosshair: the point where the three slices meet. @returns {[number, number, number]} LPS mm */
