@@ -1,12 +1,18 @@
 #pragma once
-/* Text as pixels, by FreeType, with the font DejaVu Sans, which is compiled in: the renderer is confined and reads no
- * font file. The only file with FreeType. Text is any bytes: what is not UTF-8, and control characters, are drawn as
- * U+FFFD; other characters that do not show as tags, «RLO» (core/base/invisible.h). No shaping: each character is drawn on its own, left to right. */
+/* Text as pixels, by FreeType, with the font DejaVu Sans, which is compiled in, and for characters that it lacks
+ * (Chinese, Japanese, Korean) with Debian's fonts-droid-fallback, where that is installed. The only file with FreeType.
+ * Text is any bytes: what is not UTF-8, and control characters, are drawn as U+FFFD; other characters that do not show
+ * as tags, «RLO» (core/base/invisible.h); characters of neither font as numbers, <U+816B>. No shaping: each character
+ * is drawn on its own, left to right. */
 #include <stdint.h>
 
 #include "core/base/error.h"
 
 struct font;
+/* Opens the files of the fallback fonts, as far as they are there. Call it before the process gives up access
+ * to files; the first text that needs these fonts calls it if it has not run yet. BEAMROOM_FALLBACK_FONT names another
+ * file. Any thread. */
+void font_prepare(void);
 /* errors ERROR_MEMORY. thread: one at a time for each font. */
 NODISCARD struct font *font_create(int size_px, struct error *err);
 void font_destroy(struct font *font);

@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include "core/annotate/font.h"
 #include "core/base/log.h"
 #include "core/base/standard_files.h"
 #include "core/load/summary.h"
@@ -248,6 +249,8 @@ int main(int argc, char **argv)
         .max_file_bytes = arguments.max_file_bytes,
         .needs_gpu = !arguments.scan && !arguments.digest && !session->is_stub,
     };
+    if (!arguments.scan && !arguments.digest)
+        font_prepare();
     confine(&limits, confined);
     session->confined = confined;
     session->cache = arguments.cache;

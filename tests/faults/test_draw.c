@@ -305,7 +305,7 @@ static void annotate(void *context, struct outcome *outcome)
     struct snapshot *snapshot = snapshot_create(derived, &scene, &view, 1, field, &err);
     struct image *image = image_create(200, 150, &err), *annotated = NULL;
     faults_go_on();
-    if (annotations_describe(&annotations, snapshot, 200, "2026-07-01 09:30 UTC", &outcome->err))
+    if (annotations_describe(&annotations, snapshot, 200, "2026-07-01 09:30 UTC 腫瘍", &outcome->err))
         annotated = annotate_image(image, &annotations, &outcome->err);
     annotations_finish(&annotations);
     struct encoded png = { 0 };

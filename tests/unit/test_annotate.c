@@ -1,11 +1,19 @@
 /* Letters, scale bar and caption: where their pixels are, and that no other pixel of the picture changes. */
 #include "core/annotate/annotate.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "core/annotate/describe.h"
 #include "core/annotate/font.h"
 #include "core/base/mem.h"
 #include "server/wire/json.h"
 #include "tests/check.h"
 #include "tests/made_plan.h"
+#include "tests/unit/oracle.h"
+
+#define DROID "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf"
+#define DROID_KOREAN "/usr/share/fonts-droid-fallback/truetype/DroidSansFallback.ttf"
 
 enum { WIDTH = 700, HEIGHT = 500, GREY = 128, TEXT_PX = 12 };
 
@@ -303,6 +311,90 @@ static void a_long_name_gives_way_in_the_middle(void **state)
     font_destroy(font);
 }
 
+/* In a process of its own, as the fallback font is opened once: 腫 with the given font is drawn as its number. */
+static void expect_number(const char *fallback)
+{
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        struct error err = { 0 };
+        (void)setenv("BEAMROOM_FALLBACK_FONT", fallback, 1);
+        struct font *font = font_create(12, &err);
+        struct font_line line, expected;
+        bool is_number = font && font_lay_out(font, "GTV 腫", 10000, &line, &err) &&
+                         font_lay_out(font, "GTV <U+816B>", 10000, &expected, &err) && line.n == expected.n &&
+                         memcmp(line.characters, expected.characters, (size_t)line.n * sizeof line.characters[0]) == 0;
+        font_destroy(font);
+        _exit(is_number ? 0 : 1);
+    }
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+}
+
+static void letters_that_no_font_has_are_drawn_as_numbers(void **state)
+{
+    (void)state;
+    expect_number("/nonexistent.ttf");
+    expect_number("/");
+    expect_number("/dev/zero");
+    expect_number("tests/data/edge_letters.json");
+    /* a font with damaged tables, and cut off */
+    FILE *font = fopen(DROID, "rb");
+    if (!font)
+        return;
+    static char bytes[400000];
+    size_t n = fread(bytes, 1, sizeof bytes, font);
+    fclose(font);
+    char path[] = "/tmp/beamroom-font-XXXXXX";
+    int file = mkstemp(path);
+    assert_true(file >= 0);
+    for (size_t i = 64; i < 4096; i += 7)
+        bytes[i] = (char)(bytes[i] ^ 0x55);
+    assert_int_equal(write(file, bytes, n), n);
+    close(file);
+    expect_number(path);
+    (void)unlink(path);
+}
+
+static void letters_of_chinese_japanese_and_korean_are_drawn_as_freetype_draws_them(void **state)
+{
+    (void)state;
+    enum { GLYPHS_WIDTH = 140, GLYPHS_HEIGHT = 24, SIZE = 16, BASELINE = 18 };
+    static const char text[] = "腫瘍肿瘤종양";
+    static char answer[2 * GLYPHS_WIDTH * GLYPHS_HEIGHT + 64];
+    char *arguments[] = { oracle_python(),
+                          "tests/oracle/font_glyphs.py",
+                          DROID ":" DROID_KOREAN,
+                          "16",
+                          (char *)(uintptr_t)text,
+                          "140",
+                          "24",
+                          "2",
+                          "18",
+                          NULL };
+    int status = oracle_run(arguments, answer, sizeof answer);
+    if (status == ORACLE_MISSING)
+        skip();
+    assert_int_equal(status, 0);
+    struct error err = { 0 };
+    struct font *font = font_create(SIZE, &err);
+    struct font_line line = lay_out(font, text, 10000);
+    static uint8_t pixels[GLYPHS_WIDTH * GLYPHS_HEIGHT];
+    struct coverage coverage = { pixels, GLYPHS_WIDTH, GLYPHS_HEIGHT };
+    assert_int_equal(line.n, 6);
+    assert_true(font_draw(font, &line, 2, BASELINE, &coverage, &err));
+    int n_inked = 0;
+    for (int i = 0; i < GLYPHS_WIDTH * GLYPHS_HEIGHT; i++) {
+        char hex[3];
+        (void)snprintf(hex, sizeof hex, "%02x", (unsigned)pixels[i]);
+        assert_memory_equal(hex, answer + 2 * i, 2);
+        n_inked += pixels[i] > 128;
+    }
+    assert_true(n_inked > 6 * 30);
+    font_destroy(font);
+}
+
 static void characters_that_do_not_show_are_drawn_as_the_page_shows_them(void **state)
 {
     (void)state;
@@ -385,6 +477,8 @@ static void a_mark_is_amber_at_the_top_left_and_changes_nothing_else(void **stat
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(letters_that_no_font_has_are_drawn_as_numbers),
+        cmocka_unit_test(letters_of_chinese_japanese_and_korean_are_drawn_as_freetype_draws_them),
         cmocka_unit_test(a_mark_is_amber_at_the_top_left_and_changes_nothing_else),
         cmocka_unit_test(letters_are_those_of_the_planes_and_of_oblique_cameras),
         cmocka_unit_test(letters_stand_at_the_middle_of_their_edges_and_change_nothing_else),
