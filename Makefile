@@ -221,7 +221,8 @@ ONE_THREAD := annotate describe beam_numbers beam_place describe_beam contour_gr
     draw_list draw_volume encode image_values label_places marks mask mask_reduce mesh mesh_export missing nifti_pair nurbs outline packed phantom pick \
     pick_beams pick_cut pick_tracks pick_volume plane plan_json plan_limits reach recognise recognise_names region report roles room room_bookmarks \
     room_control room_crowd room_failures room_following room_items room_members room_obliques room_pace room_pointers room_presenter room_scene \
-    shading shape target track_csv track_looks
+    shading shape target track_csv track_looks contour_combine dose_words dvh_bounds fit identity origins parts_left_out plan_cases recognise_content \
+    registrations room_acceptance room_stale
 UNIT_RUN = $(if $(findstring thread,$(SAN)),$(filter-out $(ONE_THREAD:%=$(B)/unit/test_%),$(unit_BIN)),$(unit_BIN))
 # and those that draw each kind of thing once
 RENDER_THREADS := caps isodose_pictures pauses pictures shapes soft tracks translucent volume wash
