@@ -155,8 +155,9 @@ static void an_oblique_view_shows_the_plane_that_it_names(void **state)
     scene.image.slices.axial.position_mm = 9;
     view.kind = SCENE_KIND_OBLIQUE;
     (void)snprintf(view.plane, sizeof view.plane, "b");
-    struct plane pane = plane_of_view(&none, &scene, NULL, &view), expected = plane_of_normal(vec3(1, 2, 3), vec3(0, 1, 1)),
-                 slices[PLANE_MAX_SLICES], axial = plane_of_kind(SCENE_KIND_AXIAL, 9);
+    struct plane pane = plane_of_view(&none, &scene, NULL, &view),
+                 expected = plane_of_normal(vec3(1, 2, 3), vec3(0, 1, 1)), slices[PLANE_MAX_SLICES],
+                 axial = plane_of_kind(SCENE_KIND_AXIAL, 9);
     assert_true(plane_equal(&pane, &expected));
     scene.image.slices.axial.visible = true;
     scene.image.slices.coronal.visible = scene.image.slices.sagittal.visible = false;
