@@ -44,11 +44,22 @@ test('the basis names unit, per what, blood, weights and tissue', () => {
 });
 
 test('another dose is shown with a quantity that it has, and is no longer added to itself', () => {
-  assert.deepEqual(choosePatch(dose({ sum: { plan: { factor: 2 } } }), total), { dose: { id: 'plan', quantity: 'total', sum: { plan: null } } });
-  const on = toggledPatch(dose(), full, true).dose;
+  assert.deepEqual(choosePatch(plan, dose({ id: 'two', sum: { mc: { factor: 2 } } }), full), { dose: { id: 'mc', quantity: 'weighted', sum: { mc: null } } });
+  const on = toggledPatch(plan, dose(), full, true).dose;
   assert.deepEqual([on.lines.visible, on.wash.visible], [true, true]);
-  const off = toggledPatch(dose({ lines: { visible: true } }), full, true).dose;
+  const off = toggledPatch(plan, dose({ lines: { visible: true } }), full, true).dose;
   assert.deepEqual([off.lines.visible, off.wash.visible, off.surfaces.visible], [false, false, false]);
+});
+
+test('what stands in a unit of dose keeps its worth when a dose in another unit is shown', () => {
+  const scene = { ...dose({ levels: { a: level(30, 'dose'), b: level(90) }, coverage: { unit: 'dose', low: 20, high: null }, reference: { kind: 'value', value: 13.5 } }),
+    constraints: { mean: { quantity: 'total', metric: 'mean', limit: 3 }, v: { quantity: 'total', metric: 'V12.5cc', limit: 7 }, fluence: { quantity: 'fast-fluence', metric: 'max', limit: 5 } } };
+  const shown = mergePatch(scene, choosePatch(plan, scene, total));
+  assert.deepEqual([shown.dose.id, shown.dose.levels.a.value, shown.dose.levels.b.value], ['plan', 3000, 90], '30 Gy are 3000 cGy');
+  assert.deepEqual([shown.dose.coverage.low, shown.dose.coverage.high, shown.dose.reference.value], [2000, null, 1350]);
+  assert.deepEqual(Object.values(shown.constraints).map(({ metric, limit }) => [metric, limit]), [['mean', 300], ['V1250cc', 7], ['max', 5]]);
+  assert.deepEqual(mergePatch(shown, choosePatch(plan, shown, full)).dose.levels.a.value, 30, 'and back');
+  assert.deepEqual(Object.keys(choosePatch(plan, scene, two)), ['dose'], 'nothing is written where the unit stays');
 });
 
 test('a level has a value in both units, and keeps its dose when its unit changes', () => {

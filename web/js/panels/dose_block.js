@@ -24,7 +24,7 @@ export function doseBlock(world, isDisabled, change) {
   if (!shown) return nothing;
   const { kind, id } = ui.selection.value;
   const other = kind === 'dose' && plan.doses.find((dose) => dose.id === id && dose !== shown);
-  if (other) return otherBlock(other, isDisabled, change, scene);
+  if (other) return otherBlock(other, isDisabled, change, plan, scene);
   const { quantity } = scene.dose;
   return html`<section class="block"><h3>${icon('dose')} ${quantityName(quantity)} <span class="dim">dose ${doseName(shown)}</span></h3>
       <p class="note">${aboutWords(plan, scene)}</p>${reasonNote(world)}
@@ -59,9 +59,9 @@ function reasonNote({ room, doses }) {
   return reason && reason !== shownDose(room.plan.value, room.scene.value).fit_reason ? html`<p class="note why">${icon('warning', 12)} Nothing is drawn: ${reason}${/[.]$/.test(reason) ? '' : '.'}</p>` : nothing;
 }
 
-function otherBlock(dose, isDisabled, change, scene) {
+function otherBlock(dose, isDisabled, change, plan, scene) {
   return html`<section class="block"><h3>${icon('dose')} Dose ${doseName(dose)}</h3><p class="note">${doseWords(dose)}.</p>
-      <div class="buttons"><button ?disabled=${isDisabled} @click=${(event) => change(choosePatch(scene, dose), event)}>Show this dose</button></div></section>${factsBlock(dose)}`;
+      <div class="buttons"><button ?disabled=${isDisabled} @click=${(event) => change(choosePatch(plan, scene, dose), event)}>Show this dose</button></div></section>${factsBlock(dose)}`;
 }
 
 function drawnBlock(scene, isDisabled, changeScene) {

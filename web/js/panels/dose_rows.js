@@ -54,8 +54,8 @@ function doseRow(world, dose, isShown) {
   const isVisible = isShown && (lines.visible || wash.visible || surfaces.visible);
   const words = doseName(dose);
   const tail = isShown && room.plan.value.doses.length > 1 ? 'chosen' : dose.unit;
-  const toggle = (event) => room.patchScene(toggledPatch(room.scene.value, dose, isShown), how(ui, event));
-  const choose = (event) => !isShown && room.patchScene(choosePatch(room.scene.value, dose), how(ui, event));
+  const toggle = (event) => room.patchScene(toggledPatch(room.plan.value, room.scene.value, dose, isShown), how(ui, event));
+  const choose = (event) => !isShown && room.patchScene(choosePatch(room.plan.value, room.scene.value, dose), how(ui, event));
   return treeRow(world, { kind: 'dose', id: dose.id, words: [words, ofFits(room)?.rowWords(world, 'dose', dose.id) ?? '', tail], more: [doseWords(dose)], title: doseWords(dose), isOn: isVisible, toggle, choose }, html`
     ${eye(isVisible, `Show ${words}`, isVisible ? 'Hide lines, wash and surfaces' : 'Show its isodose lines and wash', !room.canChange.value, toggle)}${name(words)} ${ofFits(room)?.rowMark(world, 'dose', dose.id) ?? nothing}
     <span class="tail">${tail}</span>`);

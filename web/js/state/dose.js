@@ -1,5 +1,6 @@
 // The dose that a scene shows: its quantities, its basis in words, the patches that change it. Pure.
 import { number, unitText } from '../panels/format.js';
+import { unitFactor, unitPatch } from './dose_units.js';
 
 const names = {
   weighted: 'Weighted total', total: 'Physical total', boron: 'Boron', nitrogen: 'Nitrogen', fast: 'Fast neutron', gamma: 'Gamma', other: 'Other recoils',
@@ -67,14 +68,18 @@ export const isOn = ({ dose }) => dose.wash.visible || dose.lines.visible || dos
 
 // ---- patches ------------------------------------------------------------------------------------------------------------
 
-/** Shows another dose, with a quantity that it has. */
-export const choosePatch = (scene, dose) => ({ dose: { id: dose.id, quantity: quantityFor(scene, dose), ...(dose.id in scene.dose.sum && { sum: { [dose.id]: null } }) } });
+/** Shows another dose, with a quantity that it has. What stands in a unit of dose keeps its worth: a level of 30 Gy is not 30 cGy then. */
+export function choosePatch(plan, scene, dose) {
+  const patch = unitPatch(scene, unitFactor(shownDose(plan, scene)?.unit, dose.unit));
+  return { ...patch, dose: { ...patch.dose, id: dose.id, quantity: quantityFor(scene, dose), ...(dose.id in scene.dose.sum && { sum: { [dose.id]: null } }) } };
+}
 
 /** Switches lines, wash and surfaces off, or wash and lines on. */
-export function toggledPatch(scene, dose, isShown) {
+export function toggledPatch(plan, scene, dose, isShown) {
   const { lines, wash, surfaces } = scene.dose;
   const isAny = isShown && (lines.visible || wash.visible || surfaces.visible);
-  return { dose: { ...choosePatch(scene, dose).dose, ...(isAny ? { lines: { visible: false }, wash: { visible: false }, surfaces: { visible: false } } : { lines: { visible: true }, wash: { visible: true } }) } };
+  const chosen = choosePatch(plan, scene, dose);
+  return { ...chosen, dose: { ...chosen.dose, ...(isAny ? { lines: { visible: false }, wash: { visible: false }, surfaces: { visible: false } } : { lines: { visible: true }, wash: { visible: true } }) } };
 }
 
 // ---- words --------------------------------------------------------------------------------------------------------------
