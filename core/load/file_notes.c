@@ -170,11 +170,14 @@ static void note_not_read(struct notes *notes, const char *path)
     struct loading *loading = notes->loading;
     if (notes->n_not_read++ >= FILE_NOTES_MAX)
         return;
-    enum part_format format = part_format_of(&loading->folder, path);
+    struct error unread = { 0 };
+    enum part_format format = part_format_read(&loading->folder, path, &unread);
     bool is_known = format != PART_UNKNOWN && format != PART_ABSENT;
     report_add(&loading->plan->report, REPORT_NOTE, "file.not-read", path, "Not read%s: %s.",
                loading->parts.is_recognised ? "" : ", as plan.json does not name it",
-               is_known ? part_format_word(format) : file_kind_words(&loading->folder, path));
+               unread.code == ERROR_IO ? unread.text
+               : is_known              ? part_format_word(format)
+                                       : file_kind_words(&loading->folder, path));
 }
 
 static void note_rest(struct notes *notes)

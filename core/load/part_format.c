@@ -7,31 +7,31 @@
 #include "core/load/nifti_parts.h"
 #include "core/load/part_names.h"
 
-static bool is_dicom_file(const struct folder *folder, const char *name)
+static bool is_dicom_file(const struct folder *folder, const char *name, struct error *err)
 {
     uint8_t head[140];
     struct folder_part part;
-    if (!folder_open_part(folder, name, &part, NULL))
+    if (!folder_open_part(folder, name, &part, err))
         return false;
     size_t n = part.n_bytes < sizeof head ? (size_t)part.n_bytes : sizeof head;
-    bool is_read = folder_read_part(&part, name, 0, head, n, NULL);
+    bool is_read = folder_read_part(&part, name, 0, head, n, err);
     folder_close_part(&part);
     return !is_read || dicom_looks_like(head, n); /* the scan reports a file that the disk does not give */
 }
 
-static bool is_track_table(const struct folder *folder, const char *name)
+static bool is_track_table(const struct folder *folder, const char *name, struct error *err)
 {
     uint8_t head[1024];
     struct folder_part part;
-    if (!text_has_ending(name, ".csv") || !folder_open_part(folder, name, &part, NULL))
+    if (!text_has_ending(name, ".csv") || !folder_open_part(folder, name, &part, err))
         return false;
     size_t n = part.n_bytes < sizeof head ? (size_t)part.n_bytes : sizeof head;
-    bool is_read = folder_read_part(&part, name, 0, head, n, NULL);
+    bool is_read = folder_read_part(&part, name, 0, head, n, err);
     folder_close_part(&part);
     return is_read && track_csv_looks_like(head, n);
 }
 
-enum part_format part_format_of(const struct folder *folder, const char *name)
+enum part_format part_format_read(const struct folder *folder, const char *name, struct error *err)
 {
     static const struct {
         const char *ending;
@@ -62,15 +62,20 @@ enum part_format part_format_of(const struct folder *folder, const char *name)
     if (kind == FOLDER_DIRECTORY)
         return PART_DICOM;
     if (plan_nifti_is_pair(name)) /* DICOM slices may end in .img, too */
-        return is_dicom_file(folder, name) ? PART_DICOM : PART_NIFTI;
+        return is_dicom_file(folder, name, err) ? PART_DICOM : PART_NIFTI;
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
         if (text_has_ending(name, endings[i].ending))
             return endings[i].format;
     if (text_equal(part_base_name(name), "body_data.txt"))
         return PART_SERA_PREFERENCES;
-    if (is_track_table(folder, name))
+    if (is_track_table(folder, name, err))
         return PART_TRACK_CSV;
-    return is_dicom_file(folder, name) ? PART_DICOM : PART_UNKNOWN;
+    return is_dicom_file(folder, name, err) ? PART_DICOM : PART_UNKNOWN;
+}
+
+enum part_format part_format_of(const struct folder *folder, const char *name)
+{
+    return part_format_read(folder, name, NULL);
 }
 
 bool part_is_sera_dose(enum part_format format)
