@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <fts.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,19 +60,33 @@ static bool add(struct files *files, const char *path, const struct stat *facts,
     return true;
 }
 
+/* A link that leads nowhere or out of the folder, where a confined process may not look: no part of a plan either.
+ * root: the folder without links in its path. */
+static bool leads_out(const FTSENT *entry, const char *root)
+{
+    struct stat facts;
+    char target[PATH_MAX];
+    const size_t n = strlen(root);
+    if (entry->fts_level == 0 || lstat(entry->fts_path, &facts) != 0 || !S_ISLNK(facts.st_mode))
+        return false;
+    return !realpath(entry->fts_path, target) || strncmp(target, root, n) != 0 || target[n] != '/';
+}
+
 static bool walk(const char *folder, struct files *files, struct error *err)
 {
-    char *root = mem_copy_text(folder);
+    char *root = mem_copy_text(folder), plain[PATH_MAX] = "";
     char *const roots[] = { root, NULL };
     const size_t n_root = strlen(folder);
     bool ok = true;
+    if (!realpath(folder, plain))
+        plain[0] = 0;
     errno = 0;
     FTS *tree = fts_open(roots, FTS_LOGICAL | FTS_NOCHDIR, NULL);
     for (FTSENT *entry; ok && tree && (entry = fts_read(tree));) {
         const bool is_hidden = entry->fts_level > 0 && entry->fts_name[0] == '.';
-        if (is_hidden && entry->fts_info == FTS_D)
+        if ((is_hidden || leads_out(entry, plain)) && entry->fts_info == FTS_D)
             (void)fts_set(tree, entry, FTS_SKIP);
-        else if (is_hidden)
+        else if (is_hidden || leads_out(entry, plain))
             continue;
         else if (entry->fts_info == FTS_DNR || entry->fts_info == FTS_ERR || entry->fts_info == FTS_NS)
             ok = error_set(err, ERROR_IO, "%.100s: %s", entry->fts_name, strerror(entry->fts_errno));

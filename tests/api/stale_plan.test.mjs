@@ -1,7 +1,7 @@
 // A file that changes while the plan is open is noticed, also with its size and time kept: members are told, and nothing is decided until it is
 // read anew. --stub: grey pictures.
 import assert from 'node:assert/strict';
-import { cpSync, mkdtempSync, readFileSync, rmSync, statSync, utimesSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdtempSync, readFileSync, rmSync, statSync, symlinkSync, utimesSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -50,4 +50,18 @@ test('a changed file is said to all, refuses decisions, and counts as read when 
   assert.equal((await openPlan(daemon.url, 'phantom')).state, 'done');
   await ann.message('files', (m) => m.changed_ms === 0, from);
   await until(() => put(ann, 'decision', { decision: 'defer', text: 'Read anew' }), ({ kind }) => kind === 'decision');
+});
+
+test('links that lead out of the folder, or nowhere, keep no decision back', async (t) => {
+  const plans = mkdtempSync(join(tmpdir(), 'beamroom-links-'));
+  cpSync(join(demo, 'phantom'), join(plans, 'phantom'), { recursive: true });
+  for (const [target, name] of [['/root', 'folder'], ['/etc/shadow', 'file'], ['/nowhere/at/all', 'nothing']]) symlinkSync(target, join(plans, 'phantom', name));
+  const daemon = await startDaemon({ plans: [plans], args: ['--stub'] });
+  t.after(async () => {
+    await daemon.stop();
+    rmSync(plans, { recursive: true, force: true });
+  });
+  await openPlan(daemon.url, 'phantom');
+  const { status, json } = await until(() => call(`${daemon.url}/api/v1/plans/phantom/revision`), (answer) => answer.status !== 202 && answer.json?.type !== '/problems/busy');
+  assert.deepEqual([status, json.revision?.length], [200, 64], JSON.stringify(json));
 });
