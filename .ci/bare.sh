@@ -1,9 +1,11 @@
 #!/bin/bash
-# A bare Debian 12 in a folder: nothing but what Debian calls minimal, git and make. To be sourced:
-#   bare_make FOLDER                 makes it, with the package sources, certificates and npm settings of this machine
-#   bare_enter FOLDER COMMAND...     runs a command in it, as root, in namespaces of its own: what the command leaves running ends with it
-# Needs root; both say why they fail. Debian 12 alone is taken from the machine's package sources, so that no other
+# A bare Debian 12 in a folder: nothing but what Debian calls minimal, git and make.
+#   .ci/bare.sh make FOLDER                 makes it, with the package sources, certificates and npm settings of this machine
+#   .ci/bare.sh enter FOLDER COMMAND...     runs a command in it, as root, in namespaces of its own: what the command leaves running ends with it
+# Needs root; both say why they fail.
+# Debian 12 alone is taken from the machine's package sources, so that no other
 # packages of it (another node, another compiler) get in.
+set -u
 
 # Stanzas of the machine's sources that are Debian's own: address and folder of each "deb" of the suite bookworm*.
 bare_sources() {
@@ -14,8 +16,9 @@ bare_sources() {
          END { flush() }' RS='\n' /etc/apt/sources.list.d/*.sources 2>/dev/null
 }
 
-bare_make() { # bare_make FOLDER
+make_bare() { # make_bare FOLDER
     local root=$1 mirror file
+    chmod 755 "$root" # the daemon does not stay root
     [ "$(id -u)" = 0 ] || { echo "a bare Debian needs root" >&2; return 1; }
     deploy/packages ci || return 1
     mirror=$(bare_sources | awk '$2 == "bookworm" { print $1; exit }')
@@ -38,11 +41,11 @@ bare_make() { # bare_make FOLDER
     chroot "$root" apt-get -q update >>"$root.log" 2>&1 || { tail -n 20 "$root.log" >&2; return 1; }
 }
 
-bare_enter() { # bare_enter FOLDER COMMAND...
+enter_bare() { # enter_bare FOLDER COMMAND...
     local root=$1
     shift
     # shellcheck disable=SC2016  # expanded inside
-    unshare --mount --pid --fork --kill-child --propagation private bash -c '
+    exec unshare --mount --pid --fork --kill-child --propagation private bash -c '
         root=$1
         shift
         for folder in /proc /sys /dev /dev/pts /dev/shm; do
@@ -55,3 +58,9 @@ bare_enter() { # bare_enter FOLDER COMMAND...
         exec chroot "$root" /usr/bin/env -i HOME="$HOME" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 CI=true "$@"
     ' bash "$root" "$@"
 }
+
+case ${1:-} in
+make) make_bare "$2" ;;
+enter) shift && enter_bare "$@" ;;
+*) echo "usage: .ci/bare.sh make FOLDER | enter FOLDER COMMAND..." >&2; exit 2 ;;
+esac
