@@ -43,7 +43,7 @@ queue() {
         rows+=("$(printf '%-28s %6d passed %4d failed %4d skipped' "$name" "$passed" "$failed" "$skipped")")
         total_passed=$((total_passed + passed)) total_failed=$((total_failed + failed)) total_skipped=$((total_skipped + skipped))
         any=1
-    done < <(sed -nE 's/^([^: ]+): ([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$/\1 \2 \3 \4/p' "$log")
+    done < <(sed -nE 's/^total ([^: ]+): ([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$/\1 \2 \3 \4/p; s/^(api-alone): ([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$/\1 \2 \3 \4/p' "$log")
     rows+=("$(printf '%-28s %47d s' "(these together)" $((SECONDS - start)))")
     [ $any = 1 ] && { [ "$status" = 0 ] || [ "$total_failed" -gt 0 ]; } || { total_failed=$((total_failed + 1)); tail -n 40 "$log"; }
 }

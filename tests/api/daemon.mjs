@@ -22,7 +22,11 @@ export async function startDaemon({ plans = [demo], args = [], data: given, cwd,
     { cwd, stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ...env } });
   let log = '';
   child.stderr.on('data', (text) => { log += text; });
-  const ended = new Promise((done) => child.on('exit', (code) => done(code)));
+  // its last words are read, too; a renderer that outlives it may hold the pipe open
+  const ended = new Promise((done) => {
+    child.on('close', (code) => done(code));
+    child.on('exit', (code) => setTimeout(done, 2000, code).unref());
+  });
   const url = await new Promise((ready, failed) => {
     createInterface({ input: child.stdout }).on('line', (line) => {
       const found = /^ready (http:\S+)$/.exec(line);

@@ -29,7 +29,7 @@ enum {
     SETTLE_MS = 100
 };
 
-enum { SECONDS_A_WALK = 1, SECONDS_A_WALK_WHOLE = 20 };
+enum { MS_A_WALK = 400, MS_A_WALK_WHOLE = 20000 };
 
 static int n_failed;
 
@@ -260,7 +260,7 @@ static void child(struct walking *walking, size_t n, int64_t until_us)
 static int walk_kind(struct walking *walking)
 {
     int n_findings = 0;
-    int64_t until_us = clock_now_us() + (int64_t)(is_whole() ? SECONDS_A_WALK_WHOLE : SECONDS_A_WALK) * 1000000;
+    int64_t until_us = clock_now_us() + (int64_t)(is_whole() ? MS_A_WALK_WHOLE : MS_A_WALK) * 1000;
     size_t n = 1;
     atomic_store(&walking->progress->is_ended, false);
     atomic_store(&walking->progress->n_faults, 0);

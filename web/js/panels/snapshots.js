@@ -2,13 +2,14 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect } from '../../lib/signals-core.js';
 import { filesOfDrop } from '../net/dropped.js';
-import { toldOfMerge } from '../state/saved_merge.js';
-import { recordOfFile, restore } from '../state/snapshot_record.js';
 import { icon } from './icons.js';
 import { styled } from './lazy.js';
 
 const leastWidthPx = 1200; // enough for a column of a printed page
 const mostPx = 4096;
+
+/** How pictures are read and shown again: no part of what a first visit loads. */
+const records = () => import('../state/snapshot_record.js');
 
 /** The view as it is on the screen, as large as a report needs it. */
 function viewDocument(view) {
@@ -80,8 +81,9 @@ function move(event) {
 
 const pendingKey = (room) => `snapshot ${room}`;
 
-function show(world, record) {
+async function show(world, record) {
   const { room, ui, otherPlan } = world;
+  const { restore, toldOfMerge } = await records();
   if (record.plan.id !== room.planId.value) {
     otherPlan.value = record;
     ui.popover.value = 'other-plan';
@@ -100,8 +102,8 @@ export function listenSnapshots(world, target = globalThis) {
   const drop = async (data) => {
     try {
       const [first] = await filesOfDrop(data);
-      const record = first && await recordOfFile(first.file);
-      if (record) show(world, record);
+      const record = first && await (await records()).recordOfFile(first.file);
+      if (record) await show(world, record);
       else world.ui.notify('warn', 'Only a snapshot as PNG can be dropped here. Plans are dropped on the start page.', 'snapshot');
     } catch (error) {
       world.ui.notify('err', error.message, 'snapshot');
@@ -125,7 +127,7 @@ export async function openSnapshot(api, record, enter) {
 
 /** The same for a file that was dropped on the start page. @returns {Promise<boolean>} false: it is no picture */
 export async function openDroppedSnapshot(api, file, enter) {
-  const record = await recordOfFile(file);
+  const record = await (await records()).recordOfFile(file);
   if (!record) return false;
   await openSnapshot(api, record, enter).catch((error) => { throw new Error(`The picture shows the plan ${record.plan.name}: ${error.message}`); });
   return true;
@@ -140,7 +142,7 @@ export function resumeSnapshot(world) {
     if (isShown || !world.room.canChange.value || !world.room.plan.value) return;
     isShown = true;
     sessionStorage.removeItem(pendingKey(world.room.id));
-    queueMicrotask(() => show(world, JSON.parse(text)));
+    queueMicrotask(() => show(world, JSON.parse(text)).catch((error) => world.ui.notify('err', error.message, 'snapshot')));
   });
 }
 

@@ -1,7 +1,6 @@
 // The report to print: chosen snapshots with captions, and figures of the regions. Kept in this tab until it is closed.
 import { signal } from '../../lib/signals-core.js';
 import { crosshair } from './plan.js';
-import { recordOfFile } from './snapshot_record.js';
 import { shapeQuery } from './shapes.js';
 
 const mostFigures = 128; // regions whose surfaces are measured
@@ -45,7 +44,7 @@ export class Printout {
   /** Adds a snapshot of this view, with the values at its crosshair. Throws when there is no picture. */
   async add(room, document) {
     const blob = await this.#api.snapshot(room, document);
-    const record = await recordOfFile(blob);
+    const record = await (await import('./snapshot_record.js')).recordOfFile(blob);
     const probe = await this.#api.probe(room.planId.value, crosshair(record.scene)).catch(() => null);
     this.#set([...this.entries.value, { key: this.#nextKey++, url: await dataUrl(blob), caption: '', record, probe }]);
   }

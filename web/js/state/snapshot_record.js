@@ -6,6 +6,8 @@ import { isObject } from '../wire/merge.js';
 import { adopted } from './marks.js';
 import { mergedScene } from './saved_merge.js';
 
+export { toldOfMerge } from './saved_merge.js';
+
 const keyword = 'beamroom';
 const version = 1;
 const longestName = 200;
