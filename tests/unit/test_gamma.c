@@ -181,9 +181,9 @@ static void rough_doses_agree_with_brute_force_in_numpy(void **state)
     static char out[1 << 16];
     uint64_t seed = 77;
     for (int trial = 0; trial < 2; trial++) {
-        struct volume *first = make_volume((uint32_t[]){ 6, 5, 4 }, 2.2, 0, vec3(1.1, -3, 0.7)),
+        struct volume *first = make_volume((uint32_t[]){ 4, 4, 3 }, 2.2, 0, vec3(1.1, -3, 0.7)),
                       *second = make_volume((uint32_t[]){ 9, 9, 9 }, 2.7, 0, vec3(-0.5, -4.4, -1.9));
-        for (size_t i = 0; i < 6 * 5 * 4; i++)
+        for (size_t i = 0; i < 4 * 4 * 3; i++)
             ((float *)first->voxels)[i] = (float)(10 + 10 * random_part(&seed));
         for (size_t i = 0; i < 9 * 9 * 9; i++)
             ((float *)second->voxels)[i] = (float)(10 + 10 * random_part(&seed));
@@ -215,7 +215,7 @@ static void rough_doses_agree_with_brute_force_in_numpy(void **state)
         assert_int_equal(status, 0);
         const char *at = out;
         size_t n_indices = 0;
-        for (size_t i = 0; i < 6 * 5 * 4; i++) {
+        for (size_t i = 0; i < 4 * 4 * 3; i++) {
             char *end;
             double expected = strtod(at, &end), found = (double)((const float *)gammas->voxels)[i];
             assert_true(end > at);
@@ -228,7 +228,7 @@ static void rough_doses_agree_with_brute_force_in_numpy(void **state)
                 assert_close(found, expected, 0.06);
         }
         assert_int_equal(n_indices, facts.n);
-        assert_true(n_indices > 60 && facts.n_passed > 5 && facts.n_passed < facts.n);
+        assert_true(n_indices > 25 && facts.n_passed > 2 && facts.n_passed < facts.n);
         volume_unref(gammas);
         volume_unref(first);
         volume_unref(second);

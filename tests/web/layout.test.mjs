@@ -87,7 +87,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await page.context().close();
   });
 
-  for (const [size, options] of Object.entries(roomSizes).filter(([name]) => isDue(name === 'compact')))
+  for (const [size, options] of Object.entries(roomSizes).filter(() => isDue(false)))
     it(`${size}: in no state does text lie over text, a letter or a control, and panes are as wide as they have to be`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
       await full(page);
