@@ -37,7 +37,7 @@ suite() { # suite NAME MAKE-ARGUMENT...
 queue() {
     local log=$logs/queue.log start=$SECONDS status passed failed skipped name any=0
     echo "== all suites from one queue"
-    ${MAKE:-make} --no-print-directory "$jobs" test-queue 2>&1 </dev/null | tee "$log" | grep -vE '^[^: ]+: [0-9]+ passed, [0-9]+ failed, [0-9]+ skipped$'
+    ${MAKE:-make} --no-print-directory "$jobs" test-queue 2>&1 </dev/null | tee "$log" | grep --line-buffered -vE '^[^: ]+: [0-9]+ passed, [0-9]+ failed, [0-9]+ skipped$'
     status=${PIPESTATUS[0]}
     while read -r name passed failed skipped; do
         rows+=("$(printf '%-28s %6d passed %4d failed %4d skipped' "$name" "$passed" "$failed" "$skipped")")
