@@ -9,6 +9,8 @@
 #include "core/load/dicom_parts.h"
 #include "core/plan/fit.h"
 
+#define SAME_WITHIN_MM 0.1 /* two registrations of one pair of frames; a tenth of the finest voxels */
+
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
 
 static void add_registration(struct plan *plan, const struct dicom_registration *from, int patient)
@@ -39,12 +41,66 @@ static void read_object(struct loading *loading, const struct dicom_object *obje
                "A registration of frames of reference with %zu rigid transformation%s.", n, n == 1 ? "" : "s");
 }
 
+/* The largest distance between where two maps bring points 200 mm from the frame's origin along its axes: the size of a
+ * head. */
+static double apart_mm(const struct affine *a, const struct affine *b)
+{
+    static const struct vec3 points[] = { { 200, 0, 0 },  { -200, 0, 0 }, { 0, 200, 0 },
+                                          { 0, -200, 0 }, { 0, 0, 200 },  { 0, 0, -200 } };
+    double most = 0;
+    for (size_t i = 0; i < sizeof points / sizeof *points; i++)
+        most = fmax(most, vec3_length(vec3_sub(affine_point(a, points[i]), affine_point(b, points[i]))));
+    return most;
+}
+
+/* How far two registrations of the same two frames differ, mm; 0: they are of different frames, or of two patients. */
+static double contradiction_mm(const struct plan_registration *a, const struct plan_registration *b)
+{
+    struct affine back;
+    if (a->patient != b->patient)
+        return 0;
+    if (strcmp(a->from_uid, b->from_uid) == 0 && strcmp(a->to_uid, b->to_uid) == 0)
+        return apart_mm(&a->to_from_lps_mm, &b->to_from_lps_mm);
+    if (strcmp(a->from_uid, b->to_uid) != 0 || strcmp(a->to_uid, b->from_uid) != 0)
+        return 0;
+    return affine_invert(&b->to_from_lps_mm, &back) ? apart_mm(&a->to_from_lps_mm, &back) : INFINITY;
+}
+
+/* Registrations that contradict each other are taken out: which one holds is not said anywhere. */
+static void drop_contradicting(struct plan *plan)
+{
+    bool is_dropped[ORIGIN_MAX_REGISTRATIONS] = { false };
+    double most_mm = 0;
+    size_t n = 0, n_dropped = 0;
+    for (size_t i = 0; i < plan->n_registrations; i++)
+        for (size_t j = 0; j < i; j++) {
+            double mm = contradiction_mm(&plan->registrations[i], &plan->registrations[j]);
+            if (mm > SAME_WITHIN_MM) {
+                is_dropped[i] = is_dropped[j] = true;
+                most_mm = fmax(most_mm, mm);
+            }
+        }
+    for (size_t i = 0; i < plan->n_registrations; i++)
+        if (is_dropped[i])
+            n_dropped++;
+        else
+            plan->registrations[n++] = plan->registrations[i];
+    plan->n_registrations = n;
+    if (n_dropped > 0)
+        report_add(
+            &plan->report, REPORT_WARNING, "registration.not-applied", "",
+            "%zu registrations of the same frames of reference differ by up to %.3g mm within 200 mm; none of them "
+            "is applied.",
+            n_dropped, most_mm);
+}
+
 void registrations_read(struct loading *loading)
 {
     const struct dicom_index *index = loading->parts.dicom;
     for (size_t i = 0; index && i < index->n_objects; i++)
         if (index->objects[i].kind == DICOM_KIND_REGISTRATION)
             read_object(loading, &index->objects[i]);
+    drop_contradicting(loading->plan);
 }
 
 /* ---- applying --------------------------------------------------------------------------------------------------- */
@@ -79,13 +135,20 @@ static bool find_map(const struct plan *plan, const struct part_origin *origin, 
     return false;
 }
 
-static bool move_grid(struct volume *volume, const struct affine *map)
+/* Moves the grids of all volumes (NULL: none there), or of none. */
+static bool move_grids(struct volume *const *volumes, size_t n, const struct affine *map)
 {
-    struct affine moved = affine_compose(map, &volume->grid.lps_mm_from_ijk);
-    struct grid grid;
-    if (!grid_init(&grid, volume->grid.size, &moved, NULL))
-        return false;
-    volume->grid = grid;
+    for (int is_moving = 0; is_moving < 2; is_moving++)
+        for (size_t i = 0; i < n; i++) {
+            struct grid grid;
+            if (!volumes[i])
+                continue;
+            struct affine moved = affine_compose(map, &volumes[i]->grid.lps_mm_from_ijk);
+            if (!grid_init(&grid, volumes[i]->grid.size, &moved, NULL))
+                return false;
+            if (is_moving)
+                volumes[i]->grid = grid;
+        }
     return true;
 }
 
@@ -137,7 +200,7 @@ static bool is_of_one_frame(const struct plan *plan, size_t layer, const struct 
 /* Moves every layer with a region of the frame and patient of `as`, or none. */
 static bool move_layers(struct plan *plan, const struct part_origin *as, const struct affine *map)
 {
-    bool is_moved[REGION_MAX_LAYERS] = { false };
+    struct volume *moved[REGION_MAX_LAYERS] = { NULL };
     for (size_t r = 0; r < plan->regions.n_regions; r++) {
         const struct region *region = &plan->regions.regions[r];
         if (!is_of_frame(origin_of_region(plan, region), as))
@@ -145,12 +208,10 @@ static bool move_layers(struct plan *plan, const struct part_origin *as, const s
         if (!is_of_one_frame(plan, region->layer, as))
             return refuse(plan, "regions", region->name, as->path,
                           "they share a layer with regions of another frame of reference");
-        is_moved[region->layer] = true;
+        moved[region->layer] = plan->regions.layers[region->layer];
     }
-    for (size_t l = 0; l < plan->regions.n_layers; l++)
-        if (is_moved[l] && !move_grid(plan->regions.layers[l], map))
-            return refuse(plan, "regions", "", as->path, "the grid would lie out of bounds");
-    return true;
+    return move_grids(moved, plan->regions.n_layers, map) ||
+           refuse(plan, "regions", "", as->path, "the grid would lie out of bounds");
 }
 
 /* Sources of one frame of reference may share layers, and are moved together. */
@@ -175,7 +236,7 @@ void registrations_move_images_and_regions(struct plan *plan)
         struct part_origin *origin = &plan->image_origins[i];
         if (!find_map(plan, origin, &map))
             continue;
-        if (!move_grid(plan->images[i].volume, &map)) {
+        if (!move_grids(&plan->images[i].volume, 1, &map)) {
             (void)refuse(plan, "image", plan->images[i].id, origin->path, "it would lie out of bounds");
             continue;
         }
@@ -187,11 +248,13 @@ void registrations_move_images_and_regions(struct plan *plan)
 
 static bool move_dose(struct dose *dose, const struct affine *map)
 {
-    bool is_moved = !dose->mask || move_grid(dose->mask, map);
-    for (size_t c = 0; is_moved && c < dose->n_components; c++)
-        is_moved = move_grid(dose->components[c].values, map) &&
-                   (!dose->components[c].error || move_grid(dose->components[c].error, map));
-    return is_moved;
+    struct volume *moved[2 * DOSE_N_QUANTITIES + 1] = { dose->mask };
+    size_t n = 1;
+    for (size_t c = 0; c < dose->n_components; c++) {
+        moved[n++] = dose->components[c].values;
+        moved[n++] = dose->components[c].error;
+    }
+    return move_grids(moved, n, map);
 }
 
 void registrations_move_doses(struct plan *plan)
@@ -201,8 +264,8 @@ void registrations_move_doses(struct plan *plan)
         struct part_origin *origin = &plan->dose_origins[d];
         if (origin->is_stated_other || !find_map(plan, origin, &map))
             continue;
-        if (!move_dose(&plan->doses[d], &map)) { /* some of its grids may have moved: it fits nothing */
-            origin->is_stated_other = !refuse(plan, "dose", plan->doses[d].id, origin->path, "out of bounds");
+        if (!move_dose(&plan->doses[d], &map)) {
+            (void)refuse(plan, "dose", plan->doses[d].id, origin->path, "it would lie out of bounds");
             continue;
         }
         say(plan, "Dose", plan->doses[d].name, origin->path, &map);

@@ -123,6 +123,32 @@ static void what_is_not_rigid_or_not_a_number_is_not_applied(void **state)
     assert_nothing_moved(&mr, "AFFINE", TURN, true);
 }
 
+/* Two registrations of the same frames: of one turn in both directions, or one of them 3 mm off. */
+static void registrations_that_contradict_each_other_are_not_applied(void **state)
+{
+    (void)state;
+    static const char *const back[] = { TURN_BACK, "0\\1\\0\\-2\\-1\\0\\0\\13\\0\\0\\1\\-1\\0\\0\\0\\1" };
+    for (int is_off = 0; is_off < 2; is_off++) {
+        char folder[256];
+        folder_make(folder);
+        put_case(folder, &mr);
+        made_part_registration(folder, "a.dcm", &ct, "1.2.42", "1.2.41", "RIGID", TURN);
+        made_part_registration(folder, "b.dcm", &ct, "1.2.41", "1.2.42", "RIGID", back[is_off]);
+        struct plan *plan = open_plan(folder);
+        assert_int_equal(plan->n_registrations, is_off ? 0 : 2);
+        assert_int_equal(report_has(&plan->report, "registration.not-applied"), is_off);
+        assert_int_equal(report_has(&plan->report, "registration.applied"), !is_off);
+        if (is_off) {
+            assert_non_null(strstr(report_said(&plan->report, "registration.not-applied"), "differ by up to 3 mm"));
+            assert_at(plan->beams[0].target_lps_mm, 7, 7, 3);
+            assert_string_equal(plan->dose_origins[0].frame_uid, "1.2.42");
+        } else
+            assert_moved(plan);
+        plan_destroy(plan);
+        folder_remove(folder);
+    }
+}
+
 static void a_registration_moves_no_part_of_another_patient(void **state)
 {
     (void)state;
@@ -153,6 +179,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_are_brought_into_the_first_images_frame_in_both_directions),
         cmocka_unit_test(what_is_not_rigid_or_not_a_number_is_not_applied),
+        cmocka_unit_test(registrations_that_contradict_each_other_are_not_applied),
         cmocka_unit_test(a_registration_moves_no_part_of_another_patient),
         cmocka_unit_test(parts_come_to_the_first_image_of_the_shown_patient),
     };
