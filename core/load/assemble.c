@@ -269,6 +269,17 @@ static void add_dose_error(struct dose *dose, const struct plan_file_dose *entry
     volume_unref(error);
 }
 
+/* Takes the plan's last dose out again: no file of its entry held a quantity that the entry names. */
+static void leave_out_empty_dose(struct loading *loading, const char *path)
+{
+    struct plan *plan = loading->plan;
+    struct dose *dose = &plan->doses[--plan->n_doses];
+    report_add(&plan->report, REPORT_ERROR, "dose.left-out", path,
+               "The dose \"%s\" holds no quantity that the plan names; it is left out.", dose->id);
+    volume_unref(dose->mask);
+    *dose = (struct dose){ 0 };
+}
+
 /* Adds the dose of an entry of the plan file; a file or folder of DICOM doses may give several. */
 static void add_dose(struct loading *loading, size_t index)
 {
@@ -293,6 +304,10 @@ static void add_dose(struct loading *loading, size_t index)
             return;
         if (is_of_dose(loading, dose, reading))
             add_component(loading, dose, reading);
+    }
+    if (dose && dose->n_components == 0) {
+        leave_out_empty_dose(loading, entry->components[0].path);
+        return;
     }
     for (size_t i = 0; dose && i < loading->n_readings; i++) {
         struct part_reading *reading = &loading->readings[i];

@@ -324,16 +324,20 @@ static void a_plan_asks_contours_for_a_quantity_and_says_what_is_100_percent(voi
     folder_put(folder, "a.cmf", pictures, sizeof pictures);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         int n =
-            snprintf(text, sizeof text, "{\"format\":\"beamroom-plan\",\"version\":1,\"doses\":[%s]}", cases[i].dose);
+            snprintf(text, sizeof text,
+                     "{\"format\":\"beamroom-plan\",\"version\":1,\"images\":[{\"path\":\"m.nrrd\"}],\"doses\":[%s]}",
+                     cases[i].dose);
         folder_put(folder, "plan.json", text, (size_t)n);
         struct plan *plan = plan_load(folder, "p", NULL, &err);
         assert_string_equal(err.text, "");
-        assert_int_equal(plan->n_doses, 1);
-        assert_int_equal(plan->doses[0].n_components, cases[i].n);
-        assert_int_equal(report_said(&plan->report, "dose.no-quantity")[0] != 0, cases[i].n == 0);
-        if (cases[i].n > 0)
+        assert_int_equal(plan->n_doses, cases[i].n > 0);
+        assert_int_equal(report_has(&plan->report, "dose.no-quantity"), cases[i].n == 0);
+        assert_int_equal(report_has(&plan->report, "dose.left-out"), cases[i].n == 0);
+        if (cases[i].n > 0) {
+            assert_int_equal(plan->doses[0].n_components, cases[i].n);
             assert_int_equal(plan->doses[0].components[0].quantity, cases[i].first);
-        assert_close(plan->doses[0].reference[DOSE_GAMMA], cases[i].gamma_reference, 1e-9);
+            assert_close(plan->doses[0].reference[DOSE_GAMMA], cases[i].gamma_reference, 1e-9);
+        }
         plan_destroy(plan);
     }
     static const char bad[] =
