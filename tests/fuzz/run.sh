@@ -1,5 +1,6 @@
 #!/bin/bash
 # Fuzzes each door for a while: run.sh FOLDER-OF-PROGRAMS; FUZZ_SECONDS each (60), a name in ONLY runs that one alone.
+# FUZZ_SEED fixes what is tried, so that two runs differ by the code alone; without it each run tries something else.
 # Starts from tests/fuzz/corpus/<name>/ (checked in: small, one per shape of input) and what earlier runs found
 # (build/fuzz/corpus/<name>/). A crash leaves its input in build/fuzz/found/<name>/: make a unit test of it.
 set -u
@@ -18,7 +19,7 @@ for source in tests/fuzz/fuzz_*.c; do
     mkdir -p "$grown" "$found"
     seeds=()
     [ ! -d "tests/fuzz/corpus/$name" ] || seeds=("tests/fuzz/corpus/$name")
-    if UBSAN_OPTIONS=print_stacktrace=1 "$program" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
+    if UBSAN_OPTIONS=print_stacktrace=1 "$program" -seed="${FUZZ_SEED:-0}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
         -dict="$words" -print_final_stats=1 -artifact_prefix="$found/" "$grown" "${seeds[@]}" >"$log" 2>&1 </dev/null; then
         passed=$((passed + 1))
         echo "  $name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs in $seconds s," \
