@@ -17,7 +17,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/http/head.h"
+#include "server/front/head.h"
 #include "server/http/http.h"
 #include "server/net/net.h"
 #include "server/wire/refusal.h"

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "core/base/error.h"
-#include "server/http/address.h"
+#include "server/front/address.h"
 
 enum {
     ACCEPTOR_MAX_PENDING = 256, /* connections without a whole first head, in all ... */

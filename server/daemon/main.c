@@ -21,7 +21,7 @@
 #include "server/daemon/options.h"
 #include "server/daemon/privilege.h"
 #include "server/daemon/stop.h"
-#include "server/http/hosts.h"
+#include "server/front/hosts.h"
 #include "server/http/http.h"
 #include "server/net/net.h"
 #include "server/store/backup.h"

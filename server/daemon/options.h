@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
-#include "server/http/address.h"
+#include "server/front/address.h"
 
 enum { OPTIONS_MAX_PLAN_FOLDERS = 64, OPTIONS_MAX_NAMES = 64, OPTIONS_MAX_LINE = 4096 };
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
-#include "server/http/address.h"
+#include "server/front/address.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"

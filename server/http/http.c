@@ -15,12 +15,12 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
+#include "server/front/relay.h"
 #include "server/http/api.h"
 #include "server/http/etag.h"
 #include "server/http/feed.h"
 #include "server/http/files.h"
 #include "server/http/intake.h"
-#include "server/http/relay.h"
 
 /* Never reached: the relay's limit is lower, also with connections whose end the library has not noticed. */
 static const unsigned LIBRARY_LIMIT = 1000000;

@@ -3,8 +3,8 @@
  * are answered on the net thread, while the connection is suspended. */
 #include <stdatomic.h>
 
-#include "server/http/address.h"
-#include "server/http/hosts.h"
+#include "server/front/address.h"
+#include "server/front/hosts.h"
 #include "server/net/net.h"
 
 enum {

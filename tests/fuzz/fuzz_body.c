@@ -1,7 +1,7 @@
 /* HTTP bodies: the end of a chunked body, which must not depend on how the bytes are split; and the client's address
  * behind a proxy. */
-#include "server/http/address.h"
-#include "server/http/body.h"
+#include "server/front/address.h"
+#include "server/front/body.h"
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)

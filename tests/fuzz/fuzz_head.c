@@ -1,6 +1,6 @@
 /* The head of a connection's first request. A refusal needs a sentence; an incomplete head must be waited for, or be
  * refused like the whole. */
-#include "server/http/head.h"
+#include "server/front/head.h"
 #include "server/wire/fields.h"
 #include "tests/fuzz/fuzz.h"
 

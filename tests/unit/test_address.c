@@ -1,5 +1,5 @@
 /* Addresses, and the client that a connection counts for. */
-#include "server/http/address.h"
+#include "server/front/address.h"
 #include "tests/check.h"
 
 static struct address address(const char *text)

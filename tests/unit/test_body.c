@@ -1,5 +1,5 @@
 /* Where the body of a request ends; entity tags; origins. */
-#include "server/http/body.h"
+#include "server/front/body.h"
 #include "server/http/etag.h"
 #include "server/wire/origin.h"
 #include "tests/check.h"

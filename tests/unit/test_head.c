@@ -1,7 +1,7 @@
 /* Heads of requests: HTTP, WebSocket handshake, or refused with which problem. */
 #include <unistd.h>
 
-#include "server/http/head.h"
+#include "server/front/head.h"
 #include "server/wire/json.h"
 #include "server/wire/refusal.h"
 #include "tests/check.h"

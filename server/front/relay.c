@@ -15,9 +15,9 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
-#include "server/http/head.h"
-#include "server/http/relay_count.h"
-#include "server/http/relay_link.h"
+#include "server/front/head.h"
+#include "server/front/relay_count.h"
+#include "server/front/relay_link.h"
 #include "server/wire/refusal.h"
 
 enum { TICK_MS = 500 };

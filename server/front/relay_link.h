@@ -1,6 +1,6 @@
 #pragma once
-/* One link: a client's connection, from its first byte to its end. Internal to server/http; the relay's thread. */
-#include "server/http/relay_state.h"
+/* One link: a client's connection, from its first byte to its end. Internal to server/front; the relay's thread. */
+#include "server/front/relay_state.h"
 
 /* Does all that can be done now: receives, checks, passes on, sends, ends. */
 void relay_link_advance(struct relay_link *link);

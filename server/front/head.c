@@ -1,5 +1,5 @@
 /* Parses and checks the head of a request. */
-#include "server/http/head.h"
+#include "server/front/head.h"
 
 #include <ctype.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 /* Advances one link: receives and checks a request, passes it to the library and the answer back, and ends the link. A
  * refused client may still be sending: its bytes are read for a while after the answer, because closing a socket with
  * unread bytes takes the answer back. */
-#include "server/http/relay_link.h"
+#include "server/front/relay_link.h"
 
 #include <errno.h>
 #include <linux/sockios.h>
@@ -13,8 +13,8 @@
 #include <sys/socket.h>
 
 #include "core/base/clock.h"
-#include "server/http/head.h"
-#include "server/http/relay_count.h"
+#include "server/front/head.h"
+#include "server/front/relay_count.h"
 #include "server/wire/refusal.h"
 
 enum {

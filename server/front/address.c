@@ -1,5 +1,5 @@
 /* Reads, compares and counts network addresses, and finds the client behind trusted proxies. */
-#include "server/http/address.h"
+#include "server/front/address.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

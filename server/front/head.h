@@ -4,7 +4,7 @@
  * sockets. */
 #include <stdint.h>
 
-#include "server/http/hosts.h"
+#include "server/front/hosts.h"
 #include "server/wire/handshake.h"
 #include "server/wire/problem.h"
 

@@ -1,13 +1,13 @@
 #pragma once
-/* The state of the relay and of its links (one link per client connection). Internal to server/http; the relay's
+/* The state of the relay and of its links (one link per client connection). Internal to server/front; the relay's
  * thread, or after it has ended. */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <sys/epoll.h>
 #include <unistd.h>
 
-#include "server/http/body.h"
-#include "server/http/relay.h"
+#include "server/front/body.h"
+#include "server/front/relay.h"
 
 enum { RELAY_OUT_SIZE = 256 << 10 }; /* bytes of an answer passed on at once */
 

@@ -1,5 +1,5 @@
 /* Finds the end of a request body, byte by byte. */
-#include "server/http/body.h"
+#include "server/front/body.h"
 
 #include <string.h>
 

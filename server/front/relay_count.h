@@ -1,7 +1,7 @@
 #pragma once
-/* Counts connections per client, and keeps the list of links that have something to do. Internal to server/http; the
+/* Counts connections per client, and keeps the list of links that have something to do. Internal to server/front; the
  * relay's thread. */
-#include "server/http/relay_state.h"
+#include "server/front/relay_state.h"
 
 /* Counts the connection for this client, and no longer for another. Returns false with a problem at the limit. */
 bool relay_count(struct relay_link *link, const struct address *client, struct problem *problem);

@@ -1,5 +1,5 @@
 /* Counts connections per client and in all, and keeps the list of links to advance. */
-#include "server/http/relay_count.h"
+#include "server/front/relay_count.h"
 
 #include "core/base/clock.h"
 #include "core/base/log.h"

@@ -1,5 +1,5 @@
 /* Keeps the names of this server, and compares a Host header with them. */
-#include "server/http/hosts.h"
+#include "server/front/hosts.h"
 
 #include <arpa/inet.h>
 #include <stdio.h>

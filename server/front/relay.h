@@ -5,8 +5,8 @@
  * comes. A refused request never reaches the library. Knows nothing of libmicrohttpd, of files and of the API. */
 #include <stdatomic.h>
 
-#include "server/http/address.h"
-#include "server/http/hosts.h"
+#include "server/front/address.h"
+#include "server/front/hosts.h"
 #include "server/wire/problem.h"
 
 enum {
