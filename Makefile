@@ -155,7 +155,7 @@ web: $(WEB)/.stamp
 
 # ---- the demo plan and a daemon to look at it ----------------------------------------------------------------------------
 DEMO := build/demo/plans/phantom
-$(DEMO)/plan.json: $(call c_files,core/phantom) $(wildcard core/formats/*_write.c server/cli/phantom.c) | $(B)/beamroom
+$(DEMO)/plan.json: $(call c_files,core/phantom) $(wildcard core/formats/*_write.c core/formats/*/*_write.c server/cli/phantom.c) | $(B)/beamroom
 	$(if $(Q),@echo "  DEMO $(DEMO)")
 	$(Q)rm -rf $(DEMO) $(DEMO).part && mkdir -p $(dir $(DEMO))
 	$(Q)$(B)/beamroom phantom $(DEMO).part >/dev/null && mv $(DEMO).part $(DEMO)

@@ -4,7 +4,7 @@ set -eu
 cd "${1:-.}"
 rules=${DOORS:-tests/doors.txt} bad=0 n=0
 folders=()
-for folder in core/scene core/render core/annotate core/pipeline server/renderer; do [ -d "$folder" ] && folders+=("$folder"); done
+for folder in core/scene core/pick core/render core/annotate core/pipeline server/renderer; do [ -d "$folder" ] && folders+=("$folder"); done
 while IFS= read -r line; do
     case $line in '' | '#'*) continue ;; esac
     pattern=${line%:*} places=" ${line##*:} " n=$((n + 1))

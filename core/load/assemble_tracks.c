@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/formats/sera_pp.h"
+#include "core/formats/sera/sera_pp.h"
 #include "core/formats/track_csv.h"
 #include "core/load/part_format.h"
 

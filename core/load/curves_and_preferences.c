@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/formats/sera_rsc.h"
-#include "core/formats/sera_table.h"
+#include "core/formats/sera/sera_rsc.h"
+#include "core/formats/sera/sera_table.h"
 #include "core/formats/text.h"
 #include "core/formats/zlib_stream.h"
 #include "core/load/part_names.h"

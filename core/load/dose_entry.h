@@ -1,7 +1,7 @@
 #pragma once
 /* Applies an entry of plan.json's "doses" to a dose of the plan: unit, frame of reference, components. */
 #include "core/formats/plan_file.h"
-#include "core/formats/sera_doses.h"
+#include "core/formats/sera/sera_doses.h"
 #include "core/report/report.h"
 
 /* Sets the unit of the dose, and its "per", from the entry. is_sera: the file is in cGy and per unit of its source,

@@ -1,7 +1,7 @@
 /* Finds the parts of a plan: from plan.json, or by recognising the folder's files. */
 #include "core/load/find_parts.h"
 
-#include "core/formats/plan_json.h"
+#include "core/formats/plan/plan_json.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/part_names.h"
 #include "core/load/recognise.h"

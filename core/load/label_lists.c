@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/formats/plan_json.h"
+#include "core/formats/plan/plan_json.h"
 #include "core/formats/text.h"
 #include "core/load/nrrd_parts.h"
 #include "core/load/part_format.h"

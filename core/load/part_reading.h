@@ -6,8 +6,8 @@
 #include "core/formats/dicom/dicom_series.h"
 #include "core/formats/nrrd.h"
 #include "core/formats/plan_file.h"
-#include "core/formats/sera_doses.h"
-#include "core/formats/sera_uvh.h"
+#include "core/formats/sera/sera_doses.h"
+#include "core/formats/sera/sera_uvh.h"
 #include "core/load/grid_content.h"
 #include "core/load/part_format.h"
 

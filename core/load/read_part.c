@@ -6,7 +6,7 @@
 
 #include "core/base/mem.h"
 #include "core/formats/dicom/dicom_seg.h"
-#include "core/formats/plan_json.h"
+#include "core/formats/plan/plan_json.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/nifti_parts.h"
 #include "core/load/nrrd_parts.h"

@@ -7,7 +7,7 @@
 
 #include "core/base/mem.h"
 #include "core/formats/gzip.h"
-#include "core/formats/sera_rst.h"
+#include "core/formats/sera/sera_rst.h"
 #include "core/formats/text.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/dose_files.h"

@@ -9,7 +9,7 @@
 #include "core/base/mem.h"
 #include "core/formats/text.h"
 #include "core/load/part_names.h"
-#include "core/region/contour_layer.h"
+#include "core/region/contour/contour_layer.h"
 #include "core/region/label_rows.h"
 
 void region_builder_init(struct region_builder *builder, struct region_set *set, struct report *report)

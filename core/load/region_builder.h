@@ -1,7 +1,7 @@
 #pragma once
 /* Builds the plan's regions from label maps, univels, masks and contours, packed into few label layers. */
 #include "core/formats/plan_file.h"
-#include "core/formats/sera_uvh.h"
+#include "core/formats/sera/sera_uvh.h"
 #include "core/plan/plan.h"
 #include "core/region/mask.h"
 

@@ -1,9 +1,9 @@
 #pragma once
 /* Reads SERA's files of a plan's folder: univels and images with the data beside their header, and doses. */
-#include "core/formats/sera_chd.h"
-#include "core/formats/sera_qhd.h"
-#include "core/formats/sera_rst.h"
-#include "core/formats/sera_uvh.h"
+#include "core/formats/sera/sera_chd.h"
+#include "core/formats/sera/sera_qhd.h"
+#include "core/formats/sera/sera_rst.h"
+#include "core/formats/sera/sera_uvh.h"
 
 /* given_mm: length of one unit of the header, as the plan gives it; 0: not given.
  * errors of all: as folder_read and the readers in core/formats; the text names the file */

@@ -4,10 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/formats/plan_json.h"
-#include "core/formats/sera_chd.h"
-#include "core/formats/sera_rst.h"
-#include "core/formats/sera_uvh.h"
+#include "core/formats/plan/plan_json.h"
+#include "core/formats/sera/sera_chd.h"
+#include "core/formats/sera/sera_rst.h"
+#include "core/formats/sera/sera_uvh.h"
 #include "core/formats/text.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/find_parts.h"

@@ -15,7 +15,7 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/formats/nifti_write.h"
-#include "core/formats/plan_json.h"
+#include "core/formats/plan/plan_json.h"
 #include "core/load/write_sera_texts.h"
 #include "core/plan/fit.h"
 

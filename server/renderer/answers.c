@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "core/derive/shapes.h"
-#include "core/scene/pick.h"
+#include "core/pick/pick.h"
 #include "core/scene/scene_probe.h"
 #include "server/wire/document.h"
 #include "server/wire/plan_origins.h"

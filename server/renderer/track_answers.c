@@ -2,7 +2,7 @@
  * a pixel. */
 #include <math.h>
 
-#include "core/scene/pick_tracks.h"
+#include "core/pick/pick_tracks.h"
 #include "core/scene/scene_probe.h"
 #include "core/scene/tracks_shown.h"
 #include "server/renderer/answers.h"

@@ -1,7 +1,7 @@
 /* SERA's dose contours: header, table and pictures in one input, separated by form feeds. */
 #include <math.h>
 
-#include "core/formats/sera_chd.h"
+#include "core/formats/sera/sera_chd.h"
 #include "tests/fuzz/fuzz.h"
 
 static struct bytes cut(const uint8_t **at, const uint8_t *end)

@@ -1,5 +1,5 @@
 /* plan.json; with an odd first byte, the lists of label names. */
-#include "core/formats/plan_json.h"
+#include "core/formats/plan/plan_json.h"
 #include "tests/fuzz/fuzz.h"
 
 static void plan_file(const uint8_t *data, size_t n)

@@ -1,7 +1,7 @@
 /* A whole plan, read and assembled: a folder with a small file of every kind, and a plan.json that names any of them
  * anywhere, any number of times. Even first byte: the rest is the plan.json. Odd: pairs of bytes choose entries, first
  * the list and its options, then the file. */
-#include "core/formats/plan_json.h"
+#include "core/formats/plan/plan_json.h"
 #include "core/load/load.h"
 #include "core/load/summary.h"
 #include "core/plan/plan.h"

@@ -1,5 +1,5 @@
 /* SERA's image header. The first two bytes (little-endian) give the number of pixel bytes that come with it. */
-#include "core/formats/sera_qhd.h"
+#include "core/formats/sera/sera_qhd.h"
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)

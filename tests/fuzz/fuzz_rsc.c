@@ -1,7 +1,7 @@
 /* SERA's preference files; the first byte chooses the kind. */
 #include <math.h>
 
-#include "core/formats/sera_rsc.h"
+#include "core/formats/sera/sera_rsc.h"
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)

@@ -1,7 +1,7 @@
 /* SERA's dose files (.rst), as uncompressed text. */
 #include <math.h>
 
-#include "core/formats/sera_rst.h"
+#include "core/formats/sera/sera_rst.h"
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)

@@ -1,7 +1,7 @@
 /* SERA's tables of doses over depth and radius. */
 #include <math.h>
 
-#include "core/formats/sera_table.h"
+#include "core/formats/sera/sera_table.h"
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)

@@ -1,7 +1,7 @@
 /* Particle tracks of seraMC. */
 #include <math.h>
 
-#include "core/formats/sera_pp.h"
+#include "core/formats/sera/sera_pp.h"
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)

@@ -1,5 +1,5 @@
 /* SERA's univel header, both versions; the univels are as many bytes as the header requires. */
-#include "core/formats/sera_uvh.h"
+#include "core/formats/sera/sera_uvh.h"
 #include "tests/fuzz/fuzz.h"
 
 enum { MAX_UNIVELS = 1 << 20 };

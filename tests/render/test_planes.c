@@ -1,6 +1,6 @@
 /* Planes in any direction: what a pane, a slice in space, an outline and a pick show on an oblique plane is what
  * evaluating the grid at each pixel's point gives. */
-#include "core/scene/pick.h"
+#include "core/pick/pick.h"
 #include "tests/render/shots.h"
 
 static const double pixels_per_mm = 6;

@@ -1,6 +1,6 @@
 /* Every representation of a region with spikes, single univels, holes and separate pieces, on an oblique grid of
  * unequal spacings: where it is drawn, against rays through its univels. */
-#include "core/scene/pick.h"
+#include "core/pick/pick.h"
 #include "tests/render/shots.h"
 
 static const struct vec3 origin = { 0, 0, 0 };

@@ -1,7 +1,7 @@
 #pragma once
 /* Small sets of SERA's dose contours, laid out as seraMC (fixed columns, numbers that touch) and seraPlan (blanks,
  * another order of columns) write them, for tests that read them. */
-#include "core/formats/sera_chd.h"
+#include "core/formats/sera/sera_chd.h"
 #include "tests/check.h"
 
 enum { CHD_TEXT_SIZE = 1 << 16, CHD_COLS = 3, CHD_ROWS = 2 };

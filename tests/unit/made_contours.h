@@ -1,6 +1,6 @@
 #pragma once
 /* Contours for tests, and a slow independent test of what they enclose. */
-#include "core/region/contour.h"
+#include "core/region/contour/contour.h"
 
 /* Adds a contour of n points; xy has pairs, z is the third coordinate of all. */
 void contours_add(struct contour_set *set, const double *xy, size_t n, double z);

@@ -1,5 +1,5 @@
 /* Picking in pictures along a beam: what lies before the eye, in the pixel that shows it. */
-#include "core/scene/pick.h"
+#include "core/pick/pick.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
 #include "tests/made_plan.h"

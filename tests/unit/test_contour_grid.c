@@ -1,5 +1,5 @@
 /* Choosing grids on which regions keep their volume, and sharing label layers. */
-#include "core/region/contour_layer.h"
+#include "core/region/contour/contour_layer.h"
 #include "tests/check.h"
 #include "tests/unit/made_contours.h"
 #include "tests/unit/made_mask.h"

@@ -1,9 +1,9 @@
 /* Isodose surfaces as results, as draws and under a pixel: against spheres and planes in closed form. */
 #include "core/derive/coverage_shape.h"
+#include "core/pick/pick.h"
 #include "core/render/visible/draw_isodoses.h"
 #include "core/render/visible/draw_list.h"
 #include "core/scene/isodoses.h"
-#include "core/scene/pick.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
 #include "tests/made_plan.h"

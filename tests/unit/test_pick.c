@@ -1,6 +1,6 @@
 /* Picking: the regions and slices along a pixel's ray, front to back. */
+#include "core/pick/pick.h"
 #include "core/scene/camera.h"
-#include "core/scene/pick.h"
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"

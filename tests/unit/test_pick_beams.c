@@ -1,6 +1,6 @@
 /* Picking beams: their lines within a few pixels, in space and on slice panes. */
-#include "core/scene/pick.h"
-#include "core/scene/pick_beams.h"
+#include "core/pick/pick.h"
+#include "core/pick/pick_beams.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
 #include "tests/made_plan.h"

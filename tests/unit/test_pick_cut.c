@@ -1,7 +1,7 @@
 /* Picking in a scene with clip planes: caps, opened regions, exempt regions, cut slices. Expected hits come from the
  * intervals in which rays cross boxes and spheres. */
+#include "core/pick/pick.h"
 #include "core/scene/camera.h"
-#include "core/scene/pick.h"
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"

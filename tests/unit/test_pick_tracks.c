@@ -1,7 +1,7 @@
 /* Picking particle tracks: nearest in the picture, then nearest to the eye; never what is filtered, cut off or hidden.
  */
-#include "core/scene/pick.h"
-#include "core/scene/pick_tracks.h"
+#include "core/pick/pick.h"
+#include "core/pick/pick_tracks.h"
 #include "core/scene/tracks_shown.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"

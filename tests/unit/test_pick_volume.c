@@ -1,6 +1,6 @@
 /* Picking in a volume: where rays lose half of their light, reach a value, or meet the largest, in closed form. */
-#include "core/scene/pick.h"
-#include "core/scene/pick_volume.h"
+#include "core/pick/pick.h"
+#include "core/pick/pick_volume.h"
 #include "tests/check.h"
 #include "tests/derived_of.h"
 #include "tests/made_plan.h"

@@ -1,5 +1,5 @@
 /* Plans of made-up DICOM files: what a folder becomes as a whole. */
-#include "core/region/contour.h"
+#include "core/region/contour/contour.h"
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/made_series.h"

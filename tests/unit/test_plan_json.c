@@ -1,7 +1,7 @@
 /* The reader of plan.json, asked directly: documents made here. */
 #include <string.h>
 
-#include "core/formats/plan_json.h"
+#include "core/formats/plan/plan_json.h"
 #include "tests/check.h"
 #include "tests/unit/plan_help.h"
 

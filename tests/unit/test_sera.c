@@ -1,9 +1,9 @@
 /* SERA's text headers, images and tracks: geometry by hand, and every trap of its files. */
 #include "core/formats/hierarchy.h"
-#include "core/formats/sera_axes.h"
-#include "core/formats/sera_pp.h"
-#include "core/formats/sera_qhd.h"
-#include "core/formats/sera_uvh.h"
+#include "core/formats/sera/sera_axes.h"
+#include "core/formats/sera/sera_pp.h"
+#include "core/formats/sera/sera_qhd.h"
+#include "core/formats/sera/sera_uvh.h"
 #include "core/formats/text.h"
 #include "tests/check.h"
 #include "tests/unit/nifti_bytes.h"

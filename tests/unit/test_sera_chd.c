@@ -1,6 +1,6 @@
 /* SERA's dose contours: small sets laid out by hand as seraMC (fixed columns, numbers that touch) and seraPlan (blanks,
  * another order of columns) write them. */
-#include "core/formats/sera_row.h"
+#include "core/formats/sera/sera_row.h"
 #include "tests/unit/made_chd.h"
 #include "tests/unit/plan_help.h"
 

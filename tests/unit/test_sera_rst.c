@@ -1,6 +1,6 @@
 /* SERA's dose files: texts laid out by hand in the columns of seraMC, and its own sample with the figures published
  * beside it. */
-#include "core/formats/sera_rst.h"
+#include "core/formats/sera/sera_rst.h"
 #include "core/load/load.h"
 #include "core/load/summary.h"
 #include "core/plan/plan.h"

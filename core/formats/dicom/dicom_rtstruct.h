@@ -2,7 +2,7 @@
 /* Reads RT Structure Set objects: named regions as contours. Does not fill them; it only words the report about
  * filling. */
 #include "core/formats/dicom/dicom_file.h"
-#include "core/region/contour.h"
+#include "core/region/contour/contour.h"
 #include "core/report/report.h"
 
 enum {

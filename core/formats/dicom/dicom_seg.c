@@ -12,7 +12,7 @@
 #include "core/formats/dicom/dicom_numbers.h"
 #include "core/formats/dicom/dicom_seg_grid.h"
 #include "core/formats/text.h"
-#include "core/region/contour_layer.h"
+#include "core/region/contour/contour_layer.h"
 
 #define SEG_CLASS "1.2.840.10008.5.1.4.1.1.66.4"
 
