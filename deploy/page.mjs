@@ -20,41 +20,80 @@ const notice = '/*! The licences of lit-html, signals-core and uPlot are in lice
  *  need. esbuild alone would cut what they share into many small files, each of them a request that is compressed by itself.
  *  The names carry one hash of everything: files that belong together are never mixed with older ones. @returns {Promise<{main: string}>} */
 async function joinModules(entry) {
-  const { metafile: { outputs }, outputFiles } = await build({ ...shared, entryPoints: [{ in: entry, out: 'main' }], entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]', splitting: true, format: 'esm', write: false });
+  const {
+    metafile: { outputs },
+    outputFiles,
+  } = await build({
+    ...shared,
+    entryPoints: [{ in: entry, out: 'main' }],
+    entryNames: '[name]-[hash]',
+    chunkNames: '[name]-[hash]',
+    splitting: true,
+    format: 'esm',
+    write: false,
+  });
   const textOf = new Map(outputFiles.map(({ path, text }) => [basename(path), text]));
   const parts = new Map(Object.entries(outputs).map(([name, output]) => [basename(name), output]));
-  const hash = createHash('sha256').update([...textOf].sort().flat().join('\n')).digest('hex').slice(0, 8).toUpperCase();
+  const hash = createHash('sha256')
+    .update([...textOf].sort().flat().join('\n'))
+    .digest('hex')
+    .slice(0, 8)
+    .toUpperCase();
   const finalName = (name) => name.replace(/-[A-Z0-9]{8}\.js$/, `-${hash}.js`);
 
   /** A part after all that it imports at once. */
-  const withImports = (name) => [...parts.get(name).imports.filter(({ kind }) => kind === 'import-statement').flatMap(({ path }) => withImports(basename(path))), name];
+  const withImports = (name) => [
+    ...parts
+      .get(name)
+      .imports.filter(({ kind }) => kind === 'import-statement')
+      .flatMap(({ path }) => withImports(basename(path))),
+    name,
+  ];
   const start = [...parts.keys()].find((name) => parts.get(name).entryPoint === entry);
   const first = [...new Set(withImports(start))];
   const longName = (name, exported) => `p${first.indexOf(name)}_${exported}`;
   const exportsOf = (name, words) => parts.get(name).exports.map(words).join(', ');
-  const whole = [...first.slice(0, -1).map((name) => `export { ${exportsOf(name, (word) => `${word} as ${longName(name, word)}`)} } from './${name}';`), `import './${start}';`].join('\n');
+  const whole = [
+    ...first.slice(0, -1).map((name) => `export { ${exportsOf(name, (word) => `${word} as ${longName(name, word)}`)} } from './${name}';`),
+    `import './${start}';`,
+  ].join('\n');
 
   /** The text of a part that is loaded later: what it takes from the first file it takes under the names that file has for it. */
-  const fromFirst = (text) => text.replace(/import(?:\{([^}]*)\}from)?"\.\/([^"]+)";/g, (statement, words, name) => {
-    if (!first.includes(name)) return statement;
-    if (!words) return ''; // it is there already
-    const named = words.split(',').map((word) => { const [exported, local = exported] = word.split(' as '); return `${longName(name, exported)} as ${local}`; });
-    return `import{${named.join(',')}}from"./${finalName(start)}";`;
-  });
-
-  const plugin = (isFirst) => ({ name: 'parts', setup({ onLoad, onResolve }) {
-    onResolve({ filter: /./ }, ({ path, kind }) => {
-      const name = basename(path);
-      if (kind === 'dynamic-import') return { path: `./${finalName(name)}`, external: true };
-      if (name === finalName(start)) return { path: `./${name}`, external: true };
-      return { path: name, namespace: 'part' };
+  const fromFirst = (text) =>
+    text.replace(/import(?:\{([^}]*)\}from)?"\.\/([^"]+)";/g, (statement, words, name) => {
+      if (!first.includes(name)) return statement;
+      if (!words) return ''; // it is there already
+      const named = words.split(',').map((word) => {
+        const [exported, local = exported] = word.split(' as ');
+        return `${longName(name, exported)} as ${local}`;
+      });
+      return `import{${named.join(',')}}from"./${finalName(start)}";`;
     });
-    onLoad({ filter: /./, namespace: 'part' }, ({ path }) => ({ contents: path === 'whole' ? whole : isFirst ? textOf.get(path) : fromFirst(textOf.get(path)) }));
-  } });
+
+  const plugin = (isFirst) => ({
+    name: 'parts',
+    setup({ onLoad, onResolve }) {
+      onResolve({ filter: /./ }, ({ path, kind }) => {
+        const name = basename(path);
+        if (kind === 'dynamic-import') return { path: `./${finalName(name)}`, external: true };
+        if (name === finalName(start)) return { path: `./${name}`, external: true };
+        return { path: name, namespace: 'part' };
+      });
+      onLoad({ filter: /./, namespace: 'part' }, ({ path }) => ({
+        contents: path === 'whole' ? whole : isFirst ? textOf.get(path) : fromFirst(textOf.get(path)),
+      }));
+    },
+  });
   const ready = { ...shared, format: 'esm', banner: { js: notice } };
   const lazy = [...parts.keys()].filter((name) => parts.get(name).entryPoint && name !== start);
   await build({ ...ready, entryPoints: [{ in: 'whole', out: finalName(start).replace(/\.js$/, '') }], plugins: [plugin(true)] });
-  await build({ ...ready, entryPoints: lazy.map((name) => ({ in: name, out: finalName(name).replace(/\.js$/, '') })), chunkNames: 'shared-[hash]', splitting: true, plugins: [plugin(false)] });
+  await build({
+    ...ready,
+    entryPoints: lazy.map((name) => ({ in: name, out: finalName(name).replace(/\.js$/, '') })),
+    chunkNames: 'shared-[hash]',
+    splitting: true,
+    plugins: [plugin(false)],
+  });
   return { main: `page/${finalName(start)}` };
 }
 
@@ -63,27 +102,63 @@ const sheets = [...source.matchAll(/^ *<link rel="stylesheet" href="([^"]+)" \/>
 const script = source.match(/^ *<script type="module" src="([^"]+)"><\/script>\n/m);
 if (!sheets.length || !script) throw new Error('index.html names no style sheets or no module in the form that deploy/page.mjs knows');
 
-const shared = { absWorkingDir: join(process.cwd(), folder), bundle: true, minify: true, target: Object.entries(browsers).map(([name, version]) => name + version), metafile: true, legalComments: 'none', logLevel: 'warning', outdir: 'page' };
+const shared = {
+  absWorkingDir: join(process.cwd(), folder),
+  bundle: true,
+  minify: true,
+  target: Object.entries(browsers).map(([name, version]) => name + version),
+  metafile: true,
+  legalComments: 'none',
+  logLevel: 'warning',
+  outdir: 'page',
+};
 const { main } = await joinModules(script[1]);
-const style = await build({ ...shared, entryNames: '[name]-[hash]', assetNames: '[name]-[hash]', loader: { '.woff2': 'file' },
-  entryPoints: [{ in: 'page.css', out: 'main' }], plugins: [{ name: 'sheets', setup({ onLoad, onResolve }) {
-    onResolve({ filter: /^page\.css$/ }, () => ({ path: 'page.css', namespace: 'sheets' }));
-    onLoad({ filter: /.*/, namespace: 'sheets' }, () => ({ contents: sheets.map(([, href]) => `@import "./${href}";`).join('\n'), loader: 'css', resolveDir: join(process.cwd(), folder) }));
-  } }] });
-const only = (ending) => Object.keys(style.metafile.outputs).filter((name) => name.endsWith(ending)).map((name) => name.replaceAll('\\', '/'));
+const style = await build({
+  ...shared,
+  entryNames: '[name]-[hash]',
+  assetNames: '[name]-[hash]',
+  loader: { '.woff2': 'file' },
+  entryPoints: [{ in: 'page.css', out: 'main' }],
+  plugins: [
+    {
+      name: 'sheets',
+      setup({ onLoad, onResolve }) {
+        onResolve({ filter: /^page\.css$/ }, () => ({ path: 'page.css', namespace: 'sheets' }));
+        onLoad({ filter: /.*/, namespace: 'sheets' }, () => ({
+          contents: sheets.map(([, href]) => `@import "./${href}";`).join('\n'),
+          loader: 'css',
+          resolveDir: join(process.cwd(), folder),
+        }));
+      },
+    },
+  ],
+});
+const only = (ending) =>
+  Object.keys(style.metafile.outputs)
+    .filter((name) => name.endsWith(ending))
+    .map((name) => name.replaceAll('\\', '/'));
 
 // The one list of what is loaded first.
 const [css] = only('.css');
-const first = [`<link rel="modulepreload" href="${main}" />`, ...only('.woff2').map((font) => `<link rel="preload" href="${font}" as="font" type="font/woff2" crossorigin />`),
-  `<link rel="stylesheet" href="${css}" />`, `<script type="module" src="${main}"></script>`];
+const first = [
+  `<link rel="modulepreload" href="${main}" />`,
+  ...only('.woff2').map((font) => `<link rel="preload" href="${font}" as="font" type="font/woff2" crossorigin />`),
+  `<link rel="stylesheet" href="${css}" />`,
+  `<script type="module" src="${main}"></script>`,
+];
 let page = source;
 for (const [line] of sheets) page = page.replace(line, '');
 page = page.replace(script[0], first.map((line) => `    ${line}\n`).join(''));
 writeFileSync(join(folder, 'modules.html'), source);
 writeFileSync(join(folder, 'index.html'), page);
 
-const licences = readdirSync(join(folder, 'lib')).filter((name) => name.startsWith('LICENSE.')).sort();
-writeFileSync(join(folder, 'licences.txt'), licences.map((name) => `${name.slice('LICENSE.'.length)}\n\n${read(`lib/${name}`).trim()}\n`).join(`\n${'-'.repeat(80)}\n\n`));
+const licences = readdirSync(join(folder, 'lib'))
+  .filter((name) => name.startsWith('LICENSE.'))
+  .sort();
+writeFileSync(
+  join(folder, 'licences.txt'),
+  licences.map((name) => `${name.slice('LICENSE.'.length)}\n\n${read(`lib/${name}`).trim()}\n`).join(`\n${'-'.repeat(80)}\n\n`),
+);
 
 const isText = /\.(html|css|m?js|json|svg|txt|webmanifest)$/;
 const leastGain = 64; // bytes; less is not worth a second file
@@ -91,6 +166,10 @@ for (const entry of readdirSync(folder, { recursive: true, withFileTypes: true }
   if (!entry.isFile() || !isText.test(entry.name)) continue;
   const path = join(entry.parentPath ?? entry.path, entry.name);
   const bytes = readFileSync(path);
-  const packed = { gz: gzipSync(bytes, { level: 9 }), br: brotliCompressSync(bytes, { params: { [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } }) };
-  for (const [ending, smaller] of Object.entries(packed)) if (smaller.length + leastGain <= bytes.length) writeFileSync(`${path}.${ending}`, smaller);
+  const packed = {
+    gz: gzipSync(bytes, { level: 9 }),
+    br: brotliCompressSync(bytes, { params: { [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } }),
+  };
+  for (const [ending, smaller] of Object.entries(packed))
+    if (smaller.length + leastGain <= bytes.length) writeFileSync(`${path}.${ending}`, smaller);
 }

@@ -16,28 +16,32 @@ const numbers = (version) => version.replace('≤', '').split('.').map(Number);
 /** True if version a is b or older. */
 function isUpTo(a, b) {
   const [left, right] = [numbers(a), numbers(b)];
-  for (let i = 0; i < Math.max(left.length, right.length); i++) if ((left[i] ?? 0) !== (right[i] ?? 0)) return (left[i] ?? 0) < (right[i] ?? 0);
+  for (let i = 0; i < Math.max(left.length, right.length); i++)
+    if ((left[i] ?? 0) !== (right[i] ?? 0)) return (left[i] ?? 0) < (right[i] ?? 0);
   return true;
 }
 /** True if the engine has it without a flag in the version promised. */
 function isThere({ support }, engine, version) {
   const rows = [support[engine]].flat().filter(Boolean);
-  return rows.some(({ version_added: added, version_removed: removed, flags, prefix }) => !flags && !prefix && !removed &&
-    (added === true || (typeof added === 'string' && added !== 'preview' && isUpTo(added, version))));
+  return rows.some(
+    ({ version_added: added, version_removed: removed, flags, prefix }) =>
+      !flags && !prefix && !removed && (added === true || (typeof added === 'string' && added !== 'preview' && isUpTo(added, version))),
+  );
 }
 
 /** Names of the table with those of their features that bear them. */
 function tableOf(parts) {
   const table = { member: new Map(), global: new Map(), whole: new Map() };
-  const put = (map, name, compat) => compat && map.set(name, [...map.get(name) ?? [], compat]);
-  for (const part of parts) for (const [owner, { __compat: own, ...members }] of Object.entries(part)) {
-    put(table.global, owner, own);
-    for (const [member, { __compat: compat }] of Object.entries(members)) {
-      if (!/^[A-Za-z]\w*$/.test(member)) continue;
-      put(table.member, member, compat);
-      put(table.whole, `${owner}.${member}`, compat);
+  const put = (map, name, compat) => compat && map.set(name, [...(map.get(name) ?? []), compat]);
+  for (const part of parts)
+    for (const [owner, { __compat: own, ...members }] of Object.entries(part)) {
+      put(table.global, owner, own);
+      for (const [member, { __compat: compat }] of Object.entries(members)) {
+        if (!/^[A-Za-z]\w*$/.test(member)) continue;
+        put(table.member, member, compat);
+        put(table.whole, `${owner}.${member}`, compat);
+      }
     }
-  }
   return table;
 }
 const builtins = tableOf([bcd.javascript.builtins]);
@@ -50,11 +54,13 @@ export function scriptFindings(text, table, engines, own) {
     const features = map.get(name);
     if (!features) return;
     const lacking = Object.entries(engines).filter(([engine, version]) => !features.some((feature) => isThere(feature, engine, version)));
-    if (lacking.length) found.push({ line: at.loc.start.line, name, lacking: lacking.map(([engine, version]) => `${engine} ${version}`).join(', ') });
+    if (lacking.length)
+      found.push({ line: at.loc.start.line, name, lacking: lacking.map(([engine, version]) => `${engine} ${version}`).join(', ') });
   };
   full(parse(text, { ecmaVersion: 'latest', sourceType: 'module', locations: true, allowHashBang: true }), (at) => {
     if (at.type === 'NewExpression' && at.callee.type === 'Identifier' && !own.has(at.callee.name)) judge(at.callee.name, table.global, at);
-    if (at.type === 'CallExpression' && at.callee.type === 'Identifier' && !own.has(at.callee.name)) judge(at.callee.name, table.global, at);
+    if (at.type === 'CallExpression' && at.callee.type === 'Identifier' && !own.has(at.callee.name))
+      judge(at.callee.name, table.global, at);
     if (at.type !== 'MemberExpression' || at.computed || at.property.type !== 'Identifier') return;
     const whole = at.object.type === 'Identifier' ? `${at.object.name}.${at.property.name}` : '';
     if (table.whole.has(whole)) judge(whole, table.whole, at);
@@ -66,7 +72,14 @@ export function scriptFindings(text, table, engines, own) {
 export function ownNames(text) {
   const names = new Set();
   full(parse(text, { ecmaVersion: 'latest', sourceType: 'module', allowHashBang: true }), (at) => {
-    const name = at.type === 'MethodDefinition' || at.type === 'PropertyDefinition' || at.type === 'Property' ? at.key.name : at.type === 'FunctionDeclaration' || at.type === 'ClassDeclaration' ? at.id?.name : at.type === 'VariableDeclarator' ? at.id.name : '';
+    const name =
+      at.type === 'MethodDefinition' || at.type === 'PropertyDefinition' || at.type === 'Property'
+        ? at.key.name
+        : at.type === 'FunctionDeclaration' || at.type === 'ClassDeclaration'
+          ? at.id?.name
+          : at.type === 'VariableDeclarator'
+            ? at.id.name
+            : '';
     if (name) names.add(name);
   });
   return names;
@@ -77,14 +90,24 @@ export function styleFindings(text, engines) {
   const plain = text.replace(/\/\*.*?\*\//gs, (comment) => comment.replace(/[^\n]/g, ' '));
   const judge = (name, compat, at) => {
     const lacking = Object.entries(engines).filter(([engine, version]) => !isThere(compat, engine, version));
-    if (lacking.length) found.push({ line: plain.slice(0, at).split('\n').length, name, lacking: lacking.map(([engine, version]) => `${engine} ${version}`).join(', ') });
+    if (lacking.length)
+      found.push({
+        line: plain.slice(0, at).split('\n').length,
+        name,
+        lacking: lacking.map(([engine, version]) => `${engine} ${version}`).join(', '),
+      });
   };
-  for (const { 1: name, index } of plain.matchAll(/::?([a-z][a-z-]*)/g)) if (bcd.css.selectors[name]?.__compat) judge(`:${name}`, bcd.css.selectors[name].__compat, index);
-  for (const { 1: name, index } of plain.matchAll(/[{;]\s*([a-z][a-z-]*)\s*:/g)) if (bcd.css.properties[name]?.__compat && !harmless.has(name)) judge(name, bcd.css.properties[name].__compat, index);
+  for (const { 1: name, index } of plain.matchAll(/::?([a-z][a-z-]*)/g))
+    if (bcd.css.selectors[name]?.__compat) judge(`:${name}`, bcd.css.selectors[name].__compat, index);
+  for (const { 1: name, index } of plain.matchAll(/[{;]\s*([a-z][a-z-]*)\s*:/g))
+    if (bcd.css.properties[name]?.__compat && !harmless.has(name)) judge(name, bcd.css.properties[name].__compat, index);
   return found;
 }
 
-const listed = (...patterns) => execFileSync('git', ['ls-files', '-co', '--exclude-standard', '--', ...patterns], { encoding: 'utf8' }).trim().split('\n');
+const listed = (...patterns) =>
+  execFileSync('git', ['ls-files', '-co', '--exclude-standard', '--', ...patterns], { encoding: 'utf8' })
+    .trim()
+    .split('\n');
 const read = (path) => readFileSync(path, 'utf8');
 const say = (path, { line, name, lacking }) => `${path}:${line}: ${name} is not in ${lacking}`;
 
@@ -101,7 +124,10 @@ const findings = [
 for (const { path, ...finding } of findings) console.log(say(path, finding));
 
 // What is planted has to be found.
-const planted = [scriptFindings('const a = [2, 1].toSorted();', everything, browsers, own), scriptFindings('Object.groupBy([], String);', builtins, node, own),
-  styleFindings('a { field-sizing: content }', browsers)];
+const planted = [
+  scriptFindings('const a = [2, 1].toSorted();', everything, browsers, own),
+  scriptFindings('Object.groupBy([], String);', builtins, node, own),
+  styleFindings('a { field-sizing: content }', browsers),
+];
 if (planted.some((found) => found.length !== 1)) console.log(`planted functions were not found: ${JSON.stringify(planted)}`);
 process.exitCode = findings.length || planted.some((found) => found.length !== 1) ? 1 : 0;

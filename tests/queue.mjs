@@ -23,7 +23,9 @@ const known = existsSync(lastRun) ? JSON.parse(readFileSync(lastRun, 'utf8')) : 
 const took = {};
 const rank = [...suites.keys()];
 const waiting = [...suites.values()].flatMap((suite) => suite.paths.map((path) => ({ suite, path, size: statSync(path).size })));
-waiting.sort((a, b) => (known[b.path] ?? 0) - (known[a.path] ?? 0) || rank.indexOf(a.suite.name) - rank.indexOf(b.suite.name) || b.size - a.size);
+waiting.sort(
+  (a, b) => (known[b.path] ?? 0) - (known[a.path] ?? 0) || rank.indexOf(a.suite.name) - rank.indexOf(b.suite.name) || b.size - a.size,
+);
 for (const { name } of suites.values()) rmSync(`${folder}/${name}.log`, { force: true });
 
 /** Browsers that no file uses now. They end with this process. */
@@ -36,24 +38,41 @@ async function takeBrowser() {
   return server;
 }
 
-const commandOf = ({ suite, path }) => path.endsWith('.mjs') ? ['tests/run_node.sh', `${suite.name}-${basename(path, '.test.mjs')}`, path]
-  : path.endsWith('.sh') ? [path] : ['tests/run_programs.sh', suite.name, path];
+const commandOf = ({ suite, path }) =>
+  path.endsWith('.mjs')
+    ? ['tests/run_node.sh', `${suite.name}-${basename(path, '.test.mjs')}`, path]
+    : path.endsWith('.sh')
+      ? [path]
+      : ['tests/run_programs.sh', suite.name, path];
 
 async function run(item) {
   const { suite, path } = item;
   const browser = suite.name === 'web' && !path.includes('/unit/') ? await takeBrowser() : null;
   const start = performance.now();
   const [program, ...args] = commandOf(item);
-  const child = spawn(program, args, { stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, SUITE_SECONDS: '400', ...(browser && { BEAMROOM_BROWSER: browser.wsEndpoint() }) } });
+  const child = spawn(program, args, {
+    stdio: ['ignore', 'pipe', 'pipe'],
+    env: { ...process.env, SUITE_SECONDS: '400', ...(browser && { BEAMROOM_BROWSER: browser.wsEndpoint() }) },
+  });
   let output = '';
-  for (const stream of [child.stdout, child.stderr]) stream.on('data', (text) => { output += text; });
-  const status = await new Promise((done) => { child.on('close', done); });
+  for (const stream of [child.stdout, child.stderr])
+    stream.on('data', (text) => {
+      output += text;
+    });
+  const status = await new Promise((done) => {
+    child.on('close', done);
+  });
   if (browser?.process().exitCode === null) browsers.free.push(browser);
   took[path] = (performance.now() - start) / 1000;
   const counts = [0, 0, 0];
-  for (const found of output.matchAll(/^[^:\n]+: (\d+) passed, (\d+) failed, (\d+) skipped$/gm)) counts.forEach((_, i) => { counts[i] += Number(found[i + 1]); });
+  for (const found of output.matchAll(/^[^:\n]+: (\d+) passed, (\d+) failed, (\d+) skipped$/gm))
+    counts.forEach((_, i) => {
+      counts[i] += Number(found[i + 1]);
+    });
   if (status !== 0 && counts[1] === 0) counts[1] = 1;
-  ['passed', 'failed', 'skipped'].forEach((name, i) => { suite[name] += counts[i]; });
+  ['passed', 'failed', 'skipped'].forEach((name, i) => {
+    suite[name] += counts[i];
+  });
   suite.seconds += took[path];
   appendFileSync(`${folder}/${suite.name}.log`, output);
   if (counts[1]) console.log(`${output.slice(-20000)}\nFAILED: ${path}`);
@@ -69,20 +88,31 @@ await new Promise((done) => {
       const [item] = waiting.splice(at, 1);
       running += 1;
       item.suite.running += 1;
-      run(item).finally(() => { running -= 1; item.suite.running -= 1; next(); });
+      run(item).finally(() => {
+        running -= 1;
+        item.suite.running -= 1;
+        next();
+      });
     }
     if (!running && !waiting.length) done();
   };
   next();
 });
 // Some files of the page have tests for the long suite alone; a suite that ran nothing has lost its tests.
-for (const suite of suites.values()) if (suite.paths.length && !suite.passed && !suite.failed && !suite.skipped) {
-  suite.failed = 1;
-  console.log(`FAILED: ${suite.name} ran no test`);
-}
+for (const suite of suites.values())
+  if (suite.paths.length && !suite.passed && !suite.failed && !suite.skipped) {
+    suite.failed = 1;
+    console.log(`FAILED: ${suite.name} ran no test`);
+  }
 await Promise.all(browsers.all.map((server) => server.close()));
-writeFileSync(lastRun, JSON.stringify(Object.fromEntries(Object.entries(took).map(([path, seconds]) => [path, Math.round(seconds * 10) / 10])), null, 1));
-const slowest = Object.entries(took).sort(([, a], [, b]) => b - a).slice(0, 12);
+writeFileSync(
+  lastRun,
+  JSON.stringify(Object.fromEntries(Object.entries(took).map(([path, seconds]) => [path, Math.round(seconds * 10) / 10])), null, 1),
+);
+const slowest = Object.entries(took)
+  .sort(([, a], [, b]) => b - a)
+  .slice(0, 12);
 console.log(`slowest: ${slowest.map(([path, seconds]) => `${basename(path)} ${seconds.toFixed(1)} s`).join(', ')}`);
-for (const { name, passed, failed, skipped } of suites.values()) console.log(`total ${name}: ${passed} passed, ${failed} failed, ${skipped} skipped`);
+for (const { name, passed, failed, skipped } of suites.values())
+  console.log(`total ${name}: ${passed} passed, ${failed} failed, ${skipped} skipped`);
 process.exitCode = [...suites.values()].some(({ failed }) => failed) ? 1 : 0;

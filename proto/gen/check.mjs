@@ -10,8 +10,25 @@ const documentDepth = 2; // a message and its "patch"
 const plane = {
   about: 'A plane through the patient.',
   fields: [
-    { name: 'origin_mm', type: 'vec3', unit: 'mm', space: 'lps', min: -100000, max: 100000, default: [0, 0, 0], about: 'A point of the plane.' },
-    { name: 'normal', type: 'direction', space: 'lps', min: -1000, max: 1000, default: [0, 0, 1], about: 'Square to the plane; any length but 0.' },
+    {
+      name: 'origin_mm',
+      type: 'vec3',
+      unit: 'mm',
+      space: 'lps',
+      min: -100000,
+      max: 100000,
+      default: [0, 0, 0],
+      about: 'A point of the plane.',
+    },
+    {
+      name: 'normal',
+      type: 'direction',
+      space: 'lps',
+      min: -1000,
+      max: 1000,
+      default: [0, 0, 1],
+      about: 'Square to the plane; any length but 0.',
+    },
   ],
 };
 
@@ -28,13 +45,24 @@ function checkDefault(field, enums, where) {
     return;
   }
   need(!['object', 'list', 'map', 'patch', 'json', 'plane'].includes(field.type), where, `a ${field.type} has no default of its own`);
-  if (field.type === 'enum') need(enums[field.enum].values.some(([word]) => word === value), where, `the default ${value} is not a word of ${field.enum}`);
+  if (field.type === 'enum')
+    need(
+      enums[field.enum].values.some(([word]) => word === value),
+      where,
+      `the default ${value} is not a word of ${field.enum}`,
+    );
   if (field.type === 'number') need(inside(value), where, 'the default is out of range');
   if (field.type === 'integer') need(Number.isInteger(value) && inside(value), where, 'the default is out of range or not whole');
   if (field.type === 'color') need(/^#[0-9a-f]{6}$/.test(value), where, 'the default is not #rrggbb');
   const length = { vec3: 3, direction: 3, size: 2 }[field.type];
-  if (length) need(Array.isArray(value) && value.length === length && value.every(inside), where, `the default is not ${length} numbers in range`);
-  if (field.type === 'direction') need(value.some((number) => number !== 0), where, 'the default has no length');
+  if (length)
+    need(Array.isArray(value) && value.length === length && value.every(inside), where, `the default is not ${length} numbers in range`);
+  if (field.type === 'direction')
+    need(
+      value.some((number) => number !== 0),
+      where,
+      'the default has no length',
+    );
 }
 
 function checkField(field, { enums, references, objects, known, isMessage }, where) {
@@ -46,11 +74,15 @@ function checkField(field, { enums, references, objects, known, isMessage }, whe
     need(Number.isFinite(field.min) && Number.isFinite(field.max) && field.min <= field.max, where, 'needs min and max');
   if (field.type === 'text') need(Number.isInteger(field.max) && field.max > 0, where, 'needs max, in characters');
   if (field.type === 'enum') need(enums[field.enum], where, `unknown enum ${field.enum}`);
-  if (['object', 'list', 'map'].includes(field.type)) need(known.has(field.object), where, `${field.object} is not an object that is described above`);
+  if (['object', 'list', 'map'].includes(field.type))
+    need(known.has(field.object), where, `${field.object} is not an object that is described above`);
   if (['list', 'map'].includes(field.type)) need(Number.isInteger(field.max_items) && field.max_items > 0, where, 'needs max_items');
   if (field.ascending !== undefined)
-    need(field.type === 'list' && objects?.[field.object]?.fields.some((inner) => inner.name === field.ascending && inner.type === 'number'), where,
-      `ascending names a number of the list's object, not ${field.ascending}`);
+    need(
+      field.type === 'list' && objects?.[field.object]?.fields.some((inner) => inner.name === field.ascending && inner.type === 'number'),
+      where,
+      `ascending names a number of the list's object, not ${field.ascending}`,
+    );
   if (field.nullable) {
     need([...simpleTypes, 'object', 'plane'].includes(field.type), where, `a ${field.type} cannot be null`);
     need(field.default === undefined, where, 'is null by default, so it has no other default');
@@ -70,10 +102,13 @@ function checkFields(fields, context, where) {
 
 /** Objects that one of these fields leads into, in the deepest way: 1 for a field of an object without objects. */
 function depthOf(fields, objects) {
-  return Math.max(0, ...fields.map((field) => {
-    if (!field.object) return ['vec3', 'direction', 'size'].includes(field.type) ? 1 : 0;
-    return (field.type === 'object' ? 1 : 2) + depthOf(objects[field.object].fields, objects);
-  }));
+  return Math.max(
+    0,
+    ...fields.map((field) => {
+      if (!field.object) return ['vec3', 'direction', 'size'].includes(field.type) ? 1 : 0;
+      return (field.type === 'object' ? 1 : 2) + depthOf(objects[field.object].fields, objects);
+    }),
+  );
 }
 
 const withPlanes = (fields) => fields.map((field) => (field.type === 'plane' ? { ...field, type: 'object', object: 'plane' } : field));
@@ -100,9 +135,17 @@ export function checkedDocuments({ enums = {}, objects = {}, references = {}, ..
     need(depthOf(document.fields, all) + documentDepth <= maxDepth, name, `objects in it are more than ${maxDepth - documentDepth} deep`);
   for (const [name, { fields }] of Object.entries({ ...all, ...documents }))
     for (const field of fields)
-      need(field.type !== 'object' || field.nullable || !all[field.object].fields.some(({ required }) => required), `${name}.${field.name}`,
-        `${field.object} has a required field, so it cannot be left out: make it nullable, or the entry of a list or map`);
-  const used = new Set(reachable(Object.values(documents).flatMap(({ fields }) => fields), all));
+      need(
+        field.type !== 'object' || field.nullable || !all[field.object].fields.some(({ required }) => required),
+        `${name}.${field.name}`,
+        `${field.object} has a required field, so it cannot be left out: make it nullable, or the entry of a list or map`,
+      );
+  const used = new Set(
+    reachable(
+      Object.values(documents).flatMap(({ fields }) => fields),
+      all,
+    ),
+  );
   for (const name of Object.keys(all)) need(used.has(name), name, 'no document has this object');
   return { ...description, enums, references, objects: all, documents };
 }
@@ -113,7 +156,9 @@ function reachable(fields, objects) {
 
 /** Whether a field of the object, or of an object in it, names something of the plan. */
 function namesSomething(object, objects) {
-  return object.fields.some((field) => field.names !== undefined || (field.object !== undefined && namesSomething(objects[field.object], objects)));
+  return object.fields.some(
+    (field) => field.names !== undefined || (field.object !== undefined && namesSomething(objects[field.object], objects)),
+  );
 }
 
 /** A description of messages (messages.json), checked. */
@@ -121,7 +166,12 @@ export function checkedMessages(description) {
   const rights = description.enums.right?.values.map(([word]) => word);
   for (const message of description.messages) {
     checkFields(message.fields, { enums: description.enums, references: {}, known: new Set(), isMessage: true }, message.name);
-    if (rights) need(message.from === 'client' ? rights.includes(message.right) : message.right === undefined, message.name, `a message from the page, and no other, has a "right": one of ${rights.join(', ')}`);
+    if (rights)
+      need(
+        message.from === 'client' ? rights.includes(message.right) : message.right === undefined,
+        message.name,
+        `a message from the page, and no other, has a "right": one of ${rights.join(', ')}`,
+      );
   }
   for (const [role, , given = []] of description.enums.member_role?.values ?? [])
     need(given.length > 0 && given.every((right) => rights.includes(right)), role, `a role has rights: some of ${rights.join(', ')}`);
@@ -132,6 +182,10 @@ export function checkedMessages(description) {
 export function checkedRoomRoutes({ routes }, { enums }) {
   const rights = enums.right.values.map(([word]) => word);
   for (const { method, path, right } of routes)
-    need(/\{room\}/.test(path) ? rights.includes(right) : right === undefined, `${method} ${path}`, `a route of a room, and no other, has a "right": one of ${rights.join(', ')}`);
+    need(
+      /\{room\}/.test(path) ? rights.includes(right) : right === undefined,
+      `${method} ${path}`,
+      `a route of a room, and no other, has a "right": one of ${rights.join(', ')}`,
+    );
   return routes.filter(({ right }) => right !== undefined);
 }

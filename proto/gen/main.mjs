@@ -58,6 +58,9 @@ write('dose_presets.h', dosePresetsHeader());
 write('dose_presets.c', dosePresetsSource(dosePresets));
 write('dose_presets.js', dosePresetsScript(dosePresets));
 write('wire.js', wireScript(scene, messages));
-write('reference.html', referencePage(scene, messages, packets, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))));
+write(
+  'reference.html',
+  referencePage(scene, messages, packets, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))),
+);
 write('openapi.json', JSON.stringify(api, null, 1));
 write('openapi.c', openapiSource(api));

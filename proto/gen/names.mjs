@@ -9,21 +9,37 @@ export function declaration(field, prefix) {
   const about = ` /* ${field.about} */`;
   const line = (text) => `${has}    ${text};${about}\n`;
   switch (field.type) {
-    case 'bool': return line(`bool ${field.name}`);
-    case 'number': return line(`double ${field.name}`);
-    case 'integer': return line(`int64_t ${field.name}`);
-    case 'enum': return line(`enum ${prefix}_${field.enum} ${field.name}`);
-    case 'color': return line(`uint32_t ${field.name}_rgb`); // 0xrrggbb
-    case 'id': return line(`char ${field.name}[64]`);
-    case 'text': return line(`char ${field.name}[${textBytes(field)}]`);
-    case 'vec3': case 'direction': return line(`struct vec3 ${field.name}`);
-    case 'size': return line(`int ${field.name}[2]`);
-    case 'object': return line(`struct ${prefix}_${field.object} ${field.name}`);
-    case 'list': return `    size_t n_${field.name};\n    struct ${prefix}_${field.object} *${field.name};${about}\n`;
-    case 'map': return `    size_t n_${field.name};\n    struct ${prefix}_${field.object}_entry *${field.name};${about}\n`;
-    case 'patch': return line(`char *${field.name}_json`); // owned text, NULL: none
-    case 'json': return line(`cJSON *${field.name}`);
-    default: throw new Error(`field ${field.name}: unknown type ${field.type}`);
+    case 'bool':
+      return line(`bool ${field.name}`);
+    case 'number':
+      return line(`double ${field.name}`);
+    case 'integer':
+      return line(`int64_t ${field.name}`);
+    case 'enum':
+      return line(`enum ${prefix}_${field.enum} ${field.name}`);
+    case 'color':
+      return line(`uint32_t ${field.name}_rgb`); // 0xrrggbb
+    case 'id':
+      return line(`char ${field.name}[64]`);
+    case 'text':
+      return line(`char ${field.name}[${textBytes(field)}]`);
+    case 'vec3':
+    case 'direction':
+      return line(`struct vec3 ${field.name}`);
+    case 'size':
+      return line(`int ${field.name}[2]`);
+    case 'object':
+      return line(`struct ${prefix}_${field.object} ${field.name}`);
+    case 'list':
+      return `    size_t n_${field.name};\n    struct ${prefix}_${field.object} *${field.name};${about}\n`;
+    case 'map':
+      return `    size_t n_${field.name};\n    struct ${prefix}_${field.object}_entry *${field.name};${about}\n`;
+    case 'patch':
+      return line(`char *${field.name}_json`); // owned text, NULL: none
+    case 'json':
+      return line(`cJSON *${field.name}`);
+    default:
+      throw new Error(`field ${field.name}: unknown type ${field.type}`);
   }
 }
 
@@ -34,16 +50,32 @@ export const textBytes = (field) => field.max * 4 + 1; // UTF-8
 export function initializer(field, prefix, objects) {
   const value = field.default;
   switch (field.type) {
-    case 'bool': return String(Boolean(value));
-    case 'number': case 'integer': return String(value ?? field.min ?? 0);
-    case 'enum': return value === undefined ? '0' : `${upper(prefix)}_${upper(field.enum)}_${upper(value)}`;
-    case 'color': return `0x${value.slice(1)}`;
-    case 'id': case 'text': return JSON.stringify(value ?? '');
-    case 'vec3': case 'direction': return `{ ${(value ?? [0, 0, 0]).join(', ')} }`;
-    case 'size': return `{ ${(value ?? [0, 0]).join(', ')} }`;
-    case 'object': return objectInitializer(objects[field.object], prefix, objects);
-    case 'list': case 'map': case 'patch': case 'json': return 'NULL';
-    default: throw new Error(field.type);
+    case 'bool':
+      return String(Boolean(value));
+    case 'number':
+    case 'integer':
+      return String(value ?? field.min ?? 0);
+    case 'enum':
+      return value === undefined ? '0' : `${upper(prefix)}_${upper(field.enum)}_${upper(value)}`;
+    case 'color':
+      return `0x${value.slice(1)}`;
+    case 'id':
+    case 'text':
+      return JSON.stringify(value ?? '');
+    case 'vec3':
+    case 'direction':
+      return `{ ${(value ?? [0, 0, 0]).join(', ')} }`;
+    case 'size':
+      return `{ ${(value ?? [0, 0]).join(', ')} }`;
+    case 'object':
+      return objectInitializer(objects[field.object], prefix, objects);
+    case 'list':
+    case 'map':
+    case 'patch':
+    case 'json':
+      return 'NULL';
+    default:
+      throw new Error(field.type);
   }
 }
 

@@ -5,26 +5,58 @@ function schemaOf(field, objects) {
   const nullable = (schema) => (field.nullable ? { oneOf: [schema, { type: 'null' }], ...about } : { ...schema, ...about });
   const range = { ...(field.min !== undefined && { minimum: field.min }), ...(field.max !== undefined && { maximum: field.max }) };
   switch (field.type) {
-    case 'bool': return nullable({ type: 'boolean', default: field.default });
-    case 'number': return nullable({ type: 'number', ...range, default: field.default });
-    case 'integer': return nullable({ type: 'integer', ...range, default: field.default });
-    case 'enum': return nullable({ type: 'string', enum: objects.enums[field.enum].values.map(([word]) => word), default: field.default });
-    case 'color': return nullable({ type: 'string', pattern: '^#[0-9a-fA-F]{6}$', default: field.default });
-    case 'id': return nullable({ type: 'string', pattern: '^[a-z0-9-]{0,63}$' });
-    case 'text': return nullable({ type: 'string', maxLength: field.max });
-    case 'vec3': case 'direction': return nullable({ type: 'array', items: { type: 'number', ...range }, minItems: 3, maxItems: 3 });
-    case 'size': return nullable({ type: 'array', items: { type: 'integer', ...range }, minItems: 2, maxItems: 2, default: field.default });
-    case 'object': return field.nullable ? nullable({ $ref: `#/components/schemas/${field.object}` }) : { $ref: `#/components/schemas/${field.object}` };
-    case 'list': return { type: 'array', items: { $ref: `#/components/schemas/${field.object}` }, maxItems: field.max_items, ...about };
-    case 'map': return { type: 'object', additionalProperties: { $ref: `#/components/schemas/${field.object}` }, maxProperties: field.max_items, ...about };
-    default: return { type: 'object', ...about };
+    case 'bool':
+      return nullable({ type: 'boolean', default: field.default });
+    case 'number':
+      return nullable({ type: 'number', ...range, default: field.default });
+    case 'integer':
+      return nullable({ type: 'integer', ...range, default: field.default });
+    case 'enum':
+      return nullable({ type: 'string', enum: objects.enums[field.enum].values.map(([word]) => word), default: field.default });
+    case 'color':
+      return nullable({ type: 'string', pattern: '^#[0-9a-fA-F]{6}$', default: field.default });
+    case 'id':
+      return nullable({ type: 'string', pattern: '^[a-z0-9-]{0,63}$' });
+    case 'text':
+      return nullable({ type: 'string', maxLength: field.max });
+    case 'vec3':
+    case 'direction':
+      return nullable({ type: 'array', items: { type: 'number', ...range }, minItems: 3, maxItems: 3 });
+    case 'size':
+      return nullable({ type: 'array', items: { type: 'integer', ...range }, minItems: 2, maxItems: 2, default: field.default });
+    case 'object':
+      return field.nullable ? nullable({ $ref: `#/components/schemas/${field.object}` }) : { $ref: `#/components/schemas/${field.object}` };
+    case 'list':
+      return { type: 'array', items: { $ref: `#/components/schemas/${field.object}` }, maxItems: field.max_items, ...about };
+    case 'map':
+      return {
+        type: 'object',
+        additionalProperties: { $ref: `#/components/schemas/${field.object}` },
+        maxProperties: field.max_items,
+        ...about,
+      };
+    default:
+      return { type: 'object', ...about };
   }
 }
 
 const mediaOf = (kind) => {
   if (kind === 'json') return { 'application/json': { schema: { type: 'object' } } };
-  if (kind === 'image') return { 'image/png': { schema: { type: 'string', format: 'binary' } }, 'image/jpeg': { schema: { type: 'string', format: 'binary' } } };
-  if (kind === 'surface') return { ...mediaOf('json'), ...Object.fromEntries(['model/stl', 'application/octet-stream', 'model/gltf-binary'].map((type) => [type, { schema: { type: 'string', format: 'binary' } }])) };
+  if (kind === 'image')
+    return {
+      'image/png': { schema: { type: 'string', format: 'binary' } },
+      'image/jpeg': { schema: { type: 'string', format: 'binary' } },
+    };
+  if (kind === 'surface')
+    return {
+      ...mediaOf('json'),
+      ...Object.fromEntries(
+        ['model/stl', 'application/octet-stream', 'model/gltf-binary'].map((type) => [
+          type,
+          { schema: { type: 'string', format: 'binary' } },
+        ]),
+      ),
+    };
   if (kind === 'curves') return { ...mediaOf('json'), 'text/csv': { schema: { type: 'string' } } };
   if (kind === 'scene') return { 'application/json': { schema: { $ref: '#/components/schemas/scene' } } };
   return { [kind]: { schema: { type: 'string' } } };
@@ -32,29 +64,82 @@ const mediaOf = (kind) => {
 
 export function openapi(http, scene, version) {
   const schemas = {
-    problem: { type: 'object', description: 'RFC 9457', required: ['type', 'title', 'status', 'detail'],
-      properties: { type: { type: 'string' }, title: { type: 'string' }, status: { type: 'integer' }, detail: { type: 'string' }, pointer: { type: 'string' }, code: { type: 'string' }, retry_after_ms: { type: 'integer' } } }
+    problem: {
+      type: 'object',
+      description: 'RFC 9457',
+      required: ['type', 'title', 'status', 'detail'],
+      properties: {
+        type: { type: 'string' },
+        title: { type: 'string' },
+        status: { type: 'integer' },
+        detail: { type: 'string' },
+        pointer: { type: 'string' },
+        code: { type: 'string' },
+        retry_after_ms: { type: 'integer' },
+      },
+    },
   };
   for (const group of [scene.objects, scene.documents])
     for (const [name, object] of Object.entries(group))
-      schemas[name] = { type: 'object', description: object.about, additionalProperties: false, properties: Object.fromEntries(object.fields.map((f) => [f.name, schemaOf(f, scene)])) };
+      schemas[name] = {
+        type: 'object',
+        description: object.about,
+        additionalProperties: false,
+        properties: Object.fromEntries(object.fields.map((f) => [f.name, schemaOf(f, scene)])),
+      };
   const paths = {};
   for (const route of http.routes) {
-    const parameters = [...route.path.matchAll(/\{(\w+)\}/g)].map(([, name]) => ({ name, in: 'path', required: true, schema: { type: 'string', pattern: '^[a-z0-9-]{1,63}$' } }));
-    for (const [name, [type, about]] of Object.entries(route.query ?? {})) parameters.push({ name, in: 'query', required: about.includes('required'), description: about, schema: { type } });
-    for (const [name, about] of Object.entries(route.headers ?? {})) parameters.push({ name, in: 'header', required: about.includes('required'), description: about, schema: { type: 'string' } });
+    const parameters = [...route.path.matchAll(/\{(\w+)\}/g)].map(([, name]) => ({
+      name,
+      in: 'path',
+      required: true,
+      schema: { type: 'string', pattern: '^[a-z0-9-]{1,63}$' },
+    }));
+    for (const [name, [type, about]] of Object.entries(route.query ?? {}))
+      parameters.push({ name, in: 'query', required: about.includes('required'), description: about, schema: { type } });
+    for (const [name, about] of Object.entries(route.headers ?? {}))
+      parameters.push({ name, in: 'header', required: about.includes('required'), description: about, schema: { type: 'string' } });
     const responses = {};
-    for (const [status, kind] of Object.entries(route.answers)) responses[status] = { description: route.about, ...(kind && { content: mediaOf(kind) }) };
-    responses.default = { description: `A problem: ${route.problems.join(', ') || 'internal'}.`, content: { 'application/problem+json': { schema: { $ref: '#/components/schemas/problem' } } } };
+    for (const [status, kind] of Object.entries(route.answers))
+      responses[status] = { description: route.about, ...(kind && { content: mediaOf(kind) }) };
+    responses.default = {
+      description: `A problem: ${route.problems.join(', ') || 'internal'}.`,
+      content: { 'application/problem+json': { schema: { $ref: '#/components/schemas/problem' } } },
+    };
     const operation = { summary: route.about, parameters, responses, ...(route.right && { 'x-right': route.right }) };
-    if (route.body === 'scene') operation.requestBody = { required: true, content: { 'application/merge-patch+json': { schema: { type: 'object' } } } };
-    else if (Array.isArray(route.body)) operation.requestBody = { required: true, content: Object.fromEntries(route.body.map((type) => [type, { schema: { type: 'string', format: 'binary' } }])) };
-    else if (route.body) operation.requestBody = { required: true, content: { 'application/json': { schema: { type: 'object', additionalProperties: false,
-      required: Object.entries(route.body).filter(([, [, about]]) => about.includes('required')).map(([name]) => name),
-      properties: Object.fromEntries(Object.entries(route.body).map(([name, [type, about]]) => [name, { type, description: about }])) } } } };
+    if (route.body === 'scene')
+      operation.requestBody = { required: true, content: { 'application/merge-patch+json': { schema: { type: 'object' } } } };
+    else if (Array.isArray(route.body))
+      operation.requestBody = {
+        required: true,
+        content: Object.fromEntries(route.body.map((type) => [type, { schema: { type: 'string', format: 'binary' } }])),
+      };
+    else if (route.body)
+      operation.requestBody = {
+        required: true,
+        content: {
+          'application/json': {
+            schema: {
+              type: 'object',
+              additionalProperties: false,
+              required: Object.entries(route.body)
+                .filter(([, [, about]]) => about.includes('required'))
+                .map(([name]) => name),
+              properties: Object.fromEntries(
+                Object.entries(route.body).map(([name, [type, about]]) => [name, { type, description: about }]),
+              ),
+            },
+          },
+        },
+      };
     (paths[route.path] ??= {})[route.method.toLowerCase()] = operation;
   }
-  return { openapi: '3.1.0', info: { title: 'Beamroom', version, description: `${http.about} ${http.ids}` }, paths, components: { schemas } };
+  return {
+    openapi: '3.1.0',
+    info: { title: 'Beamroom', version, description: `${http.about} ${http.ids}` },
+    paths,
+    components: { schemas },
+  };
 }
 
 /** The document as a C array: a string literal of this length is more than ISO C lets a compiler promise. */
@@ -62,6 +147,8 @@ export function openapiSource(document) {
   const bytes = Buffer.from(JSON.stringify(document));
   const rows = [];
   for (let at = 0; at < bytes.length; at += 24) rows.push(`    ${[...bytes.subarray(at, at + 24)].join(',')},`);
-  return `/* Generated from proto/; change it there. */\n#include <stddef.h>\n\nextern const unsigned char openapi_json[];\nextern const size_t openapi_json_bytes;\n` +
-    `const unsigned char openapi_json[] = {\n${rows.join('\n')}\n};\nconst size_t openapi_json_bytes = sizeof openapi_json;\n`;
+  return (
+    `/* Generated from proto/; change it there. */\n#include <stddef.h>\n\nextern const unsigned char openapi_json[];\nextern const size_t openapi_json_bytes;\n` +
+    `const unsigned char openapi_json[] = {\n${rows.join('\n')}\n};\nconst size_t openapi_json_bytes = sizeof openapi_json;\n`
+  );
 }

@@ -20,7 +20,8 @@ export function checkedPresets({ presets }, scene) {
   return presets;
 }
 
-export const presetsHeader = () => `#pragma once\n${notice}#include "scene.h"\n\n` +
+export const presetsHeader = () =>
+  `#pragma once\n${notice}#include "scene.h"\n\n` +
   '/* A transfer function to begin with. is_hu: values are Hounsfield units; else parts of the window, 0 its lower end. */\n' +
   'struct volume_preset {\n    const char *name, *modality;\n    bool is_hu;\n    const struct scene_transfer_point *points;\n    size_t n_points;\n};\n' +
   'extern const struct volume_preset volume_presets[];\nextern const size_t n_volume_presets;\n';
@@ -28,9 +29,14 @@ export const presetsHeader = () => `#pragma once\n${notice}#include "scene.h"\n\
 const pointRow = ({ value, color, opacity }) => `    { .value = ${value}, .color_rgb = 0x${color.slice(1)}, .opacity = ${opacity} },\n`;
 
 export function presetsSource(presets) {
-  const lists = presets.map(({ points }, i) => `static const struct scene_transfer_point points_${i}[] = {\n${points.map(pointRow).join('')}};\n`).join('');
-  const rows = presets.map(({ name, modality, unit, points }, i) => `    { "${name}", "${modality}", ${unit === 'HU'}, points_${i}, ${points.length} },\n`).join('');
+  const lists = presets
+    .map(({ points }, i) => `static const struct scene_transfer_point points_${i}[] = {\n${points.map(pointRow).join('')}};\n`)
+    .join('');
+  const rows = presets
+    .map(({ name, modality, unit, points }, i) => `    { "${name}", "${modality}", ${unit === 'HU'}, points_${i}, ${points.length} },\n`)
+    .join('');
   return `${notice}#include "volume_presets.h"\n\n${lists}\nconst struct volume_preset volume_presets[] = {\n${rows}};\nconst size_t n_volume_presets = ${presets.length};\n`;
 }
 
-export const presetsScript = (presets) => `// Generated from proto/volume_presets.json; change it there.\nexport const volumePresets = ${JSON.stringify(presets, null, 1)};\n`;
+export const presetsScript = (presets) =>
+  `// Generated from proto/volume_presets.json; change it there.\nexport const volumePresets = ${JSON.stringify(presets, null, 1)};\n`;

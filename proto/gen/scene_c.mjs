@@ -31,28 +31,37 @@ const elementOf = (field, prefix) => (field.type === 'map' ? `${prefix}_${field.
 const valueOf = (field) => (field.type === 'map' ? '.value' : '');
 
 function finishBody(object, prefix, objects) {
-  return object.fields.map((f) => {
-    if (f.type === 'patch') return `    free(object->${f.name}_json);\n    object->${f.name}_json = NULL;\n`;
-    if (!f.object) return '';
-    const inner = owns(objects[f.object], objects);
-    if (f.type === 'object') return inner ? `    ${prefix}_${f.object}_finish(&object->${f.name});\n` : '';
-    const each = inner ? `    for (size_t i = 0; i < object->n_${f.name}; i++)\n        ${prefix}_${f.object}_finish(&object->${f.name}[i]${valueOf(f)});\n` : '';
-    return `${each}    free(object->${f.name});\n    object->${f.name} = NULL;\n    object->n_${f.name} = 0;\n`;
-  }).join('');
+  return object.fields
+    .map((f) => {
+      if (f.type === 'patch') return `    free(object->${f.name}_json);\n    object->${f.name}_json = NULL;\n`;
+      if (!f.object) return '';
+      const inner = owns(objects[f.object], objects);
+      if (f.type === 'object') return inner ? `    ${prefix}_${f.object}_finish(&object->${f.name});\n` : '';
+      const each = inner
+        ? `    for (size_t i = 0; i < object->n_${f.name}; i++)\n        ${prefix}_${f.object}_finish(&object->${f.name}[i]${valueOf(f)});\n`
+        : '';
+      return `${each}    free(object->${f.name});\n    object->${f.name} = NULL;\n    object->n_${f.name} = 0;\n`;
+    })
+    .join('');
 }
 
 function copyBody(object, prefix, objects) {
-  return '    *to = *from;\n' + object.fields.map((f) => {
-    if (f.type === 'patch') return `    to->${f.name}_json = from->${f.name}_json ? mem_copy_text(from->${f.name}_json) : NULL;\n`;
-    if (!f.object) return '';
-    const inner = owns(objects[f.object], objects);
-    if (f.type === 'object') return inner ? `    ${prefix}_${f.object}_copy(&to->${f.name}, &from->${f.name});\n` : '';
-    const array = `to->${f.name}`;
-    let text = `    ${array} = from->n_${f.name} ? mem_new(from->n_${f.name} * sizeof *${array}) : NULL; /* at most ${f.max_items} */\n`;
-    text += `    for (size_t i = 0; i < from->n_${f.name}; i++)${inner ? ' {' : ''}\n        ${array}[i] = from->${f.name}[i];\n`;
-    if (inner) text += `        ${prefix}_${f.object}_copy(&${array}[i]${valueOf(f)}, &from->${f.name}[i]${valueOf(f)});\n    }\n`;
-    return text;
-  }).join('');
+  return (
+    '    *to = *from;\n' +
+    object.fields
+      .map((f) => {
+        if (f.type === 'patch') return `    to->${f.name}_json = from->${f.name}_json ? mem_copy_text(from->${f.name}_json) : NULL;\n`;
+        if (!f.object) return '';
+        const inner = owns(objects[f.object], objects);
+        if (f.type === 'object') return inner ? `    ${prefix}_${f.object}_copy(&to->${f.name}, &from->${f.name});\n` : '';
+        const array = `to->${f.name}`;
+        let text = `    ${array} = from->n_${f.name} ? mem_new(from->n_${f.name} * sizeof *${array}) : NULL; /* at most ${f.max_items} */\n`;
+        text += `    for (size_t i = 0; i < from->n_${f.name}; i++)${inner ? ' {' : ''}\n        ${array}[i] = from->${f.name}[i];\n`;
+        if (inner) text += `        ${prefix}_${f.object}_copy(&${array}[i]${valueOf(f)}, &from->${f.name}[i]${valueOf(f)});\n    }\n`;
+        return text;
+      })
+      .join('')
+  );
 }
 
 /** Statements that return false where field differs between the structs a and b. */
@@ -70,8 +79,10 @@ function compareField(f, prefix) {
   unequal.direction = unequal.vec3;
   if (f.type === 'list' || f.type === 'map') {
     const ids = f.type === 'map' ? `strcmp(${x}[i].id, ${y}[i].id) != 0 || ` : '';
-    return `    if (a->n_${f.name} != b->n_${f.name})\n        return false;\n    for (size_t i = 0; i < a->n_${f.name}; i++)\n` +
-      `        if (${ids}!${prefix}_${f.object}_equal(&${x}[i]${valueOf(f)}, &${y}[i]${valueOf(f)}))\n            return false;\n`;
+    return (
+      `    if (a->n_${f.name} != b->n_${f.name})\n        return false;\n    for (size_t i = 0; i < a->n_${f.name}; i++)\n` +
+      `        if (${ids}!${prefix}_${f.object}_equal(&${x}[i]${valueOf(f)}, &${y}[i]${valueOf(f)}))\n            return false;\n`
+    );
   }
   const is = unequal[f.type] ?? `${x} != ${y}`;
   if (f.nullable) return `    if (a->has_${f.name} != b->has_${f.name} || (a->has_${f.name} && (${is})))\n        return false;\n`;

@@ -6,7 +6,9 @@ const notice = '/* Generated from core/render/gl/shaders; change it there. */\n'
 // { name: 'smooth_vert', text }, of every .vert and .frag; a line #include "file" becomes that file.
 export function readShaders(folder) {
   const read = (name) => readFileSync(join(folder, name), 'utf8').replace(/^#include "(.*)"$/gm, (_, file) => read(file).trimEnd());
-  return readdirSync(folder).filter((name) => /\.(vert|frag)$/.test(name)).sort()
+  return readdirSync(folder)
+    .filter((name) => /\.(vert|frag)$/.test(name))
+    .sort()
     .map((name) => ({ name: name.replace('.', '_'), text: read(name) }));
 }
 
@@ -16,10 +18,14 @@ function uniformNames(shaders) {
 }
 
 export function shadersHeader(shaders) {
-  const uniforms = uniformNames(shaders).map((name) => ` \\\n    X(${name})`).join('');
+  const uniforms = uniformNames(shaders)
+    .map((name) => ` \\\n    X(${name})`)
+    .join('');
   const texts = shaders.map(({ name }) => `extern const char gl_shader_${name}[];\n`).join('');
-  return `#pragma once\n${notice}\n/* Every name that some shader has a uniform of. */\n#define GL_UNIFORMS(X)${uniforms}\n\n` +
-    `/* Without #version; ends with a zero. */\n${texts}`;
+  return (
+    `#pragma once\n${notice}\n/* Every name that some shader has a uniform of. */\n#define GL_UNIFORMS(X)${uniforms}\n\n` +
+    `/* Without #version; ends with a zero. */\n${texts}`
+  );
 }
 
 // Numbers, as a string literal of C may not be as long as a shader.
@@ -32,6 +38,8 @@ function bytes(text) {
 }
 
 export function shadersSource(shaders) {
-  return `${notice}#include "gl_shaders.h"\n` +
-    shaders.map(({ name, text }) => `\nconst char gl_shader_${name}[] = {\n${bytes(text)}\n};\n`).join('');
+  return (
+    `${notice}#include "gl_shaders.h"\n` +
+    shaders.map(({ name, text }) => `\nconst char gl_shader_${name}[] = {\n${bytes(text)}\n};\n`).join('')
+  );
 }

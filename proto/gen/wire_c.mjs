@@ -27,10 +27,14 @@ extern const struct wire_room_route wire_room_routes[];
 
 function rightsSource({ enums }, roomRoutes) {
   const bit = (right) => `1U << WIRE_RIGHT_${upper(right)}`;
-  const roles = enums.member_role.values.map(([role, , rights]) => `    [WIRE_MEMBER_ROLE_${upper(role)}] = ${rights.map(bit).join(' | ')},`);
+  const roles = enums.member_role.values.map(
+    ([role, , rights]) => `    [WIRE_MEMBER_ROLE_${upper(role)}] = ${rights.map(bit).join(' | ')},`,
+  );
   const routes = roomRoutes.map(({ method, path, right }) => `    { "${method}", "${path}", WIRE_RIGHT_${upper(right)} },`);
-  return `\nconst unsigned wire_role_rights[] = {\n${roles.join('\n')}\n};\n` +
-    `const struct wire_room_route wire_room_routes[] = {\n${routes.join('\n')}\n    { NULL, NULL, WIRE_RIGHT_LOOK },\n};\n`;
+  return (
+    `\nconst unsigned wire_role_rights[] = {\n${roles.join('\n')}\n};\n` +
+    `const struct wire_room_route wire_room_routes[] = {\n${routes.join('\n')}\n    { NULL, NULL, WIRE_RIGHT_LOOK },\n};\n`
+  );
 }
 
 export function wireHeader(scene, messages) {
@@ -51,7 +55,23 @@ export function wireHeader(scene, messages) {
   return text;
 }
 
-const typeNames = { bool: 'BOOL', number: 'NUMBER', integer: 'INTEGER', enum: 'ENUM', color: 'COLOR', id: 'ID', text: 'TEXT', vec3: 'VEC3', direction: 'DIRECTION', size: 'SIZE', object: 'OBJECT', list: 'LIST', map: 'MAP', patch: 'PATCH', json: 'JSON' };
+const typeNames = {
+  bool: 'BOOL',
+  number: 'NUMBER',
+  integer: 'INTEGER',
+  enum: 'ENUM',
+  color: 'COLOR',
+  id: 'ID',
+  text: 'TEXT',
+  vec3: 'VEC3',
+  direction: 'DIRECTION',
+  size: 'SIZE',
+  object: 'OBJECT',
+  list: 'LIST',
+  map: 'MAP',
+  patch: 'PATCH',
+  json: 'JSON',
+};
 
 function fieldRow(f, structName, prefix) {
   const parts = [`.name = "${f.name}"`, `.type = FIELD_${typeNames[f.type]}`, `.offset = offsetof(struct ${structName}, ${member(f)})`];
@@ -64,33 +84,47 @@ function fieldRow(f, structName, prefix) {
   if (f.object) parts.push(`.object = &${prefix}_${f.object}_object`);
   if (f.names) parts.push(`.names = &${prefix}_${f.names}_reference`);
   if (f.type === 'list')
-    parts.push(`.max_items = ${f.max_items}`, `.count_offset = offsetof(struct ${structName}, n_${f.name})`, `.entry_size = sizeof(struct ${prefix}_${f.object})`);
+    parts.push(
+      `.max_items = ${f.max_items}`,
+      `.count_offset = offsetof(struct ${structName}, n_${f.name})`,
+      `.entry_size = sizeof(struct ${prefix}_${f.object})`,
+    );
   if (f.ascending) parts.push(`.ascending = "${f.ascending}"`);
   if (f.type === 'map')
-    parts.push(`.max_items = ${f.max_items}`, `.count_offset = offsetof(struct ${structName}, n_${f.name})`,
-      `.entry_size = sizeof(struct ${prefix}_${f.object}_entry)`, `.value_offset = offsetof(struct ${prefix}_${f.object}_entry, value)`);
+    parts.push(
+      `.max_items = ${f.max_items}`,
+      `.count_offset = offsetof(struct ${structName}, n_${f.name})`,
+      `.entry_size = sizeof(struct ${prefix}_${f.object}_entry)`,
+      `.value_offset = offsetof(struct ${prefix}_${f.object}_entry, value)`,
+    );
   if (f.type === 'text') parts.push(`.text_bytes = ${textBytes(f)}`);
   return `    { ${parts.join(', ')} },`;
 }
 
 function table(tableName, structName, description, prefix, defaults) {
   const rows = description.fields.map((f) => fieldRow(f, structName, prefix)).join('\n');
-  return `static const struct field ${tableName}_fields[] = {\n${rows}\n};\n` +
-    `const struct field_object ${tableName}_object = { "${description.name ?? tableName}", ${tableName}_fields, ${description.fields.length}, sizeof(struct ${structName}), &${defaults} };\n\n`;
+  return (
+    `static const struct field ${tableName}_fields[] = {\n${rows}\n};\n` +
+    `const struct field_object ${tableName}_object = { "${description.name ?? tableName}", ${tableName}_fields, ${description.fields.length}, sizeof(struct ${structName}), &${defaults} };\n\n`
+  );
 }
 
 function words(name, description, prefix) {
   const list = description.values.map(([word]) => `"${word}"`).join(', ');
-  return `static const char *const ${prefix}_${name}_list[] = { ${list} };\n` +
-    `const struct field_words ${prefix}_${name}_words = { ${prefix}_${name}_list, ${description.values.length} };\n\n`;
+  return (
+    `static const char *const ${prefix}_${name}_list[] = { ${list} };\n` +
+    `const struct field_words ${prefix}_${name}_words = { ${prefix}_${name}_list, ${description.values.length} };\n\n`
+  );
 }
 
 /** Definitions of the tables of a checked description of documents. */
 export function tablesSource(description, prefix) {
   let text = '';
   for (const [name, words_] of Object.entries(description.enums)) text += words(name, words_, prefix);
-  for (const [name, { list }] of Object.entries(description.references)) text += `const struct field_reference ${prefix}_${name}_reference = { "${name}", "${list}" };\n\n`;
-  for (const [name, object] of Object.entries(description.objects)) text += table(`${prefix}_${name}`, `${prefix}_${name}`, object, prefix, `${prefix}_${name}_default`);
+  for (const [name, { list }] of Object.entries(description.references))
+    text += `const struct field_reference ${prefix}_${name}_reference = { "${name}", "${list}" };\n\n`;
+  for (const [name, object] of Object.entries(description.objects))
+    text += table(`${prefix}_${name}`, `${prefix}_${name}`, object, prefix, `${prefix}_${name}_default`);
   for (const [name, document] of Object.entries(description.documents)) text += table(name, name, document, prefix, `${name}_default`);
   return text;
 }
@@ -102,9 +136,15 @@ export function wireSource(scene, messages, roomRoutes = []) {
   for (const message of messages.messages) {
     const name = structOf(message);
     text += `static const struct ${name} ${name}_default = ${objectInitializer(message, 'wire', {})};\n`;
-    text += table(name, name, message, 'wire', `${name}_default`).replace(/^const struct field_object/m, 'static const struct field_object');
+    text += table(name, name, message, 'wire', `${name}_default`).replace(
+      /^const struct field_object/m,
+      'static const struct field_object',
+    );
   }
-  const rows = messages.messages.map((m) => `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object${messages.enums.right ? `, WIRE_RIGHT_${upper(m.right ?? 'look')}` : ''} },`);
+  const rows = messages.messages.map(
+    (m) =>
+      `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object${messages.enums.right ? `, WIRE_RIGHT_${upper(m.right ?? 'look')}` : ''} },`,
+  );
   text += `const struct message_description message_descriptions[MESSAGE_N_TYPES] = {\n${rows.join('\n')}\n};\n`;
   return messages.enums.member_role ? text + rightsSource(messages, roomRoutes) : text;
 }

@@ -4,7 +4,10 @@ const wordsOf = (enums) => Object.fromEntries(Object.entries(enums).map(([name, 
 
 /** Words of enums and fields of objects, of a checked description of documents. */
 export function tables({ enums, objects, documents }) {
-  return { enums: wordsOf(enums), objects: Object.fromEntries(Object.entries({ ...objects, ...documents }).map(([name, { fields }]) => [name, fields])) };
+  return {
+    enums: wordsOf(enums),
+    objects: Object.fromEntries(Object.entries({ ...objects, ...documents }).map(([name, { fields }]) => [name, fields])),
+  };
 }
 
 const text = (value) => JSON.stringify(value, (key, part) => (key === 'about' && typeof part === 'string' ? undefined : part), 1);
@@ -14,11 +17,13 @@ export function wireScript(scene, messages) {
   Object.assign(enums, wordsOf(messages.enums));
   const table = {};
   for (const message of messages.messages) table[message.name] = { from: message.from, fields: message.fields };
-  return '// Generated from proto/; change it there.\n' +
+  return (
+    '// Generated from proto/; change it there.\n' +
     `export const protocol = ${messages.version};\n` +
     `export const maxClientBytes = ${messages.max_client_bytes};\n` +
     `export const roles = ${text(Object.fromEntries((messages.enums.member_role?.values ?? []).map(([role, , rights]) => [role, rights])))};\n` +
     `export const enums = ${text(enums)};\n` +
     `export const objects = ${text(objects)};\n` +
-    `export const messages = ${text(table)};\n`;
+    `export const messages = ${text(table)};\n`
+  );
 }

@@ -28,11 +28,18 @@ async function enter(of, hello = {}) {
 async function give(client, message) {
   const own = ++input;
   client.send({ ...message, input: own });
-  const answer = await client.until(() => client.messages.find((m) => ['item', 'problem', 'scene'].includes(m.type) && m.input === own), 'an answer');
-  return answer.type === 'item' ? answer.item : answer.problem ?? answer;
+  const answer = await client.until(
+    () => client.messages.find((m) => ['item', 'problem', 'scene'].includes(m.type) && m.input === own),
+    'an answer',
+  );
+  return answer.type === 'item' ? answer.item : (answer.problem ?? answer);
 }
 /** The item; the revision of the plan's files may not be known yet. */
-const accept = (client, body = boost) => until(() => give(client, { type: 'item.put', kind: 'acceptance', body }), ({ type }) => type !== '/problems/busy');
+const accept = (client, body = boost) =>
+  until(
+    () => give(client, { type: 'item.put', kind: 'acceptance', body }),
+    ({ type }) => type !== '/problems/busy',
+  );
 const newRoom = async (body = { plan }) => (await call(url('rooms'), 'POST', body)).json.id;
 const doseOf = async (of) => (await call(url(`plans/${plan}/dose?room=${of}`))).json;
 const picture = async (of) => {
@@ -41,7 +48,11 @@ const picture = async (of) => {
   return digest(Buffer.from(await response.arrayBuffer()));
 };
 async function render(acceptances) {
-  const response = await fetch(url(`plans/${plan}/render`), { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ scene: patch, view, ...(acceptances ? { acceptances } : {}) }) });
+  const response = await fetch(url(`plans/${plan}/render`), {
+    method: 'POST',
+    headers: { 'Content-Type': 'application/json' },
+    body: JSON.stringify({ scene: patch, view, ...(acceptances ? { acceptances } : {}) }),
+  });
   const bytes = Buffer.from(await response.arrayBuffer());
   return response.ok ? digest(bytes) : JSON.parse(bytes.toString('utf8'));
 }
@@ -118,7 +129,10 @@ test('a saved view, its permalink, a room that begins with it, and a replay hold
   for (const body of [{ saved: saved.body.token }, { recording: { room, id } }]) {
     const fork = await newRoom(body);
     const cem = await enter(fork, { name: 'Cem' });
-    await until(() => doseOf(fork), ({ id: shown }) => shown === 'boost');
+    await until(
+      () => doseOf(fork),
+      ({ id: shown }) => shown === 'boost',
+    );
     assert.equal((await doseOf(fork)).drawn, false, JSON.stringify(body));
     assert.deepEqual(counting(cem).items, []);
     assert.ok(!cem.welcome.items.some(({ kind }) => kind === 'acceptance'));
@@ -140,7 +154,11 @@ test('/render takes acceptances in its body, checked as those of a room, each a 
 test('the command line draws the same by --accept, and nothing of the dose without', () => {
   const drawn = (...options) => {
     const out = join(data, 'picture.png');
-    execFileSync(join(bin, 'beamroom'), ['render', join(plans, plan), '-o', out, '--scene', JSON.stringify(patch), '--view', JSON.stringify(view), ...options], { stdio: 'pipe' });
+    execFileSync(
+      join(bin, 'beamroom'),
+      ['render', join(plans, plan), '-o', out, '--scene', JSON.stringify(patch), '--view', JSON.stringify(view), ...options],
+      { stdio: 'pipe' },
+    );
     return digest(readFileSync(out));
   };
   assert.notEqual(drawn('--accept', 'dose:boost=image:ct'), drawn());
@@ -168,6 +186,9 @@ test('it is there after a restart, and void once a file of the plan is another',
   ann = await enter(room, { name: 'Ann' });
   await ann.until(() => counting(ann)?.known, 'the revision of the files');
   assert.deepEqual(counting(ann).items, []);
-  assert.ok(ann.welcome.items.some(({ kind, id }) => kind === 'acceptance' && id === item.id), 'shown as void');
+  assert.ok(
+    ann.welcome.items.some(({ kind, id }) => kind === 'acceptance' && id === item.id),
+    'shown as void',
+  );
   assert.equal(await picture(room), unaccepted);
 });

@@ -20,10 +20,25 @@ db = sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True, timeout=30)
 print(json.dumps(db.execute('SELECT n, row, hash FROM audit ORDER BY n').fetchall()))
 `;
 /** [{n, ...the row, text, hash}] */
-const onDisk = (file = database()) => JSON.parse(execFileSync('python3', ['-c', read, file], { encoding: 'utf8' })).map(([, text, hash]) => ({ ...parseStrict(text), text, hash }));
-const change = (file, sql) => execFileSync('python3', ['-c', 'import sqlite3, sys; db = sqlite3.connect(sys.argv[1]); db.executescript(sys.argv[2]); db.commit()', file, sql]);
+const onDisk = (file = database()) =>
+  JSON.parse(execFileSync('python3', ['-c', read, file], { encoding: 'utf8' })).map(([, text, hash]) => ({
+    ...parseStrict(text),
+    text,
+    hash,
+  }));
+const change = (file, sql) =>
+  execFileSync('python3', [
+    '-c',
+    'import sqlite3, sys; db = sqlite3.connect(sys.argv[1]); db.executescript(sys.argv[2]); db.commit()',
+    file,
+    sql,
+  ]);
 const verify = (file, ...args) => spawnSync(join(bin, 'beamroomd'), ['--verify-audit', file, ...args], { encoding: 'utf8' });
-const rowWith = (action, matches = () => true) => until(() => onDisk().find((row) => row.action === action && matches(row)), (row) => row);
+const rowWith = (action, matches = () => true) =>
+  until(
+    () => onDisk().find((row) => row.action === action && matches(row)),
+    (row) => row,
+  );
 
 async function enter(hello = {}) {
   const client = await Client.enter(daemon.url, room, hello);
@@ -47,13 +62,19 @@ test('what members and calls do is on the disk, who did it, and at which revisio
   const ann = await enter({ name: 'Ann' });
   await ann.message('renderer', (m) => m.state === 'ready');
   const opened = await rowWith('open');
-  assert.deepEqual([opened.room, opened.plan, opened.member, opened.name, opened.role, opened.result, opened.detail], [room, 'phantom', 'm1', 'Ann', 'presenter', 'done', { as: 'new' }]);
+  assert.deepEqual(
+    [opened.room, opened.plan, opened.member, opened.name, opened.role, opened.result, opened.detail],
+    [room, 'phantom', 'm1', 'Ann', 'presenter', 'done', { as: 'new' }],
+  );
   assert.ok(Math.abs(opened.time_ms - Date.now()) < 120000);
 
   const link = (await call(`${api}/links`, 'POST', { role: 'observer', one_use: true }, ann.headers)).json;
   const made = await rowWith('link-made');
   assert.match(made.detail.link, /^[0-9a-f]{8}$/);
-  assert.deepEqual([made.member, made.address, made.detail], ['m1', '127.0.0.1', { link: made.detail.link, role: 'observer', expires_s: 86400, one_use: true }]);
+  assert.deepEqual(
+    [made.member, made.address, made.detail],
+    ['m1', '127.0.0.1', { link: made.detail.link, role: 'observer', expires_s: 86400, one_use: true }],
+  );
   const eve = await enter({ name: 'Eve', link: link.token });
   const used = await rowWith('link');
   assert.deepEqual([used.name, used.address, used.detail.link], ['Eve', '127.0.0.1', made.detail.link]);
@@ -82,7 +103,9 @@ test('what members and calls do is on the disk, who did it, and at which revisio
 
   assert.equal((await call(`${api}/snapshot?view=${encodeURIComponent('{"kind":"axial"}')}`, 'GET', undefined, eve.headers)).status, 200);
   const picture = await rowWith('export');
-  const [n, hash] = (await call(`${api}/snapshot?view=${encodeURIComponent('{"kind":"axial"}')}`, 'GET', undefined, eve.headers)).headers.get('audit-head').split(' ');
+  const [n, hash] = (await call(`${api}/snapshot?view=${encodeURIComponent('{"kind":"axial"}')}`, 'GET', undefined, eve.headers)).headers
+    .get('audit-head')
+    .split(' ');
   assert.equal(onDisk()[Number(n) - 1].hash, hash, 'what is exported carries the newest row on the disk');
   assert.deepEqual([picture.member, picture.room, picture.detail.what], ['m2', room, 'snapshot']);
   assert.equal((await call(`${daemon.url}/api/v1/plans/phantom/render`, 'POST', {})).status, 200);
@@ -96,21 +119,37 @@ test('calls that differ are rows of their own: a link for presenters between two
   const before = onDisk().filter(({ action }) => action === 'link-made').length;
   const roles = ['observer', 'presenter', 'observer'];
   for (const role of roles) assert.equal((await call(`${api}/links`, 'POST', { role }, ann.headers)).status, 201);
-  const rows = await until(() => onDisk().filter(({ action }) => action === 'link-made').slice(before), ({ length }) => length >= roles.length);
-  assert.deepEqual(rows.map(({ detail }) => detail.role), roles);
+  const rows = await until(
+    () =>
+      onDisk()
+        .filter(({ action }) => action === 'link-made')
+        .slice(before),
+    ({ length }) => length >= roles.length,
+  );
+  assert.deepEqual(
+    rows.map(({ detail }) => detail.role),
+    roles,
+  );
   assert.equal(new Set(rows.map(({ detail }) => detail.link)).size, roles.length);
 });
 
 test('what was put, decided and signed is compared with its rows', async () => {
   const ann = await enter({ name: 'Ada', member: clients[0].welcome.member, secret: clients[0].welcome.secret });
-  await until(() => call(`${daemon.url}/api/v1/plans/phantom/revision`), ({ status }) => status === 200);
-  await until(() => call(`${daemon.url}/api/v1/rooms/${room}/record`), ({ status }) => status === 200);
+  await until(
+    () => call(`${daemon.url}/api/v1/plans/phantom/revision`),
+    ({ status }) => status === 200,
+  );
+  await until(
+    () => call(`${daemon.url}/api/v1/rooms/${room}/record`),
+    ({ status }) => status === 200,
+  );
   let input = 100;
   const put = async (kind, body) => {
     ann.send({ type: 'item.put', kind, body, input: ++input });
     return (await ann.message('item', (m) => m.input === input)).item;
   };
-  const note = await put('note', { text: 'Edge?' }), gone = await put('note', { text: 'Wrong' });
+  const note = await put('note', { text: 'Edge?' }),
+    gone = await put('note', { text: 'Wrong' });
   const decision = await put('decision', { decision: 'accept', text: 'As shown' });
   await put('signature', { name: 'A. Example', meaning: 'reviewed' });
   ann.send({ type: 'item.delete', item: gone.id, input: ++input });
@@ -125,32 +164,77 @@ test('what was put, decided and signed is compared with its rows', async () => {
     change(copy, sql);
     return verify(copy).stderr;
   };
-  assert.match(said("UPDATE items SET body = replace(body, 'As shown', 'Not so') WHERE kind = 'decision'"), new RegExp(`decision ${decision.id} of room ${room} is not what row ${row.n} says`));
-  assert.match(said("UPDATE items SET body = replace(body, 'Edge', 'Side')"), new RegExp(`note ${note.id} of room ${room} is not what row \\d+ says`));
-  assert.match(said("DELETE FROM items WHERE kind = 'note'"), new RegExp(`note ${note.id} of room ${room}, which row \\d+ put, is not in the database any more`));
-  assert.match(said("INSERT INTO items SELECT room, 'i-0123456789', kind, version, author, author_name, created_ms, changed_ms, body FROM items WHERE kind = 'signature'"), /signature i-0123456789 of room .* stands in no row/);
-  assert.match(said(`INSERT INTO items SELECT room, '${gone.id}', kind, version, author, author_name, created_ms, changed_ms, body FROM items WHERE kind = 'note'`), new RegExp(`note ${gone.id} of room .* is there, and row \\d+ deleted it`));
+  assert.match(
+    said("UPDATE items SET body = replace(body, 'As shown', 'Not so') WHERE kind = 'decision'"),
+    new RegExp(`decision ${decision.id} of room ${room} is not what row ${row.n} says`),
+  );
+  assert.match(
+    said("UPDATE items SET body = replace(body, 'Edge', 'Side')"),
+    new RegExp(`note ${note.id} of room ${room} is not what row \\d+ says`),
+  );
+  assert.match(
+    said("DELETE FROM items WHERE kind = 'note'"),
+    new RegExp(`note ${note.id} of room ${room}, which row \\d+ put, is not in the database any more`),
+  );
+  assert.match(
+    said(
+      "INSERT INTO items SELECT room, 'i-0123456789', kind, version, author, author_name, created_ms, changed_ms, body FROM items WHERE kind = 'signature'",
+    ),
+    /signature i-0123456789 of room .* stands in no row/,
+  );
+  assert.match(
+    said(
+      `INSERT INTO items SELECT room, '${gone.id}', kind, version, author, author_name, created_ms, changed_ms, body FROM items WHERE kind = 'note'`,
+    ),
+    new RegExp(`note ${gone.id} of room .* is there, and row \\d+ deleted it`),
+  );
   assert.match(said("DROP TRIGGER records_update; UPDATE records SET body = '{}'"), /the record of decision .* is not what row \d+ says/);
-  assert.match(said("DROP TRIGGER records_delete; DELETE FROM records WHERE kind = 'decision'"), new RegExp(`decision ${decision.id} of room ${room}, which row ${row.n} put, is not in the database any more`));
+  assert.match(
+    said("DROP TRIGGER records_delete; DELETE FROM records WHERE kind = 'decision'"),
+    new RegExp(`decision ${decision.id} of room ${room}, which row ${row.n} put, is not in the database any more`),
+  );
 });
 
 test('what the page makes by itself is recorded before it is made: who, what, its name, and the revision of the files', async () => {
   const api = `${daemon.url}/api/v1/rooms/${room}`;
   const eve = await enter({ name: 'Eva' });
   const told = (body, headers = eve.headers, of = api) => call(`${of}/exports`, 'POST', body, headers);
-  const { json: { revision } } = await until(() => call(`${daemon.url}/api/v1/plans/phantom/revision`), ({ status }) => status === 200);
+  const {
+    json: { revision },
+  } = await until(
+    () => call(`${daemon.url}/api/v1/plans/phantom/revision`),
+    ({ status }) => status === 200,
+  );
   const kinds = ['dvh', 'profile', 'limits', 'probes', 'methods', 'beam', 'beam-card', 'notes', 'printed-report', 'printed-record'];
   for (const what of kinds) assert.equal((await told({ what, name: `phantom-${what}.csv` })).status, 204, what);
   assert.equal((await told({ what: 'dvh', name: 'phantom-dvh.json' })).status, 204);
   assert.equal((await told({ what: 'dvh', name: `${'Ä'.repeat(99)}.c` }, {})).status, 204); // 200 bytes, of nobody in the room
-  const rows = await until(() => onDisk().filter(({ action, detail }) => action === 'export' && detail.name), (list) => list.length >= kinds.length + 2);
-  assert.deepEqual(rows.map(({ detail }) => detail), [...kinds.map((what) => ({ what, name: `phantom-${what}.csv`, plan_revision: revision })),
-    { what: 'dvh', name: 'phantom-dvh.json', plan_revision: revision }, { what: 'dvh', name: `${'Ä'.repeat(99)}.c`, plan_revision: revision }]);
-  for (const row of rows.slice(0, -1)) assert.deepEqual([row.room, row.plan, row.member, row.name, row.result], [room, 'phantom', eve.welcome.member, 'Eva', 'done']);
+  const rows = await until(
+    () => onDisk().filter(({ action, detail }) => action === 'export' && detail.name),
+    (list) => list.length >= kinds.length + 2,
+  );
+  assert.deepEqual(
+    rows.map(({ detail }) => detail),
+    [
+      ...kinds.map((what) => ({ what, name: `phantom-${what}.csv`, plan_revision: revision })),
+      { what: 'dvh', name: 'phantom-dvh.json', plan_revision: revision },
+      { what: 'dvh', name: `${'Ä'.repeat(99)}.c`, plan_revision: revision },
+    ],
+  );
+  for (const row of rows.slice(0, -1))
+    assert.deepEqual([row.room, row.plan, row.member, row.name, row.result], [room, 'phantom', eve.welcome.member, 'Eva', 'done']);
   assert.equal(rows.at(-1).member, '');
 
-  for (const [body, pointer] of [[{ name: 'a.csv' }, '/what'], [{ what: 'plan', name: 'a.csv' }, '/what'], [{ what: 7, name: 'a.csv' }, '/what'], [{ what: 'dvh' }, '/name'], [{ what: 'dvh', name: '' }, '/name'],
-    [{ what: 'dvh', name: 'Ä'.repeat(101) }, '/name'], [{ what: 'dvh', name: 'a\nb' }, '/name'], [{ what: 'dvh', name: 'a.csv', member: 'm1' }, '/member']]) {
+  for (const [body, pointer] of [
+    [{ name: 'a.csv' }, '/what'],
+    [{ what: 'plan', name: 'a.csv' }, '/what'],
+    [{ what: 7, name: 'a.csv' }, '/what'],
+    [{ what: 'dvh' }, '/name'],
+    [{ what: 'dvh', name: '' }, '/name'],
+    [{ what: 'dvh', name: 'Ä'.repeat(101) }, '/name'],
+    [{ what: 'dvh', name: 'a\nb' }, '/name'],
+    [{ what: 'dvh', name: 'a.csv', member: 'm1' }, '/member'],
+  ]) {
     const { status, json } = await told(body);
     assert.deepEqual([status, json.pointer], [422, pointer], JSON.stringify(body));
   }
@@ -186,7 +270,9 @@ test('the chain is what SHA-256 gives, and beamroomd verifies it', () => {
   let hash = '0'.repeat(64);
   for (const [i, row] of rows.entries()) {
     assert.equal(row.n, i + 1);
-    hash = createHash('sha256').update(hash + row.text).digest('hex');
+    hash = createHash('sha256')
+      .update(hash + row.text)
+      .digest('hex');
     assert.equal(row.hash, hash);
   }
   const { status, stdout } = verify(database(), '--audit-head', rows[2].hash);
@@ -196,7 +282,8 @@ test('the chain is what SHA-256 gives, and beamroomd verifies it', () => {
 });
 
 test('a row that was changed, a cut tail and a wrong hash are named', () => {
-  const rows = onDisk(), copy = join(data, 'copy.db');
+  const rows = onDisk(),
+    copy = join(data, 'copy.db');
   const copied = (sql) => {
     copyFileSync(database(), copy);
     change(copy, `DROP TRIGGER audit_update; DROP TRIGGER audit_delete; ${sql}`);
@@ -207,7 +294,10 @@ test('a row that was changed, a cut tail and a wrong hash are named', () => {
     assert.deepEqual([status, stdout], [1, '']);
     return stderr;
   };
-  assert.match(said(copied("UPDATE audit SET row = replace(row, 'Ann', 'Eve') WHERE n = 1")), /--verify-audit .*copy\.db: row 1 does not fit/);
+  assert.match(
+    said(copied("UPDATE audit SET row = replace(row, 'Ann', 'Eve') WHERE n = 1")),
+    /--verify-audit .*copy\.db: row 1 does not fit/,
+  );
   assert.match(said(copied('DELETE FROM audit WHERE n = 3')), /row 3 is missing: row 4 follows row 2/);
   const cut = copied('DELETE FROM audit WHERE n > 3');
   assert.match(said(cut), new RegExp(`rows 4 to ${rows.length} were removed at the end`));

@@ -45,20 +45,46 @@ test('the bands of a beam are the innermost regions at its points, and its lengt
   near(beam.gap_mm + beam.depth_mm, beam.length_mm, 1e-9, 'gap and depth');
   for (const { region, length_mm: length, to_target_mm: toTarget } of beam.crossed) {
     const bands = beam.bands.filter((band) => band.region === region);
-    near(length, bands.reduce((sum, { from_mm, to_mm }) => sum + to_mm - from_mm, 0), 1e-9, region);
-    near(toTarget, bands.reduce((sum, { from_mm, to_mm }) => sum + Math.max(0, Math.min(to_mm, beam.length_mm) - from_mm), 0), 1e-9, region);
+    near(
+      length,
+      bands.reduce((sum, { from_mm, to_mm }) => sum + to_mm - from_mm, 0),
+      1e-9,
+      region,
+    );
+    near(
+      toTarget,
+      bands.reduce((sum, { from_mm, to_mm }) => sum + Math.max(0, Math.min(to_mm, beam.length_mm) - from_mm), 0),
+      1e-9,
+      region,
+    );
   }
-  const rad = Math.PI / 180, { target_cm: [pa, rl, is], z_cm: z, phi_deg: phi, theta_deg: theta } = beam.sera;
+  const rad = Math.PI / 180,
+    {
+      target_cm: [pa, rl, is],
+      z_cm: z,
+      phi_deg: phi,
+      theta_deg: theta,
+    } = beam.sera;
   nearAll([10 * rl, -10 * pa, 10 * is], [5, 8, -3], 1e-9, 'target');
-  const source = [pa + z * Math.sin(phi * rad) * Math.sin(theta * rad), rl - z * Math.sin(phi * rad) * Math.cos(theta * rad), is + z * Math.cos(phi * rad)];
-  nearAll(source, [9, 15, 12], 1e-9, 'source in SERA\'s axes, cm');
-  const card = beam.card.split('\n').filter((line) => line && !line.startsWith('#')).map((line) => line.trim().split(/\s+/).map(Number));
+  const source = [
+    pa + z * Math.sin(phi * rad) * Math.sin(theta * rad),
+    rl - z * Math.sin(phi * rad) * Math.cos(theta * rad),
+    is + z * Math.cos(phi * rad),
+  ];
+  nearAll(source, [9, 15, 12], 1e-9, "source in SERA's axes, cm");
+  const card = beam.card
+    .split('\n')
+    .filter((line) => line && !line.startsWith('#'))
+    .map((line) => line.trim().split(/\s+/).map(Number));
   nearAll(card.flat(), [pa, rl, is, z, phi, theta], 2e-5, 'card');
 });
 
 test('an aperture around the whole plan holds all of every region, a narrow one a part', async () => {
-  const { json: { regions } } = await call(`${api}/plans/phantom`);
-  const wide = (await ask('beam', { aperture_mm: 2000 })).aperture, narrow = (await ask('beam', { aperture_mm: 40 })).aperture;
+  const {
+    json: { regions },
+  } = await call(`${api}/plans/phantom`);
+  const wide = (await ask('beam', { aperture_mm: 2000 })).aperture,
+    narrow = (await ask('beam', { aperture_mm: 40 })).aperture;
   assert.equal(wide.regions.length, regions.filter(({ voxels }) => voxels > 0).length);
   for (const { region, inside_cm3: inside, region_cm3: whole, share } of wide.regions) {
     near(share, 1, 0, region);
@@ -79,15 +105,22 @@ test('a draft is told beside the planned beam, which stays as it is', async () =
   nearAll(before.entry_lps_mm, planned.entry_mm, 0, 'entry');
   /* the whole beam 30 mm to the left, then turned about its target */
   const shift = ([x, y, z]) => [x + 30, y, z];
-  await call(`${api}/rooms/${room}/scene`, 'PATCH', draftOf(shift(planned.entry_mm), shift(planned.target_mm), { name: 'aside' }), { 'If-Match': '*' });
+  await call(`${api}/rooms/${room}/scene`, 'PATCH', draftOf(shift(planned.entry_mm), shift(planned.target_mm), { name: 'aside' }), {
+    'If-Match': '*',
+  });
   const aside = await ask('beam', { room });
   assert.deepEqual([aside.is_draft, aside.source, aside.name, aside.beam], [true, 'draft', 'aside', planned.id]);
   nearAll([aside.moved.entry_mm, aside.moved.target_mm, aside.moved.direction_deg], [30, 30, 0], 1e-6, 'moved');
   const { planned: kept, moved, ...rest } = before;
   assert.deepEqual(aside.planned, rest);
   const length = Math.hypot(...planned.entry_mm.map((mm, axis) => mm - planned.target_mm[axis]));
-  await call(`${api}/rooms/${room}/scene`, 'PATCH', draftOf([planned.target_mm[0] + length, planned.target_mm[1], planned.target_mm[2]], planned.target_mm), { 'If-Match': '*' });
-  near((await ask('beam', { room })).moved.direction_deg, 90, 1e-9, 'a beam along the patient\'s axis, now from the left');
+  await call(
+    `${api}/rooms/${room}/scene`,
+    'PATCH',
+    draftOf([planned.target_mm[0] + length, planned.target_mm[1], planned.target_mm[2]], planned.target_mm),
+    { 'If-Match': '*' },
+  );
+  near((await ask('beam', { room })).moved.direction_deg, 90, 1e-9, "a beam along the patient's axis, now from the left");
   assert.deepEqual(await ask('beam', { room, beam: planned.id }), before, 'by its id a beam is as planned');
 });
 
@@ -117,14 +150,20 @@ test('a beam that is placed has the gap, the point and the angles asked for', as
   assert.deepEqual(await ask('beam', { room }), draft, 'nothing was altered');
 });
 
-test('a ring that is asked about is no aperture: the plan\'s and a draft\'s own stay what they are', async () => {
+test("a ring that is asked about is no aperture: the plan's and a draft's own stay what they are", async () => {
   const said = ({ aperture_mm, aperture }) => [aperture_mm, aperture && aperture.diameter_mm, aperture && aperture.is_ring];
   assert.deepEqual(said(await ask('beam', { aperture_mm: 40 })), [planned.aperture_mm, 40, true]);
   assert.deepEqual(said(await ask('beam', { aperture_mm: planned.aperture_mm })), [planned.aperture_mm, planned.aperture_mm, false]);
   assert.deepEqual(said(await ask('beam')), [planned.aperture_mm, planned.aperture_mm, false]);
   const room = await makeRoom(draftOf([90, -150, 40], [10, 5, -20], { aperture_mm: 60 }));
   const draft = await ask('beam', { room, aperture_mm: 75 });
-  assert.deepEqual([said(draft), said(draft.planned)], [[60, 75, true], [planned.aperture_mm, 75, true]]);
+  assert.deepEqual(
+    [said(draft), said(draft.planned)],
+    [
+      [60, 75, true],
+      [planned.aperture_mm, 75, true],
+    ],
+  );
   assert.deepEqual(said(await ask('beam', { room })), [60, 60, false]);
 });
 
@@ -143,8 +182,11 @@ test('what cannot be asked or placed is refused or said', async () => {
   assert.equal(await refused('beam/place?mode=through'), '422 /point_lps_mm required');
   assert.equal(await refused('beam/place?mode=angles&phi_deg=3'), '422 /theta_deg required');
   const beside = await ask('beam', { room });
-  assert.equal(beside.skin_reason, 'The beam\'s axis meets no region.');
-  assert.deepEqual([beside.skin_lps_mm, beside.skin_along_mm, beside.gap_mm, beside.depth_mm, beside.bands, beside.crossed], [null, null, null, null, [], []]);
+  assert.equal(beside.skin_reason, "The beam's axis meets no region.");
+  assert.deepEqual(
+    [beside.skin_lps_mm, beside.skin_along_mm, beside.gap_mm, beside.depth_mm, beside.bands, beside.crossed],
+    [null, null, null, null, [], []],
+  );
   for (const query of [{ mode: 'gap', gap_mm: 5 }, { mode: 'shortest' }]) {
     const { entry_mm, target_mm, why } = await ask('beam/place', { room, ...query });
     assert.deepEqual([entry_mm, target_mm], [null, null]);
@@ -154,18 +196,44 @@ test('what cannot be asked or placed is refused or said', async () => {
 
 test('a treatment beam has its outline and gantry; its draft has the gantry of its own direction', { skip }, async () => {
   await openPlan(daemon.url, 'dicomrt-oncentra-phantom');
-  const of = 'dicomrt-oncentra-phantom', { json: { beams: [first] } } = await call(`${api}/plans/${of}`);
+  const of = 'dicomrt-oncentra-phantom',
+    {
+      json: {
+        beams: [first],
+      },
+    } = await call(`${api}/plans/${of}`);
   const beam = await ask('beam', {}, of);
-  assert.deepEqual([beam.source, beam.radiation, beam.iec], ['treatment-plan', 'PHOTON', { gantry_deg: 0, couch_deg: 0, patient_position: 'HFS' }]);
-  const [x, y] = [first.delivery.jaws_x_mm, first.delivery.jaws_y_mm], [polygon] = beam.outline.polygons_mm;
+  assert.deepEqual(
+    [beam.source, beam.radiation, beam.iec],
+    ['treatment-plan', 'PHOTON', { gantry_deg: 0, couch_deg: 0, patient_position: 'HFS' }],
+  );
+  const [x, y] = [first.delivery.jaws_x_mm, first.delivery.jaws_y_mm],
+    [polygon] = beam.outline.polygons_mm;
   assert.equal(beam.outline.kind, 'jaws');
-  assert.deepEqual(polygon.map(String).sort(), [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]].map(String).sort());
-  assert.deepEqual([beam.outline.x_lps, beam.outline.y_lps], [[1, 0, 0], [0, 0, 1]]);
-  const room = (await call(`${api}/rooms`, 'POST', { plan: of })).json.id, [tx, ty, tz] = beam.target_lps_mm;
+  assert.deepEqual(
+    polygon.map(String).sort(),
+    [
+      [x[0], y[0]],
+      [x[1], y[0]],
+      [x[1], y[1]],
+      [x[0], y[1]],
+    ]
+      .map(String)
+      .sort(),
+  );
+  assert.deepEqual(
+    [beam.outline.x_lps, beam.outline.y_lps],
+    [
+      [1, 0, 0],
+      [0, 0, 1],
+    ],
+  );
+  const room = (await call(`${api}/rooms`, 'POST', { plan: of })).json.id,
+    [tx, ty, tz] = beam.target_lps_mm;
   const turned = draftOf([tx + 1000 * Math.sin(0.5), ty - 1000 * Math.cos(0.5), tz], [tx, ty, tz]); /* from the front towards the left */
   assert.equal((await call(`${api}/rooms/${room}/scene`, 'PATCH', turned, { 'If-Match': '*' })).status, 200);
   const draft = await ask('beam', { room }, of);
-  near(draft.iec.gantry_deg, 0.5 * 180 / Math.PI, 1e-9, 'gantry');
+  near(draft.iec.gantry_deg, (0.5 * 180) / Math.PI, 1e-9, 'gantry');
   near(draft.iec.couch_deg, 0, 1e-9, 'couch');
   assert.equal(draft.outline, null);
 });

@@ -22,7 +22,9 @@ before(async () => {
   api = `${daemon.url}/api/v1`;
   await openPlan(daemon.url, 'phantom');
 });
-afterEach(() => { for (const client of clients.splice(0)) client.cut(); });
+afterEach(() => {
+  for (const client of clients.splice(0)) client.cut();
+});
 after(async () => {
   if (daemon) assert.equal(await daemon.stop(), 0, daemon.log());
   if (folder) rmSync(folder, { recursive: true, force: true });
@@ -35,14 +37,19 @@ async function enter(room) {
   await client.ready();
   return client;
 }
-const open = (client, view, kind, more = {}, follow = true) => client.send({ type: 'view.open', view, follow, document: { kind, size_px: [96, 72], ...more } });
-const still = (client, view, suits = () => true, from = 0) => client.frame((frame) => frame.view === view && frame.isStill && suits(frame), from);
+const open = (client, view, kind, more = {}, follow = true) =>
+  client.send({ type: 'view.open', view, follow, document: { kind, size_px: [96, 72], ...more } });
+const still = (client, view, suits = () => true, from = 0) =>
+  client.frame((frame) => frame.view === view && frame.isStill && suits(frame), from);
 const patch = (client, input, change) => client.send({ type: 'scene.patch', input, patch: change });
 const revisionOf = async (client, input) => (await client.message('scene', (message) => message.input === input)).revision;
 
 const planned = { entry_mm: [0, 0, 88], target_mm: [0, 0, 10] }; // core/phantom/head.c
 /** A draft that comes from an angle about the patient's axis. */
-const line = (degrees) => ({ entry_mm: [Math.round(120 * Math.sin((degrees * Math.PI) / 180)), Math.round(-120 * Math.cos((degrees * Math.PI) / 180)), 40], target_mm: [5, 10, 20] });
+const line = (degrees) => ({
+  entry_mm: [Math.round(120 * Math.sin((degrees * Math.PI) / 180)), Math.round(-120 * Math.cos((degrees * Math.PI) / 180)), 40],
+  target_mm: [5, 10, 20],
+});
 const drafted = (degrees) => ({ beam: { draft: { enabled: true, line: line(degrees) } } });
 
 /** Where a picture has a point, and how far a direction leans in it, both in halves of the picture; 0: along the line of sight. */
@@ -53,7 +60,9 @@ function looksAlong(frame, { entry_mm: entry, target_mm: target }, isThroughMidd
   return lean < 1e-4 && (!isThroughMiddle || Math.hypot(...b) < 1e-4); // the matrix has floats
 }
 
-test('followers of a beam\'s-eye view are sent one picture, and who comes later sees the same beam, eye and ring', { timeout: 120000 }, async () => {
+test("followers of a beam's-eye view are sent one picture, and who comes later sees the same beam, eye and ring", {
+  timeout: 120000,
+}, async () => {
   const room = await newRoom();
   const [presenter, first] = [await enter(room), await enter(room)];
   open(presenter, 1, 'beam', { beam: { aperture_mm: 90, along_mm: -40 } });
@@ -77,9 +86,15 @@ test('followers of a beam\'s-eye view are sent one picture, and who comes later 
   const renders = async () => Number(/^beamroom_renders_total (\d+)/m.exec((await call(`${daemon.url}/metrics`)).text)[1]);
   const [before, counts] = [await renders(), clients.map(({ frames }) => frames.length)];
   presenter.send({ type: 'view.patch', view: 1, input: 2, patch: { beam: { along_mm: -20 } } });
-  await Promise.all([[presenter, 1, 0], [first, 1, 1], [late, 7, 2]].map(([client, view, index]) => still(client, view, () => true, counts[index])));
+  await Promise.all(
+    [
+      [presenter, 1, 0],
+      [first, 1, 1],
+      [late, 7, 2],
+    ].map(([client, view, index]) => still(client, view, () => true, counts[index])),
+  );
   const sent = clients.map(({ frames }, index) => frames.length - counts[index]);
-  assert.ok(await renders() - before <= Math.max(...sent), `${await renders() - before} drawings for ${sent} pictures`);
+  assert.ok((await renders()) - before <= Math.max(...sent), `${(await renders()) - before} drawings for ${sent} pictures`);
 });
 
 test('every picture along and across a draft is of the draft of its revision, while it is dragged', { timeout: 120000 }, async () => {
@@ -112,7 +127,10 @@ test('every picture along and across a draft is of the draft of its revision, wh
         const shown = drafts.get(frame.revision) ?? planned;
         assert.ok(looksAlong(frame, shown, view === 1), `view ${view}, revision ${frame.revision}`);
       }
-      frames.reduce((before, { revision }) => { assert.ok(revision >= before, 'no older picture after a newer one'); return revision; }, 0);
+      frames.reduce((before, { revision }) => {
+        assert.ok(revision >= before, 'no older picture after a newer one');
+        return revision;
+      }, 0);
     }
   }
   // back: the planned beam again, which the draft has not changed
@@ -131,7 +149,12 @@ test('who does not present cannot draft for the room, but in views of their own'
   patch(member, 1, drafted(60));
   const { problem } = await member.message('problem', ({ to }) => to === 'scene.patch');
   assert.equal(problem.type, '/problems/not-presenter');
-  member.send({ type: 'follow', follow: false, input: 2, views: [{ view: 1, document: { kind: 'beam', size_px: [96, 72], beam: { aperture_mm: 90 }, override: drafted(60) } }] });
+  member.send({
+    type: 'follow',
+    follow: false,
+    input: 2,
+    views: [{ view: 1, document: { kind: 'beam', size_px: [96, 72], beam: { aperture_mm: 90 }, override: drafted(60) } }],
+  });
   const own = await still(member, 1, (frame) => !frame.isShared && looksAlong(frame, line(60)));
   assert.equal(own.revision, revision);
   const { json } = await call(`${api}/rooms/${room}/scene`);
@@ -139,7 +162,9 @@ test('who does not present cannot draft for the room, but in views of their own'
   assert.ok(presenter.frames.every((frame) => looksAlong(frame, planned)));
 });
 
-test('in a plan without beams views along and across one show 3-D and the axial slice, until there is a draft', { timeout: 120000 }, async () => {
+test('in a plan without beams views along and across one show 3-D and the axial slice, until there is a draft', {
+  timeout: 120000,
+}, async () => {
   await openPlan(daemon.url, 'bare');
   const presenter = await enter(await newRoom('bare'));
   ['3d', 'beam', 'axial', 'beam-slice'].forEach((kind, index) => open(presenter, index + 1, kind));

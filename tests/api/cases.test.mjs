@@ -10,8 +10,17 @@ import { bin, call, openPlan, realData, startDaemon, until } from './daemon.mjs'
 
 const source = realData && join(realData, 'cases');
 const lacks = (program, args) => spawnSync(program, args).error !== undefined;
-const skip = !source || !existsSync(source) ? 'no made cases on this machine' : lacks('python3', ['--version']) || lacks('xz', ['--version']) ? 'python3 and xz are needed to unpack' : false;
-const zips = skip ? [] : readdirSync(source).filter((name) => name.endsWith('.zip')).map((name) => name.slice(0, -4));
+const skip =
+  !source || !existsSync(source)
+    ? 'no made cases on this machine'
+    : lacks('python3', ['--version']) || lacks('xz', ['--version'])
+      ? 'python3 and xz are needed to unpack'
+      : false;
+const zips = skip
+  ? []
+  : readdirSync(source)
+      .filter((name) => name.endsWith('.zip'))
+      .map((name) => name.slice(0, -4));
 const unpackZips = `import sys, zipfile, os
 for name in sys.argv[3:]:
     zipfile.ZipFile(os.path.join(sys.argv[1], name + ".zip")).extractall(os.path.join(sys.argv[2], name))`;
@@ -34,17 +43,37 @@ before(async () => {
   daemon = await startDaemon({ plans: [root] });
   api = `${daemon.url}/api/v1`;
 });
-after(async () => { await daemon?.stop(); if (root) rmSync(root, { recursive: true, force: true }); });
+after(async () => {
+  await daemon?.stop();
+  if (root) rmSync(root, { recursive: true, force: true });
+});
 
 class Case {
-  constructor(name, plan) { this.name = name; this.plan = plan; }
+  constructor(name, plan) {
+    this.name = name;
+    this.plan = plan;
+  }
   /** Sentences of the report, with a code or about a file. */
-  said(code, where) { return this.plan.report.lines.filter((line) => line.code === code && (where === undefined || line.where === where)).map(({ sentence }) => sentence); }
-  about(where) { return this.plan.report.lines.filter((line) => line.where === where); }
-  region(name) { return this.plan.regions.find((region) => region.name === name); }
-  dose(id) { return this.plan.doses.find((dose) => dose.id === id); }
-  fit(thing, other) { return this.plan.fits.find((fit) => fit.thing === thing && fit.with === other)?.relation; }
-  names(kind) { return this.plan[kind].map(({ name }) => name); }
+  said(code, where) {
+    return this.plan.report.lines
+      .filter((line) => line.code === code && (where === undefined || line.where === where))
+      .map(({ sentence }) => sentence);
+  }
+  about(where) {
+    return this.plan.report.lines.filter((line) => line.where === where);
+  }
+  region(name) {
+    return this.plan.regions.find((region) => region.name === name);
+  }
+  dose(id) {
+    return this.plan.doses.find((dose) => dose.id === id);
+  }
+  fit(thing, other) {
+    return this.plan.fits.find((fit) => fit.thing === thing && fit.with === other)?.relation;
+  }
+  names(kind) {
+    return this.plan[kind].map(({ name }) => name);
+  }
   /** A room with a scene. @returns asks a question about it */
   async room(scene) {
     const room = (await call(`${api}/rooms`, 'POST', { plan: this.name })).json.id;
@@ -74,7 +103,11 @@ function given(name, sentence, check) {
 }
 
 const near = (value, expected, by, what = '') => assert.ok(Math.abs(value - expected) <= by, `${what} ${value}, not ${expected}`);
-const shares = (dose) => { const highs = dose.components.map(({ high }) => high), all = highs.reduce((sum, high) => sum + high, 0); return Object.fromEntries(dose.components.map(({ quantity }, i) => [quantity, Math.round((10 * highs[i]) / all)])); };
+const shares = (dose) => {
+  const highs = dose.components.map(({ high }) => high),
+    all = highs.reduce((sum, high) => sum + high, 0);
+  return Object.fromEntries(dose.components.map(({ quantity }, i) => [quantity, Math.round((10 * highs[i]) / all)]));
+};
 const fourShares = { boron: 6, nitrogen: 1, fast: 1, gamma: 2 };
 
 given('two-patients', 'two patients are named, and the dose of one is not used with the CT of the other', async (made) => {
@@ -98,13 +131,23 @@ given('ct-mr-other-frame', 'the dose in the frame of the CT differs from the MR,
 });
 
 given('seg-sparse', 'two lesions far apart are two regions, the CT opens, and nothing is called empty', (made) => {
-  assert.deepEqual(made.plan.images.map(({ grid }) => grid.size[2]), [200]);
-  assert.deepEqual(made.plan.regions.map(({ volume_cm3: volume }) => volume), [0.288, 0.288]);
+  assert.deepEqual(
+    made.plan.images.map(({ grid }) => grid.size[2]),
+    [200],
+  );
+  assert.deepEqual(
+    made.plan.regions.map(({ volume_cm3: volume }) => volume),
+    [0.288, 0.288],
+  );
   near(Math.abs(made.plan.regions[0].center_mm[2] - made.plan.regions[1].center_mm[2]), 168 + 4, 8, 'distance'); // mm, between 3 and 3 frames
   assert.deepEqual(made.said('region.none'), []);
 });
 
-for (const [name, words] of [['seg-labelmap', /label map segmentation/], ['seg-labelmap-rle', /label map segmentation/], ['seg-deflated-frame', /deflated image frames, 1\.2\.840\.10008\.1\.2\.8\.1/]])
+for (const [name, words] of [
+  ['seg-labelmap', /label map segmentation/],
+  ['seg-labelmap-rle', /label map segmentation/],
+  ['seg-deflated-frame', /deflated image frames, 1\.2\.840\.10008\.1\.2\.8\.1/],
+])
   given(name, 'what is not read yet is named and hides nothing else', (made) => {
     assert.deepEqual([made.plan.images.length, made.plan.regions.length], [1, 0]);
     assert.match(made.about('seg.dcm')[0].sentence, words);
@@ -124,21 +167,35 @@ for (const name of ['openpint-names', 'dose-words-nifti'])
     assert.match(made.said('dose.components')[0], /put together by the names of 4 files/);
   });
 
-for (const [name, file] of [['label-float64', 'segmentation.nii.gz'], ['label-float-nrrd', 'Segmentation-label.nrrd']])
+for (const [name, file] of [
+  ['label-float64', 'segmentation.nii.gz'],
+  ['label-float-nrrd', 'Segmentation-label.nrrd'],
+])
   given(name, 'whole numbers stored as floats are labels', (made) => {
-    assert.deepEqual(made.plan.regions.map(({ voxels }) => voxels), [288, 216]);
-    assert.deepEqual(made.plan.images.map(({ id }) => id), ['ct']);
+    assert.deepEqual(
+      made.plan.regions.map(({ voxels }) => voxels),
+      [288, 216],
+    );
+    assert.deepEqual(
+      made.plan.images.map(({ id }) => id),
+      ['ct'],
+    );
     assert.deepEqual(made.said('file.read', file), ['Read as regions.']);
   });
 
 given('one-mask-cut', 'a mask that is cut short is named, and the CT opens', (made) => {
-  assert.deepEqual(made.plan.images.map(({ grid }) => grid.size[2]), [30]);
+  assert.deepEqual(
+    made.plan.images.map(({ grid }) => grid.size[2]),
+    [30],
+  );
   const [line] = made.about('gtv_mask.nii.gz');
   assert.equal(line.severity, 'error');
   assert.match(line.sentence, /gtv_mask\.nii\.gz: the gzip stream is cut short/);
 });
 
-given('sform-qform-sides', 'left on opposite sides is said', (made) => assert.match(made.said('geometry.forms-disagree')[0], /to the patient's right by sform, to the left by qform/));
+given('sform-qform-sides', 'left on opposite sides is said', (made) =>
+  assert.match(made.said('geometry.forms-disagree')[0], /to the patient's right by sform, to the left by qform/),
+);
 
 given('mr-padding', 'the window comes from the pixels that were measured', (made) => {
   const { low, high, window } = made.plan.images[0];
@@ -147,17 +204,33 @@ given('mr-padding', 'the window comes from the pixels that were measured', (made
   assert.match(made.said('image.padding')[0], /720 of 4800 pixels/);
 });
 
-given('japanese-ir13-ir87', 'names in two sets of characters', (made) => assert.deepEqual(made.names('regions'), ['ｼｭﾖｳ 腫瘍', '腫瘍 GTV']));
+given('japanese-ir13-ir87', 'names in two sets of characters', (made) =>
+  assert.deepEqual(made.names('regions'), ['ｼｭﾖｳ 腫瘍', '腫瘍 GTV']),
+);
 
 given('unknown-files-beside', 'each file that is not read is named', (made) => {
   assert.equal(made.plan.images.length, 1);
-  for (const file of ['meshtal', 'deposit.out', 'dose.vti', 'brain.stl', 'case.mat', 'DoseAtPhantom.csv', 'report.pdf', 'thumbs.db', 'plan.xlsx'])
+  for (const file of [
+    'meshtal',
+    'deposit.out',
+    'dose.vti',
+    'brain.stl',
+    'case.mat',
+    'DoseAtPhantom.csv',
+    'report.pdf',
+    'thumbs.db',
+    'plan.xlsx',
+  ])
     assert.match(made.said('file.not-read', file)[0] ?? '', /^Not read: ./, file);
 });
 
-given('masked-image', 'an image called masked stays one', (made) => assert.deepEqual([made.names('images').length, made.plan.regions.length], [2, 0]));
+given('masked-image', 'an image called masked stays one', (made) =>
+  assert.deepEqual([made.names('images').length, made.plan.regions.length], [2, 0]),
+);
 
-given('lowdose-ct', 'a CT of low dose is no dose', (made) => assert.deepEqual([made.plan.images.map(({ id }) => id), made.plan.doses], [['high-dose-ct', 'lowdose-ct'], []]));
+given('lowdose-ct', 'a CT of low dose is no dose', (made) =>
+  assert.deepEqual([made.plan.images.map(({ id }) => id), made.plan.doses], [['high-dose-ct', 'lowdose-ct'], []]),
+);
 
 given('nnunet-prediction', 'the prediction is regions, and the image comes first', (made) => {
   assert.deepEqual([made.plan.images.map(({ id }) => id), made.plan.regions.map(({ voxels }) => voxels)], [['brats-001-0000'], [288, 216]]);
@@ -173,19 +246,40 @@ given('dose-grid-smaller', 'the volume without a dose stands with the histogram,
 test('htj2k: alone it is refused by its name; beside images it is named and hides none', { skip }, async () => {
   const words = /CT1_JPH\.dcm: .*High-Throughput JPEG 2000 lossless, RPCL \(1\.2\.840\.10008\.1\.2\.4\.202\)/;
   const opened = await call(`${api}/plans/htj2k/open`, 'POST'); // refused at once where the list of plans has already seen it
-  const problem = opened.status === 202 ? (await until(async () => (await call(`${api}/jobs/${opened.json.id}`)).json, ({ state }) => state !== 'running')).problem : opened.json;
+  const problem =
+    opened.status === 202
+      ? (
+          await until(
+            async () => (await call(`${api}/jobs/${opened.json.id}`)).json,
+            ({ state }) => state !== 'running',
+          )
+        ).problem
+      : opened.json;
   assert.match(problem?.detail ?? opened.text, words);
 });
 
 given('masked-image-htj2k', 'an encoding that is not read hides no image', (made) => {
   assert.equal(made.plan.images.length, 2);
-  assert.match(made.about('CT1_JPH.dcm').map(({ sentence }) => sentence).join(' '), /High-Throughput JPEG 2000/);
+  assert.match(
+    made
+      .about('CT1_JPH.dcm')
+      .map(({ sentence }) => sentence)
+      .join(' '),
+    /High-Throughput JPEG 2000/,
+  );
 });
 
 test('deflate64: the refusal says so, and not "damaged"', { skip }, async () => {
-  const sent = await fetch(`${api}/plans`, { method: 'POST', headers: { 'Content-Type': 'application/zip' }, body: readFileSync(join(source, 'deflate64.zip')) });
+  const sent = await fetch(`${api}/plans`, {
+    method: 'POST',
+    headers: { 'Content-Type': 'application/zip' },
+    body: readFileSync(join(source, 'deflate64.zip')),
+  });
   const { id } = await sent.json();
-  const job = await until(async () => (await call(`${api}/jobs/${id}`)).json, ({ state }) => state !== 'running' && state !== 'queued');
+  const job = await until(
+    async () => (await call(`${api}/jobs/${id}`)).json,
+    ({ state }) => state !== 'running' && state !== 'queued',
+  );
   assert.equal(job.state, 'failed');
   assert.match(job.problem.detail, /Deflate64/);
   assert.doesNotMatch(job.problem.detail, /damaged/);
@@ -199,28 +293,46 @@ given('f01-two-doses-one-other-frame', 'a dose of another frame that nobody acce
   assert.match(part.reason, /another frame of reference/);
 });
 
-given('d76-dose-mr-and-ct', 'the dose in the frame of the MR does not fit the CT', (made) => assert.deepEqual([made.fit('dose:dose', 'image:ct'), made.fit('dose:dose', 'image:mr')], ['frame', 'same']));
+given('d76-dose-mr-and-ct', 'the dose in the frame of the MR does not fit the CT', (made) =>
+  assert.deepEqual([made.fit('dose:dose', 'image:ct'), made.fit('dose:dose', 'image:mr')], ['frame', 'same']),
+);
 
 given('u01-gy-and-cgy', 'Gy and cGy are brought to one unit', async (made) => {
   const compared = await (await made.room({ dose: { id: 'a', compare: { id: 'b' } } }))('dvh');
-  assert.deepEqual(compared.curves.map(({ dose, mean, unit }) => [dose, mean, unit]), [['a', 30, 'Gy'], ['b', 15, 'Gy']]);
+  assert.deepEqual(
+    compared.curves.map(({ dose, mean, unit }) => [dose, mean, unit]),
+    [
+      ['a', 30, 'Gy'],
+      ['b', 15, 'Gy'],
+    ],
+  );
   assert.equal((await (await made.room({ dose: { id: 'a', sum: { b: { factor: 1 } } } }))('dvh')).curves[0].mean, 45);
   assert.equal((await (await made.room({ dose: { id: 'a', compare: { id: 'b', mode: 'difference' } } }))('gamma')).difference.mean, -15);
 });
 
-given('u04-matrix', 'per plan, per fraction, per minute and no unit: added and compared where that means something, else refused with the reason', async (made) => {
-  for (const [id, reason] of [['b', null], ['c', /per fraction, that one per plan/], ['d', /does not say its unit/], ['e', /per minute, that one per plan/]]) {
-    const ask = await made.room({ dose: { id: 'a', sum: { [id]: { factor: 1 } }, compare: { id } } });
-    const sum = await ask('dvh'), gamma = await ask('gamma');
-    const part = sum.parts.find((each) => each.id === id);
-    near(sum.curves[0].mean, 7.740322757 * (id === 'b' ? 1.01 : 1), 1e-5, id); // the same numbers in cGy are a hundredth; the mean is numpy's
-    assert.equal(part.used, reason === null);
-    assert.equal(sum.curves.length, reason === null ? 2 : 1, id);
-    if (reason) assert.match(part.reason, reason);
-    if (reason) assert.match(gamma.comparison_reason, reason);
-    assert.equal(gamma.difference.mean === null, reason !== null, id);
-  }
-});
+given(
+  'u04-matrix',
+  'per plan, per fraction, per minute and no unit: added and compared where that means something, else refused with the reason',
+  async (made) => {
+    for (const [id, reason] of [
+      ['b', null],
+      ['c', /per fraction, that one per plan/],
+      ['d', /does not say its unit/],
+      ['e', /per minute, that one per plan/],
+    ]) {
+      const ask = await made.room({ dose: { id: 'a', sum: { [id]: { factor: 1 } }, compare: { id } } });
+      const sum = await ask('dvh'),
+        gamma = await ask('gamma');
+      const part = sum.parts.find((each) => each.id === id);
+      near(sum.curves[0].mean, 7.740322757 * (id === 'b' ? 1.01 : 1), 1e-5, id); // the same numbers in cGy are a hundredth; the mean is numpy's
+      assert.equal(part.used, reason === null);
+      assert.equal(sum.curves.length, reason === null ? 2 : 1, id);
+      if (reason) assert.match(part.reason, reason);
+      if (reason) assert.match(gamma.comparison_reason, reason);
+      assert.equal(gamma.difference.mean === null, reason !== null, id);
+    }
+  },
+);
 
 given('s03-duplicate-contours', 'contours given twice count once', (made) => {
   assert.equal(made.plan.regions.length, 6);
@@ -243,12 +355,21 @@ given('c33-two-patients-two-cts', 'both patients are named, and their CTs are no
 });
 
 given('d44-two-plans', 'doses and beams have the name of their plan', (made) => {
-  assert.deepEqual([made.names('doses'), made.names('beams')], [['planA, Dose', 'planB, Dose'], ['planA, B1', 'planB, B1']]);
+  assert.deepEqual(
+    [made.names('doses'), made.names('beams')],
+    [
+      ['planA, Dose', 'planB, Dose'],
+      ['planA, B1', 'planB, B1'],
+    ],
+  );
   assert.equal(made.fit('beam:planb-b1', 'dose:plana-dose'), 'plan');
 });
 
 given('d45-same-uid-other-values', 'one UID with other values is no copy', (made) => {
-  assert.deepEqual(made.plan.doses.map(({ components: [{ high }] }) => Math.round(high * 1000)), [36725, 18362]);
+  assert.deepEqual(
+    made.plan.doses.map(({ components: [{ high }] }) => Math.round(high * 1000)),
+    [36725, 18362],
+  );
   assert.equal(made.said('dicom.same-uid').length, 1);
 });
 
@@ -257,10 +378,18 @@ given('d46-dose-of-absent-plan', 'a plan that is not here is said', (made) => {
   assert.equal(made.fit('dose:dose', 'image:ct'), 'absent');
 });
 
-given('d41-plan-and-beams', 'the dose of the plan is first', (made) => assert.deepEqual(made.plan.doses.map(({ per }) => per), ['plan', 'beam', 'beam']));
+given('d41-plan-and-beams', 'the dose of the plan is first', (made) =>
+  assert.deepEqual(
+    made.plan.doses.map(({ per }) => per),
+    ['plan', 'beam', 'beam'],
+  ),
+);
 
 given('d50-photon-plan-and-neutron-boost', 'words alone join nothing', (made) => {
-  assert.deepEqual(made.plan.doses.map(({ components }) => components.map(({ quantity }) => quantity)), [['total'], ['total']]);
+  assert.deepEqual(
+    made.plan.doses.map(({ components }) => components.map(({ quantity }) => quantity)),
+    [['total'], ['total']],
+  );
   assert.match(made.said('dose.words-not-joined')[0], /each is a dose of its own/);
 });
 
@@ -269,7 +398,9 @@ given('c26-padding-value', 'the padding value is no HU', (made) => {
   assert.match(made.said('image.padding')[0], /stored as -2000/);
 });
 
-given('d71-more-pixels-than-frames', 'surplus frames are said', (made) => assert.match(made.said('dicom.surplus-pixels', 'dose.dcm')[0], /\(4 frames more\)/));
+given('d71-more-pixels-than-frames', 'surplus frames are said', (made) =>
+  assert.match(made.said('dicom.surplus-pixels', 'dose.dcm')[0], /\(4 frames more\)/),
+);
 
 given('g04-identical', 'a difference has no artefact at the border', async (made) => {
   const { difference } = await (await made.room({ dose: { id: 'a', compare: { id: 'b', mode: 'difference' } } }))('gamma');
@@ -278,15 +409,36 @@ given('g04-identical', 'a difference has no artefact at the border', async (made
 });
 
 given('d79-sum-of-unequal-grids', 'a sum does not depend on its order', async (made) => {
-  const [one, other] = await Promise.all([['big', 'small'], ['small', 'big']].map(async ([id, added]) => {
-    const ask = await made.room({ dose: { id, sum: { [added]: { factor: 1 } } } });
-    const { curves: [{ missing_cm3: missing, least, counts_cm3: counts }] } = await ask('dvh');
-    return { missing, least, counts, at: await Promise.all([[0, 0, 0], [40, 40, 0], [3, 2, 1]].map(async ([x, y, z]) => (await ask(`dose/probe?x=${x}&y=${y}&z=${z}`)).value)) };
-  }));
+  const [one, other] = await Promise.all(
+    [
+      ['big', 'small'],
+      ['small', 'big'],
+    ].map(async ([id, added]) => {
+      const ask = await made.room({ dose: { id, sum: { [added]: { factor: 1 } } } });
+      const {
+        curves: [{ missing_cm3: missing, least, counts_cm3: counts }],
+      } = await ask('dvh');
+      return {
+        missing,
+        least,
+        counts,
+        at: await Promise.all(
+          [
+            [0, 0, 0],
+            [40, 40, 0],
+            [3, 2, 1],
+          ].map(async ([x, y, z]) => (await ask(`dose/probe?x=${x}&y=${y}&z=${z}`)).value),
+        ),
+      };
+    }),
+  );
   assert.deepEqual(one, other);
   near(one.at[0], 40, 1e-4); // 20 and 20 Gy at the origin
 });
 
 test('every case of the shared data has its test', { skip }, () => {
-  assert.deepEqual(readdirSync(root).filter((name) => !['htj2k', ...tested].includes(name)), []);
+  assert.deepEqual(
+    readdirSync(root).filter((name) => !['htj2k', ...tested].includes(name)),
+    [],
+  );
 });

@@ -46,7 +46,10 @@ describe('beamroom', () => {
       [['export', plan, 'brain'], /-o OUT\.stl/],
       [['export', plan, 'brain', '-o', 'x.obj'], /does not end in \.stl, \.ply or \.glb/],
       [['export', plan, 'brain', '-o', 'x.stl', '--normals', 'up'], /--normals is "up", expected vertex, face/],
-      [['export', plan, 'brain', '-o', 'x.stl', '--algorithm', 'magic'], /--algorithm is "magic", expected marching-cubes, eight-cell, smooth/],
+      [
+        ['export', plan, 'brain', '-o', 'x.stl', '--algorithm', 'magic'],
+        /--algorithm is "magic", expected marching-cubes, eight-cell, smooth/,
+      ],
       [['info'], /one folder is needed, 0 are given/],
       [['info', plan, '--xml'], /'--xml' is not an option/],
       [['phantom', 'a', 'b'], /one folder is needed, 2 are given/],
@@ -101,7 +104,7 @@ describe('beamroom', () => {
 });
 
 // The phantom's figures, calculated by hand: ellipsoids of Goorley, Kiger and Zamenhof 2002; voxels of 2.667 x 2.667 x 3.2 mm.
-const ellipsoid = (a, b, c) => (4 / 3) * Math.PI * a * b * c / 1000; // cm3 from mm
+const ellipsoid = (a, b, c) => ((4 / 3) * Math.PI * a * b * c) / 1000; // cm3 from mm
 const brain = ellipsoid(60, 90, 65) - ellipsoid(20, 22, 18);
 
 describe('beamroom info', () => {
@@ -132,7 +135,19 @@ describe('beamroom info', () => {
     const made = beamroom('convert', plan, out);
     assert.equal(made.status, 0, made.stderr);
     const [before, after] = [plan, out].map((dir) => parseStrict(beamroom('info', dir, '--json').stdout));
-    for (const part of ['name', 'note', 'is_phantom', 'images', 'regions', 'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'preferences'])
+    for (const part of [
+      'name',
+      'note',
+      'is_phantom',
+      'images',
+      'regions',
+      'hierarchy',
+      'doses',
+      'beams',
+      'tracks',
+      'curves',
+      'preferences',
+    ])
       assert.deepEqual(after[part], before[part], part);
     const again = beamroom('convert', plan, out);
     assert.equal(again.status, 1);
@@ -143,8 +158,29 @@ describe('beamroom info', () => {
     const { status, stdout, stderr } = beamroom('info', plan, '--json');
     assert.equal(status, 0, stderr);
     const info = parseStrict(stdout);
-    assert.deepEqual(Object.keys(info), ['id', 'name', 'note', 'is_phantom', 'load_ms', 'bounds_mm', 'home', 'images', 'regions',
-      'hierarchy', 'doses', 'beams', 'tracks', 'curves', 'fits', 'preferences', 'report', 'patients', 'treatment_plans', 'shown_patient', 'shown_plan']);
+    assert.deepEqual(Object.keys(info), [
+      'id',
+      'name',
+      'note',
+      'is_phantom',
+      'load_ms',
+      'bounds_mm',
+      'home',
+      'images',
+      'regions',
+      'hierarchy',
+      'doses',
+      'beams',
+      'tracks',
+      'curves',
+      'fits',
+      'preferences',
+      'report',
+      'patients',
+      'treatment_plans',
+      'shown_patient',
+      'shown_plan',
+    ]);
     assert.equal(info.id, 'head-one');
     assert.equal(info.is_phantom, true);
     const [image] = info.images;
@@ -154,8 +190,16 @@ describe('beamroom info', () => {
     assert.equal(image.low, -1000);
     const near = (value, expected, tolerance) => assert.ok(Math.abs(value - expected) <= tolerance, `${value}, expected ${expected}`);
     image.grid.bounds_mm.low.forEach((value, axis) => near(value, [-128, -128, -102.4][axis], 1e-3));
-    assert.deepEqual(info.regions.map(({ id, parent }) => [id, parent]),
-      [['scalp', null], ['cranium', 'scalp'], ['brain', 'cranium'], ['target', 'brain'], ['tumour', 'target']]);
+    assert.deepEqual(
+      info.regions.map(({ id, parent }) => [id, parent]),
+      [
+        ['scalp', null],
+        ['cranium', 'scalp'],
+        ['brain', 'cranium'],
+        ['target', 'brain'],
+        ['tumour', 'target'],
+      ],
+    );
     assert.equal(info.hierarchy, 'file');
     assert.deepEqual(Object.keys(info.home), ['3d', 'axial', 'coronal', 'sagittal', 'oblique', 'beam', 'beam-slice']);
     const { position_mm: eye, target_mm: target, up } = info.home['3d'];
@@ -167,24 +211,57 @@ describe('beamroom info', () => {
     assert.equal(region.brain.color, '#d696a0');
     region.tumour.center_mm.forEach((value, axis) => near(value, [24, 24, 34][axis], 0.5)); // left, behind, above
     assert.equal(region.tumour.tissue.boron_ratio, null);
-    assert.deepEqual(info.doses.map(({ id, unit, per, masked }) => [id, unit, per, masked]),
-      [['goorley', 'Gy', 'minute at 1e10 n/cm2/s', true]]);
+    assert.deepEqual(
+      info.doses.map(({ id, unit, per, masked }) => [id, unit, per, masked]),
+      [['goorley', 'Gy', 'minute at 1e10 n/cm2/s', true]],
+    );
     const high = Object.fromEntries(info.doses[0].components.map((entry) => [entry.quantity, entry.high]));
     near(high.gamma, 0.971, 1e-3); // the largest value of the table
     near(high.boron, 0.1016, 1e-6);
-    assert.deepEqual(info.doses[0].components.map(({ per_ppm: perPpm }) => perPpm), [true, false, false, false]);
-    assert.deepEqual(info.beams, [{ id: 'beam-1', entry_mm: [0, 0, 88], target_mm: [0, 0, 10], aperture_mm: 100, name: '', delivery: null, patient: null, plan: null, is_plan_absent: false, frame: null, study: null }]);
-    assert.equal(info.tracks.segments, Object.values(info.tracks.classes).reduce((sum, n) => sum + n, 0));
+    assert.deepEqual(
+      info.doses[0].components.map(({ per_ppm: perPpm }) => perPpm),
+      [true, false, false, false],
+    );
+    assert.deepEqual(info.beams, [
+      {
+        id: 'beam-1',
+        entry_mm: [0, 0, 88],
+        target_mm: [0, 0, 10],
+        aperture_mm: 100,
+        name: '',
+        delivery: null,
+        patient: null,
+        plan: null,
+        is_plan_absent: false,
+        frame: null,
+        study: null,
+      },
+    ]);
+    assert.equal(
+      info.tracks.segments,
+      Object.values(info.tracks.classes).reduce((sum, n) => sum + n, 0),
+    );
     assert.equal(Object.values(info.tracks.classes).filter((n) => n > 0).length, 8);
     assert.equal(info.report.dropped, 0);
-    assert.deepEqual(info.report.lines.filter(({ code }) => !code.startsWith('file.')), []);
-    assert.deepEqual(info.report.lines.filter(({ code }) => code === 'file.not-read').map(({ where }) => where), ['README.txt'], 'every other file is read');
+    assert.deepEqual(
+      info.report.lines.filter(({ code }) => !code.startsWith('file.')),
+      [],
+    );
+    assert.deepEqual(
+      info.report.lines.filter(({ code }) => code === 'file.not-read').map(({ where }) => where),
+      ['README.txt'],
+      'every other file is read',
+    );
   });
 });
 
 describe('beamroom export', () => {
   it('writes the surface of a region as each format, twice the same', () => {
-    for (const [ending, magic] of [['stl', 'Beamroom mm LPS tumour'], ['PLY', 'ply\nformat binary_little_endian 1.0\n'], ['glb', 'glTF']]) {
+    for (const [ending, magic] of [
+      ['stl', 'Beamroom mm LPS tumour'],
+      ['PLY', 'ply\nformat binary_little_endian 1.0\n'],
+      ['glb', 'glTF'],
+    ]) {
       const out = join(folder, `tumour.${ending}`);
       const { status, stdout, stderr } = beamroom('export', plan, 'tumour', '-o', out);
       assert.equal(status, 0, stderr);
@@ -200,7 +277,9 @@ describe('beamroom export', () => {
 
   it('writes the surface by the algorithm asked for, and says which', () => {
     const out = join(folder, 'cells.ply');
-    const cubes = Number(/: (\d+) triangles/.exec(beamroom('export', plan, 'tumour', '-o', out, '--algorithm', 'marching-cubes').stdout)[1]);
+    const cubes = Number(
+      /: (\d+) triangles/.exec(beamroom('export', plan, 'tumour', '-o', out, '--algorithm', 'marching-cubes').stdout)[1],
+    );
     const told = /: (\d+) triangles/.exec(beamroom('export', plan, 'tumour', '-o', out, '--algorithm', 'eight-cell').stdout);
     assert.ok(told[1] > 100 && told[1] < cubes * 0.85, `${told[1]} of ${cubes}`);
     assert.match(readFileSync(out).subarray(0, 700).toString('latin1'), /eight-cell/);
@@ -312,10 +391,21 @@ describe('beamroom render', () => {
     const eye = record('--beam', '--ring', '100', '--along', '-20', '--tracks=neutron,lost');
     assert.deepEqual([eye.view.kind, eye.view.beam.aperture_mm, eye.view.beam.along_mm], ['beam', 100, -20]);
     assert.deepEqual([eye.scene.beam.id, eye.scene.beam.looks['beam-1'].visible, eye.scene.tracks.visible], ['beam-1', true, true]);
-    assert.deepEqual(Object.entries(eye.scene.tracks.classes).filter(([, isShown]) => isShown).map(([name]) => name),
-      ['neutron_high', 'neutron_medium', 'neutron_low', 'lost']);
+    assert.deepEqual(
+      Object.entries(eye.scene.tracks.classes)
+        .filter(([, isShown]) => isShown)
+        .map(([name]) => name),
+      ['neutron_high', 'neutron_medium', 'neutron_low', 'lost'],
+    );
     const shown = record('--show', 'scalp=0.25,brain').scene.regions;
-    assert.deepEqual(['scalp', 'cranium', 'brain'].map((id) => [shown[id].visible, shown[id].opacity]), [[true, 0.25], [false, shown.cranium.opacity], [true, 1]]);
+    assert.deepEqual(
+      ['scalp', 'cranium', 'brain'].map((id) => [shown[id].visible, shown[id].opacity]),
+      [
+        [true, 0.25],
+        [false, shown.cranium.opacity],
+        [true, 1],
+      ],
+    );
     const slice = record('--kind', 'beam-slice', '--beam-slice', '30', '--clip', 'beam=20', '--tracks');
     assert.equal(slice.view.kind, 'beam-slice');
     assert.deepEqual(slice.scene.beam.slice, { visible: true, along_mm: 30 });
@@ -333,7 +423,14 @@ describe('beamroom render', () => {
     assert.ok(beams.length === 1 && tracks);
     writeFileSync(join(bare, 'plan.json'), JSON.stringify(rest));
     const refused = (...options) => beamroom('render', bare, '-o', join(folder, 'none.png'), '--size', '64x48', ...options);
-    for (const [option, ...value] of [['--beam'], ['--kind', 'beam'], ['--beam-slice', '3'], ['--clip', 'beam=3'], ['--ring', '30'], ['--along', '0']]) {
+    for (const [option, ...value] of [
+      ['--beam'],
+      ['--kind', 'beam'],
+      ['--beam-slice', '3'],
+      ['--clip', 'beam=3'],
+      ['--ring', '30'],
+      ['--along', '0'],
+    ]) {
       const { status, stderr } = refused(option, ...value);
       assert.equal(status, 1);
       assert.match(stderr, new RegExp(`${option}.*: the plan has no beams; --draft ENTRY:TARGET draws one`));
@@ -360,8 +457,11 @@ describe('beamroom render', () => {
 describe('beamroomd', () => {
   it('refuses a port that is none', () => {
     for (const port of ['65536', '99999', '-1', 'x', '']) {
-      const { status, stderr } = spawnSync(join(dirname(bin), 'beamroomd'), ['--listen', `127.0.0.1:${port}`, '--data', join(folder, 'state'), '--web', web],
-        { encoding: 'utf8', timeout: 60000 });
+      const { status, stderr } = spawnSync(
+        join(dirname(bin), 'beamroomd'),
+        ['--listen', `127.0.0.1:${port}`, '--data', join(folder, 'state'), '--web', web],
+        { encoding: 'utf8', timeout: 60000 },
+      );
       assert.equal(status, 1, `${port}: ${stderr}`);
       assert.match(stderr, /--listen 127\.0\.0\.1:/);
     }

@@ -12,7 +12,9 @@ import { Client } from './ws_client.mjs';
 
 describe('WebSockets of one address', () => {
   let daemon;
-  before(async () => { daemon = await startWithPlan(); });
+  before(async () => {
+    daemon = await startWithPlan();
+  });
   after(() => daemon?.stop());
 
   test('stop at 200; another address gets one, and those that end count no longer', async () => {
@@ -39,7 +41,9 @@ describe('WebSockets of one address', () => {
 
 describe('a later request of a connection', () => {
   let daemon;
-  before(async () => { daemon = await startDaemon({ args: ['--stub'] }); });
+  before(async () => {
+    daemon = await startDaemon({ args: ['--stub'] });
+  });
   after(() => daemon?.stop());
   const hidden = `GET /api/v1/plans HTTP/1.1\r\n${HOST}\r\n`;
   const post = (lines, body) => `POST /api/v1/rooms HTTP/1.1\r\n${HOST}Content-Type: application/json\r\n${lines}\r\n${body}`;
@@ -72,7 +76,13 @@ describe('a later request of a connection', () => {
     });
 
   test('that is as it should be is answered, a hundred of them sent at once in order, also with bodies', async () => {
-    const requests = Array.from({ length: 100 }, (_, i) => (i % 3 === 0 ? FIRST : i % 3 === 1 ? post('Content-Length: 2\r\n', '{}') : post('Transfer-Encoding: chunked\r\n', '1\r\n{\r\n1\r\n}\r\n0\r\n\r\n')));
+    const requests = Array.from({ length: 100 }, (_, i) =>
+      i % 3 === 0
+        ? FIRST
+        : i % 3 === 1
+          ? post('Content-Length: 2\r\n', '{}')
+          : post('Transfer-Encoding: chunked\r\n', '1\r\n{\r\n1\r\n}\r\n0\r\n\r\n'),
+    );
     const text = await exchange(daemon.url, requests.join('') + `GET /nothing HTTP/1.1\r\n${HOST}Connection: close\r\n\r\n`, { ms: 60000 });
     assert.deepEqual(statuses(text), [...requests.map((_, i) => (i % 3 === 0 ? 200 : 422)), 404]);
   });
@@ -97,15 +107,23 @@ describe('a later request of a connection', () => {
 
 describe('behind a proxy', () => {
   let daemon;
-  before(async () => { daemon = await startDaemon({ args: ['--stub', '--trusted-proxy', '127.0.3.0/24'] }); });
+  before(async () => {
+    daemon = await startDaemon({ args: ['--stub', '--trusted-proxy', '127.0.3.0/24'] });
+  });
   after(() => daemon?.stop());
-  const ask = (forwarded, from) => open(daemon.url, `GET /healthz HTTP/1.1\r\n${HOST}X-Forwarded-For: ${forwarded}\r\n\r\n`, { from, ms: 60000 });
+  const ask = (forwarded, from) =>
+    open(daemon.url, `GET /healthz HTTP/1.1\r\n${HOST}X-Forwarded-For: ${forwarded}\r\n\r\n`, { from, ms: 60000 });
   /** Number of 220 simultaneous connections that were served. Connections of an earlier test may still be closing. */
-  const served = (forwarded, from) => until(async () => {
-    const all = await openEach(220, (i) => ask(forwarded(i), from));
-    all.drop();
-    return all.n(200);
-  }, (n) => n >= 200, 20000);
+  const served = (forwarded, from) =>
+    until(
+      async () => {
+        const all = await openEach(220, (i) => ask(forwarded(i), from));
+        all.drop();
+        return all.n(200);
+      },
+      (n) => n >= 200,
+      20000,
+    );
 
   test('each client has the limit of one address, though all come from the proxy', async () => {
     assert.equal(await served((i) => `198.51.100.${i % 2}`, '127.0.3.1'), 220);
@@ -117,7 +135,15 @@ describe('behind a proxy', () => {
   });
 
   test('requests of many clients on one connection are counted for each', async () => {
-    const text = await exchange(daemon.url, Array.from({ length: 300 }, (_, i) => `GET /healthz HTTP/1.1\r\n${HOST}X-Forwarded-For: 203.0.113.${i % 250}\r\n${i === 299 ? 'Connection: close\r\n' : ''}\r\n`).join(''), { from: '127.0.3.1', ms: 60000 });
+    const text = await exchange(
+      daemon.url,
+      Array.from(
+        { length: 300 },
+        (_, i) =>
+          `GET /healthz HTTP/1.1\r\n${HOST}X-Forwarded-For: 203.0.113.${i % 250}\r\n${i === 299 ? 'Connection: close\r\n' : ''}\r\n`,
+      ).join(''),
+      { from: '127.0.3.1', ms: 60000 },
+    );
     assert.deepEqual(statuses(text), Array(300).fill(200));
   });
 });
@@ -208,22 +234,47 @@ describe('a condition', () => {
   for (const path of ['/index.html', '/api/v1/rooms/{room}/scene'])
     test(`of RFC 9110 on ${path} is read as a list, with weak tags, or as *`, async () => {
       const url = daemon.url + path.replace('{room}', room);
-      const { headers } = await until(() => call(url), (answer) => answer.status === 200);
+      const { headers } = await until(
+        () => call(url),
+        (answer) => answer.status === 200,
+      );
       const etag = headers.get('etag');
-      for (const [value, status] of [[etag, 304], ['*', 304], [`W/${etag}`, 304], [`"x", ${etag}`, 304], [`"x,y" ,W/${etag} , "z"`, 304], ['"x"', 200], [`"x ${etag}`, 200], [etag.replaceAll('"', ''), 200]])
+      for (const [value, status] of [
+        [etag, 304],
+        ['*', 304],
+        [`W/${etag}`, 304],
+        [`"x", ${etag}`, 304],
+        [`"x,y" ,W/${etag} , "z"`, 304],
+        ['"x"', 200],
+        [`"x ${etag}`, 200],
+        [etag.replaceAll('"', ''), 200],
+      ])
         assert.equal((await call(url, 'GET', undefined, { 'If-None-Match': value })).status, status, value);
     });
 });
 
-describe('the process', { concurrency: 4 }, () => { // each test waits for some seconds
+describe('the process', { concurrency: 4 }, () => {
+  // each test waits for some seconds
   /** A socket like a service manager's, and the datagrams it received. */
   async function startManager() {
-    const folder = mkdtempSync(join(tmpdir(), 'beamroom-notify-')), path = join(folder, 'notify');
-    const child = spawn('python3', ['-uc', 'import socket,sys\ns=socket.socket(socket.AF_UNIX,socket.SOCK_DGRAM)\ns.bind(sys.argv[1])\nprint("bound")\nwhile True: print(s.recv(4096).decode())', path]);
+    const folder = mkdtempSync(join(tmpdir(), 'beamroom-notify-')),
+      path = join(folder, 'notify');
+    const child = spawn('python3', [
+      '-uc',
+      'import socket,sys\ns=socket.socket(socket.AF_UNIX,socket.SOCK_DGRAM)\ns.bind(sys.argv[1])\nprint("bound")\nwhile True: print(s.recv(4096).decode())',
+      path,
+    ]);
     const lines = [];
     createInterface({ input: child.stdout }).on('line', (line) => lines.push(line));
     await until(() => lines.length, Boolean);
-    return { path, lines: () => lines.slice(1), stop: () => { child.kill(); rmSync(folder, { recursive: true, force: true }); } };
+    return {
+      path,
+      lines: () => lines.slice(1),
+      stop: () => {
+        child.kill();
+        rmSync(folder, { recursive: true, force: true });
+      },
+    };
   }
 
   test('tells the service manager that it is ready, that it lives, and that it stops', async () => {
@@ -245,7 +296,10 @@ describe('the process', { concurrency: 4 }, () => { // each test waits for some 
   for (const thread of ['net', 'http', 'acceptor'])
     test(`whose ${thread} thread hangs no longer says that it lives, and ends within 10 s of SIGTERM all the same`, async () => {
       const manager = await startManager();
-      const daemon = await startDaemon({ args: ['--stub', '--hang', thread], env: { NOTIFY_SOCKET: manager.path, WATCHDOG_USEC: '800000' } });
+      const daemon = await startDaemon({
+        args: ['--stub', '--hang', thread],
+        env: { NOTIFY_SOCKET: manager.path, WATCHDOG_USEC: '800000' },
+      });
       try {
         await until(daemon.log, (log) => log.includes(`the ${thread} thread has not moved`));
         assert.match(daemon.log(), new RegExp(`the ${thread} thread has not moved`));

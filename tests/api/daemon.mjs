@@ -11,17 +11,25 @@ export const bin = process.env.BEAMROOM_BIN ?? resolve('build/release');
 export const web = process.env.BEAMROOM_WEB ?? resolve('build/web');
 export const demo = process.env.BEAMROOM_DEMO ?? resolve('build/demo/plans');
 /** Real plans, when this machine has them; tests that need them skip otherwise. */
-export const realData = [process.env.BEAMROOM_DATA, '../shared/data'].filter(Boolean).map((p) => resolve(p)).find(existsSync);
+export const realData = [process.env.BEAMROOM_DATA, '../shared/data']
+  .filter(Boolean)
+  .map((p) => resolve(p))
+  .find(existsSync);
 
 /** data: an existing state folder, kept afterwards. cwd: working folder of the daemon. folders: programs and page, as seen from there.
  *  env: further environment variables.
  *  @returns {Promise<{url: string, data: string, child: import('node:child_process').ChildProcess, log: () => string, stop: () => Promise<number|null>}>} */
 export async function startDaemon({ plans = [demo], args = [], data: given, cwd, folders = { bin, web }, env = {} } = {}) {
   const data = given ?? mkdtempSync(join(tmpdir(), 'beamroom-test-'));
-  const child = spawn(join(folders.bin, 'beamroomd'), ['--listen', '127.0.0.1:0', '--data', data, '--web', folders.web, ...plans.flatMap((p) => ['--plans', p]), ...args],
-    { cwd, stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ...env } });
+  const child = spawn(
+    join(folders.bin, 'beamroomd'),
+    ['--listen', '127.0.0.1:0', '--data', data, '--web', folders.web, ...plans.flatMap((p) => ['--plans', p]), ...args],
+    { cwd, stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ...env } },
+  );
   let log = '';
-  child.stderr.on('data', (text) => { log += text; });
+  child.stderr.on('data', (text) => {
+    log += text;
+  });
   // its last words are read, too; a renderer that outlives it may hold the pipe open
   const ended = new Promise((done) => {
     child.on('close', (code) => done(code));
@@ -37,7 +45,12 @@ export async function startDaemon({ plans = [demo], args = [], data: given, cwd,
   const stop = async () => {
     child.kill('SIGTERM');
     let timer;
-    const code = await Promise.race([ended, new Promise((late) => { timer = setTimeout(late, 60000, null); })]);
+    const code = await Promise.race([
+      ended,
+      new Promise((late) => {
+        timer = setTimeout(late, 60000, null);
+      }),
+    ]);
     clearTimeout(timer); /* or the test run would wait for it */
     if (code === null) child.kill('SIGKILL');
     if (!given) rmSync(data, { recursive: true, force: true });
@@ -61,8 +74,11 @@ export async function until(ask, suits, ms = 60000) {
 
 /** fetch with JSON in and out; of an answer without an end it takes the head alone; throws when an answer of type JSON is none, or has a name twice in an object. */
 export async function call(url, method = 'GET', body, headers = {}) {
-  const answer = await fetch(url, { method, headers: { ...(body !== undefined && { 'Content-Type': 'application/json' }), ...headers },
-    body: body === undefined || typeof body === 'string' ? body : JSON.stringify(body) });
+  const answer = await fetch(url, {
+    method,
+    headers: { ...(body !== undefined && { 'Content-Type': 'application/json' }), ...headers },
+    body: body === undefined || typeof body === 'string' ? body : JSON.stringify(body),
+  });
   const type = answer.headers.get('content-type') ?? '';
   const isEndless = type.startsWith('multipart/x-mixed-replace');
   if (isEndless) await answer.body.cancel();
@@ -75,12 +91,28 @@ export async function call(url, method = 'GET', body, headers = {}) {
 export async function openPlan(url, plan) {
   const opened = await call(`${url}/api/v1/plans/${plan}/open`, 'POST');
   if (opened.status !== 202) throw new Error(`open ${plan}: ${opened.text}`);
-  return until(async () => (await call(`${url}/api/v1/jobs/${opened.json.id}`)).json, (job) => job.state !== 'running');
+  return until(
+    async () => (await call(`${url}/api/v1/jobs/${opened.json.id}`)).json,
+    (job) => job.state !== 'running',
+  );
 }
 
 /** Process ids of the renderers a daemon has. */
 export function renderersOf(parent) {
-  const look = (pid, name) => { try { return readFileSync(`/proc/${pid}/${name}`, 'latin1'); } catch { return ''; } };
-  return readdirSync('/proc').filter((pid) => /^\d+$/.test(pid) && look(pid, 'status').includes(`\nPPid:\t${parent}\n`)
-    && /beamroom-render/.test(look(pid, 'cmdline')) && !/--(scan|probe-gl)/.test(look(pid, 'cmdline'))).map(Number);
+  const look = (pid, name) => {
+    try {
+      return readFileSync(`/proc/${pid}/${name}`, 'latin1');
+    } catch {
+      return '';
+    }
+  };
+  return readdirSync('/proc')
+    .filter(
+      (pid) =>
+        /^\d+$/.test(pid) &&
+        look(pid, 'status').includes(`\nPPid:\t${parent}\n`) &&
+        /beamroom-render/.test(look(pid, 'cmdline')) &&
+        !/--(scan|probe-gl)/.test(look(pid, 'cmdline')),
+    )
+    .map(Number);
 }

@@ -28,12 +28,19 @@ const patch = async (room, scene) => {
   return answer.json;
 };
 const probe = async (plan, room, [x, y, z]) => (await call(`${api}/plans/${plan}/dose/probe?room=${room}&x=${x}&y=${y}&z=${z}`)).json;
-const near = (value, expected, share, what) => assert.ok(Math.abs(value - expected) <= share * Math.abs(expected), `${what}: ${value}, expected ${expected}`);
+const near = (value, expected, share, what) =>
+  assert.ok(Math.abs(value - expected) <= share * Math.abs(expected), `${what}: ${value}, expected ${expected}`);
 
 /** What the components and their weights add up to, with the weights that the answer states. */
 function summed({ components, weights }) {
   const of = (quantity) => components.find((component) => component.quantity === quantity)?.value ?? 0;
-  return weights.cbe * of('boron') + weights.nitrogen * of('nitrogen') + weights.fast * of('fast') + weights.gamma * of('gamma') + weights.other * of('other');
+  return (
+    weights.cbe * of('boron') +
+    weights.nitrogen * of('nitrogen') +
+    weights.fast * of('fast') +
+    weights.gamma * of('gamma') +
+    weights.other * of('other')
+  );
 }
 
 test('a weighted total is the sum of its weighted components, and boron follows the concentration in blood', async () => {
@@ -66,15 +73,34 @@ test('where there is no value the answer says why, and never zero', async () => 
 });
 
 test('levels are parts of the reference that the scene names', async () => {
-  const room = await makeRoom('phantom', { dose: { quantity: 'weighted', reference: { kind: 'value', value: 12.5 }, levels: { 'level-1': { value: 90, unit: 'percent' }, 'level-2': { value: 5, unit: 'dose' } } } });
+  const room = await makeRoom('phantom', {
+    dose: {
+      quantity: 'weighted',
+      reference: { kind: 'value', value: 12.5 },
+      levels: { 'level-1': { value: 90, unit: 'percent' }, 'level-2': { value: 5, unit: 'dose' } },
+    },
+  });
   const { reference, levels } = (await call(`${api}/plans/phantom/dose?room=${room}`)).json;
   assert.deepEqual([reference.kind, reference.value, reference.words], ['value', 12.5, 'prescription']);
-  assert.deepEqual(levels.slice(0, 2).map(({ value, percent }) => [value, percent]), [[11.25, 90], [5, 40]]);
+  assert.deepEqual(
+    levels.slice(0, 2).map(({ value, percent }) => [value, percent]),
+    [
+      [11.25, 90],
+      [5, 40],
+    ],
+  );
 });
 
 test('ids that the plan does not have are refused in weights, sums and comparison', async () => {
   const room = await makeRoom('phantom');
-  for (const dose of [{ weights: { nobody: {} } }, { sum: { nobody: {} } }, { compare: { id: 'nobody' } }, { tissue: 'nobody' }, { reference: { region: 'nobody' } }, { coverage: { region: 'nobody' } }]) {
+  for (const dose of [
+    { weights: { nobody: {} } },
+    { sum: { nobody: {} } },
+    { compare: { id: 'nobody' } },
+    { tissue: 'nobody' },
+    { reference: { region: 'nobody' } },
+    { coverage: { region: 'nobody' } },
+  ]) {
     const answer = await call(`${api}/rooms/${room}/scene`, 'PATCH', { dose }, { 'If-Match': '*' });
     assert.equal(answer.status, 422, JSON.stringify(dose));
     assert.match(answer.text, /unknown-id/);
@@ -83,7 +109,9 @@ test('ids that the plan does not have are refused in weights, sums and compariso
 
 /* Each member's frames carry revisions that never fall; after the last change all have the same still, which is also what one who
    comes later sees. */
-test('eight members watch while the boron concentration changes: each picture is of its revision, the last one is the same for all', { timeout: 60000 }, async (t) => {
+test('eight members watch while the boron concentration changes: each picture is of its revision, the last one is the same for all', {
+  timeout: 60000,
+}, async (t) => {
   const room = await makeRoom('phantom', { dose: { quantity: 'weighted', wash: { visible: true, opacity: 0.6 } } });
   const members = [];
   const join_ = async () => {
@@ -94,7 +122,8 @@ test('eight members watch while the boron concentration changes: each picture is
   };
   for (let i = 0; i < 8; i++) members.push(await join_());
   for (const member of members) await member.frame((frame) => frame.isStill, 0, 20000);
-  let revision, first = [];
+  let revision,
+    first = [];
   for (let step = 0; step < 12; step++) {
     const since = performance.now();
     const { headers } = await call(`${api}/rooms/${room}/scene`, 'PATCH', { dose: { blood_ppm: 5 + 3 * step } }, { 'If-Match': '*' });
@@ -105,14 +134,18 @@ test('eight members watch while the boron concentration changes: each picture is
   t.diagnostic(`first new picture after a change, median ${first.sort((a, b) => a - b)[6].toFixed(1)} ms`);
   const late = await join_();
   const stills = [];
-  for (const member of [...members, late]) stills.push(await member.frame((frame) => frame.isStill && frame.revision === revision, 0, 20000));
+  for (const member of [...members, late])
+    stills.push(await member.frame((frame) => frame.isStill && frame.revision === revision, 0, 20000));
   for (const member of members)
-    assert.ok(member.frames.every((frame, i) => i === 0 || frame.revision >= member.frames[i - 1].revision), 'revisions do not fall');
+    assert.ok(
+      member.frames.every((frame, i) => i === 0 || frame.revision >= member.frames[i - 1].revision),
+      'revisions do not fall',
+    );
   for (const still of stills) assert.ok(Buffer.from(still.picture).equals(Buffer.from(stills[0].picture)), 'one picture');
   for (const member of [...members, late]) member.cut();
 });
 
-test('SERA\'s head: weights of the plan, jumps at a border of tissues, and none where one tissue holds everywhere', { skip }, async () => {
+test("SERA's head: weights of the plan, jumps at a border of tissues, and none where one tissue holds everywhere", { skip }, async () => {
   await openPlan(daemon.url, 'sera-head');
   const room = await makeRoom('sera-head');
   const plan = (await call(`${api}/plans/sera-head`)).json;
@@ -128,24 +161,34 @@ test('SERA\'s head: weights of the plan, jumps at a border of tissues, and none 
 });
 
 /* The raw probe is held to independent readers elsewhere; the read-out of a scene's dose has to agree with it, weights aside. */
-test('read-outs of a scene are the files\' values at points between voxels, to float precision', { skip, timeout: 120000 }, async () => {
-  for (const [id, folder] of [['sera-head', head], ['eclipse-ent-dose', null], ['openkbp-pt99', null], ['dicomrt-oncentra-phantom', null]]) {
+test("read-outs of a scene are the files' values at points between voxels, to float precision", { skip, timeout: 120000 }, async () => {
+  for (const [id, folder] of [
+    ['sera-head', head],
+    ['eclipse-ent-dose', null],
+    ['openkbp-pt99', null],
+    ['dicomrt-oncentra-phantom', null],
+  ]) {
     if (!folder && !existsSync(join(realData, id))) continue;
     const own = folder ? daemon : await startDaemon({ plans: [join(realData, id)] });
     try {
       await openPlan(own.url, id);
-      const url = `${own.url}/api/v1/plans/${id}`, plan = (await call(url)).json;
+      const url = `${own.url}/api/v1/plans/${id}`,
+        plan = (await call(url)).json;
       const [low, high] = ['low', 'high'].map((end) => plan.doses[0].components[0].grid.bounds_mm[end]);
       let n = 0;
       for (let i = 1; i <= 24; i++) {
         const at = low.map((value, axis) => value + (high[axis] - value) * ((i * [0.137, 0.311, 0.533][axis]) % 1));
         const query = `x=${at[0]}&y=${at[1]}&z=${at[2]}`;
-        const raw = (await call(`${url}/probe?${query}`)).json.doses, shown = (await call(`${url}/dose/probe?${query}`)).json;
+        const raw = (await call(`${url}/probe?${query}`)).json.doses,
+          shown = (await call(`${url}/dose/probe?${query}`)).json;
         for (const { quantity, value, weighted, boron_ppm: ppm } of shown.components) {
           const file = raw.find((row) => row.id === shown.id && row.quantity === quantity);
           if (value === null) continue;
           const expected = file.per_ppm ? file.value * ppm : file.value;
-          assert.ok(Math.abs(value - expected) <= 4e-7 * Math.abs(expected) + 1e-30, `${id} ${quantity} at ${at}: ${value}, expected ${expected}`);
+          assert.ok(
+            Math.abs(value - expected) <= 4e-7 * Math.abs(expected) + 1e-30,
+            `${id} ${quantity} at ${at}: ${value}, expected ${expected}`,
+          );
           assert.ok(weighted === null || shown.weights);
           n++;
         }

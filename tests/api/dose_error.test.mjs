@@ -16,7 +16,8 @@ before(async () => {
   const file = join(folder, 'with-errors/plan.json');
   const plan = JSON.parse(readFileSync(file, 'utf8'));
   // as large as the value for each, but of gamma as large as the nitrogen dose
-  for (const component of plan.doses[0].components) component.error = component.quantity === 'gamma' ? 'dose/nitrogen.nii.gz' : component.path;
+  for (const component of plan.doses[0].components)
+    component.error = component.quantity === 'gamma' ? 'dose/nitrogen.nii.gz' : component.path;
   writeFileSync(file, JSON.stringify(plan));
   daemon = await startDaemon({ plans: skip ? [folder] : [folder, oncentra] });
   api = `${daemon.url}/api/v1`;
@@ -32,7 +33,8 @@ const makeRoom = async (plan, scene) => {
   assert.equal((await call(`${api}/rooms/${room}/scene`, 'PATCH', scene, { 'If-Match': '*' })).status, 200);
   return room;
 };
-const near = (value, expected, what) => assert.ok(Math.abs(value - expected) <= 1e-5 * Math.abs(expected), `${what}: ${value}, expected ${expected}`);
+const near = (value, expected, what) =>
+  assert.ok(Math.abs(value - expected) <= 1e-5 * Math.abs(expected), `${what}: ${value}, expected ${expected}`);
 
 test('a component has the error of its file, a weighted sum that of independent components', async () => {
   await openPlan(daemon.url, 'with-errors');
@@ -58,7 +60,11 @@ test('beams are summed at a point, each with its factor, and the parts are said'
   const { doses } = (await call(`${api}/plans/${plan}`)).json;
   const ids = doses.filter(({ per }) => per === 'beam').map(({ id }) => id);
   assert.equal(ids.length, 3);
-  const at = [[0.29, 0.59, 0], [12, -20, 4], [-31, 15, -6]];
+  const at = [
+    [0.29, 0.59, 0],
+    [12, -20, 4],
+    [-31, 15, -6],
+  ];
   const single = {};
   for (const id of ids) {
     const room = await makeRoom(plan, { dose: { id, quantity: 'total' } });
@@ -69,6 +75,13 @@ test('beams are summed at a point, each with its factor, and the parts are said'
   for (const [i, point] of at.entries()) {
     const probe = await probeOf(plan, room, point);
     near(probe.value, single[ids[0]][i] + 2 * single[ids[1]][i] + 0.5 * single[ids[2]][i], `sum at ${point}`);
-    assert.deepEqual(probe.parts.map(({ id, factor, used }) => ({ id, factor, used })), [{ id: ids[0], factor: 1, used: true }, { id: ids[1], factor: 2, used: true }, { id: ids[2], factor: 0.5, used: true }]);
+    assert.deepEqual(
+      probe.parts.map(({ id, factor, used }) => ({ id, factor, used })),
+      [
+        { id: ids[0], factor: 1, used: true },
+        { id: ids[1], factor: 2, used: true },
+        { id: ids[2], factor: 0.5, used: true },
+      ],
+    );
   }
 });

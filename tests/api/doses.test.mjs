@@ -47,7 +47,8 @@ after(async () => {
   if (folder) rmSync(folder, { recursive: true });
 });
 
-const centre = (grid) => ['low', 'high'].map((end) => grid.bounds_mm[end]).reduce((low, high) => low.map((value, axis) => (value + high[axis]) / 2));
+const centre = (grid) =>
+  ['low', 'high'].map((end) => grid.bounds_mm[end]).reduce((low, high) => low.map((value, axis) => (value + high[axis]) / 2));
 
 async function probe(plan, point) {
   const [x, y, z] = point;
@@ -63,27 +64,47 @@ test('a total says for how much boron it holds: with that much, its components a
     assert.equal(said.total, 1, 'the contours were written for 1 ppm (README of the data)');
     assert.ok(Object.entries(said).every(([quantity, ppm]) => quantity === 'total' || ppm === null));
     const tumor = plan.regions.find((region) => region.name === 'tumor');
-    const rows = Object.fromEntries((await probe(id, tumor.center_mm)).filter((row) => row.id === contours.id).map((row) => [row.quantity, row]));
+    const rows = Object.fromEntries(
+      (await probe(id, tumor.center_mm)).filter((row) => row.id === contours.id).map((row) => [row.quantity, row]),
+    );
     assert.equal(rows.total.boron_ppm, 1);
     assert.equal(rows.gamma.boron_ppm, null);
     const boron = rows.boron ?? rows['blood-boron'];
-    const sum = boron.value * rows.total.boron_ppm + ['gamma', 'nitrogen', 'fast', 'other'].reduce((all, quantity) => all + (rows[quantity]?.value ?? 0), 0);
+    const sum =
+      boron.value * rows.total.boron_ppm +
+      ['gamma', 'nitrogen', 'fast', 'other'].reduce((all, quantity) => all + (rows[quantity]?.value ?? 0), 0);
     assert.ok(Math.abs(sum / rows.total.value - 1) < 2e-3, `${sum} and ${rows.total.value}: values have four digits in the file`);
   }
 });
 
-test('a dose in another frame of reference than the image says so in the plan, the probe, the list and a converted plan', { skip }, async () => {
-  for (const [id, frame] of [['fits', 'same'], ['shifted', 'differs'], ['converted', 'differs']]) {
+test('a dose in another frame of reference than the image says so in the plan, the probe, the list and a converted plan', {
+  skip,
+}, async () => {
+  for (const [id, frame] of [
+    ['fits', 'same'],
+    ['shifted', 'differs'],
+    ['converted', 'differs'],
+  ]) {
     await openPlan(daemon.url, id);
     const plan = (await call(`${daemon.url}/api/v1/plans/${id}`)).json;
     assert.ok(plan.doses.length > 0);
     assert.deepEqual([...new Set(plan.doses.map((dose) => dose.frame_of_reference))], [frame], id);
-    assert.equal(plan.report.lines.some(({ code }) => code === 'dose.frame-differs'), frame === 'differs', id);
+    assert.equal(
+      plan.report.lines.some(({ code }) => code === 'dose.frame-differs'),
+      frame === 'differs',
+      id,
+    );
     const rows = await probe(id, centre(plan.doses[0].components[0].grid));
     assert.equal(rows.length > 0, frame === 'same', `${id}: a dose of another frame is not read out`);
-    assert.ok(rows.every((row) => row.frame_of_reference === frame), id);
+    assert.ok(
+      rows.every((row) => row.frame_of_reference === frame),
+      id,
+    );
   }
   const written = parseStrict(readFileSync(join(folder, 'converted', 'plan.json'), 'utf8'));
   assert.ok(written.doses.every((dose) => dose.frame_of_reference === 'differs'));
-  assert.match(execFileSync(join(bin, 'beamroom'), ['info', join(folder, 'shifted')], { encoding: 'utf8' }), /frame of reference differs from the image's/);
+  assert.match(
+    execFileSync(join(bin, 'beamroom'), ['info', join(folder, 'shifted')], { encoding: 'utf8' }),
+    /frame of reference differs from the image's/,
+  );
 });

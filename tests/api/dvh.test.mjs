@@ -29,7 +29,8 @@ after(async () => {
 });
 
 /** A question about the room's scene with other values. */
-const ask = (question, override, more = '') => api(`phantom/${question}?room=${room}&view=${encodeURIComponent(JSON.stringify({ override }))}${more}`);
+const ask = (question, override, more = '') =>
+  api(`phantom/${question}?room=${room}&view=${encodeURIComponent(JSON.stringify({ override }))}${more}`);
 
 test('histograms hold every univel of every region that is shown, and their figures agree with their counts', async () => {
   const plan = (await api('phantom')).json;
@@ -44,9 +45,13 @@ test('histograms hold every univel of every region that is shown, and their figu
     near(sum, curve.volume_cm3 - curve.missing_cm3, 1e-9);
     const mean = curve.counts_cm3.reduce((all, cm3, bin) => all + cm3 * (curve.bin_from + (bin + 0.5) * curve.bin_width), 0) / sum;
     near((mean * sum) / curve.volume_cm3, curve.least.mean, 1e-3); // with no dose where there is none
-    let above = 0, bin = curve.counts_cm3.length;
+    let above = 0,
+      bin = curve.counts_cm3.length;
     while (above < 0.95 * curve.volume_cm3 && bin > 0) above += curve.counts_cm3[--bin];
-    assert.ok(above < 0.95 * curve.volume_cm3 || Math.abs(curve.bin_from + bin * curve.bin_width - curve.least.metrics['D95%']) <= curve.bin_width * 1.01);
+    assert.ok(
+      above < 0.95 * curve.volume_cm3 ||
+        Math.abs(curve.bin_from + bin * curve.bin_width - curve.least.metrics['D95%']) <= curve.bin_width * 1.01,
+    );
     near(curve.bin_from + 4096 * curve.bin_width, curve.least.max, 1e-6);
     assert.equal(curve.is_partial, curve.missing_cm3 >= 1e-3 * curve.volume_cm3);
     assert.equal(curve.mean === null, curve.is_partial);
@@ -73,8 +78,14 @@ test('a mean follows blood ppm linearly, boron alone in proportion, and says wit
 });
 
 test('regions, figures, quantities and bins that do not exist are refused by name', async () => {
-  for (const [more, status, word] of [['&regions=brain,nowhere', 404, 'nowhere'], ['&metrics=D95', 422, 'D95'], ['&quantity=colour', 422, 'colour'], ['&bins=5000', 422, 'bins'],
-    ['&border=6', 422, 'border'], ['&format=xml', 422, 'xml']]) {
+  for (const [more, status, word] of [
+    ['&regions=brain,nowhere', 404, 'nowhere'],
+    ['&metrics=D95', 422, 'D95'],
+    ['&quantity=colour', 422, 'colour'],
+    ['&bins=5000', 422, 'bins'],
+    ['&border=6', 422, 'border'],
+    ['&format=xml', 422, 'xml'],
+  ]) {
     const { status: found, json } = await ask('dvh', {}, more);
     assert.equal(found, status, more);
     assert.ok(json.detail.includes(word), json.detail);
@@ -85,8 +96,14 @@ test('as CSV a histogram is one line for each bin, from all of the volume on', a
   const { status, type, text } = await ask('dvh', {}, '&regions=brain,tumour&bins=10&format=csv');
   assert.equal(status, 200);
   assert.match(type, /^text\/csv/);
-  const rows = text.trimEnd().split('\r\n').map((line) => line.split(','));
-  assert.equal(rows.length, 1 + rows.slice(1).filter(([, region]) => region === 'brain').length * (rows.some(([, region]) => region === 'tumour') ? 2 : 1));
+  const rows = text
+    .trimEnd()
+    .split('\r\n')
+    .map((line) => line.split(','));
+  assert.equal(
+    rows.length,
+    1 + rows.slice(1).filter(([, region]) => region === 'brain').length * (rows.some(([, region]) => region === 'tumour') ? 2 : 1),
+  );
   assert.equal(rows[1].length, rows[0].length);
   assert.equal(rows[1][rows[0].indexOf('volume_from_percent')], '100');
 });
@@ -99,8 +116,16 @@ test('coverage is what the histogram has above a level, and constraints are held
   near(100 * coverage.share, curve.metrics.V5, 2e-3);
   near(coverage.region_cm3, curve.volume_cm3, 1e-9);
   const own = (await ask('dvh', {}, '&regions=brain&metrics=D2cc')).json.curves[0];
-  const limits = { a: ['max', 'at-most', own.max * 1.001], b: ['max', 'at-most', own.max * 0.999], c: ['D2cc', 'at-least', own.metrics.D2cc * 0.99], d: ['D99999cc', 'at-most', 1], e: ['D95', 'at-most', 1] };
-  const constraints = Object.fromEntries(Object.entries(limits).map(([id, [metric, side, limit]]) => [id, { region: 'brain', quantity: 'weighted', metric, side, limit }]));
+  const limits = {
+    a: ['max', 'at-most', own.max * 1.001],
+    b: ['max', 'at-most', own.max * 0.999],
+    c: ['D2cc', 'at-least', own.metrics.D2cc * 0.99],
+    d: ['D99999cc', 'at-most', 1],
+    e: ['D95', 'at-most', 1],
+  };
+  const constraints = Object.fromEntries(
+    Object.entries(limits).map(([id, [metric, side, limit]]) => [id, { region: 'brain', quantity: 'weighted', metric, side, limit }]),
+  );
   constraints.f = { region: 'brain', quantity: 'weighted-total', metric: 'max', side: 'at-most', limit: 1 };
   const { json } = await ask('constraints', { constraints });
   const met = Object.fromEntries(json.constraints.map((row) => [row.id, row.met]));
@@ -113,11 +138,16 @@ test('coverage is what the histogram has above a level, and constraints are held
 test('one switch sets the population of histograms, limits and coverage, and each says which', async () => {
   const plan = (await api('phantom')).json;
   const voxels = Object.fromEntries(plan.regions.map(({ id, voxels: n }) => [id, n]));
-  const isInside = ({ id, parent }) => id !== 'brain' && (parent === 'brain' || (parent && isInside(plan.regions.find((region) => region.id === parent))));
+  const isInside = ({ id, parent }) =>
+    id !== 'brain' && (parent === 'brain' || (parent && isInside(plan.regions.find((region) => region.id === parent))));
   const whole = voxels.brain + plan.regions.filter(isInside).reduce((all, { voxels: n }) => all + n, 0);
   assert.ok(whole > voxels.brain, 'the phantom has a region inside the brain');
   const constraints = { a: { region: 'brain', quantity: 'weighted', metric: 'mean', side: 'at-most', limit: 1 } };
-  for (const [population, n] of [['own', voxels.brain], ['whole', whole], ['usual', voxels.brain]]) {
+  for (const [population, n] of [
+    ['own', voxels.brain],
+    ['whole', whole],
+    ['usual', voxels.brain],
+  ]) {
     const override = { dose: { population }, constraints };
     const [curve] = (await ask('dvh', override, '&regions=brain&metrics=V5')).json.curves;
     const coverage = (await ask('coverage', override, '&region=brain&low=5&unit=dose')).json;
@@ -129,7 +159,10 @@ test('one switch sets the population of histograms, limits and coverage, and eac
     near(100 * coverage.share, curve.metrics.V5, 2e-3);
     const highlighted = (await ask('coverage', { dose: { population } }, '&region=brain&low=4&unit=dose')).json; // 4 is the edge of a bin
     const [at] = (await ask('dvh', { dose: { population } }, '&regions=brain&metrics=V4&bins=1')).json.curves;
-    assert.ok(Math.abs(highlighted.share_least - at.metrics.V4 / 100) * at.n_univels < 0.5, 'the highlighted univels are those of the histogram');
+    assert.ok(
+      Math.abs(highlighted.share_least - at.metrics.V4 / 100) * at.n_univels < 0.5,
+      'the highlighted univels are those of the histogram',
+    );
     const said = population === 'whole' ? 'whole' : 'own';
     assert.deepEqual([curve.population, coverage.population, limit.population], [said, said, said]);
     assert.deepEqual([curve.basis, coverage.basis, limit.basis], Array(3).fill("each region's own weights"));
@@ -140,10 +173,22 @@ test('one switch sets the population of histograms, limits and coverage, and eac
 test('nothing of how the dose is drawn changes a limit, a figure or a coverage; a basis chosen in them does, and is named', async () => {
   const own = (await ask('dvh', {}, '&regions=brain')).json.curves[0];
   const limit = (more) => ({ region: 'brain', quantity: 'weighted', metric: 'max', side: 'at-most', limit: own.max * 1.01, ...more });
-  const constraints = { a: limit({}), b: limit({ limit: own.max * 0.99 }), c: limit({ tissue: 'tumour' }), d: limit({ quantity: 'gamma', limit: 1e9 }) };
+  const constraints = {
+    a: limit({}),
+    b: limit({ limit: own.max * 0.99 }),
+    c: limit({ tissue: 'tumour' }),
+    d: limit({ quantity: 'gamma', limit: 1e9 }),
+  };
   const coverage = { region: 'brain', low: 50, unit: 'percent' };
   let before;
-  for (const dose of [{}, { tissue: 'brain' }, { tissue: 'tumour' }, { wash: { visible: true }, tissue: 'tumour' }, { interpolation: 'slice', error: true }, { quantity: 'gamma' }]) {
+  for (const dose of [
+    {},
+    { tissue: 'brain' },
+    { tissue: 'tumour' },
+    { wash: { visible: true }, tissue: 'tumour' },
+    { interpolation: 'slice', error: true },
+    { quantity: 'gamma' },
+  ]) {
     const { json } = await ask('constraints', { dose, constraints });
     const histogram = (await ask('dvh', { dose }, '&regions=brain&quantity=weighted&bins=4')).json;
     const said = (await ask('coverage', { dose: { ...dose, coverage: { ...coverage, quantity: 'weighted' } } })).json;
@@ -152,8 +197,14 @@ test('nothing of how the dose is drawn changes a limit, a figure or a coverage; 
     assert.equal(now, before, JSON.stringify(dose));
   }
   const rows = Object.fromEntries((await ask('constraints', { constraints })).json.constraints.map((row) => [row.id, row]));
-  assert.deepEqual(['a', 'b', 'c', 'd'].map((id) => rows[id].met), [true, false, false, true]);
-  assert.deepEqual(['a', 'c', 'd'].map((id) => rows[id].basis), ["each region's own weights", 'weights of tumour', null]);
+  assert.deepEqual(
+    ['a', 'b', 'c', 'd'].map((id) => rows[id].met),
+    [true, false, false, true],
+  );
+  assert.deepEqual(
+    ['a', 'c', 'd'].map((id) => rows[id].basis),
+    ["each region's own weights", 'weights of tumour', null],
+  );
   const other = (await ask('dvh', {}, '&regions=brain&tissue=tumour')).json.curves[0];
   near(rows.c.value, other.max, 1e-9);
   assert.equal(other.basis, 'weights of tumour');
@@ -161,12 +212,23 @@ test('nothing of how the dose is drawn changes a limit, a figure or a coverage; 
 
 test('a region without weights has no curve, coverage or limit, with the reason', async () => {
   const { json: scene } = await api(`phantom/dose?room=${room}`);
-  const weights = Object.fromEntries(scene.weights.map(({ region }) => [region, { isoeffective: region === 'tumour' ? isoeffective : '' }]));
-  const override = { dose: { quantity: 'isoeffective', weights }, constraints: { a: { region: 'brain', quantity: 'isoeffective', metric: 'max', side: 'at-most', limit: 1 } } };
+  const weights = Object.fromEntries(
+    scene.weights.map(({ region }) => [region, { isoeffective: region === 'tumour' ? isoeffective : '' }]),
+  );
+  const override = {
+    dose: { quantity: 'isoeffective', weights },
+    constraints: { a: { region: 'brain', quantity: 'isoeffective', metric: 'max', side: 'at-most', limit: 1 } },
+  };
   const { json } = await ask('dvh', override, '&regions=brain,tumour&bins=4');
   const reason = 'no parameters of the isoeffective dose for brain'; // "no weights for" of a weighted one: tests/unit/test_dose_histogram.c
-  assert.deepEqual(json.curves.map(({ region }) => region), ['tumour']);
-  assert.deepEqual(json.without_curves.map(({ region, reason: why }) => [region, why]), [['brain', reason]]);
+  assert.deepEqual(
+    json.curves.map(({ region }) => region),
+    ['tumour'],
+  );
+  assert.deepEqual(
+    json.without_curves.map(({ region, reason: why }) => [region, why]),
+    [['brain', reason]],
+  );
   const [limit] = (await ask('constraints', override)).json.constraints;
   assert.deepEqual([limit.met, limit.value, limit.reason], [null, null, reason]);
   assert.equal((await ask('coverage', override, '&region=brain&low=1&unit=dose')).json.coverage_reason, reason);
@@ -176,7 +238,12 @@ test('a region without weights has no curve, coverage or limit, with the reason'
 function photonDose(set, doses, minutes) {
   const lea = (tau, t) => (2 / (t / tau) ** 2) * (t / tau - 1 + Math.exp(-t / tau));
   const [fast, slow] = [set.repair_fast_min, set.repair_slow_min].map((tau) => lea(tau, minutes));
-  const parts = [['boron', doses.boron], ['nitrogen', doses.nitrogen], ['fast', doses.fast + doses.other], ['photon', doses.gamma]].map(([name, gy]) => ({ ...set[name], gy, isLow: name === 'photon' }));
+  const parts = [
+    ['boron', doses.boron],
+    ['nitrogen', doses.nitrogen],
+    ['fast', doses.fast + doses.other],
+    ['photon', doses.gamma],
+  ].map(([name, gy]) => ({ ...set[name], gy, isLow: name === 'photon' }));
   let effect = parts.reduce((sum, { alpha, gy }) => sum + alpha * gy, 0);
   const [boron, , , photon] = parts;
   const high = parts[1].gy + parts[2].gy;
@@ -188,7 +255,10 @@ function photonDose(set, doses, minutes) {
       const part = set.high_let_fast_part + (set.low_let_fast_part - set.high_let_fast_part) * share;
       effect += (slow - part * (slow - fast)) * Math.sqrt(a.beta * b.beta) * a.gy * b.gy;
     }
-  const beta = set.photon.beta * (lea(set.repair_slow_min, set.photon_min) - set.low_let_fast_part * (lea(set.repair_slow_min, set.photon_min) - lea(set.repair_fast_min, set.photon_min)));
+  const beta =
+    set.photon.beta *
+    (lea(set.repair_slow_min, set.photon_min) -
+      set.low_let_fast_part * (lea(set.repair_slow_min, set.photon_min) - lea(set.repair_fast_min, set.photon_min)));
   let [low, top] = [0, 1e4];
   for (let step = 0; step < 200; step++) {
     const middle = (low + top) / 2;
@@ -205,24 +275,39 @@ test('an isoeffective dose is that of the components beside it, wherever the poi
   const weights = Object.fromEntries(scene.weights.map(({ region }) => [region, { isoeffective: set.name }]));
   const minutes = 40;
   const factor = 30; // the phantom's dose is per minute
-  const view = encodeURIComponent(JSON.stringify({ override: { dose: { quantity: 'isoeffective', weights, irradiation_min: minutes, factor } } }));
+  const view = encodeURIComponent(
+    JSON.stringify({ override: { dose: { quantity: 'isoeffective', weights, irradiation_min: minutes, factor } } }),
+  );
   let n = 0;
   for (let at = 0; at < 40; at++) {
     const [x, y, z] = [13, 7, 29].map((step, axis) => (((at * step + 0.37 * at * axis) % 80) - 40) * 1.013);
     const { json } = await api(`phantom/dose/probe?room=${room}&view=${view}&x=${x}&y=${y}&z=${z}`);
     if (json.value === null) continue;
     const of = (quantity) => json.components.find((part) => part.quantity === quantity)?.value ?? 0;
-    const expected = photonDose(set, { boron: of('boron'), nitrogen: of('nitrogen'), fast: of('fast'), gamma: of('gamma'), other: of('other') }, minutes);
+    const expected = photonDose(
+      set,
+      { boron: of('boron'), nitrogen: of('nitrogen'), fast: of('fast'), gamma: of('gamma'), other: of('other') },
+      minutes,
+    );
     near(json.value, expected, 2e-6);
     n++;
   }
   assert.ok(n > 10, `${n} points`);
 });
 
-test('of a region mostly outside the grid of the dose figures are bounds, and limits that the rest could decide are not known', { skip: smaller && existsSync(smaller) ? false : 'no made cases on this machine' }, async () => {
-  const sent = await fetch(`${daemon.url}/api/v1/plans?name=smaller`, { method: 'POST', body: readFileSync(smaller), headers: { 'Content-Type': 'application/zip' } });
+test('of a region mostly outside the grid of the dose figures are bounds, and limits that the rest could decide are not known', {
+  skip: smaller && existsSync(smaller) ? false : 'no made cases on this machine',
+}, async () => {
+  const sent = await fetch(`${daemon.url}/api/v1/plans?name=smaller`, {
+    method: 'POST',
+    body: readFileSync(smaller),
+    headers: { 'Content-Type': 'application/zip' },
+  });
   const { id } = await sent.json();
-  const { plan } = await until(async () => (await call(`${daemon.url}/api/v1/jobs/${id}`)).json, (job) => job.state !== 'running');
+  const { plan } = await until(
+    async () => (await call(`${daemon.url}/api/v1/jobs/${id}`)).json,
+    (job) => job.state !== 'running',
+  );
   await openPlan(daemon.url, plan);
   const regions = (await api(plan)).json.regions;
   const { json } = await api(`${plan}/dvh?regions=${regions.map(({ id }) => id)}&metrics=mean,D95%25,D2%25,V5,D1cc&bins=64`);
@@ -232,15 +317,32 @@ test('of a region mostly outside the grid of the dose figures are bounds, and li
   assert.equal(curve.is_partial, true);
   const known = curve.counts_cm3.reduce((all, cm3) => all + cm3, 0);
   near(known, curve.volume_cm3 - curve.missing_cm3, 1e-9);
-  const mean = curve.counts_cm3.reduce((all, cm3, bin) => all + cm3 * (curve.bin_from + (bin + 0.5) * curve.bin_width), 0) / curve.volume_cm3;
+  const mean =
+    curve.counts_cm3.reduce((all, cm3, bin) => all + cm3 * (curve.bin_from + (bin + 0.5) * curve.bin_width), 0) / curve.volume_cm3;
   near(curve.least.mean, mean, 0.02); // the rest without any dose
-  assert.deepEqual([curve.mean, curve.most.mean, curve.metrics['D95%'], curve.least.metrics['D95%'], curve.most.max], [null, null, null, 0, null]);
+  assert.deepEqual(
+    [curve.mean, curve.most.mean, curve.metrics['D95%'], curve.least.metrics['D95%'], curve.most.max],
+    [null, null, null, 0, null],
+  );
   assert.ok(curve.least.max > 0 && curve.most.min > 0 && curve.least.min === 0);
-  assert.ok(curve.least.metrics.V5 <= (100 * known) / curve.volume_cm3 + 1e-9 && curve.most.metrics.V5 >= (100 * curve.missing_cm3) / curve.volume_cm3);
+  assert.ok(
+    curve.least.metrics.V5 <= (100 * known) / curve.volume_cm3 + 1e-9 &&
+      curve.most.metrics.V5 >= (100 * curve.missing_cm3) / curve.volume_cm3,
+  );
   const at = (metric, side, limit) => ({ region: curve.region, quantity: json.quantity, metric, side, limit });
-  const constraints = { a: at('mean', 'at-most', 1e6), b: at('max', 'at-most', curve.least.max * 0.5), c: at('max', 'at-most', curve.least.max * 2), d: at('D95%', 'at-least', 1), e: at('mean', 'at-least', curve.least.mean * 0.99) };
-  const limits = (await api(`${plan}/constraints?view=${encodeURIComponent(JSON.stringify({ override: { constraints } }))}`)).json.constraints;
-  assert.deepEqual(limits.map(({ met }) => met), [null, false, null, null, true]);
+  const constraints = {
+    a: at('mean', 'at-most', 1e6),
+    b: at('max', 'at-most', curve.least.max * 0.5),
+    c: at('max', 'at-most', curve.least.max * 2),
+    d: at('D95%', 'at-least', 1),
+    e: at('mean', 'at-least', curve.least.mean * 0.99),
+  };
+  const limits = (await api(`${plan}/constraints?view=${encodeURIComponent(JSON.stringify({ override: { constraints } }))}`)).json
+    .constraints;
+  assert.deepEqual(
+    limits.map(({ met }) => met),
+    [null, false, null, null, true],
+  );
   assert.ok(limits.every(({ value }) => value === null));
   near(limits[1].least, curve.least.max, 1e-9);
   const text = (await api(`${plan}/dvh?regions=${curve.region}&bins=8&format=csv`)).text.split('\r\n').map((line) => line.split(','));
@@ -260,13 +362,19 @@ test('means of a real plan are those of the planning program', { skip }, async (
 });
 
 test('histograms that an RTDOSE file carries stand beside ours, and ours agree with them', { skip }, async (context) => {
-  const written = spawnSync(process.env.PYTHON ?? '/usr/bin/python3', [resolve('tests/oracle/rtdose_dvh.py'), join(folder, 'stated')], { encoding: 'utf8' });
+  const written = spawnSync(process.env.PYTHON ?? '/usr/bin/python3', [resolve('tests/oracle/rtdose_dvh.py'), join(folder, 'stated')], {
+    encoding: 'utf8',
+  });
   if (written.error || written.status === 77) {
     context.skip('no pydicom or numpy on this machine');
     return;
   }
   assert.equal(written.status, 0, written.stderr);
-  const theirs = written.stdout.trim().split('\n').map((line) => Number(line.split(' ')[2])).sort((a, b) => a - b);
+  const theirs = written.stdout
+    .trim()
+    .split('\n')
+    .map((line) => Number(line.split(' ')[2]))
+    .sort((a, b) => a - b);
   await openPlan(daemon.url, 'stated');
   const ours = [];
   for (const { id } of (await api('stated')).json.doses) {

@@ -10,11 +10,16 @@ const clients = [];
 before(async () => {
   daemon = await startDaemon({ args: ['--gl', 'soft'] });
   api = `${daemon.url}/api/v1`;
-  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length));
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans,
+    (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length),
+  );
   await openPlan(daemon.url, 'phantom');
   home = (await call(`${api}/plans/phantom`)).json.home['3d'];
 });
-afterEach(() => { for (const client of clients.splice(0)) client.cut(); });
+afterEach(() => {
+  for (const client of clients.splice(0)) client.cut();
+});
 after(async () => {
   if (daemon) assert.equal(await daemon.stop(), 0, daemon.log());
 });
@@ -31,7 +36,8 @@ const newRoom = async () => (await call(`${api}/rooms`, 'POST', { plan: 'phantom
 
 /** A camera on a circle around the plan. */
 function at(angle) {
-  const [x, y, z] = home.target_mm, r = Math.hypot(home.position_mm[0] - x, home.position_mm[1] - y);
+  const [x, y, z] = home.target_mm,
+    r = Math.hypot(home.position_mm[0] - x, home.position_mm[1] - y);
   return { camera: { ...home, position_mm: [x + r * Math.sin(angle), y - r * Math.cos(angle), z] } };
 }
 
@@ -40,7 +46,8 @@ async function orbit(room, isOver) {
   const client = await join(room);
   client.send({ type: 'view.open', view: 1, document: { size_px: [640, 480] } });
   await client.frame();
-  const from = client.frames.length, end = Date.now() + 60000;
+  const from = client.frames.length,
+    end = Date.now() + 60000;
   for (let input = 1; !isOver() && Date.now() < end; input++) {
     client.send({ type: 'view.patch', view: 1, input, patch: at(input / 40) });
     await sleep(15);
@@ -58,13 +65,14 @@ const atLeast = 4;
 async function rateAlone() {
   const began = Date.now();
   const n = await orbit(await newRoom(), () => Date.now() - began > 2000);
-  return 1000 * n / (Date.now() - began);
+  return (1000 * n) / (Date.now() - began);
 }
 
 for (const where of ['the same room', 'another room']) {
   test(`a member with eight views of 4096 x 4096 in ${where} leaves others their share`, async () => {
     const alone = await rateAlone();
-    const room = await newRoom(), greedy = await join(where === 'the same room' ? room : await newRoom());
+    const room = await newRoom(),
+      greedy = await join(where === 'the same room' ? room : await newRoom());
     let isOn = true;
     for (let view = 1; view <= 8; view++) greedy.send({ type: 'view.open', view, document: { size_px: [4096, 4096] } });
     const moving = (async () => {
@@ -77,10 +85,14 @@ for (const where of ['the same room', 'another room']) {
     let first = -1;
     const began = Date.now();
     const n = await orbit(room, () => greedy.frames.length - (first = first < 0 ? greedy.frames.length : first) >= 6);
-    const rate = 1000 * n / (Date.now() - began), nLarge = greedy.frames.length - first;
+    const rate = (1000 * n) / (Date.now() - began),
+      nLarge = greedy.frames.length - first;
     isOn = false;
     await moving;
-    assert.ok(n >= atLeast * nLarge || rate >= alone / 2, `${n} small pictures in the time of ${nLarge} large ones, ${rate.toFixed(1)} a second; alone ${alone.toFixed(1)}`);
+    assert.ok(
+      n >= atLeast * nLarge || rate >= alone / 2,
+      `${n} small pictures in the time of ${nLarge} large ones, ${rate.toFixed(1)} a second; alone ${alone.toFixed(1)}`,
+    );
     assert.ok(greedy.frames.length - first >= 6); /* and it got its share, too */
   });
 }
@@ -95,7 +107,8 @@ test('of eight members of a room who turn views of their own none gets less than
   }
   people.slice(1).forEach((client) => client.send({ type: 'follow', follow: false })); // the first presents
   await Promise.all(people.map((client) => client.frame()));
-  const from = people.map((client) => client.frames.length), total = () => people.reduce((sum, client, n) => sum + client.frames.length - from[n], 0);
+  const from = people.map((client) => client.frames.length),
+    total = () => people.reduce((sum, client, n) => sum + client.frames.length - from[n], 0);
   const end = Date.now() + 60000;
   for (let input = 1; total() < 160; input++) {
     assert.ok(Date.now() < end, `${total()} pictures within a minute`);
@@ -109,7 +122,9 @@ test('of eight members of a room who turn views of their own none gets less than
 test('eight scripts that ask for pictures leave a member its share', async () => {
   const alone = await rateAlone();
   const room = await newRoom();
-  let isOn = true, n_drawn = 0, first = -1;
+  let isOn = true,
+    n_drawn = 0,
+    first = -1;
   const scripts = Array.from({ length: 8 }, async (_, i) => {
     for (let n = 0; isOn; n++) {
       const body = JSON.stringify({ format: 'jpeg', view: { size_px: [2048, 2048], ...at(i + n / 10) } });
@@ -121,9 +136,12 @@ test('eight scripts that ask for pictures leave a member its share', async () =>
   });
   const began = Date.now();
   const n = await orbit(room, () => n_drawn - (first = first < 0 ? n_drawn : first) >= 10);
-  const rate = 1000 * n / (Date.now() - began);
+  const rate = (1000 * n) / (Date.now() - began);
   isOn = false;
   const n_scripts = n_drawn - first;
   await Promise.all(scripts);
-  assert.ok(n >= atLeast * n_scripts || rate >= alone / 2, `${n} small pictures in the time of ${n_scripts} of scripts, ${rate.toFixed(1)} a second; alone ${alone.toFixed(1)}`);
+  assert.ok(
+    n >= atLeast * n_scripts || rate >= alone / 2,
+    `${n} small pictures in the time of ${n_scripts} of scripts, ${rate.toFixed(1)} a second; alone ${alone.toFixed(1)}`,
+  );
 });

@@ -10,7 +10,8 @@ import { centreOf, readPng } from './png.mjs';
 
 const bin = join(process.env.BEAMROOM_BIN ?? 'build/release', 'beamroom');
 const pixelsPerMm = 300 / 240;
-const from = (position_mm, up) => JSON.stringify({ camera: { position_mm, target_mm: [0, 0, 0], up, projection: 'parallel', height_mm: 240 } });
+const from = (position_mm, up) =>
+  JSON.stringify({ camera: { position_mm, target_mm: [0, 0, 0], up, projection: 'parallel', height_mm: 240 } });
 const front = from([0, -500, 0], [0, 0, 1]);
 const above = from([0, 0, 500], [0, -1, 0]);
 
@@ -26,8 +27,19 @@ const isDrawn = ([r, g, b]) => Math.max(r, g, b) > 40; // the background is 15, 
 const isGrey = ([r, g, b]) => isDrawn([r, g, b]) && Math.max(r, g, b) - Math.min(r, g, b) <= 4;
 
 // all that is not air is opaque, in one colour
-const tissue = ['--scene', JSON.stringify({ image: { volume: { points: [
-  { value: -450, color: '#ff8000', opacity: 0 }, { value: -450, color: '#ff8000', opacity: 0.9 }] } } })];
+const tissue = [
+  '--scene',
+  JSON.stringify({
+    image: {
+      volume: {
+        points: [
+          { value: -450, color: '#ff8000', opacity: 0 },
+          { value: -450, color: '#ff8000', opacity: 0.9 },
+        ],
+      },
+    },
+  }),
+];
 
 let folder;
 let plan;
@@ -41,7 +53,9 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 /** The picture of `beamroom render` with these options. */
 function picture(view, ...options) {
   const out = join(folder, 'figure.png');
-  const { status, stderr } = spawnSync(bin, ['render', plan, '-o', out, '--size', '400x300', '--view', view, ...options], { encoding: 'utf8' });
+  const { status, stderr } = spawnSync(bin, ['render', plan, '-o', out, '--size', '400x300', '--view', view, ...options], {
+    encoding: 'utf8',
+  });
   assert.equal(status, 0, stderr);
   return readPng(readFileSync(out));
 }
@@ -106,7 +120,8 @@ describe('the figures of the thesis, by one command each', () => {
 
   it('20: dose as colour on a surface leaves its outline as it is', () => {
     const surface = ['--show', 'brain', '--slices', 'none'];
-    const plain = picture(front, ...surface), washed = picture(front, ...surface, ...level(30), '--wash', 'bands=1', '--texture', 'dose');
+    const plain = picture(front, ...surface),
+      washed = picture(front, ...surface, ...level(30), '--wash', 'bands=1', '--texture', 'dose');
     assert.equal(area(washed, isDrawn), area(plain, isDrawn));
     assert.ok(area(plain, isGreen) === 0 && area(washed, isGreen) > 500);
     // the beam comes from above: the dose is in the upper half
@@ -115,7 +130,9 @@ describe('the figures of the thesis, by one command each', () => {
   });
 
   it('21: isodose surfaces lie inside each other', () => {
-    const [low, high] = [30, 60].map((percent) => picture(front, '--show', 'none', '--slices', 'none', ...level(percent), '--isodoses', 'univels'));
+    const [low, high] = [30, 60].map((percent) =>
+      picture(front, '--show', 'none', '--slices', 'none', ...level(percent), '--isodoses', 'univels'),
+    );
     assert.ok(area(high, isDrawn) > 100 && area(low, isDrawn) > area(high, isDrawn) + 500);
     // to the sides and below; above, the dose's mask ends both
     const edges = (shown) => {
@@ -171,14 +188,23 @@ describe('the figures of the thesis, by one command each', () => {
     assertArea(shown, isDrawn, scalp.above);
     // the ring, white, is 50 mm off the middle; between its ticks, on the diagonals
     const isWhite = ([r, g, b]) => Math.min(r, g, b) > 225;
-    for (const [dx, dy] of [[1, 1], [-1, 1], [1, -1], [-1, -1]]) {
+    for (const [dx, dy] of [
+      [1, 1],
+      [-1, 1],
+      [1, -1],
+      [-1, -1],
+    ]) {
       const onWay = Array.from({ length: 400 }, (_, step) => 20 + step / 4);
-      const found = onWay.filter((px) => isWhite(shown.at(Math.floor(200 + dx * px * Math.SQRT1_2), Math.floor(150 + dy * px * Math.SQRT1_2))));
+      const found = onWay.filter((px) =>
+        isWhite(shown.at(Math.floor(200 + dx * px * Math.SQRT1_2), Math.floor(150 + dy * px * Math.SQRT1_2))),
+      );
       const middleMm = found.reduce((sum, px) => sum + px, 0) / found.length / pixelsPerMm;
       assert.ok(Math.abs(middleMm - 50) < 0.8, `a ring ${middleMm} mm off the middle`); // a pixel
     }
     // a perspective camera close by sees less of it than one far away
-    const [near, far] = [0, -300].map((along) => area(picture(eye({ along_mm: along }), '--show', 'brain', '--slices', 'none', '--kind', 'beam'), isDrawn));
+    const [near, far] = [0, -300].map((along) =>
+      area(picture(eye({ along_mm: along }), '--show', 'brain', '--slices', 'none', '--kind', 'beam'), isDrawn),
+    );
     assert.ok(near > 1.5 * far, `${near} ${far}`);
   });
 
@@ -186,7 +212,17 @@ describe('the figures of the thesis, by one command each', () => {
     const across = ['--show', 'scalp,brain', '--slices', 'none', '--clip', 'beam=88'];
     assertArea(picture(front, ...across), isDrawn, scalp.front / 2);
     assertArea(picture(above, ...across, '--no-caps', '--beam-slice', '88'), isGrey, scalp.above + markerBeyondScalp);
-    const pane = picture(JSON.stringify({ camera: { height_mm: 240 } }), '--kind', 'beam-slice', '--show', 'none', '--beam-slice', '88', '--scene', '{"image":{"window":{"center":-500,"width":10}}}');
+    const pane = picture(
+      JSON.stringify({ camera: { height_mm: 240 } }),
+      '--kind',
+      'beam-slice',
+      '--show',
+      'none',
+      '--beam-slice',
+      '88',
+      '--scene',
+      '{"image":{"window":{"center":-500,"width":10}}}',
+    );
     assertArea(pane, isDrawn, scalp.above + markerBeyondScalp);
   });
 
@@ -197,7 +233,14 @@ describe('the figures of the thesis, by one command each', () => {
   });
 
   it('from any direction: the head is as wide from the side as it is long', () => {
-    const options = ['--show', 'scalp', '--slices', 'none', '--view', JSON.stringify({ camera: { projection: 'parallel', height_mm: 240 } })];
+    const options = [
+      '--show',
+      'scalp',
+      '--slices',
+      'none',
+      '--view',
+      JSON.stringify({ camera: { projection: 'parallel', height_mm: 240 } }),
+    ];
     const ways = { '0,0': ellipse(73, 88), '90,0': ellipse(103, 88), '0,90': ellipse(73, 103) };
     for (const [way, expected] of Object.entries(ways)) assertArea(picture('{}', ...options, '--from', way), isDrawn, expected);
   });
@@ -205,7 +248,16 @@ describe('the figures of the thesis, by one command each', () => {
   // Half way between axial and coronal, the scalp is cut along its half axes of 73 mm and of 1 / sqrt(((1 / 88)^2 + (1 / 103)^2) / 2)
   it('an oblique slice, alone and in space', () => {
     const oblique = 1 / Math.sqrt((1 / 88 ** 2 + 1 / 103 ** 2) / 2);
-    const options = ['--plane', '0,1,1@0,0,0', '--show', 'none', '--slices', 'none', '--scene', '{"image":{"window":{"center":-500,"width":10}}}']; // half way from air
+    const options = [
+      '--plane',
+      '0,1,1@0,0,0',
+      '--show',
+      'none',
+      '--slices',
+      'none',
+      '--scene',
+      '{"image":{"window":{"center":-500,"width":10}}}',
+    ]; // half way from air
     const { position_mm: _, ...flat } = JSON.parse(front).camera;
     assertArea(picture(JSON.stringify({ camera: flat }), ...options), isDrawn, ellipse(73, oblique) + markerBeyondScalp);
     const { camera } = JSON.parse(from([0, -500, -500], [0, 0, 1])); // square on

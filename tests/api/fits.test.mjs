@@ -8,7 +8,8 @@ import { after, before, test } from 'node:test';
 import { call, openPlan, startDaemon } from './daemon.mjs';
 import { putDose, putImages, putPlan, putStructs } from './made_dicom.mjs';
 
-const anna = { id: 'A-1001', name: 'Alpha^Anna', birthDate: '19610412' }, berta = { id: 'B-2002', name: 'Beta^Berta', birthDate: '19701231' };
+const anna = { id: 'A-1001', name: 'Alpha^Anna', birthDate: '19610412' },
+  berta = { id: 'B-2002', name: 'Beta^Berta', birthDate: '19701231' };
 const elsewhere = { ...anna, frame: '1.2.49', study: '1.2.39' };
 const second = { uid: '1.2.82', file: 'dose-b.dcm', description: 'B', plan: '1.2.71' };
 
@@ -18,7 +19,10 @@ const beside = {
   same: (folder) => putDose(folder, anna, second),
   frame: (folder) => putDose(folder, elsewhere, second),
   patient: (folder) => putDose(folder, berta, second),
-  plan: (folder) => { putPlan(folder, anna, { uid: '1.2.75', label: 'OTHER', file: 'plan-b.dcm', beam: 'Other', date: '20200101' }); putDose(folder, anna, { ...second, plan: '1.2.75' }); },
+  plan: (folder) => {
+    putPlan(folder, anna, { uid: '1.2.75', label: 'OTHER', file: 'plan-b.dcm', beam: 'Other', date: '20200101' });
+    putDose(folder, anna, { ...second, plan: '1.2.75' });
+  },
   absent: (folder) => putDose(folder, anna, { ...second, plan: '1.2.999' }),
   unit: (folder) => putDose(folder, anna, { ...second, units: 'RELATIVE' }),
   per: (folder) => putDose(folder, anna, { ...second, summation: 'FRACTION' }),
@@ -26,8 +30,17 @@ const beside = {
   'regions-frame': (folder) => putStructs(folder, elsewhere, { uid: '1.2.65', file: 'structs-z.dcm', name: 'Zother' }),
   'regions-patient': (folder) => putStructs(folder, berta, { uid: '1.2.65', file: 'structs-z.dcm', name: 'Zother' }),
   'regions-set': (folder) => putStructs(folder, anna, { uid: '1.2.65', file: 'structs-z.dcm', name: 'Zother' }),
-  'beam-frame': (folder) => putPlan(folder, elsewhere, { uid: '1.2.75', label: 'OTHER', file: 'plan-b.dcm', beam: 'Other', isocenter: '20\\8\\6', date: '20200101' }),
-  'beam-patient': (folder) => putPlan(folder, berta, { uid: '1.2.75', label: 'OTHER', file: 'plan-b.dcm', beam: 'Other', isocenter: '20\\8\\6', date: '20200101' }),
+  'beam-frame': (folder) =>
+    putPlan(folder, elsewhere, {
+      uid: '1.2.75',
+      label: 'OTHER',
+      file: 'plan-b.dcm',
+      beam: 'Other',
+      isocenter: '20\\8\\6',
+      date: '20200101',
+    }),
+  'beam-patient': (folder) =>
+    putPlan(folder, berta, { uid: '1.2.75', label: 'OTHER', file: 'plan-b.dcm', beam: 'Other', isocenter: '20\\8\\6', date: '20200101' }),
   'image-frame': (folder) => putImages(folder, elsewhere, { series: '1.2.55', modality: 'MR', prefix: 'mr' }),
   'target-patient': (folder) => putStructs(folder, berta, { uid: '1.2.65', file: 'structs-z.dcm', name: 'GTV', left: 300 }),
   'image-patient-first': (folder) => putImages(folder, berta, { series: '1.2.11', modality: 'CT', prefix: 'aa', n: 4 }),
@@ -54,21 +67,37 @@ before(async () => {
     plans[name] = (await call(`${api}/plans/p-${name}`)).json;
   }
 });
-after(async () => { await daemon?.stop(); rmSync(root, { recursive: true, force: true }); });
+after(async () => {
+  await daemon?.stop();
+  rmSync(root, { recursive: true, force: true });
+});
 
 const idOf = (list, own) => list.find(({ id }) => id !== own)?.id;
 const first = (name) => plans[name].doses.find((dose) => (plans[name].doses.length > 1 ? dose.name === 'A' : true)).id;
 
-const ct = (name) => plans[name].images.find(({ modality, patient }) => modality === 'CT' && plans[name].patients[patient].masked === plans.alone.patients[0].masked);
+const ct = (name) =>
+  plans[name].images.find(
+    ({ modality, patient }) => modality === 'CT' && plans[name].patients[patient].masked === plans.alone.patients[0].masked,
+  );
 
 /** All that a scene can ask of a dose, regions, a beam and an image. */
 function asking(name) {
-  const plan = plans[name], dose = first(name), other = idOf(plan.doses, dose);
+  const plan = plans[name],
+    dose = first(name),
+    other = idOf(plan.doses, dose);
   const level = { value: 0.9, unit: 'dose', surface: true, line: true, wash: true };
   return {
-    dose: { id: dose, quantity: 'total', levels: { x: level }, lines: { visible: true }, wash: { visible: true }, surfaces: { visible: true }, reference: { kind: 'value', value: 1 },
+    dose: {
+      id: dose,
+      quantity: 'total',
+      levels: { x: level },
+      lines: { visible: true },
+      wash: { visible: true },
+      surfaces: { visible: true },
+      reference: { kind: 'value', value: 1 },
       coverage: { visible: true, region: 'box', low: 0.5, unit: 'dose' },
-      ...(other ? { sum: { [other]: { factor: 1 } }, ...(name === 'plan' ? {} : { compare: { id: other, mode: 'lines' } }) } : {}) }, // doses of two plans may be compared
+      ...(other ? { sum: { [other]: { factor: 1 } }, ...(name === 'plan' ? {} : { compare: { id: other, mode: 'lines' } }) } : {}),
+    }, // doses of two plans may be compared
     constraints: { c: { region: 'box', quantity: 'total', metric: 'mean', limit: 1 } },
     regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { visible: true, texture: 'dose', color: '#ff8800', opacity: 1 }])),
     beam: { looks: Object.fromEntries(plan.beams.map(({ id }) => [id, { visible: true }])) },
@@ -77,8 +106,11 @@ function asking(name) {
 }
 
 async function picture(name, scene, kind, acceptances) {
-  const answer = await fetch(`${api}/plans/p-${name}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
-    body: JSON.stringify({ scene, view: { kind, size_px: [160, 120] }, ...(acceptances ? { acceptances } : {}) }) });
+  const answer = await fetch(`${api}/plans/p-${name}/render`, {
+    method: 'POST',
+    headers: { 'Content-Type': 'application/json' },
+    body: JSON.stringify({ scene, view: { kind, size_px: [160, 120] }, ...(acceptances ? { acceptances } : {}) }),
+  });
   assert.equal(answer.status, 200, answer.ok ? '' : await answer.text());
   return Buffer.from(await answer.arrayBuffer());
 }
@@ -89,7 +121,8 @@ const isUsed = ['same'];
 test('what does not fit changes no pixel of a pane or of a view into space', async () => {
   const expected = Object.fromEntries(await Promise.all(kinds.map(async (kind) => [kind, await picture('alone', asking('alone'), kind)])));
   for (const name of Object.keys(beside).filter((each) => each !== 'alone'))
-    for (const kind of kinds) assert.equal((await picture(name, asking(name), kind)).equals(expected[kind]), !isUsed.includes(name), `${name}, ${kind}`);
+    for (const kind of kinds)
+      assert.equal((await picture(name, asking(name), kind)).equals(expected[kind]), !isUsed.includes(name), `${name}, ${kind}`);
 });
 
 test('a new room begins as without it: image, window, crosshair, dose and how far a view into space reaches', async () => {
@@ -106,13 +139,19 @@ test('a new room begins as without it: image, window, crosshair, dose and how fa
     assert.deepEqual({ ...found, image: { ...found.image, id: expected.image.id } }, expected, name);
     if (!['regions-frame', 'regions-set'].includes(name)) assert.deepEqual(plans[name].bounds_mm, plans.alone.bounds_mm, name);
     if (plans[name].regions.length > 1) continue; // their colours are given in turn
-    for (const kind of kinds) assert.ok((await picture(name, undefined, kind)).equals(await picture('alone', undefined, kind)), `${name}, ${kind}`);
+    for (const kind of kinds)
+      assert.ok((await picture(name, undefined, kind)).equals(await picture('alone', undefined, kind)), `${name}, ${kind}`);
   }
 });
 
 test('no surface of a region and no values of an image of another patient are given out', async () => {
-  const region = plans['target-patient'].regions.find(({ name }) => name === 'GTV').id, image = plans['image-patient-first'].images.find(({ id }) => id !== ct('image-patient-first').id).id;
-  for (const path of [`p-target-patient/regions/${region}/surface`, `p-target-patient/regions/${region}/surface?format=stl`, `p-image-patient-first/images/${image}/histogram`]) {
+  const region = plans['target-patient'].regions.find(({ name }) => name === 'GTV').id,
+    image = plans['image-patient-first'].images.find(({ id }) => id !== ct('image-patient-first').id).id;
+  for (const path of [
+    `p-target-patient/regions/${region}/surface`,
+    `p-target-patient/regions/${region}/surface?format=stl`,
+    `p-image-patient-first/images/${image}/histogram`,
+  ]) {
     const answer = await call(`${api}/plans/${path}`);
     assert.equal(answer.status, 404, `${path}: ${answer.text}`);
     assert.match(answer.text, /another patient/);
@@ -126,54 +165,103 @@ async function numbers(name) {
   const patched = await call(`${api}/rooms/${room}/scene`, 'PATCH', asking(name), { 'If-Match': '*' });
   assert.equal(patched.status, 200, patched.text);
   const ask = async (path) => (await call(`${api}/plans/p-${name}/${path}${path.includes('?') ? '&' : '?'}room=${room}`)).json;
-  const at = 'x=14&y=14&z=9', dose = first(name);
-  const answers = await Promise.all([ask('dvh'), ask(`dose/probe?${at}`), ask(`probe?${at}`),
-    ask(`profile?beam=${plans.alone.beams[0].id}`), ask('coverage'), ask('constraints'), ask('gamma'), ask('dose/levels/x/surface'), ask(`beam?beam=${plans.alone.beams[0].id}`), ask('dose/isolines?view={"kind":"axial"}')]);
+  const at = 'x=14&y=14&z=9',
+    dose = first(name);
+  const answers = await Promise.all([
+    ask('dvh'),
+    ask(`dose/probe?${at}`),
+    ask(`probe?${at}`),
+    ask(`profile?beam=${plans.alone.beams[0].id}`),
+    ask('coverage'),
+    ask('constraints'),
+    ask('gamma'),
+    ask('dose/levels/x/surface'),
+    ask(`beam?beam=${plans.alone.beams[0].id}`),
+    ask('dose/isolines?view={"kind":"axial"}'),
+  ]);
   for (const answer of answers) assert.equal(answer.type, undefined, JSON.stringify(answer));
   const [dvh, dosed, probe, profile, coverage, limits, gamma, isodose, beam, lines] = answers;
   return {
-    dvh: dvh.curves.filter((curve) => curve.dose === dose).map(({ region, min, mean, max, counts_cm3 }) => ({ region, min, mean, max, counts_cm3 })), second: dvh.curves.filter((curve) => curve.dose !== dose).length,
-    body_cm3: dvh.body_cm3, value: dosed.value, percent: dosed.percent, regions: dosed.regions, images: probe.images, inside: probe.regions, doses: probe.doses.filter(({ id }) => id === dose).map(({ value }) => value), others: probe.doses.filter(({ id }) => id !== dose).length,
-    curves: profile.curves.map(({ quantity, values }) => ({ quantity, values })), bands: profile.bands, volume_cm3: coverage.volume_cm3, share: coverage.share, limit: limits.constraints?.[0]?.value,
-    difference: gamma.difference?.mean ?? null, surface: [isodose.triangles, isodose.volume_mm3], crossed: beam.crossed, lines: lines.levels,
+    dvh: dvh.curves
+      .filter((curve) => curve.dose === dose)
+      .map(({ region, min, mean, max, counts_cm3 }) => ({ region, min, mean, max, counts_cm3 })),
+    second: dvh.curves.filter((curve) => curve.dose !== dose).length,
+    body_cm3: dvh.body_cm3,
+    value: dosed.value,
+    percent: dosed.percent,
+    regions: dosed.regions,
+    images: probe.images,
+    inside: probe.regions,
+    doses: probe.doses.filter(({ id }) => id === dose).map(({ value }) => value),
+    others: probe.doses.filter(({ id }) => id !== dose).length,
+    curves: profile.curves.map(({ quantity, values }) => ({ quantity, values })),
+    bands: profile.bands,
+    volume_cm3: coverage.volume_cm3,
+    share: coverage.share,
+    limit: limits.constraints?.[0]?.value,
+    difference: gamma.difference?.mean ?? null,
+    surface: [isodose.triangles, isodose.volume_mm3],
+    crossed: beam.crossed,
+    lines: lines.levels,
   };
 }
 
 test('nor any number of any read-out', async () => {
   const expected = await numbers('alone');
-  assert.ok(expected.value > 0 && expected.dvh.length === 1 && expected.surface[0] > 0 && expected.bands.length > 0, JSON.stringify(expected));
+  assert.ok(
+    expected.value > 0 && expected.dvh.length === 1 && expected.surface[0] > 0 && expected.bands.length > 0,
+    JSON.stringify(expected),
+  );
   const other = await numbers('same');
   assert.ok(Math.abs(other.value - 2 * expected.value) < 1e-6, 'a dose that fits is added');
   assert.equal(other.second, 1);
   for (const name of Object.keys(beside).filter((each) => each !== 'alone' && !isUsed.includes(each))) {
     const found = await numbers(name);
     const free = name === 'plan' ? ['others'] : ['unit', 'per'].includes(name) ? ['others'] : []; // compared or read alone, not added
-    for (const key of Object.keys(expected).filter((each) => !free.includes(each))) assert.deepEqual(found[key], expected[key], `${name}: ${key}`);
+    for (const key of Object.keys(expected).filter((each) => !free.includes(each)))
+      assert.deepEqual(found[key], expected[key], `${name}: ${key}`);
   }
 });
 
 test('the reason is said for each, and the plan says what it needs', async () => {
-  const expected = { frame: ['frame', 'acceptance'], patient: ['patient', 'never'], absent: ['absent', 'acceptance'], apart: ['apart', 'acceptance'] };
+  const expected = {
+    frame: ['frame', 'acceptance'],
+    patient: ['patient', 'never'],
+    absent: ['absent', 'acceptance'],
+    apart: ['apart', 'acceptance'],
+  };
   for (const [name, [relation, needs]] of Object.entries(expected)) {
     const other = `dose:${idOf(plans[name].doses, first(name))}`;
     const pair = plans[name].fits.find(({ thing, with: image }) => thing === other && image === 'image:ct');
     assert.deepEqual([pair?.relation, pair?.needs], [relation, needs], name);
     assert.match(pair.reason, /^Dose “B” is (not|never) used with .*: /, pair.reason);
   }
-  for (const [name, relation] of [['plan', 'plan'], ['unit', 'unit'], ['per', 'per']]) {
+  for (const [name, relation] of [
+    ['plan', 'plan'],
+    ['unit', 'unit'],
+    ['per', 'per'],
+  ]) {
     const other = `dose:${idOf(plans[name].doses, first(name))}`;
-    assert.equal(plans[name].fits.find(({ thing, with: dose }) => thing === other && dose === `dose:${first(name)}`)?.relation, relation, name);
+    assert.equal(
+      plans[name].fits.find(({ thing, with: dose }) => thing === other && dose === `dose:${first(name)}`)?.relation,
+      relation,
+      name,
+    );
   }
 });
 
-test('a person\'s word uses a dose of another frame in that picture alone; of another patient it never counts', async () => {
-  const dose = idOf(plans.frame.doses, first('frame')), words = 'registered in the other program';
+test("a person's word uses a dose of another frame in that picture alone; of another patient it never counts", async () => {
+  const dose = idOf(plans.frame.doses, first('frame')),
+    words = 'registered in the other program';
   const scene = { ...asking('frame'), dose: { ...asking('frame').dose, id: dose, sum: {}, compare: { id: '' } } };
   const acceptances = [{ thing: `dose:${dose}`, with: 'image:ct', reason: 'registered-elsewhere', words }];
   const without = await picture('frame', scene, 'axial');
   assert.ok(!(await picture('frame', scene, 'axial', acceptances)).equals(without));
   assert.ok((await picture('frame', scene, 'axial')).equals(without), 'the next picture without it is as before');
   const patient = idOf(plans.patient.doses, first('patient'));
-  const answer = await call(`${api}/plans/p-patient/render`, 'POST', { scene: { dose: { id: patient } }, acceptances: [{ thing: `dose:${patient}`, with: 'image:ct', reason: 'other', words }] });
+  const answer = await call(`${api}/plans/p-patient/render`, 'POST', {
+    scene: { dose: { id: patient } },
+    acceptances: [{ thing: `dose:${patient}`, with: 'image:ct', reason: 'other', words }],
+  });
   assert.equal(answer.status, 403, answer.text);
 });

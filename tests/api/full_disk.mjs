@@ -22,7 +22,7 @@ export class FullDisk {
     if (!this.isMounted) return this.#limit(daemon, 1);
     const file = openSync(join(this.data, 'ballast'), 'w');
     try {
-      for (let size = 1 << 20; size;) {
+      for (let size = 1 << 20; size; ) {
         try {
           writeSync(file, Buffer.alloc(size));
         } catch (error) {

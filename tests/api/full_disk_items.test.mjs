@@ -14,7 +14,8 @@ db = sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True, timeout=30)
 print(json.dumps({'items': [list(row) for row in db.execute('SELECT id, kind FROM items ORDER BY rowid')], 'records': [list(row) for row in db.execute('SELECT id, kind FROM records ORDER BY n')],
   'audit': [json.loads(row) for row, in db.execute('SELECT row FROM audit ORDER BY n')]}))
 `;
-const onDisk = (data) => JSON.parse(execFileSync('python3', ['-c', read, join(data, 'beamroom.db')], { encoding: 'utf8', maxBuffer: 1 << 26 }));
+const onDisk = (data) =>
+  JSON.parse(execFileSync('python3', ['-c', read, join(data, 'beamroom.db')], { encoding: 'utf8', maxBuffer: 1 << 26 }));
 
 let input = 0;
 async function give(client, message) {
@@ -24,8 +25,12 @@ async function give(client, message) {
 }
 const put = (client, kind, body, of = {}) => give(client, { type: 'item.put', kind, body, ...of });
 const view = { name: 'Here', scene: {}, views: [], layout: { mode: '1', panes: ['3d'] } };
-const items = [['note', { text: 'Edge?' }], ['check', { entry: 'identity', text: 'Plan', state: 'ok' }], ['decision', { decision: 'accept', text: 'As shown' }],
-  ['signature', { name: 'A. Example', meaning: 'reviewed' }]];
+const items = [
+  ['note', { text: 'Edge?' }],
+  ['check', { entry: 'identity', text: 'Plan', state: 'ok' }],
+  ['decision', { decision: 'accept', text: 'As shown' }],
+  ['signature', { name: 'A. Example', meaning: 'reviewed' }],
+];
 
 test('on a full disk no item, decision, signature, saved view or link is accepted; afterwards each is', async (t) => {
   const disk = new FullDisk();
@@ -37,23 +42,35 @@ test('on a full disk no item, decision, signature, saved view or link is accepte
   let daemon = await startDaemon({ data: disk.data, args: ['--stub'] });
   const clients = [];
   try {
-    const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id, api = `${daemon.url}/api/v1/rooms/${room}`;
-    const ann = await Client.enter(daemon.url, room, { name: 'Ann' }), ben = await Client.enter(daemon.url, room, { name: 'Ben' });
+    const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id,
+      api = `${daemon.url}/api/v1/rooms/${room}`;
+    const ann = await Client.enter(daemon.url, room, { name: 'Ann' }),
+      ben = await Client.enter(daemon.url, room, { name: 'Ben' });
     clients.push(ann, ben);
     await ann.ready();
-    await until(() => call(`${api}/record`), ({ status }) => status === 200);
+    await until(
+      () => call(`${api}/record`),
+      ({ status }) => status === 200,
+    );
     const first = (await put(ann, 'note', { text: 'before' })).item;
     await ann.message('saved', (m) => m.state === 'saved');
     disk.fill(daemon.child);
-    const from = ann.messages.length, isFailing = () => ann.messages.slice(from).some((m) => m.type === 'saved' && m.state === 'failing');
+    const from = ann.messages.length,
+      isFailing = () => ann.messages.slice(from).some((m) => m.type === 'saved' && m.state === 'failing');
     const accepted = [first.id];
-    for (let n = 0; n < 300 && !isFailing(); n++) { // what is left of the last block is used up
+    for (let n = 0; n < 300 && !isFailing(); n++) {
+      // what is left of the last block is used up
       const { item } = await put(ann, 'decision', { decision: 'accept', text: `${n} ${'x'.repeat(1900)}` });
       if (item) accepted.push(item.id);
       else await ann.message('saved', (m) => m.state === 'failing', from);
     }
     const heard = ben.messages.length;
-    const refused = (answer, what) => assert.deepEqual([answer.type, answer.problem?.type, answer.problem?.status, answer.problem?.code], ['problem', '/problems/storage', 507, disk.code], what);
+    const refused = (answer, what) =>
+      assert.deepEqual(
+        [answer.type, answer.problem?.type, answer.problem?.status, answer.problem?.code],
+        ['problem', '/problems/storage', 507, disk.code],
+        what,
+      );
     for (const [kind, body] of items) refused(await put(ann, kind, body), kind);
     refused(await put(ann, 'note', { text: 'a reply', parent: first.id }), 'a reply');
     refused(await put(ann, 'note', { text: 'changed' }, { item: first.id, version: 1 }), 'a change');
@@ -65,12 +82,22 @@ test('on a full disk no item, decision, signature, saved view or link is accepte
 
     ann.send({ type: 'scene.patch', input: ++input, patch: { dose: { blood_ppm: 33 } } }); // weights, measures and the camera are shown on
     const { revision } = await ann.message('scene', (m) => m.input === input);
-    const { json: record } = await until(() => call(`${api}/record?export=true`), ({ status }) => status === 200);
+    const { json: record } = await until(
+      () => call(`${api}/record?export=true`),
+      ({ status }) => status === 200,
+    );
     assert.equal(record.saved.state, 'failing');
     assert.ok(record.saved.revision < revision, 'the record says which scene is on the disk');
     const kept = onDisk(disk.data);
-    assert.deepEqual(kept.items.map(([id]) => id), accepted);
-    assert.deepEqual([...record.notes, ...record.decisions].map(({ id }) => id), accepted, 'what is exported is on the disk');
+    assert.deepEqual(
+      kept.items.map(([id]) => id),
+      accepted,
+    );
+    assert.deepEqual(
+      [...record.notes, ...record.decisions].map(({ id }) => id),
+      accepted,
+      'what is exported is on the disk',
+    );
     assert.deepEqual([record.signatures, record.checklist, record.saved_views], [[], [], []]);
 
     disk.free(daemon.child);

@@ -31,8 +31,10 @@ async function record(client) {
 /** Writes until the room is told that the disk is full. Returns the place of that message. */
 async function fill(disk, daemon, client) {
   disk.fill(daemon.child);
-  const from = client.messages.length, told = () => client.messages.findIndex((m, at) => at >= from && m.type === 'saved' && m.state === 'failing');
-  for (let n = 0; n < 300 && told() < 0; n++) { // what is left of the last block is used up
+  const from = client.messages.length,
+    told = () => client.messages.findIndex((m, at) => at >= from && m.type === 'saved' && m.state === 'failing');
+  for (let n = 0; n < 300 && told() < 0; n++) {
+    // what is left of the last block is used up
     await patch(client, 1000 + n);
     await note(client, `${n} ${'x'.repeat(1900)}`);
   }
@@ -43,7 +45,10 @@ async function fill(disk, daemon, client) {
 /** The center of the window that the replay shows at this time. */
 async function shownAt(daemon, client, room, t_ms, center) {
   client.send({ type: 'replay.seek', t_ms });
-  return until(async () => (await call(`${daemon.url}/api/v1/rooms/${room}/scene`)).json.image.window.center, (shown) => shown === center);
+  return until(
+    async () => (await call(`${daemon.url}/api/v1/rooms/${room}/scene`)).json.image.window.center,
+    (shown) => shown === center,
+  );
 }
 
 test('the disk fills up while a meeting is recorded', async (t) => {
@@ -55,7 +60,9 @@ test('the disk fills up while a meeting is recorded', async (t) => {
   }
   let daemon = await startDaemon({ data: disk.data, args: ['--stub'] });
   const kill = async () => {
-    const ended = new Promise((done) => { daemon.child.on('exit', done); });
+    const ended = new Promise((done) => {
+      daemon.child.on('exit', done);
+    });
     daemon.child.kill('SIGKILL');
     await ended;
   };
@@ -63,12 +70,21 @@ test('the disk fills up while a meeting is recorded', async (t) => {
   const stateAt = async (room, id, t_ms) => (await call(`${daemon.url}/api/v1/rooms/${room}/recordings/${id}/state?t_ms=${t_ms}`)).json;
   const lengthOf = async (room, id) => (await list(daemon, room)).find((one) => one.id === id).length_ms;
   try {
-    const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id, ann = await enter(daemon, room);
+    const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id,
+      ann = await enter(daemon, room);
     clients.push(ann);
-    const moments = [], later = async (id, center) => { // a moment at which what was done is recorded, as it is four times a second
-      const done_ms = await lengthOf(room, id);
-      moments.push({ center, t_ms: await until(() => lengthOf(room, id), (length) => length > done_ms + 600) });
-    };
+    const moments = [],
+      later = async (id, center) => {
+        // a moment at which what was done is recorded, as it is four times a second
+        const done_ms = await lengthOf(room, id);
+        moments.push({
+          center,
+          t_ms: await until(
+            () => lengthOf(room, id),
+            (length) => length > done_ms + 600,
+          ),
+        });
+      };
     const whole = await record(ann);
     await note(ann, 'before');
     await saved(ann, await patch(ann, 70));
@@ -91,7 +107,10 @@ test('the disk fills up while a meeting is recorded', async (t) => {
     const cut = await record(ann);
     const before = await patch(ann, 80);
     await saved(ann, before, ann.messages.length - 1);
-    await until(() => stateAt(room, cut, 1e6), (state) => state.scene?.image.window.center === 80);
+    await until(
+      () => stateAt(room, cut, 1e6),
+      (state) => state.scene?.image.window.center === 80,
+    );
     await fill(disk, daemon, ann);
     await patch(ann, 81);
     await kill();
@@ -99,8 +118,15 @@ test('the disk fills up while a meeting is recorded', async (t) => {
     disk.free(daemon.child);
     daemon = await startDaemon({ data: disk.data, args: ['--stub'] });
     const facts = await list(daemon, room);
-    assert.deepEqual(facts.map(({ id, state }) => [id, state]), [[whole, 'stopped'], [cut, 'cut']]);
-    for (const { t_ms, center } of moments) assert.equal((await stateAt(room, whole, t_ms)).scene.image.window.center, center, `${t_ms} ms`);
+    assert.deepEqual(
+      facts.map(({ id, state }) => [id, state]),
+      [
+        [whole, 'stopped'],
+        [cut, 'cut'],
+      ],
+    );
+    for (const { t_ms, center } of moments)
+      assert.equal((await stateAt(room, whole, t_ms)).scene.image.window.center, center, `${t_ms} ms`);
     const texts = (await stateAt(room, whole, moments[1].t_ms)).items.map(({ body }) => body.text);
     assert.ok(texts.includes('before') && !texts.includes('meanwhile'), 'what was refused while the disk was full is not in the recording');
     assert.notEqual((await stateAt(room, cut, facts[1].length_ms)).scene.image.window.center, 81, 'what was never on disk');

@@ -19,18 +19,25 @@ function numbers(seed) {
     seed = (seed + 0x6d2b79f5) | 0;
     let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
     t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return Math.floor(((t ^ (t >>> 14)) >>> 0) / 4294967296 * below);
+    return Math.floor((((t ^ (t >>> 14)) >>> 0) / 4294967296) * below);
   };
 }
 
 /** Damages a file in one of several ways: header bits, any bits, cut short, empty; also inside a gzip stream. */
 function damage(bytes, way, random) {
-  const flip = (b, n, below) => { for (let i = 0; i < n; i++) b[random(Math.min(below, b.length))] ^= 1 << random(8); return b; };
+  const flip = (b, n, below) => {
+    for (let i = 0; i < n; i++) b[random(Math.min(below, b.length))] ^= 1 << random(8);
+    return b;
+  };
   switch (way) {
-    case 0: return flip(Buffer.from(bytes), 4, 400);
-    case 1: return flip(Buffer.from(bytes), 20, bytes.length);
-    case 2: return bytes.subarray(0, random(bytes.length));
-    case 3: return Buffer.alloc(0);
+    case 0:
+      return flip(Buffer.from(bytes), 4, 400);
+    case 1:
+      return flip(Buffer.from(bytes), 20, bytes.length);
+    case 2:
+      return bytes.subarray(0, random(bytes.length));
+    case 3:
+      return Buffer.alloc(0);
     default: {
       if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return flip(Buffer.from(bytes), 2, 64);
       const inner = gunzipSync(bytes);
@@ -42,7 +49,8 @@ function damage(bytes, way, random) {
 function addDamaged(source, tag, n, random) {
   const files = readdirSync(source).filter((name) => /\.(nii|nii\.gz|json|uvh|uv|uv\.gz|qhd|qim|qim\.gz|info)$/.test(name));
   for (let i = 0; i < n; i++) {
-    const plan = join(folder, 'plans', `${tag}-${i}`), name = files[random(files.length)];
+    const plan = join(folder, 'plans', `${tag}-${i}`),
+      name = files[random(files.length)];
     cpSync(source, plan, { recursive: true });
     rmSync(join(plan, name));
     writeFileSync(join(plan, name), damage(readFileSync(join(source, name)), i % 6, random));
@@ -51,12 +59,14 @@ function addDamaged(source, tag, n, random) {
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'beamroom-hostile-'));
-  const plans = join(folder, 'plans'), random = numbers(20);
+  const plans = join(folder, 'plans'),
+    random = numbers(20);
   mkdirSync(plans);
   execFileSync(join(bin, 'beamroom'), ['phantom', join(plans, 'good'), '--size', '48x48x24']);
   addDamaged(join(plans, 'good'), 'phantom', 24, random);
   if (realData) {
-    const head = join(realData, 'sera-head', 'original'), odd = join(realData, 'hostile');
+    const head = join(realData, 'sera-head', 'original'),
+      odd = join(realData, 'hostile');
     if (existsSync(head)) addDamaged(head, 'head', 12, random);
     for (const name of existsSync(odd) ? readdirSync(odd).filter((file) => statSync(join(odd, file)).isFile()) : []) {
       const plan = join(plans, `odd-${name.toLowerCase().replace(/[^a-z0-9]/g, '-')}`);
@@ -65,7 +75,10 @@ before(async () => {
     }
   }
   mkdirSync(join(plans, 'a\nb "<i>'));
-  writeFileSync(join(plans, 'a\nb "<i>', 'plan.json'), '{"format":"beamroom-plan","version":1,"name":"\\u202e<script>","images":[{"id":"ct","path":"/etc/passwd"}]}');
+  writeFileSync(
+    join(plans, 'a\nb "<i>', 'plan.json'),
+    '{"format":"beamroom-plan","version":1,"name":"\\u202e<script>","images":[{"id":"ct","path":"/etc/passwd"}]}',
+  );
   daemon = await startDaemon({ plans: [plans], args: ['--stub', '--max-renderers', '2'] });
   url = daemon.url;
   api = `${url}/api/v1`;
@@ -81,7 +94,11 @@ function exchange(bytes, { where = url, endsAtOnce = false, headOnly = false } =
     const { hostname, port } = new URL(where);
     let got = '';
     const socket = connect(Number(port), hostname);
-    const end = () => { clearTimeout(timer); socket.destroy(); done(got); };
+    const end = () => {
+      clearTimeout(timer);
+      socket.destroy();
+      done(got);
+    };
     const timer = setTimeout(end, 60000);
     socket.setEncoding('latin1');
     socket.on('data', (text) => {
@@ -89,21 +106,31 @@ function exchange(bytes, { where = url, endsAtOnce = false, headOnly = false } =
       if (headOnly && got.includes('\r\n\r\n')) end();
     });
     socket.on('error', () => {});
-    socket.on('close', () => { clearTimeout(timer); done(got); });
+    socket.on('close', () => {
+      clearTimeout(timer);
+      done(got);
+    });
     socket.write(bytes);
     if (endsAtOnce) socket.end();
   });
 }
 
 const get = (target, lines = '') => `GET ${target} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n${lines}\r\n`;
-const post = (lines, body) => Buffer.concat([Buffer.from(`POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\n${lines}\r\n`), Buffer.from(body)]);
+const post = (lines, body) =>
+  Buffer.concat([
+    Buffer.from(`POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\n${lines}\r\n`),
+    Buffer.from(body),
+  ]);
 const statusOf = (answer) => Number(/^HTTP\/1\.[01] (\d+)/.exec(answer)?.[1] ?? 0);
 const openFiles = () => readdirSync(`/proc/${daemon.child.pid}/fd`).length;
 
 describe('a stranger on the line', () => {
   test('is refused with a problem that says what is wrong with a request, and nothing else happens', async () => {
-    const handshake = (room, { drop = '', more = '' } = {}) => ['Connection: Upgrade', 'Upgrade: websocket', 'Sec-WebSocket-Version: 13', 'Sec-WebSocket-Key: AAECAwQFBgcICQoLDA0ODw==']
-      .reduce((text, line) => (drop && line.startsWith(drop) ? text : `${text}${line}\r\n`), `GET /api/v1/rooms/${room}/ws HTTP/1.1\r\nHost: localhost\r\n`) + `${more}\r\n`;
+    const handshake = (room, { drop = '', more = '' } = {}) =>
+      ['Connection: Upgrade', 'Upgrade: websocket', 'Sec-WebSocket-Version: 13', 'Sec-WebSocket-Key: AAECAwQFBgcICQoLDA0ODw=='].reduce(
+        (text, line) => (drop && line.startsWith(drop) ? text : `${text}${line}\r\n`),
+        `GET /api/v1/rooms/${room}/ws HTTP/1.1\r\nHost: localhost\r\n`,
+      ) + `${more}\r\n`;
     const room = (await call(`${api}/rooms`, 'POST', { plan: 'good' })).json.id;
     const cases = [
       ['a header of 200 KB', get('/healthz', `X: ${'a'.repeat(200000)}\r\n`), 431, /32768 bytes/],
@@ -128,7 +155,12 @@ describe('a stranger on the line', () => {
       ['a NUL in JSON', post('Content-Length: 23\r\n', '{"plan":"good\\u0000xy"}'), 400, /u0000/],
       ['200 KB of brackets', post('Content-Length: 200000\r\n', '['.repeat(200000)), 400, /nested/],
       ['a handshake without a key', handshake(room, { drop: 'Sec-WebSocket-Key' }), 400, /Sec-WebSocket-Key is ""/],
-      ['a handshake of a version nobody knows', handshake(room, { drop: 'Sec-WebSocket-Version', more: 'Sec-WebSocket-Version: 8\r\n' }), 426, /is "8"; expected is 13/],
+      [
+        'a handshake of a version nobody knows',
+        handshake(room, { drop: 'Sec-WebSocket-Version', more: 'Sec-WebSocket-Version: 8\r\n' }),
+        426,
+        /is "8"; expected is 13/,
+      ],
       ['a handshake that does not say Upgrade', handshake(room, { drop: 'Upgrade' }), 426, /first request/],
       ['a handshake whose Connection does not', handshake(room, { drop: 'Connection' }), 426, /Connection is ""/],
       ['a handshake for a room that is not there', handshake('zzzz-zzzz'), 404, /no such room/],
@@ -139,12 +171,18 @@ describe('a stranger on the line', () => {
       ['a handshake with chunks', handshake(room, { more: 'Transfer-Encoding: chunked\r\n' }), 400, /announces a body/],
       ['a handshake with two Hosts', handshake(room, { more: 'Host: localhost\r\n' }), 400, /Host is there 2 times/],
       ['a handshake to somebody else', handshake(room).replace('Host: localhost', 'Host: evil.example'), 421, /evil\.example/],
-      ['a handshake of two origins', handshake(room, { more: 'Origin: http://localhost\r\nOrigin: http://evil.example\r\n' }), 400, /Origin is there 2 times/],
+      [
+        'a handshake of two origins',
+        handshake(room, { more: 'Origin: http://localhost\r\nOrigin: http://evil.example\r\n' }),
+        400,
+        /Origin is there 2 times/,
+      ],
       ['a handshake of another page', handshake(room, { more: 'Origin: http://evil.example\r\n' }), 403, /evil\.example/],
       ['a handshake with 13 KB of cookies', handshake(room, { more: `Cookie: ${'a'.repeat(13000)}\r\n` }), 431, /12288/],
     ];
     for (const [what, bytes, status, words] of cases) {
-      const answer = await exchange(bytes), [head, body] = [answer.slice(0, answer.indexOf('\r\n\r\n')), answer.slice(answer.indexOf('\r\n\r\n') + 4)];
+      const answer = await exchange(bytes),
+        [head, body] = [answer.slice(0, answer.indexOf('\r\n\r\n')), answer.slice(answer.indexOf('\r\n\r\n') + 4)];
       assert.equal(statusOf(answer), status, `${what}: ${answer.slice(0, 200)}`);
       assert.match(head, /content-type: application\/problem\+json/i, what);
       const problem = parseStrict(body);
@@ -167,7 +205,8 @@ describe('a stranger on the line', () => {
       ['a later request of another version', `${first}GET /healthz HTTP/9.9\r\nHost: localhost\r\n\r\n`, [505]],
     ];
     for (const [what, bytes, expected] of cases) {
-      const answer = await exchange(bytes), last = [...answer.matchAll(/HTTP\/1\.1 \d{3} [^]*?(?=HTTP\/1\.1 \d{3} |$)/g)].at(-1)?.[0] ?? '';
+      const answer = await exchange(bytes),
+        last = [...answer.matchAll(/HTTP\/1\.1 \d{3} [^]*?(?=HTTP\/1\.1 \d{3} |$)/g)].at(-1)?.[0] ?? '';
       assert.ok(expected.includes(statusOf(last)), `${what}: ${last.slice(0, 100)}`);
     }
     assert.equal((await call(`${url}/healthz`)).status, 200);
@@ -175,8 +214,15 @@ describe('a stranger on the line', () => {
 
   test('that gave its own name our address gets nothing, whichever request of a connection it is', async () => {
     const evil = (path) => get(path).replace('Host: localhost', 'Host: evil.example:8080');
-    for (const bytes of [evil('/'), evil('/api/v1/plans'), evil('/healthz'), `GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n${evil('/api/v1/plans')}`, `GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n${evil('/')}`]) {
-      const answer = await exchange(bytes), last = answer.slice(answer.lastIndexOf('HTTP/1.1'));
+    for (const bytes of [
+      evil('/'),
+      evil('/api/v1/plans'),
+      evil('/healthz'),
+      `GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n${evil('/api/v1/plans')}`,
+      `GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n${evil('/')}`,
+    ]) {
+      const answer = await exchange(bytes),
+        last = answer.slice(answer.lastIndexOf('HTTP/1.1'));
       assert.equal(statusOf(last), 421);
       const problem = parseStrict(last.slice(last.indexOf('\r\n\r\n') + 4));
       assert.equal(problem.type, '/problems/misdirected');
@@ -184,7 +230,11 @@ describe('a stranger on the line', () => {
     }
     const named = await startDaemon({ plans: [], args: ['--stub', '--public-name', 'beamroom.example', '--public-name', 'other.example'] });
     try {
-      for (const [host, status] of [['beamroom.example', 200], ['Other.Example:443', 200], ['evil.example', 421]])
+      for (const [host, status] of [
+        ['beamroom.example', 200],
+        ['Other.Example:443', 200],
+        ['evil.example', 421],
+      ])
         assert.equal(statusOf(await exchange(get('/healthz').replace('localhost', host), { where: named.url })), status, host);
     } finally {
       await named.stop();
@@ -202,7 +252,9 @@ describe('a stranger on the line', () => {
   });
 
   test('hears that a body is too large before it sends one, when it waits to be told', async () => {
-    const answer = await exchange('POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Type: application/json\r\nContent-Length: 2000000000\r\n\r\n');
+    const answer = await exchange(
+      'POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Type: application/json\r\nContent-Length: 2000000000\r\n\r\n',
+    );
     assert.equal(statusOf(answer), 413);
     assert.match(answer, /application\/problem\+json/);
     assert.doesNotMatch(answer, / 100 | 408 /); /* neither 100 Continue nor waiting for the body */
@@ -213,8 +265,13 @@ describe('a stranger on the line', () => {
   });
 
   test('is answered in order when it asks for several things at once', async () => {
-    const answer = await exchange('GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\nGET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n' + get('/healthz'));
-    assert.deepEqual([...answer.matchAll(/HTTP\/1\.1 (\d+)/g)].map((m) => m[1]), ['200', '404', '200']);
+    const answer = await exchange(
+      'GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\nGET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n' + get('/healthz'),
+    );
+    assert.deepEqual(
+      [...answer.matchAll(/HTTP\/1\.1 (\d+)/g)].map((m) => m[1]),
+      ['200', '404', '200'],
+    );
   });
 
   test('cannot use up the descriptors with connections that say nothing or half of it', async () => {
@@ -229,17 +286,36 @@ describe('a stranger on the line', () => {
     await sleep(300);
     assert.ok(openFiles() <= before_ + 64 + 3 * 200, `${openFiles()} descriptors`);
     for (const socket of sockets) socket.destroy();
-    assert.ok(await until(async () => openFiles(), (n) => n <= before_ + 4) <= before_ + 4, 'who hangs up frees its place');
+    assert.ok(
+      (await until(
+        async () => openFiles(),
+        (n) => n <= before_ + 4,
+      )) <=
+        before_ + 4,
+      'who hangs up frees its place',
+    );
     assert.equal((await call(`${url}/healthz`)).status, 200);
-    assert.ok(daemon.log().split('\n').filter((line) => line.includes('too many connections')).length <= 1, 'a flood is one line in the log');
+    assert.ok(
+      daemon
+        .log()
+        .split('\n')
+        .filter((line) => line.includes('too many connections')).length <= 1,
+      'a flood is one line in the log',
+    );
   });
 
   test('gets no more than some seconds of drawing at a time; the rest is told when to come again', async () => {
     assert.equal((await openPlan(url, 'good')).state, 'done');
-    const ask = () => fetch(`${api}/plans/good/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
-      body: '{"view":{"size_px":[2048,2048]}}' });
-    let answers, refused = [];
-    for (let round = 0; round < 5 && !refused.length; round++) { /* none is refused when requests arrive more slowly than they are drawn */
+    const ask = () =>
+      fetch(`${api}/plans/good/render`, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
+        body: '{"view":{"size_px":[2048,2048]}}',
+      });
+    let answers,
+      refused = [];
+    for (let round = 0; round < 5 && !refused.length; round++) {
+      /* none is refused when requests arrive more slowly than they are drawn */
       answers = await Promise.all(Array.from({ length: 30 }, ask));
       refused = answers.filter((answer) => answer.status === 503);
       assert.ok(answers.filter((answer) => answer.status === 200).length >= 8); /* 8 x 2048 x 2048 is 32 << 20 */
@@ -273,12 +349,31 @@ describe('a socket that misbehaves', () => {
     ['a length in more bytes than it needs', 1002, (c) => c.writeRaw(Buffer.from([0x81, 0xfe, 0, 2, 0, 0, 0, 0, 0x7b, 0x7d]))],
     ['a reserved bit', 1002, (c) => c.writeRaw(Buffer.from([0xc1, 0x82, 0, 0, 0, 0, 0x7b, 0x7d]))],
     ['a close with a code that is not sent', 1002, (c) => c.write(8, Buffer.from([1005 >> 8, 1005 & 255]))],
-    ['300 pings at once', 1008, (c) => { for (let i = 0; i < 300; i++) c.write(9, Buffer.alloc(0)); }],
-    ['64 MiB at once', 1008, (c) => { for (let i = 0; i < 1024; i++) c.write(1, Buffer.alloc(65536, ' ')); }, true], /* more than the limit of 14 s, however slow the machine */
+    [
+      '300 pings at once',
+      1008,
+      (c) => {
+        for (let i = 0; i < 300; i++) c.write(9, Buffer.alloc(0));
+      },
+    ],
+    [
+      '64 MiB at once',
+      1008,
+      (c) => {
+        for (let i = 0; i < 1024; i++) c.write(1, Buffer.alloc(65536, ' '));
+      },
+      true,
+    ] /* more than the limit of 14 s, however slow the machine */,
     ['text that is no UTF-8', 1007, (c) => c.write(1, Buffer.from([0x22, 0xff, 0xfe, 0x22]))],
     ['a surrogate in UTF-8', 1007, (c) => c.write(1, Buffer.from([0x22, 0xed, 0xa0, 0x80, 0x22]))],
     ['64 KiB and one byte', 1009, (c) => c.write(1, Buffer.alloc(65537, ' '))],
-    ['seventy fragments of 1000 bytes', 1009, (c) => { for (let i = 0; i < 70; i++) c.write(i ? 0 : 1, Buffer.alloc(1000, ' '), { isFinal: false }); }],
+    [
+      'seventy fragments of 1000 bytes',
+      1009,
+      (c) => {
+        for (let i = 0; i < 70; i++) c.write(i ? 0 : 1, Buffer.alloc(1000, ' '), { isFinal: false });
+      },
+    ],
   ];
   for (const [what, code, act, sendsOn] of cases)
     test(`${what} closes it with ${code}`, async () => {
@@ -287,7 +382,11 @@ describe('a socket that misbehaves', () => {
       await client.message('welcome');
       act(client);
       await client.until(() => client.closeCode, 'the end');
-      if (sendsOn) assert.ok([code, 1006].includes(client.closeCode), `closed with ${client.closeCode}`); /* 1006: the rest of its data reached a closed socket */
+      if (sendsOn)
+        assert.ok(
+          [code, 1006].includes(client.closeCode),
+          `closed with ${client.closeCode}`,
+        ); /* 1006: the rest of its data reached a closed socket */
       else assert.equal(client.closeCode, code);
     });
 
@@ -295,7 +394,11 @@ describe('a socket that misbehaves', () => {
     const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
     client.send({ type: 'hello', protocol: 2 });
     await client.message('welcome');
-    client.send({ type: 'view.open', view: 1, document: { kind: '3d', size_px: [64, 64], camera: { position_mm: [1, 2, 3], target_mm: [1, 2, 3], up: [0, 0, 1] } } });
+    client.send({
+      type: 'view.open',
+      view: 1,
+      document: { kind: '3d', size_px: [64, 64], camera: { position_mm: [1, 2, 3], target_mm: [1, 2, 3], up: [0, 0, 1] } },
+    });
     const problem = await client.message('problem');
     assert.equal(problem.view, 1);
     assert.equal(problem.problem.type, '/problems/validation');
@@ -315,11 +418,16 @@ describe('a socket that misbehaves', () => {
 describe('a damaged plan', () => {
   test('is listed with its parts or with the reason, and opened or refused with a sentence; another plan is not touched', async () => {
     const expected = readdirSync(join(folder, 'plans')).length;
-    const { plans } = await until(async () => (await call(`${api}/plans`)).json,
-      (list) => list.plans.length === expected && list.plans.every((p) => p.parts.length || p.reason));
+    const { plans } = await until(
+      async () => (await call(`${api}/plans`)).json,
+      (list) => list.plans.length === expected && list.plans.every((p) => p.parts.length || p.reason),
+    );
     assert.equal(plans.length, expected);
     const room = (await call(`${api}/rooms`, 'POST', { plan: 'good' })).json.id;
-    const generation = daemon.log().split('\n').filter((line) => line.includes('plan good: ready')).length;
+    const generation = daemon
+      .log()
+      .split('\n')
+      .filter((line) => line.includes('plan good: ready')).length;
     let opened = 0;
     for (const plan of plans.filter((p) => p.id !== 'good')) {
       if (plan.state === 'unreadable') {
@@ -337,7 +445,14 @@ describe('a damaged plan', () => {
     }
     assert.ok(opened > 5, `${opened} plans were worth opening`);
     assert.equal((await call(`${api}/rooms/${room}`)).json.renderer, 'ready');
-    assert.equal(daemon.log().split('\n').filter((line) => line.includes('plan good: ready')).length, generation, 'the good plan was never restarted');
+    assert.equal(
+      daemon
+        .log()
+        .split('\n')
+        .filter((line) => line.includes('plan good: ready')).length,
+      generation,
+      'the good plan was never restarted',
+    );
     assert.doesNotMatch(daemon.log(), /signal \d/);
   });
 
@@ -345,6 +460,12 @@ describe('a damaged plan', () => {
     const plan = (await call(`${api}/plans`)).json.plans.find((p) => /passwd/.test(p.reason ?? ''));
     assert.match(plan.id, /^[a-z0-9-]{1,63}$/);
     assert.equal(plan.state, 'unreadable');
-    assert.ok(daemon.log().split('\n').every((line) => line === '' || /^\d{4}-\d\d-\d\dT/.test(line)), 'no name breaks a line of the log');
+    assert.ok(
+      daemon
+        .log()
+        .split('\n')
+        .every((line) => line === '' || /^\d{4}-\d\d-\d\dT/.test(line)),
+      'no name breaks a line of the log',
+    );
   });
 });

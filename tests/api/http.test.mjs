@@ -14,14 +14,20 @@ let daemon, url, api, plan, broken;
 before(async () => {
   broken = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
   mkdirSync(join(broken, 'broken'));
-  writeFileSync(join(broken, 'broken', 'plan.json'), '{"format":"beamroom-plan","version":1,"images":[{"id":"ct","path":"../../etc/passwd"}]}');
+  writeFileSync(
+    join(broken, 'broken', 'plan.json'),
+    '{"format":"beamroom-plan","version":1,"images":[{"id":"ct","path":"../../etc/passwd"}]}',
+  );
   mkdirSync(join(broken, 'letters'));
   writeFileSync(join(broken, 'letters', 'letter.txt'), 'no plan');
   daemon = await startDaemon({ plans: [demo, broken] });
   url = daemon.url;
   api = `${url}/api/v1`;
   plan = `${api}/plans/phantom`;
-  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 3 && plans.every((p) => p.parts.length || p.reason));
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans,
+    (plans) => plans.length === 3 && plans.every((p) => p.parts.length || p.reason),
+  );
 });
 after(async () => {
   await daemon?.stop();
@@ -40,7 +46,10 @@ function assertProblem(answer, status, type, pointer) {
 describe('the server', () => {
   test('says that it is alive, what draws, and what it is', async () => {
     assert.equal((await call(`${url}/healthz`)).text, 'ok\n');
-    const ready = await until(() => call(`${url}/readyz`), (a) => a.status === 200);
+    const ready = await until(
+      () => call(`${url}/readyz`),
+      (a) => a.status === 200,
+    );
     assert.equal(ready.status, 200, ready.text);
     assert.match(ready.json.gl.back_end, /^(egl-device|egl-surfaceless|osmesa|soft)$/);
     const version = await call(`${api}/version`);
@@ -79,7 +88,8 @@ describe('the server', () => {
     assert.match(metrics.text, /^beamroom_http_requests_total\{code="2xx"\} [1-9]/m);
     assert.match(metrics.text, /^beamroom_plans\{state="unreadable"\} 2$/m);
     assert.doesNotMatch(metrics.text, /phantom/);
-    for (const line of metrics.text.trim().split('\n')) assert.match(line, /^(# (HELP|TYPE) beamroom_\w+ .+|beamroom_\w+(\{[^}]*\})? -?[\d.e+-]+)$/);
+    for (const line of metrics.text.trim().split('\n'))
+      assert.match(line, /^(# (HELP|TYPE) beamroom_\w+ .+|beamroom_\w+(\{[^}]*\})? -?[\d.e+-]+)$/);
   });
 
   test('describes every address it has, and has every address it describes', async () => {
@@ -105,7 +115,9 @@ describe('the server', () => {
     socket.on('data', (bytes) => {
       got += bytes;
       if (/\r\n\r\nok\n$/.test(got))
-        socket.write('GET /api/v1/rooms/x/ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n');
+        socket.write(
+          'GET /api/v1/rooms/x/ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n',
+        );
     });
     socket.write('GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n');
     await closed;
@@ -145,11 +157,14 @@ describe('a plan', () => {
     assert.equal(job.percent, 100);
     const { json } = await call(plan);
     assert.equal(json.state, 'ready');
-    assert.deepEqual(json.regions.map((r) => r.name), ['scalp', 'cranium', 'brain', 'target', 'tumour']);
+    assert.deepEqual(
+      json.regions.map((r) => r.name),
+      ['scalp', 'cranium', 'brain', 'target', 'tumour'],
+    );
     assert.equal(json.regions.find((r) => r.name === 'brain').parent, 'cranium');
     // modified Snyder head: brain ellipsoid 6 x 9 x 6.5 cm, less the voxels that are target and tumour
     const inside = json.regions.filter((r) => ['brain', 'target', 'tumour'].includes(r.name)).reduce((sum, r) => sum + r.volume_cm3, 0);
-    const ellipsoid = 4 / 3 * Math.PI * 6 * 9 * 6.5;
+    const ellipsoid = (4 / 3) * Math.PI * 6 * 9 * 6.5;
     assert.ok(Math.abs(inside / ellipsoid - 1) < 0.01, `${inside} cm3, expected ${ellipsoid}`);
     assert.equal(json.images[0].unit, 'HU');
     assert.deepEqual(json.doses[0].components.map((c) => c.quantity).sort(), ['boron', 'fast', 'gamma', 'nitrogen']);
@@ -157,7 +172,8 @@ describe('a plan', () => {
   });
 
   test('gives a picture as PNG and JPEG of the size asked for', async () => {
-    const ask = (body) => fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) });
+    const ask = (body) =>
+      fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) });
     const png = await ask({ view: { size_px: [320, 200] } });
     assert.equal(png.status, 200);
     assert.equal(png.headers.get('content-type'), 'image/png');
@@ -169,20 +185,38 @@ describe('a plan', () => {
   });
 
   test('is a pure function of plan, scene and view: the same request gives the same bytes', async () => {
-    const ask = async () => Buffer.from(await (await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
-      body: JSON.stringify({ view: { size_px: [200, 150] } }) })).arrayBuffer());
+    const ask = async () =>
+      Buffer.from(
+        await (
+          await fetch(`${plan}/render`, {
+            method: 'POST',
+            headers: { 'Content-Type': 'application/json' },
+            body: JSON.stringify({ view: { size_px: [200, 150] } }),
+          })
+        ).arrayBuffer(),
+      );
     assert.ok((await ask()).equals(await ask()));
   });
 
-  test('shows the tumour, which lies on the patient\'s left, on the right of a picture from the front and of an axial picture', async () => {
+  test("shows the tumour, which lies on the patient's left, on the right of a picture from the front and of an axial picture", async () => {
     const { regions } = (await call(plan)).json;
     const tumour = regions.find((r) => r.name === 'tumour');
     assert.ok(tumour.center_mm[0] > 10, 'the demo tumour is on the left: L > 0');
-    const scene = { regions: Object.fromEntries(regions.map((r) => [r.id, { visible: r.id === tumour.id, opacity: 1, color: '#00ff00' }])),
-      image: { slices: { axial: { visible: false } } } };
+    const scene = {
+      regions: Object.fromEntries(regions.map((r) => [r.id, { visible: r.id === tumour.id, opacity: 1, color: '#00ff00' }])),
+      image: { slices: { axial: { visible: false } } },
+    };
     const isGreen = ([r, g, b]) => g > 60 && g > 1.5 * r && g > 1.5 * b;
-    const render = async (view) => readPng(await (await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
-      body: JSON.stringify({ scene, view: { size_px: [300, 300], ...view } }) })).arrayBuffer());
+    const render = async (view) =>
+      readPng(
+        await (
+          await fetch(`${plan}/render`, {
+            method: 'POST',
+            headers: { 'Content-Type': 'application/json' },
+            body: JSON.stringify({ scene, view: { size_px: [300, 300], ...view } }),
+          })
+        ).arrayBuffer(),
+      );
     const front = centreOf(await render({ kind: '3d' }), isGreen);
     assert.ok(front.n > 50, 'the tumour is seen');
     assert.ok(front.x > 160, `from the front the tumour is at x ${front.x} of 300`);
@@ -216,11 +250,17 @@ describe('a plan', () => {
     const cells = (await call(`${plan}/regions/brain/surface?algorithm=eight-cell`)).json;
     assert.equal(cells.algorithm, 'eight-cell');
     assert.equal(cells.univel_volume_mm3, json.univel_volume_mm3);
-    assert.ok(cells.volume_mm3 < json.volume_mm3 && cells.triangles / json.triangles > 0.5 && cells.triangles / json.triangles < 0.85, JSON.stringify(cells));
+    assert.ok(
+      cells.volume_mm3 < json.volume_mm3 && cells.triangles / json.triangles > 0.5 && cells.triangles / json.triangles < 0.85,
+      JSON.stringify(cells),
+    );
     const smooth = (await call(`${plan}/regions/brain/surface?algorithm=smooth`)).json;
     assert.equal(smooth.algorithm, 'smooth');
     assert.equal(smooth.triangles, json.triangles);
-    assert.ok(Math.abs(smooth.volume_mm3 / json.univel_volume_mm3 - 1) < 0.0015 && smooth.area_mm2 < 0.95 * json.area_mm2, JSON.stringify(smooth));
+    assert.ok(
+      Math.abs(smooth.volume_mm3 / json.univel_volume_mm3 - 1) < 0.0015 && smooth.area_mm2 < 0.95 * json.area_mm2,
+      JSON.stringify(smooth),
+    );
     assertProblem(await call(`${plan}/regions/liver/surface`), 404, 'not-found');
     assertProblem(await call(`${plan}/regions/brain/surface?algorithm=magic`), 422, 'validation', '/algorithm');
   });
@@ -233,7 +273,10 @@ describe('a plan', () => {
     assert.ok(Math.abs(univels.frames_per_second - 1000 / univels.draw_ms) < 1e-6 * univels.frames_per_second);
     for (const representation of ['points', 'solid']) {
       const points = await shape(`representation=${representation}`);
-      assert.ok(points.points > 100 && points.triangles === 0 && points.area_mm2 === null && points.draw_ms === undefined, JSON.stringify(points));
+      assert.ok(
+        points.points > 100 && points.triangles === 0 && points.area_mm2 === null && points.draw_ms === undefined,
+        JSON.stringify(points),
+      );
     }
     assert.ok((await shape('representation=outline')).lines > 3);
     const fan = await shape('representation=fan');
@@ -249,7 +292,12 @@ describe('a plan', () => {
     const { json: facts } = await call(`${plan}/regions/tumour/surface`);
     const file = async (query) => {
       const answer = await fetch(`${plan}/regions/tumour/surface?${query}`);
-      return { status: answer.status, type: answer.headers.get('content-type'), name: answer.headers.get('content-disposition'), bytes: Buffer.from(await answer.arrayBuffer()) };
+      return {
+        status: answer.status,
+        type: answer.headers.get('content-type'),
+        name: answer.headers.get('content-disposition'),
+        bytes: Buffer.from(await answer.arrayBuffer()),
+      };
     };
     const stl = await file('format=stl');
     assert.deepEqual([stl.status, stl.type, stl.name], [200, 'model/stl', 'attachment; filename="phantom-tumour.stl"']);
@@ -280,32 +328,52 @@ describe('a plan', () => {
   });
 
   test('gives an oblique plane: square to the patient it is that slice, to the byte', async () => {
-    const camera = { target_mm: [3, -4, 5], height_mm: 200 }, size_px = [240, 180];
-    const image = { slices: { coronal: { position_mm: 12.5 } }, obliques: { mine: { origin_mm: [40, 12.5, -7], normal: [0, -3, 0] }, other: { origin_mm: [0, 0, 0], normal: [1, 1, 0] } } };
+    const camera = { target_mm: [3, -4, 5], height_mm: 200 },
+      size_px = [240, 180];
+    const image = {
+      slices: { coronal: { position_mm: 12.5 } },
+      obliques: { mine: { origin_mm: [40, 12.5, -7], normal: [0, -3, 0] }, other: { origin_mm: [0, 0, 0], normal: [1, 1, 0] } },
+    };
     const picture = async (view) => {
-      const answer = await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
-        body: JSON.stringify({ scene: { image }, view: { size_px, camera, ...view } }) });
+      const answer = await fetch(`${plan}/render`, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ scene: { image }, view: { size_px, camera, ...view } }),
+      });
       assert.equal(answer.status, 200);
       return Buffer.from(await answer.arrayBuffer());
     };
     const slice = await picture({ kind: 'coronal' });
     assert.ok(slice.equals(await picture({ kind: 'oblique', plane: 'mine' })));
     assert.ok(!slice.equals(await picture({ kind: 'oblique', plane: 'other' })));
-    assert.ok((await picture({ kind: 'axial' })).equals(await picture({ kind: 'oblique', plane: 'gone' })), 'a plane that is not there is the axial slice');
+    assert.ok(
+      (await picture({ kind: 'axial' })).equals(await picture({ kind: 'oblique', plane: 'gone' })),
+      'a plane that is not there is the axial slice',
+    );
   });
 
   test('tells how often values of an image are', async () => {
     const { images } = (await call(plan)).json;
-    const image = `${plan}/images/${images[0].id}`, n = images[0].grid.size.reduce((product, side) => product * side);
+    const image = `${plan}/images/${images[0].id}`,
+      n = images[0].grid.size.reduce((product, side) => product * side);
     const whole = (await call(`${image}/histogram`)).json;
     assert.deepEqual([whole.image, whole.unit, whole.counts.length, whole.n + whole.n_left_out], [images[0].id, 'HU', 256, n]);
-    assert.equal(whole.counts.reduce((sum, count) => sum + count), whole.n);
+    assert.equal(
+      whole.counts.reduce((sum, count) => sum + count),
+      whole.n,
+    );
     const percents = ['0.1', '1', '50', '99', '99.9'];
     assert.deepEqual(Object.keys(whole.percentiles).sort(), percents);
     const ascending = [whole.low, ...percents.map((percent) => whole.percentiles[percent]), whole.high];
-    assert.deepEqual(ascending, [...ascending].sort((a, b) => a - b));
+    assert.deepEqual(
+      ascending,
+      [...ascending].sort((a, b) => a - b),
+    );
     const halves = (await call(`${image}/histogram?bins=128`)).json.counts;
-    assert.deepEqual(halves, halves.map((_, bin) => whole.counts[2 * bin] + whole.counts[2 * bin + 1]));
+    assert.deepEqual(
+      halves,
+      halves.map((_, bin) => whole.counts[2 * bin] + whole.counts[2 * bin + 1]),
+    );
     assertProblem(await call(`${image}/histogram?bins=0`), 422, 'validation', '/bins');
     assertProblem(await call(`${image}/histogram?bins=2.5`), 422, 'validation', '/bins');
     assertProblem(await call(`${plan}/images/none/histogram`), 404, 'not-found', '/image');
@@ -313,11 +381,12 @@ describe('a plan', () => {
 
   test('tells the mean of an image within an ellipse', async () => {
     const { regions, images } = (await call(plan)).json;
-    const [x, y, z] = regions.find((r) => r.name === 'tumour').center_mm, ct = `${plan}/images/${images[0].id}`;
+    const [x, y, z] = regions.find((r) => r.name === 'tumour').center_mm,
+      ct = `${plan}/images/${images[0].id}`;
     const disc = (r) => `center=${x},${y},${z}&a=${x + r},${y},${z}&b=${x},${y + r},${z}`;
     const small = (await call(`${ct}/ellipse?${disc(4)}`)).json;
     assert.ok(Math.abs(small.area_mm2 - 16 * Math.PI) < 1e-9 && small.n_left_out === 0);
-    assert.ok(Math.abs(small.n * small.step_mm ** 2 / small.area_mm2 - 1) < 0.2, `${small.n} samples`);
+    assert.ok(Math.abs((small.n * small.step_mm ** 2) / small.area_mm2 - 1) < 0.2, `${small.n} samples`);
     assert.ok(small.min <= small.mean && small.mean <= small.max && small.sd >= 0 && small.sd <= (small.max - small.min) / 2);
     const { value } = (await call(`${plan}/probe?x=${x}&y=${y}&z=${z}`)).json.images[0];
     assert.ok(Math.abs(small.mean - value) < 60, `${small.mean} around ${value} HU`);
@@ -351,23 +420,52 @@ describe('a plan', () => {
     assert.equal(hits.filter(({ seen }) => seen).length, 1);
     for (const { alpha } of hits) assert.ok(alpha > 0 && alpha <= 1);
     const { hits: skin } = (await call(`${plan}/pick?view=${view}&px=200&py=200&prefer=scalp`)).json;
-    assert.deepEqual(skin.map(({ seen }) => seen), hits.map((_, at) => at === 0), 'nothing is before the scalp');
-    assert.deepEqual(hits.map(({ beam, draft }) => [beam, draft]), hits.map(() => [null, false]), 'no beam is drawn');
-    const { beams: [beam] } = (await call(plan)).json;
-    const above = { size_px: [400, 400], camera: { position_mm: [0, -600, 0], target_mm: [beam.entry_mm[0], beam.entry_mm[1], beam.entry_mm[2] + 10], projection: 'parallel', height_mm: 100 } };
-    for (const [overlaid, expected] of [[{ looks: { [beam.id]: { visible: true } } }, [beam.id, false]], [{ draft: { enabled: true, line: { entry_mm: beam.entry_mm, target_mm: beam.target_mm } } }, [beam.id, true]]]) {
+    assert.deepEqual(
+      skin.map(({ seen }) => seen),
+      hits.map((_, at) => at === 0),
+      'nothing is before the scalp',
+    );
+    assert.deepEqual(
+      hits.map(({ beam, draft }) => [beam, draft]),
+      hits.map(() => [null, false]),
+      'no beam is drawn',
+    );
+    const {
+      beams: [beam],
+    } = (await call(plan)).json;
+    const above = {
+      size_px: [400, 400],
+      camera: {
+        position_mm: [0, -600, 0],
+        target_mm: [beam.entry_mm[0], beam.entry_mm[1], beam.entry_mm[2] + 10],
+        projection: 'parallel',
+        height_mm: 100,
+      },
+    };
+    for (const [overlaid, expected] of [
+      [{ looks: { [beam.id]: { visible: true } } }, [beam.id, false]],
+      [{ draft: { enabled: true, line: { entry_mm: beam.entry_mm, target_mm: beam.target_mm } } }, [beam.id, true]],
+    ]) {
       const drawn = encodeURIComponent(JSON.stringify({ ...above, override: { beam: overlaid } }));
       const { hits: lines } = (await call(`${plan}/pick?view=${drawn}&px=202&py=200`)).json;
       assert.equal(lines[0].region, null);
-      assert.ok(lines.some(({ beam: id, draft }) => id === expected[0] && draft === expected[1]), JSON.stringify(lines));
+      assert.ok(
+        lines.some(({ beam: id, draft }) => id === expected[0] && draft === expected[1]),
+        JSON.stringify(lines),
+      );
     }
     assertProblem(await call(`${plan}/pick?view=${view}&px=200&py=200&prefer=liver`), 404, 'not-found', '/prefer');
     assertProblem(await call(`${plan}/pick?view=${view}&px=200`), 422, 'validation', '/py');
   });
 
   test('is drawn for many at once', async () => {
-    const answers = await Promise.all(Array.from({ length: 24 }, (_, i) => call(`${plan}/render`, 'POST', { view: { size_px: [64 + i, 48] }, format: 'jpeg' })));
-    assert.deepEqual(answers.map((a) => a.status), Array(24).fill(200));
+    const answers = await Promise.all(
+      Array.from({ length: 24 }, (_, i) => call(`${plan}/render`, 'POST', { view: { size_px: [64 + i, 48] }, format: 'jpeg' })),
+    );
+    assert.deepEqual(
+      answers.map((a) => a.status),
+      Array(24).fill(200),
+    );
   });
 });
 
@@ -379,7 +477,10 @@ describe('a room', () => {
     assert.equal(made.status, 201, made.text);
     assert.equal(made.headers.get('location'), `/api/v1/rooms/${made.json.id}`);
     room = `${api}/rooms/${made.json.id}`;
-    await until(() => call(`${room}/scene`), (a) => a.status === 200);
+    await until(
+      () => call(`${room}/scene`),
+      (a) => a.status === 200,
+    );
   });
 
   test('is made on a plan that exists, listed and told', async () => {
@@ -408,25 +509,32 @@ describe('a room', () => {
     assert.notEqual(changed.headers.get('etag'), etag);
     assertProblem(await call(`${room}/scene`, 'PATCH', patch, { 'If-Match': etag }), 412, 'stale-revision');
     const back = await call(`${room}/scene`, 'PATCH', { regions: { scalp: null } }, { 'If-Match': '*' });
-    assert.deepEqual(back.json, first.json, 'null gives the plan\'s own value back');
+    assert.deepEqual(back.json, first.json, "null gives the plan's own value back");
   });
 
   test('lets exactly one of many who changed the same revision win', async () => {
     const etag = (await call(`${room}/scene`)).headers.get('etag');
-    const answers = await Promise.all(Array.from({ length: 10 }, (_, i) =>
-      call(`${room}/scene`, 'PATCH', { image: { window: { center: i } } }, { 'If-Match': etag })));
+    const answers = await Promise.all(
+      Array.from({ length: 10 }, (_, i) => call(`${room}/scene`, 'PATCH', { image: { window: { center: i } } }, { 'If-Match': etag })),
+    );
     assert.deepEqual(answers.map((a) => a.status).sort(), [200, ...Array(9).fill(412)]);
   });
 
   test('applies a patch whole or not at all', async () => {
     const first = await call(`${room}/scene`);
-    const answer = await call(`${room}/scene`, 'PATCH', { surface: { normals: 'face' }, regions: { brain: { opacity: 7 } } }, { 'If-Match': '*' });
+    const answer = await call(
+      `${room}/scene`,
+      'PATCH',
+      { surface: { normals: 'face' }, regions: { brain: { opacity: 7 } } },
+      { 'If-Match': '*' },
+    );
     assertProblem(answer, 422, 'validation', '/regions/brain/opacity');
     assert.deepEqual((await call(`${room}/scene`)).json, first.json);
   });
 
   test('shows what was changed in its snapshot', async () => {
-    const snapshot = async (query = '') => Buffer.from(await (await fetch(`${room}/snapshot?view=${encodeURIComponent('{"size_px":[160,120]}')}${query}`)).arrayBuffer());
+    const snapshot = async (query = '') =>
+      Buffer.from(await (await fetch(`${room}/snapshot?view=${encodeURIComponent('{"size_px":[160,120]}')}${query}`)).arrayBuffer());
     const one = await snapshot();
     assert.equal(readPng(one).width, 160);
     await call(`${room}/scene`, 'PATCH', { regions: { scalp: { visible: false } } }, { 'If-Match': '*' });
@@ -448,7 +556,11 @@ describe('a room', () => {
     await call(`${room}/scene`, 'PATCH', { regions: { brain: { opacity: 0.31 } } }, { 'If-Match': '*' });
     assert.equal(await etag(), String(Number(before) + 1));
     assert.deepEqual(await snapshot(), [200, await etag()]);
-    const picture = await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: '{"view":{"size_px":[32,32]}}' });
+    const picture = await fetch(`${plan}/render`, {
+      method: 'POST',
+      headers: { 'Content-Type': 'application/json' },
+      body: '{"view":{"size_px":[32,32]}}',
+    });
     await picture.arrayBuffer();
     assert.equal(picture.headers.get('beamroom-revision'), null, 'a picture without a room has no revision');
   });
@@ -462,7 +574,15 @@ describe('a room', () => {
 
 test('the daemon says what is wrong with its flags and its settings, and stops at once when asked to', async () => {
   const settings = join(mkdtempSync(join(tmpdir(), 'beamroom-conf-')), 'beamroomd.conf');
-  const ends = async (args) => { try { const d = await startDaemon({ args }); await d.stop(); return 'started'; } catch (error) { return error.message; } };
+  const ends = async (args) => {
+    try {
+      const d = await startDaemon({ args });
+      await d.stop();
+      return 'started';
+    } catch (error) {
+      return error.message;
+    }
+  };
   assert.match(await ends(['--lisen', 'x']), /there is no flag --lisen/);
   assert.match(await ends(['--max-rooms', '0']), /max-rooms is "0", expected a whole number from 1/);
   assert.match(await ends(['--gl', 'vulkan']), /--gl is "vulkan"/);
@@ -471,7 +591,10 @@ test('the daemon says what is wrong with its flags and its settings, and stops a
   assert.match(await ends(['--config', settings]), /line 3: there is no setting "port"/);
   writeFileSync(settings, 'max-rooms = 1\nlog-level = debug\n');
   const limited = await startDaemon({ args: ['--config', settings] });
-  await until(async () => (await call(`${limited.url}/api/v1/plans`)).json.plans, (plans) => plans[0]?.parts.length);
+  await until(
+    async () => (await call(`${limited.url}/api/v1/plans`)).json.plans,
+    (plans) => plans[0]?.parts.length,
+  );
   assert.equal((await call(`${limited.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).status, 201);
   assertProblem(await call(`${limited.url}/api/v1/rooms`, 'POST', { plan: 'phantom' }), 429, 'limit');
   assert.equal(await limited.stop(), 0, limited.log());

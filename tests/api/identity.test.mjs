@@ -13,7 +13,20 @@ import { Client } from './ws_client.mjs';
 const quirin = { id: '77-30419', name: 'Zweifel^Quirin', birthDate: '19610412' };
 const other = { id: '88-50327', name: 'Morgen^Ottilie', birthDate: '19550723', study: '1.2.32', frame: '1.2.42' };
 /** None of these occurs anywhere but in /identity. */
-const secrets = ['Zweifel', 'Quirin', '77-30419', '30419', '19610412', '1961-04-12', 'Morgen', 'Ottilie', '88-50327', '50327', '19550723', '1955-07-23'];
+const secrets = [
+  'Zweifel',
+  'Quirin',
+  '77-30419',
+  '30419',
+  '19610412',
+  '1961-04-12',
+  'Morgen',
+  'Ottilie',
+  '88-50327',
+  '50327',
+  '19550723',
+  '1955-07-23',
+];
 
 let plans, data, daemon, api, room;
 const clients = [];
@@ -39,10 +52,17 @@ import json, sqlite3, sys
 db = sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True, timeout=30)
 print(json.dumps([json.loads(row[0]) for row in db.execute('SELECT row FROM audit ORDER BY n').fetchall()]))
 `;
-const auditRows = () => JSON.parse(execFileSync('python3', ['-c', read, join(data, 'beamroom.db')], { encoding: 'utf8' })).filter((row) => row.action === 'identity');
+const auditRows = () =>
+  JSON.parse(execFileSync('python3', ['-c', read, join(data, 'beamroom.db')], { encoding: 'utf8' })).filter(
+    (row) => row.action === 'identity',
+  );
 
 function assertMasked(what, text) {
-  for (const secret of secrets) assert.ok(!text.includes(secret), `${what} has "${secret}": ${text.slice(Math.max(0, text.indexOf(secret) - 80), text.indexOf(secret) + 80)}`);
+  for (const secret of secrets)
+    assert.ok(
+      !text.includes(secret),
+      `${what} has "${secret}": ${text.slice(Math.max(0, text.indexOf(secret) - 80), text.indexOf(secret) + 80)}`,
+    );
 }
 
 /** The texts of a PNG that are packed (iTXt). */
@@ -50,8 +70,10 @@ function textsOf(bytes) {
   let texts = '';
   for (let at = 8; at + 8 < bytes.length; at += 12 + bytes.readUInt32BE(at)) {
     if (bytes.toString('latin1', at + 4, at + 8) !== 'iTXt') continue;
-    const chunk = bytes.subarray(at + 8, at + 8 + bytes.readUInt32BE(at)), key = chunk.indexOf(0);
-    const language = chunk.indexOf(0, key + 3), translated = chunk.indexOf(0, language + 1);
+    const chunk = bytes.subarray(at + 8, at + 8 + bytes.readUInt32BE(at)),
+      key = chunk.indexOf(0);
+    const language = chunk.indexOf(0, key + 3),
+      translated = chunk.indexOf(0, language + 1);
     texts += chunk[key + 1] ? inflateSync(chunk.subarray(translated + 1)) : chunk.subarray(translated + 1);
   }
   return texts;
@@ -59,13 +81,34 @@ function textsOf(bytes) {
 
 test('the plan document has patients masked, and says of which of them each part is', async () => {
   const plan = (await call(`${api}/plans/case-1`)).json;
-  assert.deepEqual(plan.patients, [{ masked: 'Q. Z. …419', has_identity: true, has_conflict: false }, { masked: 'O. M. …327', has_identity: true, has_conflict: false }]);
+  assert.deepEqual(plan.patients, [
+    { masked: 'Q. Z. …419', has_identity: true, has_conflict: false },
+    { masked: 'O. M. …327', has_identity: true, has_conflict: false },
+  ]);
   assert.deepEqual([plan.shown_patient, plan.shown_plan], [0, 0]);
-  assert.deepEqual(plan.treatment_plans.map((t) => [t.label, t.date, t.approval, t.patient, t.structs, t.is_structs_absent]), [['BNCT-2', '2026-11-01', 'APPROVED', 0, 0, false]]);
-  assert.deepEqual(plan.images.map((p) => [p.patient, p.plan, p.frame]), [[0, null, 0]]);
-  assert.deepEqual(plan.regions.map((p) => [p.patient, p.structs, p.frame]), [[0, 0, 0]]);
-  assert.deepEqual(plan.beams.map((p) => [p.patient, p.plan, p.frame]), [[0, 0, 0]]);
-  assert.deepEqual(plan.doses.map((p) => [p.patient, p.plan, p.is_plan_absent, p.frame]), [[0, 0, false, 0], [1, null, false, 1]]);
+  assert.deepEqual(
+    plan.treatment_plans.map((t) => [t.label, t.date, t.approval, t.patient, t.structs, t.is_structs_absent]),
+    [['BNCT-2', '2026-11-01', 'APPROVED', 0, 0, false]],
+  );
+  assert.deepEqual(
+    plan.images.map((p) => [p.patient, p.plan, p.frame]),
+    [[0, null, 0]],
+  );
+  assert.deepEqual(
+    plan.regions.map((p) => [p.patient, p.structs, p.frame]),
+    [[0, 0, 0]],
+  );
+  assert.deepEqual(
+    plan.beams.map((p) => [p.patient, p.plan, p.frame]),
+    [[0, 0, 0]],
+  );
+  assert.deepEqual(
+    plan.doses.map((p) => [p.patient, p.plan, p.is_plan_absent, p.frame]),
+    [
+      [0, 0, false, 0],
+      [1, null, false, 1],
+    ],
+  );
 });
 
 test('identity is told in full, is never stored, and each time is a row of the audit', async () => {
@@ -73,7 +116,15 @@ test('identity is told in full, is never stored, and each time is a row of the a
   const answer = await call(`${api}/plans/case-1/identity`);
   assert.equal(answer.status, 200);
   assert.equal(answer.headers.get('cache-control'), 'no-store');
-  assert.deepEqual(answer.json.patients[0], { id: '77-30419', issuer: '', name: 'Zweifel^Quirin', birth_date: '1961-04-12', sex: '', has_conflict: false, masked: 'Q. Z. …419' });
+  assert.deepEqual(answer.json.patients[0], {
+    id: '77-30419',
+    issuer: '',
+    name: 'Zweifel^Quirin',
+    birth_date: '1961-04-12',
+    sex: '',
+    has_conflict: false,
+    masked: 'Q. Z. …419',
+  });
   assert.equal(answer.json.patients[1].name, 'Morgen^Ottilie');
   const ann = await Client.enter(daemon.url, room, { name: 'Ann' });
   clients.push(ann);
@@ -82,12 +133,20 @@ test('identity is told in full, is never stored, and each time is a row of the a
   assert.deepEqual([first.plan, first.address, first.room ?? ''], ['case-1', '127.0.0.1', '']);
   assert.deepEqual([second.plan, second.address, second.room, second.name], ['case-1', '127.0.0.1', room, 'Ann']);
   assert.equal((await call(`${api}/plans/nowhere/identity`)).status, 404);
-  assert.equal((await call(`${api}/plans/case-1/identity`, 'GET', undefined, { 'Sec-Fetch-Site': 'cross-site', Origin: 'http://elsewhere.example' })).status, 403);
+  assert.equal(
+    (await call(`${api}/plans/case-1/identity`, 'GET', undefined, { 'Sec-Fetch-Site': 'cross-site', Origin: 'http://elsewhere.example' }))
+      .status,
+    403,
+  );
   assert.equal(auditRows().length, 2); /* what was refused gave nothing away */
 });
 
 test('a server that others may reach tells nobody', async () => {
-  for (const args of [['--public-name', 'beamroom.example'], ['--listen', '0.0.0.0:0'], ['--trusted-proxy', '127.0.0.1']]) {
+  for (const args of [
+    ['--public-name', 'beamroom.example'],
+    ['--listen', '0.0.0.0:0'],
+    ['--trusted-proxy', '127.0.0.1'],
+  ]) {
     const open = await startDaemon({ plans: [plans], args: ['--stub', ...args] });
     const url = open.url.replace('0.0.0.0', '127.0.0.1');
     const answer = await call(`${url}/api/v1/plans/case-1/identity`, 'GET', undefined, { 'X-Forwarded-For': '192.0.2.7' });
@@ -98,8 +157,23 @@ test('a server that others may reach tells nobody', async () => {
 });
 
 /** A value for each parameter that a route may need. */
-const values = { x: 14, y: 14, z: 9, from: '4,14,9', to: '24,14,9', image: 'ct', region: 'box', level: 'level-1', view: JSON.stringify({ kind: 'axial', size_px: [320, 320] }), t_ms: 0,
-  center: '14,14,9', radius: 5, segment: 0, annotations: 'true', representation: 'surface' };
+const values = {
+  x: 14,
+  y: 14,
+  z: 9,
+  from: '4,14,9',
+  to: '24,14,9',
+  image: 'ct',
+  region: 'box',
+  level: 'level-1',
+  view: JSON.stringify({ kind: 'axial', size_px: [320, 320] }),
+  t_ms: 0,
+  center: '14,14,9',
+  radius: 5,
+  segment: 0,
+  annotations: 'true',
+  representation: 'surface',
+};
 
 test('no other answer, and nothing on the disk or in the log, says who the patients are', async () => {
   const spec = (await call(`${api}/openapi.json`)).json;
@@ -110,9 +184,13 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
   for (const [path, routes] of Object.entries(spec.paths)) {
     const { get } = routes;
     if (!get || path.endsWith('/identity') || path.endsWith('/ws') || path.endsWith('/stream')) continue;
-    const address = path.replace(/\{(\w+)\}/g, (_, name) => ({ plan: 'case-1', room, image: 'ct', region: 'box', level: 'level-1' })[name] ?? 'none');
+    const address = path.replace(
+      /\{(\w+)\}/g,
+      (_, name) => ({ plan: 'case-1', room, image: 'ct', region: 'box', level: 'level-1' })[name] ?? 'none',
+    );
     const query = new URLSearchParams();
-    for (const parameter of get.parameters ?? []) if (parameter.in === 'query' && parameter.name in values) query.set(parameter.name, values[parameter.name]);
+    for (const parameter of get.parameters ?? [])
+      if (parameter.in === 'query' && parameter.name in values) query.set(parameter.name, values[parameter.name]);
     const answer = await fetch(`${daemon.url}${address}?${query}`, { redirect: 'manual' });
     const bytes = Buffer.from(await answer.arrayBuffer());
     nGood += answer.status === 200;
@@ -120,14 +198,22 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
     if (answer.headers.get('content-type') === 'image/png') assertMasked(`${path}, texts`, textsOf(bytes));
   }
   assert.ok(nGood >= 20, `${nGood} routes answered`);
-  const picture = await fetch(`${api}/plans/case-1/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ annotations: true, view: { kind: 'axial' } }) });
+  const picture = await fetch(`${api}/plans/case-1/render`, {
+    method: 'POST',
+    headers: { 'Content-Type': 'application/json' },
+    body: JSON.stringify({ annotations: true, view: { kind: 'axial' } }),
+  });
   assert.equal(picture.status, 200);
   assertMasked('picture', textsOf(Buffer.from(await picture.arrayBuffer())));
   assertMasked('log', daemon.log());
   for (const entry of readdirSync(data, { recursive: true })) assertMasked('a name on the disk', String(entry));
   for (const file of ['beamroom.db', 'beamroom.db-wal']) {
     let bytes;
-    try { bytes = readFileSync(join(data, file)); } catch { continue; } /* the log of the database comes and goes */
+    try {
+      bytes = readFileSync(join(data, file));
+    } catch {
+      continue;
+    } /* the log of the database comes and goes */
     assertMasked(file, bytes.toString('latin1'));
   }
 });
@@ -135,7 +221,10 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
 test('the command line tells who the patient is only when asked, and converts without it', () => {
   const run = (...args) => spawnSync(join(bin, 'beamroom'), args, { encoding: 'utf8' });
   const folder = join(plans, 'case-1');
-  for (const args of [['info', folder], ['info', '--json', folder]]) {
+  for (const args of [
+    ['info', folder],
+    ['info', '--json', folder],
+  ]) {
     const { status, stdout, stderr } = run(...args);
     assert.equal(status, 0, stderr);
     assert.match(stdout, /Q\. Z\. …419/);
@@ -148,10 +237,20 @@ test('the command line tells who the patient is only when asked, and converts wi
   const converted = run('convert', folder, join(out, 'plan'));
   assert.equal(converted.status, 0, converted.stderr);
   assertMasked('convert', converted.stdout + converted.stderr);
-  for (const { name, path, isFile } of readdirSync(join(out, 'plan'), { recursive: true, withFileTypes: true }).map((e) => ({ name: e.name, path: join(e.parentPath ?? e.path, e.name), isFile: e.isFile() }))) {
+  for (const { name, path, isFile } of readdirSync(join(out, 'plan'), { recursive: true, withFileTypes: true }).map((e) => ({
+    name: e.name,
+    path: join(e.parentPath ?? e.path, e.name),
+    isFile: e.isFile(),
+  }))) {
     assertMasked('a converted file', name);
     if (!isFile) continue;
-    assertMasked(name, execFileSync('sh', ['-c', name.endsWith('.gz') ? 'gzip -dc "$1"' : 'cat "$1"', 'sh', path], { encoding: 'latin1', maxBuffer: 1 << 26 }));
+    assertMasked(
+      name,
+      execFileSync('sh', ['-c', name.endsWith('.gz') ? 'gzip -dc "$1"' : 'cat "$1"', 'sh', path], {
+        encoding: 'latin1',
+        maxBuffer: 1 << 26,
+      }),
+    );
   }
   rmSync(out, { recursive: true, force: true });
 });

@@ -45,103 +45,156 @@ const picture = async (client) => {
 };
 
 describe('a plan with nobody in its rooms', () => {
-  test('is let go after a while; the room keeps its scene and shows it again to whoever enters', () => withDaemon(['--plan-idle-close', '1'], async ({ api, enter, ready, newRoom }) => {
-    const room = await newRoom('head-1');
-    const ann = await enter(room);
-    await ready(ann);
-    await picture(ann);
-    ann.send({ type: 'scene.patch', input: 1, patch: { image: { window: { center: 77 } } } });
-    const changed = await ann.message('scene');
-    await sleep(2500); // longer than the limit, but somebody is in the room
-    assert.equal(await stateOf(api, 'head-1'), 'ready');
-    ann.cut();
-    assert.equal(await until(() => stateOf(api, 'head-1'), (state) => state === 'not-loaded'), 'not-loaded');
-    assert.equal((await call(`${api}/rooms/${room}`)).json.renderer, 'closed');
+  test('is let go after a while; the room keeps its scene and shows it again to whoever enters', () =>
+    withDaemon(['--plan-idle-close', '1'], async ({ api, enter, ready, newRoom }) => {
+      const room = await newRoom('head-1');
+      const ann = await enter(room);
+      await ready(ann);
+      await picture(ann);
+      ann.send({ type: 'scene.patch', input: 1, patch: { image: { window: { center: 77 } } } });
+      const changed = await ann.message('scene');
+      await sleep(2500); // longer than the limit, but somebody is in the room
+      assert.equal(await stateOf(api, 'head-1'), 'ready');
+      ann.cut();
+      assert.equal(
+        await until(
+          () => stateOf(api, 'head-1'),
+          (state) => state === 'not-loaded',
+        ),
+        'not-loaded',
+      );
+      assert.equal((await call(`${api}/rooms/${room}`)).json.renderer, 'closed');
 
-    const scene = await call(`${api}/rooms/${room}/scene`);
-    assert.equal(scene.json.image.window.center, 77);
-    const patched = await call(`${api}/rooms/${room}/scene`, 'PATCH', { check: { visible: true } }, { 'If-Match': scene.headers.get('etag') });
-    assert.equal(patched.status, 200, patched.text);
+      const scene = await call(`${api}/rooms/${room}/scene`);
+      assert.equal(scene.json.image.window.center, 77);
+      const patched = await call(
+        `${api}/rooms/${room}/scene`,
+        'PATCH',
+        { check: { visible: true } },
+        { 'If-Match': scene.headers.get('etag') },
+      );
+      assert.equal(patched.status, 200, patched.text);
 
-    const ben = await enter(room);
-    assert.equal((await ben.message('renderer')).state, 'starting', 'not what was before');
-    await ready(ben);
-    const plan = await ben.message('plan');
-    assert.equal(plan.scene.image.window.center, 77);
-    assert.equal(plan.scene.check.visible, true);
-    assert.equal(plan.revision, changed.revision + 1);
-    assert.ok((await picture(ben)).picture.length > 100);
-  }));
+      const ben = await enter(room);
+      assert.equal((await ben.message('renderer')).state, 'starting', 'not what was before');
+      await ready(ben);
+      const plan = await ben.message('plan');
+      assert.equal(plan.scene.image.window.center, 77);
+      assert.equal(plan.scene.check.visible, true);
+      assert.equal(plan.revision, changed.revision + 1);
+      assert.ok((await picture(ben)).picture.length > 100);
+    }));
 
-  test('is loaded for a snapshot of its room', () => withDaemon(['--plan-idle-close', '1'], async ({ api, newRoom }) => {
-    const room = await newRoom('head-1');
-    await until(() => call(`${api}/rooms/${room}`), (answer) => answer.json.renderer === 'ready');
-    assert.equal(await until(() => stateOf(api, 'head-1'), (state) => state === 'not-loaded'), 'not-loaded');
-    const snapshot = await fetch(`${api}/rooms/${room}/snapshot?view=${encodeURIComponent('{"size_px":[64,48]}')}`);
-    assert.equal(snapshot.status, 200);
-    assert.equal(snapshot.headers.get('content-type'), 'image/png');
-    assert.ok((await snapshot.arrayBuffer()).byteLength > 50);
-  }));
+  test('is loaded for a snapshot of its room', () =>
+    withDaemon(['--plan-idle-close', '1'], async ({ api, newRoom }) => {
+      const room = await newRoom('head-1');
+      await until(
+        () => call(`${api}/rooms/${room}`),
+        (answer) => answer.json.renderer === 'ready',
+      );
+      assert.equal(
+        await until(
+          () => stateOf(api, 'head-1'),
+          (state) => state === 'not-loaded',
+        ),
+        'not-loaded',
+      );
+      const snapshot = await fetch(`${api}/rooms/${room}/snapshot?view=${encodeURIComponent('{"size_px":[64,48]}')}`);
+      assert.equal(snapshot.status, 200);
+      assert.equal(snapshot.headers.get('content-type'), 'image/png');
+      assert.ok((await snapshot.arrayBuffer()).byteLength > 50);
+    }));
 
-  test('makes place for another, the longest unused first; one that people look at does not', () => withDaemon(['--max-renderers', '2'], async ({ api, enter, ready, newRoom }) => {
-    const rooms = [await newRoom('head-1')];
-    const ann = await enter(rooms[0]);
-    await ready(ann);
-    rooms.push(await newRoom('head-2'));
-    await until(() => stateOf(api, 'head-2'), (state) => state === 'ready');
-    rooms.push(await newRoom('head-3')); // head-2 is closed, though it has a room
-    assert.equal(await stateOf(api, 'head-2'), 'not-loaded');
-    assert.equal(await stateOf(api, 'head-1'), 'ready');
-    const cas = await enter(rooms[2]);
-    await ready(cas);
+  test('makes place for another, the longest unused first; one that people look at does not', () =>
+    withDaemon(['--max-renderers', '2'], async ({ api, enter, ready, newRoom }) => {
+      const rooms = [await newRoom('head-1')];
+      const ann = await enter(rooms[0]);
+      await ready(ann);
+      rooms.push(await newRoom('head-2'));
+      await until(
+        () => stateOf(api, 'head-2'),
+        (state) => state === 'ready',
+      );
+      rooms.push(await newRoom('head-3')); // head-2 is closed, though it has a room
+      assert.equal(await stateOf(api, 'head-2'), 'not-loaded');
+      assert.equal(await stateOf(api, 'head-1'), 'ready');
+      const cas = await enter(rooms[2]);
+      await ready(cas);
 
-    const ben = await enter(rooms[1]); // both are in use
-    const told = await ben.message('renderer', (m) => m.state === 'failed');
-    assert.equal(told.problem.type, '/problems/busy');
-    ann.cut();
-    await ready(ben); // once somebody has left
-    assert.equal(await stateOf(api, 'head-1'), 'not-loaded');
-  }));
+      const ben = await enter(rooms[1]); // both are in use
+      const told = await ben.message('renderer', (m) => m.state === 'failed');
+      assert.equal(told.problem.type, '/problems/busy');
+      ann.cut();
+      await ready(ben); // once somebody has left
+      assert.equal(await stateOf(api, 'head-1'), 'not-loaded');
+    }));
 });
 
 describe('a job that opens a plan', () => {
-  test('stays done when nobody asked before the plan was closed again', () => withDaemon(['--plan-idle-close', '1'], async ({ daemon, api }) => {
-    const opened = await call(`${api}/plans/head-1/open`, 'POST');
-    assert.equal(opened.status, 202);
-    await until(() => daemon.log(), (log) => /head-1: closed/.test(log)); // without a request in between
-    assert.match(daemon.log(), /head-1: closed: nobody used it/);
-    const job = await call(`${api}/jobs/${opened.json.id}`);
-    assert.equal(job.json.state, 'done');
-    assert.equal(job.json.percent, 100);
-  }));
+  test('stays done when nobody asked before the plan was closed again', () =>
+    withDaemon(['--plan-idle-close', '1'], async ({ daemon, api }) => {
+      const opened = await call(`${api}/plans/head-1/open`, 'POST');
+      assert.equal(opened.status, 202);
+      await until(
+        () => daemon.log(),
+        (log) => /head-1: closed/.test(log),
+      ); // without a request in between
+      assert.match(daemon.log(), /head-1: closed: nobody used it/);
+      const job = await call(`${api}/jobs/${opened.json.id}`);
+      assert.equal(job.json.state, 'done');
+      assert.equal(job.json.percent, 100);
+    }));
 
-  test('stays failed when the plan was opened again since', () => withDaemon([], async ({ daemon, api }) => {
-    await until(() => call(`${api}/plans/head-2`), (plan) => plan.json.parts.length); // else its scan may refuse it before it is opened
-    const head = join(folder, 'plans', 'head-2');
-    writeFileSync(join(head, 'plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, images: [{ id: 'ct', path: 'ct.nii.gz' }] })); // of several parts one would be left out
-    rmSync(join(head, 'ct.nii.gz'));
-    try {
-      const first = await call(`${api}/plans/head-2/open`, 'POST');
-      await until(() => daemon.log(), (log) => /warning: plan head-2/.test(log));
-      cpSync(join(demo, 'phantom'), head, { recursive: true });
-      const second = await call(`${api}/plans/head-2/open`, 'POST');
-      assert.equal((await until(() => call(`${api}/jobs/${second.json.id}`), (job) => job.json.state !== 'running')).json.state, 'done');
-      const job = (await call(`${api}/jobs/${first.json.id}`)).json;
-      assert.equal(job.state, 'failed');
-      assert.match(job.problem.detail, /ct\.nii\.gz/);
-    } finally {
-      cpSync(join(demo, 'phantom'), head, { recursive: true });
-    }
-  }));
+  test('stays failed when the plan was opened again since', () =>
+    withDaemon([], async ({ daemon, api }) => {
+      await until(
+        () => call(`${api}/plans/head-2`),
+        (plan) => plan.json.parts.length,
+      ); // else its scan may refuse it before it is opened
+      const head = join(folder, 'plans', 'head-2');
+      writeFileSync(
+        join(head, 'plan.json'),
+        JSON.stringify({ format: 'beamroom-plan', version: 1, images: [{ id: 'ct', path: 'ct.nii.gz' }] }),
+      ); // of several parts one would be left out
+      rmSync(join(head, 'ct.nii.gz'));
+      try {
+        const first = await call(`${api}/plans/head-2/open`, 'POST');
+        await until(
+          () => daemon.log(),
+          (log) => /warning: plan head-2/.test(log),
+        );
+        cpSync(join(demo, 'phantom'), head, { recursive: true });
+        const second = await call(`${api}/plans/head-2/open`, 'POST');
+        assert.equal(
+          (
+            await until(
+              () => call(`${api}/jobs/${second.json.id}`),
+              (job) => job.json.state !== 'running',
+            )
+          ).json.state,
+          'done',
+        );
+        const job = (await call(`${api}/jobs/${first.json.id}`)).json;
+        assert.equal(job.state, 'failed');
+        assert.match(job.problem.detail, /ct\.nii\.gz/);
+      } finally {
+        cpSync(join(demo, 'phantom'), head, { recursive: true });
+      }
+    }));
 });
 
-test('the plans are known when the daemon says that it is ready', () => withDaemon([], async ({ api }) => {
-  for (const id of ids) assert.equal((await call(`${api}/plans/${id}`)).status, 200);
-}));
+test('the plans are known when the daemon says that it is ready', () =>
+  withDaemon([], async ({ api }) => {
+    for (const id of ids) assert.equal((await call(`${api}/plans/${id}`)).status, 200);
+  }));
 
 test('a renderer that stops before every picture is tried again after pauses that the room is told of, and works again once it can', async () => {
-  const broken = join(folder, 'broken'), renderer = join(folder, 'renderer.sh');
-  writeFileSync(renderer, `#!/bin/sh\ncase "$*" in *--socket-fd*) [ -e ${broken} ] && kill -9 $$;; esac\nexec ${resolve(bin, 'beamroom-render')} "$@"\n`);
+  const broken = join(folder, 'broken'),
+    renderer = join(folder, 'renderer.sh');
+  writeFileSync(
+    renderer,
+    `#!/bin/sh\ncase "$*" in *--socket-fd*) [ -e ${broken} ] && kill -9 $$;; esac\nexec ${resolve(bin, 'beamroom-render')} "$@"\n`,
+  );
   chmodSync(renderer, 0o755);
   await withDaemon(['--renderer', renderer], async ({ enter, ready, newRoom }) => {
     writeFileSync(broken, '');
@@ -156,14 +209,20 @@ test('a renderer that stops before every picture is tried again after pauses tha
   });
 });
 
-test('a daemon that was stopped for a while finds its renderers alive', () => withDaemon([], async ({ daemon, enter, ready, newRoom }) => {
-  const ann = await enter(await newRoom('head-1'));
-  await ready(ann);
-  await picture(ann);
-  daemon.child.kill('SIGSTOP');
-  await sleep(12000); // longer than a renderer may be silent
-  daemon.child.kill('SIGCONT');
-  ann.send({ type: 'view.patch', view: 1, input: 7, patch: { camera: { position_mm: [9, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } } });
-  await ann.frame((f) => f.isStill && f.input === 7);
-  assert.doesNotMatch(daemon.log(), /did not|starting it again/);
-}));
+test('a daemon that was stopped for a while finds its renderers alive', () =>
+  withDaemon([], async ({ daemon, enter, ready, newRoom }) => {
+    const ann = await enter(await newRoom('head-1'));
+    await ready(ann);
+    await picture(ann);
+    daemon.child.kill('SIGSTOP');
+    await sleep(12000); // longer than a renderer may be silent
+    daemon.child.kill('SIGCONT');
+    ann.send({
+      type: 'view.patch',
+      view: 1,
+      input: 7,
+      patch: { camera: { position_mm: [9, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } },
+    });
+    await ann.frame((f) => f.isStill && f.input === 7);
+    assert.doesNotMatch(daemon.log(), /did not|starting it again/);
+  }));

@@ -25,7 +25,8 @@ const file = async (format) => {
 };
 
 test('the figures of a level: its value, what it encloses, and how many triangles that takes', async () => {
-  const half = (await level('half')).json, high = (await level('high')).json;
+  const half = (await level('half')).json,
+    high = (await level('high')).json;
   assert.ok(Math.abs(half.value - half.reference.value / 2) < 1e-9 * half.value);
   assert.ok(Math.abs(high.value - 1.8 * half.value) < 1e-9 * half.value);
   assert.deepEqual([half.level, half.grid, half.level_reason], ['half', 'dose', null]);

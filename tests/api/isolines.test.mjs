@@ -27,7 +27,12 @@ const ask = (size, kind, lines = true) => {
 // The corners of a label's box.
 function corners({ x_px, y_px, angle_deg, width_px, height_px }) {
   const turn = (angle_deg * Math.PI) / 180;
-  return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([i, j]) => {
+  return [
+    [-1, -1],
+    [1, -1],
+    [1, 1],
+    [-1, 1],
+  ].map(([i, j]) => {
     const [x, y] = [(i * width_px) / 2, (j * height_px) / 2];
     return [x_px + x * Math.cos(turn) - y * Math.sin(turn), y_px + x * Math.sin(turn) + y * Math.cos(turn)];
   });
@@ -35,19 +40,30 @@ function corners({ x_px, y_px, angle_deg, width_px, height_px }) {
 // Rectangles are apart if a direction along a side of one of them parts them.
 function overlap(a, b) {
   const [p, q] = [corners(a), corners(b)];
-  return [a, b].every(({ angle_deg }) => [0, 90].every((more) => {
-    const turn = ((angle_deg + more) * Math.PI) / 180;
-    const at = (points) => points.map(([x, y]) => x * Math.cos(turn) + y * Math.sin(turn));
-    return Math.max(...at(p)) >= Math.min(...at(q)) && Math.max(...at(q)) >= Math.min(...at(p));
-  }));
+  return [a, b].every(({ angle_deg }) =>
+    [0, 90].every((more) => {
+      const turn = ((angle_deg + more) * Math.PI) / 180;
+      const at = (points) => points.map(([x, y]) => x * Math.cos(turn) + y * Math.sin(turn));
+      return Math.max(...at(p)) >= Math.min(...at(q)) && Math.max(...at(q)) >= Math.min(...at(p));
+    }),
+  );
 }
 
-for (const [kind, size] of [['axial', [1024, 768]], ['coronal', [640, 480]], ['sagittal', [320, 240]]])
+for (const [kind, size] of [
+  ['axial', [1024, 768]],
+  ['coronal', [640, 480]],
+  ['sagittal', [320, 240]],
+])
   test(`a ${kind} pane of ${size.join(' x ')} px has labels on its lines, within it, none over another`, async () => {
     const answer = await ask(size, kind);
     assert.equal(answer.status, 200, answer.text);
-    assert.deepEqual(answer.json.levels.map(({ id, text, percent, color }) => [id, text, Math.round(percent), color]),
-      [['low', '30 %', 30, '#00ffff'], ['high', '50 %', 50, '#0000ff']]);
+    assert.deepEqual(
+      answer.json.levels.map(({ id, text, percent, color }) => [id, text, Math.round(percent), color]),
+      [
+        ['low', '30 %', 30, '#00ffff'],
+        ['high', '50 %', 50, '#0000ff'],
+      ],
+    );
     const labels = answer.json.levels.flatMap((level) => level.labels);
     assert.ok(labels.length > 0, answer.text);
     for (const [i, label] of labels.entries()) {
@@ -57,9 +73,15 @@ for (const [kind, size] of [['axial', [1024, 768]], ['coronal', [640, 480]], ['s
   });
 
 test('low panes and views into space have levels and no labels, a scene without lines has none of both', async () => {
-  for (const [kind, size] of [['axial', [800, 239]], ['3d', [800, 600]]]) {
+  for (const [kind, size] of [
+    ['axial', [800, 239]],
+    ['3d', [800, 600]],
+  ]) {
     const { levels: shown } = (await ask(size, kind)).json;
-    assert.deepEqual(shown.map((level) => level.labels.length), [0, 0]);
+    assert.deepEqual(
+      shown.map((level) => level.labels.length),
+      [0, 0],
+    );
   }
   assert.deepEqual((await ask([800, 600], 'axial', false)).json, { unit: '', levels: [] });
 });

@@ -1,7 +1,18 @@
 // Rooms outlive the daemon: killed at once and started again, put to sleep and woken, deleted, backed up. --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, renameSync, rmdirSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import {
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  renameSync,
+  rmdirSync,
+  rmSync,
+  statSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -10,8 +21,11 @@ import { onDisk } from './on_disk.mjs';
 import { Client } from './ws_client.mjs';
 
 let data;
-const running = new Set(), clients = new Set();
-before(() => { data = mkdtempSync(join(tmpdir(), 'beamroom-kept-')); });
+const running = new Set(),
+  clients = new Set();
+before(() => {
+  data = mkdtempSync(join(tmpdir(), 'beamroom-kept-'));
+});
 after(async () => {
   for (const client of clients) client.cut();
   for (const daemon of running) await daemon.stop();
@@ -50,7 +64,13 @@ test('rooms, scenes, revisions, shared views and members are back after the daem
   await ready(ann);
   const ben = await enter(daemon, one, { name: 'Ben' });
   const before = (await call(`${daemon.api}/rooms/${one}/members`)).json.members;
-  assert.deepEqual(before.map((member) => [member.name, member.role]), [['Ann', 'presenter'], ['Ben', 'reviewer']]);
+  assert.deepEqual(
+    before.map((member) => [member.name, member.role]),
+    [
+      ['Ann', 'presenter'],
+      ['Ben', 'reviewer'],
+    ],
+  );
   const cem = await enter(daemon, two);
   await ready(cem);
   ann.send({ type: 'view.open', view: 1, document: { kind: 'axial', size_px: [320, 240], camera: { height_mm: 123 } }, follow: true });
@@ -58,8 +78,14 @@ test('rooms, scenes, revisions, shared views and members are back after the daem
   await patch(ann, 70);
   const last = await patch(ann, 71);
   const other = await patch(cem, 33);
-  await until(() => onDisk(one, data), (room) => room?.revision === last.revision && room.members.length === 2 && room.views.length === 1);
-  await until(() => onDisk(two, data), (room) => room?.revision === other.revision);
+  await until(
+    () => onDisk(one, data),
+    (room) => room?.revision === last.revision && room.members.length === 2 && room.views.length === 1,
+  );
+  await until(
+    () => onDisk(two, data),
+    (room) => room?.revision === other.revision,
+  );
   const kept = JSON.stringify(onDisk(one, data));
   for (const secret of [ann.welcome.secret, ben.welcome.secret]) assert.ok(!kept.includes(secret), 'a secret is kept as a hash alone');
   await end(daemon, 'SIGKILL');
@@ -67,7 +93,10 @@ test('rooms, scenes, revisions, shared views and members are back after the daem
   daemon = await start();
   const list = await rooms(daemon);
   assert.deepEqual(list.rooms.map((room) => room.id).sort(), [one, two].sort());
-  assert.ok(list.rooms.every((room) => room.asleep && room.plan === 'phantom'), JSON.stringify(list));
+  assert.ok(
+    list.rooms.every((room) => room.asleep && room.plan === 'phantom'),
+    JSON.stringify(list),
+  );
   assert.equal(list.n_asleep, 2);
 
   const again = await enter(daemon, one, { member: ann.welcome.member, secret: ann.welcome.secret });
@@ -75,7 +104,10 @@ test('rooms, scenes, revisions, shared views and members are back after the daem
   assert.equal(again.welcome.secret, ann.welcome.secret);
   assert.equal(again.welcome.name, 'Ann');
   const members = (await again.message('members')).members;
-  assert.deepEqual(members.map(({ id, name, role, color, connected, presenting }) => ({ id, name, role, color, connected, presenting })), before.map(({ id, name, role, color, presenting }) => ({ id, name, role, color, presenting, connected: id === ann.welcome.member })));
+  assert.deepEqual(
+    members.map(({ id, name, role, color, connected, presenting }) => ({ id, name, role, color, connected, presenting })),
+    before.map(({ id, name, role, color, presenting }) => ({ id, name, role, color, presenting, connected: id === ann.welcome.member })),
+  );
   await ready(again);
   const scene = await call(`${daemon.api}/rooms/${one}/scene`);
   assert.equal(scene.json.image.window.center, 71);
@@ -90,12 +122,22 @@ test('rooms, scenes, revisions, shared views and members are back after the daem
   const woken = await call(`${daemon.api}/rooms/${two}`);
   assert.equal(woken.json.revision, other.revision);
   assert.equal(woken.json.asleep, false);
-  assert.equal((await until(() => call(`${daemon.api}/rooms/${two}/scene`), ({ status }) => status !== 503)).json.image.window.center, 33, 'it wakes for who asks, too');
+  assert.equal(
+    (
+      await until(
+        () => call(`${daemon.api}/rooms/${two}/scene`),
+        ({ status }) => status !== 503,
+      )
+    ).json.image.window.center,
+    33,
+    'it wakes for who asks, too',
+  );
   await end(daemon);
 });
 
 test('while the database cannot be opened at the start no room is said to be gone; it is there as soon as it can', async () => {
-  const folder = join(data, 'later'), database = join(folder, 'beamroom.db');
+  const folder = join(data, 'later'),
+    database = join(folder, 'beamroom.db');
   let daemon = await start([], folder);
   const room = await newRoom(daemon);
   const ann = await enter(daemon, room);
@@ -107,7 +149,12 @@ test('while the database cannot be opened at the start no room is said to be gon
   renameSync(database, `${database}.away`);
   mkdirSync(database);
   daemon = await start([], folder);
-  for (const [path, method, body] of [[`/rooms/${room}`], [`/rooms/${room}/scene`], [`/rooms/${room}`, 'DELETE'], ['/rooms', 'POST', { saved: token }]]) {
+  for (const [path, method, body] of [
+    [`/rooms/${room}`],
+    [`/rooms/${room}/scene`],
+    [`/rooms/${room}`, 'DELETE'],
+    ['/rooms', 'POST', { saved: token }],
+  ]) {
     const { status, json, headers } = await call(`${daemon.api}${path}`, method, body);
     assert.deepEqual([status, json.type, headers.get('retry-after')], [503, '/problems/busy', '1'], `${method ?? 'GET'} ${path}`);
   }
@@ -118,7 +165,15 @@ test('while the database cannot be opened at the start no room is said to be gon
   early.cut();
   rmdirSync(database);
   renameSync(`${database}.away`, database);
-  assert.equal((await until(() => call(`${daemon.api}/rooms/${room}`), ({ status }) => status === 200)).json.revision, revision);
+  assert.equal(
+    (
+      await until(
+        () => call(`${daemon.api}/rooms/${room}`),
+        ({ status }) => status === 200,
+      )
+    ).json.revision,
+    revision,
+  );
   assert.equal((await enter(daemon, room, { member: ann.welcome.member, secret: ann.welcome.secret })).welcome.member, ann.welcome.member);
   assert.equal((await call(`${daemon.api}/rooms/none`)).status, 404);
   await end(daemon);
@@ -144,22 +199,33 @@ test('an orderly stop keeps the last change, too', async () => {
 test('an idle room that people used sleeps and wakes; one that nobody entered is closed; a deleted one is gone', async () => {
   const folder = join(data, 'idle');
   const daemon = await start(['--room-idle-close', '2'], folder);
-  const used = await newRoom(daemon), ann = await enter(daemon, used);
-  const deleted = await newRoom(daemon), ben = await enter(daemon, deleted);
+  const used = await newRoom(daemon),
+    ann = await enter(daemon, used);
+  const deleted = await newRoom(daemon),
+    ben = await enter(daemon, deleted);
   const unused = await newRoom(daemon);
   await ready(ann);
   const { revision } = await patch(ann, 44);
   ann.cut();
   ben.cut();
-  await until(() => rooms(daemon), (list) => list.n_asleep === 2 && list.rooms.length === 2);
-  await until(() => onDisk(unused, folder), (row) => row === null);
+  await until(
+    () => rooms(daemon),
+    (list) => list.n_asleep === 2 && list.rooms.length === 2,
+  );
+  await until(
+    () => onDisk(unused, folder),
+    (row) => row === null,
+  );
   assert.equal((await call(`${daemon.api}/rooms/${deleted}`, 'DELETE')).status, 204);
   assert.equal((await call(`${daemon.api}/rooms/${deleted}`)).status, 404);
   assert.equal((await call(`${daemon.api}/rooms/${unused}`)).status, 404);
   const back = await enter(daemon, used, { member: ann.welcome.member, secret: ann.welcome.secret });
   assert.equal(back.welcome.member, ann.welcome.member);
   assert.equal(back.welcome.revision, revision);
-  await until(() => onDisk(deleted, folder), (row) => row === null);
+  await until(
+    () => onDisk(deleted, folder),
+    (row) => row === null,
+  );
   await end(daemon);
 });
 
@@ -168,7 +234,10 @@ test('while all rooms are in use no other wakes; an empty one makes place', asyn
   let daemon = await start([], folder);
   const ids = [await newRoom(daemon), await newRoom(daemon)];
   for (const id of ids) (await enter(daemon, id)).cut();
-  await until(() => ids.map((id) => onDisk(id, folder)?.members.length), (n) => n.every((members) => members === 1));
+  await until(
+    () => ids.map((id) => onDisk(id, folder)?.members.length),
+    (n) => n.every((members) => members === 1),
+  );
   await end(daemon);
   daemon = await start(['--max-rooms', '1'], folder);
   const ann = await enter(daemon, ids[0]);
@@ -176,18 +245,31 @@ test('while all rooms are in use no other wakes; an empty one makes place', asyn
   assert.equal(refused.status, 429, refused.text);
   assert.match(refused.json.detail, /1 rooms in use, at most 1/);
   ann.cut();
-  assert.equal((await until(() => call(`${daemon.api}/rooms/${ids[1]}`), ({ status }) => status !== 429)).status, 200);
+  assert.equal(
+    (
+      await until(
+        () => call(`${daemon.api}/rooms/${ids[1]}`),
+        ({ status }) => status !== 429,
+      )
+    ).status,
+    200,
+  );
   assert.equal((await rooms(daemon)).rooms.find((room) => room.id === ids[0]).asleep, true);
   await end(daemon);
 });
 
 test('a backup is made while the daemon writes, and a daemon starts from it', async () => {
-  const folder = join(data, 'backup'), other = mkdtempSync(join(data, 'restored-'));
+  const folder = join(data, 'backup'),
+    other = mkdtempSync(join(data, 'restored-'));
   let daemon = await start([], folder);
-  const room = await newRoom(daemon), ann = await enter(daemon, room);
+  const room = await newRoom(daemon),
+    ann = await enter(daemon, room);
   await ready(ann);
   const { revision } = await patch(ann, 12);
-  await until(() => onDisk(room, folder), (row) => row?.revision === revision);
+  await until(
+    () => onDisk(room, folder),
+    (row) => row?.revision === revision,
+  );
   const run = (file, from = folder) => spawnSync(join(bin, 'beamroomd'), ['--backup', file, '--data', from], { encoding: 'utf8' });
   const made = run(join(other, 'beamroom.db'));
   assert.equal(made.status, 0, made.stderr);
@@ -208,13 +290,21 @@ test('a backup is made while the daemon writes, and a daemon starts from it', as
 test('a second daemon on the same folder is refused by name, and a killed one leaves no lock', async () => {
   const folder = mkdtempSync(join(data, 'twice-'));
   let daemon = await start([], folder);
-  const room = await newRoom(daemon), ann = await enter(daemon, room);
+  const room = await newRoom(daemon),
+    ann = await enter(daemon, room);
   await ready(ann);
-  await assert.rejects(start([], folder), (error) => error.message.includes('beamroomd ended with 1') && error.message.includes(`--data ${folder}: another beamroomd uses this folder`));
+  await assert.rejects(
+    start([], folder),
+    (error) =>
+      error.message.includes('beamroomd ended with 1') && error.message.includes(`--data ${folder}: another beamroomd uses this folder`),
+  );
   symlinkSync(folder, `${folder}-too`);
   await assert.rejects(start([], `${folder}-too`), /another beamroomd uses this folder/);
   const { revision } = await patch(ann, 55);
-  await until(() => onDisk(room, folder), (row) => row?.revision === revision);
+  await until(
+    () => onDisk(room, folder),
+    (row) => row?.revision === revision,
+  );
   await end(daemon, 'SIGKILL');
   daemon = await start([], folder);
   assert.equal((await enter(daemon, room)).welcome.revision, revision);

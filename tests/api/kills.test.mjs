@@ -46,7 +46,14 @@ class Model {
     }
   }
 
-  #checkScene({ revision, scene: { image: { window: { center, width } } } }) {
+  #checkScene({
+    revision,
+    scene: {
+      image: {
+        window: { center, width },
+      },
+    },
+  }) {
     if (this.offset === null) return;
     assert.deepEqual([center, width], [revision - this.offset, center + 1], 'the scene is whole and that of its revision');
     this.counts.scenes++;
@@ -68,7 +75,8 @@ class Model {
     assert.ok(n >= this.saved.n && n <= this.n, `scene ${n}, saved ${this.saved.n}, sent ${this.n}`);
     const there = new Map(items.map((item) => [item.id, item]));
     for (const [id, version] of this.saved.items)
-      if (!this.fresh.gone.has(id) && !this.items.get(id)?.isBusy) assert.ok(there.get(id)?.version >= version, `${id} was saved as version ${version}: ${JSON.stringify(there.get(id))}`);
+      if (!this.fresh.gone.has(id) && !this.items.get(id)?.isBusy)
+        assert.ok(there.get(id)?.version >= version, `${id} was saved as version ${version}: ${JSON.stringify(there.get(id))}`);
       else if (there.has(id)) assert.ok(there.get(id).version >= version);
     for (const id of this.saved.gone) assert.ok(!there.has(id), `${id} was deleted`);
     for (const { id, version, body } of items) assert.equal(this.sent.get(body.text), version, `${id} is whole: ${JSON.stringify(body)}`);
@@ -90,7 +98,9 @@ async function enter(daemon, room, hello, heard) {
   const client = await Client.hello(daemon.url, room, hello);
   const first = await client.until(() => client.messages.find(({ type }) => type === 'welcome' || type === 'bye'), 'welcome or bye');
   let n = client.messages.indexOf(first) + 1;
-  client.drain = () => { while (n < client.messages.length) heard?.(client.messages[n++]); };
+  client.drain = () => {
+    while (n < client.messages.length) heard?.(client.messages[n++]);
+  };
   return Object.assign(client, { first });
 }
 
@@ -110,7 +120,8 @@ async function comeBack(daemon, { room, identity }) {
 /** Some edits, none of which is waited for. */
 function edit(client) {
   const { items, sent } = model;
-  for (let i = 0; i < 3 && model.isReady; i++) client.send({ type: 'scene.patch', input: ++nTexts, patch: { image: { window: { center: ++model.n, width: model.n + 1 } } } });
+  for (let i = 0; i < 3 && model.isReady; i++)
+    client.send({ type: 'scene.patch', input: ++nTexts, patch: { image: { window: { center: ++model.n, width: model.n + 1 } } } });
   const put = (version, more) => {
     const text = `note ${++nTexts}`;
     sent.set(text, version);
@@ -133,7 +144,8 @@ function edit(client) {
 /** Links for one person: made in one life of the daemon, used in a later one, refused to others in all after that. */
 async function links(daemon, room, client, by) {
   const { saved, fresh } = model;
-  const fact = async (token, person) => { // saved only by what the server says after it has answered this
+  const fact = async (token, person) => {
+    // saved only by what the server says after it has answered this
     const time = performance.now();
     client.send({ type: 'ping', time_ms: time });
     await client.message('pong', (pong) => pong.time_ms === time);
@@ -164,7 +176,9 @@ async function first(client) {
 
 async function life(data, world) {
   const daemon = await startDaemon({ data, args: ['--stub'] });
-  const ended = new Promise((done) => { daemon.child.on('exit', done); });
+  const ended = new Promise((done) => {
+    daemon.child.on('exit', done);
+  });
   world.daemon = daemon;
   world.room ??= (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
   const client = await comeBack(daemon, world);
@@ -216,5 +230,7 @@ test('what was told to be saved outlives a daemon that is killed at any moment',
   assert.doesNotMatch(daemon.log(), /damaged/);
   const { kills, saved, edits, kept, scenes, old, links: used, later } = model.counts;
   assert.ok(nKills < 3 || saved > 0, 'something was told to be saved');
-  t.diagnostic(`${kills} kills, ${edits} edits, ${saved} times told saved, ${kept} items and ${scenes} scenes found again, ${used} links tried, ${later} times let in later; ${old} times edits were lost that nobody was told to be saved`);
+  t.diagnostic(
+    `${kills} kills, ${edits} edits, ${saved} times told saved, ${kept} items and ${scenes} scenes found again, ${used} links tried, ${later} times let in later; ${old} times edits were lost that nobody was told to be saved`,
+  );
 });

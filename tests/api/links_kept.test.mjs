@@ -11,9 +11,13 @@ import { Client } from './ws_client.mjs';
 
 let data, daemon;
 const clients = [];
-const start = async (args = []) => { daemon = await startDaemon({ data, args: ['--stub', ...args] }); };
+const start = async (args = []) => {
+  daemon = await startDaemon({ data, args: ['--stub', ...args] });
+};
 async function end(signal) {
-  const ended = new Promise((done) => { daemon.child.on('exit', done); });
+  const ended = new Promise((done) => {
+    daemon.child.on('exit', done);
+  });
   daemon.child.kill(signal);
   await ended;
 }
@@ -27,7 +31,8 @@ after(async () => {
   rmSync(data, { recursive: true, force: true });
 });
 
-const api = (path, method, body, { member, secret } = {}) => call(`${daemon.url}/api/v1/rooms${path}`, method, body, member && { 'Beamroom-Member': `${member} ${secret}` });
+const api = (path, method, body, { member, secret } = {}) =>
+  call(`${daemon.url}/api/v1/rooms${path}`, method, body, member && { 'Beamroom-Member': `${member} ${secret}` });
 const newRoom = async () => (await api('', 'POST', { plan: 'phantom' })).json.id;
 const newLink = async (room, wanted, by) => (await api(`/${room}/links`, 'POST', wanted, by)).json.token;
 /** Enters and gives the welcome with the member's role, or the bye. */
@@ -39,17 +44,31 @@ async function enter(room, hello = {}) {
   return Object.assign(first, { client });
 }
 /** As time would: while no daemon runs, every link of this role expires. */
-const expire = (role) => execFileSync('python3', ['-c', `import sqlite3, sys
+const expire = (role) =>
+  execFileSync('python3', [
+    '-c',
+    `import sqlite3, sys
 db = sqlite3.connect(sys.argv[1])
 assert db.execute('UPDATE links SET expires_ms = 1000 WHERE role = ?', (sys.argv[2],)).rowcount > 0
-db.commit()`, join(data, 'beamroom.db'), role]);
+db.commit()`,
+    join(data, 'beamroom.db'),
+    role,
+  ]);
 
 test('after the daemon was killed a link lets people in with its role; a used and an expired one do not', async () => {
-  const room = await newRoom(), ann = await enter(room);
+  const room = await newRoom(),
+    ann = await enter(room);
   assert.equal(ann.role, 'presenter');
-  const [many, one, late] = [await newLink(room, { role: 'observer' }, ann), await newLink(room, { role: 'reviewer', one_use: true }, ann), await newLink(room, { role: 'presenter' }, ann)];
+  const [many, one, late] = [
+    await newLink(room, { role: 'observer' }, ann),
+    await newLink(room, { role: 'reviewer', one_use: true }, ann),
+    await newLink(room, { role: 'presenter' }, ann),
+  ];
   assert.equal((await enter(room, { link: one, person: 'ben-browser' })).role, 'reviewer');
-  const kept = await until(() => onDisk(room, data), (row) => row?.links.length === 3 && row.links.some(({ used }) => used));
+  const kept = await until(
+    () => onDisk(room, data),
+    (row) => row?.links.length === 3 && row.links.some(({ used }) => used),
+  );
   for (const token of [many, one, late]) assert.ok(!JSON.stringify(kept).includes(token), 'a token is kept as a hash alone');
   await end('SIGKILL');
   expire('presenter');
@@ -73,7 +92,11 @@ test('after the daemon was killed a link lets people in with its role; a used an
 test('a room that nobody has entered yet sleeps with its links and is there for who comes by one', async () => {
   await end('SIGTERM');
   await start(['--room-idle-close', '1']);
-  const room = await newRoom(), token = await newLink(room, { role: 'reviewer' });
-  await until(() => api(''), ({ json }) => json.rooms.find(({ id }) => id === room)?.asleep);
+  const room = await newRoom(),
+    token = await newLink(room, { role: 'reviewer' });
+  await until(
+    () => api(''),
+    ({ json }) => json.rooms.find(({ id }) => id === room)?.asleep,
+  );
   assert.equal((await enter(room, { link: token })).role, 'reviewer');
 });

@@ -13,14 +13,21 @@ test('a member with four views takes at most 1 MiB of the daemon', async (t) => 
   try {
     const api = `${daemon.url}/api/v1`;
     const residentKib = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${daemon.child.pid}/status`, 'utf8'))[1]);
-    await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.some((p) => p.id === 'phantom'));
+    await until(
+      async () => (await call(`${api}/plans`)).json.plans,
+      (plans) => plans.some((p) => p.id === 'phantom'),
+    );
     await openPlan(daemon.url, 'phantom');
     const room = (await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
     const enter = async () => {
       const client = await Client.enter(daemon.url, room);
       clients.push(client);
-      for (const [at, kind] of ['3d', 'axial', 'sagittal', 'coronal'].entries()) client.send({ type: 'view.open', view: at + 1, document: { kind, size_px: [800, 600] }, follow: true });
-      await until(() => new Set(client.frames.map(({ view }) => view)).size, (n) => n === 4);
+      for (const [at, kind] of ['3d', 'axial', 'sagittal', 'coronal'].entries())
+        client.send({ type: 'view.open', view: at + 1, document: { kind, size_px: [800, 600] }, follow: true });
+      await until(
+        () => new Set(client.frames.map(({ view }) => view)).size,
+        (n) => n === 4,
+      );
     };
     await enter();
     const before = residentKib();

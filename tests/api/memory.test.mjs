@@ -11,7 +11,10 @@ test('a picture too large for the memory of its renderer is refused with both si
     try {
       const api = `${daemon.url}/api/v1`;
       const render = (side) => call(`${api}/plans/phantom/render`, 'POST', { format: 'jpeg', view: { size_px: [side, side] } });
-      await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length));
+      await until(
+        async () => (await call(`${api}/plans`)).json.plans,
+        (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length),
+      );
       if ((await openPlan(daemon.url, 'phantom')).state !== 'done' || (await render(256)).status !== 200) continue;
       if (/renderer stopped|renderer ended/.test(daemon.log())) continue; /* too little for the program itself */
       const large = await render(4096); /* its image alone takes 64 MiB */

@@ -30,21 +30,30 @@ after(async () => {
 
 describe('a region that would take more triangles than the limit', { timeout: 240000 }, () => {
   test('is named with the picture of a script, which shows the others', async () => {
-    const answer = await fetch(`${api}/plans/foam/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
-      body: JSON.stringify({ scene: { regions: asUnivels }, view: { size_px: [200, 200] } }) });
+    const answer = await fetch(`${api}/plans/foam/render`, {
+      method: 'POST',
+      headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify({ scene: { regions: asUnivels }, view: { size_px: [200, 200] } }),
+    });
     assert.equal(answer.status, 200);
     assert.equal(answer.headers.get('beamroom-missing'), 'foam');
     assert.ok(centreOf(readPng(await answer.arrayBuffer()), isGreen).n > 50, 'the block is seen');
-    const whole = await fetch(`${api}/plans/foam/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
-      body: JSON.stringify({ scene: { regions: { ...asUnivels, foam: { visible: false } } }, view: { size_px: [200, 200] } }) });
+    const whole = await fetch(`${api}/plans/foam/render`, {
+      method: 'POST',
+      headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify({ scene: { regions: { ...asUnivels, foam: { visible: false } } }, view: { size_px: [200, 200] } }),
+    });
     assert.equal(whole.headers.get('beamroom-missing'), null);
     await whole.arrayBuffer();
   });
 
   test('is said to be missing in the caption of an annotated picture, not listed among the regions shown', async () => {
     const annotated = async (regions) => {
-      const answer = await fetch(`${api}/plans/foam/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' },
-        body: JSON.stringify({ scene: { regions }, view: { size_px: [400, 200] }, annotations: true }) });
+      const answer = await fetch(`${api}/plans/foam/render`, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ scene: { regions }, view: { size_px: [400, 200] }, annotations: true }),
+      });
       const picture = readPng(await answer.arrayBuffer());
       const caption = { ...picture, height: picture.height - 200, at: (x, y) => picture.at(x, y + 200) };
       const n = (colour) => centreOf(caption, (rgb) => String(rgb) === colour).n;
@@ -60,7 +69,18 @@ describe('a region that would take more triangles than the limit', { timeout: 24
   test('is named by the command that draws it', async () => {
     const scene = join(folder, 'foam', 'scene.json');
     writeFileSync(scene, JSON.stringify({ regions: asUnivels }));
-    const { stderr } = await promisify(execFile)(join(bin, 'beamroom'), ['render', join(folder, 'foam'), '--gl', 'soft', '--scene', scene, '--size', '64x64', '-o', join(folder, 'picture.png')]);
+    const { stderr } = await promisify(execFile)(join(bin, 'beamroom'), [
+      'render',
+      join(folder, 'foam'),
+      '--gl',
+      'soft',
+      '--scene',
+      scene,
+      '--size',
+      '64x64',
+      '-o',
+      join(folder, 'picture.png'),
+    ]);
     assert.match(stderr, /not in the picture: region "foam": .*40000000/);
   });
 
@@ -74,7 +94,15 @@ describe('a region that would take more triangles than the limit', { timeout: 24
       return client;
     };
     // hidden at first: its smooth surface can be made, but slowly
-    assert.equal((await until(() => call(`${api}/rooms/${room}/scene`, 'PATCH', { regions: { foam: { visible: false } } }, { 'If-Match': '*' }), (a) => a.status === 200)).status, 200);
+    assert.equal(
+      (
+        await until(
+          () => call(`${api}/rooms/${room}/scene`, 'PATCH', { regions: { foam: { visible: false } } }, { 'If-Match': '*' }),
+          (a) => a.status === 200,
+        )
+      ).status,
+      200,
+    );
     const ann = await join_();
     await ann.frame((f) => f.isStill);
     assert.ok(!ann.messages.some((m) => m.type === 'missing'));
@@ -93,7 +121,10 @@ describe('a region that would take more triangles than the limit', { timeout: 24
     assert.equal((await ben.message('missing')).n, 1);
     ann.send({ type: 'scene.patch', patch: { regions: { foam: { visible: false } } }, input: 3 });
     await ann.frame((f) => f.isStill && f.input === 3);
-    assert.deepEqual(ann.messages.filter((m) => m.type === 'missing').map((m) => m.n), [1, 0]);
+    assert.deepEqual(
+      ann.messages.filter((m) => m.type === 'missing').map((m) => m.n),
+      [1, 0],
+    );
     ann.cut();
     ben.cut();
   });

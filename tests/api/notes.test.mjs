@@ -13,7 +13,10 @@ test('notes and bookmarks are in their lists, and in the welcome of who comes la
   const daemon = await startDaemon({ args: ['--stub'] });
   t.after(() => daemon.stop());
   const api = `${daemon.url}/api/v1`;
-  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 1 && plans[0].parts.length);
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans,
+    (plans) => plans.length === 1 && plans[0].parts.length,
+  );
   await openPlan(daemon.url, 'phantom');
   const room = (await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id;
   const [ann, ben] = [await enter(daemon.url, room, 'Ann'), await enter(daemon.url, room, 'Ben')];
@@ -27,7 +30,13 @@ test('notes and bookmarks are in their lists, and in the welcome of who comes la
   ann.send({ type: 'item.put', kind: 'bookmark', body: { name: 'here' } });
   await ann.message('item', ({ item }) => item.kind === 'bookmark');
   const notes = (await call(`${api}/rooms/${room}/notes`)).json.notes;
-  assert.deepEqual(notes.map(({ author_name: who, body }) => [who, body.text, body.parent]), [['Ben', 'Größe? 🧠 <b>', ''], ['Ann', 'yes', made.id]]);
+  assert.deepEqual(
+    notes.map(({ author_name: who, body }) => [who, body.text, body.parent]),
+    [
+      ['Ben', 'Größe? 🧠 <b>', ''],
+      ['Ann', 'yes', made.id],
+    ],
+  );
   assert.deepEqual(notes[0], made.item);
   assert.equal((await call(`${api}/rooms/${room}/bookmarks`)).json.bookmarks.length, 1);
 

@@ -24,14 +24,19 @@ async function put(client, body, more = {}) {
   return (await client.message('item', (message) => message.input === input)).item;
 }
 
-test('notes and replies are there after the daemon was killed, deleted ones are not, and their author still changes them', { timeout: 120000 }, async (t) => {
+test('notes and replies are there after the daemon was killed, deleted ones are not, and their author still changes them', {
+  timeout: 120000,
+}, async (t) => {
   const data = mkdtempSync(join(tmpdir(), 'beamroom-notes-'));
   let daemon = await startDaemon({ data, args: ['--stub'] });
   t.after(async () => {
     await daemon.stop();
     rmSync(data, { recursive: true, force: true });
   });
-  await until(async () => (await call(`${daemon.url}/api/v1/plans`)).json.plans, (plans) => plans.length === 1 && plans[0].parts.length);
+  await until(
+    async () => (await call(`${daemon.url}/api/v1/plans`)).json.plans,
+    (plans) => plans.length === 1 && plans[0].parts.length,
+  );
   await openPlan(daemon.url, 'phantom');
   const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
   const [ann, ben] = [await enter(daemon, room, { name: 'Ann' }), await enter(daemon, room, { name: 'Ben' })];
@@ -43,8 +48,13 @@ test('notes and replies are there after the daemon was killed, deleted ones are 
   await ben.message('item', ({ id, item }) => id === gone.id && item === null);
   const before = (await call(`${daemon.url}/api/v1/rooms/${room}/notes`)).json;
   assert.equal(before.notes.length, 2);
-  await until(() => onDisk(room, data), (rows) => rows.length === 2 && rows.some(({ version }) => version === 2) && rows.some(({ body }) => body.text === 'yes'));
-  const killed = new Promise((done) => { daemon.child.on('exit', done); });
+  await until(
+    () => onDisk(room, data),
+    (rows) => rows.length === 2 && rows.some(({ version }) => version === 2) && rows.some(({ body }) => body.text === 'yes'),
+  );
+  const killed = new Promise((done) => {
+    daemon.child.on('exit', done);
+  });
   daemon.child.kill('SIGKILL');
   await killed;
 

@@ -13,4 +13,5 @@ print(json.dumps(row and {'revision': row[0], 'scene': row[1] and json.loads(row
 `;
 
 /** A room in the database of this state folder: {revision, scene, views, members: [{id, hash}], links: [{hash, role, used}], items: [id]}; null: it is not there. */
-export const onDisk = (room, data) => JSON.parse(execFileSync('python3', ['-c', script, join(data, 'beamroom.db'), room], { encoding: 'utf8' }));
+export const onDisk = (room, data) =>
+  JSON.parse(execFileSync('python3', ['-c', script, join(data, 'beamroom.db'), room], { encoding: 'utf8' }));

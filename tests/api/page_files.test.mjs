@@ -15,24 +15,42 @@ before(async () => {
 after(() => daemon?.stop());
 
 /** A request with just these headers: fetch would add its own Accept-Encoding, and decode the answer. */
-const get = (path, headers = {}, method = 'GET') => new Promise((done, failed) => {
-  request(daemon.url + path, { method, headers }, (answer) => {
-    const parts = [];
-    answer.on('data', (part) => parts.push(part));
-    answer.on('end', () => done({ status: answer.statusCode, headers: answer.headers, body: Buffer.concat(parts) }));
-  }).on('error', failed).end();
-});
-const decoded = ({ headers, body }) => ({ gzip: gunzipSync, br: brotliDecompressSync }[headers['content-encoding']] ?? ((bytes) => bytes))(body);
-const files = readdirSync(web, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile())
+const get = (path, headers = {}, method = 'GET') =>
+  new Promise((done, failed) => {
+    request(daemon.url + path, { method, headers }, (answer) => {
+      const parts = [];
+      answer.on('data', (part) => parts.push(part));
+      answer.on('end', () => done({ status: answer.statusCode, headers: answer.headers, body: Buffer.concat(parts) }));
+    })
+      .on('error', failed)
+      .end();
+  });
+const decoded = ({ headers, body }) =>
+  (({ gzip: gunzipSync, br: brotliDecompressSync })[headers['content-encoding']] ?? ((bytes) => bytes))(body);
+const files = readdirSync(web, { recursive: true, withFileTypes: true })
+  .filter((entry) => entry.isFile())
   .map((entry) => join(entry.parentPath ?? entry.path, entry.name).slice(web.length));
 const texts = files.filter((path) => /\.(html|css|js|json|svg|txt)$/.test(path));
 
 describe('a text file of the page', () => {
   test('comes in the coding that the request prefers', async () => {
-    const cases = [ // RFC 9110 12.5.3
-      [undefined, undefined], ['', undefined], ['identity', undefined], ['gzip', 'gzip'], ['br', 'br'], ['gzip, deflate, br, zstd', 'br'],
-      ['gzip;q=0', undefined], ['gzip;q=0, br;q=0.001', 'br'], ['gzip;q=1.0, br;q=0.5', 'gzip'], ['*', 'br'], ['*;q=0', undefined],
-      ['br;q=0, *', 'gzip'], ['identity;q=1, gzip;q=0.5', undefined], ['zstd', undefined], ['GZip', 'gzip'],
+    const cases = [
+      // RFC 9110 12.5.3
+      [undefined, undefined],
+      ['', undefined],
+      ['identity', undefined],
+      ['gzip', 'gzip'],
+      ['br', 'br'],
+      ['gzip, deflate, br, zstd', 'br'],
+      ['gzip;q=0', undefined],
+      ['gzip;q=0, br;q=0.001', 'br'],
+      ['gzip;q=1.0, br;q=0.5', 'gzip'],
+      ['*', 'br'],
+      ['*;q=0', undefined],
+      ['br;q=0, *', 'gzip'],
+      ['identity;q=1, gzip;q=0.5', undefined],
+      ['zstd', undefined],
+      ['GZip', 'gzip'],
     ];
     for (const [accepted, coding] of cases) {
       const answer = await get('/index.html', accepted === undefined ? {} : { 'Accept-Encoding': accepted });
@@ -72,7 +90,8 @@ describe('a text file of the page', () => {
     for (const coding of ['identity', 'gzip', 'br']) {
       const [head, whole] = [await get('/', { 'Accept-Encoding': coding }, 'HEAD'), await get('/', { 'Accept-Encoding': coding })];
       assert.equal(head.body.length, 0);
-      for (const name of ['content-length', 'content-encoding', 'content-type', 'etag', 'vary', 'cache-control']) assert.equal(head.headers[name], whole.headers[name]);
+      for (const name of ['content-length', 'content-encoding', 'content-type', 'etag', 'vary', 'cache-control'])
+        assert.equal(head.headers[name], whole.headers[name]);
     }
   });
 

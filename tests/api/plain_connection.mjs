@@ -3,7 +3,8 @@ import assert from 'node:assert/strict';
 import { connect } from 'node:net';
 import { call, startDaemon, until } from './daemon.mjs';
 
-export const HOST = 'Host: localhost\r\n', FIRST = `GET /healthz HTTP/1.1\r\n${HOST}\r\n`;
+export const HOST = 'Host: localhost\r\n',
+  FIRST = `GET /healthz HTTP/1.1\r\n${HOST}\r\n`;
 export const statuses = (text) => [...text.matchAll(/HTTP\/1\.1 (\d{3}) [A-Z]/g)].map((found) => Number(found[1]));
 
 /** Opens a connection that sends bytes; ended resolves with how it ended: 'end' by the server, an error code, or 'open' after ms. */
@@ -20,9 +21,18 @@ export function open(url, bytes, { from = '127.0.0.1', ms = 15000 } = {}) {
     socket.on('close', done);
   });
   connection.ended = new Promise((done) => {
-    const timer = setTimeout(() => { socket.destroy(); done('open'); }, ms);
-    socket.on('error', (error) => { clearTimeout(timer); done(error.code); });
-    socket.on('close', () => { clearTimeout(timer); done('end'); });
+    const timer = setTimeout(() => {
+      socket.destroy();
+      done('open');
+    }, ms);
+    socket.on('error', (error) => {
+      clearTimeout(timer);
+      done(error.code);
+    });
+    socket.on('close', () => {
+      clearTimeout(timer);
+      done('end');
+    });
   });
   socket.write(bytes);
   return connection;
@@ -37,13 +47,22 @@ export async function openEach(n, make) {
     await Promise.all(some.map((c) => c.answered));
   }
   const list = all.map((c) => statuses(c.text)[0]);
-  return { list, n: (status) => list.filter((one) => one === status).length, drop: () => { for (const c of all) c.socket.destroy(); } };
+  return {
+    list,
+    n: (status) => list.filter((one) => one === status).length,
+    drop: () => {
+      for (const c of all) c.socket.destroy();
+    },
+  };
 }
 
 /** Starts a daemon and waits until it has found its plan. */
 export async function startWithPlan(args = []) {
   const daemon = await startDaemon({ args: ['--stub', ...args] });
-  await until(() => call(`${daemon.url}/api/v1/plans/phantom`), (answer) => answer.status === 200);
+  await until(
+    () => call(`${daemon.url}/api/v1/plans/phantom`),
+    (answer) => answer.status === 200,
+  );
   return daemon;
 }
 

@@ -6,7 +6,7 @@ export function readPng(bytes) {
   if (at.readUInt32BE(0) !== 0x89504e47) throw new Error('not a PNG');
   let width, height, channels;
   const data = [];
-  for (let pos = 8; pos < at.length;) {
+  for (let pos = 8; pos < at.length; ) {
     const n = at.readUInt32BE(pos);
     const type = at.toString('latin1', pos + 4, pos + 8);
     if (type === 'IHDR') {
@@ -38,9 +38,15 @@ export function readPng(bytes) {
 
 /** Centre and number of the pixels that suit. */
 export function centreOf(picture, suits) {
-  let n = 0, x = 0, y = 0;
+  let n = 0,
+    x = 0,
+    y = 0;
   for (let row = 0; row < picture.height; row++)
     for (let column = 0; column < picture.width; column++)
-      if (suits(picture.at(column, row))) { n++; x += column; y += row; }
+      if (suits(picture.at(column, row))) {
+        n++;
+        x += column;
+        y += row;
+      }
   return { n, x: x / n, y: y / n };
 }

@@ -26,11 +26,14 @@ const profileOf = async (of, room, query) => {
   assert.equal(answer.status, 200, answer.text);
   return answer.json;
 };
-const near = (value, expected, share, what) => assert.ok(Math.abs(value - expected) <= share * Math.abs(expected) + 1e-12, `${what}: ${value}, expected ${expected}`);
+const near = (value, expected, share, what) =>
+  assert.ok(Math.abs(value - expected) <= share * Math.abs(expected) + 1e-12, `${what}: ${value}, expected ${expected}`);
 
 test('the curves of a beam are the read-outs at its points, and weighted components add up to the weighted dose', async () => {
   const room = await makeRoom('phantom', { dose: { quantity: 'weighted' } });
-  const { json: { beams } } = await call(`${api}/plans/phantom`);
+  const {
+    json: { beams },
+  } = await call(`${api}/plans/phantom`);
   const profile = await profileOf('phantom', room, `beam=${beams[0].id}&samples=41`);
   assert.equal(profile.depths_mm.length, 41);
   assert.equal(profile.curves[0].quantity, 'weighted');
@@ -44,7 +47,12 @@ test('the curves of a beam are the read-outs at its points, and weighted compone
     if (probe.value === null) continue;
     n++;
     near(profile.curves[0].values[at], probe.value, 1e-6, 'weighted');
-    near(parts.reduce((sum, { values }) => sum + values[at], 0), probe.value, 1e-6, 'sum');
+    near(
+      parts.reduce((sum, { values }) => sum + values[at], 0),
+      probe.value,
+      1e-6,
+      'sum',
+    );
     const band = profile.bands.find(({ from_mm: from, to_mm: to }) => profile.depths_mm[at] > from && profile.depths_mm[at] < to);
     assert.equal(band?.region, probe.regions[0]);
   }
@@ -60,12 +68,23 @@ test('a line between two points begins at the first, and wrong lines are refused
   assert.deepEqual(profile.depths_mm, [0, 10, 20, 30, 40]);
   assert.deepEqual(profile.direction, [1, 0, 0]);
   const status = async (query) => (await call(`${api}/plans/phantom/profile?room=${room}&${query}`)).status;
-  assert.deepEqual([await status('beam=none'), await status('from=1,2'), await status('from=1,2,3'), await status('from=1,2,3&to=1,2,3'), await status('')], [404, 422, 422, 422, 422]);
+  assert.deepEqual(
+    [
+      await status('beam=none'),
+      await status('from=1,2'),
+      await status('from=1,2,3'),
+      await status('from=1,2,3&to=1,2,3'),
+      await status(''),
+    ],
+    [404, 422, 422, 422, 422],
+  );
 });
 
-test('the head\'s advantage depth lies beyond the peak, as those of published epithermal beams do', { skip }, async () => {
+test("the head's advantage depth lies beyond the peak, as those of published epithermal beams do", { skip }, async () => {
   await openPlan(daemon.url, 'sera-head');
-  const { json: { beams } } = await call(`${api}/plans/sera-head`);
+  const {
+    json: { beams },
+  } = await call(`${api}/plans/sera-head`);
   const room = await makeRoom('sera-head');
   const profile = await profileOf('sera-head', room, `beam=${beams[0].id}`);
   assert.ok(profile.bands.some(({ region }) => region === 'brain'));
@@ -81,13 +100,18 @@ test('a dose agrees with itself, and what there is to compare is said', async ()
   const none = await gammaOf();
   assert.equal(none.pass_percent, null);
   assert.match(none.comparison_reason, /no second dose/);
-  const { json: { doses } } = await call(`${api}/plans/phantom`);
+  const {
+    json: { doses },
+  } = await call(`${api}/plans/phantom`);
   const patch = { dose: { id: doses[0].id, compare: { id: doses[0].id, dose_percent: 3, distance_mm: 2, normalization: 'local' } } };
   assert.equal((await call(`${api}/rooms/${room}/scene`, 'PATCH', patch, { 'If-Match': '*' })).status, 200);
   const same = await gammaOf();
   assert.equal(same.comparison_reason, null);
   assert.equal(same.pass_percent, 100);
   assert.ok(same.voxels > 0 && same.max < 1e-6 && same.difference.root_mean_square < 1e-6);
-  assert.equal(same.histogram.counts.reduce((sum, count) => sum + count, 0), same.voxels);
+  assert.equal(
+    same.histogram.counts.reduce((sum, count) => sum + count, 0),
+    same.voxels,
+  );
   assert.match(same.method, /local: 3 % of the first dose at the voxel, 2 mm/);
 });

@@ -22,19 +22,36 @@ async function enter(hello) {
 async function give(client, message) {
   const own = ++input;
   client.send({ ...message, input: own });
-  return client.until(() => client.messages.find((m) => (m.type === 'item' || m.type === 'problem') && m.input === own), 'an answer').then((m) => m.item ?? m.problem);
+  return client
+    .until(() => client.messages.find((m) => (m.type === 'item' || m.type === 'problem') && m.input === own), 'an answer')
+    .then((m) => m.item ?? m.problem);
 }
 const put = (client, kind, body, of = {}) => give(client, { type: 'item.put', kind, body, ...of });
 
 /** By the definition in proto/http.json, with node's own SHA-256. */
-const filesOf = (at) => readdirSync(at, { withFileTypes: true }).filter(({ name }) => !name.startsWith('.')).flatMap((entry) => (entry.isDirectory() ? filesOf(join(at, entry.name)) : [join(at, entry.name)]));
+const filesOf = (at) =>
+  readdirSync(at, { withFileTypes: true })
+    .filter(({ name }) => !name.startsWith('.'))
+    .flatMap((entry) => (entry.isDirectory() ? filesOf(join(at, entry.name)) : [join(at, entry.name)]));
 function revisionOf(folder) {
   const sha = (bytes) => createHash('sha256').update(bytes).digest('hex');
-  const lines = filesOf(folder).map((file) => [Buffer.from(relative(folder, file)), file]).sort(([a], [b]) => Buffer.compare(a, b));
+  const lines = filesOf(folder)
+    .map((file) => [Buffer.from(relative(folder, file)), file])
+    .sort(([a], [b]) => Buffer.compare(a, b));
   return sha(lines.map(([name, file]) => `${sha(readFileSync(file))}  ${name}\n`).join(''));
 }
-const revision = () => until(() => call(`${daemon.url}/api/v1/plans/phantom/revision`), ({ status }) => status === 200).then(({ json }) => json);
-const record = async (query = '') => (await until(() => api(`/record${query}`), ({ status }) => status !== 503)).json;
+const revision = () =>
+  until(
+    () => call(`${daemon.url}/api/v1/plans/phantom/revision`),
+    ({ status }) => status === 200,
+  ).then(({ json }) => json);
+const record = async (query = '') =>
+  (
+    await until(
+      () => api(`/record${query}`),
+      ({ status }) => status !== 503,
+    )
+  ).json;
 
 before(async () => {
   data = mkdtempSync(join(tmpdir(), 'beamroom-record-'));
@@ -85,17 +102,22 @@ test('decisions and signatures are only added to, and corrected by new ones', as
   assert.equal((await put(ann, 'decision', { decision: 'maybe' })).pointer, '/body/decision');
   const first = await put(ann, 'decision', { decision: 'accept', text: 'As shown' });
   assert.equal(first.body.decision, 'accept');
-  for (const refused of [await put(ann, 'decision', { decision: 'reject' }, { item: first.id, version: 1 }), await give(ann, { type: 'item.delete', item: first.id })])
+  for (const refused of [
+    await put(ann, 'decision', { decision: 'reject' }, { item: first.id, version: 1 }),
+    await give(ann, { type: 'item.delete', item: first.id }),
+  ])
     assert.deepEqual([refused.type, refused.code], ['/problems/forbidden', 'append-only']);
   assert.equal((await put(ann, 'decision', { decision: 'defer', corrects: 'i-0000000000' })).pointer, '/body/corrects');
-  assert.equal((await put(ann, 'decision', { decision: 'defer', text: 'Wait for the blood sample', corrects: first.id })).body.corrects, first.id);
+  assert.equal(
+    (await put(ann, 'decision', { decision: 'defer', text: 'Wait for the blood sample', corrects: first.id })).body.corrects,
+    first.id,
+  );
 
   const line = await put(ben, 'signature', { name: 'B. Example', meaning: 'reviewed' });
   assert.deepEqual([line.body.name, line.body.role, line.author_name], ['B. Example', 'reviewer', 'Ben']);
   assert.equal((await put(eve, 'signature', { name: 'Eve', meaning: 'seen' })).code, 'role');
   assert.equal((await put(ben, 'signature', { name: '', meaning: 'seen' })).pointer, '/body/name');
-  for (const client of [ann, ben])
-    assert.equal((await give(client, { type: 'item.delete', item: line.id })).code, 'append-only');
+  for (const client of [ann, ben]) assert.equal((await give(client, { type: 'item.delete', item: line.id })).code, 'append-only');
 });
 
 test('the record holds it all as its schema says, and its export is in the audit', async () => {
@@ -106,12 +128,37 @@ test('the record holds it all as its schema says, and its export is in the audit
   assert.deepEqual(faults(schema, { ...found, extra: 1 }), ['/extra is not in the schema']);
   assert.deepEqual(faults(schema, { ...found, plan_revision: 'x' }), ['/plan_revision: x']);
   assert.equal(found.plan_revision, revisionOf(join(plans, 'phantom')));
-  assert.deepEqual(found.present.map(({ name, role, here, left_ms: left }) => [name, role, here, left]), [['Ann', 'presenter', true, null], ['Ben', 'reviewer', true, null], ['Eve', 'observer', true, null]]);
-  assert.deepEqual(found.checklist.map(({ entry, state }) => [entry, state]), [['identity', 'issue'], ['', 'open']]);
-  assert.deepEqual(found.decisions.map(({ decision }) => decision), ['accept', 'defer']);
-  assert.deepEqual(found.signatures.map(({ name, meaning }) => [name, meaning]), [['B. Example', 'reviewed']]);
-  assert.deepEqual(found.notes.map(({ text, anchor }) => [text, anchor.point_mm]), [['Edge?', [1, -2.5, 3]]]);
-  const later = await until(() => record(), ({ audit }) => audit.rows > found.audit.rows && audit.n_waiting === 0);
+  assert.deepEqual(
+    found.present.map(({ name, role, here, left_ms: left }) => [name, role, here, left]),
+    [
+      ['Ann', 'presenter', true, null],
+      ['Ben', 'reviewer', true, null],
+      ['Eve', 'observer', true, null],
+    ],
+  );
+  assert.deepEqual(
+    found.checklist.map(({ entry, state }) => [entry, state]),
+    [
+      ['identity', 'issue'],
+      ['', 'open'],
+    ],
+  );
+  assert.deepEqual(
+    found.decisions.map(({ decision }) => decision),
+    ['accept', 'defer'],
+  );
+  assert.deepEqual(
+    found.signatures.map(({ name, meaning }) => [name, meaning]),
+    [['B. Example', 'reviewed']],
+  );
+  assert.deepEqual(
+    found.notes.map(({ text, anchor }) => [text, anchor.point_mm]),
+    [['Edge?', [1, -2.5, 3]]],
+  );
+  const later = await until(
+    () => record(),
+    ({ audit }) => audit.rows > found.audit.rows && audit.n_waiting === 0,
+  );
   assert.notEqual(later.audit.head, found.audit.head);
   assert.equal((await api('/record?export=perhaps')).json.pointer, '/export');
 });
@@ -125,7 +172,12 @@ test('when the files change, earlier lines stand under the earlier revision, and
   await until(revision, ({ revision: found }) => found === now);
   const again = await put(ben, 'check', { entry: 'identity', text: 'Plan and side', state: 'ok' });
   assert.equal(again.body.plan_revision, now);
-  const old = await put(ben, 'check', { entry: 'identity', text: 'Plan and side', state: 'ok' }, { item: before.id, version: before.version });
+  const old = await put(
+    ben,
+    'check',
+    { entry: 'identity', text: 'Plan and side', state: 'ok' },
+    { item: before.id, version: before.version },
+  );
   assert.deepEqual([old.type, old.code], ['/problems/forbidden', 'append-only']);
   const both = (await record()).checklist.filter(({ entry }) => entry === 'identity').map(({ plan_revision: of }) => of);
   assert.deepEqual(both, [before.plan_revision, now]);
@@ -135,13 +187,26 @@ test('it is there after the daemon was killed, with who was there', async () => 
   const before = await record();
   ben.cut();
   await until(record, ({ present }) => !present.find(({ name }) => name === 'Ben').here);
-  await until(() => record(), ({ audit }) => audit.n_waiting === 0);
-  await until(() => call(`${daemon.url}/api/v1/rooms/${room}/record`), ({ json }) => json.present[1].left_ms > 0);
+  await until(
+    () => record(),
+    ({ audit }) => audit.n_waiting === 0,
+  );
+  await until(
+    () => call(`${daemon.url}/api/v1/rooms/${room}/record`),
+    ({ json }) => json.present[1].left_ms > 0,
+  );
   await daemon.stop();
   daemon = await startDaemon({ data, plans: [plans], args: ['--stub'] });
   const after = await record();
   for (const part of ['checklist', 'decisions', 'signatures', 'notes']) assert.deepEqual(after[part], before[part]);
-  assert.deepEqual(after.present.map(({ name, here }) => [name, here]), [['Ann', false], ['Ben', false], ['Eve', false]]);
+  assert.deepEqual(
+    after.present.map(({ name, here }) => [name, here]),
+    [
+      ['Ann', false],
+      ['Ben', false],
+      ['Eve', false],
+    ],
+  );
   assert.ok(after.present[1].left_ms >= after.present[1].entered_ms);
 });
 
@@ -157,5 +222,14 @@ function faults(schema, value, at = '') {
   if (type === 'array') return value.flatMap((entry, i) => faults(schema.items ?? {}, entry, `${at}/${i}`));
   if (type !== 'object') return [];
   const missing = (schema.required ?? []).filter((name) => !(name in value)).map((name) => `${at}/${name} is missing`);
-  return [...missing, ...Object.entries(value).flatMap(([name, part]) => (schema.properties?.[name] ? faults(schema.properties[name], part, `${at}/${name}`) : schema.additionalProperties === false ? [`${at}/${name} is not in the schema`] : []))];
+  return [
+    ...missing,
+    ...Object.entries(value).flatMap(([name, part]) =>
+      schema.properties?.[name]
+        ? faults(schema.properties[name], part, `${at}/${name}`)
+        : schema.additionalProperties === false
+          ? [`${at}/${name} is not in the schema`]
+          : [],
+    ),
+  ];
 }

@@ -9,7 +9,9 @@ import { Client } from './ws_client.mjs';
 
 let data, daemon, api;
 const clients = new Set();
-before(() => { data = mkdtempSync(join(tmpdir(), 'beamroom-recording-')); });
+before(() => {
+  data = mkdtempSync(join(tmpdir(), 'beamroom-recording-'));
+});
 after(async () => {
   for (const client of clients) client.cut();
   await daemon?.stop();
@@ -52,17 +54,33 @@ test('a meeting is recorded, and what it was can be read at each time, also afte
   id = begun.id;
   const cem = await enter(room, { name: 'Cem' });
   assert.equal((await cem.message('recording')).id, id, 'who enters is told');
-  for (const [n, position_mm] of [[1, 12.5], [2, -30], [3, 41.25]]) {
+  for (const [n, position_mm] of [
+    [1, 12.5],
+    [2, -30],
+    [3, 41.25],
+  ]) {
     ann.send({ type: 'scene.patch', patch: { image: { slices: { axial: { visible: true, position_mm } } } }, input: 10 * n });
-    ann.send({ type: 'view.patch', view: 1, patch: { camera: { position_mm: [300 * n, -500, 200], target_mm: [0, 0, 0], up: [0, 0, 1] } }, input: 10 * n + 1 });
+    ann.send({
+      type: 'view.patch',
+      view: 1,
+      patch: { camera: { position_mm: [300 * n, -500, 200], target_mm: [0, 0, 0], up: [0, 0, 1] } },
+      input: 10 * n + 1,
+    });
     ben.send({ type: 'pointer', view: 1, point_mm: [n, 2, 3] });
     ann.send({ type: 'item.put', kind: 'note', body: { text: `note ${n}` } });
     const still = await ann.frame((frame) => frame.isStill && frame.input >= 10 * n + 1);
     const scene = (await call(`${api}/rooms/${room}/scene`)).json;
-    const found = await until(async () => {
-      const t_ms = (await list(room)).find((one) => one.id === id).length_ms;
-      return { t_ms, state: await stateAt(room, id, t_ms) };
-    }, ({ state }) => state.items?.length === n && state.scene.image.slices.axial.position_mm === position_mm && state.pointers[0]?.point_mm[0] === n && state.views[0]?.document.camera.position_mm[0] === 300 * n);
+    const found = await until(
+      async () => {
+        const t_ms = (await list(room)).find((one) => one.id === id).length_ms;
+        return { t_ms, state: await stateAt(room, id, t_ms) };
+      },
+      ({ state }) =>
+        state.items?.length === n &&
+        state.scene.image.slices.axial.position_mm === position_mm &&
+        state.pointers[0]?.point_mm[0] === n &&
+        state.views[0]?.document.camera.position_mm[0] === 300 * n,
+    );
     assert.deepEqual(found.state.scene, scene);
     moments.push({ t_ms: found.t_ms, scene, bytes: Buffer.from(still.picture), items: n });
   }
@@ -84,7 +102,10 @@ test('a room that plays it draws byte for byte the same pictures, and changes no
   const what = await dee.message('replay');
   assert.equal(what.recording, id);
   assert.equal(what.plan_changed, false, 'the plan is the same after a restart');
-  assert.deepEqual(what.marks.filter(([, kind]) => kind === 'note').map(([, , name]) => name), ['Ann', 'Ann', 'Ann']);
+  assert.deepEqual(
+    what.marks.filter(([, kind]) => kind === 'note').map(([, , name]) => name),
+    ['Ann', 'Ann', 'Ann'],
+  );
   opens(dee);
   for (const moment of [moments[2], moments[0], moments[1]]) {
     dee.send({ type: 'replay.seek', t_ms: moment.t_ms });

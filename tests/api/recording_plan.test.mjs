@@ -10,14 +10,20 @@ import { Client } from './ws_client.mjs';
 
 let data, plans, daemon;
 const clients = new Set();
-const start = async () => { daemon = await startDaemon({ data, plans: [plans], args: ['--stub'] }); };
+const start = async () => {
+  daemon = await startDaemon({ data, plans: [plans], args: ['--stub'] });
+};
 async function enter(room) {
   const client = await Client.enter(daemon.url, room, { name: 'Ann' });
   clients.add(client);
   await client.ready();
   return client;
 }
-const revision = () => until(() => call(`${daemon.url}/api/v1/plans/phantom/revision`), ({ status }) => status === 200).then(({ json }) => json.revision);
+const revision = () =>
+  until(
+    () => call(`${daemon.url}/api/v1/plans/phantom/revision`),
+    ({ status }) => status === 200,
+  ).then(({ json }) => json.revision);
 
 before(async () => {
   data = mkdtempSync(join(tmpdir(), 'beamroom-recording-'));
@@ -51,12 +57,18 @@ test('a changed voxel is another plan, also after a restart, and the former valu
   const bytes = readFileSync(file);
   const values = gunzipSync(bytes);
   values[values.length - 1001] ^= 1;
-  for (const [content, isChanged] of [[gzipSync(values), true], [bytes, false]]) {
+  for (const [content, isChanged] of [
+    [gzipSync(values), true],
+    [bytes, false],
+  ]) {
     writeFileSync(file, content);
-    await until(async () => {
-      await call(`${daemon.url}/api/v1/plans`); // has the folders listed
-      return said();
-    }, (found) => found === isChanged);
-    assert.equal(await revision() === then, !isChanged);
+    await until(
+      async () => {
+        await call(`${daemon.url}/api/v1/plans`); // has the folders listed
+        return said();
+      },
+      (found) => found === isChanged,
+    );
+    assert.equal((await revision()) === then, !isChanged);
   }
 });

@@ -39,10 +39,23 @@ async function put(client, kind, body) {
 }
 /** A room on the plan in which Ann decides and signs. */
 async function decided(plan) {
-  const room = (await call(`${api}/rooms`, 'POST', { plan })).json.id, ann = await enter(room, 'Ann'), ben = await enter(room, 'Ben');
-  await until(() => call(`${api}/rooms/${room}/record`), ({ status }) => status === 200);
+  const room = (await call(`${api}/rooms`, 'POST', { plan })).json.id,
+    ann = await enter(room, 'Ann'),
+    ben = await enter(room, 'Ben');
+  await until(
+    () => call(`${api}/rooms/${room}/record`),
+    ({ status }) => status === 200,
+  );
   await put(ann, 'note', { text: 'Edge?' });
-  return { room, ann, ben, items: [await put(ann, 'decision', { decision: 'accept', text: 'As shown' }), await put(ann, 'signature', { name: 'A. Example', meaning: 'reviewed' })] };
+  return {
+    room,
+    ann,
+    ben,
+    items: [
+      await put(ann, 'decision', { decision: 'accept', text: 'As shown' }),
+      await put(ann, 'signature', { name: 'A. Example', meaning: 'reviewed' }),
+    ],
+  };
 }
 
 test('a plan that was put into a folder is opened, and gets a room, before anybody has asked for the list', async () => {
@@ -64,16 +77,34 @@ test('a room with a decision is deleted only with the word that its records stay
   assert.equal((await call(`${api}/rooms/${room}?records=keep`, 'DELETE', undefined, ann.headers)).status, 204);
   assert.equal((await ben.message('bye')).reason, 'the room was ended by Ann');
 
-  const { json: { records } } = await call(`${api}/records`);
-  assert.deepEqual(records.map(({ id, kind, room: of, plan, author_name: name }) => [id, kind, of, plan, name]),
-    [[items[1].id, 'signature', room, 'new-one', 'Ann'], [items[0].id, 'decision', room, 'new-one', 'Ann']]);
-  assert.deepEqual((await call(`${api}/records?before=${items[1].id}`)).json.records.map(({ id }) => id), [items[0].id]);
+  const {
+    json: { records },
+  } = await call(`${api}/records`);
+  assert.deepEqual(
+    records.map(({ id, kind, room: of, plan, author_name: name }) => [id, kind, of, plan, name]),
+    [
+      [items[1].id, 'signature', room, 'new-one', 'Ann'],
+      [items[0].id, 'decision', room, 'new-one', 'Ann'],
+    ],
+  );
+  assert.deepEqual(
+    (await call(`${api}/records?before=${items[1].id}`)).json.records.map(({ id }) => id),
+    [items[0].id],
+  );
   const one = await call(`${api}/records/${items[1].id}`);
   assert.deepEqual(one.json.item, items[1]);
-  assert.deepEqual([one.json.body.format, one.json.body.record.decisions[0].id, one.json.body.record.notes[0].text, one.json.body.record.present.map(({ name }) => name)],
-    ['beamroom-kept-record', items[0].id, 'Edge?', ['Ann', 'Ben']]);
+  assert.deepEqual(
+    [
+      one.json.body.format,
+      one.json.body.record.decisions[0].id,
+      one.json.body.record.notes[0].text,
+      one.json.body.record.present.map(({ name }) => name),
+    ],
+    ['beamroom-kept-record', items[0].id, 'Edge?', ['Ann', 'Ben']],
+  );
   assert.ok(one.json.body.scene.regions && Array.isArray(one.json.body.views));
-  const begins = ',"body":', raw = one.text.trimEnd().slice(one.text.indexOf(`${begins}{"format"`) + begins.length, -1);
+  const begins = ',"body":',
+    raw = one.text.trimEnd().slice(one.text.indexOf(`${begins}{"format"`) + begins.length, -1);
   assert.equal(createHash('sha256').update(raw).digest('hex'), one.json.sha256);
   assert.match(one.headers.get('audit-head'), /^\d+ [0-9a-f]{64}$/);
   assert.equal((await call(`${api}/records/i-0000000000`)).status, 404);
@@ -82,14 +113,25 @@ test('a room with a decision is deleted only with the word that its records stay
 test('a plan with a decision is deleted only so, its rooms are told by whom, and a room that sleeps counts as well', async () => {
   const archive = join(data, 'plan.tar');
   execFileSync('tar', ['-cf', archive, '-C', join(demo, 'phantom'), '.']);
-  const sent = await fetch(`${api}/plans?name=sent`, { method: 'POST', headers: { 'Content-Type': 'application/octet-stream' }, body: readFileSync(archive) }).then((answer) => answer.json());
-  const { plan } = await until(async () => (await call(`${api}/jobs/${sent.id}`)).json, ({ state }) => state === 'done');
+  const sent = await fetch(`${api}/plans?name=sent`, {
+    method: 'POST',
+    headers: { 'Content-Type': 'application/octet-stream' },
+    body: readFileSync(archive),
+  }).then((answer) => answer.json());
+  const { plan } = await until(
+    async () => (await call(`${api}/jobs/${sent.id}`)).json,
+    ({ state }) => state === 'done',
+  );
   const { room, items } = await decided(plan);
-  await until(async () => (await call(`${api}/rooms/${room}/record`)).json.saved.state, (state) => state === 'saved');
+  await until(
+    async () => (await call(`${api}/rooms/${room}/record`)).json.saved.state,
+    (state) => state === 'saved',
+  );
   for (const client of clients.splice(0)) client.cut();
   await daemon.stop();
   await start(); // the room sleeps
-  const other = (await call(`${api}/rooms`, 'POST', { plan })).json.id, cem = await enter(other, 'Cem');
+  const other = (await call(`${api}/rooms`, 'POST', { plan })).json.id,
+    cem = await enter(other, 'Cem');
   const refused = await call(`${api}/plans/${plan}`, 'DELETE');
   assert.deepEqual([refused.status, refused.json.code], [409, 'records']);
   assert.match(refused.json.detail, /^2 decisions and signatures were written in rooms of this plan/);

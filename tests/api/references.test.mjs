@@ -32,23 +32,51 @@ before(async () => {
   url = daemon.url;
   api = `${url}/api/v1`;
   plan = `${api}/plans/phantom`;
-  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 1 && plans[0].parts.length);
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans,
+    (plans) => plans.length === 1 && plans[0].parts.length,
+  );
   await openPlan(url, 'phantom');
 });
 after(() => daemon?.stop());
 
 async function newRoom() {
   const { json } = await call(`${api}/rooms`, 'POST', { plan: 'phantom' });
-  await until(() => call(`${api}/rooms/${json.id}/scene`), (a) => a.status === 200);
+  await until(
+    () => call(`${api}/rooms/${json.id}/scene`),
+    (a) => a.status === 200,
+  );
   return json.id;
 }
 
 describe('a name the plan does not have', () => {
   test('can stand in these fields', () => {
-    assert.deepEqual(references().map(({ pointer }) => pointer).sort(), ['/beam/id', '/beam/looks/nowhere', '/check/region', '/clip/beam/id', '/dose/compare/id', '/dose/coverage/region', '/dose/coverage/tissue', '/dose/id', '/dose/reference/region', '/dose/sum/nowhere', '/dose/tissue', '/dose/weights/nowhere', '/image/blend/id', '/image/id', '/image/looks/nowhere', '/regions/nowhere']);
+    assert.deepEqual(
+      references()
+        .map(({ pointer }) => pointer)
+        .sort(),
+      [
+        '/beam/id',
+        '/beam/looks/nowhere',
+        '/check/region',
+        '/clip/beam/id',
+        '/dose/compare/id',
+        '/dose/coverage/region',
+        '/dose/coverage/tissue',
+        '/dose/id',
+        '/dose/reference/region',
+        '/dose/sum/nowhere',
+        '/dose/tissue',
+        '/dose/weights/nowhere',
+        '/image/blend/id',
+        '/image/id',
+        '/image/looks/nowhere',
+        '/regions/nowhere',
+      ],
+    );
   });
 
-  test('is refused in a picture over HTTP, in the scene and in the view\'s override', async () => {
+  test("is refused in a picture over HTTP, in the scene and in the view's override", async () => {
     for (const { pointer, patch } of references()) {
       assertRefused(await call(`${plan}/render`, 'POST', { scene: patch, view: { size_px: [32, 32] } }), `/scene${pointer}`);
       assertRefused(await call(`${plan}/render`, 'POST', { view: { size_px: [32, 32], override: patch } }), `/view/override${pointer}`);

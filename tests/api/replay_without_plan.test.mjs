@@ -8,10 +8,13 @@ import { call, demo, startDaemon, until } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
 
 test('a recording whose plan is gone is not played, and leaves no room behind; with the plan it plays', async () => {
-  const folder = mkdtempSync(join(tmpdir(), 'beamroom-gone-')), plans = join(folder, 'plans'), data = join(folder, 'data');
+  const folder = mkdtempSync(join(tmpdir(), 'beamroom-gone-')),
+    plans = join(folder, 'plans'),
+    data = join(folder, 'data');
   cpSync(join(demo, 'phantom'), join(plans, 'head'), { recursive: true });
   const start = () => startDaemon({ plans: [plans], data, args: ['--stub', '--plan-idle-close', '1'] });
-  let daemon = await start(), client;
+  let daemon = await start(),
+    client;
   const enter = async (room) => {
     client?.cut();
     client = await Client.enter(daemon.url, room);
@@ -19,14 +22,19 @@ test('a recording whose plan is gone is not played, and leaves no room behind; w
     return client;
   };
   const rooms = async () => (await call(`${daemon.url}/api/v1/rooms`)).json.rooms.map(({ id }) => id);
-  const planIs = (n) => until(() => call(`${daemon.url}/api/v1/plans`), (answer) => answer.json.plans.length === n); // the list is made anew when asked for
+  const planIs = (n) =>
+    until(
+      () => call(`${daemon.url}/api/v1/plans`),
+      (answer) => answer.json.plans.length === n,
+    ); // the list is made anew when asked for
   const restart = async () => {
     client.cut();
     assert.equal(await daemon.stop(), 0, daemon.log());
     daemon = await start();
   };
   try {
-    const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'head' })).json.id, ann = await enter(room);
+    const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'head' })).json.id,
+      ann = await enter(room);
     ann.send({ type: 'recording.start' });
     const { id } = await ann.message('recording', (m) => m.state === 'running');
     ann.send({ type: 'scene.patch', input: 1, patch: { image: { window: { center: 77 } } } });
@@ -42,7 +50,10 @@ test('a recording whose plan is gone is not played, and leaves no room behind; w
     };
 
     ann.cut();
-    await until(() => call(`${daemon.url}/api/v1/plans/head`), (plan) => plan.json.state === 'not-loaded'); // what is loaded stays
+    await until(
+      () => call(`${daemon.url}/api/v1/plans/head`),
+      (plan) => plan.json.state === 'not-loaded',
+    ); // what is loaded stays
     renameSync(join(plans, 'head'), join(folder, 'away'));
     await planIs(0);
     await isRefused('while the room is open');
@@ -57,7 +68,10 @@ test('a recording whose plan is gone is not played, and leaves no room behind; w
     assert.equal(made.status, 201, made.text);
     const dee = await enter(made.json.id);
     dee.send({ type: 'replay.seek', t_ms: length_ms });
-    await until(() => call(`${daemon.url}/api/v1/rooms/${made.json.id}/scene`), (scene) => scene.json.image?.window.center === 77);
+    await until(
+      () => call(`${daemon.url}/api/v1/rooms/${made.json.id}/scene`),
+      (scene) => scene.json.image?.window.center === 77,
+    );
   } finally {
     client?.cut();
     await daemon.stop();

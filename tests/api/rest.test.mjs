@@ -5,10 +5,16 @@ import assert from 'node:assert/strict';
 import { call, sleep, startDaemon, until } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
 
-const isLong = !!process.env.LONG_TESTS, nRooms = isLong ? 80 : 20, nMembers = 20, quietMs = isLong ? 3000 : 1500;
-const rooms = [], clients = [];
+const isLong = !!process.env.LONG_TESTS,
+  nRooms = isLong ? 80 : 20,
+  nMembers = 20,
+  quietMs = isLong ? 3000 : 1500;
+const rooms = [],
+  clients = [];
 let daemon;
-before(async () => { daemon = await startDaemon({ args: ['--stub'] }); });
+before(async () => {
+  daemon = await startDaemon({ args: ['--stub'] });
+});
 after(async () => {
   for (const client of clients) client.cut();
   assert.equal(await daemon.stop(), 0, daemon.log());
@@ -29,14 +35,19 @@ async function wakeUps(pid, ms) {
   const before = sleeps(pid);
   await sleep(ms);
   const after = sleeps(pid);
-  return Object.keys(after).map((task) => after[task] - (before[task] ?? 0)).sort((a, b) => b - a);
+  return Object.keys(after)
+    .map((task) => after[task] - (before[task] ?? 0))
+    .sort((a, b) => b - a);
 }
 
 test('rooms at rest wake nothing up, however many there are', async () => {
   for (let n = 0; n < nRooms; n++) rooms.push((await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id);
   // Once nothing was asked for 5 s, all threads sleep but the one that measures the cache of a running renderer, once a second.
   await sleep(4000);
-  await until(() => wakeUps(daemon.child.pid, quietMs), ([quota, ...others]) => quota <= quietMs / 1000 + 1 && others.every((n) => n === 0));
+  await until(
+    () => wakeUps(daemon.child.pid, quietMs),
+    ([quota, ...others]) => quota <= quietMs / 1000 + 1 && others.every((n) => n === 0),
+  );
 });
 
 if (isLong)
@@ -51,5 +62,8 @@ if (isLong)
     }
     // Within 6 s there are at most two rounds of pings, each one wake-up and one for each member's pong.
     const most = 2 * (nMembers + 2);
-    await until(() => wakeUps(daemon.child.pid, 6000), ([net, quota, ...others]) => net <= most && quota <= 7 && others.every((n) => n === 0));
+    await until(
+      () => wakeUps(daemon.child.pid, 6000),
+      ([net, quota, ...others]) => net <= most && quota <= 7 && others.every((n) => n === 0),
+    );
   });

@@ -22,16 +22,28 @@ const routes = read('http').routes.filter(({ path }) => path.includes('{room}'))
 /** A value that the field takes. */
 function valueOf(field) {
   switch (field.type) {
-    case 'integer': case 'number': return field.min;
-    case 'bool': return field.default ?? true;
-    case 'enum': return messages.enums[field.enum].values[0][0];
-    case 'vec3': case 'direction': return [1, 1, 1];
-    case 'text': case 'id': return 'x';
-    default: return {};
+    case 'integer':
+    case 'number':
+      return field.min;
+    case 'bool':
+      return field.default ?? true;
+    case 'enum':
+      return messages.enums[field.enum].values[0][0];
+    case 'vec3':
+    case 'direction':
+      return [1, 1, 1];
+    case 'text':
+    case 'id':
+      return 'x';
+    default:
+      return {};
   }
 }
 
-const messageOf = ({ name, fields }) => ({ type: name, ...Object.fromEntries(fields.filter(({ required }) => required).map((field) => [field.name, valueOf(field)])) });
+const messageOf = ({ name, fields }) => ({
+  type: name,
+  ...Object.fromEntries(fields.filter(({ required }) => required).map((field) => [field.name, valueOf(field)])),
+});
 
 describe('rights in a room', () => {
   let daemon;
@@ -52,7 +64,12 @@ describe('rights in a room', () => {
     room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
     people.presenter = await enter();
     for (const role of ['reviewer', 'observer']) {
-      const { json } = await api('/links', 'POST', { role }, { 'Beamroom-Member': `${people.presenter.welcome.member} ${people.presenter.welcome.secret}` });
+      const { json } = await api(
+        '/links',
+        'POST',
+        { role },
+        { 'Beamroom-Member': `${people.presenter.welcome.member} ${people.presenter.welcome.secret}` },
+      );
       people[role] = await enter({ link: json.token });
     }
     for (const [role, { welcome }] of Object.entries(people)) headers[role] = { 'Beamroom-Member': `${welcome.member} ${welcome.secret}` };
@@ -64,8 +81,14 @@ describe('rights in a room', () => {
 
   it('roles and links give what members tells', async () => {
     const { json } = await api('/members');
-    assert.deepEqual(json.members.map(({ role, color, lag, tabs }) => [role, /^#[0-9a-f]{6}$/.test(color), lag, tabs]),
-      [['presenter', true, 'none', 1], ['reviewer', true, 'none', 1], ['observer', true, 'none', 1]]);
+    assert.deepEqual(
+      json.members.map(({ role, color, lag, tabs }) => [role, /^#[0-9a-f]{6}$/.test(color), lag, tabs]),
+      [
+        ['presenter', true, 'none', 1],
+        ['reviewer', true, 'none', 1],
+        ['observer', true, 'none', 1],
+      ],
+    );
     assert.equal(new Set(json.members.map(({ color }) => color)).size, 3);
   });
 
@@ -77,7 +100,9 @@ describe('rights in a room', () => {
         client.send(messageOf(message));
         client.send({ type: 'ping', time_ms: time }); // answered in order
         await client.message('pong', ({ time_ms }) => time_ms === time, from);
-        const refused = client.messages.slice(from).some(({ type, to, problem }) => type === 'problem' && to === message.name && problem.code === 'role' && problem.status === 403);
+        const refused = client.messages
+          .slice(from)
+          .some(({ type, to, problem }) => type === 'problem' && to === message.name && problem.code === 'role' && problem.status === 403);
         assert.equal(!refused, may[role].includes(message.right), `${role} ${refused ? 'was refused' : 'may'} ${message.name}`);
       }
     });
@@ -93,14 +118,19 @@ describe('rights in a room', () => {
       };
       assert.equal(await isRefused({ 'Beamroom-Member': 'm1 0123456789abcdef0123456789abcdef' }), true, 'a wrong secret');
       assert.equal(await isRefused({}), !nobodyMay.includes(right), 'nobody of the room');
-      for (const role of ['observer', 'reviewer', 'presenter']) assert.equal(await isRefused(headers[role]), !may[role].includes(right), role);
+      for (const role of ['observer', 'reviewer', 'presenter'])
+        assert.equal(await isRefused(headers[role]), !may[role].includes(right), role);
     });
 });
 
 describe('links of a room', () => {
   let daemon;
-  before(async () => { daemon = await startDaemon(); });
-  after(async () => { assert.equal(await daemon.stop(), 0); });
+  before(async () => {
+    daemon = await startDaemon();
+  });
+  after(async () => {
+    assert.equal(await daemon.stop(), 0);
+  });
 
   const newRoom = async () => {
     await openPlan(daemon.url, 'phantom');
@@ -134,8 +164,17 @@ describe('links of a room', () => {
 
   it('what is no link is refused with the field', async () => {
     const room = await newRoom();
-    for (const [body, pointer] of [[{}, '/role'], [{ role: 'boss' }, '/role'], [{ role: 1 }, '/role'], [{ role: 'observer', expires_s: 59 }, '/expires_s'], [{ role: 'observer', expires_s: 2592001 }, '/expires_s'],
-      [{ role: 'observer', expires_s: 60.5 }, '/expires_s'], [{ role: 'observer', expires_s: '60' }, '/expires_s'], [{ role: 'observer', one_use: 1 }, '/one_use'], [{ role: 'observer', until: 1 }, '/until']]) {
+    for (const [body, pointer] of [
+      [{}, '/role'],
+      [{ role: 'boss' }, '/role'],
+      [{ role: 1 }, '/role'],
+      [{ role: 'observer', expires_s: 59 }, '/expires_s'],
+      [{ role: 'observer', expires_s: 2592001 }, '/expires_s'],
+      [{ role: 'observer', expires_s: 60.5 }, '/expires_s'],
+      [{ role: 'observer', expires_s: '60' }, '/expires_s'],
+      [{ role: 'observer', one_use: 1 }, '/one_use'],
+      [{ role: 'observer', until: 1 }, '/until'],
+    ]) {
       const { status, json } = await call(`${room}/links`, 'POST', body);
       assert.deepEqual([status, json.pointer], [422, pointer], JSON.stringify(body));
     }

@@ -9,7 +9,10 @@ test('every room that the daemon allows has a scene of its own and is drawn, the
   const daemon = await startDaemon({ args: ['--max-rooms', String(most), '--stub'] });
   t.after(() => daemon.stop());
   const api = `${daemon.url}/api/v1`;
-  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 1 && plans[0].parts.length);
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans,
+    (plans) => plans.length === 1 && plans[0].parts.length,
+  );
   await openPlan(daemon.url, 'phantom');
   const rooms = [];
   for (let i = 0; i < most; i++) {
@@ -19,7 +22,10 @@ test('every room that the daemon allows has a scene of its own and is drawn, the
   }
   assert.equal((await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).status, 429);
   const last = rooms.at(-1);
-  assert.equal((await call(`${api}/rooms/${last}/scene`, 'PATCH', { regions: { brain: { opacity: 0.2 } } }, { 'If-Match': '*' })).status, 200);
+  assert.equal(
+    (await call(`${api}/rooms/${last}/scene`, 'PATCH', { regions: { brain: { opacity: 0.2 } } }, { 'If-Match': '*' })).status,
+    200,
+  );
   for (const room of [last, rooms[0], rooms[256]]) {
     const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`);
     client.send({ type: 'hello', protocol: 2 });

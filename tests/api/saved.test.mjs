@@ -19,7 +19,9 @@ async function patch(client, center) {
 async function note(client, text) {
   const own = ++input;
   client.send({ type: 'item.put', input: own, kind: 'note', body: { text } });
-  return (await client.until(() => client.messages.find((m) => m.input === own && (m.type === 'item' || m.type === 'problem')), 'an answer')).item; // undefined: refused
+  return (
+    await client.until(() => client.messages.find((m) => m.input === own && (m.type === 'item' || m.type === 'problem')), 'an answer')
+  ).item; // undefined: refused
 }
 /** The first message saved, after all that has come, with this state. */
 const saved = (client, state = 'saved', from = client.messages.length) => client.message('saved', (m) => m.state === state, from);
@@ -27,7 +29,8 @@ const saved = (client, state = 'saved', from = client.messages.length) => client
 test('saved is told after what is on disk, to all, once for many changes', async () => {
   const data = mkdtempSync(join(tmpdir(), 'beamroom-saved-'));
   const daemon = await startDaemon({ data, args: ['--stub'] });
-  const room = await newRoom(daemon), ann = await enter(daemon, room);
+  const room = await newRoom(daemon),
+    ann = await enter(daemon, room);
   await ann.message('renderer', (m) => m.state === 'ready');
   await saved(ann, 'saved', 0);
   const ben = await enter(daemon, room);
@@ -37,7 +40,9 @@ test('saved is told after what is on disk, to all, once for many changes', async
   let last;
   for (let n = 1; n <= 50; n++) last = await patch(ann, n);
   const text = await note(ben, 'here');
-  const [toAnn, toBen] = await Promise.all([ann, ben].map((client) => client.message('saved', (m) => m.state === 'saved' && m.revision === last.revision, client.from)));
+  const [toAnn, toBen] = await Promise.all(
+    [ann, ben].map((client) => client.message('saved', (m) => m.state === 'saved' && m.revision === last.revision, client.from)),
+  );
   assert.equal(toAnn.problem, null);
   const kept = onDisk(room, data);
   assert.equal(kept.revision, last.revision);
@@ -60,15 +65,19 @@ test('a full disk is told while it is full; the old content stays whole, the roo
   }
   let daemon = await startDaemon({ data: disk.data, args: ['--stub'] });
   try {
-    const room = await newRoom(daemon), ann = await enter(daemon, room);
+    const room = await newRoom(daemon),
+      ann = await enter(daemon, room);
     await ann.message('renderer', (m) => m.state === 'ready');
     await note(ann, 'before');
     const before = await patch(ann, 70);
     await ann.message('saved', (m) => m.state === 'saved' && m.revision === before.revision);
     disk.fill(daemon.child);
     const from = ann.messages.length;
-    let last, n = 0, nNotes = 0;
-    for (; n < 300 && !ann.messages.slice(from).some((m) => m.type === 'saved' && m.state === 'failing'); n++) { // what is left of the last block is used up
+    let last,
+      n = 0,
+      nNotes = 0;
+    for (; n < 300 && !ann.messages.slice(from).some((m) => m.type === 'saved' && m.state === 'failing'); n++) {
+      // what is left of the last block is used up
       last = await patch(ann, 100 + n);
       if (await note(ann, `meanwhile ${n} ${'x'.repeat(1900)}`)) nNotes++;
     }
@@ -81,12 +90,17 @@ test('a full disk is told while it is full; the old content stays whole, the roo
     assert.ok(kept.revision >= before.revision && kept.revision < last.revision, `revision ${kept.revision}`);
     assert.equal(kept.scene.image.window.center, kept.revision === before.revision ? 70 : 100 + kept.revision - before.revision - 1);
     assert.equal(kept.items.length, 1 + nNotes, 'each note that was accepted is on the disk, no other');
-    assert.ok(!ann.messages.slice(ann.messages.indexOf(failing)).some((m) => m.type === 'saved' && m.state === 'saved'), 'nothing is called saved');
+    assert.ok(
+      !ann.messages.slice(ann.messages.indexOf(failing)).some((m) => m.type === 'saved' && m.state === 'saved'),
+      'nothing is called saved',
+    );
 
     disk.free(daemon.child);
     const fine = await ann.message('saved', (m) => m.state === 'saved' && m.revision === last.revision, ann.messages.indexOf(failing));
     assert.equal(fine.problem, null);
-    const ended = new Promise((done) => { daemon.child.on('exit', done); });
+    const ended = new Promise((done) => {
+      daemon.child.on('exit', done);
+    });
     daemon.child.kill('SIGKILL');
     await ended;
     const after = onDisk(room, disk.data);

@@ -32,7 +32,13 @@ test('who follows in a small window is sent the same render in fewer pixels', { 
     await client.frame((frame) => frame.isStill);
     return client;
   };
-  const turn = (client, x, input) => client.send({ type: 'view.patch', view: 1, input, patch: { camera: { position_mm: [x, -800, 100], target_mm: [0, 0, 0], up: [0, 0, 1] } } });
+  const turn = (client, x, input) =>
+    client.send({
+      type: 'view.patch',
+      view: 1,
+      input,
+      patch: { camera: { position_mm: [x, -800, 100], target_mm: [0, 0, 0], up: [0, 0, 1] } },
+    });
 
   const ann = await enter([width, height]);
   turn(ann, 300, 1);
@@ -41,7 +47,14 @@ test('who follows in a small window is sent the same render in fewer pixels', { 
 
   // panes of another shape than the picture: what counts is as how many pixels it is shown, letterboxed
   const others = [];
-  for (const size of [[800, 600], [400, 900], [1200, 300], [200, 900], [640, 150]]) others.push(await enter(size));
+  for (const size of [
+    [800, 600],
+    [400, 900],
+    [1200, 300],
+    [200, 900],
+    [640, 150],
+  ])
+    others.push(await enter(size));
   const from = others.map(({ frames }) => frames.length);
   turn(ann, -200, 2);
   await ann.frame(({ isStill, input }) => isStill && input === 2);
@@ -49,15 +62,28 @@ test('who follows in a small window is sent the same render in fewer pixels', { 
   const whole = await ann.frame(({ isStill, input }) => isStill && input === 3);
   assert.ok(whole.picture.equals(alone.picture), 'the whole picture is the same byte for byte, whoever follows');
   assert.equal(whole.divisor, 1);
-  const seen = await Promise.all(others.map((client, i) => client.frame((frame) => frame.isStill && frame.renderUs === whole.renderUs, from[i])));
-  assert.deepEqual(seen.map(({ divisor }) => divisor), [1, 2, 2, 4, 4]);
+  const seen = await Promise.all(
+    others.map((client, i) => client.frame((frame) => frame.isStill && frame.renderUs === whole.renderUs, from[i])),
+  );
+  assert.deepEqual(
+    seen.map(({ divisor }) => divisor),
+    [1, 2, 2, 4, 4],
+  );
   for (const frame of seen) {
     assert.deepEqual([frame.width, frame.height], [Math.ceil(width / frame.divisor), Math.ceil(height / frame.divisor)]);
     assert.deepEqual(jpegSize(frame.picture), [frame.width, frame.height]);
     assert.ok(frame.isShared && frame.isFullColor && frame.scale === 100);
-    for (const point of [[0, 0, 0], [60, -40, 80], [-70, 90, -60]]) {
-      const [x, y] = place(frame, point), [wholeX, wholeY] = place(whole, point);
-      assert.ok(Math.hypot(x * frame.divisor - wholeX, y * frame.divisor - wholeY) < 1e-3, `${point} at ${[x, y]}, in the whole at ${[wholeX, wholeY]}`);
+    for (const point of [
+      [0, 0, 0],
+      [60, -40, 80],
+      [-70, 90, -60],
+    ]) {
+      const [x, y] = place(frame, point),
+        [wholeX, wholeY] = place(whole, point);
+      assert.ok(
+        Math.hypot(x * frame.divisor - wholeX, y * frame.divisor - wholeY) < 1e-3,
+        `${point} at ${[x, y]}, in the whole at ${[wholeX, wholeY]}`,
+      );
     }
   }
   assert.ok(seen[0].picture.equals(whole.picture));

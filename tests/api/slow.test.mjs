@@ -5,19 +5,31 @@ import { after, before, test } from 'node:test';
 import { startDaemon } from './daemon.mjs';
 
 let daemon;
-before(async () => { daemon = await startDaemon({ args: ['--stub'] }); });
+before(async () => {
+  daemon = await startDaemon({ args: ['--stub'] });
+});
 after(() => daemon?.stop());
 
 test('a body of one byte a second is refused with 408 after a minute', { timeout: 180000 }, async () => {
-  const { hostname, port } = new URL(daemon.url), socket = connect({ host: hostname, port: Number(port) });
+  const { hostname, port } = new URL(daemon.url),
+    socket = connect({ host: hostname, port: Number(port) });
   let text = '';
   socket.setEncoding('latin1');
   socket.write('POST /api/v1/rooms HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 1000000\r\n\r\n');
   const timer = setInterval(() => socket.write(' '), 1000);
   const answered = await new Promise((done) => {
     const late = setTimeout(done, 120000, false);
-    socket.on('data', (more) => { text += more; if (text.includes('\r\n\r\n')) { clearTimeout(late); done(true); } });
-    socket.on('error', () => { clearTimeout(late); done(false); });
+    socket.on('data', (more) => {
+      text += more;
+      if (text.includes('\r\n\r\n')) {
+        clearTimeout(late);
+        done(true);
+      }
+    });
+    socket.on('error', () => {
+      clearTimeout(late);
+      done(false);
+    });
   });
   clearInterval(timer);
   socket.destroy();

@@ -24,7 +24,13 @@ libc.ptrace(17, tid, None, None) # PTRACE_DETACH
 `;
 
 /** Bytes that each thread has written. */
-const written = (pid) => new Map(readdirSync(`/proc/${pid}/task`).map((tid) => [tid, Number(/^wchar: (\d+)/m.exec(readFileSync(`/proc/${pid}/task/${tid}/io`, 'utf8'))[1])]));
+const written = (pid) =>
+  new Map(
+    readdirSync(`/proc/${pid}/task`).map((tid) => [
+      tid,
+      Number(/^wchar: (\d+)/m.exec(readFileSync(`/proc/${pid}/task/${tid}/io`, 'utf8'))[1]),
+    ]),
+  );
 
 const enter = (daemon, room, hello) => Client.hello(daemon.url, room, hello);
 
@@ -48,7 +54,10 @@ test('who comes back while the disk is slow to give the room is let in, and is n
   const database = ([tid, bytes]) => bytes - (before.get(tid) ?? 0);
   const [[tid]] = [...written(daemon.child.pid)].sort((a, b) => database(b) - database(a)); // rooms are larger than what is said about them
   const holder = spawn('python3', ['-c', hold, tid]);
-  const isHeld = await new Promise((done) => { holder.stdout.once('data', () => done(true)); holder.once('exit', () => done(false)); });
+  const isHeld = await new Promise((done) => {
+    holder.stdout.once('data', () => done(true));
+    holder.once('exit', () => done(false));
+  });
   if (!isHeld) return void t.skip('a thread of another program may not be stopped here');
   const back = await enter(daemon, room, { member, secret });
   await sleep(helloMs + 1500);

@@ -12,7 +12,10 @@ before(async () => {
   daemon = await startDaemon();
   api = `${daemon.url}/api/v1`;
   plan = `${api}/plans/phantom`;
-  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.length === 1 && plans[0].parts.length);
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans,
+    (plans) => plans.length === 1 && plans[0].parts.length,
+  );
   await openPlan(daemon.url, 'phantom');
   room = `${api}/rooms/${(await call(`${api}/rooms`, 'POST', { plan: 'phantom' })).json.id}`;
 });
@@ -20,7 +23,7 @@ after(() => daemon?.stop());
 
 /** The chunks of a PNG, with their data. PNG specification, 3rd edition, section 5. */
 function* chunks(bytes) {
-  for (let at = 8; at < bytes.length;) {
+  for (let at = 8; at < bytes.length; ) {
     const length = bytes.readUInt32BE(at);
     yield { type: bytes.toString('latin1', at + 4, at + 8), data: bytes.subarray(at + 8, at + 8 + length) };
     at += 12 + length;
@@ -39,7 +42,11 @@ function record(bytes) {
 }
 
 async function picture(body) {
-  const answer = await fetch(`${plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) });
+  const answer = await fetch(`${plan}/render`, {
+    method: 'POST',
+    headers: { 'Content-Type': 'application/json' },
+    body: JSON.stringify(body),
+  });
   assert.equal(answer.status, 200, answer.status === 200 ? '' : await answer.text());
   return Buffer.from(await answer.arrayBuffer());
 }
@@ -50,19 +57,30 @@ const snapshot = async (view, more) => Buffer.from(await (await fetch(query(view
 /** The number of pixels that differ in the first rows of two pictures of equal width. */
 function nDifferent(a, b, height) {
   let n = 0;
-  for (let y = 0; y < height; y++)
-    for (let x = 0; x < b.width; x++) n += String(a.at(x, y)) !== String(b.at(x, y));
+  for (let y = 0; y < height; y++) for (let x = 0; x < b.width; x++) n += String(a.at(x, y)) !== String(b.at(x, y));
   return n;
 }
 
 const views = [
   { kind: 'axial', size_px: [400, 300] },
-  { kind: '3d', size_px: [400, 300], camera: { position_mm: [300, -400.25, 100.1], target_mm: [0, 0, 0.3], up: [0, 0, 1], projection: 'parallel', height_mm: 251.5 } },
-  { kind: 'sagittal', size_px: [200, 300], camera: { target_mm: [0, 12.5, 3], height_mm: 99 }, override: { image: { slices: { sagittal: { position_mm: 7.25 } } } } },
+  {
+    kind: '3d',
+    size_px: [400, 300],
+    camera: { position_mm: [300, -400.25, 100.1], target_mm: [0, 0, 0.3], up: [0, 0, 1], projection: 'parallel', height_mm: 251.5 },
+  },
+  {
+    kind: 'sagittal',
+    size_px: [200, 300],
+    camera: { target_mm: [0, 12.5, 3], height_mm: 99 },
+    override: { image: { slices: { sagittal: { position_mm: 7.25 } } } },
+  },
 ];
 
 test('scene and view in a snapshot make the same picture again, to the last bit', async () => {
-  const changed = { regions: { scalp: { visible: false }, brain: { color: '#123456', opacity: 0.3 } }, image: { window: { center: 33.3, width: 77 } } };
+  const changed = {
+    regions: { scalp: { visible: false }, brain: { color: '#123456', opacity: 0.3 } },
+    image: { window: { center: 33.3, width: 77 } },
+  };
   assert.equal((await call(`${room}/scene`, 'PATCH', changed, { 'If-Match': '*' })).status, 200);
   const { json: scene, headers } = await call(`${room}/scene`);
   for (const view of views) {

@@ -9,10 +9,16 @@ const clients = [];
 
 before(async () => {
   daemon = await startDaemon({ args: ['--stub'] });
-  await until(async () => (await call(`${daemon.url}/api/v1/plans`)).json.plans, (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length));
+  await until(
+    async () => (await call(`${daemon.url}/api/v1/plans`)).json.plans,
+    (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length),
+  );
   room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
 });
-after(async () => { for (const client of clients) client.cut(); await daemon?.stop(); });
+after(async () => {
+  for (const client of clients) client.cut();
+  await daemon?.stop();
+});
 
 test('members and who has not said hello yet are told to come back in 2 s, with code 1001, and the daemon ends with 0', async () => {
   for (const says of [true, true, false]) {

@@ -21,9 +21,14 @@ const lost = [
   { at: [24, 24, 34], region: 'tumour' },
   { at: [8, 20, 32], region: 'target' },
 ];
-const table = ['x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,class,energy_mev',
-  '0,-300,0,0,-200,0,neutron-high,2', '-50,-150,0,50,-150,0,gamma-low,0.478', '-50,0,0,50,0,0,neutron-low,2.53e-8', '0,0,150,0,0,10,beam-line,',
-  ...lost.map(({ at: [x, y, z] }) => `${x},${y},${z},${x + 6},${y},${z + 8},lost,`)].join('\n');
+const table = [
+  'x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,class,energy_mev',
+  '0,-300,0,0,-200,0,neutron-high,2',
+  '-50,-150,0,50,-150,0,gamma-low,0.478',
+  '-50,0,0,50,0,0,neutron-low,2.53e-8',
+  '0,0,150,0,0,10,beam-line,',
+  ...lost.map(({ at: [x, y, z] }) => `${x},${y},${z},${x + 6},${y},${z + 8},lost,`),
+].join('\n');
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'beamroom-tracks-'));
@@ -32,8 +37,16 @@ before(async () => {
   for (const name of ['labels.nii.gz', 'labels.json']) cpSync(join(demo, 'phantom', name), join(plan, name));
   writeFileSync(join(plan, 'a.csv'), table);
   writeFileSync(join(plan, 'b.pp'), '0 0 0 1 0 0 0 3\n0 0 0 0 1 0 1 0\n');
-  writeFileSync(join(plan, 'plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, regions: [{ path: 'labels.nii.gz', names: 'labels.json' }],
-    hierarchy: { scalp: ['cranium'], cranium: ['brain'], brain: ['target'], target: ['tumour'] }, tracks: [{ path: 'a.csv' }, { path: 'b.pp', unit: 'mm' }] }));
+  writeFileSync(
+    join(plan, 'plan.json'),
+    JSON.stringify({
+      format: 'beamroom-plan',
+      version: 1,
+      regions: [{ path: 'labels.nii.gz', names: 'labels.json' }],
+      hierarchy: { scalp: ['cranium'], cranium: ['brain'], brain: ['target'], target: ['tumour'] },
+      tracks: [{ path: 'a.csv' }, { path: 'b.pp', unit: 'mm' }],
+    }),
+  );
   daemon = await startDaemon({ plans: [demo, folder] });
   api = `${daemon.url}/api/v1`;
   await openPlan(daemon.url, 'phantom');
@@ -46,14 +59,17 @@ after(async () => {
 
 const ask = async (plan, question, { scene, view, ...query } = {}) => {
   const override = scene && { ...view, override: scene };
-  const answer = await call(`${api}/plans/${plan}/${question}?${new URLSearchParams({ ...query, ...((override ?? view) && { view: JSON.stringify(override ?? view) }) })}`);
+  const answer = await call(
+    `${api}/plans/${plan}/${question}?${new URLSearchParams({ ...query, ...((override ?? view) && { view: JSON.stringify(override ?? view) }) })}`,
+  );
   assert.equal(answer.status, 200, answer.text);
   return answer.json;
 };
 
 test('classes and counts are those of the file, and the shown ones those that the scene leaves', async () => {
   const counts = {};
-  const words = { 0: 'neutron', 1: 'gamma', 2: 'beam-line', 3: 'lost' }, energies = { 1: '-high', 2: '-medium', 3: '-low', 0: '' };
+  const words = { 0: 'neutron', 1: 'gamma', 2: 'beam-line', 3: 'lost' },
+    energies = { 1: '-high', 2: '-medium', 3: '-low', 0: '' };
   for (const line of readFileSync(join(demo, 'phantom', 'tracks.pp'), 'utf8').split('\n')) {
     const fields = line.trim().split(/\s+/);
     if (fields.length !== 8 || line.startsWith('#')) continue;
@@ -78,15 +94,27 @@ test('classes and counts are those of the file, and the shown ones those that th
 
 test('each lost particle is in the region where the test placed it', async () => {
   const tracks = await ask('lost', 'tracks');
-  assert.deepEqual(tracks.lost.map(({ region }) => region), lost.map(({ region }) => region));
+  assert.deepEqual(
+    tracks.lost.map(({ region }) => region),
+    lost.map(({ region }) => region),
+  );
   tracks.lost.forEach(({ segment, reason, from_lps_mm: from, to_lps_mm: to }, i) => {
     assert.equal(segment, 4 + i);
     assert.deepEqual(from, lost[i].at);
-    assert.deepEqual(to, lost[i].at.map((mm, axis) => mm + [6, 0, 8][axis]));
+    assert.deepEqual(
+      to,
+      lost[i].at.map((mm, axis) => mm + [6, 0, 8][axis]),
+    );
     assert.equal(reason, lost[i].region ? null : 'outside all regions');
   });
   assert.equal(tracks.lost_left_out, 0);
-  assert.deepEqual(tracks.files.map(({ path, first, segments }) => [path, first, segments]), [['a.csv', 0, 11], ['b.pp', 11, 2]]);
+  assert.deepEqual(
+    tracks.files.map(({ path, first, segments }) => [path, first, segments]),
+    [
+      ['a.csv', 0, 11],
+      ['b.pp', 11, 2],
+    ],
+  );
   assert.equal(tracks.energies.segments, 3);
   assert.ok(Math.abs(tracks.energies.low_mev - 2.53e-8) < 1e-14 && tracks.energies.high_mev === 2);
 });
@@ -119,9 +147,15 @@ test('the track under a pixel is told with its class, energy, length, regions an
 test('without tracks that are shown, in a slice pane or beside all lines there is no track', async () => {
   const at = pixel([30, -150, 0]);
   assert.equal((await ask('lost', 'track', { view, ...at })).segment, null);
-  assert.equal((await ask('lost', 'track', { scene: { tracks: { visible: true, classes: { gamma_low: false } } }, view, ...at })).class, 'neutron-low'); // the next one, through the translucent head
-  assert.equal((await ask('lost', 'track', { scene: { tracks: { visible: true } }, view: { ...view, kind: 'axial' }, ...at })).segment, null);
+  assert.equal(
+    (await ask('lost', 'track', { scene: { tracks: { visible: true, classes: { gamma_low: false } } }, view, ...at })).class,
+    'neutron-low',
+  ); // the next one, through the translucent head
+  assert.equal(
+    (await ask('lost', 'track', { scene: { tracks: { visible: true } }, view: { ...view, kind: 'axial' }, ...at })).segment,
+    null,
+  );
   assert.equal((await ask('lost', 'track', { scene: { tracks: { visible: true } }, view, px: at.px, py: at.py + 10 })).segment, null);
   const refused = await call(`${api}/plans/lost/track?px=3`);
-  assert.deepEqual([refused.status, refused.json.errors?.[0]?.pointer ?? refused.json.pointer], [422, "/py"]);
+  assert.deepEqual([refused.status, refused.json.errors?.[0]?.pointer ?? refused.json.pointer], [422, '/py']);
 });

@@ -1,7 +1,19 @@
 // Uploads of plans against the real daemon.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { chmodSync, cpSync, createReadStream, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
+import {
+  chmodSync,
+  cpSync,
+  createReadStream,
+  mkdirSync,
+  mkdtempSync,
+  readFileSync,
+  readdirSync,
+  rmSync,
+  statSync,
+  truncateSync,
+  writeFileSync,
+} from 'node:fs';
 import { request } from 'node:http';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
@@ -33,33 +45,53 @@ after(async () => {
 const waiting = (where = daemon) => readdirSync(join(where.data, 'uploads'));
 const uploaded = (where = daemon) => readdirSync(join(where.data, 'plans'));
 /** Waits until no upload is in progress; returns the names of those left after the time limit. */
-const settled = (where = daemon) => until(() => waiting(where), (names) => names.length === 0, 5000);
+const settled = (where = daemon) =>
+  until(
+    () => waiting(where),
+    (names) => names.length === 0,
+    5000,
+  );
 const idsOf = async (base = api) => (await call(`${base}/plans`)).json.plans.map((p) => p.id);
 
 /** Sends a file, a buffer or a stream of chunks. */
 async function send(base, name, body, { type = 'application/octet-stream', headers = {} } = {}) {
   const bytes = typeof body === 'string' ? readFileSync(body) : body;
-  const answer = await fetch(`${base}/plans?name=${encodeURIComponent(name)}`, { method: 'POST', headers: { 'Content-Type': type, ...headers }, body: bytes,
-    ...(bytes instanceof ReadableStream && { duplex: 'half' }) });
+  const answer = await fetch(`${base}/plans?name=${encodeURIComponent(name)}`, {
+    method: 'POST',
+    headers: { 'Content-Type': type, ...headers },
+    body: bytes,
+    ...(bytes instanceof ReadableStream && { duplex: 'half' }),
+  });
   const text = await answer.text();
   return { status: answer.status, headers: answer.headers, text, json: parseStrict(text) };
 }
 
-const jobEnd = (base, job) => until(async () => (await call(`${base}/jobs/${job.id}`)).json, (j) => j.state !== 'running' && j.state !== 'queued');
+const jobEnd = (base, job) =>
+  until(
+    async () => (await call(`${base}/jobs/${job.id}`)).json,
+    (j) => j.state !== 'running' && j.state !== 'queued',
+  );
 
 /** Sends headers and the first bytes of a body over a bare connection; text() is the answer so far. */
 function half(url, length, bytes = '', headers = '') {
   const { hostname, port } = new URL(url);
   const socket = connect(Number(port), hostname);
   let text = '';
-  socket.on('data', (more) => { text += more; });
+  socket.on('data', (more) => {
+    text += more;
+  });
   socket.on('error', () => {});
-  socket.write(`POST /api/v1/plans?name=half HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/zip\r\nContent-Length: ${length}\r\n${headers}\r\n${bytes}`);
+  socket.write(
+    `POST /api/v1/plans?name=half HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/zip\r\nContent-Length: ${length}\r\n${headers}\r\n${bytes}`,
+  );
   return { socket, text: () => text };
 }
 
 describe('an archive', () => {
-  for (const [what, file, type] of [['a zip of a folder', 'whole.zip', 'application/zip'], ['a tar.gz of its files', 'bare.tar.gz', 'application/gzip']])
+  for (const [what, file, type] of [
+    ['a zip of a folder', 'whole.zip', 'application/zip'],
+    ['a tar.gz of its files', 'bare.tar.gz', 'application/gzip'],
+  ])
     test(`${what} becomes a plan that is drawn, and goes again`, async () => {
       const sent = await send(api, `Head (2) ${file}`, join(home, file), { type });
       assert.equal(sent.status, 202, sent.text);
@@ -81,7 +113,11 @@ describe('an archive', () => {
       assert.equal(opened.state, 'done');
       assert.equal(opened.kind, 'open');
       assert.equal(opened.plan, job.plan);
-      const picture = await fetch(`${api}/plans/${job.plan}/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: '{"view":{"size_px":[80,60]}}' });
+      const picture = await fetch(`${api}/plans/${job.plan}/render`, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
+        body: '{"view":{"size_px":[80,60]}}',
+      });
       assert.equal(picture.status, 200);
       const png = readPng(Buffer.from(await picture.arrayBuffer()));
       assert.equal(png.width, 80);
@@ -101,15 +137,22 @@ describe('an archive', () => {
     });
 
   test('of the same name twice gives two plans', async () => {
-    const first = await send(api, 'twin', join(home, 'whole.zip')), second = await send(api, 'twin', join(home, 'whole.zip'));
+    const first = await send(api, 'twin', join(home, 'whole.zip')),
+      second = await send(api, 'twin', join(home, 'whole.zip'));
     const ids = [(await jobEnd(api, first.json)).plan, (await jobEnd(api, second.json)).plan];
     assert.deepEqual([...ids].sort(), ['twin', 'twin-2']);
     for (const id of ids) assert.equal((await call(`${api}/plans/${id}`, 'DELETE')).status, 204);
   });
 
   test('without a name is called after the day, whatever it holds; its own name is nowhere', async () => {
-    const post = async (query) => (await (await fetch(`${api}/plans${query}`, { method: 'POST', headers: { 'Content-Type': 'application/zip', 'Content-Disposition': 'attachment; filename="Doe John.zip"' },
-      body: readFileSync(join(home, 'whole.zip')) })).json());
+    const post = async (query) =>
+      await (
+        await fetch(`${api}/plans${query}`, {
+          method: 'POST',
+          headers: { 'Content-Type': 'application/zip', 'Content-Disposition': 'attachment; filename="Doe John.zip"' },
+          body: readFileSync(join(home, 'whole.zip')),
+        })
+      ).json();
     const days = [new Date().toISOString().slice(0, 10)];
     const jobs = [];
     for (const query of ['', '?name=', '']) jobs.push(await jobEnd(api, await post(query)));
@@ -144,7 +187,9 @@ describe('an archive', () => {
 
 describe('what is refused', () => {
   let small;
-  before(async () => { small = await startDaemon({ args: ['--max-upload-mib', '1'] }); });
+  before(async () => {
+    small = await startDaemon({ args: ['--max-upload-mib', '1'] });
+  });
   after(() => small?.stop());
 
   test('a media type that is no archive, and an empty body', async () => {
@@ -156,8 +201,21 @@ describe('what is refused', () => {
 
   test('a page of another origin', async () => {
     const { hostname, port } = new URL(daemon.url);
-    const status = await new Promise((done) => request({ hostname, port, path: '/api/v1/plans', method: 'POST', headers: { Origin: 'http://evil.example', 'Content-Type': 'application/zip' } },
-      (answer) => { answer.resume(); done(answer.statusCode); }).end('PK'));
+    const status = await new Promise((done) =>
+      request(
+        {
+          hostname,
+          port,
+          path: '/api/v1/plans',
+          method: 'POST',
+          headers: { Origin: 'http://evil.example', 'Content-Type': 'application/zip' },
+        },
+        (answer) => {
+          answer.resume();
+          done(answer.statusCode);
+        },
+      ).end('PK'),
+    );
     assert.equal(status, 403);
     assert.deepEqual(await settled(), []);
     assert.equal((await call(`${api}/version`)).json.max_upload_bytes, 2048 * 2 ** 20);
@@ -180,11 +238,21 @@ describe('what is refused', () => {
 
   test('more than may be, when a stream of unknown length crosses it', async () => {
     let n = 0;
-    const stream = new ReadableStream({ pull(to) { if (n++ < 1600) to.enqueue(new Uint8Array(65536)); else to.close(); } }); // 100 MiB
+    const stream = new ReadableStream({
+      pull(to) {
+        if (n++ < 1600) to.enqueue(new Uint8Array(65536));
+        else to.close();
+      },
+    }); // 100 MiB
     const sent = await send(`${small.url}/api/v1`, 'x', stream);
     assert.equal(sent.status, 413);
     assert.deepEqual(await settled(small), []);
-    const exact = new ReadableStream({ start(to) { to.enqueue(new Uint8Array(2 ** 20)); to.close(); } });
+    const exact = new ReadableStream({
+      start(to) {
+        to.enqueue(new Uint8Array(2 ** 20));
+        to.close();
+      },
+    });
     assert.equal((await send(`${small.url}/api/v1`, 'x', exact)).status, 202);
     assert.deepEqual(await settled(small), []);
   });
@@ -225,7 +293,10 @@ describe('an upload that does not come to its end', () => {
     try {
       const base = `${slow.url}/api/v1`;
       const sent = await send(base, 'slow', Buffer.from('PK'));
-      const job = await until(async () => (await call(`${base}/jobs/${sent.json.id}`)).json, (j) => j.percent === 12.5);
+      const job = await until(
+        async () => (await call(`${base}/jobs/${sent.json.id}`)).json,
+        (j) => j.percent === 12.5,
+      );
       assert.deepEqual([job.state, job.phase, job.percent, job.plan], ['running', 'unpacking', 12.5, null]);
       const pid = Number(readFileSync(join(home, 'pid'), 'utf8'));
       const cancelled = await call(`${base}/jobs/${sent.json.id}`, 'DELETE');
@@ -250,7 +321,10 @@ describe('an upload that does not come to its end', () => {
     one = await startDaemon({ data });
     try {
       assert.deepEqual(await settled(one), []);
-      const kept = await until(async () => (await call(`${one.url}/api/v1/plans/kept`)).json, (plan) => plan.parts?.length);
+      const kept = await until(
+        async () => (await call(`${one.url}/api/v1/plans/kept`)).json,
+        (plan) => plan.parts?.length,
+      );
       assert.equal(kept.uploaded, true);
       assert.equal((await openPlan(one.url, 'kept')).state, 'done');
     } finally {
@@ -262,7 +336,10 @@ describe('an upload that does not come to its end', () => {
 /** A daemon whose unpacker reports 12.5 % and then nothing for a long time. */
 async function startSlow() {
   const stand = join(home, 'slow-render');
-  writeFileSync(stand, `#!/bin/sh\nif [ "$1" = --unpack ]; then\n  echo $$ > ${home}/pid; echo x > "$4/half"\n  echo '{"percent": 12.5}'\n  sleep 60\n  exit 1\nfi\nexec ${bin}/beamroom-render "$@"\n`);
+  writeFileSync(
+    stand,
+    `#!/bin/sh\nif [ "$1" = --unpack ]; then\n  echo $$ > ${home}/pid; echo x > "$4/half"\n  echo '{"percent": 12.5}'\n  sleep 60\n  exit 1\nfi\nexec ${bin}/beamroom-render "$@"\n`,
+  );
   chmodSync(stand, 0o755);
   return startDaemon({ args: ['--renderer', stand] });
 }
@@ -278,22 +355,40 @@ test('300 MB pass through without the memory growing and without others waiting'
   const memory = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${daemon.child.pid}/status`, 'utf8'))[1]);
   const render = async () => {
     const began = Date.now();
-    assert.equal((await fetch(`${api}/plans/phantom/render`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: '{"view":{"size_px":[64,48]}}' })).status, 200);
+    assert.equal(
+      (
+        await fetch(`${api}/plans/phantom/render`, {
+          method: 'POST',
+          headers: { 'Content-Type': 'application/json' },
+          body: '{"view":{"size_px":[64,48]}}',
+        })
+      ).status,
+      200,
+    );
     return Date.now() - began;
   };
   await render();
   const before = memory();
-  let most = before, slowest = 0, isSent = false;
+  let most = before,
+    slowest = 0,
+    isSent = false;
   const { hostname, port } = new URL(daemon.url);
   const sending = new Promise((done, failed) => {
-    const post = request({ hostname, port, path: '/api/v1/plans?name=big', method: 'POST', headers: { 'Content-Type': 'application/x-tar' } }, (answer) => {
-      let text = '';
-      answer.on('data', (more) => { text += more; });
-      answer.on('end', () => done({ status: answer.statusCode, json: parseStrict(text) }));
-    });
+    const post = request(
+      { hostname, port, path: '/api/v1/plans?name=big', method: 'POST', headers: { 'Content-Type': 'application/x-tar' } },
+      (answer) => {
+        let text = '';
+        answer.on('data', (more) => {
+          text += more;
+        });
+        answer.on('end', () => done({ status: answer.statusCode, json: parseStrict(text) }));
+      },
+    );
     post.on('error', failed);
     createReadStream(big, { highWaterMark: 1 << 20 }).pipe(post);
-  }).finally(() => { isSent = true; });
+  }).finally(() => {
+    isSent = true;
+  });
   while (!isSent) {
     slowest = Math.max(slowest, await render());
     most = Math.max(most, memory());

@@ -10,9 +10,14 @@ const clients = [];
 before(async () => {
   daemon = await startDaemon({ args: ['--stub'] });
   api = `${daemon.url}/api/v1`;
-  await until(async () => (await call(`${api}/plans`)).json.plans, (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length));
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans,
+    (plans) => plans.some((p) => p.id === 'phantom' && p.parts.length),
+  );
 });
-afterEach(() => { for (const client of clients.splice(0)) client.cut(); }); // a view without a client is not drawn again
+afterEach(() => {
+  for (const client of clients.splice(0)) client.cut();
+}); // a view without a client is not drawn again
 after(async () => {
   if (daemon) assert.equal(await daemon.stop(), 0, daemon.log());
 });
@@ -41,7 +46,7 @@ const openView = (client, more = {}) => client.send({ type: 'view.open', view: 1
 const camera = (x) => ({ camera: { position_mm: [x, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1] } });
 /** Waits until the last picture is a still and no other follows. */
 const settled = async (client) => {
-  for (let n = -1; n !== client.frames.length;) {
+  for (let n = -1; n !== client.frames.length; ) {
     await client.until(() => client.frames.at(-1)?.isStill, 'a still');
     n = client.frames.length;
     await sleep(600);
@@ -156,7 +161,10 @@ describe('pictures', () => {
     const client = await join(await newRoom());
     client.shows = false;
     openView(client);
-    for (let i = 1; i <= 60; i++) { client.send({ type: 'view.patch', view: 1, input: i, patch: camera(i) }); await sleep(10); }
+    for (let i = 1; i <= 60; i++) {
+      client.send({ type: 'view.patch', view: 1, input: i, patch: camera(i) });
+      await sleep(10);
+    }
     await client.until(() => client.frames.length >= 2, 'two pictures');
     await sleep(500);
     assert.equal(client.frames.length, 2);
@@ -174,7 +182,10 @@ describe('pictures', () => {
     const newest = await move(client, from);
     const last = await client.frame((f) => f.isStill && f.input === newest, from);
     const inputs = client.frames.slice(from).map((f) => f.input);
-    assert.ok(inputs.every((input, i) => i === 0 || input >= inputs[i - 1]), inputs.join());
+    assert.ok(
+      inputs.every((input, i) => i === 0 || input >= inputs[i - 1]),
+      inputs.join(),
+    );
     assert.ok(client.frames.slice(from).every((f, i, all) => i === 0 || f.sequence > all[i - 1].sequence)); // a picture may be replaced before it is sent
     assert.equal(client.frames.at(-1), last);
   });
@@ -182,7 +193,8 @@ describe('pictures', () => {
     const client = await join(await newRoom());
     openView(client);
     await settled(client);
-    const before_ = await rendered(), frames = client.frames.length;
+    const before_ = await rendered(),
+      frames = client.frames.length;
     assert.ok(before_ > 0, 'the metrics count renders');
     await sleep(1500);
     assert.equal(await rendered(), before_);
@@ -192,9 +204,13 @@ describe('pictures', () => {
 
 describe('a room', () => {
   test('shows a change of the scene to everybody, in words and pictures', async () => {
-    const room = await newRoom(), ann = await join(room, { name: 'Ann' }), ben = await join(room);
-    openView(ann); openView(ben);
-    await settled(ann); await settled(ben);
+    const room = await newRoom(),
+      ann = await join(room, { name: 'Ann' }),
+      ben = await join(room);
+    openView(ann);
+    openView(ben);
+    await settled(ann);
+    await settled(ben);
     ann.send({ type: 'scene.patch', input: 31, patch: { image: { window: { center: 77, width: 300 } } } });
     const heard = await ben.message('scene');
     assert.deepEqual(heard.patch, { image: { window: { center: 77, width: 300 } } });
@@ -207,12 +223,18 @@ describe('a room', () => {
     assert.equal(scene.json.image.window.center, 77);
   });
   test('gives followers the very same pictures, from one render', async () => {
-    const room = await newRoom(), ann = await join(room), ben = await join(room);
-    openView(ann, { follow: true }); openView(ben, { follow: true });
-    await settled(ann); await settled(ben);
-    const before_ = await rendered(), from = ben.frames.length;
+    const room = await newRoom(),
+      ann = await join(room),
+      ben = await join(room);
+    openView(ann, { follow: true });
+    openView(ben, { follow: true });
+    await settled(ann);
+    await settled(ben);
+    const before_ = await rendered(),
+      from = ben.frames.length;
     ann.send({ type: 'view.patch', view: 1, input: 1, patch: camera(50) });
-    const still = await ben.frame((f) => f.isStill, from), own = await ann.frame((f) => f.isStill && f.input === 1);
+    const still = await ben.frame((f) => f.isStill, from),
+      own = await ann.frame((f) => f.isStill && f.input === 1);
     assert.ok(still.picture.equals(own.picture));
     assert.ok(still.isShared);
     assert.equal(await rendered(), before_ + 2); // one moving, one still
@@ -220,17 +242,27 @@ describe('a room', () => {
     assert.equal(moved.follow, true);
   });
   test('has one presenter: a follower moves nobody, looks elsewhere alone, and is called back', async () => {
-    const room = await newRoom(), ann = await join(room), ben = await join(room);
+    const room = await newRoom(),
+      ann = await join(room),
+      ben = await join(room);
     const members = async () => (await call(`${api}/rooms/${room}/members`)).json.members;
     const said = async (client, act) => {
       const from = client.messages.length;
       client.send(act);
       return (await client.message('problem', () => true, from)).problem.type;
     };
-    openView(ann, { follow: true }); openView(ben, { follow: true });
-    await settled(ann); await settled(ben);
+    openView(ann, { follow: true });
+    openView(ben, { follow: true });
+    await settled(ann);
+    await settled(ben);
     const list = await members();
-    assert.deepEqual(list.map((m) => [m.presenting, m.following]), [[true, false], [false, true]]);
+    assert.deepEqual(
+      list.map((m) => [m.presenting, m.following]),
+      [
+        [true, false],
+        [false, true],
+      ],
+    );
     assert.deepEqual((await call(`${api}/rooms/${room}`)).json.members, list);
     const frames = ann.frames.length;
     assert.equal(await said(ben, { type: 'view.patch', view: 1, patch: camera(9) }), '/problems/not-presenter');
@@ -247,12 +279,19 @@ describe('a room', () => {
     ann.send({ type: 'show.everyone' });
     await ben.message('view', (m) => m.follow && m.document.size_px[0] === 320, ben.messages.length - 1);
     await ben.frame((f) => f.isShared && f.isStill && f.picture.equals(ann.frames.at(-1).picture), frames);
-    assert.equal((await call(`${api}/rooms/${room}/scene`, 'PATCH', { image: { window: { center: 60 } } }, { 'If-Match': '*' })).status, 200); // scripts may, as ever
+    assert.equal(
+      (await call(`${api}/rooms/${room}/scene`, 'PATCH', { image: { window: { center: 60 } } }, { 'If-Match': '*' })).status,
+      200,
+    ); // scripts may, as ever
   });
   test('is not slowed by a member who does not read', async () => {
-    const room = await newRoom(), ann = await join(room), ben = await join(room);
-    openView(ann, { follow: true }); openView(ben, { follow: true });
-    await settled(ann); await settled(ben);
+    const room = await newRoom(),
+      ann = await join(room),
+      ben = await join(room);
+    openView(ann, { follow: true });
+    openView(ben, { follow: true });
+    await settled(ann);
+    await settled(ben);
     ben.pause();
     const from = ann.frames.length;
     const newest = await move(ann, from);
@@ -264,7 +303,8 @@ describe('a room', () => {
     assert.ok(ben.frames.length - seen <= 5, `${ben.frames.length - seen} frames`);
   });
   test('knows a member who comes back', async () => {
-    const room = await newRoom(), ann = await join(room, { name: 'Ann' });
+    const room = await newRoom(),
+      ann = await join(room, { name: 'Ann' });
     ann.cut();
     const again = await join(room, { member: ann.welcome.member, secret: ann.welcome.secret });
     assert.equal(again.welcome.member, ann.welcome.member);
@@ -272,25 +312,36 @@ describe('a room', () => {
     const stranger = await join(room, { member: ann.welcome.member, secret: '0'.repeat(32) });
     assert.notEqual(stranger.welcome.member, ann.welcome.member);
     const list = (await stranger.message('members')).members;
-    assert.deepEqual(list.map((m) => m.connected), [true, true]);
+    assert.deepEqual(
+      list.map((m) => m.connected),
+      [true, true],
+    );
   });
   test('says bye when it is closed', async () => {
-    const room = await newRoom(), ann = await join(room);
+    const room = await newRoom(),
+      ann = await join(room);
     assert.equal((await call(`${api}/rooms/${room}`, 'DELETE')).status, 204);
     await ann.message('bye');
     await ann.until(() => ann.closeCode);
     assert.equal((await connectTo(room)).status, 404);
   });
   test('outlives its renderer: killed in the middle of a drag, it is back with the newest state', async () => {
-    const room = await newRoom(), ann = await join(room);
+    const room = await newRoom(),
+      ann = await join(room);
     openView(ann);
     await settled(ann);
     const victim = renderersOf(daemon.child.pid)[0];
     assert.ok(victim, 'a renderer runs');
     const from = ann.frames.length;
-    for (let i = 1; i <= 10; i++) { ann.send({ type: 'view.patch', view: 1, input: i, patch: camera(i) }); await sleep(15); }
+    for (let i = 1; i <= 10; i++) {
+      ann.send({ type: 'view.patch', view: 1, input: i, patch: camera(i) });
+      await sleep(15);
+    }
     process.kill(victim, 'SIGKILL');
-    for (let i = 11; i <= 30; i++) { ann.send({ type: 'view.patch', view: 1, input: i, patch: camera(i) }); await sleep(15); }
+    for (let i = 11; i <= 30; i++) {
+      ann.send({ type: 'view.patch', view: 1, input: i, patch: camera(i) });
+      await sleep(15);
+    }
     await ann.message('renderer', (m) => m.state === 'restarting');
     const since = ann.messages.findIndex((m) => m.type === 'renderer' && m.state === 'restarting');
     await ann.message('renderer', (m) => m.state === 'ready', since);

@@ -3,24 +3,48 @@ import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
 import { parseStrict } from './strict_json.mjs';
 
-const TEXT = 1, BINARY = 2, CLOSE = 8, PING = 9, PONG = 10;
+const TEXT = 1,
+  BINARY = 2,
+  CLOSE = 8,
+  PING = 9,
+  PONG = 10;
 
 /** The header of proto/frame.md, read independently of the page and the daemon. */
 export function readFrame(bytes) {
   const at = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const flags = at.getUint8(9);
   return {
-    magic: at.getUint32(0, true), version: at.getUint16(4, true), headerBytes: at.getUint16(6, true), codec: at.getUint8(8),
-    isStill: !!(flags & 1), isFullColor: !!(flags & 4), isShared: !!(flags & 8), isCoarse: !!(flags & 16), divisor: flags & 64 ? 4 : flags & 32 ? 2 : 1,
-    quality: at.getUint8(10), scale: at.getUint8(11), view: at.getUint32(12, true), sequence: at.getUint32(16, true),
-    revision: at.getUint32(20, true), input: at.getUint32(24, true), width: at.getUint16(28, true), height: at.getUint16(30, true),
-    renderUs: at.getUint32(32, true), payloadBytes: at.getUint32(40, true), matrix: Array.from({ length: 16 }, (_, i) => at.getFloat32(48 + 4 * i, true)),
-    picture: bytes.subarray(at.getUint16(6, true)), at: performance.now(),
+    magic: at.getUint32(0, true),
+    version: at.getUint16(4, true),
+    headerBytes: at.getUint16(6, true),
+    codec: at.getUint8(8),
+    isStill: !!(flags & 1),
+    isFullColor: !!(flags & 4),
+    isShared: !!(flags & 8),
+    isCoarse: !!(flags & 16),
+    divisor: flags & 64 ? 4 : flags & 32 ? 2 : 1,
+    quality: at.getUint8(10),
+    scale: at.getUint8(11),
+    view: at.getUint32(12, true),
+    sequence: at.getUint32(16, true),
+    revision: at.getUint32(20, true),
+    input: at.getUint32(24, true),
+    width: at.getUint16(28, true),
+    height: at.getUint16(30, true),
+    renderUs: at.getUint32(32, true),
+    payloadBytes: at.getUint32(40, true),
+    matrix: Array.from({ length: 16 }, (_, i) => at.getFloat32(48 + 4 * i, true)),
+    picture: bytes.subarray(at.getUint16(6, true)),
+    at: performance.now(),
   };
 }
 
 export class Client {
-  #socket; #bytes = Buffer.alloc(0); #waiting = []; #isOpen = false; #fragment = [];
+  #socket;
+  #bytes = Buffer.alloc(0);
+  #waiting = [];
+  #isOpen = false;
+  #fragment = [];
   /** HTTP status of the handshake; 101 when open. */
   status = 0;
   messages = [];
@@ -38,9 +62,23 @@ export class Client {
     client.#socket = connect({ host: hostname, port: Number(port) });
     client.#socket.on('error', () => {});
     client.#socket.on('data', (bytes) => client.#take(bytes, key));
-    client.#socket.on('close', () => { client.closeCode ||= 1006; client.#checkWaiting(); });
-    const lines = { Host: host, Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': '13', 'Sec-WebSocket-Key': key, ...headers };
-    client.#socket.write(`GET ${path} HTTP/1.1\r\n${Object.entries(lines).map(([name, value]) => `${name}: ${value}\r\n`).join('')}\r\n`);
+    client.#socket.on('close', () => {
+      client.closeCode ||= 1006;
+      client.#checkWaiting();
+    });
+    const lines = {
+      Host: host,
+      Connection: 'Upgrade',
+      Upgrade: 'websocket',
+      'Sec-WebSocket-Version': '13',
+      'Sec-WebSocket-Key': key,
+      ...headers,
+    };
+    client.#socket.write(
+      `GET ${path} HTTP/1.1\r\n${Object.entries(lines)
+        .map(([name, value]) => `${name}: ${value}\r\n`)
+        .join('')}\r\n`,
+    );
     await client.until(() => client.status !== 0 || client.closeCode, 'an answer to the handshake');
     return client;
   }
@@ -87,14 +125,30 @@ export class Client {
     const b = this.#bytes;
     if (b.length < 2) return false;
     if (b[1] & 0x80) throw new Error('a server must not mask');
-    let n = b[1] & 0x7f, at = 2;
-    if (n === 126) { if (b.length < 4) return false; n = b.readUInt16BE(2); at = 4; }
-    else if (n === 127) { if (b.length < 10) return false; n = Number(b.readBigUInt64BE(2)); at = 10; }
+    let n = b[1] & 0x7f,
+      at = 2;
+    if (n === 126) {
+      if (b.length < 4) return false;
+      n = b.readUInt16BE(2);
+      at = 4;
+    } else if (n === 127) {
+      if (b.length < 10) return false;
+      n = Number(b.readBigUInt64BE(2));
+      at = 10;
+    }
     if (b.length < at + n) return false;
-    const payload = Buffer.from(b.subarray(at, at + n)), isFinal = !!(b[0] & 0x80), code = b[0] & 0x0f;
+    const payload = Buffer.from(b.subarray(at, at + n)),
+      isFinal = !!(b[0] & 0x80),
+      code = b[0] & 0x0f;
     this.#bytes = b.subarray(at + n);
-    if (code === PING) { this.write(PONG, payload); return true; }
-    if (code === CLOSE) { this.closeCode = n >= 2 ? payload.readUInt16BE(0) : 1005; return true; }
+    if (code === PING) {
+      this.write(PONG, payload);
+      return true;
+    }
+    if (code === CLOSE) {
+      this.closeCode = n >= 2 ? payload.readUInt16BE(0) : 1005;
+      return true;
+    }
     if (code === TEXT || code === BINARY) this.#fragment = [code];
     this.#fragment.push(payload);
     if (!isFinal) return true;
@@ -109,7 +163,9 @@ export class Client {
     return true;
   }
 
-  #checkWaiting() { for (const look of [...this.#waiting]) look(); }
+  #checkWaiting() {
+    for (const look of [...this.#waiting]) look();
+  }
 
   /** Waits until test() returns something true, and returns it. */
   until(test, what = 'something', ms = 60000) {
@@ -124,8 +180,13 @@ export class Client {
       };
       timer = setTimeout(() => {
         this.#waiting = this.#waiting.filter((l) => l !== look);
-        failed(new Error(`${what} did not come within ${ms} ms; ${this.frames.length} frames, closed ${this.closeCode}, last messages: ${
-          JSON.stringify(this.messages.slice(-3)).slice(0, 600)}`));
+        failed(
+          new Error(
+            `${what} did not come within ${ms} ms; ${this.frames.length} frames, closed ${this.closeCode}, last messages: ${JSON.stringify(
+              this.messages.slice(-3),
+            ).slice(0, 600)}`,
+          ),
+        );
       }, ms);
       this.#waiting.push(look);
       look();
@@ -142,8 +203,14 @@ export class Client {
   }
 
   write(code, payload, { isFinal = true } = {}) {
-    const mask = randomBytes(4), n = payload.length;
-    const head = n < 126 ? Buffer.from([0, 0x80 | n]) : n < 65536 ? Buffer.from([0, 0xfe, n >> 8, n & 255]) : Buffer.from([0, 0xff, 0, 0, 0, 0, 0, 0, 0, 0]);
+    const mask = randomBytes(4),
+      n = payload.length;
+    const head =
+      n < 126
+        ? Buffer.from([0, 0x80 | n])
+        : n < 65536
+          ? Buffer.from([0, 0xfe, n >> 8, n & 255])
+          : Buffer.from([0, 0xff, 0, 0, 0, 0, 0, 0, 0, 0]);
     if (n >= 65536) head.writeBigUInt64BE(BigInt(n), 2);
     head[0] = (isFinal ? 0x80 : 0) | code;
     const masked = Buffer.from(payload);
@@ -151,21 +218,34 @@ export class Client {
     this.#socket.write(Buffer.concat([head, mask, masked]));
   }
 
-  writeRaw(bytes) { this.#socket.write(bytes); }
+  writeRaw(bytes) {
+    this.#socket.write(bytes);
+  }
 
-  send(message) { this.write(TEXT, Buffer.from(typeof message === 'string' ? message : JSON.stringify(message))); }
+  send(message) {
+    this.write(TEXT, Buffer.from(typeof message === 'string' ? message : JSON.stringify(message)));
+  }
 
   /** Sends one message in n fragments. */
   sendInPieces(message, n) {
-    const bytes = Buffer.from(JSON.stringify(message)), size = Math.ceil(bytes.length / n);
+    const bytes = Buffer.from(JSON.stringify(message)),
+      size = Math.ceil(bytes.length / n);
     for (let at = 0; at < bytes.length; at += size)
       this.write(at === 0 ? TEXT : 0, bytes.subarray(at, at + size), { isFinal: at + size >= bytes.length });
   }
 
-  sendBinary(bytes) { this.write(BINARY, bytes); }
+  sendBinary(bytes) {
+    this.write(BINARY, bytes);
+  }
   /** Stops reading: what the server sends stays in the kernel's buffers. */
-  pause() { this.#socket.pause(); }
-  resume() { this.#socket.resume(); }
+  pause() {
+    this.#socket.pause();
+  }
+  resume() {
+    this.#socket.resume();
+  }
   /** Closes the connection without a close frame. */
-  cut() { this.#socket.destroy(); }
+  cut() {
+    this.#socket.destroy();
+  }
 }

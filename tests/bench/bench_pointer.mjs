@@ -15,24 +15,48 @@ if (!existsSync(chromiumPath)) {
 }
 const { chromium } = await import('playwright-core');
 const daemon = await startDaemon();
-const browser = await chromium.launch({ executablePath: chromiumPath, headless: true, args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
+const browser = await chromium.launch({
+  executablePath: chromiumPath,
+  headless: true,
+  args: [
+    '--no-sandbox',
+    '--disable-gpu',
+    '--disable-quic',
+    '--no-first-run',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--disable-sync',
+  ],
+});
 try {
   await openPlan(daemon.url, 'phantom');
   const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json;
   const open = async () => {
     const page = await (await browser.newContext({ viewport: { width: 1500, height: 1000 } })).newPage();
     await page.goto(`${daemon.url}/#/rooms/${room.id}`);
-    await until(() => page.evaluate(() => globalThis.beamroom?.stats().badges ?? {}), (badges) => [1, 2, 3, 4].every((view) => badges[view] === 'full'));
+    await until(
+      () => page.evaluate(() => globalThis.beamroom?.stats().badges ?? {}),
+      (badges) => [1, 2, 3, 4].every((view) => badges[view] === 'full'),
+    );
     return page;
   };
   const [sender, receiver] = [await open(), await open()];
   await sender.locator('.point-tools').waitFor();
   await sender.evaluate(() => {
     globalThis.sent = [];
-    addEventListener('pointermove', (event) => {
-      const picture = event.target.closest?.('.picture')?.getBoundingClientRect();
-      if (picture) globalThis.sent.push({ x: event.clientX - picture.left, y: event.clientY - picture.top, at: performance.timeOrigin + event.timeStamp });
-    }, true);
+    addEventListener(
+      'pointermove',
+      (event) => {
+        const picture = event.target.closest?.('.picture')?.getBoundingClientRect();
+        if (picture)
+          globalThis.sent.push({
+            x: event.clientX - picture.left,
+            y: event.clientY - picture.top,
+            at: performance.timeOrigin + event.timeStamp,
+          });
+      },
+      true,
+    );
   });
   await receiver.evaluate(() => {
     globalThis.painted = [];
@@ -48,7 +72,13 @@ try {
         globalThis.painted.push(one);
       }
     };
-    for (const layer of document.querySelectorAll('.pointers')) new MutationObserver(look).observe(layer, { subtree: true, childList: true, attributes: true, attributeFilter: ['data-x', 'data-y'] });
+    for (const layer of document.querySelectorAll('.pointers'))
+      new MutationObserver(look).observe(layer, {
+        subtree: true,
+        childList: true,
+        attributes: true,
+        attributeFilter: ['data-x', 'data-y'],
+      });
   });
 
   /** Times from each event whose place was painted in the receiver's pane of the same size to that paint. */
@@ -56,21 +86,33 @@ try {
     await sender.locator(`#picture-${view}`).focus();
     if (key) await sender.keyboard.press(key);
     const box = await sender.locator(`#picture-${view}`).boundingBox();
-    await Promise.all([sender, receiver].map((page) => page.evaluate(() => { globalThis.sent = []; globalThis.painted = []; })));
+    await Promise.all(
+      [sender, receiver].map((page) =>
+        page.evaluate(() => {
+          globalThis.sent = [];
+          globalThis.painted = [];
+        }),
+      ),
+    );
     const began = performance.now();
     for (let step = 0; performance.now() - began < seconds * 1000; step++) {
-      await sender.mouse.move(box.x + box.width / 2 + Math.round(60 * Math.sin(step / 37) + 30 * Math.sin(step / 7.3)), box.y + box.height / 2 + Math.round(60 * Math.cos(step / 31)));
+      await sender.mouse.move(
+        box.x + box.width / 2 + Math.round(60 * Math.sin(step / 37) + 30 * Math.sin(step / 7.3)),
+        box.y + box.height / 2 + Math.round(60 * Math.cos(step / 31)),
+      );
       await sleep(8);
     }
     await sleep(500);
     const [sent, painted] = [await sender.evaluate(() => globalThis.sent), await receiver.evaluate(() => globalThis.painted)];
     const known = new Set();
-    return painted.filter(({ view: of, at }) => of === view && at).flatMap(({ x, y, at }) => {
-      const event = sent.filter((other) => other.at < at && Math.hypot(other.x - x, other.y - y) <= within).at(-1);
-      if (!event || known.has(event)) return [];
-      known.add(event);
-      return [at - event.at];
-    });
+    return painted
+      .filter(({ view: of, at }) => of === view && at)
+      .flatMap(({ x, y, at }) => {
+        const event = sent.filter((other) => other.at < at && Math.hypot(other.x - x, other.y - y) <= within).at(-1);
+        if (!event || known.has(event)) return [];
+        known.add(event);
+        return [at - event.at];
+      });
   };
   const slice = await measure(2, slicePx, 'p');
   if (slice.length < seconds * 5) throw new Error(`only ${slice.length} places were painted`);
@@ -79,7 +121,12 @@ try {
   tell('pointer in a slice: mouse event to paint in another browser, p95', quantile(slice, 0.95), 'ms', 'at most 50 asked for');
   const space = await measure(1, spacePx, '');
   if (space.length) {
-    tell('pointer in 3-D: mouse event to paint in another browser, p50', quantile(space, 0.5), 'ms', `${space.length} places; each asks the server what is seen there`);
+    tell(
+      'pointer in 3-D: mouse event to paint in another browser, p50',
+      quantile(space, 0.5),
+      'ms',
+      `${space.length} places; each asks the server what is seen there`,
+    );
     tell('pointer in 3-D: mouse event to paint in another browser, p95', quantile(space, 0.95), 'ms', 'no bound');
   }
 } finally {

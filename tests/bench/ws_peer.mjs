@@ -7,28 +7,33 @@ const { wsServer: WebSocketServer } = createRequire(import.meta.url)('../../node
 
 const server = new WebSocketServer({ port: 0, host: '127.0.0.1', perMessageDeflate: false });
 const clients = new Set();
-let timer, sequence = 0;
+let timer,
+  sequence = 0;
 server.on('connection', (socket) => {
   const client = { socket, unshown: 0 };
   clients.add(client);
-  socket.on('message', (text) => { client.unshown -= JSON.parse(text).sequence > 0; });
+  socket.on('message', (text) => {
+    client.unshown -= JSON.parse(text).sequence > 0;
+  });
   socket.on('close', () => clients.delete(client));
 });
 server.on('listening', () => console.log(server.address().port));
-createInterface({ input: process.stdin }).on('line', (line) => {
-  const [bytes, rate] = line.split(' ').map(Number);
-  clearInterval(timer);
-  if (bytes) {
-    timer = setInterval(() => {
-      const picture = Buffer.alloc(bytes, 0xa5);
-      picture.writeUInt32LE(1, 12);
-      picture.writeUInt32LE(++sequence, 16);
-      for (const client of clients) {
-        if (client.unshown >= 2) continue;
-        client.unshown++;
-        client.socket.send(picture);
-      }
-    }, 1000 / rate);
-  }
-  console.log('ok');
-}).on('close', () => process.exit(0));
+createInterface({ input: process.stdin })
+  .on('line', (line) => {
+    const [bytes, rate] = line.split(' ').map(Number);
+    clearInterval(timer);
+    if (bytes) {
+      timer = setInterval(() => {
+        const picture = Buffer.alloc(bytes, 0xa5);
+        picture.writeUInt32LE(1, 12);
+        picture.writeUInt32LE(++sequence, 16);
+        for (const client of clients) {
+          if (client.unshown >= 2) continue;
+          client.unshown++;
+          client.socket.send(picture);
+        }
+      }, 1000 / rate);
+    }
+    console.log('ok');
+  })
+  .on('close', () => process.exit(0));

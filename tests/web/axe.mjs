@@ -7,9 +7,11 @@ const source = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe
 /** What axe-core finds wrong with the page, one line for each rule and element; all of its rules, best practices included.
  *  @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
 export async function axe(page) {
-  if (!await page.evaluate(() => 'axe' in globalThis)) await page.evaluate(`${source};0`); // evaluated by the debugger: no script element, so the CSP stays as it is
+  if (!(await page.evaluate(() => 'axe' in globalThis))) await page.evaluate(`${source};0`); // evaluated by the debugger: no script element, so the CSP stays as it is
   return page.evaluate(async () => {
     const { violations } = await globalThis.axe.run(document, { resultTypes: ['violations'] });
-    return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target.join(' ')}: ${failureSummary.replace(/\s+/g, ' ')}`));
+    return violations.flatMap(({ id, nodes }) =>
+      nodes.map(({ target, failureSummary }) => `${id}: ${target.join(' ')}: ${failureSummary.replace(/\s+/g, ' ')}`),
+    );
   });
 }

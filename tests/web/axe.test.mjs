@@ -7,8 +7,12 @@ import { sizes, states } from './room_states.mjs';
 
 describe('the room page for screen readers and keyboards', { skip: missing && `${missing} is not there` }, () => {
   let world;
-  before(async () => { world = await startWorld(); });
-  after(async () => { await world?.stop(); });
+  before(async () => {
+    world = await startWorld();
+  });
+  after(async () => {
+    await world?.stop();
+  });
 
   // All sizes in the long suite; the quick one has the panels of dose at the smallest (dose.test.mjs).
   for (const [size, options] of Object.entries(sizes).filter(() => isDue(false)))
@@ -74,7 +78,9 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
     await page.keyboard.type('scal');
     assert.equal(await current(), 'row-region:scalp');
     const style = async () => (await world.scene(room)).regions.scalp;
-    const until = async (test) => { while (!test(await style())) await page.waitForTimeout(30); };
+    const until = async (test) => {
+      while (!test(await style())) await page.waitForTimeout(30);
+    };
     await page.keyboard.press('Space');
     await until(({ visible }) => !visible);
     await page.keyboard.press('Space');
@@ -84,20 +90,34 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
     await until((now) => Math.abs(now.opacity - (opacity - 0.05)) < 0.001);
     await page.keyboard.press('Enter');
     assert.match(await page.locator('#tab-panel h3').first().textContent(), /scalp/);
-    for (const label of ['Colour', 'Opacity', 'Order, higher lies on top']) assert.equal(await page.locator(`#tab-panel [aria-label="${label}"]`).count(), 1, label);
+    for (const label of ['Colour', 'Opacity', 'Order, higher lies on top'])
+      assert.equal(await page.locator(`#tab-panel [aria-label="${label}"]`).count(), 1, label);
     await page.context().close();
   });
 
   once('with forced colours what is pressed, chosen or active differs by its border', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { ...sizes.wide, forcedColors: 'active', reducedMotion: 'reduce' });
+    const page = await world.newPage(`#/rooms/${await world.newRoom()}`, {
+      ...sizes.wide,
+      forcedColors: 'active',
+      reducedMotion: 'reduce',
+    });
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
-    const border = (selector, pseudo) => page.locator(selector).first().evaluate((element, of) => {
-      const { borderBottomWidth, borderLeftWidth, borderBottomColor } = getComputedStyle(element, of);
-      return [borderBottomWidth, borderLeftWidth, borderBottomColor].join(' ');
-    }, pseudo);
-    for (const [on, off] of [['[aria-label="Crosshair"]', '[aria-label="Zoom"]'], ['[aria-label="Four panes"]', '[aria-label="One pane"]'], ['[role="tab"][aria-selected="true"]', '[role="tab"][aria-selected="false"]'],
-      ['[role="radio"][aria-checked="true"]', '[role="radio"][aria-checked="false"]'], ['.row.selected', '.row:not(.selected)']])
+    const border = (selector, pseudo) =>
+      page
+        .locator(selector)
+        .first()
+        .evaluate((element, of) => {
+          const { borderBottomWidth, borderLeftWidth, borderBottomColor } = getComputedStyle(element, of);
+          return [borderBottomWidth, borderLeftWidth, borderBottomColor].join(' ');
+        }, pseudo);
+    for (const [on, off] of [
+      ['[aria-label="Crosshair"]', '[aria-label="Zoom"]'],
+      ['[aria-label="Four panes"]', '[aria-label="One pane"]'],
+      ['[role="tab"][aria-selected="true"]', '[role="tab"][aria-selected="false"]'],
+      ['[role="radio"][aria-checked="true"]', '[role="radio"][aria-checked="false"]'],
+      ['.row.selected', '.row:not(.selected)'],
+    ])
       assert.notEqual(await border(on), await border(off), on);
     assert.equal((await border('.pane.active', '::after')).split(' ')[0], '3px');
     assert.equal(await page.locator('[aria-label="Zoom"]').evaluate((button) => getComputedStyle(button).transitionDuration), '0s');

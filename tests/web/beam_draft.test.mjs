@@ -8,7 +8,8 @@ import { bytesOf, full, header, missing, shoot, startWorld } from './browser.mjs
 import { overlaps } from './overlap.mjs';
 
 const planned = { entry: [0, 0, 88], target: [0, 0, 10] }; // of the demo phantom: straight down the patient's axis
-const near = (actual, expected, tolerance, words) => expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${words}: ${actual} is not ${expected}`));
+const near = (actual, expected, tolerance, words) =>
+  expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${words}: ${actual} is not ${expected}`));
 const unit = (v) => v.map((part) => part / Math.hypot(...v));
 
 describe('beams and their drafts', { skip: missing && `${missing} is not there` }, () => {
@@ -22,7 +23,9 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     page = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1440, height: 900 } });
     for (const view of [1, 2, 3, 4]) await full(page, view);
   });
-  after(async () => { await world?.stop(); });
+  after(async () => {
+    await world?.stop();
+  });
 
   const beam = async () => (await world.scene(room)).beam;
   /** Until the draft on the server passes. */
@@ -34,7 +37,11 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
   const panel = (words, tag = 'button') => page.locator('#tab-panel').locator(tag, { hasText: words });
   const bar = (words) => page.locator('.beam-bar button', { hasText: words });
   const row = (id) => page.locator(`[data-key="${id}"]`);
-  const cell = (name, column) => page.locator('.beam-table tr', { has: page.locator(`th:text-is("${name}")`) }).locator('td').nth(column);
+  const cell = (name, column) =>
+    page
+      .locator('.beam-table tr', { has: page.locator(`th:text-is("${name}")`) })
+      .locator('td')
+      .nth(column);
   const drag = async (view, [dx, dy]) => {
     const { x, y, width, height } = await page.locator(`#picture-${view}`).boundingBox();
     const [x0, y0] = [x + width / 2 + 90, y + height / 2 - 70]; // no handle is there: the chosen point moves by as much as the pointer
@@ -92,14 +99,19 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await settled(2);
     const pxPerMm = (await header(page, 2)).pixels_per_mm;
     await drag(2, [26, 13]);
-    const line = await comes(({ draft }) => draft.line.target_mm[0] > 0 && Math.abs(draft.line.target_mm[1] - 13 / pxPerMm) < 0.05, 'it came as far as the pointer');
+    const line = await comes(
+      ({ draft }) => draft.line.target_mm[0] > 0 && Math.abs(draft.line.target_mm[1] - 13 / pxPerMm) < 0.05,
+      'it came as far as the pointer',
+    );
     near(line.target_mm, [26 / pxPerMm, 13 / pxPerMm, 10], 0.05, 'axial: right on the screen is left of the patient, down is posterior');
     assert.deepEqual(line.entry_mm, planned.entry);
     // a pane of a half pixel is drawn by whole ones: 0.2 %
     const moved = Math.hypot(line.target_mm[0], line.target_mm[1]);
     const direction = (Math.atan2(moved, 78) * 180) / Math.PI;
     await page.locator('.beam-moved', { hasText: `target moved ${moved.toFixed(1)} mm, direction ${direction.toFixed(1)}°` }).waitFor();
-    await cell('Angles φ, θ', 0).filter({ hasText: `${direction.toFixed(1)}°, ` }).waitFor(); // φ: the planned beam comes from superior
+    await cell('Angles φ, θ', 0)
+      .filter({ hasText: `${direction.toFixed(1)}°, ` })
+      .waitFor(); // φ: the planned beam comes from superior
     assert.match(await page.locator('[title^="Undo"]').first().getAttribute('title'), /draft beam/);
     await page.keyboard.press('Control+z');
     await comes(({ draft }) => draft.enabled && draft.line.target_mm.join() === planned.target.join(), 'the whole drag is undone');
@@ -113,19 +125,25 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     const [{ clip, w }, { width, height }] = [await matrixOf(1), await page.locator('#picture-1').boundingBox()];
     await drag(1, [-30, 20]);
     const expected = clip(planned.entry).map((value, at) => value + [(2 * -30) / width, (-2 * 20) / height][at]);
-    const line = await comes(({ draft }) => Math.hypot(...clip(draft.line.entry_mm).map((value, at) => value - expected[at])) < 1e-3, 'it stands under the pointer');
+    const line = await comes(
+      ({ draft }) => Math.hypot(...clip(draft.line.entry_mm).map((value, at) => value - expected[at])) < 1e-3,
+      'it stands under the pointer',
+    );
     assert.ok(Math.abs(w(line.entry_mm) - w(planned.entry)) < 0.01, 'as far from the eye as before');
   });
 
-  it('in the beam\'s-eye view the target is dragged across the beam, and the entry stays', async () => {
-    await panel('Beam\'s eye').click();
+  it("in the beam's-eye view the target is dragged across the beam, and the entry stays", async () => {
+    await panel("Beam's eye").click();
     await panel('Move target').click();
     await settled(7);
     const before = (await beam()).draft.line;
     const [{ clip }, { width, height }] = [await matrixOf(7), await page.locator('#picture-7').boundingBox()];
     await drag(7, [24, -12]);
     const expected = clip(before.target_mm).map((value, at) => value + [(2 * 24) / width, (2 * 12) / height][at]);
-    const line = await comes(({ draft }) => Math.hypot(...clip(draft.line.target_mm).map((value, at) => value - expected[at])) < 1e-3, 'as the picture was at the press');
+    const line = await comes(
+      ({ draft }) => Math.hypot(...clip(draft.line.target_mm).map((value, at) => value - expected[at])) < 1e-3,
+      'as the picture was at the press',
+    );
     assert.deepEqual(line.entry_mm, before.entry_mm);
     const axis = unit(before.target_mm.map((value, at) => value - before.entry_mm[at]));
     assert.ok(Math.abs(axis.reduce((sum, part, at) => sum + part * (line.target_mm[at] - before.target_mm[at]), 0)) < 0.01, 'not along it');
@@ -144,7 +162,16 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     const { axial } = (await world.scene(room)).image.slices;
     await page.locator('#picture-2').focus();
     await page.keyboard.press('ArrowUp');
-    assert.notEqual((await until(() => world.scene(room), ({ image }) => image.slices.axial.position_mm !== axial.position_mm)).image.slices.axial.position_mm, axial.position_mm, 'the slice again');
+    assert.notEqual(
+      (
+        await until(
+          () => world.scene(room),
+          ({ image }) => image.slices.axial.position_mm !== axial.position_mm,
+        )
+      ).image.slices.axial.position_mm,
+      axial.position_mm,
+      'the slice again',
+    );
   });
 
   it('numbers set entry, target and aperture, and a draft without a length is refused', async () => {
@@ -180,7 +207,9 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await cell('Skin gap', 0).filter({ hasText: '20.0 mm' }).waitFor();
     await fill('Angle φ in degrees', '90');
     await comes(({ draft }) => Math.abs(draft.line.entry_mm[2] - 10) < 2e-3, 'level with the target');
-    await cell('Angles φ, θ', 0).filter({ hasText: /^90\.0°/ }).waitFor();
+    await cell('Angles φ, θ', 0)
+      .filter({ hasText: /^90\.0°/ })
+      .waitFor();
     await fill('Angle θ in degrees', '90');
     const far = skin + 20 - 10;
     const line = await comes(({ draft }) => draft.line.entry_mm[1] < 0 && Math.abs(draft.line.entry_mm[0] - 3) < 2e-3, 'from anterior');
@@ -188,7 +217,8 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     const { image } = await world.scene(room);
     const point = ['sagittal', 'coronal', 'axial'].map((axis) => image.slices[axis].position_mm);
     await panel('Through the crosshair').click();
-    const off = ({ entry_mm: entry }) => { // of the crosshair beside the axis, mm
+    const off = ({ entry_mm: entry }) => {
+      // of the crosshair beside the axis, mm
       const axis = unit(entry.map((value, at) => value - [3, 4, 10][at]));
       const to = point.map((value, at) => value - [3, 4, 10][at]);
       const along = to.reduce((sum, part, at) => sum + part * axis[at], 0);
@@ -208,7 +238,12 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await bar('Compare').click();
     await page.locator('.beam-moved', { hasText: 'Planned beam shown' }).waitFor();
     await comes(({ draft }) => draft.enabled && draft.shows_planned, 'the draft is kept');
-    assert.equal(await cell('Target, mm', 1).innerText().then((text) => text.replace(/\s+/g, ' ')), 'L 0.0 P 0.0 S 10.0');
+    assert.equal(
+      await cell('Target, mm', 1)
+        .innerText()
+        .then((text) => text.replace(/\s+/g, ' ')),
+      'L 0.0 P 0.0 S 10.0',
+    );
     await shoot(page, 'beam-compare');
     await bar('Back to the draft').click();
     await comes(({ draft }) => draft.enabled && !draft.shows_planned, 'the draft again');
@@ -238,9 +273,17 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     const text = await save('SERA beam card');
     assert.match(text, /^ +1\.0000000E\+01 +0\.0000000E\+00 /m); // distance in cm, φ
     const file = JSON.parse(await save('JSON'));
-    assert.deepEqual([file.plan.id, file.draft.name, file.draft.target_lps_mm, file.draft.length_mm, file.planned.target_lps_mm, file.moved.target_mm], ['phantom', 'From above', [3, 4, 10], 100, planned.target, 5]);
+    assert.deepEqual(
+      [file.plan.id, file.draft.name, file.draft.target_lps_mm, file.draft.length_mm, file.planned.target_lps_mm, file.moved.target_mm],
+      ['phantom', 'From above', [3, 4, 10], 100, planned.target, 5],
+    );
     assert.deepEqual(file.frame.units, { length: 'mm', angle: 'degree' });
-    near([file.draft.sera.phi_deg, ...[10, 3, -4].map((mm) => mm / 10)], [0, file.draft.sera.target_cm[2], file.draft.sera.target_cm[1], file.draft.sera.target_cm[0]], 1e-9, 'as SERA has it: PA, RL, IS');
+    near(
+      [file.draft.sera.phi_deg, ...[10, 3, -4].map((mm) => mm / 10)],
+      [0, file.draft.sera.target_cm[2], file.draft.sera.target_cm[1], file.draft.sera.target_cm[0]],
+      1e-9,
+      'as SERA has it: PA, RL, IS',
+    );
   });
 
   it('the report to print says under the picture whose dose it shows', async () => {
@@ -251,7 +294,9 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
     await menu('Add it to the report');
     await page.locator('.toasts', { hasText: 'In the report to print: 1 picture' }).waitFor();
     await menu(/^\s*Report to print/);
-    await page.locator('.printout figure .values', { hasText: /^Draft beam: dose shown belongs to the planned beam, target moved 5\.0 mm\.$/ }).waitFor();
+    await page
+      .locator('.printout figure .values', { hasText: /^Draft beam: dose shown belongs to the planned beam, target moved 5\.0 mm\.$/ })
+      .waitFor();
     await page.locator('.printout [aria-label="Close"]').click();
   });
 

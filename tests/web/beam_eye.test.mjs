@@ -23,7 +23,14 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'beamroom-beam-'));
     mkdirSync(join(folder, 'no-beam'));
-    writeVolume(join(folder, 'no-beam'), 'No beam', { size: [30, 30, 20], stepMm: [4, 4, 5], region: [[10, 10, 5], [20, 20, 12]] });
+    writeVolume(join(folder, 'no-beam'), 'No beam', {
+      size: [30, 30, 20],
+      stepMm: [4, 4, 5],
+      region: [
+        [10, 10, 5],
+        [20, 20, 12],
+      ],
+    });
     world = await startWorld({ plans: [folder] });
   });
   after(async () => {
@@ -56,17 +63,20 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
   /** The picture has the size of its pane: the foot has been drawn, and a picture that fits above it. */
   const fits = async (view, of = page) => {
     const { width, height } = await of.locator(`#picture-${view}`).boundingBox();
-    await of.waitForFunction(([n, w, h]) => {
-      const { width_px: across, height_px: down, scale_percent: percent } = globalThis.beamroom.stats().headers[n];
-      return percent === 100 && Math.abs(across - w) <= 1 && Math.abs(down - h) <= 1;
-    }, [view, width, height]);
+    await of.waitForFunction(
+      ([n, w, h]) => {
+        const { width_px: across, height_px: down, scale_percent: percent } = globalThis.beamroom.stats().headers[n];
+        return percent === 100 && Math.abs(across - w) <= 1 && Math.abs(down - h) <= 1;
+      },
+      [view, width, height],
+    );
   };
   /** px of the screen for 1 mm to the picture's right, at the target. */
   const scaleOf = async (view, of = page) => {
     const { width, height } = await of.locator(`#picture-${view}`).boundingBox();
     const { width_px: across, height_px: down, clip_from_lps_mm: m } = await header(of, view);
     const shownPx = across * Math.min(width / across, height / down); // a shared picture is shown as large as fits
-    return ((onPicture(Object.values(m), [target[0] - 10, target[1], target[2]])[0] * shownPx) / 2) / 10;
+    return (onPicture(Object.values(m), [target[0] - 10, target[1], target[2]])[0] * shownPx) / 2 / 10;
   };
   const isNear = (a, b, tolerance = 1e-4) => a.every((value, at) => Math.abs(value - b[at]) <= tolerance * Math.max(1, Math.abs(b[at])));
   const middle = async (view) => {
@@ -79,14 +89,18 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await page.mouse.move(toX, toY, { steps: 5 });
     await page.mouse.up();
   };
-  const shown = (of = page) => of.evaluate(() => [...globalThis.document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)));
+  const shown = (of = page) =>
+    of.evaluate(() => [...globalThis.document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)));
   const ring = (on = page) => on.getByRole('button', { name: 'Ring', exact: true });
 
   once('key B looks along the beam, with anterior up as it runs down the patient; a drag turns nothing, R is home', async () => {
     await openEye();
     assert.ok((await shown()).includes(eye));
     const home = await matrixOf(eye);
-    assert.ok(isNear(onPicture(home, target), [0, 0]) && isNear(onPicture(home, entry), [0, 0]), 'entry and target lie one behind the other, in the middle');
+    assert.ok(
+      isNear(onPicture(home, target), [0, 0]) && isNear(onPicture(home, entry), [0, 0]),
+      'entry and target lie one behind the other, in the middle',
+    );
     const [left, up] = [onPicture(home, [10, 0, 10]), onPicture(home, [0, -10, 10])];
     assert.ok(left[0] < 0 && Math.abs(left[1]) < 1e-6 && up[1] > 0 && Math.abs(up[0]) < 1e-6);
     assert.match(await page.locator(`[data-view="${eye}"] .pane-head`).textContent(), /camera locked to beam/);
@@ -95,12 +109,20 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await page.getByText('The camera is locked to the beam.').waitFor();
     assert.equal((await document(eye)).camera.position_mm ?? null, null, 'no camera was sent');
     await page.mouse.wheel(0, -100);
-    const zoomed = await until(() => scaleOf(eye), (now) => now > 1.05 * (onPicture(home, [-10, 0, 10])[0] * 1), 60000);
+    const zoomed = await until(
+      () => scaleOf(eye),
+      (now) => now > 1.05 * (onPicture(home, [-10, 0, 10])[0] * 1),
+      60000,
+    );
     assert.ok(isNear(onPicture(await matrixOf(eye), target), [0, 0]), 'about the target');
     assert.ok(zoomed > 0);
     await page.locator(`#picture-${eye}`).focus();
     await page.keyboard.press('r');
-    await until(() => matrixOf(eye), (m) => isNear(m, home), 60000);
+    await until(
+      () => matrixOf(eye),
+      (m) => isNear(m, home),
+      60000,
+    );
     await page.keyboard.press('b');
     await full(page, 1);
     assert.deepEqual(await shown(), [1, 2, 3, 4]);
@@ -111,7 +133,11 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await openEye();
     const before = await scaleOf(eye);
     await ring().click();
-    await until(() => header(page, eye), ({ pixels_per_mm: scale }) => scale > 0, 60000);
+    await until(
+      () => header(page, eye),
+      ({ pixels_per_mm: scale }) => scale > 0,
+      60000,
+    );
     await full(page, eye);
     assert.equal((await document(eye)).beam.aperture_mm, aperture);
     const scale = await scaleOf(eye);
@@ -120,32 +146,60 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     const at = await handle.boundingBox();
     const [x, y] = await middle(eye);
     const half = (aperture / 2) * scale * Math.SQRT1_2;
-    assert.ok(Math.abs(at.x + at.width / 2 - x - half) < 1 && Math.abs(y - at.y - at.height / 2 - half) < 1, 'up and to the right, on the ring');
+    assert.ok(
+      Math.abs(at.x + at.width / 2 - x - half) < 1 && Math.abs(y - at.y - at.height / 2 - half) < 1,
+      'up and to the right, on the ring',
+    );
     await drag([x + half, y - half], [x + 30 * scale * Math.SQRT1_2, y - 30 * scale * Math.SQRT1_2]);
-    const { beam: { aperture_mm: mm } } = await until(() => document(eye), ({ beam }) => beam.aperture_mm !== aperture, 60000);
+    const {
+      beam: { aperture_mm: mm },
+    } = await until(
+      () => document(eye),
+      ({ beam }) => beam.aperture_mm !== aperture,
+      60000,
+    );
     assert.ok(Math.abs(mm - 60) <= 0.5 + 1 / scale, `${mm} mm`); // a half millimetre, and a pixel on both sides
     await handle.press('Shift+ArrowUp');
     await page.getByText(`ring ${mm + 10} mm`, { exact: true }).waitFor();
     assert.deepEqual(await axe(page), []);
-    await until(() => document(eye), ({ beam }) => beam.aperture_mm === mm + 10, 60000);
+    await until(
+      () => document(eye),
+      ({ beam }) => beam.aperture_mm === mm + 10,
+      60000,
+    );
     await full(page, eye);
     await page.getByRole('treeitem', { name: /^beam-1/ }).click();
     await page.getByText('Regions in the ring').waitFor();
-    assert.equal(await page.locator('.beam-table tr', { hasText: 'Aperture' }).locator('td').textContent(), `${aperture}.0 mm`, 'a ring that is drawn changes nothing of the beam');
+    assert.equal(
+      await page.locator('.beam-table tr', { hasText: 'Aperture' }).locator('td').textContent(),
+      `${aperture}.0 mm`,
+      'a ring that is drawn changes nothing of the beam',
+    );
     await shoot(page, 'beam-eye-1600x1000');
     const points = [entry, target, [30, -20, 10], [-40, 30, 60], [10, 10, -50]];
     /** Where they are in halves of the smaller side: the 3-D pane has no foot, so its picture is a little higher. */
     const places = async (view) => {
       const { width_px: across, height_px: down, clip_from_lps_mm: m } = await header(page, view);
-      return points.flatMap((point) => onPicture(Object.values(m), point).map((value, axis) => (value * [across, down][axis]) / Math.min(across, down)));
+      return points.flatMap((point) =>
+        onPicture(Object.values(m), point).map((value, axis) => (value * [across, down][axis]) / Math.min(across, down)),
+      );
     };
     const locked = await places(eye);
     await page.locator('.beam-lock').click();
     await page.locator('#picture-1').waitFor();
-    await until(() => places(1), (now) => isNear(now, locked, 1e-3), 60000);
+    await until(
+      () => places(1),
+      (now) => isNear(now, locked, 1e-3),
+      60000,
+    );
     assert.ok(!(await shown()).includes(eye));
     const { scene_revision: before3d } = await header(page, 1);
-    await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { beam: { slice: { visible: true, along_mm: 20 } } }, { 'If-Match': '*' });
+    await call(
+      `${world.daemon.url}/api/v1/rooms/${room}/scene`,
+      'PATCH',
+      { beam: { slice: { visible: true, along_mm: 20 } } },
+      { 'If-Match': '*' },
+    );
     await newer(page, 1, before3d);
     await page.locator('#picture-1').press(']'); // in other panes the keys move the slice that is shown
     await until(scene, ({ beam }) => beam.slice.along_mm === 21, 60000);
@@ -176,7 +230,11 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await page.mouse.wheel(0, -100); // as in other slices: forwards
     const { beam } = await until(scene, ({ beam: { slice } }) => slice.along_mm !== 40.3, 60000);
     assert.ok(beam.slice.along_mm > 40.3);
-    await until(() => page.locator(`[data-view="${slicePane}"] .where`).textContent(), (words) => words.startsWith(`${beam.slice.along_mm.toFixed(1)} mm from entry, `), 60000);
+    await until(
+      () => page.locator(`[data-view="${slicePane}"] .where`).textContent(),
+      (words) => words.startsWith(`${beam.slice.along_mm.toFixed(1)} mm from entry, `),
+      60000,
+    );
     await shoot(page, 'beam-eye-and-slice-1600x1000');
     await page.reload();
     await full(page, slicePane);
@@ -198,7 +256,13 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await page.locator('#picture-1').focus();
     await page.keyboard.press('b');
     await page.getByText('This plan has no beam.').waitFor();
-    const draft = (enabled) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { beam: { draft: { enabled, line: { entry_mm: [60, -80, 40], target_mm: [60, 60, 45] } } } }, { 'If-Match': '*' });
+    const draft = (enabled) =>
+      call(
+        `${world.daemon.url}/api/v1/rooms/${room}/scene`,
+        'PATCH',
+        { beam: { draft: { enabled, line: { entry_mm: [60, -80, 40], target_mm: [60, 60, 45] } } } },
+        { 'If-Match': '*' },
+      );
     assert.equal((await draft(true)).status, 200);
     await until(menu, (words) => words.includes('Beam slice'), 60000);
     await page.locator('#picture-1').focus();
@@ -221,11 +285,23 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await ring().click();
     await page.locator(`#picture-${eye}`).focus();
     for (let n = 0; n < 3; n++) await page.keyboard.press('+');
-    await until(() => header(other, eye), ({ pixels_per_mm: scale }) => scale > 0, 60000);
-    const scale = await until(() => header(page, eye), ({ pixels_per_mm: now }) => now > 0, 60000);
+    await until(
+      () => header(other, eye),
+      ({ pixels_per_mm: scale }) => scale > 0,
+      60000,
+    );
+    const scale = await until(
+      () => header(page, eye),
+      ({ pixels_per_mm: now }) => now > 0,
+      60000,
+    );
     await full(page, eye);
     const { camera } = await document(eye);
-    await until(() => matrixOf(eye, other), async (m) => isNear(m, await matrixOf(eye)), 60000);
+    await until(
+      () => matrixOf(eye, other),
+      async (m) => isNear(m, await matrixOf(eye)),
+      60000,
+    );
     assert.ok(scale);
     await full(other, eye);
     const before = await scaleOf(eye, other);
@@ -233,7 +309,11 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
     await other.locator(`#picture-${eye}`).focus();
     await other.keyboard.press('+');
     await other.getByText('On your own.').waitFor();
-    const after = await until(() => scaleOf(eye, other), (now) => Math.abs(now / before - 1) > 0.05, 60000);
+    const after = await until(
+      () => scaleOf(eye, other),
+      (now) => Math.abs(now / before - 1) > 0.05,
+      60000,
+    );
     assert.ok(Math.abs(after / before - 1.15) < 0.01, `${after / before}`); // as the picture was, and one step
     assert.deepEqual(await matrixOf(eye), theirs, "the presenter's picture stays");
     assert.deepEqual((await document(eye)).camera, camera);

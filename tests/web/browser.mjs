@@ -6,8 +6,15 @@ import { bin, call, demo, openPlan, startDaemon } from '../api/daemon.mjs';
 
 const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const artifacts = 'build/test-artifacts';
-const flags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-  '--disable-component-update', '--disable-sync'];
+const flags = [
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
 
 /** LONG_TESTS: nothing: the short ones, and of what is tested at many sizes of windows, one; 1: all of everything; rest: only what the first leaves out. */
 const long = process.env.LONG_TESTS ?? '';
@@ -33,7 +40,9 @@ export async function startWorld({ plans = [], args = [], data } = {}) {
   const daemon = await startDaemon({ plans: [demo, ...plans], args, data });
   const { chromium } = await import('playwright-core');
   const shared = process.env.BEAMROOM_BROWSER;
-  const browser = await (shared ? chromium.connect(shared) : chromium.launch({ executablePath: chromiumPath, headless: true, args: flags }));
+  const browser = await (shared
+    ? chromium.connect(shared)
+    : chromium.launch({ executablePath: chromiumPath, headless: true, args: flags }));
   const errors = [];
   const refused = []; // what the content security policy refused
   return {
@@ -69,7 +78,8 @@ export async function startWorld({ plans = [], args = [], data } = {}) {
 export const full = (page, view = 1) => page.waitForFunction((n) => globalThis.beamroom?.stats().badges[n] === 'full', view);
 
 /** Until the picture shows the scene as it is after this revision. */
-export const newer = (page, view, revision) => page.waitForFunction(([n, old]) => globalThis.beamroom.stats().headers[n].scene_revision > old, [view, revision]);
+export const newer = (page, view, revision) =>
+  page.waitForFunction(([n, old]) => globalThis.beamroom.stats().headers[n].scene_revision > old, [view, revision]);
 
 export const header = (page, view) => page.evaluate((n) => globalThis.beamroom.stats().headers[n], view);
 

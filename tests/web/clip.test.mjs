@@ -12,8 +12,12 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
   let room;
   let page;
 
-  before(async () => { world = await startWorld(); });
-  after(async () => { await world?.stop(); });
+  before(async () => {
+    world = await startWorld();
+  });
+  after(async () => {
+    await world?.stop();
+  });
 
   const open = async (options = sizes.wide, sections = ['clip']) => {
     room = await world.newRoom();
@@ -49,7 +53,11 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
   };
   /** Until the handle stands at this height of its pane, px of the window. */
   const handleAt = async (view, id, axis, expected, words) => {
-    const value = await until(async () => (await middleOf(handle(view, id)))[axis], (at) => Math.abs(at - expected) < 1, 30000);
+    const value = await until(
+      async () => (await middleOf(handle(view, id)))[axis],
+      (at) => Math.abs(at - expected) < 1,
+      30000,
+    );
     assert.ok(Math.abs(value - expected) < 1, `${words}: ${value}, expected ${expected}`);
   };
 
@@ -60,7 +68,8 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await comes((now) => now.clip.axial_high.enabled, true);
     await comes((now) => now.clip.axial_high.position_mm, image.slices.axial.position_mm, 0.05, 'the crosshair');
     const position = (await scene()).clip.axial_high.position_mm;
-    for (const view of [3, 4]) await handleAt(view, 'axial_high', 1, (await pixelOf(view, [0, 0, position]))[1], `the line in pane ${view}`);
+    for (const view of [3, 4])
+      await handleAt(view, 'axial_high', 1, (await pixelOf(view, [0, 0, position]))[1], `the line in pane ${view}`);
     assert.equal(await handle(2, 'axial_high').count(), 0, 'an axial plane is no line in the axial pane');
     assert.equal(await page.locator('[data-view="3"] .clip-dim').count(), 1);
   });
@@ -81,7 +90,8 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     const moved = 21.5 - 60 / pxPerMm;
     await comes((now) => now.clip.axial_high.position_mm, moved, 0.051 + 0.5 / pxPerMm, '60 px further down');
     const { position_mm: position } = (await scene()).clip.axial_high;
-    for (const view of [3, 4]) await handleAt(view, 'axial_high', 1, (await pixelOf(view, [0, 0, position]))[1], `the line in pane ${view}`);
+    for (const view of [3, 4])
+      await handleAt(view, 'axial_high', 1, (await pixelOf(view, [0, 0, position]))[1], `the line in pane ${view}`);
     assert.equal(await page.locator('[data-key="clip:axial_high"]').getAttribute('aria-selected'), 'true');
     assert.match(await page.locator('[aria-label^="Undo"], [title^="Undo"]').first().getAttribute('title'), /clip axial high/);
     await page.keyboard.press('Control+z');
@@ -117,7 +127,9 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await comes((now) => now.clip.cap.outlines, true);
     await page.locator('#tab-panel label', { hasText: 'Region colours' }).click();
     await comes((now) => now.clip.cap.regions, true);
-    const isWhole = await page.locator('[data-key="clip:caps"] .name').evaluate((name) => name.scrollWidth <= name.clientWidth + 1 && name.getBoundingClientRect().width > 40);
+    const isWhole = await page
+      .locator('[data-key="clip:caps"] .name')
+      .evaluate((name) => name.scrollWidth <= name.clientWidth + 1 && name.getBoundingClientRect().width > 40);
     assert.ok(isWhole, 'the row keeps its name, however much caps show');
   });
 
@@ -125,7 +137,10 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await eye('sagittal_high').click();
     await comes((now) => now.clip.sagittal_high.enabled, true);
     await page.locator('#picture-1').focus();
-    const on = (now) => Object.keys(now.clip).filter((id) => now.clip[id].enabled).join();
+    const on = (now) =>
+      Object.keys(now.clip)
+        .filter((id) => now.clip[id].enabled)
+        .join();
     await page.keyboard.press('c');
     await comes(on, '');
     await page.keyboard.press('c');
@@ -145,7 +160,10 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
   once('the free plane turns by its second handle about the point that stays, by a quarter turn of the pointer', async () => {
     await eye('free').click();
     await page.locator('[data-key="clip:free"] button.name').click();
-    for (const [name, value, direction] of [['Tilt', '0', '0,-1,0'], ['Turn', '90', '1,0,0']]) {
+    for (const [name, value, direction] of [
+      ['Tilt', '0', '0,-1,0'],
+      ['Turn', '90', '1,0,0'],
+    ]) {
       await page.locator(`[aria-label="${name} in degrees"]`).fill(value);
       await page.keyboard.press('Enter');
       await comes((now) => now.clip.free.normal.map((part) => Math.round(part * 1e3) / 1e3 || 0).join(), direction);
@@ -169,7 +187,8 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await page.locator('[data-key="section:planes"]').click();
     const make = () => page.locator('[data-key="oblique:"] button.name').click();
     const way = (name) => page.locator('#tab-panel button', { hasText: name }).click();
-    const near = (actual, expected, tolerance, words) => expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${words}: ${actual}, expected ${expected}`));
+    const near = (actual, expected, tolerance, words) =>
+      expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${words}: ${actual}, expected ${expected}`));
     const made = async (id) => until(async () => (await scene()).image.obliques?.[id], Boolean, 30000);
     const { slices } = (await scene()).image;
     const [s, l] = [slices.axial.position_mm, slices.sagittal.position_mm];
@@ -177,14 +196,26 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await make();
     await way('Three points');
     // two in the axial slice, (0, 0) and (40, 30), one in the sagittal: 50 mm above the first
-    for (const [view, point] of [[2, [0, 0, s]], [2, [40, 30, s]], [3, [l, 0, s + 50]]]) {
-      await page.mouse.click(...await pixelOf(view, point));
+    for (const [view, point] of [
+      [2, [0, 0, s]],
+      [2, [40, 30, s]],
+      [3, [l, 0, s + 50]],
+    ]) {
+      await page.mouse.click(...(await pixelOf(view, point)));
       await page.waitForTimeout(50);
     }
-    const [a, b] = [[40, 30, 0], [l, 0, 50]];
+    const [a, b] = [
+      [40, 30, 0],
+      [l, 0, 50],
+    ];
     const normal = [a[1] * b[2], -a[0] * b[2], -a[1] * b[0]]; // a x b
     const size = Math.hypot(...normal) * Math.sign(normal[1]); // nearest to coronal: to the posterior side
-    near((await made('plane-1')).normal, normal.map((part) => part / size), 0.02, 'through the points: a pixel is 0.7 mm');
+    near(
+      (await made('plane-1')).normal,
+      normal.map((part) => part / size),
+      0.02,
+      'through the points: a pixel is 0.7 mm',
+    );
 
     await make();
     await way('Line');
@@ -206,33 +237,36 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await comes((now) => now.image.obliques['plane-2']?.name, 'Optic nerve');
   });
 
-  once('in its own pane an oblique plane has letters of its direction, the wheel moves it along its normal, and a click puts the crosshair on it', async () => {
-    await page.locator('button[aria-label="Show Optic nerve in a pane"]').click();
-    for (const view of [1, 5]) await full(page, view);
-    const pane = page.locator('[data-view="5"]');
-    assert.match(await pane.locator('h2').textContent(), /Optic nerve/);
-    const { origin_mm: before, normal } = (await scene()).image.obliques['plane-2'];
-    // normal (-1, 2, 0) / sqrt 5: right is (2, 1, 0) / sqrt 5, with cosines 0.89 to the left and 0.45 to the posterior
-    assert.equal(await pane.locator('[data-letters]').getAttribute('data-letters'), 'RA LP S I');
-    const [x, y] = await middleOf(page.locator('#picture-5'));
-    await page.mouse.move(x, y);
-    await page.mouse.wheel(0, -300); // three voxels of 1 mm, on
-    const along = (from, to) => to.reduce((sum, value, axis) => sum + (value - from[axis]) * normal[axis], 0);
-    await comes((now) => along(before, now.image.obliques['plane-2'].origin_mm), 3, 0.01);
-    const { origin_mm: origin } = (await scene()).image.obliques['plane-2'];
-    assert.ok(Math.abs(Math.hypot(...origin.map((value, axis) => value - before[axis])) - 3) < 0.01, 'along the normal and nowhere else');
-    await page.mouse.click(x + 30, y + 20);
-    const { slices } = (await scene()).image;
-    await comes((now) => now.image.slices.sagittal.position_mm !== slices.sagittal.position_mm, true);
-    const { sagittal, coronal, axial } = (await scene()).image.slices;
-    const point = [sagittal.position_mm, coronal.position_mm, axial.position_mm];
-    assert.ok(Math.abs(along(origin, point)) < 0.09, `${point} lies on the plane, to 0.1 mm along each axis`);
-    const at = await pixelOf(5, point);
-    assert.ok(Math.hypot(at[0] - x - 30, at[1] - y - 20) < 1, `${at} is where the click was`);
-    assert.equal(await pane.locator('.clip-handle[data-plane="plane-2"]').count(), 0, 'no line of its own');
-    assert.equal(await pane.locator('.clip-handle[data-plane="sagittal_high"]').count(), 1, 'the clip planes cut it too');
-    await page.locator('[aria-label="Four panes"]').click();
-  });
+  once(
+    'in its own pane an oblique plane has letters of its direction, the wheel moves it along its normal, and a click puts the crosshair on it',
+    async () => {
+      await page.locator('button[aria-label="Show Optic nerve in a pane"]').click();
+      for (const view of [1, 5]) await full(page, view);
+      const pane = page.locator('[data-view="5"]');
+      assert.match(await pane.locator('h2').textContent(), /Optic nerve/);
+      const { origin_mm: before, normal } = (await scene()).image.obliques['plane-2'];
+      // normal (-1, 2, 0) / sqrt 5: right is (2, 1, 0) / sqrt 5, with cosines 0.89 to the left and 0.45 to the posterior
+      assert.equal(await pane.locator('[data-letters]').getAttribute('data-letters'), 'RA LP S I');
+      const [x, y] = await middleOf(page.locator('#picture-5'));
+      await page.mouse.move(x, y);
+      await page.mouse.wheel(0, -300); // three voxels of 1 mm, on
+      const along = (from, to) => to.reduce((sum, value, axis) => sum + (value - from[axis]) * normal[axis], 0);
+      await comes((now) => along(before, now.image.obliques['plane-2'].origin_mm), 3, 0.01);
+      const { origin_mm: origin } = (await scene()).image.obliques['plane-2'];
+      assert.ok(Math.abs(Math.hypot(...origin.map((value, axis) => value - before[axis])) - 3) < 0.01, 'along the normal and nowhere else');
+      await page.mouse.click(x + 30, y + 20);
+      const { slices } = (await scene()).image;
+      await comes((now) => now.image.slices.sagittal.position_mm !== slices.sagittal.position_mm, true);
+      const { sagittal, coronal, axial } = (await scene()).image.slices;
+      const point = [sagittal.position_mm, coronal.position_mm, axial.position_mm];
+      assert.ok(Math.abs(along(origin, point)) < 0.09, `${point} lies on the plane, to 0.1 mm along each axis`);
+      const at = await pixelOf(5, point);
+      assert.ok(Math.hypot(at[0] - x - 30, at[1] - y - 20) < 1, `${at} is where the click was`);
+      assert.equal(await pane.locator('.clip-handle[data-plane="plane-2"]').count(), 0, 'no line of its own');
+      assert.equal(await pane.locator('.clip-handle[data-plane="sagittal_high"]').count(), 1, 'the clip planes cut it too');
+      await page.locator('[aria-label="Four panes"]').click();
+    },
+  );
 
   once('with planes that cut, one chosen and others made, axe-core finds nothing and no text lies over text', async () => {
     await page.emulateMedia({ forcedColors: 'active' });
@@ -245,7 +279,11 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     for (const view of [1, 2, 3, 4]) await full(page, view);
     const border = (locator) => locator.first().evaluate((element) => getComputedStyle(element).borderTopWidth);
     await shoot(page, 'clip-forced-colours');
-    assert.notEqual(await border(page.locator('.clip-cap[aria-pressed="true"]')), await border(page.locator('.clip-cap[aria-pressed="false"]')), 'a cap that is on differs by its border');
+    assert.notEqual(
+      await border(page.locator('.clip-cap[aria-pressed="true"]')),
+      await border(page.locator('.clip-cap[aria-pressed="false"]')),
+      'a cap that is on differs by its border',
+    );
     await page.emulateMedia({ forcedColors: 'none' }); // in forced colours contrast is the browser's
     assert.deepEqual(await axe(page), []);
     assert.deepEqual(await overlaps(page), []);
@@ -271,7 +309,8 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await handleAt(4, 'axial_high', 1, (await pixelOf(4, [0, 0, before]))[1], 'in the larger picture');
     const [x, y] = await middleOf(handle(4, 'axial_high'));
     const devtools = await page.context().newCDPSession(page);
-    const touch = (type, points) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py]) => ({ x: px, y: py })) });
+    const touch = (type, points) =>
+      devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py]) => ({ x: px, y: py })) });
     await touch('touchStart', [[x + 8, y + 8]]);
     for (let step = 1; step <= 4; step++) await touch('touchMove', [[x + 8, y + 8 + 20 * step]]);
     await touch('touchEnd', []);

@@ -15,7 +15,8 @@ after(() => world?.stop());
 
 /** The daemon is killed and started again on the same port, with another folder: nothing is kept. */
 async function restart() {
-  const host = new URL(world.daemon.url).host, ended = new Promise((done) => world.daemon.child.on('exit', done));
+  const host = new URL(world.daemon.url).host,
+    ended = new Promise((done) => world.daemon.child.on('exit', done));
   world.daemon.child.kill('SIGKILL');
   await ended;
   world.daemon = await startDaemon({ args: ['--stub', '--listen', host] });

@@ -35,17 +35,27 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
   };
   const dose = async () => (await world.scene(room)).dose;
   const comes = async (pick, expected, words = '') => {
-    const value = await until(async () => pick(await dose()), (now) => JSON.stringify(now) === JSON.stringify(expected), 30000);
+    const value = await until(
+      async () => pick(await dose()),
+      (now) => JSON.stringify(now) === JSON.stringify(expected),
+      30000,
+    );
     assert.deepEqual(value, expected, words);
   };
-  const ask = async (question, plan = 'phantom') => (await call(`${world.daemon.url}/api/v1/plans/${plan}/${question}${question.includes('?') ? '&' : '?'}room=${room}`)).json;
+  const ask = async (question, plan = 'phantom') =>
+    (await call(`${world.daemon.url}/api/v1/plans/${plan}/${question}${question.includes('?') ? '&' : '?'}room=${room}`)).json;
   const field = (label) => page.locator(`#tab-panel [aria-label="${label}"]`);
   const fill = async (label, value) => {
     await field(label).fill(String(value));
     await field(label).press('Enter');
   };
   const select = (label, value) => field(label).selectOption(value);
-  const shows = (locator, text) => until(() => locator.textContent(), (now) => now.includes(text), 30000).then((now) => assert.ok(now.includes(text), `"${now}" has no "${text}"`));
+  const shows = (locator, text) =>
+    until(
+      () => locator.textContent(),
+      (now) => now.includes(text),
+      30000,
+    ).then((now) => assert.ok(now.includes(text), `"${now}" has no "${text}"`));
 
   once('the eye of a dose shows lines and wash with a legend; keys D and I switch them', async () => {
     await open('phantom');
@@ -76,7 +86,7 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await tree.focus();
     const at = () => page.evaluate(() => document.activeElement.getAttribute('aria-activedescendant'));
     await page.keyboard.press('Home');
-    for (let n = 0; n < 60 && await at() !== 'row-level:level-2'; n++) await page.keyboard.press('ArrowDown');
+    for (let n = 0; n < 60 && (await at()) !== 'row-level:level-2'; n++) await page.keyboard.press('ArrowDown');
     assert.equal(await at(), 'row-level:level-2');
     await page.keyboard.press(' ');
     await comes(({ levels }) => levels['level-2'].visible, false);
@@ -90,7 +100,12 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     assert.ok(Math.abs((await dose()).levels['level-2'].value / (0.91 * reference.value) - 1) < 1e-4, 'the same dose in the other unit');
     await fill('Value of the level', 2.5);
     await comes(({ levels }) => levels['level-2'].value, 2.5);
-    for (const [name, part] of [['Shown', 'visible'], ['Line', 'line'], ['Wash', 'wash'], ['Surface in 3-D', 'surface']]) {
+    for (const [name, part] of [
+      ['Shown', 'visible'],
+      ['Line', 'line'],
+      ['Wash', 'wash'],
+      ['Surface in 3-D', 'surface'],
+    ]) {
       const before = (await dose()).levels['level-2'][part];
       await page.locator('#tab-panel').getByLabel(name, { exact: true }).press(' ');
       await comes(({ levels }) => levels['level-2'][part], !before, name);
@@ -110,7 +125,11 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await comes(({ levels }) => levels['level-1'].value, 93);
     await row.locator('input[type="color"]').fill('#123456');
     await comes(({ levels }) => levels['level-1'].color, '#123456');
-    for (const [n, part, to] of [[0, 'line', false], [1, 'wash', false], [2, 'surface', true]]) {
+    for (const [n, part, to] of [
+      [0, 'line', false],
+      [1, 'wash', false],
+      [2, 'surface', true],
+    ]) {
       await row.locator('.dose-toggle').nth(n).click();
       await comes(({ levels }) => levels['level-1'][part], to);
     }
@@ -127,7 +146,13 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
   once('in Selection: quantity, reference, tissue, table of levels', async () => {
     await page.locator('[data-dose="goorley"] button.name').click();
     await select('Table of levels', 'BNCT, 10 to 100');
-    await comes(({ levels }) => Object.values(levels).map(({ value }) => value).sort((a, b) => b - a), [100, 90, 80, 70, 60, 50, 40, 30, 20, 10]);
+    await comes(
+      ({ levels }) =>
+        Object.values(levels)
+          .map(({ value }) => value)
+          .sort((a, b) => b - a),
+      [100, 90, 80, 70, 60, 50, 40, 30, 20, 10],
+    );
     await select('Quantity', 'gamma');
     await comes(({ quantity }) => quantity, 'gamma');
     await select('Quantity', 'weighted');
@@ -153,8 +178,17 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     const { tissues } = preset;
     const of = (kind) => tissues.find(({ tissue }) => tissue === kind);
     const { weights } = await dose();
-    for (const [region, kind] of [['tumour', 'tumour'], ['brain', 'brain'], ['scalp', 'scalp'], ['cranium', 'skull, sinus, ventricles']])
-      assert.deepEqual(['boron_ratio', 'cbe', 'nitrogen', 'fast', 'gamma'].map((name) => weights[region][name]), ['boron_ratio', 'cbe', 'nitrogen', 'fast', 'gamma'].map((name) => of(kind)[name]), region);
+    for (const [region, kind] of [
+      ['tumour', 'tumour'],
+      ['brain', 'brain'],
+      ['scalp', 'scalp'],
+      ['cranium', 'skull, sinus, ventricles'],
+    ])
+      assert.deepEqual(
+        ['boron_ratio', 'cbe', 'nitrogen', 'fast', 'gamma'].map((name) => weights[region][name]),
+        ['boron_ratio', 'cbe', 'nitrogen', 'fast', 'gamma'].map((name) => of(kind)[name]),
+        region,
+      );
     await fill('tumour: CBE, the weight of boron', 4);
     await comes(({ weights: now, weights_name: name }) => [now.tumour.cbe, name], [4, `${preset.name}, edited`]);
     assert.equal(await page.locator('.dose-edited').count(), 1);
@@ -182,14 +216,22 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await shows(page.locator('.dose-table'), boron(now).toPrecision(3));
     await shows(page.locator('.dose-value-list'), `${now.value.toPrecision(3)} Gy(w)`);
     await shows(page.locator('.status .place-name'), `${now.value.toPrecision(3)} Gy(w)`);
-    assert.deepEqual((await page.locator('.dose-table tbody tr').first().locator('td').allTextContents()).filter(Boolean), ['Weighted total', now.value.toPrecision(3)], 'the weighted total is on top');
+    assert.deepEqual(
+      (await page.locator('.dose-table tbody tr').first().locator('td').allTextContents()).filter(Boolean),
+      ['Weighted total', now.value.toPrecision(3)],
+      'the weighted total is on top',
+    );
     assert.deepEqual(await page.locator('.dose-table th').allTextContents(), ['Component', 'Gy', 'weight', 'Gy(w)']);
   });
 
   once('what is drawn, the factor, and coverage with its volume and share', async () => {
     await page.locator('[data-dose="goorley"] button.name').click();
     const panel = page.locator('#tab-panel');
-    for (const [name, pick] of [['Wash on the volume', ({ wash }) => wash.volume], ['Clip planes cut surfaces', ({ surfaces }) => surfaces.clipped], ['Statistical error as wash', ({ error }) => error]]) {
+    for (const [name, pick] of [
+      ['Wash on the volume', ({ wash }) => wash.volume],
+      ['Clip planes cut surfaces', ({ surfaces }) => surfaces.clipped],
+      ['Statistical error as wash', ({ error }) => error],
+    ]) {
       const was = pick(await dose());
       await panel.getByLabel(name).press(' ');
       await comes(pick, !was, name);
@@ -207,7 +249,10 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await panel.getByLabel('Highlight the part').press(' ');
     await select('Region of the coverage', 'tumour');
     await fill('Level of the coverage', 90);
-    await comes(({ coverage }) => [coverage.visible, coverage.region, coverage.low, coverage.high, coverage.unit], [true, 'tumour', null, 90, 'percent']);
+    await comes(
+      ({ coverage }) => [coverage.visible, coverage.region, coverage.low, coverage.high, coverage.unit],
+      [true, 'tumour', null, 90, 'percent'],
+    );
     const { share, volume_cm3: volume } = await ask('coverage');
     assert.ok(share > 0 && share <= 1);
     await shows(panel.locator('.dose-result'), `${(share * 100).toFixed(1)} %`);
@@ -266,7 +311,10 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await form.getByLabel('In your words, at least 10 letters').fill('too short');
     assert.equal(await use.isDisabled(), true);
     await form.getByLabel('In your words, at least 10 letters').fill('a metre away, to see that it is');
-    await until(() => use.isDisabled(), (isOff) => !isOff);
+    await until(
+      () => use.isDisabled(),
+      (isOff) => !isOff,
+    );
     await sleep(300); // its colours change over a while
     assert.deepEqual(await axe(page), []);
     await shoot(page, 'fit-form');
@@ -309,7 +357,11 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
     await comes(({ sum }) => sum, { near: { factor: 2 } });
     await panel.getByLabel('+ near').press(' ');
     await comes(({ sum }) => sum, {});
-    for (const [name, mode] of [['Lines', 'lines'], ['Difference', 'difference'], ['Gamma', 'gamma']]) {
+    for (const [name, mode] of [
+      ['Lines', 'lines'],
+      ['Difference', 'difference'],
+      ['Gamma', 'gamma'],
+    ]) {
       await page.getByRole('radiogroup', { name: 'Comparison' }).getByRole('radio', { name }).click();
       await comes(({ compare }) => [compare.id, compare.mode], ['near', mode]);
     }
@@ -346,7 +398,10 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
       await page.locator('[data-dose="goorley"] button.name').click();
       await page.locator('.dose-weights').waitFor();
       await check('selection');
-      await page.locator(options.hasTouch ? '.dock button' : '[role="tab"]', { hasText: 'Probe' }).first().click();
+      await page
+        .locator(options.hasTouch ? '.dock button' : '[role="tab"]', { hasText: 'Probe' })
+        .first()
+        .click();
       await page.locator('.dose-table').waitFor();
       await check('probe');
       await page.context().close();

@@ -124,14 +124,21 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await full(page, 2);
     await shoot(page, 'image-blend');
     await row(page, 'image:pet');
-    await comes({ id: 'pet', window: { center: 1000, width: 2000 }, color_map: 'hot-iron', blend: { id: '', opacity: 0.3 } }, 'as it was blended, and not over itself');
+    await comes(
+      { id: 'pet', window: { center: 1000, width: 2000 }, color_map: 'hot-iron', blend: { id: '', opacity: 0.3 } },
+      'as it was blended, and not over itself',
+    );
     assert.equal((await image()).looks.ct.window.center, 40);
     await page.context().close();
   });
 
   // ---- the volume ------------------------------------------------------------------------------------------------------------
 
-  const points = [[0, 0], [300, 0.25], [800, 0.64]].map(([value, opacity]) => ({ value, color: '#808080', opacity }));
+  const points = [
+    [0, 0],
+    [300, 0.25],
+    [800, 0.64],
+  ].map(([value, opacity]) => ({ value, color: '#808080', opacity }));
   const volumeOf = async (image) => (await image()).volume;
   /** The volume's Selection with three points that the test knows. */
   const openVolume = async (options, toRow = (page) => row(page, 'volume:')) => {
@@ -141,7 +148,9 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     const { call } = await import('../api/daemon.mjs');
     await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { image: { volume: { points } } }, { 'If-Match': '*' });
     await page.locator('.image-plot [role="option"]').nth(2).waitFor();
-    await page.waitForFunction(() => document.querySelector('.image-plot [role="option"]').getAttribute('aria-label').startsWith('Point 1: 0 HU'));
+    await page.waitForFunction(() =>
+      document.querySelector('.image-plot [role="option"]').getAttribute('aria-label').startsWith('Point 1: 0 HU'),
+    );
     const plot = page.locator('.image-plot');
     await plot.scrollIntoViewIfNeeded();
     const box = await plot.boundingBox();
@@ -162,39 +171,65 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
   };
   const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
 
-  once('a point follows the mouse while it is dragged, and the drag is one step to undo; a double click adds one; presets and switches are set', async () => {
-    const { page, centre, valueAt, opacityAt, changed, box, image } = await openVolume();
-    const [x, y] = await centre(1);
-    await page.mouse.move(x, y);
-    await page.mouse.down();
-    await page.mouse.move(x + 10, y - 10);
-    await changed((volume) => volume.points[1].value > 300, 'while it is dragged');
-    await page.mouse.move(x + 30, y - 20, { steps: 5 });
-    await page.mouse.up();
-    await changed(({ points: [, { value, opacity }] }) => near(value, valueAt(x + 30), 1) && near(opacity, opacityAt(y - 20), 0.02), `to ${valueAt(x + 30)}, ${opacityAt(y - 20)}`);
-    await page.getByRole('button', { name: /^Undo: transfer function/ }).click();
-    await changed(({ points: list }) => JSON.stringify(list) === JSON.stringify(points), 'back in one step');
-    const at = [box.x + box.width * 0.3, box.y + box.height * 0.2];
-    const { length } = (await volumeOf(image)).points;
-    await page.mouse.dblclick(...at);
-    await changed(({ points: list }) => list.length === length + 1 && list.some(({ value, opacity }) => near(value, valueAt(at[0]), 10) && near(opacity, 0.64, 0.02)), `added at ${valueAt(at[0])}`);
-    await shoot(page, 'image-volume');
-    // the rest of the volume
-    const panel = page.locator('#tab-panel');
-    await panel.getByLabel('Visible').check();
-    await panel.getByRole('button', { name: 'Skin' }).click();
-    const skin = await until(() => volumeOf(image), ({ points: list }) => list[0].value === -500, 20000);
-    assert.deepEqual([skin.visible, skin.points.length], [true, 4]);
-    await panel.getByLabel('Shaded').uncheck();
-    await panel.getByLabel('Cut by clip planes').uncheck();
-    await panel.getByLabel('Leave out below').check();
-    await panel.getByRole('radio', { name: 'Nearest' }).click();
-    await panel.getByRole('radio', { name: 'Slices' }).click();
-    await enter(page, 'Number of slices', 64);
-    const { points: _, ...rest } = await until(() => volumeOf(image), ({ steps }) => steps === 64, 20000);
-    assert.deepEqual(rest, { visible: true, method: 'slices', shaded: false, interpolation: 'nearest', cull_below: -500, steps: 64, clipped: false });
-    await page.context().close();
-  });
+  once(
+    'a point follows the mouse while it is dragged, and the drag is one step to undo; a double click adds one; presets and switches are set',
+    async () => {
+      const { page, centre, valueAt, opacityAt, changed, box, image } = await openVolume();
+      const [x, y] = await centre(1);
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await page.mouse.move(x + 10, y - 10);
+      await changed((volume) => volume.points[1].value > 300, 'while it is dragged');
+      await page.mouse.move(x + 30, y - 20, { steps: 5 });
+      await page.mouse.up();
+      await changed(
+        ({ points: [, { value, opacity }] }) => near(value, valueAt(x + 30), 1) && near(opacity, opacityAt(y - 20), 0.02),
+        `to ${valueAt(x + 30)}, ${opacityAt(y - 20)}`,
+      );
+      await page.getByRole('button', { name: /^Undo: transfer function/ }).click();
+      await changed(({ points: list }) => JSON.stringify(list) === JSON.stringify(points), 'back in one step');
+      const at = [box.x + box.width * 0.3, box.y + box.height * 0.2];
+      const { length } = (await volumeOf(image)).points;
+      await page.mouse.dblclick(...at);
+      await changed(
+        ({ points: list }) =>
+          list.length === length + 1 && list.some(({ value, opacity }) => near(value, valueAt(at[0]), 10) && near(opacity, 0.64, 0.02)),
+        `added at ${valueAt(at[0])}`,
+      );
+      await shoot(page, 'image-volume');
+      // the rest of the volume
+      const panel = page.locator('#tab-panel');
+      await panel.getByLabel('Visible').check();
+      await panel.getByRole('button', { name: 'Skin' }).click();
+      const skin = await until(
+        () => volumeOf(image),
+        ({ points: list }) => list[0].value === -500,
+        20000,
+      );
+      assert.deepEqual([skin.visible, skin.points.length], [true, 4]);
+      await panel.getByLabel('Shaded').uncheck();
+      await panel.getByLabel('Cut by clip planes').uncheck();
+      await panel.getByLabel('Leave out below').check();
+      await panel.getByRole('radio', { name: 'Nearest' }).click();
+      await panel.getByRole('radio', { name: 'Slices' }).click();
+      await enter(page, 'Number of slices', 64);
+      const { points: _, ...rest } = await until(
+        () => volumeOf(image),
+        ({ steps }) => steps === 64,
+        20000,
+      );
+      assert.deepEqual(rest, {
+        visible: true,
+        method: 'slices',
+        shaded: false,
+        interpolation: 'nearest',
+        cull_below: -500,
+        steps: 64,
+        clipped: false,
+      });
+      await page.context().close();
+    },
+  );
 
   later('every point is chosen, moved, added, removed and coloured by keys, and in a table', async () => {
     const { page, plot, changed } = await openVolume();
@@ -204,9 +239,13 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     assert.equal(await plot.getAttribute('aria-activedescendant'), 'transfer-1');
     assert.match(await page.locator('.image-chosen').textContent(), /Point 2: 300 HU, 25 % stopped by 1 mm/);
     await page.keyboard.press('ArrowUp'); // the square root of 0.25 is 0.5, a hundredth more 0.51
-    const { points: [, { value: before }] } = await changed(({ points: [, { opacity }] }) => near(opacity, 0.51 ** 2, 1e-4), 'up');
+    const {
+      points: [, { value: before }],
+    } = await changed(({ points: [, { opacity }] }) => near(opacity, 0.51 ** 2, 1e-4), 'up');
     await page.keyboard.press('ArrowRight');
-    const { points: [, { value: coarse }] } = await changed(({ points: [, { value }] }) => value > before, 'right');
+    const {
+      points: [, { value: coarse }],
+    } = await changed(({ points: [, { value }] }) => value > before, 'right');
     await page.keyboard.press('Shift+ArrowRight');
     await changed(({ points: [, { value }] }) => near(value - coarse, (coarse - before) / 10, 0.01), 'with Shift a tenth of the way');
     await page.keyboard.press('Insert');
@@ -217,7 +256,10 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     await enter(page, 'Value of point 3', 900);
     await enter(page, 'Opacity of point 3 in per cent', 90);
     await page.getByLabel('Colour of point 3').fill('#ff0000');
-    await changed(({ points: list }) => JSON.stringify(list[2]) === JSON.stringify({ value: 900, color: '#ff0000', opacity: 0.9 }), 'in the table');
+    await changed(
+      ({ points: list }) => JSON.stringify(list[2]) === JSON.stringify({ value: 900, color: '#ff0000', opacity: 0.9 }),
+      'in the table',
+    );
     await page.context().close();
   });
 
@@ -230,7 +272,8 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
   later('a finger drags a point, also when it comes down 20 px beside it', async () => {
     const { page, centre, valueAt, changed } = await openVolume(sizes.tablet, toVolume);
     const devtools = await page.context().newCDPSession(page);
-    const touch = (type, places) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
+    const touch = (type, places) =>
+      devtools.send('Input.dispatchTouchEvent', { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
     const [x, y] = await centre(1);
     await touch('touchStart', [[x + 20, y]]);
     for (const part of [0.25, 0.5, 0.75, 1]) await touch('touchMove', [[x + 20 + 40 * part, y]]);
@@ -247,15 +290,32 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
         if (isTouch) {
           await page.locator('.dock button', { hasText: 'Parts' }).tap();
           await page.getByRole('tab', { name: 'Images', exact: true }).tap();
-        } else if (size === 'compact' && !await page.locator('.section-pane').count()) await page.locator('[data-section="images"]').click();
+        } else if (size === 'compact' && !(await page.locator('.section-pane').count()))
+          await page.locator('[data-section="images"]').click();
         await page.locator(`[data-key="${key}"] button.name`).click();
       };
-      const settled = () => page.waitForFunction(() => [...document.querySelectorAll('.pane:not([hidden])')].every((pane) => globalThis.beamroom.stats().badges[pane.dataset.view] === 'full'));
+      const settled = () =>
+        page.waitForFunction(() =>
+          [...document.querySelectorAll('.pane:not([hidden])')].every(
+            (pane) => globalThis.beamroom.stats().badges[pane.dataset.view] === 'full',
+          ),
+        );
       const check = async (state) => {
         await settled();
         assert.deepEqual(await overlaps(page), [], state);
         assert.deepEqual(await axe(page), [], state);
-        if (isTouch) assert.deepEqual(await page.locator('#tab-panel :is(button, select, .field input, input[type="color"])').evaluateAll((all) => all.filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 43.5).map((one) => one.getAttribute('aria-label') ?? one.textContent)), [], `${state}: for fingers`);
+        if (isTouch)
+          assert.deepEqual(
+            await page
+              .locator('#tab-panel :is(button, select, .field input, input[type="color"])')
+              .evaluateAll((all) =>
+                all
+                  .filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 43.5)
+                  .map((one) => one.getAttribute('aria-label') ?? one.textContent),
+              ),
+            [],
+            `${state}: for fingers`,
+          );
         await shoot(page, `image-${size}-${state}`);
       };
       await choose('image:pet');

@@ -15,7 +15,11 @@ function labels() {
   bytes.writeFloatLE(352, 108);
   bytes.writeInt8(2, 123); // mm
   bytes.writeInt16LE(1, 254); // sform
-  [[1, 0, 0], [0, 1, 0], [0, 0, 1]].forEach((row, r) => row.forEach((value, c) => bytes.writeFloatLE(value, 280 + 16 * r + 4 * c)));
+  [
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+  ].forEach((row, r) => row.forEach((value, c) => bytes.writeFloatLE(value, 280 + 16 * r + 4 * c)));
   bytes.write('n+1\0', 344, 'latin1');
   for (let k = 0; k < side; k++)
     for (let j = 0; j < side; j++)
@@ -30,5 +34,8 @@ function labels() {
 export function writeLabels(folder, name, names) {
   writeFileSync(join(folder, 'labels.nii'), labels());
   writeFileSync(join(folder, 'names.json'), JSON.stringify({ labels: names.map((region, at) => ({ value: at + 1, name: region })) }));
-  writeFileSync(join(folder, 'plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name, regions: [{ path: 'labels.nii', names: 'names.json' }] }));
+  writeFileSync(
+    join(folder, 'plan.json'),
+    JSON.stringify({ format: 'beamroom-plan', version: 1, name, regions: [{ path: 'labels.nii', names: 'names.json' }] }),
+  );
 }

@@ -9,7 +9,13 @@ import { writeLabels } from './labels.mjs';
 import { overlaps } from './overlap.mjs';
 import { sizes as roomSizes, states } from './room_states.mjs';
 
-const sizes = [[1600, 1000], [1280, 720], [1180, 820], [800, 500], [820, 1180]]; // 800 x 500: 1600 x 1000 at 200 %
+const sizes = [
+  [1600, 1000],
+  [1280, 720],
+  [1180, 820],
+  [800, 500],
+  [820, 1180],
+]; // 800 x 500: 1600 x 1000 at 200 %
 
 describe('sizes of windows', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -18,12 +24,26 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'beamroom-layout-'));
     mkdirSync(join(folder, 'a-head-with-a-very-long-name'));
-    writeFileSync(join(folder, 'a-head-with-a-very-long-name/plan.json'),
-      JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'PHANTOM_with_a_name_that_nobody_can_break', images: [{ id: 'ct', path: 'ct.nii' }] }));
+    writeFileSync(
+      join(folder, 'a-head-with-a-very-long-name/plan.json'),
+      JSON.stringify({
+        format: 'beamroom-plan',
+        version: 1,
+        name: 'PHANTOM_with_a_name_that_nobody_can_break',
+        images: [{ id: 'ct', path: 'ct.nii' }],
+      }),
+    );
     writeFileSync(join(folder, 'a-head-with-a-very-long-name/ct.nii'), 'no image at all');
     mkdirSync(join(folder, 'beams'));
-    writeFileSync(join(folder, 'beams/plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Beams alone',
-      beams: [{ id: 'b1', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 120 }] }));
+    writeFileSync(
+      join(folder, 'beams/plan.json'),
+      JSON.stringify({
+        format: 'beamroom-plan',
+        version: 1,
+        name: 'Beams alone',
+        beams: [{ id: 'b1', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 120 }],
+      }),
+    );
     mkdirSync(join(folder, 'sides'));
     writeLabels(join(folder, 'sides'), 'Sides', ['Optic_nerve_of_the_orbit_left', 'Optic_nerve_of_the_orbit_right']);
     world = await startWorld({ plans: [folder] });
@@ -34,20 +54,32 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
   });
 
   /** Elements that reach out of what they stand in. */
-  const cut = (page, selector, inside) => page.evaluate(([what, where]) => [...document.querySelectorAll(what)].filter((element) => element.checkVisibility()).flatMap((element) => {
-    const box = element.getBoundingClientRect();
-    const outer = element.closest(where).getBoundingClientRect();
-    return box.right > outer.right + 0.5 || box.left < outer.left - 0.5 || element.scrollWidth > element.clientWidth + 1 ? [`${element.textContent.trim().slice(0, 40)} ${box.left}..${box.right} in ${outer.left}..${outer.right}`] : [];
-  }), [selector, inside]);
+  const cut = (page, selector, inside) =>
+    page.evaluate(
+      ([what, where]) =>
+        [...document.querySelectorAll(what)]
+          .filter((element) => element.checkVisibility())
+          .flatMap((element) => {
+            const box = element.getBoundingClientRect();
+            const outer = element.closest(where).getBoundingClientRect();
+            return box.right > outer.right + 0.5 || box.left < outer.left - 0.5 || element.scrollWidth > element.clientWidth + 1
+              ? [`${element.textContent.trim().slice(0, 40)} ${box.left}..${box.right} in ${outer.left}..${outer.right}`]
+              : [];
+          }),
+      [selector, inside],
+    );
 
   for (const [width, height] of sizes.filter(([size]) => isDue(size === 1600 || size === 820))) {
     it(`a room at ${width} x ${height}: the line on research use is whole, every pane has its letters`, async () => {
       const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { viewport: { width, height } });
-      const visible = await page.evaluate(() => [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)));
+      const visible = await page.evaluate(() =>
+        [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)),
+      );
       for (const view of visible) await full(page, view);
       assert.deepEqual(await cut(page, '.research', '.status'), []);
       for (const view of visible) {
-        await page.waitForFunction((n) => { // the picture has the size of its pane
+        await page.waitForFunction((n) => {
+          // the picture has the size of its pane
           const { width_px, height_px } = globalThis.beamroom.stats().headers[n];
           const { width, height } = document.querySelector(`#picture-${n}`).getBoundingClientRect();
           return Math.abs(width_px - width) <= 1 && Math.abs(height_px - height) <= 1;
@@ -97,17 +129,32 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
         assert.deepEqual(await overlaps(page), [], name);
         assert.deepEqual(await cut(page, '.tabs > .icon-button, .panel-head .icon-button', '.room'), [], `${name}: a panel can be closed`);
         for (const { view, width, layout } of await panes(page))
-          if (size === 'wide' || size === 'compact') assert.ok(width >= (layout === 'row' ? 190 : layout === '1+3' && view > 1 ? 250 : 420) - 0.5, `${name}: pane ${view} is ${width} px wide`);
+          if (size === 'wide' || size === 'compact')
+            assert.ok(
+              width >= (layout === 'row' ? 190 : layout === '1+3' && view > 1 ? 250 : 420) - 0.5,
+              `${name}: pane ${view} is ${width} px wide`,
+            );
         await shoot(page, `layout-${size}-${name.replaceAll(' ', '-').toLowerCase()}`);
       }
       await page.context().close();
     });
 
-  const panes = (page) => page.evaluate(() => [...document.querySelectorAll('.pane:not([hidden])')].map((pane) =>
-    ({ view: Number(pane.dataset.view), width: pane.getBoundingClientRect().width, layout: document.querySelector('.room').dataset.layout })));
+  const panes = (page) =>
+    page.evaluate(() =>
+      [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => ({
+        view: Number(pane.dataset.view),
+        width: pane.getBoundingClientRect().width,
+        layout: document.querySelector('.room').dataset.layout,
+      })),
+    );
 
   /** Until every picture is at rest. */
-  const settled = (page) => page.waitForFunction(() => [...document.querySelectorAll('.pane:not([hidden])')].every((pane) => globalThis.beamroom.stats().badges[pane.dataset.view] === 'full'));
+  const settled = (page) =>
+    page.waitForFunction(() =>
+      [...document.querySelectorAll('.pane:not([hidden])')].every(
+        (pane) => globalThis.beamroom.stats().badges[pane.dataset.view] === 'full',
+      ),
+    );
 
   later('panels never make one of four panes narrower than 420 px, at any width of a desk', async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom()}`, roomSizes.wide);
@@ -117,7 +164,11 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
       for (const isOpen of [true, false]) {
         const button = page.locator(isOpen ? '[aria-label="Show the inspector"]' : '[aria-label="Fold the inspector"]');
         if (await button.isVisible()) await button.click();
-        for (const pane of await panes(page)) assert.ok(pane.width >= 419.5, `window ${width}, inspector ${isOpen ? 'open' : 'folded'}: pane ${pane.view} is ${pane.width} px wide`);
+        for (const pane of await panes(page))
+          assert.ok(
+            pane.width >= 419.5,
+            `window ${width}, inspector ${isOpen ? 'open' : 'folded'}: pane ${pane.view} is ${pane.width} px wide`,
+          );
       }
     }
     await page.context().close();
@@ -132,7 +183,9 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
       const head = page.locator('#tab-panel h3').first();
       assert.match(await head.textContent(), new RegExp(id));
       assert.ok((await head.boundingBox()).y < 150, id);
-      await page.locator('#tab-panel').evaluate((panel) => { panel.scrollTop = panel.scrollHeight; }); // the next choice begins at the top again
+      await page.locator('#tab-panel').evaluate((panel) => {
+        panel.scrollTop = panel.scrollHeight;
+      }); // the next choice begins at the top again
     }
     await page.context().close();
   });
@@ -141,7 +194,11 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`, roomSizes.wide);
     await full(page);
-    const shown = async () => Object.entries((await world.scene(room)).regions).filter(([, { visible }]) => visible).map(([id]) => id).sort();
+    const shown = async () =>
+      Object.entries((await world.scene(room)).regions)
+        .filter(([, { visible }]) => visible)
+        .map(([id]) => id)
+        .sort();
     const press = async (name) => {
       const { scene_revision: revision } = await header(page, 1);
       await page.getByRole('button', { name }).click();
@@ -158,7 +215,10 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await press('Show all');
     assert.deepEqual(await shown(), all);
     await page.getByRole('searchbox', { name: 'Find a region' }).fill('RA');
-    assert.deepEqual(await page.locator('[data-region]').evaluateAll((rows) => rows.map((row) => row.dataset.region)), ['cranium', 'brain']);
+    assert.deepEqual(await page.locator('[data-region]').evaluateAll((rows) => rows.map((row) => row.dataset.region)), [
+      'cranium',
+      'brain',
+    ]);
     await page.context().close();
   });
 
@@ -167,7 +227,9 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     await full(page);
     for (const side of ['left', 'right']) {
       const row = page.locator('[data-region]', { hasText: side }).first();
-      const [start, end] = await row.locator('.clip span').evaluateAll((spans) => spans.map((span) => ({ text: span.textContent, isCut: span.scrollWidth > span.clientWidth + 1 })));
+      const [start, end] = await row
+        .locator('.clip span')
+        .evaluateAll((spans) => spans.map((span) => ({ text: span.textContent, isCut: span.scrollWidth > span.clientWidth + 1 })));
       assert.ok(start.isCut, `${start.text} is cut`);
       assert.deepEqual(end.isCut, false);
       assert.ok(end.text.endsWith(side));

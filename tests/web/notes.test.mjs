@@ -56,9 +56,20 @@ test('two people write notes, answer at once, find, jump, resolve, and find all 
   for (const page of [ann, ben]) {
     await page.locator('.note-replies > li').nth(1).waitFor();
     assert.deepEqual((await page.locator('.note-replies .note-words').allTextContents()).sort(), ['Ann says yes', 'Ben says no']);
-    assert.equal(await page.locator('.note-thread .note-buttons button').filter({ hasText: 'Resolve' }).count(), page === ann ? 1 : 0, 'only the author and a presenter resolve');
+    assert.equal(
+      await page.locator('.note-thread .note-buttons button').filter({ hasText: 'Resolve' }).count(),
+      page === ann ? 1 : 0,
+      'only the author and a presenter resolve',
+    );
   }
-  assert.equal((await ben.locator('.notes b b, .notes li b').filter({ hasText: /^this$/ }).count()), 0, 'no HTML of a person is interpreted');
+  assert.equal(
+    await ben
+      .locator('.notes b b, .notes li b')
+      .filter({ hasText: /^this$/ })
+      .count(),
+    0,
+    'no HTML of a person is interpreted',
+  );
   await shoot(ann, 'notes');
 
   // Ben, on a region; the filter finds it, and only it
@@ -86,7 +97,10 @@ test('two people write notes, answer at once, find, jump, resolve, and find all 
   await ann.getByRole('button', { name: 'Jump, for everybody' }).click();
   const { regions } = (await call(`${world.daemon.url}/api/v1/plans/phantom`)).json;
   const center = regions.find(({ id }) => id === 'brain').center_mm;
-  await until(() => world.scene(room), (now) => Math.abs(now.image.slices.axial.position_mm - center[2]) < 0.1);
+  await until(
+    () => world.scene(room),
+    (now) => Math.abs(now.image.slices.axial.position_mm - center[2]) < 0.1,
+  );
 
   // resolved: gone from the list and the pictures, until it is asked for
   await note(ann, 'the edge?').locator('.note-head').click();
@@ -98,7 +112,8 @@ test('two people write notes, answer at once, find, jump, resolve, and find all 
 
   // a change of somebody else meanwhile is refused, and what was written stays
   await note(ben, 'Swelling').locator('.note-head').waitFor();
-  if (await note(ben, 'Swelling').locator('.note-head').getAttribute('aria-expanded') !== 'true') await note(ben, 'Swelling').locator('.note-head').click();
+  if ((await note(ben, 'Swelling').locator('.note-head').getAttribute('aria-expanded')) !== 'true')
+    await note(ben, 'Swelling').locator('.note-head').click();
   await note(ben, 'Swelling').getByRole('button', { name: 'Edit' }).click();
   await ben.getByLabel('Change the text').fill('Swelling, seen on T2');
   await note(ann, 'Swelling').locator('.note-head').click();
@@ -119,7 +134,8 @@ test('two people write notes, answer at once, find, jump, resolve, and find all 
   await note(ann, 'the edge?').locator('.note-head').click();
   await ann.locator('.note-replies > li').nth(1).waitFor();
   await openTab(ben);
-  if (await note(ben, 'the edge?').locator('.note-head').getAttribute('aria-expanded') !== 'true') await note(ben, 'the edge?').locator('.note-head').click();
+  if ((await note(ben, 'the edge?').locator('.note-head').getAttribute('aria-expanded')) !== 'true')
+    await note(ben, 'the edge?').locator('.note-head').click();
   await ben.getByLabel('Reply').fill('Half a thought');
   await note(ann, 'the edge?').getByRole('button', { name: 'Delete' }).first().click();
   await ann.getByRole('button', { name: 'Delete with 2 replies?' }).click();
@@ -142,7 +158,9 @@ test('on a phone notes are in the sheet, with targets for fingers', { skip: miss
   await note(page, 'From the phone').waitFor();
   await page.getByRole('button', { name: /^Jump/ }).waitFor();
   assert.deepEqual(await axe(page), []);
-  const low = await page.locator('.inspector button:visible').evaluateAll((buttons) => buttons.filter((button) => button.getBoundingClientRect().height < 43.5).map((button) => button.textContent));
+  const low = await page
+    .locator('.inspector button:visible')
+    .evaluateAll((buttons) => buttons.filter((button) => button.getBoundingClientRect().height < 43.5).map((button) => button.textContent));
   assert.deepEqual(low, []);
   await shoot(page, 'notes-phone');
   assert.deepEqual(world.errors, []);

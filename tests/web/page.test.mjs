@@ -8,28 +8,31 @@ import { call, demo, sleep } from '../api/daemon.mjs';
 import { bytesOf, full, header, later, missing, once, shoot, startWorld } from './browser.mjs';
 
 /** In the browser: mean and spread of grey over a pane's picture, and a fingerprint of it. */
-const look = (page, view) => page.evaluate((n) => {
-  const canvas = document.querySelector(`[data-view="${n}"] canvas`);
-  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-  let sum = 0;
-  let lit = 0;
-  let print = 0;
-  for (let at = 0; at < data.length; at += 4) {
-    sum += data[at];
-    lit += data[at] > 40;
-    print = (print * 31 + data[at] * 3 + data[at + 1]) | 0;
-  }
-  return { mean: sum / (data.length / 4), lit: lit / (data.length / 4), print };
-}, view);
+const look = (page, view) =>
+  page.evaluate((n) => {
+    const canvas = document.querySelector(`[data-view="${n}"] canvas`);
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let sum = 0;
+    let lit = 0;
+    let print = 0;
+    for (let at = 0; at < data.length; at += 4) {
+      sum += data[at];
+      lit += data[at] > 40;
+      print = (print * 31 + data[at] * 3 + data[at + 1]) | 0;
+    }
+    return { mean: sum / (data.length / 4), lit: lit / (data.length / 4), print };
+  }, view);
 
 const letters = (page, view) => page.locator(`[data-view="${view}"] [data-letters]`).getAttribute('data-letters');
 /** Until the first pane has these letters. */
-const turned = (page, expected) => page.waitForFunction((text) => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === text, expected);
+const turned = (page, expected) =>
+  page.waitForFunction((text) => document.querySelector('[data-view="1"] [data-letters]').dataset.letters === text, expected);
 
 /** The daemon's renderer for the one plan that is open. */
 function rendererOf({ pid }) {
   const children = readdirSync(`/proc/${pid}/task`).flatMap((task) =>
-    readFileSync(`/proc/${pid}/task/${task}/children`, 'utf8').trim().split(' ').filter(Boolean).map(Number));
+    readFileSync(`/proc/${pid}/task/${task}/children`, 'utf8').trim().split(' ').filter(Boolean).map(Number),
+  );
   return children.find((child) => readFileSync(`/proc/${child}/cmdline`, 'utf8').includes('beamroom-render'));
 }
 
@@ -40,8 +43,10 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'beamroom-page-'));
     mkdirSync(join(folder, 'plans/broken-head'), { recursive: true });
-    writeFileSync(join(folder, 'plans/broken-head/plan.json'),
-      JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Broken head', images: [{ id: 'ct', path: 'ct.nii' }] }));
+    writeFileSync(
+      join(folder, 'plans/broken-head/plan.json'),
+      JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Broken head', images: [{ id: 'ct', path: 'ct.nii' }] }),
+    );
     writeFileSync(join(folder, 'plans/broken-head/ct.nii'), 'no image at all');
     world = await startWorld({ plans: [join(folder, 'plans')] });
   });
@@ -68,7 +73,11 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await refusal.waitFor();
     assert.match(await refusal.textContent(), /ct\.nii/);
     await shoot(page, 'start-refused');
-    assert.equal(await page.locator('[data-plan="broken-head"] button', { hasText: 'Open' }).count(), 0, 'what cannot be read cannot be opened');
+    assert.equal(
+      await page.locator('[data-plan="broken-head"] button', { hasText: 'Open' }).count(),
+      0,
+      'what cannot be read cannot be opened',
+    );
     await page.context().close();
   });
 
@@ -99,7 +108,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await drag(page, 1, 225, 0); // 90 degrees at 0.4 degrees a pixel: the front turns to screen right, the eye from 30 degrees left to 60 right
     await turned(page, 'PR AL S I');
     await full(page);
-    assert.ok(await page.evaluate(() => globalThis.beamroom.stats().input_to_paint_ms.length) > 0);
+    assert.ok((await page.evaluate(() => globalThis.beamroom.stats().input_to_paint_ms.length)) > 0);
     assert.notEqual((await look(page, 1)).print, before.print);
     assert.equal((await header(page, 1)).scale_percent, 100);
     await page.locator('#picture-1').focus();
@@ -159,7 +168,9 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
 
   once('says why an archive was refused, and keeps nothing of it', async () => {
     const page = await world.newPage();
-    await page.locator('[aria-label="Files of a plan"]').setInputFiles([{ name: 'notes.zip', mimeType: 'application/zip', buffer: Buffer.from('no archive at all') }]);
+    await page
+      .locator('[aria-label="Files of a plan"]')
+      .setInputFiles([{ name: 'notes.zip', mimeType: 'application/zip', buffer: Buffer.from('no archive at all') }]);
     await page.locator('.upload input[name="name"]').press('Enter');
     const refusal = page.locator('.upload [role="alert"]');
     await refusal.waitFor();
@@ -170,7 +181,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
-  later('shows the box of a dose\'s grid', async () => {
+  later("shows the box of a dose's grid", async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`#/rooms/${room}`);
     await full(page);
@@ -193,7 +204,11 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await links.first().waitFor();
     assert.deepEqual(await links.allTextContents().then((words) => words.map((word) => word.trim())), ['STL', 'PLY', 'GLB']);
     await shoot(page, 'downloads');
-    for (const [at, ending, magic] of [[0, 'stl', 'Beamroom mm LPS tumour'], [1, 'ply', 'ply\n'], [2, 'glb', 'glTF']]) {
+    for (const [at, ending, magic] of [
+      [0, 'stl', 'Beamroom mm LPS tumour'],
+      [1, 'ply', 'ply\n'],
+      [2, 'glb', 'glTF'],
+    ]) {
       const [download] = await Promise.all([page.waitForEvent('download'), links.nth(at).click()]);
       assert.equal(download.suggestedFilename(), `phantom-tumour.${ending}`);
       assert.equal((await bytesOf(download)).subarray(0, magic.length).toString(), magic);
@@ -228,7 +243,15 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await full(page);
     const prints = new Set();
     const figures = page.locator('dl.figures');
-    for (const [name, made] of [['Univels', /triangles/], ['Outlines', /outlines/], ['Points', /points/], ['Solid', /points/], ['NURBS', /triangles/], ['Fan', /triangles/], ['Surface', /triangles/]]) {
+    for (const [name, made] of [
+      ['Univels', /triangles/],
+      ['Outlines', /outlines/],
+      ['Points', /points/],
+      ['Solid', /points/],
+      ['NURBS', /triangles/],
+      ['Fan', /triangles/],
+      ['Surface', /triangles/],
+    ]) {
       const revision = (await header(page, 1)).scene_revision;
       await page.locator(`[aria-label="Shown as"] >> text="${name}"`).click();
       await page.waitForFunction((old) => globalThis.beamroom.stats().headers[1].scene_revision > old, revision);
@@ -251,7 +274,11 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await dialog.locator('button:not([disabled])', { hasText: 'CSV' }).waitFor({ timeout: 60000 });
     const rows = await dialog.locator('tbody tr').allTextContents();
     assert.equal(rows.length, 14);
-    assert.match(rows.find((row) => /Univels/.test(row)), /0\.00 %/, 'univels enclose exactly themselves');
+    assert.match(
+      rows.find((row) => /Univels/.test(row)),
+      /0\.00 %/,
+      'univels enclose exactly themselves',
+    );
     await shoot(page, 'compare');
     const [download] = await Promise.all([page.waitForEvent('download'), dialog.locator('button', { hasText: 'CSV' }).click()]);
     assert.equal((await bytesOf(download)).toString().trim().split('\n').length, 15);

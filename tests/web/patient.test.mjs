@@ -28,7 +28,12 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     rmSync(folder, { recursive: true, force: true });
     assert.deepEqual(world?.errors ?? [], []);
   });
-  const shows = (locator, text) => until(() => locator.textContent(), (now) => now.includes(text), 30000).then((now) => assert.ok(now.includes(text), `"${now}" has no "${text}"`));
+  const shows = (locator, text) =>
+    until(
+      () => locator.textContent(),
+      (now) => now.includes(text),
+      30000,
+    ).then((now) => assert.ok(now.includes(text), `"${now}" has no "${text}"`));
 
   it('the banner has the masked patient and the approval; another patient’s dose is named in red and stands in the last section', async () => {
     await shows(page.locator('.banner .patient-button'), 'Q. Z. …419');

@@ -4,7 +4,11 @@ import { full, header } from './browser.mjs';
 
 export const chip = (page) => page.locator('.room-chip:visible');
 /** Until the room chip says this. @param {RegExp} words */
-export const says = (page, words) => until(async () => (await chip(page).textContent()).replace(/\s+/g, ' ').trim(), (text) => words.test(text));
+export const says = (page, words) =>
+  until(
+    async () => (await chip(page).textContent()).replace(/\s+/g, ' ').trim(),
+    (text) => words.test(text),
+  );
 export const toast = (page, text) => page.locator('.toast', { hasText: text }).waitFor();
 /** A button of the chip's popover. */
 export const action = (page, word) => page.locator('.room-actions button', { hasText: word });
@@ -27,10 +31,16 @@ export async function enter(world, address, name, options = {}) {
 }
 
 /** The matrix of what a pane shows, to compare. */
-export const matrix = async (page, view) => Object.values((await header(page, view)).clip_from_lps_mm).map((value) => value.toFixed(4)).join(' ');
+export const matrix = async (page, view) =>
+  Object.values((await header(page, view)).clip_from_lps_mm)
+    .map((value) => value.toFixed(4))
+    .join(' ');
 /** Until a pane shows what the other page's shows, at rest in both. */
 export async function showsAs(page, other, view = 1) {
-  await until(async () => [await matrix(page, view), await matrix(other, view)], ([own, shown]) => own === shown);
+  await until(
+    async () => [await matrix(page, view), await matrix(other, view)],
+    ([own, shown]) => own === shown,
+  );
   await Promise.all([page, other].map((each) => full(each, view)));
 }
 /** Turns the 3-D view until its picture is another one, at rest. */
@@ -38,6 +48,9 @@ export async function turn(page) {
   const before = await matrix(page, 1);
   await page.locator('#picture-1').focus();
   await page.keyboard.press('ArrowLeft');
-  await until(() => matrix(page, 1), (now) => now !== before);
+  await until(
+    () => matrix(page, 1),
+    (now) => now !== before,
+  );
   await full(page, 1);
 }

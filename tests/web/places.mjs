@@ -2,7 +2,11 @@
 import { header } from './browser.mjs';
 
 const apply = (m, row, [x, y, z]) => m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row];
-const size = (page, view) => page.evaluate((n) => { const { width, height } = document.querySelector(`#picture-${n}`).getBoundingClientRect(); return [width, height]; }, view);
+const size = (page, view) =>
+  page.evaluate((n) => {
+    const { width, height } = document.querySelector(`#picture-${n}`).getBoundingClientRect();
+    return [width, height];
+  }, view);
 
 /** Where a picture lies in its pane: as large as fits, in the middle. */
 export async function boxOf(page, view) {
@@ -30,10 +34,14 @@ export async function axialPoint(page, view, [px, py], s) {
 }
 
 /** The mark of a member in a pane: {x, y, words, strength}; null: none. */
-export const mark = (page, view, member = 'm1') => page.evaluate(([n, id]) => {
-  const data = document.querySelector(`[data-view="${n}"] .person-pointer[data-member="${id}"]`)?.dataset;
-  return data ? { x: Number(data.x), y: Number(data.y), words: data.words, strength: Number(data.strength) } : null;
-}, [view, member]);
+export const mark = (page, view, member = 'm1') =>
+  page.evaluate(
+    ([n, id]) => {
+      const data = document.querySelector(`[data-view="${n}"] .person-pointer[data-member="${id}"]`)?.dataset;
+      return data ? { x: Number(data.x), y: Number(data.y), words: data.words, strength: Number(data.strength) } : null;
+    },
+    [view, member],
+  );
 export const near = (at, [x, y], px = 1.5) => at !== null && Math.hypot(at.x - x, at.y - y) <= px;
 
 /** Moves the mouse in a pane, to parts of its width and height. Returns the place in px. */

@@ -17,9 +17,11 @@ const sizes = {
 const kinds = ['3-D', 'Axial', 'Sagittal', 'Coronal'];
 const head = realData && existsSync(join(realData, 'sera-head')) ? join(realData, 'sera-head') : '';
 // Volume and centre of the tumour as the data state them: ../shared/data/sera-head/README.md, there (PA, RL, IS) in cm. Of the phantom the plan is asked.
-const subject = head ? { plan: 'sera-head', region: 'tumor', cm3: 67.15, centre: [24.9, 38.4, -64.9] } : { plan: 'phantom', region: 'tumour' };
+const subject = head
+  ? { plan: 'sera-head', region: 'tumor', cm3: 67.15, centre: [24.9, 38.4, -64.9] }
+  : { plan: 'phantom', region: 'tumour' };
 
-describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, () => {
+describe("one planner's hour", { skip: missing && `${missing} is not there` }, () => {
   let world;
   let folder;
   let plan;
@@ -37,17 +39,29 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
 
   /** The hands of somebody at this window: mouse and keys, or fingers. */
   async function handsOn(page, isTouch) {
-    const devtools = isTouch && await page.context().newCDPSession(page);
-    const touch = (type, points) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y]) => ({ x, y, id: 0 })) });
+    const devtools = isTouch && (await page.context().newCDPSession(page));
+    const touch = (type, points) =>
+      devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y]) => ({ x, y, id: 0 })) });
     await page.evaluate(() => {
       globalThis.clicks = 0;
-      addEventListener('click', () => { globalThis.clicks += 1; }, true);
+      addEventListener(
+        'click',
+        () => {
+          globalThis.clicks += 1;
+        },
+        true,
+      );
     });
     /** On a busy machine a tap may last as long as a long press, which clicks nothing: again then. */
     const tap = async (locator, nTries = 5) => {
       const before = await page.evaluate(() => globalThis.clicks);
       await locator.tap();
-      const isDone = await page.waitForFunction((n) => globalThis.clicks > n, before, { timeout: 3000 }).then(() => true, () => false);
+      const isDone = await page
+        .waitForFunction((n) => globalThis.clicks > n, before, { timeout: 3000 })
+        .then(
+          () => true,
+          () => false,
+        );
       if (isDone) return;
       assert.ok(nTries > 1, `nothing can be tapped: ${locator}`);
       await tap(locator, nTries - 1);
@@ -77,12 +91,20 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
   }
 
   /** Placeholders that are wider than their fields. */
-  const cutPlaceholders = (page) => page.evaluate(() => [...document.querySelectorAll('input[placeholder]')].filter((field) => field.checkVisibility()).flatMap((field) => {
-    const { fontSize, fontFamily, paddingLeft, paddingRight } = getComputedStyle(field);
-    const pen = Object.assign(document.createElement('canvas').getContext('2d'), { font: `${fontSize} ${fontFamily}` });
-    const [needed, room] = [pen.measureText(field.placeholder).width, field.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - (field.type === 'search' ? 16 : 0)]; // a search field keeps room for its cross
-    return needed > room ? [`${field.placeholder}: ${needed} px in ${room}`] : [];
-  }));
+  const cutPlaceholders = (page) =>
+    page.evaluate(() =>
+      [...document.querySelectorAll('input[placeholder]')]
+        .filter((field) => field.checkVisibility())
+        .flatMap((field) => {
+          const { fontSize, fontFamily, paddingLeft, paddingRight } = getComputedStyle(field);
+          const pen = Object.assign(document.createElement('canvas').getContext('2d'), { font: `${fontSize} ${fontFamily}` });
+          const [needed, room] = [
+            pen.measureText(field.placeholder).width,
+            field.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - (field.type === 'search' ? 16 : 0),
+          ]; // a search field keeps room for its cross
+          return needed > room ? [`${field.placeholder}: ${needed} px in ${room}`] : [];
+        }),
+    );
 
   for (const [size, options] of Object.entries(sizes)) {
     it(`at ${size}${options.hasTouch ? ' with fingers' : ''}`, async () => {
@@ -102,7 +124,8 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       /** Takes away what lies over the pictures and shows the pane. */
       const toPane = async (view) => {
         const isNarrow = options.viewport.width < 1400;
-        for (const name of ['Close the sheet', 'Close Regions', ...(isNarrow ? ['Fold the plan\'s parts', 'Fold the inspector'] : [])]) await pressIfThere(button(name));
+        for (const name of ['Close the sheet', 'Close Regions', ...(isNarrow ? ["Fold the plan's parts", 'Fold the inspector'] : [])])
+          await pressIfThere(button(name));
         const panes = page.getByRole('radiogroup', { name: 'Pane', exact: true });
         if (await isThere(panes)) await press(panes.getByRole('radio', { name: kinds[view - 1], exact: true }));
         await picture(view).waitFor();
@@ -110,24 +133,29 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
         await full(page, view);
       };
       /** Until the picture has the size of its pane. */
-      const sized = (view) => page.waitForFunction((n) => {
-        const painted = globalThis.beamroom.stats().headers[n];
-        const box = document.querySelector(`#picture-${n}`).getBoundingClientRect();
-        return painted && Math.abs(painted.width_px / devicePixelRatio - box.width) <= 1 && Math.abs(painted.height_px / devicePixelRatio - box.height) <= 1;
-      }, view);
+      const sized = (view) =>
+        page.waitForFunction((n) => {
+          const painted = globalThis.beamroom.stats().headers[n];
+          const box = document.querySelector(`#picture-${n}`).getBoundingClientRect();
+          return (
+            painted &&
+            Math.abs(painted.width_px / devicePixelRatio - box.width) <= 1 &&
+            Math.abs(painted.height_px / devicePixelRatio - box.height) <= 1
+          );
+        }, view);
       /** Selects the region in the list of regions, so that the inspector shows it. */
       const toRegion = async () => {
         const block = page.getByRole('heading', { name: new RegExp(`^Region ${region.name}\\b`) });
         if (await isThere(block)) return;
         const row = page.locator(`[data-region="${region.id}"] button.name`);
-        if (!await isThere(row)) {
+        if (!(await isThere(row))) {
           await press(page.getByRole('button', { name: /^(Show the plan's parts|Regions|Parts)$/ }).first());
           await pressIfThere(page.getByRole('tab', { name: 'Regions', exact: true }));
           await row.waitFor();
         }
-        if (!await isThere(page.locator('[data-region].selected'))) await press(row);
-        if (!await isThere(block)) await pressIfThere(button('Fold the plan\'s parts'));
-        if (!await isThere(block)) await pressIfThere(button('Show the inspector'));
+        if (!(await isThere(page.locator('[data-region].selected')))) await press(row);
+        if (!(await isThere(block))) await pressIfThere(button("Fold the plan's parts"));
+        if (!(await isThere(block))) await pressIfThere(button('Show the inspector'));
         await block.waitFor();
       };
 
@@ -162,11 +190,19 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
         const m = await matrixOf(1);
         return (Math.atan2(m[7], m[3]) * 180) / Math.PI;
       };
-      const colourAt = (view, [x, y]) => page.evaluate(([n, left, top]) => {
-        const canvas = document.querySelector(`#picture-${n} canvas`);
-        const box = canvas.getBoundingClientRect();
-        return [...canvas.getContext('2d').getImageData(((left - box.x) * canvas.width) / box.width, ((top - box.y) * canvas.height) / box.height, 1, 1).data].slice(0, 3);
-      }, [view, x, y]);
+      const colourAt = (view, [x, y]) =>
+        page.evaluate(
+          ([n, left, top]) => {
+            const canvas = document.querySelector(`#picture-${n} canvas`);
+            const box = canvas.getBoundingClientRect();
+            return [
+              ...canvas
+                .getContext('2d')
+                .getImageData(((left - box.x) * canvas.width) / box.width, ((top - box.y) * canvas.height) / box.height, 1, 1).data,
+            ].slice(0, 3);
+          },
+          [view, x, y],
+        );
 
       // ---- a plan is opened from the start page --------------------------------------------------------------------------
       const { name: planName } = (await call(`${world.daemon.url}/api/v1/plans`)).json.plans.find(({ id }) => id === subject.plan);
@@ -180,14 +216,28 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       await full(page, 1);
       ({ json: plan } = await call(`${world.daemon.url}/api/v1/plans/${subject.plan}`));
       region = plan.regions.find(({ id }) => id === subject.region);
-      if (subject.cm3) assert.ok(Math.abs(region.volume_cm3 - subject.cm3) < 0.005 && isNear(region.center_mm, subject.centre, 0.05), 'as stated with the data');
+      if (subject.cm3)
+        assert.ok(
+          Math.abs(region.volume_cm3 - subject.cm3) < 0.005 && isNear(region.center_mm, subject.centre, 0.05),
+          'as stated with the data',
+        );
       const step = plan.images[0].grid.spacing_mm;
       // signs without words stand in the middle of their buttons
-      const off = await page.getByRole('toolbar').locator('button').evaluateAll((buttons) => buttons.filter((button) => button.checkVisibility() && !button.innerText.trim()).flatMap((button) => {
-        const [outer, inner] = [button, button.querySelector('svg')].map((part) => part.getBoundingClientRect());
-        const [dx, dy] = [inner.x + inner.width / 2 - outer.x - outer.width / 2, inner.y + inner.height / 2 - outer.y - outer.height / 2];
-        return Math.hypot(dx, dy) > 1 ? [`${button.title}: ${dx}, ${dy} px`] : [];
-      }));
+      const off = await page
+        .getByRole('toolbar')
+        .locator('button')
+        .evaluateAll((buttons) =>
+          buttons
+            .filter((button) => button.checkVisibility() && !button.innerText.trim())
+            .flatMap((button) => {
+              const [outer, inner] = [button, button.querySelector('svg')].map((part) => part.getBoundingClientRect());
+              const [dx, dy] = [
+                inner.x + inner.width / 2 - outer.x - outer.width / 2,
+                inner.y + inner.height / 2 - outer.y - outer.height / 2,
+              ];
+              return Math.hypot(dx, dy) > 1 ? [`${button.title}: ${dx}, ${dy} px`] : [];
+            }),
+        );
       assert.deepEqual(off, []);
       await shot('opened');
 
@@ -195,8 +245,8 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       await toPane(1);
       const azimuth = await azimuthOf();
       await drag(await middleOf(1), 100, 0);
-      const turnedBy = async () => ((await azimuthOf()) - azimuth + 540) % 360 - 180;
-      await comes(turnedBy, (degrees) => Math.abs(degrees + 40) < 0.5, 'turned by 100 px, 40 degrees, to the patient\'s right');
+      const turnedBy = async () => (((await azimuthOf()) - azimuth + 540) % 360) - 180;
+      await comes(turnedBy, (degrees) => Math.abs(degrees + 40) < 0.5, "turned by 100 px, 40 degrees, to the patient's right");
       await full(page, 1);
 
       // ---- one region alone, the crosshair in its middle ------------------------------------------------------------------
@@ -204,7 +254,11 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       await press(button('Solo'));
       await comes(scene, ({ regions }) => plan.regions.every(({ id }) => regions[id].visible === (id === region.id)), 'it is alone');
       await press(button('Go to centre'));
-      await comes(scene, (now) => isNear(crosshairOf(now), region.center_mm, Math.max(...step) / 2 + 0.1), 'the crosshair is in its middle');
+      await comes(
+        scene,
+        (now) => isNear(crosshairOf(now), region.center_mm, Math.max(...step) / 2 + 0.1),
+        'the crosshair is in its middle',
+      );
       await settled(1);
       await shot('alone');
 
@@ -232,8 +286,13 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       await shot('shown-as');
       await toPane(1);
       const wanted = [1, 3, 5].map((at) => parseInt(changed.color.slice(at, at + 2), 16));
-      const likeness = (colour) => colour.reduce((sum, value, at) => sum + value * wanted[at], 0) / Math.hypot(...colour) / Math.hypot(...wanted);
-      await comes(async () => colourAt(1, await placeOf(1, region.center_mm)), (colour) => likeness(colour) > 0.97, `in its middle the picture has its colour ${changed.color}, lighter or darker`);
+      const likeness = (colour) =>
+        colour.reduce((sum, value, at) => sum + value * wanted[at], 0) / Math.hypot(...colour) / Math.hypot(...wanted);
+      await comes(
+        async () => colourAt(1, await placeOf(1, region.center_mm)),
+        (colour) => likeness(colour) > 0.97,
+        `in its middle the picture has its colour ${changed.color}, lighter or darker`,
+      );
       await shot('univels');
 
       // ---- undone and done again ----------------------------------------------------------------------------------------------
@@ -255,15 +314,24 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       else await page.mouse.click(...place);
       // a voxel's middle is the goal; a pixel of the picture may be larger than a voxel
       const pixelMm = 1 / (await header(page, 2)).pixels_per_mm;
-      await comes(scene, (now) => isNear(crosshairOf(now), point, Math.max(step[0], step[1]) / 2 + pixelMm), `the crosshair is at ${point}`);
+      await comes(
+        scene,
+        (now) => isNear(crosshairOf(now), point, Math.max(step[0], step[1]) / 2 + pixelMm),
+        `the crosshair is at ${point}`,
+      );
       const [, , slice] = crosshairOf(await scene());
-      if (options.hasTouch) { // a finger on the slider, a fifth from its top: as exact as half its thumb
+      if (options.hasTouch) {
+        // a finger on the slider, a fifth from its top: as exact as half its thumb
         const slider = page.getByRole('slider', { name: /^Axial slice/ });
         const [low, high] = await slider.evaluate(({ min, max }) => [Number(min), Number(max)]);
         const { x, y, width, height } = await slider.boundingBox();
         await page.touchscreen.tap(x + width / 2, y + height / 5);
         const there = high - (high - low) / 5;
-        await comes(scene, (now) => Math.abs(crosshairOf(now)[2] - there) <= step[2] / 2 + ((high - low) * 12) / height, `a slice at ${there} mm`);
+        await comes(
+          scene,
+          (now) => Math.abs(crosshairOf(now)[2] - there) <= step[2] / 2 + ((high - low) * 12) / height,
+          `a slice at ${there} mm`,
+        );
         await press(undo);
         await comes(scene, (now) => crosshairOf(now)[2] === slice, 'the slice of before');
       } else {
@@ -276,13 +344,21 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       const old = (await scene()).image.window;
       await press(button('Window'));
       await drag(await middleOf(2), 60, -30);
-      await comes(scene, ({ image: { window } }) => window.width > old.width && window.center > old.center - 1e-6, `another window than ${JSON.stringify(old)}`);
+      await comes(
+        scene,
+        ({ image: { window } }) => window.width > old.width && window.center > old.center - 1e-6,
+        `another window than ${JSON.stringify(old)}`,
+      );
       await press(button('Crosshair'));
       await full(page, 2);
       const { window } = (await scene()).image;
       const isRoomy = (await picture(2).boundingBox()).width >= 360; // the width from which a picture has its window's text
       const words = await picture(2).locator('.overlay:not(.clip-lines, .pointers)').textContent();
-      assert.equal(words.includes(`C ${window.center.toFixed(0)}  W ${window.width.toFixed(0)}`), isRoomy, `${words} says ${JSON.stringify(window)}`);
+      assert.equal(
+        words.includes(`C ${window.center.toFixed(0)}  W ${window.width.toFixed(0)}`),
+        isRoomy,
+        `${words} says ${JSON.stringify(window)}`,
+      );
 
       // ---- values at the pointer --------------------------------------------------------------------------------------------------
       const card = page.locator('[data-view="2"] .read-out');
@@ -304,7 +380,10 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       await press(button('Snapshot'));
       await page.getByRole('menu', { name: 'Snapshot' }).waitFor();
       await shot('menu');
-      const [download] = await Promise.all([page.waitForEvent('download'), press(page.getByRole('menuitem', { name: 'Save the active pane as PNG' }))]);
+      const [download] = await Promise.all([
+        page.waitForEvent('download'),
+        press(page.getByRole('menuitem', { name: 'Save the active pane as PNG' })),
+      ]);
       assert.equal(download.suggestedFilename(), `${subject.plan}-3d.png`);
       const bytes = await bytesOf(download);
       writeFileSync(`build/test-artifacts/hour-${size}-snapshot.png`, bytes);
@@ -321,20 +400,35 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
       const report = page.getByRole('dialog', { name: 'Report to print' });
       await report.getByLabel('Caption of Figure 1').fill(`The ${region.name} alone, as univels`);
       await report.getByRole('button', { name: 'Print or save as PDF' }).and(page.locator(':enabled')).waitFor();
-      assert.match(await report.getByRole('row', { name: new RegExp(`^${region.name} `) }).innerText(), new RegExp(`\\b${region.volume_cm3.toFixed(2)}\\b`));
-      const [label, field] = await Promise.all([report.getByText('Figure 1.', { exact: true }), report.getByLabel('Caption of Figure 1')].map((part) => part.boundingBox()));
+      assert.match(
+        await report.getByRole('row', { name: new RegExp(`^${region.name} `) }).innerText(),
+        new RegExp(`\\b${region.volume_cm3.toFixed(2)}\\b`),
+      );
+      const [label, field] = await Promise.all(
+        [report.getByText('Figure 1.', { exact: true }), report.getByLabel('Caption of Figure 1')].map((part) => part.boundingBox()),
+      );
       assert.ok(label.y + label.height + 3 <= field.y, 'the frame of the field with the focus covers no text above it');
       if (options.hasTouch) {
-        const heights = await report.getByRole('button').evaluateAll((buttons) => buttons.map((button) => button.getBoundingClientRect().height));
+        const heights = await report
+          .getByRole('button')
+          .evaluateAll((buttons) => buttons.map((button) => button.getBoundingClientRect().height));
         assert.ok(Math.min(...heights) >= 44, `buttons for fingers: ${heights} px high`);
       }
       await shot('report');
       await report.getByRole('table').last().scrollIntoViewIfNeeded();
-      const torn = await report.getByRole('table').last().locator('td, tbody th').evaluateAll((cells) => cells.filter((cell) => {
-        const range = document.createRange();
-        range.selectNodeContents(cell);
-        return new Set([...range.getClientRects()].map(({ y }) => Math.round(y))).size > 1;
-      }).map((cell) => cell.textContent));
+      const torn = await report
+        .getByRole('table')
+        .last()
+        .locator('td, tbody th')
+        .evaluateAll((cells) =>
+          cells
+            .filter((cell) => {
+              const range = document.createRange();
+              range.selectNodeContents(cell);
+              return new Set([...range.getClientRects()].map(({ y }) => Math.round(y))).size > 1;
+            })
+            .map((cell) => cell.textContent),
+        );
       assert.deepEqual(torn, [], 'figures stand in one line');
       await shot('report-figures');
       await press(report.getByRole('button', { name: 'Close' }));
@@ -342,19 +436,33 @@ describe('one planner\'s hour', { skip: missing && `${missing} is not there` }, 
 
       // ---- later, another scene: the picture brings the one in it back ------------------------------------------------------------
       const revision = await revisionOf(1);
-      const patch = { regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { visible: true, opacity: 0.5, representation: 'surface' }])), image: { window: { width: 1 } } };
+      const patch = {
+        regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { visible: true, opacity: 0.5, representation: 'surface' }])),
+        image: { window: { width: 1 } },
+      };
       assert.equal((await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', patch, { 'If-Match': '*' })).status, 200);
       await newer(page, 1, revision);
       await drag(await middleOf(1), -60, 20);
-      await comes(() => matrixOf(1), (m) => !isNear(m, keptMatrix, 1e-3), 'turned away');
-      await page.evaluate((data) => {
-        const transfer = new DataTransfer();
-        transfer.items.add(new File([Uint8Array.from(data)], 'kept.png'));
-        document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
-      }, [...bytes]);
+      await comes(
+        () => matrixOf(1),
+        (m) => !isNear(m, keptMatrix, 1e-3),
+        'turned away',
+      );
+      await page.evaluate(
+        (data) => {
+          const transfer = new DataTransfer();
+          transfer.items.add(new File([Uint8Array.from(data)], 'kept.png'));
+          document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
+        },
+        [...bytes],
+      );
       await page.getByText('Scene and view are as in the picture').waitFor();
       await comes(scene, (now) => JSON.stringify(now) === JSON.stringify(kept), 'the scene is as it was');
-      await comes(() => matrixOf(1), (m) => isNear(m, keptMatrix, 1e-4), 'the view is as it was');
+      await comes(
+        () => matrixOf(1),
+        (m) => isNear(m, keptMatrix, 1e-4),
+        'the view is as it was',
+      );
       await full(page, 1);
       await shot('back');
       assert.deepEqual(world.errors, []);

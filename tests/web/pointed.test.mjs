@@ -16,7 +16,9 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     await open();
     for (const view of [3, 4]) await full(page, view);
   });
-  after(async () => { await world?.stop(); });
+  after(async () => {
+    await world?.stop();
+  });
 
   /** A page in a room of its own. */
   const open = async (options) => {
@@ -39,7 +41,8 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     const row = (r) => m[r] * point[0] + m[4 + r] * point[1] + m[8 + r] * point[2] + m[12 + r];
     return [box.x + ((row(0) / row(3) + 1) / 2) * box.width, box.y + ((1 - row(1) / row(3)) / 2) * box.height];
   };
-  const regionAt = (name) => page.waitForFunction((wanted) => document.querySelector('.inspector')?.textContent.includes(`Region ${wanted}`), name);
+  const regionAt = (name) =>
+    page.waitForFunction((wanted) => document.querySelector('.inspector')?.textContent.includes(`Region ${wanted}`), name);
   const card = (view) => page.locator(`[data-view="${view}"] .read-out`);
   const isNear = (a, b, mm) => a.every((value, at) => Math.abs(value - b[at]) <= mm);
 
@@ -47,7 +50,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     const before = await crosshairOf();
     const { regions } = await planOf();
     const tumour = regions.find(({ name }) => name === 'tumour');
-    await page.mouse.click(...await placeOf(1, tumour.center_mm));
+    await page.mouse.click(...(await placeOf(1, tumour.center_mm)));
     await regionAt('tumour');
     await page.waitForTimeout(300);
     assert.deepEqual(await crosshairOf(), before);
@@ -68,7 +71,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     await page.waitForTimeout(600);
     assert.deepEqual(await crosshairOf(), before);
     const target = [before[0] + 20, before[1] - 15, before[2]];
-    await page.mouse.click(...await placeOf(2, target));
+    await page.mouse.click(...(await placeOf(2, target)));
     const found = await until(crosshairOf, (now) => isNear(now, target, 2), 60000);
     assert.ok(isNear(found, target, 2), `${found}, expected ${target}`);
   });
@@ -109,7 +112,8 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     await card(1).waitFor();
     assert.match(await card(1).textContent(), /^\s*tumour/);
     await shoot(page, 'pointed-3d');
-    for (const view of [1, 2]) { // in a slice that is beside the image
+    for (const view of [1, 2]) {
+      // in a slice that is beside the image
       const box = await page.locator(`#picture-${view}`).boundingBox();
       await page.mouse.move(box.x + 20, box.y + 60);
       await card(view).waitFor({ state: 'detached' });
@@ -158,21 +162,30 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     const letters = () => page.locator('[data-view="1"] [data-letters]').getAttribute('data-letters');
     const looking = await letters();
     await page.keyboard.press('Control+ArrowRight');
-    const after = await until(async () => Object.values((await header(page, 1)).clip_from_lps_mm), (m) => m[12] > before[12] + 1e-3, 60000);
+    const after = await until(
+      async () => Object.values((await header(page, 1)).clip_from_lps_mm),
+      (m) => m[12] > before[12] + 1e-3,
+      60000,
+    );
     assert.ok(after[12] > before[12], 'to the right');
     assert.equal(await letters(), looking, 'not turned');
   });
 
   once('says without a pointer what lies at the crosshair of the pane with the focus', async () => {
     await page.locator('#picture-2').focus();
-    await page.waitForFunction(() => /^Axial, S \S+ mm, (tumour|target|brain|cranium|scalp), CT \S+ HU(, \S+ Gy\(w\))?$/.test(document.querySelector('#caption-2').textContent));
+    await page.waitForFunction(() =>
+      /^Axial, S \S+ mm, (tumour|target|brain|cranium|scalp), CT \S+ HU(, \S+ Gy\(w\))?$/.test(
+        document.querySelector('#caption-2').textContent,
+      ),
+    );
     await page.waitForFunction(() => /^Sagittal, L \S+ mm$/.test(document.querySelector('#caption-3').textContent));
   });
 
   later('a long press shows the values beside the finger, away from letters', async () => {
     await open(tablet);
     const devtools = await page.context().newCDPSession(page);
-    const touch = (type, points) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    const touch = (type, points) =>
+      devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
     for (const view of [2, 1]) {
       const { regions } = await planOf();
       const { center_mm: middle } = regions.find(({ name }) => name === 'tumour');
@@ -188,10 +201,12 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
       const clash = await page.evaluate((n) => {
         const pane = document.querySelector(`[data-view="${n}"]`);
         const a = pane.querySelector('.read-out').getBoundingClientRect();
-        return [...pane.querySelectorAll('.overlay text')].filter((text) => {
-          const b = text.getBoundingClientRect();
-          return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
-        }).map((text) => text.textContent);
+        return [...pane.querySelectorAll('.overlay text')]
+          .filter((text) => {
+            const b = text.getBoundingClientRect();
+            return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+          })
+          .map((text) => text.textContent);
       }, view);
       assert.deepEqual(clash, []);
       const found = await crosshairOf();

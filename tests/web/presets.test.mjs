@@ -12,12 +12,22 @@ describe('presets', { skip: missing && `${missing} is not there` }, () => {
     page = await world.newPage(`#/rooms/${room}`);
     await full(page, 1);
   });
-  after(async () => { await world?.stop(); });
+  after(async () => {
+    await world?.stop();
+  });
 
-  const comes = async (pick, expected) => assert.deepEqual(await until(async () => pick(await world.scene(room)), (value) => JSON.stringify(value) === JSON.stringify(expected), 30000), expected);
+  const comes = async (pick, expected) =>
+    assert.deepEqual(
+      await until(
+        async () => pick(await world.scene(room)),
+        (value) => JSON.stringify(value) === JSON.stringify(expected),
+        30000,
+      ),
+      expected,
+    );
   const told = (words) => page.locator('.toast', { hasText: words }).waitFor();
 
-  it('the menu of the panes shows the beam\'s eye with its ring in one click, and one step of undo takes the scene back', async () => {
+  it("the menu of the panes shows the beam's eye with its ring in one click, and one step of undo takes the scene back", async () => {
     const before = await world.scene(room);
     await page.getByRole('button', { name: 'Panes', exact: true }).click();
     await page.locator('.beam-presets button', { hasText: "Beam's eye with aperture" }).click();

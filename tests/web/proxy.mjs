@@ -12,7 +12,9 @@ export async function startProxy(url) {
       else from.isLost = to.isLost = true; // bytes are missing: nothing that follows would make sense
     });
     from.on('error', () => {});
-    from.on('close', () => { if (!from.isLost) to.destroy(); });
+    from.on('close', () => {
+      if (!from.isLost) to.destroy();
+    });
   };
   const server = createServer((client) => {
     const daemon = connect(Number(port), hostname);
@@ -24,13 +26,18 @@ export async function startProxy(url) {
     forward(client, daemon);
     forward(daemon, client);
   });
-  await new Promise((resolve) => { server.listen(0, '127.0.0.1', resolve); });
+  await new Promise((resolve) => {
+    server.listen(0, '127.0.0.1', resolve);
+  });
   return {
     url: `http://127.0.0.1:${server.address().port}`,
-    black: (on) => { isBlack = on; },
-    stop: () => new Promise((resolve) => {
-      for (const socket of sockets) socket.destroy();
-      server.close(resolve);
-    }),
+    black: (on) => {
+      isBlack = on;
+    },
+    stop: () =>
+      new Promise((resolve) => {
+        for (const socket of sockets) socket.destroy();
+        server.close(resolve);
+      }),
   };
 }

@@ -39,7 +39,10 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   // by keyboard; the other sees it
   await check(ann, 'treated side').getByRole('button', { name: 'OK' }).focus();
   await ann.keyboard.press('Enter');
-  await check(ben, 'treated side').filter({ has: ben.getByRole('button', { name: 'OK', pressed: true }) }).locator('.check-by', { hasText: 'Ann' }).waitFor();
+  await check(ben, 'treated side')
+    .filter({ has: ben.getByRole('button', { name: 'OK', pressed: true }) })
+    .locator('.check-by', { hasText: 'Ann' })
+    .waitFor();
   await check(ben, 'Constraints').getByRole('button', { name: 'Issue' }).click();
   await ben.getByLabel(/What is wrong: Constraints/).fill(mucosa);
   await ben.keyboard.press('Tab');
@@ -52,14 +55,23 @@ test('two people check entries, decide and sign; it is there after a reload, in 
   await ann.getByRole('combobox', { name: 'Decision' }).selectOption('accept-with-changes');
   await ann.getByLabel('In words').fill('Less gap');
   await ann.getByRole('button', { name: 'Write down' }).click();
-  await ann.locator('section', { hasText: 'Decision' }).getByText(/^Kept \d\d:\d\d/).last().waitFor();
+  await ann
+    .locator('section', { hasText: 'Decision' })
+    .getByText(/^Kept \d\d:\d\d/)
+    .last()
+    .waitFor();
   await ben.locator('.record-lines').getByText('Accept with changes').waitFor();
   await ben.getByRole('textbox', { name: 'Name' }).fill('B. Example');
   await ben.getByRole('button', { name: 'Sign' }).click();
   await ann.locator('.record-lines').getByText('B. Example').waitFor();
   for (const page of [ann, ben]) {
     assert.deepEqual(await axe(page), []);
-    const small = await page.locator('#tab-panel').evaluate((panel) => [...panel.querySelectorAll('button, input, select, textarea, summary')].map((one) => [one.outerHTML.slice(0, 60), one.getBoundingClientRect()]).filter(([, { width, height }]) => width < 24 || height < 24).map(([html]) => html));
+    const small = await page.locator('#tab-panel').evaluate((panel) =>
+      [...panel.querySelectorAll('button, input, select, textarea, summary')]
+        .map((one) => [one.outerHTML.slice(0, 60), one.getBoundingClientRect()])
+        .filter(([, { width, height }]) => width < 24 || height < 24)
+        .map(([html]) => html),
+    );
     assert.deepEqual(small, []);
   }
   await shoot(ann, 'record-1440');
@@ -75,7 +87,10 @@ test('two people check entries, decide and sign; it is there after a reload, in 
 
   const [download] = await Promise.all([ben.waitForEvent('download'), ben.getByRole('button', { name: 'JSON' }).click()]);
   const saved = JSON.parse((await bytesOf(download)).toString());
-  assert.deepEqual([saved.format, saved.decisions[0].decision, saved.signatures[0].name], ['beamroom-record', 'accept-with-changes', 'B. Example']);
+  assert.deepEqual(
+    [saved.format, saved.decisions[0].decision, saved.signatures[0].name],
+    ['beamroom-record', 'accept-with-changes', 'B. Example'],
+  );
 
   await ann.getByRole('button', { name: 'Page to print' }).click();
   await ann.getByRole('heading', { name: 'Record of a plan review' }).waitFor();
@@ -87,10 +102,23 @@ test('two people check entries, decide and sign; it is there after a reload, in 
     assert.match(text, /Researchuseonly/);
     assert.ok(text.includes(`Page${at + 1}of${pages.length}`), text);
   }
-  const narrow = await ann.locator('.record-table th, .record-table td').evaluateAll((cells) => cells.map((cell) => [cell.textContent, cell.offsetWidth / cell.closest('table').offsetWidth]).filter(([, part]) => part < 0.085));
+  const narrow = await ann
+    .locator('.record-table th, .record-table td')
+    .evaluateAll((cells) =>
+      cells.map((cell) => [cell.textContent, cell.offsetWidth / cell.closest('table').offsetWidth]).filter(([, part]) => part < 0.085),
+    );
   assert.deepEqual(narrow, [], 'no column is squeezed by a long text beside it');
   const all = pages.join('');
-  for (const words of [saved.plan_revision, 'Accept with changes', 'Less gap', 'Mucosa above 10 Gy(w)', 'B. Example', 'Blood samples are in', 'not electronic signatures']) assert.ok(all.includes(squeezed(words)), words);
+  for (const words of [
+    saved.plan_revision,
+    'Accept with changes',
+    'Less gap',
+    'Mucosa above 10 Gy(w)',
+    'B. Example',
+    'Blood samples are in',
+    'not electronic signatures',
+  ])
+    assert.ok(all.includes(squeezed(words)), words);
   await ann.getByRole('button', { name: 'Close' }).click();
   await ann.locator('.record-print').waitFor({ state: 'detached' });
 });

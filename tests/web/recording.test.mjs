@@ -9,8 +9,12 @@ import { action, enter as enterAs, openRoster as open } from './people.mjs';
 
 describe('a recorded meeting', { skip: missing && `${missing} is not there` }, () => {
   let world;
-  before(async () => { world = await startWorld(); });
-  after(async () => { await world?.stop(); });
+  before(async () => {
+    world = await startWorld();
+  });
+  after(async () => {
+    await world?.stop();
+  });
 
   it('is said to everybody while it runs, and its replay is no live meeting', async () => {
     const room = await world.newRoom();
@@ -61,10 +65,15 @@ describe('a recorded meeting', { skip: missing && `${missing} is not there` }, (
     const play = ann.getByRole('button', { name: /^Play the recording/ }).locator('visible=true');
     await play.waitFor();
     await ann.locator('#saved', { hasText: /^Saved$/ }).waitFor();
-    execFileSync('python3', ['-c', `import sqlite3, sys
+    execFileSync('python3', [
+      '-c',
+      `import sqlite3, sys
 db = sqlite3.connect(sys.argv[1], timeout=30)
 db.execute('DELETE FROM recording_batches WHERE room = ?', (sys.argv[2],))
-db.commit()`, join(world.daemon.data, 'beamroom.db'), room]);
+db.commit()`,
+      join(world.daemon.data, 'beamroom.db'),
+      room,
+    ]);
     const opened = ann.context().waitForEvent('page');
     await play.click();
     const replay = await opened;

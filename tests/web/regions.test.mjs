@@ -59,30 +59,34 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
 
   const patch = (room, body) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', body, { 'If-Match': '*' });
 
-  later('a region beyond the limit of triangles is named in the picture and in the tree, with the reason, until it is shown in another way', async () => {
-    const room = await world.newRoom('foam');
-    await patch(room, { regions: { foam: { visible: false } } });
-    const page = await world.newPage(`#/rooms/${room}`);
-    await full(page);
-    assert.equal(await page.locator('.legend.missing').count(), 0);
-    await patch(room, { regions: { foam: { visible: true, representation: 'univels' }, block: { representation: 'univels' } } });
-    const legend = page.locator('[data-view="1"] .legend.missing');
-    await legend.waitFor();
-    assert.match(await legend.textContent(), /Not drawn: foam/);
-    assert.match(await legend.locator('button').getAttribute('title'), /foam.*40000000/);
-    assert.match(await page.locator('[data-region="foam"] .refused').getAttribute('aria-label'), /40000000/);
-    assert.equal(await page.locator('[data-region="block"] .refused').count(), 0);
-    await full(page); // the picture of the others is whole, and at rest
-    await shoot(page, 'regions-beyond-limit');
-    await patch(room, { regions: { foam: { visible: false } } });
-    await legend.waitFor({ state: 'detached' });
-    await page.context().close();
-  });
+  later(
+    'a region beyond the limit of triangles is named in the picture and in the tree, with the reason, until it is shown in another way',
+    async () => {
+      const room = await world.newRoom('foam');
+      await patch(room, { regions: { foam: { visible: false } } });
+      const page = await world.newPage(`#/rooms/${room}`);
+      await full(page);
+      assert.equal(await page.locator('.legend.missing').count(), 0);
+      await patch(room, { regions: { foam: { visible: true, representation: 'univels' }, block: { representation: 'univels' } } });
+      const legend = page.locator('[data-view="1"] .legend.missing');
+      await legend.waitFor();
+      assert.match(await legend.textContent(), /Not drawn: foam/);
+      assert.match(await legend.locator('button').getAttribute('title'), /foam.*40000000/);
+      assert.match(await page.locator('[data-region="foam"] .refused').getAttribute('aria-label'), /40000000/);
+      assert.equal(await page.locator('[data-region="block"] .refused').count(), 0);
+      await full(page); // the picture of the others is whole, and at rest
+      await shoot(page, 'regions-beyond-limit');
+      await patch(room, { regions: { foam: { visible: false } } });
+      await legend.waitFor({ state: 'detached' });
+      await page.context().close();
+    },
+  );
 
   once('a view that cannot be drawn says so in its place, also to who comes later, until it can be', async () => {
     const room = await world.newRoom('balls');
     const other = await Client.open(world.daemon.url, `/api/v1/rooms/${room}/ws`); // the first one presents
-    const look = (position_mm) => other.send({ type: 'view.patch', view: 1, patch: { camera: { position_mm, target_mm: [0, 0, 0], up: [0, 0, 1] } } });
+    const look = (position_mm) =>
+      other.send({ type: 'view.patch', view: 1, patch: { camera: { position_mm, target_mm: [0, 0, 0], up: [0, 0, 1] } } });
     other.send({ type: 'hello', protocol: 2 });
     other.send({ type: 'view.open', view: 1, document: { size_px: [64, 64] }, follow: true });
     await other.message('members');
@@ -104,7 +108,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     await late.context().close();
   });
 
-  once('the tree shows every region\'s volume; the slider takes its place under the pointer and the focus', async () => {
+  once("the tree shows every region's volume; the slider takes its place under the pointer and the focus", async () => {
     const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
     await full(page);
     const volume = page.locator('[data-region="ball"] .volume');

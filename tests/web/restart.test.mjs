@@ -7,10 +7,16 @@ import { test } from 'node:test';
 import { bin, call } from '../api/daemon.mjs';
 import { full, missing, startWorld } from './browser.mjs';
 
-test('a renderer that stops again and again: every pane says why and counts down to the next try, over the last picture', { skip: missing && `${missing} is missing` }, async () => {
+test('a renderer that stops again and again: every pane says why and counts down to the next try, over the last picture', {
+  skip: missing && `${missing} is missing`,
+}, async () => {
   const folder = mkdtempSync(join(tmpdir(), 'beamroom-restart-'));
-  const broken = join(folder, 'broken'), renderer = join(folder, 'renderer.sh');
-  writeFileSync(renderer, `#!/bin/sh\ncase "$*" in *--socket-fd*) [ -e ${broken} ] && kill -9 $$;; esac\nexec ${resolve(bin, 'beamroom-render')} "$@"\n`);
+  const broken = join(folder, 'broken'),
+    renderer = join(folder, 'renderer.sh');
+  writeFileSync(
+    renderer,
+    `#!/bin/sh\ncase "$*" in *--socket-fd*) [ -e ${broken} ] && kill -9 $$;; esac\nexec ${resolve(bin, 'beamroom-render')} "$@"\n`,
+  );
   chmodSync(renderer, 0o755);
   const world = await startWorld({ args: ['--renderer', renderer, '--plan-idle-close', '1'] });
   try {
@@ -22,7 +28,10 @@ test('a renderer that stops again and again: every pane says why and counts down
     await page.locator('.pane .cover', { hasText: 'the plan was closed' }).first().waitFor();
     await call(`${world.daemon.url}/api/v1/plans/phantom/open`, 'POST');
     for (const seconds of [4, 3]) // the third pause, and a second later
-      await page.locator('.pane .cover', { hasText: `The renderer stopped (signal 9); it is started again in ${seconds} s.` }).first().waitFor();
+      await page
+        .locator('.pane .cover', { hasText: `The renderer stopped (signal 9); it is started again in ${seconds} s.` })
+        .first()
+        .waitFor();
     assert.equal(await page.locator('.pane .cover', { hasText: 'it is started again in' }).count(), await page.locator('.pane').count());
     rmSync(broken);
     await full(page);

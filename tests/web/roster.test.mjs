@@ -16,8 +16,12 @@ const words = async (page, name) => (await row(page, name).textContent()).replac
 
 describe('the roster', { skip: missing && `${missing} is not there` }, () => {
   let world;
-  before(async () => { world = await startWorld(); });
-  after(async () => { await world?.stop(); });
+  before(async () => {
+    world = await startWorld();
+  });
+  after(async () => {
+    await world?.stop();
+  });
 
   const enter = (...how) => enterAs(world, ...how);
 
@@ -91,7 +95,10 @@ describe('the roster', { skip: missing && `${missing} is not there` }, () => {
     await one.locator('.invite-button').click();
     await one.locator('#invite-role').selectOption('observer');
     await one.locator('.invite-form button', { hasText: 'Make link' }).click();
-    const link = await ask(() => one.locator('#invite-made').inputValue(), (text) => text !== '');
+    const link = await ask(
+      () => one.locator('#invite-made').inputValue(),
+      (text) => text !== '',
+    );
     assert.match(link, new RegExp(`#/rooms/${room}\\?link=[0-9a-f]{32}$`));
     assert.equal(await one.locator('.invite-form a').getAttribute('href'), `${world.daemon.url}/display/${room}`);
     assert.deepEqual(await axe(one), []);

@@ -9,7 +9,9 @@ import { full, missing, startWorld } from './browser.mjs';
 const disk = new FullDisk();
 const skip = missing ? `${missing} is not there` : disk.missing || false;
 let world;
-before(async () => { if (!skip) world = await startWorld({ data: disk.data, args: ['--stub'] }); });
+before(async () => {
+  if (!skip) world = await startWorld({ data: disk.data, args: ['--stub'] });
+});
 after(async () => {
   await world?.stop();
   disk.remove();
@@ -18,12 +20,13 @@ after(async () => {
 it('a full disk is said in a line over the panes until it is fine again', { skip }, async () => {
   const room = await world.newRoom();
   const page = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1100, height: 800 } });
-  const patch = (center) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { image: { window: { center } } }, { 'If-Match': '*' });
+  const patch = (center) =>
+    call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { image: { window: { center } } }, { 'If-Match': '*' });
   const line = page.getByRole('alert').filter({ hasText: 'what is changed now is not kept' });
   await full(page);
   await page.locator('#saved', { hasText: /^Saved$/ }).waitFor();
   disk.fill(world.daemon.child);
-  for (let n = 0; n < 300 && !await line.count(); n++) await patch(n); // what is left of the last block is used up
+  for (let n = 0; n < 300 && !(await line.count()); n++) await patch(n); // what is left of the last block is used up
   await line.waitFor();
   assert.match(await line.innerText(), disk.code === 'full' ? /The server's disk is full/ : /The server cannot write to its disk/);
   await page.locator('#saved', { hasText: 'Not saved' }).waitFor();

@@ -32,14 +32,23 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     const [download] = await Promise.all([page.waitForEvent('download'), menu(page, 'Save the active pane as PNG')]);
     return { name: download.suggestedFilename(), bytes: await bytesOf(download) };
   };
-  const drop = (page, bytes, name = 'picture.png') => page.evaluate(([data, as]) => {
-    const transfer = new DataTransfer();
-    transfer.items.add(new File([Uint8Array.from(data)], as));
-    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
-  }, [[...bytes], name]);
+  const drop = (page, bytes, name = 'picture.png') =>
+    page.evaluate(
+      ([data, as]) => {
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([Uint8Array.from(data)], as));
+        document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
+      },
+      [[...bytes], name],
+    );
   const patch = (room, change) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', change, { 'If-Match': '*' });
   /** The picture that the server draws of the room's scene with the first view's camera. */
-  const drawn = async (room, view) => Buffer.from(await (await fetch(`${world.daemon.url}/api/v1/rooms/${room}/snapshot?view=${encodeURIComponent(JSON.stringify(view))}`)).arrayBuffer());
+  const drawn = async (room, view) =>
+    Buffer.from(
+      await (
+        await fetch(`${world.daemon.url}/api/v1/rooms/${room}/snapshot?view=${encodeURIComponent(JSON.stringify(view))}`)
+      ).arrayBuffer(),
+    );
 
   once('are saved with a caption and, dropped on the page, bring scene and view back', async () => {
     const room = await world.newRoom();
@@ -53,18 +62,28 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     const { scene_revision: revision } = await header(page, 1);
     const plain = await drawn(room, { size_px: [200, 150] });
 
-    await patch(room, { regions: { scalp: { visible: false }, brain: { opacity: 0.9, color: '#00ff00' } }, image: { window: { width: 90 }, slices: { axial: { position_mm: -20 } } }, surface: { normals: 'face' } });
+    await patch(room, {
+      regions: { scalp: { visible: false }, brain: { opacity: 0.9, color: '#00ff00' } },
+      image: { window: { width: 90 }, slices: { axial: { position_mm: -20 } } },
+      surface: { normals: 'face' },
+    });
     await newer(page, 1, revision);
     await page.locator('#picture-1').focus();
     await page.keyboard.press('ArrowLeft');
     await page.keyboard.press('ArrowUp');
-    await page.waitForFunction((old) => globalThis.beamroom.stats().headers[1].clip_from_lps_mm.some((value, at) => Math.abs(value - old[at]) > 1e-4), Object.values(matrix));
+    await page.waitForFunction(
+      (old) => globalThis.beamroom.stats().headers[1].clip_from_lps_mm.some((value, at) => Math.abs(value - old[at]) > 1e-4),
+      Object.values(matrix),
+    );
     assert.notDeepEqual(await world.scene(room), before);
     assert.ok(!plain.equals(await drawn(room, { size_px: [200, 150] })));
 
     await drop(page, bytes);
     await page.getByText('Scene and view are as in the picture').waitFor();
-    await page.waitForFunction((old) => globalThis.beamroom.stats().headers[1].clip_from_lps_mm.every((value, at) => Math.abs(value - old[at]) < 1e-5), Object.values(matrix));
+    await page.waitForFunction(
+      (old) => globalThis.beamroom.stats().headers[1].clip_from_lps_mm.every((value, at) => Math.abs(value - old[at]) < 1e-5),
+      Object.values(matrix),
+    );
     await full(page, 1);
     assert.deepEqual(await world.scene(room), before);
     assert.ok(plain.equals(await drawn(room, { size_px: [200, 150] })));
@@ -139,18 +158,30 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await menu(page, /Report to print/);
     const dialog = page.getByRole('dialog', { name: 'Report to print' });
     await dialog.waitFor();
-    assert.deepEqual(await dialog.locator('img').evaluateAll((images) => images.map(({ alt }) => alt.split(' ')[2])), ['3-D', 'Axial', 'Sagittal']);
+    assert.deepEqual(await dialog.locator('img').evaluateAll((images) => images.map(({ alt }) => alt.split(' ')[2])), [
+      '3-D',
+      'Axial',
+      'Sagittal',
+    ]);
     await dialog.getByLabel('Caption of Figure 2').fill('Tumour in the slice of its middle');
     await dialog.getByRole('button', { name: 'Figure 2 earlier' }).click();
     await dialog.getByRole('button', { name: 'Remove Figure 3' }).click();
     assert.equal(await dialog.locator('figure').count(), 2);
     await dialog.locator('.printout-bar button.primary:enabled').waitFor();
-    await page.waitForFunction(() => [...document.querySelectorAll('[aria-label="Figures of the regions"] tbody tr')].length === 5 && !document.querySelector('.numbers-table').innerText.includes('…'));
+    await page.waitForFunction(
+      () =>
+        [...document.querySelectorAll('[aria-label="Figures of the regions"] tbody tr')].length === 5 &&
+        !document.querySelector('.numbers-table').innerText.includes('…'),
+    );
     await shoot(page, 'printout');
 
     const pages = textOfPages(await page.pdf({ preferCSSPageSize: true, path: 'build/test-artifacts/printout.pdf' }));
     assert.ok(pages.length >= 2 && pages.length <= 6, `${pages.length} pages`);
-    for (const text of pages) assert.match(text, /Phantom: modified Snyder head · printed \d{4}-\d\d-\d\d \d\d:\d\d UTC · revision 1For research and plan review\. Not a medical device/);
+    for (const text of pages)
+      assert.match(
+        text,
+        /Phantom: modified Snyder head · printed \d{4}-\d\d-\d\d \d\d:\d\d UTC · revision 1For research and plan review\. Not a medical device/,
+      );
     const whole = pages.join('\n');
     pages.forEach((text, i) => assert.ok(text.startsWith(`Page ${i + 1} of ${pages.length}`), text));
     assert.match(pages[0], /^Page 1 of \dPhantom: modified Snyder headPlan/);
@@ -161,14 +192,24 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     assert.ok(Math.min(left, posterior, superior) > 0, 'so that the letters are the same: L, P, S');
     assert.match(whole, new RegExp(`Crosshair at L ${left}, P ${posterior}, S ${superior} mm, CT [\\d.]+ HU, in tumour`));
     const { json: plan } = await call(`${world.daemon.url}/api/v1/plans/phantom`);
-    const { json: surface } = await call(`${world.daemon.url}/api/v1/plans/phantom/regions/tumour/surface?representation=surface&algorithm=smooth`);
+    const { json: surface } = await call(
+      `${world.daemon.url}/api/v1/plans/phantom/regions/tumour/surface?representation=surface&algorithm=smooth`,
+    );
     const tumour = plan.regions.find(({ id }) => id === 'tumour');
-    assert.ok(whole.includes(`tumour${tumour.voxels}${tumour.volume_cm3.toFixed(2)}smooth${surface.triangles}${(surface.area_mm2 / 100).toFixed(1)}${(surface.volume_mm3 / 1000).toFixed(2)}`), whole);
+    assert.ok(
+      whole.includes(
+        `tumour${tumour.voxels}${tumour.volume_cm3.toFixed(2)}smooth${surface.triangles}${(surface.area_mm2 / 100).toFixed(1)}${(surface.volume_mm3 / 1000).toFixed(2)}`,
+      ),
+      whole,
+    );
     assert.ok(!/Print or save|Remove|Latency/.test(whole), 'no controls on paper');
 
-    for (let i = 0; i < 12; i++) { // the focus stays in the report
+    for (let i = 0; i < 12; i++) {
+      // the focus stays in the report
       await page.keyboard.press('Tab');
-      assert.ok(await page.evaluate(() => document.activeElement === document.body || Boolean(document.activeElement.closest('.printout'))));
+      assert.ok(
+        await page.evaluate(() => document.activeElement === document.body || Boolean(document.activeElement.closest('.printout'))),
+      );
     }
     await page.keyboard.press('Escape');
     await dialog.waitFor({ state: 'detached' });

@@ -9,7 +9,10 @@ import { call, openPlan } from '../api/daemon.mjs';
 import { Client } from '../api/ws_client.mjs';
 import { axe } from './axe.mjs';
 import { full, isDue, later, missing, once, shoot, startWorld } from './browser.mjs';
-const sizes = [[1280, 720], [390, 844]];
+const sizes = [
+  [1280, 720],
+  [390, 844],
+];
 
 describe('the start page', { skip: missing && `${missing} is not there` }, () => {
   let world;
@@ -29,32 +32,55 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     return page;
   };
   /** areForced: the browser paints in forced colours, which axe-core does not know: it measures the contrast of those in the style sheets. */
-  const isClean = async (page, state, areForced = false) => assert.deepEqual((await axe(page)).filter((line) => !areForced || !line.startsWith('color-contrast:')), [], state);
+  const isClean = async (page, state, areForced = false) =>
+    assert.deepEqual(
+      (await axe(page)).filter((line) => !areForced || !line.startsWith('color-contrast:')),
+      [],
+      state,
+    );
 
   /** Pairs of texts, fields and icons of which one lies over the other, as far as each can be seen. */
-  const overlaps = (page) => page.evaluate(() => {
-    const clipped = (element) => {
-      let { left, top, right, bottom } = element.getBoundingClientRect();
-      for (let outer = element.parentElement; outer; outer = outer.parentElement) {
-        if (getComputedStyle(outer).clipPath !== 'none') return null; // read out, not seen
-        if (getComputedStyle(outer).overflowY === 'visible') continue;
-        const box = outer.getBoundingClientRect();
-        [left, top, right, bottom] = [Math.max(left, box.left), Math.max(top, box.top), Math.min(right, box.right), Math.min(bottom, box.bottom)];
-      }
-      return getComputedStyle(element).clipPath === 'none' && right - left > 1 && bottom - top > 1 ? { left, top, right, bottom } : null;
-    };
-    const isSticky = (element) => element.closest('.start > .banner'); // lies over what is scrolled under it, by design
-    const leaves = [...document.querySelectorAll('.start *')].filter((element) => element.checkVisibility() && element.localName !== 'option' && !element.closest('svg svg, path, dialog') && element.type !== 'file'
-      && ((!element.children.length && element.textContent.trim()) || ['input', 'img', 'svg'].includes(element.localName)) && element.namespaceURI.endsWith(element.localName === 'svg' ? 'svg' : 'xhtml'));
-    const boxes = leaves.map((element) => ({ element, box: clipped(element) })).filter(({ box }) => box);
-    const found = [];
-    for (const [i, a] of boxes.entries()) for (const b of boxes.slice(i + 1)) {
-      if (isSticky(a.element) !== isSticky(b.element) || a.element.closest('.search') && b.element.closest('.search')) continue;
-      const [width, height] = [Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left), Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top)];
-      if (width > 1 && height > 1) found.push([a, b].map(({ element }) => (element.textContent.trim() || element.localName).slice(0, 40)).join(' / '));
-    }
-    return found;
-  });
+  const overlaps = (page) =>
+    page.evaluate(() => {
+      const clipped = (element) => {
+        let { left, top, right, bottom } = element.getBoundingClientRect();
+        for (let outer = element.parentElement; outer; outer = outer.parentElement) {
+          if (getComputedStyle(outer).clipPath !== 'none') return null; // read out, not seen
+          if (getComputedStyle(outer).overflowY === 'visible') continue;
+          const box = outer.getBoundingClientRect();
+          [left, top, right, bottom] = [
+            Math.max(left, box.left),
+            Math.max(top, box.top),
+            Math.min(right, box.right),
+            Math.min(bottom, box.bottom),
+          ];
+        }
+        return getComputedStyle(element).clipPath === 'none' && right - left > 1 && bottom - top > 1 ? { left, top, right, bottom } : null;
+      };
+      const isSticky = (element) => element.closest('.start > .banner'); // lies over what is scrolled under it, by design
+      const leaves = [...document.querySelectorAll('.start *')].filter(
+        (element) =>
+          element.checkVisibility() &&
+          element.localName !== 'option' &&
+          !element.closest('svg svg, path, dialog') &&
+          element.type !== 'file' &&
+          ((!element.children.length && element.textContent.trim()) || ['input', 'img', 'svg'].includes(element.localName)) &&
+          element.namespaceURI.endsWith(element.localName === 'svg' ? 'svg' : 'xhtml'),
+      );
+      const boxes = leaves.map((element) => ({ element, box: clipped(element) })).filter(({ box }) => box);
+      const found = [];
+      for (const [i, a] of boxes.entries())
+        for (const b of boxes.slice(i + 1)) {
+          if (isSticky(a.element) !== isSticky(b.element) || (a.element.closest('.search') && b.element.closest('.search'))) continue;
+          const [width, height] = [
+            Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left),
+            Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top),
+          ];
+          if (width > 1 && height > 1)
+            found.push([a, b].map(({ element }) => (element.textContent.trim() || element.localName).slice(0, 40)).join(' / '));
+        }
+      return found;
+    });
 
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'beamroom-start-'));
@@ -63,7 +89,10 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
       writeFileSync(join(folder, 'plans', name, 'a.txt'), 'no plan at all');
     }
     mkdirSync(join(folder, 'plans/broken'), { recursive: true });
-    writeFileSync(join(folder, 'plans/broken/plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Broken', images: [{ id: 'ct', path: 'ct.nii' }] }));
+    writeFileSync(
+      join(folder, 'plans/broken/plan.json'),
+      JSON.stringify({ format: 'beamroom-plan', version: 1, name: 'Broken', images: [{ id: 'ct', path: 'ct.nii' }] }),
+    );
     world = await startWorld({ plans: [join(folder, 'plans')], args: ['--max-renderers', '2'] });
   });
   after(async () => {
@@ -76,7 +105,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     const page = await newPage();
     await page.locator('.folders summary', { hasText: '2 folders are not plans' }).waitFor();
     assert.equal(await page.locator('.refusal').count(), 1, 'of the broken plan alone');
-    assert.ok(!await page.locator('.folders li').first().isVisible());
+    assert.ok(!(await page.locator('.folders li').first().isVisible()));
     await page.locator('.folders summary').press('Enter');
     assert.deepEqual(await page.locator('.folders li code').allTextContents(), ['letters', 'photos']);
     await isClean(page, 'list with a refused plan and folders');
@@ -91,10 +120,13 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     assert.equal((await call(`${world.daemon.url}/api/v1/plans/phantom`)).json.state, 'not-loaded');
     await openPlan(world.daemon.url, 'phantom');
     await thumbnail.waitFor();
-    assert.deepEqual(await thumbnail.evaluate(async (image) => {
-      await image.decode();
-      return [image.naturalWidth, image.naturalHeight];
-    }), [192, 116]);
+    assert.deepEqual(
+      await thumbnail.evaluate(async (image) => {
+        await image.decode();
+        return [image.naturalWidth, image.naturalHeight];
+      }),
+      [192, 116],
+    );
     await page.context().close();
   });
 
@@ -109,7 +141,10 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     assert.match(await row.textContent(), /Dr Alvarez/);
     await row.getByRole('button').click();
     await full(page);
-    assert.deepEqual((await call(`${world.daemon.url}/api/v1/rooms/${room}`)).json.members.map(({ name }) => name).sort(), ['Dr Alvarez', 'Maija']);
+    assert.deepEqual((await call(`${world.daemon.url}/api/v1/rooms/${room}`)).json.members.map(({ name }) => name).sort(), [
+      'Dr Alvarez',
+      'Maija',
+    ]);
     await page.goto(`${world.daemon.url}/#/`);
     await page.locator('[data-plan]').first().waitFor();
     assert.equal(await page.locator('main .own-name').count(), 0, 'asked once');
@@ -124,7 +159,9 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
   once('a full server says so for itself, and the plan is not refused', async () => {
     const page = await newPage();
     const second = await upload(page, 'Second');
-    const { json: { id: room } } = await call(`${world.daemon.url}/api/v1/rooms`, 'POST', { plan: second });
+    const {
+      json: { id: room },
+    } = await call(`${world.daemon.url}/api/v1/rooms`, 'POST', { plan: second });
     for (const name of ['Chen', 'Dr B']) await enter(room, name);
     const id = await upload(page, 'Third');
     await page.locator(`[data-plan="${id}"] button`, { hasText: 'Open' }).click(); // people look at the two plans that may be open
@@ -186,7 +223,11 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
         const page = await newPage('', { viewport: { width, height }, forcedColors });
         const check = async (state) => {
           await isClean(page, state, forcedColors === 'active');
-          const wide = await page.evaluate(() => [...document.querySelectorAll('.start *')].filter((element) => element.checkVisibility() && element.getBoundingClientRect().right > innerWidth + 0.5).map((element) => element.outerHTML.slice(0, 80)));
+          const wide = await page.evaluate(() =>
+            [...document.querySelectorAll('.start *')]
+              .filter((element) => element.checkVisibility() && element.getBoundingClientRect().right > innerWidth + 0.5)
+              .map((element) => element.outerHTML.slice(0, 80)),
+          );
           assert.deepEqual(wide, [], state);
         };
         await page.locator('.thumb img').first().waitFor();
@@ -195,12 +236,18 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
         await page.locator('button', { hasText: 'Join a room' }).click();
         await check('joining');
         await page.keyboard.press('Escape');
-        await page.route('**/api/v1/plans/phantom/open', (route) => route.fulfill({ json: { id: 'j', state: 'running', phase: 'regions', percent: 58 } }));
-        await page.route('**/api/v1/jobs/j', (route) => route.fulfill({ json: { id: 'j', state: 'running', phase: 'regions', percent: 58 } }));
+        await page.route('**/api/v1/plans/phantom/open', (route) =>
+          route.fulfill({ json: { id: 'j', state: 'running', phase: 'regions', percent: 58 } }),
+        );
+        await page.route('**/api/v1/jobs/j', (route) =>
+          route.fulfill({ json: { id: 'j', state: 'running', phase: 'regions', percent: 58 } }),
+        );
         await page.locator('[data-plan="phantom"] button', { hasText: 'Open' }).click();
         await page.getByRole('progressbar').waitFor();
         await check('loading');
-        await page.locator('[aria-label="Files of a plan"]').setInputFiles([{ name: 'notes.zip', mimeType: 'application/zip', buffer: Buffer.from('no archive at all') }]);
+        await page
+          .locator('[aria-label="Files of a plan"]')
+          .setInputFiles([{ name: 'notes.zip', mimeType: 'application/zip', buffer: Buffer.from('no archive at all') }]);
         await page.locator('.upload input[name="name"]').waitFor();
         await check('naming an upload');
         await page.locator('.upload input[name="name"]').press('Enter');
@@ -215,17 +262,24 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
         await page.context().close();
       });
 
-  for (const [width, height, options] of [[1600, 1000, {}], [1280, 720, {}], [1180, 820, { hasTouch: true, isMobile: true }], [390, 844, { hasTouch: true, isMobile: true }]].filter(([size]) => isDue(size === 1280 || size === 390)))
+  for (const [width, height, options] of [
+    [1600, 1000, {}],
+    [1280, 720, {}],
+    [1180, 820, { hasTouch: true, isMobile: true }],
+    [390, 844, { hasTouch: true, isMobile: true }],
+  ].filter(([size]) => isDue(size === 1280 || size === 390)))
     it(`at ${width} x ${height}, no text lies over another or over a control, and every plan shows its parts and its state`, async () => {
       const page = await newPage('', { viewport: { width, height }, ...options });
       await page.locator('.thumb img').first().waitFor();
       await shoot(page, `start-list-${width}`);
       assert.deepEqual(await overlaps(page), []);
-      for (const part of ['.parts .tag', '.plan-state span', '.title code']) assert.ok(await page.locator(`[data-plan="phantom"] ${part}`).first().isVisible(), part);
-      if (options.hasTouch) for (const control of await page.locator('.start button:visible, .start summary:visible').all()) {
-        const box = await control.boundingBox();
-        assert.ok(box.height >= 24 && box.width >= 24, `${await control.textContent()}: ${box.width} x ${box.height}`);
-      }
+      for (const part of ['.parts .tag', '.plan-state span', '.title code'])
+        assert.ok(await page.locator(`[data-plan="phantom"] ${part}`).first().isVisible(), part);
+      if (options.hasTouch)
+        for (const control of await page.locator('.start button:visible, .start summary:visible').all()) {
+          const box = await control.boundingBox();
+          assert.ok(box.height >= 24 && box.width >= 24, `${await control.textContent()}: ${box.width} x ${box.height}`);
+        }
       await page.context().close();
     });
 
@@ -240,7 +294,13 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
         if (element === document.body) return null;
         const { y, x } = element.getBoundingClientRect();
         const region = element.closest('.banner, main, aside, footer')?.className || element.closest('main')?.tagName || '';
-        return { name: element.getAttribute('aria-label') || element.labels?.[0]?.textContent.trim() || element.textContent.trim(), region, ring: getComputedStyle(element).outlineStyle, x, y };
+        return {
+          name: element.getAttribute('aria-label') || element.labels?.[0]?.textContent.trim() || element.textContent.trim(),
+          region,
+          ring: getComputedStyle(element).outlineStyle,
+          x,
+          y,
+        };
       });
       if (!found) break;
       seen.push(found);
@@ -248,9 +308,19 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     for (const { name, ring } of seen) assert.notEqual(ring, 'none', name);
     const regions = seen.map(({ region }) => region);
     assert.deepEqual([...new Set(regions)], ['banner', 'MAIN', 'load-report']);
-    assert.deepEqual(regions, [...regions].sort((a, b) => ['banner', 'MAIN', 'load-report'].indexOf(a) - ['banner', 'MAIN', 'load-report'].indexOf(b)));
+    assert.deepEqual(
+      regions,
+      [...regions].sort((a, b) => ['banner', 'MAIN', 'load-report'].indexOf(a) - ['banner', 'MAIN', 'load-report'].indexOf(b)),
+    );
     const names = seen.map(({ name }) => name);
-    for (const name of ['Find a plan', 'Join a room', 'Your name, as others in a room see it', 'Open Phantom: modified Snyder head', 'Choose files', 'Choose a folder'])
+    for (const name of [
+      'Find a plan',
+      'Join a room',
+      'Your name, as others in a room see it',
+      'Open Phantom: modified Snyder head',
+      'Choose files',
+      'Choose a folder',
+    ])
       assert.ok(names.includes(name), `${name} is among ${names.join(' | ')}`);
     await page.context().close();
   });
@@ -259,9 +329,13 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
 
   /** Sends a copy of a small plan. @returns {Promise<string>} its id */
   async function upload(page, name) {
-    const header = Buffer.from('NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 8 8 8\nspace directions: (10,0,0) (0,10,0) (0,0,10)\nspace origin: (0,0,0)\nendian: little\nencoding: raw\n\n');
+    const header = Buffer.from(
+      'NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 8 8 8\nspace directions: (10,0,0) (0,10,0) (0,0,10)\nspace origin: (0,0,0)\nendian: little\nencoding: raw\n\n',
+    );
     const body = Buffer.concat([header, Buffer.alloc(2 * 8 ** 3, 1)]);
-    await page.locator('[aria-label="Files of a plan"]').setInputFiles([{ name: 'ct.nrrd', mimeType: 'application/octet-stream', buffer: body }]);
+    await page
+      .locator('[aria-label="Files of a plan"]')
+      .setInputFiles([{ name: 'ct.nrrd', mimeType: 'application/octet-stream', buffer: body }]);
     await page.locator('.upload input[name="name"]').fill(name);
     await page.keyboard.press('Enter');
     const id = name.toLowerCase();

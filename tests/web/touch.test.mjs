@@ -12,8 +12,12 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
   let page;
   let touch; // (type, points) as the screen tells the browser
 
-  before(async () => { world = await startWorld(); });
-  after(async () => { await world?.stop(); });
+  before(async () => {
+    world = await startWorld();
+  });
+  after(async () => {
+    await world?.stop();
+  });
 
   const open = async () => {
     room = await world.newRoom();
@@ -30,13 +34,20 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
   const gesture = async (from, to, { steps = 8 } = {}) => {
     await touch('touchStart', from);
     for (let step = 1; step <= steps; step++)
-      await touch('touchMove', from.map(([x, y], finger) => [x + ((to[finger][0] - x) * step) / steps, y + ((to[finger][1] - y) * step) / steps]));
+      await touch(
+        'touchMove',
+        from.map(([x, y], finger) => [x + ((to[finger][0] - x) * step) / steps, y + ((to[finger][1] - y) * step) / steps]),
+      );
     await touch('touchEnd', []);
   };
   const matrixOf = async (view) => Object.values((await header(page, view)).clip_from_lps_mm);
   /** Until a picture with another matrix has come to rest. */
   const turned = async (view, before) => {
-    await page.waitForFunction(([n, old]) => Object.values(globalThis.beamroom.stats().headers[n].clip_from_lps_mm).some((value, at) => Math.abs(value - old[at]) > 1e-4), [view, before]);
+    await page.waitForFunction(
+      ([n, old]) =>
+        Object.values(globalThis.beamroom.stats().headers[n].clip_from_lps_mm).some((value, at) => Math.abs(value - old[at]) > 1e-4),
+      [view, before],
+    );
     await full(page, view);
     return matrixOf(view);
   };
@@ -73,13 +84,39 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await open();
     const [x, y] = await middle(1);
     const before = await matrixOf(1);
-    await gesture([[x - 40, y], [x + 40, y]], [[x - 10, y + 30], [x + 70, y + 30]]);
-    const moved = await until(() => matrixOf(1), (m) => m[12] > before[12] && m[13] < before[13], 60000);
+    await gesture(
+      [
+        [x - 40, y],
+        [x + 40, y],
+      ],
+      [
+        [x - 10, y + 30],
+        [x + 70, y + 30],
+      ],
+    );
+    const moved = await until(
+      () => matrixOf(1),
+      (m) => m[12] > before[12] && m[13] < before[13],
+      60000,
+    );
     assert.ok(moved[12] > before[12] && moved[13] < before[13], 'to the right and down, as the fingers');
     assert.equal(await page.locator('[data-view="1"] [data-letters]').getAttribute('data-letters'), 'RA LP S I', 'not turned');
-    await gesture([[x - 40, y], [x + 40, y]], [[x - 80, y], [x + 80, y]]);
+    await gesture(
+      [
+        [x - 40, y],
+        [x + 40, y],
+      ],
+      [
+        [x - 80, y],
+        [x + 80, y],
+      ],
+    );
     // perspective: w at the patient's origin is its distance to the eye along the line of sight; moving leaves it, twice the spread lessens it
-    const zoomed = await until(() => matrixOf(1), (m) => m[15] < before[15] * 0.75, 60000);
+    const zoomed = await until(
+      () => matrixOf(1),
+      (m) => m[15] < before[15] * 0.75,
+      60000,
+    );
     assert.ok(zoomed[15] < before[15] * 0.75, `nearer: ${before[15]} mm, then ${zoomed[15]} mm`);
     await page.context().close();
   });
@@ -90,10 +127,18 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     const [x, y] = await middle(2);
     const { scene_revision: revision } = await header(page, 2);
     await gesture([[x - 50, y - 40]], [[x + 30, y + 20]]);
-    await comesNear(async () => pixelOf(2, await crosshairOf()), [x + 30 - box.x, y + 20 - box.y], 1 + halfVoxelPx, 'the crosshair is under the finger');
+    await comesNear(
+      async () => pixelOf(2, await crosshairOf()),
+      [x + 30 - box.x, y + 20 - box.y],
+      1 + halfVoxelPx,
+      'the crosshair is under the finger',
+    );
     const point = await crosshairOf();
     await newer(page, 4, revision);
-    assert.match(await page.locator('[data-view="4"] .where').textContent(), new RegExp(`P ${String(Math.abs(point[1]).toFixed(1)).replace('.', '\\.')}|P .${Math.abs(point[1]).toFixed(1)}`));
+    assert.match(
+      await page.locator('[data-view="4"] .where').textContent(),
+      new RegExp(`P ${String(Math.abs(point[1]).toFixed(1)).replace('.', '\\.')}|P .${Math.abs(point[1]).toFixed(1)}`),
+    );
     await page.context().close();
   });
 
@@ -103,12 +148,35 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     const [x, y] = await middle(2);
     const point = await crosshairOf();
     const at = await pixelOf(2, point);
-    await gesture([[x - 40, y], [x + 40, y]], [[x - 15, y + 35], [x + 65, y + 35]]);
+    await gesture(
+      [
+        [x - 40, y],
+        [x + 40, y],
+      ],
+      [
+        [x - 15, y + 35],
+        [x + 65, y + 35],
+      ],
+    );
     await comesNear(() => pixelOf(2, point), [at[0] + 25, at[1] + 35], 1.5, 'the picture moved with the fingers');
     const held = await pixelOf(2, point);
-    await gesture([[x - 40, y], [x + 40, y]], [[x - 80, y], [x + 80, y]]);
+    await gesture(
+      [
+        [x - 40, y],
+        [x + 40, y],
+      ],
+      [
+        [x - 80, y],
+        [x + 80, y],
+      ],
+    );
     const about = [x - box.x, y - box.y];
-    await comesNear(() => pixelOf(2, point), held.map((value, axis) => about[axis] + 2 * (value - about[axis])), 2.5, 'twice as large about the middle of the fingers');
+    await comesNear(
+      () => pixelOf(2, point),
+      held.map((value, axis) => about[axis] + 2 * (value - about[axis])),
+      2.5,
+      'twice as large about the middle of the fingers',
+    );
     assert.deepEqual(await crosshairOf(), point);
     await shoot(page, 'touch-slice');
     await page.context().close();
@@ -118,8 +186,14 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await open();
     const [x, y] = await middle(1);
     const before = await matrixOf(1);
-    await touch('touchStart', [[x - 40, y], [x + 40, y]]);
-    await touch('touchMove', [[x - 40, y + 20], [x + 40, y + 20]]);
+    await touch('touchStart', [
+      [x - 40, y],
+      [x + 40, y],
+    ]);
+    await touch('touchMove', [
+      [x - 40, y + 20],
+      [x + 40, y + 20],
+    ]);
     await turned(1, before);
     const held = await page.evaluate(() => JSON.stringify(globalThis.beamroom.stats().headers[1].clip_from_lps_mm));
     await touch('touchEnd', [[x - 40, y + 20]]); // what is still down
@@ -139,16 +213,33 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
     await touch('touchStart', [[x, y]]);
     await newer(page, 2, revision);
     await touch('touchEnd', []);
-    await comesNear(async () => pixelOf(2, await crosshairOf()), [20 + box.width / 2, 10 + box.height / 2], 1 + halfVoxelPx, 'under the finger');
+    await comesNear(
+      async () => pixelOf(2, await crosshairOf()),
+      [20 + box.width / 2, 10 + box.height / 2],
+      1 + halfVoxelPx,
+      'under the finger',
+    );
     await page.context().close();
   });
 
   once('every control is large enough for a finger', async () => {
     await open();
-    const small = () => page.evaluate(() => [...document.querySelectorAll('.room button, .room a.button')].filter((button) => button.checkVisibility())
-      .map((button) => ({ name: button.getAttribute('aria-label') ?? button.textContent.trim(), height: button.getBoundingClientRect().height }))
-      .filter(({ height }) => height < 44 && height > 1));
-    const holds = async (where) => assert.deepEqual((await small()).filter(({ name }) => !/^(Full|Live|Reduced|Stale|Link|Disconnected)/.test(name)), [], where);
+    const small = () =>
+      page.evaluate(() =>
+        [...document.querySelectorAll('.room button, .room a.button')]
+          .filter((button) => button.checkVisibility())
+          .map((button) => ({
+            name: button.getAttribute('aria-label') ?? button.textContent.trim(),
+            height: button.getBoundingClientRect().height,
+          }))
+          .filter(({ height }) => height < 44 && height > 1),
+      );
+    const holds = async (where) =>
+      assert.deepEqual(
+        (await small()).filter(({ name }) => !/^(Full|Live|Reduced|Stale|Link|Disconnected)/.test(name)),
+        [],
+        where,
+      );
     await holds('at first');
     await page.locator('.dock button', { hasText: 'Parts' }).tap();
     await page.locator('[role="tab"]', { hasText: 'Regions' }).tap();

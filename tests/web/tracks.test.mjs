@@ -20,8 +20,19 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     const plan = join(folder, 'energies');
     mkdirSync(plan);
     for (const name of ['labels.nii.gz', 'labels.json']) cpSync(join(demo, 'phantom', name), join(plan, name));
-    writeFileSync(join(plan, 'plan.json'), JSON.stringify({ format: 'beamroom-plan', version: 1, regions: [{ path: 'labels.nii.gz', names: 'labels.json' }], tracks: [{ path: 't.csv' }] }));
-    writeFileSync(join(plan, 't.csv'), 'x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,class,energy_mev\n-90,-150,0,90,-150,0,neutron-high,2\n-90,-150,40,90,-150,40,gamma-high,0.478\n0,0,300,0,0,310,lost,\n24,24,34,30,24,42,lost,0.01\n');
+    writeFileSync(
+      join(plan, 'plan.json'),
+      JSON.stringify({
+        format: 'beamroom-plan',
+        version: 1,
+        regions: [{ path: 'labels.nii.gz', names: 'labels.json' }],
+        tracks: [{ path: 't.csv' }],
+      }),
+    );
+    writeFileSync(
+      join(plan, 't.csv'),
+      'x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,class,energy_mev\n-90,-150,0,90,-150,0,neutron-high,2\n-90,-150,40,90,-150,40,gamma-high,0.478\n0,0,300,0,0,310,lost,\n24,24,34,30,24,42,lost,0.01\n',
+    );
     world = await startWorld({ plans: [folder] });
   });
   after(async () => {
@@ -53,14 +64,26 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     await page.locator('#picture-1').focus();
     const revision = (await header(page, 1)).scene_revision;
     await page.keyboard.press('t');
-    await comes((now) => now.tracks.visible, (on) => on === true, 'visible');
+    await comes(
+      (now) => now.tracks.visible,
+      (on) => on === true,
+      'visible',
+    );
     await newer(page, 1, revision);
     await full(page, 1);
-    const { json: { tracks: { segments, classes } } } = await call(`${world.daemon.url}/api/v1/plans/phantom`);
+    const {
+      json: {
+        tracks: { segments, classes },
+      },
+    } = await call(`${world.daemon.url}/api/v1/plans/phantom`);
     assert.equal(await row('').locator('.tail').innerText(), String(segments));
     for (const [id, n] of Object.entries(classes)) assert.equal(await row(id).locator('.tail').innerText(), String(n), id);
     await row('gamma-high').locator('input').uncheck();
-    await comes((now) => now.tracks.classes.gamma_high, (on) => on === false, 'the class that was unchecked');
+    await comes(
+      (now) => now.tracks.classes.gamma_high,
+      (on) => on === false,
+      'the class that was unchecked',
+    );
     await row('').click();
     await page.locator('#track-shown', { hasText: `${segments - classes['gamma-high']} shown` }).waitFor();
     const text = await page.locator('.track-counts').innerText();
@@ -72,23 +95,44 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
   once('by keyboard alone a class is found and hidden, and shown again', async () => {
     const tree = page.locator('.tree [role="tree"]');
     await tree.focus();
-    for (let i = 0; i < 60 && !await row('lost').evaluate((item) => item.classList.contains('current')); i++) await page.keyboard.press('ArrowDown');
+    for (let i = 0; i < 60 && !(await row('lost').evaluate((item) => item.classList.contains('current'))); i++)
+      await page.keyboard.press('ArrowDown');
     await page.keyboard.press(' ');
-    await comes((now) => now.tracks.classes.lost, (on) => on === false, 'hidden');
+    await comes(
+      (now) => now.tracks.classes.lost,
+      (on) => on === false,
+      'hidden',
+    );
     await page.keyboard.press(' ');
-    await comes((now) => now.tracks.classes.lost, (on) => on === true, 'shown');
+    await comes(
+      (now) => now.tracks.classes.lost,
+      (on) => on === true,
+      'shown',
+    );
   });
 
   once('playing draws more and more segments in the order of the file, and pauses where it is', async () => {
     await page.getByRole('button', { name: 'Play', exact: true }).click();
-    await comes((now) => now.tracks.count, (n) => n > 20 && n < 1000, 'while playing');
+    await comes(
+      (now) => now.tracks.count,
+      (n) => n > 20 && n < 1000,
+      'while playing',
+    );
     await page.getByRole('button', { name: 'Pause', exact: true }).click();
     await page.getByRole('button', { name: 'Play', exact: true }).waitFor();
     const value = await page.getByLabel('Number of segments drawn').inputValue();
-    await comes((now) => now.tracks.count, (n) => n === Number(value), `paused at ${value}`);
+    await comes(
+      (now) => now.tracks.count,
+      (n) => n === Number(value),
+      `paused at ${value}`,
+    );
     await page.getByLabel('Number of segments drawn').fill('1000');
     await page.keyboard.press('Enter');
-    await comes((now) => now.tracks.count, (n) => n === null, 'all');
+    await comes(
+      (now) => now.tracks.count,
+      (n) => n === null,
+      'all',
+    );
   });
 
   once('width, depth cue and clipping are those of the scene', async () => {
@@ -96,14 +140,23 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     await page.keyboard.press('Enter');
     await page.getByLabel('Darker far away').uncheck();
     await page.getByLabel('Cut by clip planes').uncheck();
-    await comes((now) => [now.tracks.width_px, now.tracks.depth_cue, now.tracks.clipped].join(), (all) => all === '3,false,false', 'drawing');
+    await comes(
+      (now) => [now.tracks.width_px, now.tracks.depth_cue, now.tracks.clipped].join(),
+      (all) => all === '3,false,false',
+      'drawing',
+    );
   });
 
   once('a click on the beam line alone picks it, with its data and a mark in the picture', async () => {
-    for (const id of ['neutron-high', 'neutron-medium', 'neutron-low', 'gamma-medium', 'gamma-low', 'lost']) await row(id).locator('input').uncheck();
-    await comes((now) => Object.values(now.tracks.classes).filter(Boolean).length, (n) => n === 1, 'only the beam line');
+    for (const id of ['neutron-high', 'neutron-medium', 'neutron-low', 'gamma-medium', 'gamma-low', 'lost'])
+      await row(id).locator('input').uncheck();
+    await comes(
+      (now) => Object.values(now.tracks.classes).filter(Boolean).length,
+      (n) => n === 1,
+      'only the beam line',
+    );
     await full(page, 1);
-    await page.mouse.click(...await pixelOf(1, [0, 0, 118]));
+    await page.mouse.click(...(await pixelOf(1, [0, 0, 118])));
     await page.getByRole('heading', { name: /^Track 0 Beam line/ }).waitFor();
     const text = await page.locator('.track-one').innerText();
     assert.match(text, /Length\s+140\.0 mm/); // of the phantom: from S 150 mm to the brain's middle at S 10 mm
@@ -125,7 +178,11 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     const before = await header(page, 1);
     const unit = (v) => v.map((x) => x / Math.hypot(...v));
     await page.getByRole('button', { name: 'Fly to the particle lost in segment 3' }).click();
-    await comes(({ image: { slices } }) => [slices.sagittal, slices.coronal, slices.axial].map(({ position_mm: mm }) => mm).join(), (mm) => mm === '24,24,34', 'the crosshair');
+    await comes(
+      ({ image: { slices } }) => [slices.sagittal, slices.coronal, slices.axial].map(({ position_mm: mm }) => mm).join(),
+      (mm) => mm === '24,24,34',
+      'the crosshair',
+    );
     const { x, y, width, height } = await page.locator('#picture-1').boundingBox();
     const isCentred = ([px, py]) => Math.hypot(px - x - width / 2, py - y - height / 2) < 2;
     const at = await until(() => pixelOf(1, [24, 24, 34]), isCentred, 30000);
@@ -137,12 +194,20 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
   later('limits of energy are there for a file that has energies, and count with those that have none', async () => {
     await page.getByLabel('Lowest energy in MeV').fill('0.1');
     await page.keyboard.press('Enter');
-    await comes((now) => now.tracks.energy_low_mev, (mev) => mev === 0.1, 'lowest');
+    await comes(
+      (now) => now.tracks.energy_low_mev,
+      (mev) => mev === 0.1,
+      'lowest',
+    );
     await row('lost').locator('input').check();
     await page.locator('#track-shown', { hasText: '3 shown' }).waitFor(); // without the one of 0.01 MeV
     await page.getByLabel('Lowest energy in MeV').fill('');
     await page.keyboard.press('Enter');
-    await comes((now) => now.tracks.energy_low_mev, (mev) => mev === null, 'no limit');
+    await comes(
+      (now) => now.tracks.energy_low_mev,
+      (mev) => mev === null,
+      'no limit',
+    );
     await page.locator('#track-shown', { hasText: 'all shown' }).waitFor();
     assert.deepEqual(await axe(page), []);
     await shoot(page, 'tracks-energies');
@@ -154,9 +219,17 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
     await page.getByRole('button', { name: 'Parts' }).tap();
     await page.getByRole('tab', { name: 'Tracks' }).tap();
     await row('').locator('.eye').tap();
-    await comes((now) => now.tracks.visible, (on) => on === true, 'visible');
+    await comes(
+      (now) => now.tracks.visible,
+      (on) => on === true,
+      'visible',
+    );
     await row('neutron-high').locator('input').tap();
-    await comes((now) => now.tracks.classes.neutron_high, (on) => on === false, 'the class that was tapped');
+    await comes(
+      (now) => now.tracks.classes.neutron_high,
+      (on) => on === false,
+      'the class that was tapped',
+    );
     await row('neutron-high').locator('button.name').tap();
     const play = page.getByRole('button', { name: 'Play', exact: true });
     await play.waitFor();

@@ -15,7 +15,9 @@ describe('undo and redo', { skip: missing && `${missing} is not there` }, () => 
     page = await world.newPage(`#/rooms/${room}`);
     for (const view of [1, 2, 3, 4]) await full(page, view);
   });
-  after(async () => { await world?.stop(); });
+  after(async () => {
+    await world?.stop();
+  });
 
   const button = (verb) => page.locator(`[data-act="${verb}"]`);
   const matrixOf = async (view) => Object.values((await header(page, view)).clip_from_lps_mm);
@@ -41,27 +43,61 @@ describe('undo and redo', { skip: missing && `${missing} is not there` }, () => 
   it('takes a whole drag of the camera back and does it again', async () => {
     const before = await matrixOf(1);
     await drag(1, 90, 20);
-    const turned = await until(() => matrixOf(1), (m) => !isNear(m, before), 60000);
+    const turned = await until(
+      () => matrixOf(1),
+      (m) => !isNear(m, before),
+      60000,
+    );
     assert.ok(!isNear(turned, before));
     await full(page, 1);
     const last = await matrixOf(1);
     assert.equal(await button('undo').getAttribute('title'), 'Undo: camera of 3-D (Ctrl+Z)');
     await page.keyboard.press('Control+z');
-    assert.ok(isNear(await until(() => matrixOf(1), (m) => isNear(m, before), 60000), before), 'as before the drag');
+    assert.ok(
+      isNear(
+        await until(
+          () => matrixOf(1),
+          (m) => isNear(m, before),
+          60000,
+        ),
+        before,
+      ),
+      'as before the drag',
+    );
     await page.keyboard.press('Control+Shift+Z');
-    assert.ok(isNear(await until(() => matrixOf(1), (m) => isNear(m, last), 60000), last), 'as after it');
+    assert.ok(
+      isNear(
+        await until(
+          () => matrixOf(1),
+          (m) => isNear(m, last),
+          60000,
+        ),
+        last,
+      ),
+      'as after it',
+    );
     await page.keyboard.press('Control+z');
-    await until(() => matrixOf(1), (m) => isNear(m, before), 60000);
+    await until(
+      () => matrixOf(1),
+      (m) => isNear(m, before),
+      60000,
+    );
     await full(page, 1);
     assert.equal(await button('undo').isDisabled(), true);
   });
 
   it('takes slices turned by the wheel back in one step', async () => {
     const from = await axial();
-    await page.evaluate(([clientX, clientY]) => { // in the page itself: on a busy machine three of the browser's may come further apart than one step lasts
-      for (let step = 0; step < 3; step++)
-        document.elementFromPoint(clientX, clientY).dispatchEvent(new WheelEvent('wheel', { deltaY: 100, clientX, clientY, bubbles: true, cancelable: true }));
-    }, await middle(2));
+    await page.evaluate(
+      ([clientX, clientY]) => {
+        // in the page itself: on a busy machine three of the browser's may come further apart than one step lasts
+        for (let step = 0; step < 3; step++)
+          document
+            .elementFromPoint(clientX, clientY)
+            .dispatchEvent(new WheelEvent('wheel', { deltaY: 100, clientX, clientY, bubbles: true, cancelable: true }));
+      },
+      await middle(2),
+    );
     await until(axial, (mm) => mm !== from, 60000);
     await page.waitForTimeout(500);
     await page.keyboard.press('Control+z');
@@ -93,11 +129,17 @@ describe('undo and redo', { skip: missing && `${missing} is not there` }, () => 
     const opacity = page.locator('input[aria-label="Opacity of scalp"]');
     await opacity.focus();
     await page.keyboard.press('ArrowRight');
-    await until(() => world.scene(room), (scene) => scene.regions.scalp.opacity > 0.25, 60000);
+    await until(
+      () => world.scene(room),
+      (scene) => scene.regions.scalp.opacity > 0.25,
+      60000,
+    );
     await colour({ scalp: { opacity: 0.75 } });
     await page.waitForFunction(() => document.querySelector('input[aria-label="Opacity of scalp"]').value === '75');
     await page.keyboard.press('Control+z'); // the slider has the focus
-    await page.waitForFunction(() => /Not undone: it was changed by somebody else since/.test(document.querySelector('.toasts').textContent));
+    await page.waitForFunction(() =>
+      /Not undone: it was changed by somebody else since/.test(document.querySelector('.toasts').textContent),
+    );
     assert.equal((await world.scene(room)).regions.scalp.opacity, 0.75);
     assert.deepEqual(world.errors, []);
   });

@@ -17,9 +17,13 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     mkdirSync(join(folder, 'letters'));
     writeFileSync(join(folder, 'letters/letter.txt'), 'no plan at all');
     writeFileSync(join(folder, 'large.bin'), Buffer.alloc(8 << 20));
-    for (let n = 1; n <= 12; n++) { // a list longer than the window
+    for (let n = 1; n <= 12; n++) {
+      // a list longer than the window
       mkdirSync(join(folder, `plans/refused-${n}`), { recursive: true });
-      writeFileSync(join(folder, `plans/refused-${n}/plan.json`), JSON.stringify({ format: 'beamroom-plan', version: 1, images: [{ id: 'ct', path: 'ct.nii' }] }));
+      writeFileSync(
+        join(folder, `plans/refused-${n}/plan.json`),
+        JSON.stringify({ format: 'beamroom-plan', version: 1, images: [{ id: 'ct', path: 'ct.nii' }] }),
+      );
     }
     world = await startWorld({ plans: [join(folder, 'plans')] });
   });
@@ -28,16 +32,18 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     if (folder) rmSync(folder, { recursive: true, force: true });
   });
 
-  const isInView = (locator) => locator.evaluate((element) => {
-    const box = element.getBoundingClientRect();
-    const outer = element.closest('main').getBoundingClientRect();
-    return box.top >= outer.top - 1 && box.bottom <= outer.bottom + 1;
-  });
+  const isInView = (locator) =>
+    locator.evaluate((element) => {
+      const box = element.getBoundingClientRect();
+      const outer = element.closest('main').getBoundingClientRect();
+      return box.top >= outer.top - 1 && box.bottom <= outer.bottom + 1;
+    });
 
   /** As the browser's own window does it: folders come as entries to be walked. */
   const drop = async (page, ...files) => {
     const devtools = await page.context().newCDPSession(page);
-    const drag = (type) => devtools.send('Input.dispatchDragEvent', { type, x: 500, y: 300, data: { items: [], files, dragOperationsMask: 1 } });
+    const drag = (type) =>
+      devtools.send('Input.dispatchDragEvent', { type, x: 500, y: 300, data: { items: [], files, dragOperationsMask: 1 } });
     await drag('dragEnter');
     await drag('dragOver');
     await page.locator('.drop-zone.over').waitFor();
@@ -48,7 +54,8 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     assert.ok(await until(() => isInView(field), Boolean, 60000), 'what is asked can be seen');
     return devtools;
   };
-  const uploaded = async () => (await call(`${world.daemon.url}/api/v1/plans`)).json.plans.filter((plan) => plan.uploaded).map((plan) => plan.id);
+  const uploaded = async () =>
+    (await call(`${world.daemon.url}/api/v1/plans`)).json.plans.filter((plan) => plan.uploaded).map((plan) => plan.id);
 
   later('a dropped folder is a plan for everybody, shown where it can be seen; deleted, those who look at it are told', async () => {
     const one = await world.newPage('', { viewport: { width: 1280, height: 720 } });
@@ -77,7 +84,10 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     await note.waitFor();
     await note.locator('text=no longer on this server').waitFor();
     await shoot(two, 'drop-ended');
-    const [file] = await Promise.all([two.waitForEvent('download'), note.getByRole('button', { name: 'Save its notes as a file' }).click()]);
+    const [file] = await Promise.all([
+      two.waitForEvent('download'),
+      note.getByRole('button', { name: 'Save its notes as a file' }).click(),
+    ]);
     assert.match((await bytesOf(file)).toString(), /^Notes of the room \S+ on .*\n\n1\. Reviewer 1, .*\n   Look at the rim again\n$/);
     await note.locator('a', { hasText: 'All plans' }).click();
     await two.locator('.plans').waitFor();
@@ -102,7 +112,12 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
     const page = await world.newPage();
     await page.locator('[data-plan]').first().waitFor();
     const devtools = await page.context().newCDPSession(page);
-    await devtools.send('Network.emulateNetworkConditions', { offline: false, latency: 100, downloadThroughput: 1e6, uploadThroughput: 4e5 });
+    await devtools.send('Network.emulateNetworkConditions', {
+      offline: false,
+      latency: 100,
+      downloadThroughput: 1e6,
+      uploadThroughput: 4e5,
+    });
     await drop(page, join(folder, 'large.bin'));
     await page.keyboard.press('Enter');
     const progress = page.locator('.upload [role="progressbar"]');

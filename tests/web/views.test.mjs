@@ -20,7 +20,14 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     mkdirSync(join(folder, 'image-alone'));
     writeVolume(join(folder, 'image-alone'), 'Image alone', { size: [20, 30, 8], stepMm: [3, 1, 7] });
     mkdirSync(join(folder, 'tiny-region'));
-    writeVolume(join(folder, 'tiny-region'), 'Tiny region', { size: [60, 50, 40], stepMm: [4, 4, 5], region: [[40, 30, 10], [43, 32, 12]] });
+    writeVolume(join(folder, 'tiny-region'), 'Tiny region', {
+      size: [60, 50, 40],
+      stepMm: [4, 4, 5],
+      region: [
+        [40, 30, 10],
+        [43, 32, 12],
+      ],
+    });
     mkdirSync(join(folder, 'sides'));
     writeLabels(join(folder, 'sides'), 'Sides', ['left', 'right']); // regions without an image
     world = await startWorld({ plans: [folder] });
@@ -53,7 +60,7 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     for (const key of keys) await page.keyboard.up(key);
   };
   const stats = () => page.evaluate(() => globalThis.beamroom.stats());
-  const undo = page_ => page_.locator('[data-act="undo"]');
+  const undo = (page_) => page_.locator('[data-act="undo"]');
   /** From patient space to the picture, x and y from -1 to 1. */
   const onPicture = (m, p) => {
     const row = (r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
@@ -61,32 +68,39 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
   };
 
   for (const plan of ['phantom', 'image-alone', 'tiny-region', 'sides'])
-    (plan === 'sides' ? once : later)(`${plan}: the camera at opening is home, and the first touch moves nothing but what it moves`, async () => {
-      await open(plan);
-      for (const view of plan === 'phantom' ? [1, 2, 3, 4] : [1, 3]) {
-        const opening = await matrixOf(view);
-        const [x, y] = await middle(view);
-        await page.mouse.move(x, y);
-        await page.keyboard.down('Shift'); // pans in every pane
-        await page.mouse.down();
-        await page.mouse.move(x + 5, y); // beyond the slop of a tap
-        await page.mouse.up();
-        await page.keyboard.up('Shift');
-        const touched = await becomes(view, (m) => !isNear(m, opening));
-        const { width, height } = await page.locator(`#picture-${view}`).boundingBox();
-        const target = (await page.evaluate((n) => globalThis.beamroom.stats().documents[n].camera.target_mm, view)).map(Number);
-        const [before, now] = [opening, touched].map((m) => onPicture(m, target));
-        assert.ok(Math.abs((now[0] - before[0]) * width / 2) <= 5.1 && Math.abs((now[1] - before[1]) * height / 2) < 0.1, `view ${view}: ${before} to ${now}`);
-        await page.locator(`#picture-${view}`).focus();
-        await page.keyboard.press('r');
-        const home = await becomes(view, (m) => isNear(m, opening));
-        assert.ok(isNear(home, opening), `view ${view}: reset is the picture of opening`);
-      }
-    });
+    (plan === 'sides' ? once : later)(
+      `${plan}: the camera at opening is home, and the first touch moves nothing but what it moves`,
+      async () => {
+        await open(plan);
+        for (const view of plan === 'phantom' ? [1, 2, 3, 4] : [1, 3]) {
+          const opening = await matrixOf(view);
+          const [x, y] = await middle(view);
+          await page.mouse.move(x, y);
+          await page.keyboard.down('Shift'); // pans in every pane
+          await page.mouse.down();
+          await page.mouse.move(x + 5, y); // beyond the slop of a tap
+          await page.mouse.up();
+          await page.keyboard.up('Shift');
+          const touched = await becomes(view, (m) => !isNear(m, opening));
+          const { width, height } = await page.locator(`#picture-${view}`).boundingBox();
+          const target = (await page.evaluate((n) => globalThis.beamroom.stats().documents[n].camera.target_mm, view)).map(Number);
+          const [before, now] = [opening, touched].map((m) => onPicture(m, target));
+          assert.ok(
+            Math.abs(((now[0] - before[0]) * width) / 2) <= 5.1 && Math.abs(((now[1] - before[1]) * height) / 2) < 0.1,
+            `view ${view}: ${before} to ${now}`,
+          );
+          await page.locator(`#picture-${view}`).focus();
+          await page.keyboard.press('r');
+          const home = await becomes(view, (m) => isNear(m, opening));
+          assert.ok(isNear(home, opening), `view ${view}: reset is the picture of opening`);
+        }
+      },
+    );
 
   once('a crosshair dragged in one pane draws the two others, and 3-D where it shows a slice that moved', async () => {
     await open();
-    const settled = async () => { // every still is there, and no more pictures come
+    const settled = async () => {
+      // every still is there, and no more pictures come
       for (let before = -1, { frames } = await stats(); before !== frames; { frames } = await stats()) {
         before = frames;
         await sleep(700);
@@ -110,7 +124,15 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     assert.deepEqual([coronal[3], coronal[4]], [0, 0]);
     assert.ok(coronal[1] > 0 && coronal[2] > 0);
     const { headers, input_to_paint_ms: times } = await stats();
-    assert.equal(new Set(Object.values(headers).filter(Boolean).map(({ scene_revision }) => scene_revision)).size, 1, 'all pictures are of the newest revision');
+    assert.equal(
+      new Set(
+        Object.values(headers)
+          .filter(Boolean)
+          .map(({ scene_revision }) => scene_revision),
+      ).size,
+      1,
+      'all pictures are of the newest revision',
+    );
     assert.ok(times.length > 0, 'inputs are answered by the panes that changed');
   });
 
@@ -124,8 +146,22 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
       ['Numpad7', () => page.keyboard.press('Numpad7')],
       ['Shift+Numpad1', () => page.keyboard.press('Shift+Numpad1')],
       ['the cube', () => page.locator('[data-view="1"] [aria-label="Look from left"]').press('Enter')],
-      ['parallel', async () => { await page.locator('[data-view="1"] .view-all').click(); await page.getByRole('dialog', { name: 'Camera' }).getByRole('radio', { name: 'Parallel' }).click(); await page.keyboard.press('Escape'); }],
-      ['fit', async () => { await page.locator('[data-region="tumour"] button.name').click(); await page.locator('#picture-1').focus(); await page.keyboard.press('g'); }],
+      [
+        'parallel',
+        async () => {
+          await page.locator('[data-view="1"] .view-all').click();
+          await page.getByRole('dialog', { name: 'Camera' }).getByRole('radio', { name: 'Parallel' }).click();
+          await page.keyboard.press('Escape');
+        },
+      ],
+      [
+        'fit',
+        async () => {
+          await page.locator('[data-region="tumour"] button.name').click();
+          await page.locator('#picture-1').focus();
+          await page.keyboard.press('g');
+        },
+      ],
     ];
     for (const [name, act] of acts) {
       await page.locator('#picture-1').focus();
@@ -156,7 +192,14 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
   once('the six sides: what lies there faces the eye', async () => {
     await page.locator('[data-view="1"] .view-all').click();
     const dialog = page.getByRole('dialog', { name: 'Camera' });
-    for (const [name, axis, sign] of [['anterior', 1, 1], ['posterior', 1, -1], ['left', 0, -1], ['right', 0, 1], ['superior', 2, -1], ['inferior', 2, 1]]) {
+    for (const [name, axis, sign] of [
+      ['anterior', 1, 1],
+      ['posterior', 1, -1],
+      ['left', 0, -1],
+      ['right', 0, 1],
+      ['superior', 2, -1],
+      ['inferior', 2, 1],
+    ]) {
       await dialog.getByRole('button', { name: `Look from ${name}` }).click();
       // the line of sight is the third row of a perspective's w
       const m = await becomes(1, (now) => now[3 + 4 * axis] * sign > 0.999);
@@ -176,17 +219,24 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     await page.keyboard.press('Control+ArrowLeft');
     for (let n = 0; n < 3; n++) await page.keyboard.press('+');
     const same = (values) => Math.max(...values) - Math.min(...values) < 1e-4 * values[0];
-    const zoomed = await until(() => Promise.all([2, 3, 4].map(scaleOf)), (values) => same(values) && values[0] > before[0] * 1.4, 60000);
+    const zoomed = await until(
+      () => Promise.all([2, 3, 4].map(scaleOf)),
+      (values) => same(values) && values[0] > before[0] * 1.4,
+      60000,
+    );
     assert.ok(same(zoomed), String(zoomed));
     for (const view of [2, 3, 4]) await full(page, view);
     const { sagittal, coronal, axial } = (await world.scene(room)).image.slices;
     const point = [sagittal.position_mm, coronal.position_mm, axial.position_mm];
-    const places = await Promise.all([2, 3, 4].map(async (view) => {
-      const { width, height } = await page.locator(`#picture-${view}`).boundingBox();
-      const [x, y] = onPicture(await matrixOf(view), point);
-      return [x * width / 2, y * height / 2];
-    }));
-    for (const place of places) assert.ok(Math.hypot(place[0] - places[0][0], place[1] - places[0][1]) < 1, `px from the middle: ${places.join(' | ')}`);
+    const places = await Promise.all(
+      [2, 3, 4].map(async (view) => {
+        const { width, height } = await page.locator(`#picture-${view}`).boundingBox();
+        const [x, y] = onPicture(await matrixOf(view), point);
+        return [(x * width) / 2, (y * height) / 2];
+      }),
+    );
+    for (const place of places)
+      assert.ok(Math.hypot(place[0] - places[0][0], place[1] - places[0][1]) < 1, `px from the middle: ${places.join(' | ')}`);
   });
 
   later('two 3-D pictures side by side turn alone, and together when linked; the layout is there after a reload', async () => {
@@ -226,7 +276,10 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     assert.ok(isNear(await becomes(6, (m) => isNear(m, own)), own), 'one step takes both back');
     await page.reload();
     await full(page, 6);
-    assert.deepEqual(await page.evaluate(() => [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view))), [1, 6]);
+    assert.deepEqual(
+      await page.evaluate(() => [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view))),
+      [1, 6],
+    );
   });
 
   once('an oblique pane gets a plane through the crosshair, scrolls along its normal and takes the crosshair', async () => {
@@ -249,7 +302,11 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     await page.locator('.overlay .crosshair.off').waitFor({ state: 'attached' });
     const [x, y] = await middle(5);
     await page.mouse.click(x + 30, y - 20);
-    const taken = await until(async () => (await world.scene(room)).image.slices, ({ axial: now }) => now.position_mm !== axial.position_mm, 60000);
+    const taken = await until(
+      async () => (await world.scene(room)).image.slices,
+      ({ axial: now }) => now.position_mm !== axial.position_mm,
+      60000,
+    );
     const plane = await planeOf();
     const offset = [taken.sagittal, taken.coronal, taken.axial].map(({ position_mm }, at) => position_mm - plane.origin_mm[at]);
     const height = offset.reduce((sum, value, at) => sum + value * plane.normal[at], 0) / Math.hypot(...plane.normal);
@@ -259,7 +316,7 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     assert.match(await slider.getAttribute('aria-label'), /^Oblique slice, [LRPASI]{1,2} in mm$/);
   });
 
-  later('who follows sees the presenter\'s oblique plane and second 3-D picture, and does not leave by showing them', async () => {
+  later("who follows sees the presenter's oblique plane and second 3-D picture, and does not leave by showing them", async () => {
     await open();
     await page.locator('#picture-1').focus();
     await page.keyboard.press('Shift+Digit5');
@@ -282,7 +339,10 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     await page.keyboard.press('ArrowUp');
     await until(plane, (at) => !isNear(at, start));
     // a camera looks at the middle of the plan's box across the plane, wherever that lies: a later picture is of the plane's new place
-    await until(() => header(other, 5), (now) => now.scene_revision > before && isNear(Object.values(now.clip_from_lps_mm), nearer));
+    await until(
+      () => header(other, 5),
+      (now) => now.scene_revision > before && isNear(Object.values(now.clip_from_lps_mm), nearer),
+    );
     for (const each of [page, other]) {
       await each.locator('[data-view="5"] .view-kind button').click();
       await each.getByRole('menuitemradio', { name: '3-D 2' }).click();
@@ -299,10 +359,16 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
 
   later('with fingers: the figure opens six sides of 44 px, the slice slider and the menus are as large', async () => {
     await open('phantom', { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true });
-    const small = (selector) => page.locator(selector).evaluateAll((elements) => elements.filter((element) => element.checkVisibility()).map((element) => {
-      const { width, height } = element.getBoundingClientRect();
-      return [element.getAttribute('aria-label') ?? element.textContent.trim(), width, height];
-    }).filter(([, width, height]) => Math.min(width, height) < 44));
+    const small = (selector) =>
+      page.locator(selector).evaluateAll((elements) =>
+        elements
+          .filter((element) => element.checkVisibility())
+          .map((element) => {
+            const { width, height } = element.getBoundingClientRect();
+            return [element.getAttribute('aria-label') ?? element.textContent.trim(), width, height];
+          })
+          .filter(([, width, height]) => Math.min(width, height) < 44),
+      );
     const start = await matrixOf(1);
     await page.locator('[data-view="1"] .view-all').tap();
     assert.deepEqual(await small('.view-all, .view-menu button, .slice-slider'), []);

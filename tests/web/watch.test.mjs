@@ -8,21 +8,32 @@ import { overlaps } from './overlap.mjs';
 import { action, chip, enter, matrix, openRoster, row, says, turn } from './people.mjs';
 
 const card = (page) => page.locator('.watch');
-const reads = (page, words) => until(() => page.locator('.watch-head p').textContent(), (text) => words.test(text));
+const reads = (page, words) =>
+  until(
+    () => page.locator('.watch-head p').textContent(),
+    (text) => words.test(text),
+  );
 const button = (page, name) => card(page).getByRole('button', { name });
 const lettersOf = (page, selector) => page.locator(`${selector} [data-letters]`).first().getAttribute('data-letters');
 const width = (page) => page.evaluate(() => document.querySelector('.watch canvas')?.width ?? 0);
-const mean = (page, selector) => page.evaluate((of) => {
-  const canvas = document.querySelector(of), small = new OffscreenCanvas(16, 12), context = small.getContext('2d');
-  context.drawImage(canvas, 0, 0, 16, 12);
-  return [...context.getImageData(0, 0, 16, 12).data];
-}, selector);
+const mean = (page, selector) =>
+  page.evaluate((of) => {
+    const canvas = document.querySelector(of),
+      small = new OffscreenCanvas(16, 12),
+      context = small.getContext('2d');
+    context.drawImage(canvas, 0, 0, 16, 12);
+    return [...context.getImageData(0, 0, 16, 12).data];
+  }, selector);
 /** Largest difference of the pictures of two pages, each reduced to 16 x 12. */
 const difference = async (page, selector, other, its) => {
   const [a, b] = await Promise.all([mean(page, selector), mean(other, its)]);
   return Math.max(...a.map((value, index) => Math.abs(value - b[index])));
 };
-const same = (page, presenter, view) => until(() => difference(page, '.watch canvas', presenter, `[data-view="${view}"] canvas`), (most) => most < 24);
+const same = (page, presenter, view) =>
+  until(
+    () => difference(page, '.watch canvas', presenter, `[data-view="${view}"] canvas`),
+    (most) => most < 24,
+  );
 
 describe('the small picture of the presenter', { skip: missing && `${missing} is missing` }, () => {
   let world, room, ann, ben;
@@ -51,7 +62,10 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
     const own = await matrix(ben, 1);
     await turn(ann);
     const letters = await lettersOf(ann, '[data-view="1"]');
-    await until(() => lettersOf(ben, '.watch'), (now) => now === letters);
+    await until(
+      () => lettersOf(ben, '.watch'),
+      (now) => now === letters,
+    );
     await same(ben, ann, 1);
     const unsigned = (text) => text.replaceAll('-0.0000', '0.0000');
     assert.equal(unsigned(await matrix(ben, 1)), unsigned(own));
@@ -61,34 +75,59 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
   it('goes with the pane that the presenter works in', async () => {
     await ann.locator('#picture-2').focus();
     await reads(ben, /^Live · Ann · Axial$/);
-    await until(() => lettersOf(ben, '.watch'), (now) => now === 'R L A P');
+    await until(
+      () => lettersOf(ben, '.watch'),
+      (now) => now === 'R L A P',
+    );
     await same(ben, ann, 2);
     await ann.locator('#picture-1').focus();
     await reads(ben, /^Live · Ann · 3-D$/);
     await same(ben, ann, 1);
-    const draft = (enabled) => call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { beam: { draft: { enabled, line: { entry_mm: [0, -120, 0], target_mm: [0, 0, 0] } } } }, { 'If-Match': '*' });
+    const draft = (enabled) =>
+      call(
+        `${world.daemon.url}/api/v1/rooms/${room}/scene`,
+        'PATCH',
+        { beam: { draft: { enabled, line: { entry_mm: [0, -120, 0], target_mm: [0, 0, 0] } } } },
+        { 'If-Match': '*' },
+      );
     await draft(true);
     await card(ben).getByText('Draft beam', { exact: true }).waitFor();
     await shoot(ben, 'watch-draft');
     await draft(false);
-    await until(() => card(ben).getByText('Draft beam', { exact: true }).count(), (n) => n === 0);
+    await until(
+      () => card(ben).getByText('Draft beam', { exact: true }).count(),
+      (n) => n === 0,
+    );
   });
 
   it('stands in any corner of the panes, over no letter and no words, at every size of window', async () => {
-    await until(() => ben.locator('.toast').count(), (n) => n === 0);
-    for (const [wide, high] of [[1440, 900], [1100, 700], [390, 844]]) {
+    await until(
+      () => ben.locator('.toast').count(),
+      (n) => n === 0,
+    );
+    for (const [wide, high] of [
+      [1440, 900],
+      [1100, 700],
+      [390, 844],
+    ]) {
       await ben.setViewportSize({ width: wide, height: high });
       for (let turns = 0; turns < 4; turns++) {
         if (turns || wide !== 1440) await button(ben, /next corner/).click();
-        const [at, panes] = await until(() => Promise.all([card(ben).boundingBox(), ben.locator('.panes').boundingBox()]), ([box, all]) => box && box.x >= all.x && box.y >= all.y && box.x + box.width <= all.x + all.width && box.y + box.height <= all.y + all.height);
+        const [at, panes] = await until(
+          () => Promise.all([card(ben).boundingBox(), ben.locator('.panes').boundingBox()]),
+          ([box, all]) =>
+            box && box.x >= all.x && box.y >= all.y && box.x + box.width <= all.x + all.width && box.y + box.height <= all.y + all.height,
+        );
         assert.ok(at.width >= 140 && at.width <= 262, `${at.width} px wide`);
         assert.deepEqual(await overlaps(ben), [], `${await card(ben).getAttribute('data-corner')} at ${wide} x ${high}`);
         const hidden = await ben.evaluate(() => {
           const over = document.querySelector('.watch').getBoundingClientRect();
-          return [...document.querySelectorAll('.pane:not([hidden]) .letter, .pane:not([hidden]) .scale')].filter((letter) => {
-            const box = letter.getBoundingClientRect();
-            return box.width && box.left < over.right && over.left < box.right && box.top < over.bottom && over.top < box.bottom;
-          }).map(({ textContent }) => textContent);
+          return [...document.querySelectorAll('.pane:not([hidden]) .letter, .pane:not([hidden]) .scale')]
+            .filter((letter) => {
+              const box = letter.getBoundingClientRect();
+              return box.width && box.left < over.right && over.left < box.right && box.top < over.bottom && over.top < box.bottom;
+            })
+            .map(({ textContent }) => textContent);
         });
         assert.deepEqual(hidden, [], `letters of the panes under it, ${JSON.stringify({ at, panes })}`);
       }
@@ -107,10 +146,16 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
     await button(ben, /^Unfold/).focus();
     await ben.keyboard.press('Enter');
     await reads(ben, /^Live · Ann/);
-    await until(() => width(ben), (px) => px > 16);
+    await until(
+      () => width(ben),
+      (px) => px > 16,
+    );
     await button(ben, /^Close/).focus();
     await ben.keyboard.press('Enter');
-    await until(() => card(ben).count(), (n) => n === 0);
+    await until(
+      () => card(ben).count(),
+      (n) => n === 0,
+    );
     await openRoster(ben);
     await action(ben, 'Show presenter').click();
     await reads(ben, /^Live · Ann/);
@@ -122,7 +167,10 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
     await reads(ben, /^Live · Ann/);
     world.daemon.child.kill('SIGSTOP');
     await reads(ben, /^Old, of/);
-    await until(() => card(ben).getAttribute('data-state'), (state) => state === 'lost');
+    await until(
+      () => card(ben).getAttribute('data-state'),
+      (state) => state === 'lost',
+    );
     world.daemon.child.kill('SIGCONT');
     await reads(ben, /^Live · Ann/); // also after the connection was lost and made anew
     await turn(ann);
@@ -151,7 +199,10 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
     await cem.close();
     await reads(ben, /^Away · Cem/);
     await button(ben, /^Return to Cem/).click();
-    await until(() => card(ben).count(), (n) => n === 0);
+    await until(
+      () => card(ben).count(),
+      (n) => n === 0,
+    );
     assert.doesNotMatch(await chip(ben).textContent(), /On my own/);
     assert.deepEqual(world.errors, []);
   });

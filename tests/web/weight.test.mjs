@@ -25,7 +25,9 @@ async function visit(address, isThere) {
   });
   const change = (requestId, part) => Object.assign(byId.get(requestId) ?? {}, part);
   client.on('Network.requestServedFromCache', ({ requestId }) => change(requestId, { isCached: true }));
-  client.on('Network.responseReceived', ({ requestId, response }) => { if (response.fromDiskCache) change(requestId, { isCached: true }); });
+  client.on('Network.responseReceived', ({ requestId, response }) => {
+    if (response.fromDiskCache) change(requestId, { isCached: true });
+  });
   client.on('Network.loadingFinished', ({ requestId, encodedDataLength }) => change(requestId, { bytes: encodedDataLength }));
   await page.goto(`${world.daemon.url}/${address}`);
   await isThere(page);
@@ -43,7 +45,10 @@ after(() => world?.stop());
 
 test('a first visit of the start page and of a room stays within its requests and bytes', { skip: missing }, async () => {
   const room = await world.newRoom();
-  const cases = [['', (page) => page.getByText('Modified Snyder').first().waitFor()], [`#/rooms/${room}`, (page) => page.locator('#fps').waitFor()]];
+  const cases = [
+    ['', (page) => page.getByText('Modified Snyder').first().waitFor()],
+    [`#/rooms/${room}`, (page) => page.locator('#fps').waitFor()],
+  ];
   for (const [address, isThere] of cases) {
     const { page, requests } = await visit(address, isThere);
     await page.waitForLoadState('networkidle');
@@ -53,21 +58,24 @@ test('a first visit of the start page and of a room stays within its requests an
     assert.ok(requests.length <= maxRequests, `${requests.length} requests:\n${requests.map(({ url }) => url).join('\n')}`);
     assert.ok(sum(own) <= maxBytes, `${sum(own)} bytes of code`);
     assert.ok(sum(fonts) <= maxFontBytes, `${sum(fonts)} bytes of fonts`);
-    console.log(`  ${address ? 'room' : 'start page'}: ${requests.length} requests, ${own.length} of them for code (${sum(own)} bytes), fonts ${sum(fonts)} bytes`);
+    console.log(
+      `  ${address ? 'room' : 'start page'}: ${requests.length} requests, ${own.length} of them for code (${sum(own)} bytes), fonts ${sum(fonts)} bytes`,
+    );
     await page.close();
   }
   assert.deepEqual(world.errors, []);
 });
 
 test('a browser that takes gzip alone, as over plain HTTP, stays within the bytes too', { skip: missing }, async () => {
-  const ask = (path) => new Promise((done, failed) => {
-    get(`${world.daemon.url}/${path}`, { headers: { 'Accept-Encoding': 'gzip' } }, (answer) => {
-      const parts = [];
-      assert.equal(answer.headers['content-encoding'], 'gzip', path);
-      answer.on('data', (part) => parts.push(part));
-      answer.on('end', () => done({ bytes: Buffer.concat(parts).length, text: gunzipSync(Buffer.concat(parts)).toString() }));
-    }).on('error', failed);
-  });
+  const ask = (path) =>
+    new Promise((done, failed) => {
+      get(`${world.daemon.url}/${path}`, { headers: { 'Accept-Encoding': 'gzip' } }, (answer) => {
+        const parts = [];
+        assert.equal(answer.headers['content-encoding'], 'gzip', path);
+        answer.on('data', (part) => parts.push(part));
+        answer.on('end', () => done({ bytes: Buffer.concat(parts).length, text: gunzipSync(Buffer.concat(parts)).toString() }));
+      }).on('error', failed);
+    });
   const page = await ask('');
   const named = new Set([...page.text.matchAll(/(?:href|src)="(page\/[^"]+\.(?:js|css))"/g)].map(([, path]) => path));
   assert.ok(named.size >= 2, `${[...named]}`);
@@ -85,7 +93,10 @@ test('a second visit takes code, style and font from the cache', { skip: missing
   await isListed(page);
   const again = requests.slice(before).filter(onlyOfPage);
   assert.equal(again.length, requests.slice(0, before).filter(onlyOfPage).length);
-  assert.deepEqual(again.filter(({ isCached }) => !isCached), []);
+  assert.deepEqual(
+    again.filter(({ isCached }) => !isCached),
+    [],
+  );
   await page.close();
 });
 
@@ -102,7 +113,10 @@ test('text is set in the font that comes along, and digits have one width', { sk
       span.remove();
       return px;
     };
-    return { loaded: [...document.fonts].map(({ family, status }) => [family.replaceAll('"', ''), status]), widths: [...'0123456789'].map((digit) => width(digit.repeat(20))) };
+    return {
+      loaded: [...document.fonts].map(({ family, status }) => [family.replaceAll('"', ''), status]),
+      widths: [...'0123456789'].map((digit) => width(digit.repeat(20))),
+    };
   });
   assert.deepEqual(found.loaded, [['Inter Variable', 'loaded']]);
   for (const px of found.widths) assert.ok(Math.abs(px - found.widths[0]) < 0.1, found.widths.join(' '));

@@ -11,7 +11,8 @@ import { bytesOf, full, header, missing, newer, shoot, startWorld } from './brow
 import { action, chip, enter, matrix, openRoster, row, says, showsAs, toast, turn } from './people.mjs';
 import { axialPoint, boxOf, mark, near, pointAt, project } from './places.mjs';
 
-const wide = { viewport: { width: 1440, height: 900 } }, small = { viewport: { width: 1100, height: 760 } };
+const wide = { viewport: { width: 1440, height: 900 } },
+  small = { viewport: { width: 1100, height: 760 } };
 const comesBackMs = 2000;
 
 describe('a whole meeting', { skip: missing && `${missing} is not there` }, () => {
@@ -24,7 +25,7 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     if (page === cem) await page.getByRole('button', { name: 'Show the inspector' }).click(); // a narrow window
     await page.getByRole('tab', { name: /^Notes/ }).click();
     const head = note(page, text).locator('.note-head');
-    if (await head.getAttribute('aria-expanded') !== 'true') await head.click();
+    if ((await head.getAttribute('aria-expanded')) !== 'true') await head.click();
   };
   const presses = async (page, keys) => {
     await page.locator('#picture-1').focus();
@@ -33,7 +34,10 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
   const hides = async (page, region) => {
     const { revision } = await meeting();
     await page.locator(`[data-region="${region}"] .eye`).click();
-    await until(() => world.scene(room), ({ regions }) => !regions[region].visible);
+    await until(
+      () => world.scene(room),
+      ({ regions }) => !regions[region].visible,
+    );
     await newer(page, 1, revision);
   };
 
@@ -55,7 +59,10 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     const linkFor = async (role, before = '') => {
       await ann.locator('#invite-role').selectOption(role);
       await ann.locator('.invite-form button', { hasText: 'Make link' }).click();
-      const link = await until(() => made.inputValue(), (text) => text !== before);
+      const link = await until(
+        () => made.inputValue(),
+        (text) => text !== before,
+      );
       return link.slice(link.indexOf('#'));
     };
     await ann.locator('.invite-button').click();
@@ -69,7 +76,14 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     await ann.keyboard.press('Escape');
     await says(ann, /^Presenting · 2 follow$/);
     const { members } = await meeting();
-    assert.deepEqual(members.map(({ name, role }) => [name, role]), [['Dr Ann', 'presenter'], ['Ben', 'reviewer'], ['Cem', 'observer']]);
+    assert.deepEqual(
+      members.map(({ name, role }) => [name, role]),
+      [
+        ['Dr Ann', 'presenter'],
+        ['Ben', 'reviewer'],
+        ['Cem', 'observer'],
+      ],
+    );
     await Promise.all(all().map((page) => full(page)));
   });
 
@@ -98,9 +112,12 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     await ann.locator('.point-tools [aria-pressed="true"]').waitFor();
     const { position_mm: s } = (await world.scene(room)).image.slices.axial;
     for (const page of [ben, cem]) {
-      let side = 0, point, movedAt = 0;
+      let side = 0,
+        point,
+        movedAt = 0;
       await until(async () => {
-        if (performance.now() - movedAt > 2500) { // a pointer at rest is taken away
+        if (performance.now() - movedAt > 2500) {
+          // a pointer at rest is taken away
           side = 1 - side;
           point = await axialPoint(ann, 2, await pointAt(ann, 2, [0.46 + 0.004 * side, 0.4]), s);
           movedAt = performance.now();
@@ -110,7 +127,10 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     }
     await shoot(cem, 'whole-2-pointer');
     await ann.keyboard.press('Escape');
-    await until(() => ben.locator('.person-pointer').count(), (n) => n === 0);
+    await until(
+      () => ben.locator('.person-pointer').count(),
+      (n) => n === 0,
+    );
     await ann.keyboard.press('Shift+P');
     for (const page of [ben, cem]) await page.getByRole('button', { name: 'Come', exact: true }).click();
     await ann.getByText('2 of 2 came').waitFor();
@@ -180,9 +200,15 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     await says(ann, /^Presenting/);
     const turned = await matrix(ann, 1);
     await presses(ann, 'Control+z'); // her own: the camera, then the scalp; never Ben's brain
-    await until(() => matrix(ann, 1), (now) => now !== turned);
+    await until(
+      () => matrix(ann, 1),
+      (now) => now !== turned,
+    );
     await presses(ann, 'Control+z');
-    const { regions } = await until(() => world.scene(room), (scene) => scene.regions.scalp.visible);
+    const { regions } = await until(
+      () => world.scene(room),
+      (scene) => scene.regions.scalp.visible,
+    );
     assert.equal(regions.brain.visible, false);
     await openRoster(ann);
     await action(ann, 'Lock control').click();
@@ -216,7 +242,9 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     const { revision } = await meeting();
     const [old] = renderersOf(world.daemon.child.pid);
     process.kill(old, 'SIGKILL');
-    await Promise.all(all().flatMap((page) => ['Renderer restarting. The last picture stays', 'Picture restored'].map((words) => toast(page, words))));
+    await Promise.all(
+      all().flatMap((page) => ['Renderer restarting. The last picture stays', 'Picture restored'].map((words) => toast(page, words))),
+    );
     assert.notDeepEqual(renderersOf(world.daemon.child.pid), [old]);
     assert.equal((await meeting()).revision, revision, 'the scene is the same');
     await turn(ann);
@@ -224,9 +252,19 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
   });
 
   it('the death of the daemon costs seconds: room, people, scene, views, notes and saved views come back', async (t) => {
-    const [before, scene, notes, saved, shown] = [await meeting(), await world.scene(room), await items('notes'), await items('bookmarks'), await matrix(ann, 1)];
-    await until(() => onDisk(room, data), (kept) => kept?.revision === before.revision && JSON.stringify(kept.views).includes('camera'));
-    const host = new URL(world.daemon.url).host, ended = new Promise((done) => world.daemon.child.on('exit', done));
+    const [before, scene, notes, saved, shown] = [
+      await meeting(),
+      await world.scene(room),
+      await items('notes'),
+      await items('bookmarks'),
+      await matrix(ann, 1),
+    ];
+    await until(
+      () => onDisk(room, data),
+      (kept) => kept?.revision === before.revision && JSON.stringify(kept.views).includes('camera'),
+    );
+    const host = new URL(world.daemon.url).host,
+      ended = new Promise((done) => world.daemon.child.on('exit', done));
     world.daemon.child.kill('SIGKILL');
     await ended;
     await Promise.all(all().map((page) => page.waitForFunction(() => globalThis.beamroom.stats().badges[1] === 'disconnected')));
@@ -239,11 +277,16 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     await Promise.all(all().map((page, at) => page.waitForFunction((n) => globalThis.beamroom.stats().frames_of[1] > n, nFrames[at])));
     await Promise.all(all().map((page) => full(page)));
     const ms = performance.now() - up;
-    t.diagnostic(`all are connected ${Math.round(connectedMs)} ms, and have their pictures ${Math.round(ms)} ms after the daemon is up; entering took ${Math.round(entryMs)} ms`);
+    t.diagnostic(
+      `all are connected ${Math.round(connectedMs)} ms, and have their pictures ${Math.round(ms)} ms after the daemon is up; entering took ${Math.round(entryMs)} ms`,
+    );
     assert.ok(ms < Math.max(comesBackMs, 3 * entryMs), `${ms} ms; entering took ${entryMs} ms`); // 0.6 s where nothing else runs
     const later = await meeting();
     assert.equal(later.revision, before.revision);
-    assert.deepEqual(later.members.map(({ id, name, role, connected }) => [id, name, role, connected]), before.members.map(({ id, name, role }) => [id, name, role, true]));
+    assert.deepEqual(
+      later.members.map(({ id, name, role, connected }) => [id, name, role, connected]),
+      before.members.map(({ id, name, role }) => [id, name, role, true]),
+    );
     assert.deepEqual(await world.scene(room), scene);
     assert.deepEqual([await items('notes'), await items('bookmarks')], [notes, saved]);
     await says(ann, /^Presenting · 2 follow$/);
@@ -273,9 +316,16 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     await ann.locator('.record-lines').getByText('B. Example').waitFor();
     const [download] = await Promise.all([ann.waitForEvent('download'), ann.getByRole('button', { name: 'JSON' }).click()]);
     const { decisions, signatures, notes, saved_views, present } = JSON.parse((await bytesOf(download)).toString());
-    assert.deepEqual([decisions.map(({ decision, text }) => [decision, text]), signatures.map(({ name }) => name)], [[['accept', 'As shown']], ['B. Example']]);
+    assert.deepEqual(
+      [decisions.map(({ decision, text }) => [decision, text]), signatures.map(({ name }) => name)],
+      [[['accept', 'As shown']], ['B. Example']],
+    );
     assert.deepEqual([notes.length, saved_views.length], [(await items('notes')).length, 1]);
-    for (const name of ['Dr Ann', 'Ben', 'Cem']) assert.ok(present.some((stay) => stay.name === name), `${name} was present`);
+    for (const name of ['Dr Ann', 'Ben', 'Cem'])
+      assert.ok(
+        present.some((stay) => stay.name === name),
+        `${name} was present`,
+      );
     await shoot(ann, 'whole-8-record');
     await openRoster(ann);
     await action(ann, 'End recording').click();
@@ -286,18 +336,25 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     const before = await meeting();
     await openRoster(ann);
     const opened = ann.context().waitForEvent('page');
-    await ann.getByRole('button', { name: /^Play the recording/ }).locator('visible=true').click();
+    await ann
+      .getByRole('button', { name: /^Play the recording/ })
+      .locator('visible=true')
+      .click();
     const replay = await opened;
     await full(replay);
     await openRoster(replay);
     const slider = replay.locator('.replay-transport:visible input');
-    const seek = (toEnd) => slider.evaluate((range, isEnd) => {
-      range.value = isEnd ? range.max : range.min;
-      range.dispatchEvent(new Event('change', { bubbles: true }));
-    }, toEnd);
+    const seek = (toEnd) =>
+      slider.evaluate((range, isEnd) => {
+        range.value = isEnd ? range.max : range.min;
+        range.dispatchEvent(new Event('change', { bubbles: true }));
+      }, toEnd);
     for (const isEnd of [true, false, true]) {
       await seek(isEnd);
-      await until(() => matrix(replay, 1), (shown) => shown === recorded[Number(isEnd)]);
+      await until(
+        () => matrix(replay, 1),
+        (shown) => shown === recorded[Number(isEnd)],
+      );
     }
     await shoot(replay, 'whole-9-replay');
     const later = await meeting();

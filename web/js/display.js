@@ -15,8 +15,22 @@ const firstMs = 20000; // after which a first picture is not only late
 const begunAt = performance.now();
 const tickMs = 250;
 const factsMs = 5000;
-const viewNames = { '3d': '3-D', axial: 'Axial', coronal: 'Coronal', sagittal: 'Sagittal', oblique: 'Oblique', beam: 'Beam\'s eye', 'beam-slice': 'Beam slice' };
-const rendererWords = { starting: 'The plan is being opened.', loading: 'The plan is being opened.', restarting: 'The renderer is being started again: the picture may be old.', failed: 'The plan cannot be drawn: the picture may be old.', closed: 'The plan is closed: the picture may be old.' };
+const viewNames = {
+  '3d': '3-D',
+  axial: 'Axial',
+  coronal: 'Coronal',
+  sagittal: 'Sagittal',
+  oblique: 'Oblique',
+  beam: "Beam's eye",
+  'beam-slice': 'Beam slice',
+};
+const rendererWords = {
+  starting: 'The plan is being opened.',
+  loading: 'The plan is being opened.',
+  restarting: 'The renderer is being started again: the picture may be old.',
+  failed: 'The plan cannot be drawn: the picture may be old.',
+  closed: 'The plan is closed: the picture may be old.',
+};
 
 const base = new URL('../api/v1', location.href).pathname;
 const api = makeApi((...request) => fetch(...request), base);
@@ -60,9 +74,18 @@ function words(silentMs) {
   const { facts, header, problem } = state;
   if (problem && silentMs > lateMs) return { notice: problem, kind: header ? 'lost' : 'waiting' };
   if (header && silentMs > lostMs) return { notice: `Connection lost. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
-  if (!header) return { notice: rendererWords[facts?.renderer] ?? (performance.now() - begunAt < firstMs ? 'Waiting for the first picture …' : 'No picture comes: the room\'s page says why the view is not drawn.'), kind: 'waiting' };
-  if (state.isOld && (!facts || facts.renderer === 'ready')) return { notice: `The room shows something newer, which is not drawn yet. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
-  return { notice: facts && facts.renderer !== 'ready' ? rendererWords[facts.renderer] ?? '' : '', kind: 'lost' };
+  if (!header)
+    return {
+      notice:
+        rendererWords[facts?.renderer] ??
+        (performance.now() - begunAt < firstMs
+          ? 'Waiting for the first picture …'
+          : "No picture comes: the room's page says why the view is not drawn."),
+      kind: 'waiting',
+    };
+  if (state.isOld && (!facts || facts.renderer === 'ready'))
+    return { notice: `The room shows something newer, which is not drawn yet. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
+  return { notice: facts && facts.renderer !== 'ready' ? (rendererWords[facts.renderer] ?? '') : '', kind: 'lost' };
 }
 
 function draw() {
@@ -75,11 +98,24 @@ function draw() {
   const late = isLost ? 'lost' : isSilent || state.isOld ? 'late' : 'live';
   $('h1').textContent = [plan, `Room ${room}`, viewNames[kind]].filter(Boolean).join(' · ');
   document.title = [plan, 'Beamroom display'].filter(Boolean).join(' – ');
-  $('.who').textContent = [presenter ? `Presenter: ${presenter.name}` : facts ? 'Nobody presents' : '', header?.missing ? `Not drawn: ${header.missing}` : ''].filter(Boolean).join(' · ');
+  $('.who').textContent = [
+    presenter ? `Presenter: ${presenter.name}` : facts ? 'Nobody presents' : '',
+    header?.missing ? `Not drawn: ${header.missing}` : '',
+  ]
+    .filter(Boolean)
+    .join(' · ');
   $('.clock').textContent = time(Date.now());
   const age = $('.age');
   age.dataset.state = figure.dataset.state = header ? late : '';
-  const said = !header ? '' : isLost ? 'Connection lost' : isSilent ? 'Link?' : state.isOld ? `Old · picture of ${time(state.changedAt)}` : `Live · picture of ${time(state.changedAt)}`;
+  const said = !header
+    ? ''
+    : isLost
+      ? 'Connection lost'
+      : isSilent
+        ? 'Link?'
+        : state.isOld
+          ? `Old · picture of ${time(state.changedAt)}`
+          : `Live · picture of ${time(state.changedAt)}`;
   if (age.textContent !== said) age.textContent = said; // a live region: only what is new
   const { notice, kind: how } = words(silentMs);
   const line = $('.notice');
@@ -90,7 +126,10 @@ function draw() {
   place();
   const letters = edgeLetters(header.clip_from_lps_mm);
   for (const edge of ['top', 'bottom', 'left', 'right']) $(`.letter.${edge}`).textContent = letters[edge];
-  $('canvas').setAttribute('aria-label', `${viewNames[kind] ?? 'Shared'} view; left ${letters.left}, right ${letters.right}, top ${letters.top}, bottom ${letters.bottom}`);
+  $('canvas').setAttribute(
+    'aria-label',
+    `${viewNames[kind] ?? 'Shared'} view; left ${letters.left}, right ${letters.right}, top ${letters.top}, bottom ${letters.bottom}`,
+  );
 }
 
 function take({ fields, body }) {
@@ -129,8 +168,12 @@ async function run() {
   for (;;) {
     const abort = new AbortController();
     // a connection that was cut without a word
-    const watch = setInterval(() => { if (state.number && performance.now() - state.heardAt > 2 * lostMs) abort.abort(); }, tickMs);
-    const facts = setInterval(() => { tellFacts().catch(() => {}); }, factsMs);
+    const watch = setInterval(() => {
+      if (state.number && performance.now() - state.heardAt > 2 * lostMs) abort.abort();
+    }, tickMs);
+    const facts = setInterval(() => {
+      tellFacts().catch(() => {});
+    }, factsMs);
     await show(abort).catch((error) => {
       abort.abort();
       state.facts = null;
@@ -139,7 +182,9 @@ async function run() {
     clearInterval(watch);
     clearInterval(facts);
     draw();
-    await new Promise((done) => { setTimeout(done, retryMs); });
+    await new Promise((done) => {
+      setTimeout(done, retryMs);
+    });
   }
 }
 

@@ -14,7 +14,12 @@ export class Hooks {
 
   constructor(clock) {
     this.#clock = clock;
-    globalThis.beamroom = { stats: () => this.#stats(), clear: () => { this.#times = []; } };
+    globalThis.beamroom = {
+      stats: () => this.#stats(),
+      clear: () => {
+        this.#times = [];
+      },
+    };
   }
 
   enter(room, panes) {

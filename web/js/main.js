@@ -28,10 +28,15 @@ const clock = {
   clearTimeout: (timer) => clearTimeout(timer),
 };
 const redraw = new Redraw((callback) => requestAnimationFrame(callback), clock);
-const { decode } = new Decoder({ makeWorker: () => new Worker('js/view/decode_worker.js'), decodeHere: (picture, type) => createImageBitmap(new Blob([picture], { type })) });
+const { decode } = new Decoder({
+  makeWorker: () => new Worker('js/view/decode_worker.js'),
+  decodeHere: (picture, type) => createImageBitmap(new Blob([picture], { type })),
+});
 const hooks = new Hooks(clock);
 const api = makeApi((...request) => fetch(...request));
-const enter = (room, plan) => { location.hash = address(room, plan); };
+const enter = (room, plan) => {
+  location.hash = address(room, plan);
+};
 /** "#/rooms/ID/PLAN", and "?link=TOKEN" behind it until the link has let this person in: the plan is there for the time after the room, which then can be opened again. */
 const address = (room, plan) => `#/rooms/${room}${plan ? `/${plan}` : ''}`;
 const ownName = new OwnName(storage());
@@ -68,8 +73,16 @@ function connect(room, invitation) {
   url.hash = '';
   const { member = '', secret = '', link: before = '' } = remembered(room);
   const link = (invitation || before).slice(0, 64);
-  const isGone = () => api.room(room).then(() => false, (problem) => problem.type === '/problems/not-found');
-  const connection = new Connection(url.href, { makeSocket: (address) => new WebSocket(address), clock, isGone }, { name: ownName.value.value, member, secret, link, person: person() });
+  const isGone = () =>
+    api.room(room).then(
+      () => false,
+      (problem) => problem.type === '/problems/not-found',
+    );
+  const connection = new Connection(
+    url.href,
+    { makeSocket: (address) => new WebSocket(address), clock, isGone },
+    { name: ownName.value.value, member, secret, link, person: person() },
+  );
   connection.addEventListener('message', ({ detail }) => {
     if (detail.type !== 'welcome') return;
     sessionStorage.setItem(`room ${room}`, JSON.stringify({ member: detail.member, secret: detail.secret, link }));
@@ -91,7 +104,19 @@ async function route() {
   nRoutes += 1;
   const host = document.querySelector('#page');
   if (place === 'rooms' && isId(id))
-    leave = roomPage(host, id, { api, connect: (room) => connect(room, invitation), clock, redraw, decode, hooks, enter, ownName, storage: storage(), isBack: Boolean(remembered(id).member), plan: isId(plan) ? plan : '' });
+    leave = roomPage(host, id, {
+      api,
+      connect: (room) => connect(room, invitation),
+      clock,
+      redraw,
+      decode,
+      hooks,
+      enter,
+      ownName,
+      storage: storage(),
+      isBack: Boolean(remembered(id).member),
+      plan: isId(plan) ? plan : '',
+    });
   else if (place === 'p' && isId(id)) {
     const n = nRoutes;
     const { permalinkPage } = await import('./panels/permalink.js');

@@ -10,7 +10,10 @@ const desk = (width, more = {}, height = 900) => arrange({ width, height, isCoar
 const touch = (width, height, more = {}) => arrange({ width, height, isCoarse: true }, { ...chosen, ...more });
 
 test('the size goes by width, and by fingers', () => {
-  assert.deepEqual([1400, 1399, 1100, 1099, 600, 599].map((width) => sizeOf({ width, isCoarse: false })), ['wide', 'compact', 'compact', 'tablet', 'tablet', 'phone']);
+  assert.deepEqual(
+    [1400, 1399, 1100, 1099, 600, 599].map((width) => sizeOf({ width, isCoarse: false })),
+    ['wide', 'compact', 'compact', 'tablet', 'tablet', 'phone'],
+  );
   assert.equal(sizeOf({ width: 1600, isCoarse: true }), 'tablet');
 });
 
@@ -23,7 +26,11 @@ test('below, a section beside the rail floats, and pushes when it is pinned', ()
   assert.deepEqual([desk(1280).tree, desk(1280).overlay], ['rail', '']);
   assert.equal(desk(1280, { section: 'regions' }).overlay, 'floats');
   const pinned = desk(1280, { section: 'regions', isPinned: true });
-  assert.deepEqual([pinned.overlay, pinned.layout], ['pushes', 'row'], '48 + 272 + 320 leave 640: two panes of 320 are too narrow, a row of three is not');
+  assert.deepEqual(
+    [pinned.overlay, pinned.layout],
+    ['pushes', 'row'],
+    '48 + 272 + 320 leave 640: two panes of 320 are too narrow, a row of three is not',
+  );
   assert.equal(desk(1280, { section: 'regions', isPinned: true, isInspectorOpen: false }).layout, '2x2', '48 + 272 + 48 leave 912');
 });
 
@@ -56,14 +63,22 @@ test('a telephone shows one pane, the active one', () => {
 });
 
 test('a maximised pane stands alone at every size', () => {
-  for (const { visible, layout } of [desk(1600, { maximised: 2 }), desk(1280, { maximised: 2 }), touch(1180, 820, { maximised: 2, sheet: 'tree' })]) {
+  for (const { visible, layout } of [
+    desk(1600, { maximised: 2 }),
+    desk(1280, { maximised: 2 }),
+    touch(1180, 820, { maximised: 2, sheet: 'tree' }),
+  ]) {
     assert.deepEqual(visible, [2]);
     assert.equal(layout, 'single');
   }
 });
 
 test('two panes stand side by side, upright one above the other, and show what was put into them', () => {
-  for (const { layout, visible } of [desk(1600, { layout: '2x1' }), desk(1280, { layout: '2x1' }), touch(1180, 820, { layout: '2x1', sheet: 'tree' })])
+  for (const { layout, visible } of [
+    desk(1600, { layout: '2x1' }),
+    desk(1280, { layout: '2x1' }),
+    touch(1180, 820, { layout: '2x1', sheet: 'tree' }),
+  ])
     assert.deepEqual([layout, visible], ['2x1', [1, 2]]);
   assert.equal(touch(820, 1180, { layout: '2x1' }).layout, '1x2');
   assert.deepEqual(desk(1600, { layout: '2x1', two: [1, 6] }).visible, [1, 6]);
@@ -86,7 +101,13 @@ test('a view that stands in another pane already changes places', () => {
 });
 
 function storage(kept = {}) {
-  return { kept, getItem: (key) => kept[key] ?? null, setItem: (key, value) => { kept[key] = value; } };
+  return {
+    kept,
+    getItem: (key) => kept[key] ?? null,
+    setItem: (key, value) => {
+      kept[key] = value;
+    },
+  };
 }
 
 test('the browser keeps layout, panes and links', () => {
@@ -96,15 +117,36 @@ test('the browser keeps layout, panes and links', () => {
   before.place('2x2', 2, 6);
   before.isZoomLinked.value = true;
   const after = new Layout(kept);
-  assert.deepEqual([after.layout.value, after.two.value, after.four.value, after.isZoomLinked.value, after.areCamerasLinked.value], ['2x1', [1, 5], [1, 6, 3, 4], true, false]);
+  assert.deepEqual(
+    [after.layout.value, after.two.value, after.four.value, after.isZoomLinked.value, after.areCamerasLinked.value],
+    ['2x1', [1, 5], [1, 6, 3, 4], true, false],
+  );
 });
 
 test('what a browser keeps and no page has written is the standard', () => {
-  for (const text of ['', 'null', '[]', '{"layout":"3x3","two":[1,1],"four":[1,2,3]}', '{"two":[0,1],"four":[1,2,3,99],"isZoomLinked":1}', '{"four":"1234"}']) {
+  for (const text of [
+    '',
+    'null',
+    '[]',
+    '{"layout":"3x3","two":[1,1],"four":[1,2,3]}',
+    '{"two":[0,1],"four":[1,2,3,99],"isZoomLinked":1}',
+    '{"four":"1234"}',
+  ]) {
     const layout = new Layout(storage({ 'beamroom panes': text }));
-    assert.deepEqual([layout.layout.value, layout.two.value, layout.four.value, layout.isZoomLinked.value], ['', [1, 2], [1, 2, 3, 4], false], text);
+    assert.deepEqual(
+      [layout.layout.value, layout.two.value, layout.four.value, layout.isZoomLinked.value],
+      ['', [1, 2], [1, 2, 3, 4], false],
+      text,
+    );
   }
-  const refuses = { getItem() { throw new Error('no'); }, setItem() { throw new Error('no'); } };
+  const refuses = {
+    getItem() {
+      throw new Error('no');
+    },
+    setItem() {
+      throw new Error('no');
+    },
+  };
   assert.equal(new Layout(refuses).layout.value, '');
 });
 
@@ -119,7 +161,10 @@ test('two panes keep what was put into them; 3-D and oblique is a pair of its ow
   assert.equal(layoutId('1x2', layout.two.value), 'oblique');
   layout.choose('2x1');
   assert.deepEqual(layout.two.value, [1, 2]);
-  assert.deepEqual(layouts.map(({ id }) => layoutId(id === 'oblique' ? '2x1' : id, id === 'oblique' ? [1, 5] : [1, 2])), layouts.map(({ id }) => id));
+  assert.deepEqual(
+    layouts.map(({ id }) => layoutId(id === 'oblique' ? '2x1' : id, id === 'oblique' ? [1, 5] : [1, 2])),
+    layouts.map(({ id }) => id),
+  );
 });
 
 test('in a low window panes above the drawer stand in one row, and whole in a high one', () => {
@@ -129,12 +174,19 @@ test('in a low window panes above the drawer stand in one row, and whole in a hi
   assert.equal(desk(1280, { drawer: '' }, 720).layout, '2x2');
   assert.equal(desk(1280, { drawer: 'bottom', layout: '2x1' }, 720).layout, '2x1');
   assert.deepEqual(desk(1280, { drawer: 'bottom', maximised: 2 }, 720).visible, [2]);
-  assert.equal(desk(1280, { drawer: 'bottom', section: 'regions', isPinned: true }, 720).overlay, 'pushes', 'a row of three has room beside a section');
+  assert.equal(
+    desk(1280, { drawer: 'bottom', section: 'regions', isPinned: true }, 720).overlay,
+    'pushes',
+    'a row of three has room beside a section',
+  );
 });
 
 test('beside the panes, from 1400 px on, the drawer leaves two panes of 420 px one above the other', () => {
   const right = desk(1400, { drawer: 'right', two: [2, 1], section: 'regions', isPinned: true });
-  assert.deepEqual([right.drawer, right.tree, right.layout, right.visible, right.overlay, right.inspector], ['right', 'rail', '1x2', [2, 1], 'floats', 'pushes']);
+  assert.deepEqual(
+    [right.drawer, right.tree, right.layout, right.visible, right.overlay, right.inspector],
+    ['right', 'rail', '1x2', [2, 1], 'floats', 'pushes'],
+  );
   assert.equal(desk(1399, { drawer: 'right' }).drawer, 'bottom');
   assert.equal(desk(1600, { drawer: 'right', layout: 'single', active: 3 }).layout, 'single');
 });

@@ -6,7 +6,12 @@ import { load } from './page.mjs';
 const { alongOf, beamPlane, beamPoint, beamShown } = await load('state/beam_line.js');
 const { layoutId, layouts } = await load('state/layout.js');
 
-const plan = { beams: [{ id: 'a', name: 'Field A', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 120 }, { id: 'b', name: '', entry_mm: [0, 0, 90], target_mm: [0, 0, 0], aperture_mm: null }] };
+const plan = {
+  beams: [
+    { id: 'a', name: 'Field A', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 120 },
+    { id: 'b', name: '', entry_mm: [0, 0, 90], target_mm: [0, 0, 0], aperture_mm: null },
+  ],
+};
 const draft = { enabled: true, line: { name: '', entry_mm: [10, 0, 0], target_mm: [0, 0, 0], aperture_mm: null } };
 const sceneWith = (beam) => ({ beam: { id: '', draft: { ...draft, enabled: false }, ...beam } });
 const isNear = (a, b) => a.forEach((value, axis) => assert.ok(Math.abs(value - b[axis]) < 1e-12, `${a} is not ${b}`));
@@ -20,7 +25,11 @@ test('a scene shows the chosen beam, else the first, as its draft while that is 
   assert.equal(beamShown(plan, sceneWith({ draft }), 'b').isDraft, false, 'a beam that is named is the planned one');
   assert.equal(beamShown({ beams: [] }, sceneWith({})), null);
   assert.equal(beamShown({ beams: [] }, sceneWith({ draft })).isDraft, true);
-  assert.equal(beamShown({ beams: [] }, sceneWith({ draft: { ...draft, line: { ...draft.line, target_mm: [10, 0, 0] } } })), null, 'a line without length is none');
+  assert.equal(
+    beamShown({ beams: [] }, sceneWith({ draft: { ...draft, line: { ...draft.line, target_mm: [10, 0, 0] } } })),
+    null,
+    'a line without length is none',
+  );
 });
 
 test('a picture along a beam has superior up, and anterior where the beam runs along the patient', () => {
@@ -65,10 +74,19 @@ test('the ring makes the projection parallel and takes that back, and what is at
   assert.equal(on.beam.aperture_mm, 120);
   const near = { camera: { fov_deg: 30 }, beam: { along_mm: 50 } }; // 27 mm of the target are seen
   assert.deepEqual(ringPatch(cube, beamA, near, 120).camera, { height_mm: 150 }, 'the ring has room');
-  const off = ringPatch(cube, beamA, { camera: { fov_deg: 30, height_mm: 1000 * tan15 }, beam: { along_mm: -900, aperture_mm: 120 } }, null);
+  const off = ringPatch(
+    cube,
+    beamA,
+    { camera: { fov_deg: 30, height_mm: 1000 * tan15 }, beam: { along_mm: -900, aperture_mm: 120 } },
+    null,
+  );
   assert.ok(Math.abs(Math.tan((off.camera.fov_deg * Math.PI) / 360) - tan15 / 2) < 1e-12);
   assert.deepEqual([off.beam.aperture_mm, off.beam.along_mm], [null, -900]);
-  assert.deepEqual(ringPatch(cube, beamA, { camera: { projection: 'parallel' }, beam: { aperture_mm: 120 } }, null), { beam: { aperture_mm: null } }, 'a view that is parallel anyway stays so');
+  assert.deepEqual(
+    ringPatch(cube, beamA, { camera: { projection: 'parallel' }, beam: { aperture_mm: 120 } }, null),
+    { beam: { aperture_mm: null } },
+    'a view that is parallel anyway stays so',
+  );
 });
 
 test('the 3-D camera that takes over has the same eye, direction, up and extent', () => {
@@ -86,24 +104,46 @@ test('the 3-D camera that takes over has the same eye, direction, up and extent'
 // ---- what slides ----------------------------------------------------------------------------------------------------------------------------
 
 const { clipInFront, rangeAlong, regionAt, slidPatch, ticksOf } = await load('state/beam_along.js');
-const bands = [{ region: 'scalp', from_mm: 20, to_mm: 30 }, { region: 'brain', from_mm: 30, to_mm: 185.2 }];
-const sliding = (clip = {}, slice = {}) => ({ image: { id: '' }, beam: { id: 'a', draft: { enabled: false }, slice: { along_mm: 12, ...slice } }, clip: { beam: { id: '', enabled: false, along_mm: 0, ...clip } } });
+const bands = [
+  { region: 'scalp', from_mm: 20, to_mm: 30 },
+  { region: 'brain', from_mm: 30, to_mm: 185.2 },
+];
+const sliding = (clip = {}, slice = {}) => ({
+  image: { id: '' },
+  beam: { id: 'a', draft: { enabled: false }, slice: { along_mm: 12, ...slice } },
+  clip: { beam: { id: '', enabled: false, along_mm: 0, ...clip } },
+});
 
 test('the slider goes from before the entry to behind the last region', () => {
   assert.deepEqual(rangeAlong(cube, sliding(), beamA, bands), { low: -10, high: 196 });
-  assert.deepEqual(rangeAlong(cube, sliding(), beamA, []), { low: -10, high: 210 }, 'without regions over the box: its back is 200 mm from the entry');
+  assert.deepEqual(
+    rangeAlong(cube, sliding(), beamA, []),
+    { low: -10, high: 210 },
+    'without regions over the box: its back is 200 mm from the entry',
+  );
   assert.deepEqual(ticksOf({ low: -10, high: 196 }, 5), [0, 50, 100, 150]);
   assert.deepEqual([regionAt(bands, 25), regionAt(bands, 100), regionAt(bands, 5)], ['scalp', 'brain', '']);
 });
 
 test('slice and clip plane move by one patch, or each alone, to tenths and within the range', () => {
   const range = { low: -10, high: 196 };
-  assert.deepEqual(slidPatch(sliding(), 'slice', true, 44.26, range), { beam: { slice: { along_mm: 44.3 } }, clip: { beam: { along_mm: 44.3 } } });
+  assert.deepEqual(slidPatch(sliding(), 'slice', true, 44.26, range), {
+    beam: { slice: { along_mm: 44.3 } },
+    clip: { beam: { along_mm: 44.3 } },
+  });
   assert.deepEqual(slidPatch(sliding(), 'slice', false, 500, range), { beam: { slice: { along_mm: 196 } } });
-  assert.deepEqual(slidPatch(sliding({ id: 'b' }), 'clip', false, 7, range), { clip: { beam: { along_mm: 7, id: '' } } }, 'a plane across another beam comes to this one');
+  assert.deepEqual(
+    slidPatch(sliding({ id: 'b' }), 'clip', false, 7, range),
+    { clip: { beam: { along_mm: 7, id: '' } } },
+    'a plane across another beam comes to this one',
+  );
   assert.deepEqual(clipInFront(sliding(), beamA, true, true), { clip: { beam: { enabled: true, along_mm: 12 } } });
   assert.deepEqual(clipInFront(sliding({ along_mm: 30 }), beamA, false, true), { clip: { beam: { enabled: true } } });
-  assert.deepEqual(clipInFront(sliding({}, { along_mm: 0 }), beamA, true, true), { clip: { beam: { enabled: true, along_mm: 100 } }, beam: { slice: { along_mm: 100 } } }, 'what was never moved begins at the target');
+  assert.deepEqual(
+    clipInFront(sliding({}, { along_mm: 0 }), beamA, true, true),
+    { clip: { beam: { enabled: true, along_mm: 100 } }, beam: { slice: { along_mm: 100 } } },
+    'what was never moved begins at the target',
+  );
 });
 
 // ---- leaving the presenter -------------------------------------------------------------------------------------------------------------------
@@ -115,7 +155,10 @@ test('an own view keeps the eye that the shared picture has, although it widens'
   const matrix = new Float64Array([3, 0, 0, 0, 0, 0, 1, 1, 0, 3, 0, 0, 0, 0, 390, 400]);
   assert.ok(Math.abs(ownBeam(undefined, { pixels_per_mm: 0, clip_from_lps_mm: matrix }, beamA).along_mm + 300) < 1e-9);
   assert.deepEqual(ownBeam({ along_mm: 5 }, { pixels_per_mm: 0, clip_from_lps_mm: matrix }, beamA), { along_mm: 5 });
-  assert.deepEqual(ownBeam({ along_mm: null, aperture_mm: 100 }, { pixels_per_mm: 2, clip_from_lps_mm: matrix }, beamA), { along_mm: null, aperture_mm: 100 });
+  assert.deepEqual(ownBeam({ along_mm: null, aperture_mm: 100 }, { pixels_per_mm: 2, clip_from_lps_mm: matrix }, beamA), {
+    along_mm: null,
+    aperture_mm: 100,
+  });
   const camera = { position_mm: [0, -900, 0], target_mm: [0, 0, 0], up: [0, 0, 1], projection: 'perspective', fov_deg: 30, height_mm: 100 };
   assert.equal(widen(asShown(camera, { aperture_mm: 100 }), 'beam', 1.5).height_mm, 150, 'with a ring it is parallel');
 });

@@ -8,14 +8,31 @@ const { effect, signal } = await load('../lib/signals-core.js');
 
 const line = (x) => ({ name: '', entry_mm: [0, -100, 0], target_mm: [x, 0, 0] });
 const scene = (x) => ({ beam: { id: '', draft: { enabled: true, line: line(x) } } });
-const settle = () => new Promise((done) => { setImmediate(done); });
+const settle = () =>
+  new Promise((done) => {
+    setImmediate(done);
+  });
 
 function world() {
   const asked = []; // {parameters, view, tell, fail}
   const timers = [];
   const clock = { setTimeout: (run) => timers.push(run), clearTimeout: () => {} };
-  const room = { id: 'r', planId: signal('p'), plan: signal({ beams: [] }), scene: signal(scene(0)), isScenePending: signal(false), renderer: signal({ state: 'ready' }), views: [], following: { override: signal(null) } };
-  const api = { ofScene: (plan, question, of, view, parameters) => new Promise((tell, fail) => { asked.push({ plan, question, view, parameters, tell, fail }); }) };
+  const room = {
+    id: 'r',
+    planId: signal('p'),
+    plan: signal({ beams: [] }),
+    scene: signal(scene(0)),
+    isScenePending: signal(false),
+    renderer: signal({ state: 'ready' }),
+    views: [],
+    following: { override: signal(null) },
+  };
+  const api = {
+    ofScene: (plan, question, of, view, parameters) =>
+      new Promise((tell, fail) => {
+        asked.push({ plan, question, view, parameters, tell, fail });
+      }),
+  };
   const rest = async () => {
     for (const run of timers.splice(0)) run();
     await settle();
@@ -87,9 +104,12 @@ test('why a question is not answered is said; a member on their own asks about w
   assert.deepEqual([facts.answer.value.result, facts.answer.value.error], [null, 'the plan has no beam']);
 });
 
-test('the ring of a beam\'s-eye view on the screen is the diameter asked about', async () => {
+test("the ring of a beam's-eye view on the screen is the diameter asked about", async () => {
   const { asked, facts, rest, room } = world();
-  room.views = [{ kind: '3d', isOpen: signal(true), document: signal({}) }, { kind: 'beam', isOpen: signal(true), document: signal({ beam: { aperture_mm: 80 } }) }];
+  room.views = [
+    { kind: '3d', isOpen: signal(true), document: signal({}) },
+    { kind: 'beam', isOpen: signal(true), document: signal({ beam: { aperture_mm: 80 } }) },
+  ];
   effect(() => facts.answer.value);
   await rest();
   assert.equal(asked[0].parameters.aperture_mm, 80);

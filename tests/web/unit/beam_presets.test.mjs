@@ -12,20 +12,67 @@ const { roomWorld, welcome } = await import('./fake_room.mjs');
 const home = { '3d': { position_mm: [200, -346.41, 100], target_mm: [0, 0, 0], up: [0, 0, 1] } }; // from the front, the left, above
 const region = (id, depth, more = {}) => ({ id, name: id, depth, center_mm: [0, 0, 0], ...more });
 const plan = {
-  id: 'p', images: [{ id: 'ct', bounds: { low: [-100, -100, -100], high: [100, 100, 100] } }], bounds: { low: [-100, -100, -100], high: [100, 100, 100] }, home,
-  regions: [region('scalp', 0), region('brain', 1, { parent: 'scalp' }), region('tumour', 2, { parent: 'brain', is_target: true, center_mm: [5, -60, 12.34] })],
+  id: 'p',
+  images: [{ id: 'ct', bounds: { low: [-100, -100, -100], high: [100, 100, 100] } }],
+  bounds: { low: [-100, -100, -100], high: [100, 100, 100] },
+  home,
+  regions: [
+    region('scalp', 0),
+    region('brain', 1, { parent: 'scalp' }),
+    region('tumour', 2, { parent: 'brain', is_target: true, center_mm: [5, -60, 12.34] }),
+  ],
   doses: [{ id: 'd', components: [], fit: 'same' }],
   beams: [{ id: 'b1', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 80 }],
 };
 const off = { enabled: false, position_mm: 0, cap: true };
 const style = (opacity) => ({ visible: true, opacity });
-const level = (value, surface) => ({ value, unit: 'percent', color: '#ffffff', visible: true, line: true, wash: true, surface, opacity: 0.4 });
+const level = (value, surface) => ({
+  value,
+  unit: 'percent',
+  color: '#ffffff',
+  visible: true,
+  line: true,
+  wash: true,
+  surface,
+  opacity: 0.4,
+});
 const scene = {
   regions: { scalp: style(0.5), brain: style(0.3), tumour: style(1) },
-  image: { id: 'ct', volume: { visible: false, clipped: true }, slices: { axial: { visible: true, position_mm: 0 }, coronal: { visible: false, position_mm: 0 }, sagittal: { visible: false, position_mm: 0 } }, obliques: {} },
-  clip: { axial_low: off, axial_high: { ...off, enabled: true }, coronal_low: off, coronal_high: off, sagittal_low: off, sagittal_high: off, beam: { enabled: false, id: '', along_mm: 0, cap: true }, free: { enabled: false } },
-  dose: { id: 'd', quantity: 'weighted', tissue: '', reference: { kind: 'body', region: '' }, levels: { l90: level(90, false), l50: level(50, true) }, surfaces: { visible: false }, wash: { visible: false, volume: false } },
-  beam: { id: '', looks: {}, slice: { visible: false, along_mm: 0 }, draft: { enabled: false, line: { entry_mm: [0, 0, 0], target_mm: [0, 0, 0], aperture_mm: null } } },
+  image: {
+    id: 'ct',
+    volume: { visible: false, clipped: true },
+    slices: {
+      axial: { visible: true, position_mm: 0 },
+      coronal: { visible: false, position_mm: 0 },
+      sagittal: { visible: false, position_mm: 0 },
+    },
+    obliques: {},
+  },
+  clip: {
+    axial_low: off,
+    axial_high: { ...off, enabled: true },
+    coronal_low: off,
+    coronal_high: off,
+    sagittal_low: off,
+    sagittal_high: off,
+    beam: { enabled: false, id: '', along_mm: 0, cap: true },
+    free: { enabled: false },
+  },
+  dose: {
+    id: 'd',
+    quantity: 'weighted',
+    tissue: '',
+    reference: { kind: 'body', region: '' },
+    levels: { l90: level(90, false), l50: level(50, true) },
+    surfaces: { visible: false },
+    wash: { visible: false, volume: false },
+  },
+  beam: {
+    id: '',
+    looks: {},
+    slice: { visible: false, along_mm: 0 },
+    draft: { enabled: false, line: { entry_mm: [0, 0, 0], target_mm: [0, 0, 0], aperture_mm: null } },
+  },
 };
 const after = (change) => mergePatch(scene, change.patch);
 const near = (a, b) => a.forEach((value, axis) => assert.ok(Math.abs(value - b[axis]) < 1e-3, `${a} instead of ${b}`));
@@ -35,7 +82,11 @@ test('the beam slice lies at the middle of the target along the beam, and nothin
   const now = after(change);
   assert.deepEqual(now.beam.slice, { visible: true, along_mm: 40 }); // from P -100 to P -60
   assert.equal(now.beam.looks.b1.visible, true);
-  assert.deepEqual(now.regions, { scalp: { visible: false, opacity: 0.5 }, brain: { visible: false, opacity: 0.3 }, tumour: { visible: true, opacity: 0.35 } });
+  assert.deepEqual(now.regions, {
+    scalp: { visible: false, opacity: 0.5 },
+    brain: { visible: false, opacity: 0.3 },
+    tumour: { visible: true, opacity: 0.35 },
+  });
   assert.equal(now.image.slices.axial.visible, false);
   assert.ok(Object.values(now.clip).every(({ enabled }) => !enabled));
   assert.equal(change.kind, '3d');
@@ -43,7 +94,10 @@ test('the beam slice lies at the middle of the target along the beam, and nothin
   const { position_mm: eye, target_mm: target } = change.view.camera;
   const distance = Math.hypot(...home['3d'].position_mm);
   const [x, z] = [200 / Math.hypot(200, 100), 100 / Math.hypot(200, 100)];
-  near(eye.map((value, axis) => (value - target[axis]) / distance), [0.8 * x, -1, 0.8 * z].map((part) => part / Math.hypot(1, 0.8)));
+  near(
+    eye.map((value, axis) => (value - target[axis]) / distance),
+    [0.8 * x, -1, 0.8 * z].map((part) => part / Math.hypot(1, 0.8)),
+  );
 });
 
 test('what is as wanted already is not told, and not changed', () => {
@@ -61,7 +115,12 @@ test('the surface of 90 % is the only one, whether the scene has that level or n
   assert.deepEqual([now.dose.tissue, now.dose.reference], ['brain', { kind: 'region-max', region: 'brain' }]);
   const bare = { ...scene, dose: { ...scene.dose, levels: { l50: level(50, false) } } };
   const made = mergePatch(bare, presetChange(plan, bare, 'ninety').patch).dose.levels;
-  assert.deepEqual(Object.values(made).filter(({ surface }) => surface).map(({ value, unit }) => [value, unit]), [[90, 'percent']]);
+  assert.deepEqual(
+    Object.values(made)
+      .filter(({ surface }) => surface)
+      .map(({ value, unit }) => [value, unit]),
+    [[90, 'percent']],
+  );
 });
 
 test('the surface of 90 % is of the reference and weights that somebody has chosen', () => {
@@ -75,20 +134,30 @@ test('the volume is cut through the target, beside the beam, where the camera st
   const now = after(change);
   assert.deepEqual([now.image.volume.visible, now.dose.wash.visible, now.dose.wash.volume], [true, true, true]);
   // the beam runs along P; from the left: sagittal, what is to the left of L 5 is cut off
-  assert.deepEqual(Object.entries(now.clip).filter(([, { enabled }]) => enabled).map(([id, { position_mm }]) => [id, position_mm]), [['sagittal_high', 5]]);
+  assert.deepEqual(
+    Object.entries(now.clip)
+      .filter(([, { enabled }]) => enabled)
+      .map(([id, { position_mm }]) => [id, position_mm]),
+    [['sagittal_high', 5]],
+  );
   near(change.view.camera.position_mm, home['3d'].position_mm);
 });
 
-test('the ring of the beam\'s eye is the aperture, and what lies before the target is transparent', () => {
+test("the ring of the beam's eye is the aperture, and what lies before the target is transparent", () => {
   const change = presetChange(plan, scene, 'beams-eye');
   assert.deepEqual([change.kind, change.view.beam.aperture_mm], ['beam', 80]);
   const now = after(change);
   assert.deepEqual([now.regions.scalp.opacity, now.regions.brain.opacity, now.regions.tumour.opacity], [0.25, 0.3, 1]);
-  const hidden = mergePatch(scene, { regions: { scalp: { visible: false }, brain: { visible: false } }, clip: { beam: { enabled: true } } });
+  const hidden = mergePatch(scene, {
+    regions: { scalp: { visible: false }, brain: { visible: false } },
+    clip: { beam: { enabled: true } },
+  });
   const shown = mergePatch(hidden, presetChange(plan, hidden, 'beams-eye').patch);
   assert.ok(shown.regions.scalp.visible && shown.regions.brain.visible, 'what the target lies in');
   assert.deepEqual([shown.clip.axial_high.enabled, shown.clip.beam.enabled], [false, true]);
-  const drafted = mergePatch(scene, { beam: { draft: { enabled: true, line: { entry_mm: [0, 0, 100], target_mm: [0, 0, 0], aperture_mm: 60 } } } });
+  const drafted = mergePatch(scene, {
+    beam: { draft: { enabled: true, line: { entry_mm: [0, 0, 100], target_mm: [0, 0, 0], aperture_mm: 60 } } },
+  });
   assert.equal(presetChange(plan, drafted, 'beams-eye').view.beam.aperture_mm, 60);
 });
 
@@ -97,12 +166,22 @@ test('a preset that the plan cannot have says why', () => {
   assert.deepEqual(whys(plan), { 'beam-slice': '', ninety: '', 'washed-volume': '', 'beams-eye': '' });
   assert.deepEqual(whys({ ...plan, beams: [] }), { 'beam-slice': 'no beam', ninety: '', 'washed-volume': '', 'beams-eye': 'no beam' });
   assert.deepEqual(whys({ ...plan, doses: [] }), { 'beam-slice': '', ninety: 'no dose', 'washed-volume': 'no dose', 'beams-eye': '' });
-  assert.deepEqual(whys({ ...plan, regions: [], images: [] }), { 'beam-slice': 'no image', ninety: 'no target', 'washed-volume': 'no image', 'beams-eye': '' });
+  assert.deepEqual(whys({ ...plan, regions: [], images: [] }), {
+    'beam-slice': 'no image',
+    ninety: 'no target',
+    'washed-volume': 'no image',
+    'beams-eye': '',
+  });
 });
 
 test('a preset is one step of undo, of scene and camera', () => {
   const { room, connection } = roomWorld();
-  connection.receive(welcome({ scene, plan: { id: 'p', regions: plan.regions, beams: plan.beams, doses: plan.doses, home, bounds_mm: plan.bounds, images: [] } }));
+  connection.receive(
+    welcome({
+      scene,
+      plan: { id: 'p', regions: plan.regions, beams: plan.beams, doses: plan.doses, home, bounds_mm: plan.bounds, images: [] },
+    }),
+  );
   room.showView(1, [400, 300]);
   const ui = new UiState({ now: () => 0, setTimeout: () => 0 });
   const undo = new Undo(room, { clock: { now: () => 0 }, notify: () => {} });
@@ -111,9 +190,15 @@ test('a preset is one step of undo, of scene and camera', () => {
   applyPreset({ room, ui, undo }, 'washed-volume', 0);
   assert.equal(room.scene.value.dose.wash.volume, true);
   assert.ok(room.view(1).document.value.camera);
-  assert.match(ui.toasts.value.at(-1).text, /^Clipped volume with wash: volume shown, wash on it, sagittal clip plane through the target, tumour shown/);
+  assert.match(
+    ui.toasts.value.at(-1).text,
+    /^Clipped volume with wash: volume shown, wash on it, sagittal clip plane through the target, tumour shown/,
+  );
   undo.undo();
-  assert.deepEqual([room.scene.value.dose.wash.volume, room.scene.value.dose.surfaces.visible, room.view(1).document.value.camera], [false, true, undefined]);
+  assert.deepEqual(
+    [room.scene.value.dose.wash.volume, room.scene.value.dose.surfaces.visible, room.view(1).document.value.camera],
+    [false, true, undefined],
+  );
   undo.undo();
   assert.deepEqual([room.scene.value, room.view(1).document.value], before);
   assert.equal(undo.next.value, null);

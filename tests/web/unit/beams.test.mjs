@@ -11,11 +11,28 @@ const { draftDocument } = await load('state/beam_export.js');
 const { mergePatch } = await load('wire/merge.js');
 const { movedWords } = await load('panels/beam_words.js');
 
-const plan = { name: 'Head', beams: [{ id: 'b1', name: '', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 120 }, { id: 'b2', name: 'Lateral', entry_mm: [90, 0, 0], target_mm: [10, 0, 0], aperture_mm: null }] };
+const plan = {
+  name: 'Head',
+  beams: [
+    { id: 'b1', name: '', entry_mm: [0, -100, 0], target_mm: [0, 0, 0], aperture_mm: 120 },
+    { id: 'b2', name: 'Lateral', entry_mm: [90, 0, 0], target_mm: [10, 0, 0], aperture_mm: null },
+  ],
+};
 const image = { slices: { sagittal: { position_mm: 1 }, coronal: { position_mm: 2 }, axial: { position_mm: 3 } } };
-const scene = { image, beam: { id: '', looks: {}, opacity: 0.15, slice: { visible: false, along_mm: 0 }, draft: { enabled: false, line: { name: '', entry_mm: [0, 0, 0], target_mm: [0, 0, 0] } }, kept: {} } };
+const scene = {
+  image,
+  beam: {
+    id: '',
+    looks: {},
+    opacity: 0.15,
+    slice: { visible: false, along_mm: 0 },
+    draft: { enabled: false, line: { name: '', entry_mm: [0, 0, 0], target_mm: [0, 0, 0] } },
+    kept: {},
+  },
+};
 const after = (patch, before = scene) => mergePatch(before, patch);
-const near = (actual, expected, tolerance = 1e-9) => expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${actual} is not ${expected}`));
+const near = (actual, expected, tolerance = 1e-9) =>
+  expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${actual} is not ${expected}`));
 
 test('the first beam is chosen without an id, the named one with it, and none by an id that the plan does not have', () => {
   assert.equal(beams.chosenBeam(plan, scene).id, 'b1');
@@ -43,9 +60,15 @@ test('in a plan without beams a draft begins at the crosshair, from anterior', (
 
 test('moving a point of a planned beam drafts it in one patch; then only that point is sent', () => {
   const patch = beams.redrafted(plan, scene, { target_mm: [3, 4, 0] });
-  assert.deepEqual(patch, { beam: { draft: { enabled: true, shows_planned: false, line: { name: '', entry_mm: [0, -100, 0], target_mm: [3, 4, 0], aperture_mm: null } } } });
+  assert.deepEqual(patch, {
+    beam: {
+      draft: { enabled: true, shows_planned: false, line: { name: '', entry_mm: [0, -100, 0], target_mm: [3, 4, 0], aperture_mm: null } },
+    },
+  });
   const drafted = after(patch);
-  assert.deepEqual(beams.redrafted(plan, drafted, { entry_mm: [0.12345, -200000, -0.0001] }), { beam: { draft: { line: { entry_mm: [0.123, -100000, 0] } } } });
+  assert.deepEqual(beams.redrafted(plan, drafted, { entry_mm: [0.12345, -200000, -0.0001] }), {
+    beam: { draft: { line: { entry_mm: [0.123, -100000, 0] } } },
+  });
   assert.equal(beams.redrafted(plan, drafted, { entry_mm: [3, 4, 0.05] }), null, 'a line without a length is refused');
   const { targetMm, directionDeg } = beams.movedFrom(plan.beams[0], drafted.beam.draft.line);
   near([targetMm, directionDeg], [5, (Math.atan2(3, 104) * 180) / Math.PI], 1e-9);
@@ -87,7 +110,12 @@ test('drafts are kept under the next free id, sixteen at most, and one that was 
   assert.equal(beams.keptName('draft-1', { name: 'Through the ear' }), 'Through the ear');
   const again = after(beams.keptPatch(kept.beam.kept['draft-1']), after(beams.plannedPatch, kept));
   assert.deepEqual(beams.shownLine(plan, again), { entry_mm: [0, -100, 0], target_mm: [3, 4, 0], aperture_mm: 120 });
-  const full = after({ beam: { kept: Object.fromEntries(Array.from({ length: 16 }, (_, at) => [`k${at}`, { entry_mm: [0, 0, 0], target_mm: [0, 0, 1] }])) } }, drafted);
+  const full = after(
+    {
+      beam: { kept: Object.fromEntries(Array.from({ length: 16 }, (_, at) => [`k${at}`, { entry_mm: [0, 0, 0], target_mm: [0, 0, 1] }])) },
+    },
+    drafted,
+  );
   assert.equal(beams.keptDraft(plan, full), null);
 });
 
@@ -107,18 +135,31 @@ test('in perspective a point twice as far moves twice as many millimetres, in th
 
 test('an exported draft has the plan, both lines, the frame and the units', () => {
   const drafted = after(beams.redrafted(plan, scene, { target_mm: [0, 30, 40] }));
-  const answer = { sera: { phi_deg: 70, theta_deg: 90 }, gap_mm: 12, depth_mm: null, skin_lps_mm: [0, -88, 0], iec: null, planned: { gap_mm: 10 } };
+  const answer = {
+    sera: { phi_deg: 70, theta_deg: 90 },
+    gap_mm: 12,
+    depth_mm: null,
+    skin_lps_mm: [0, -88, 0],
+    iec: null,
+    planned: { gap_mm: 10 },
+  };
   const file = draftDocument(plan, drafted, 'head', answer);
   assert.deepEqual(file.plan, { id: 'head', name: 'Head' });
   assert.equal(file.frame.axes, 'LPS');
   assert.deepEqual(file.frame.units, { length: 'mm', angle: 'degree' });
-  assert.deepEqual([file.draft.target_lps_mm, file.draft.gap_mm, file.draft.depth_mm, file.draft.aperture_mm, file.draft.sera.phi_deg], [[0, 30, 40], 12, null, 120, 70]);
+  assert.deepEqual(
+    [file.draft.target_lps_mm, file.draft.gap_mm, file.draft.depth_mm, file.draft.aperture_mm, file.draft.sera.phi_deg],
+    [[0, 30, 40], 12, null, 120, 70],
+  );
   near([file.draft.length_mm, file.moved.target_mm], [Math.hypot(130, 40), 50]);
   assert.deepEqual([file.planned.id, file.planned.length_mm, file.planned.gap_mm], ['b1', 100, 10]);
   assert.equal(draftDocument({ ...plan, beams: [] }, drafted, 'head', null).planned, null);
 });
 
-const drafted = { ...fakeScene, beam: { ...scene.beam, draft: { enabled: true, shows_planned: false, line: { name: '', entry_mm: [0, -100, 0], target_mm: [3, 4, 0] } } } };
+const drafted = {
+  ...fakeScene,
+  beam: { ...scene.beam, draft: { enabled: true, shows_planned: false, line: { name: '', entry_mm: [0, -100, 0], target_mm: [3, 4, 0] } } },
+};
 
 /** A room with a draft; the page's member presents, or is on their own beside Dr A. */
 function roomWithDraft(isOnOwn) {
@@ -134,7 +175,10 @@ test('the presenter looks at the planned beam instead of the draft with everyone
   assert.equal(beamUi.toggleCompare(room), true);
   assert.equal(room.scene.value.beam.draft.shows_planned, true, 'in the scene: every member reads it');
   assert.equal(room.view(1).document.value.override, undefined);
-  assert.deepEqual([beamUi.isComparing(room), beamUi.isDraftOn(room), beams.isDrafted(room.plan.value, room.scene.value)], [true, true, false]);
+  assert.deepEqual(
+    [beamUi.isComparing(room), beamUi.isDraftOn(room), beams.isDrafted(room.plan.value, room.scene.value)],
+    [true, true, false],
+  );
   assert.equal(beamUi.toggleCompare(room), true);
   assert.deepEqual([beamUi.isComparing(room), beams.isDrafted(room.plan.value, room.scene.value)], [false, true]);
 });
@@ -168,5 +212,11 @@ test('who follows the presenter has no pictures of their own to compare in', () 
 test('undo names what of a beam it takes back', () => {
   const room = roomWithDraft(false);
   const name = (path) => stepName([{ of: 'scene', path: ['beam', ...path], before: 1, after: 2 }], room);
-  assert.deepEqual([['id'], ['looks', 'b1', 'color'], ['draft', 'line', 'entry_mm'], ['kept', 'draft-1'], ['opacity']].map(name), ['chosen beam', 'look of a beam', 'draft beam', 'kept draft', 'opacity of openings']);
+  assert.deepEqual([['id'], ['looks', 'b1', 'color'], ['draft', 'line', 'entry_mm'], ['kept', 'draft-1'], ['opacity']].map(name), [
+    'chosen beam',
+    'look of a beam',
+    'draft beam',
+    'kept draft',
+    'opacity of openings',
+  ]);
 });

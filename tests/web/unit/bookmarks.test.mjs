@@ -4,11 +4,21 @@ import { test } from 'node:test';
 import { load } from './page.mjs';
 import { members, roomWorld } from './fake_room.mjs';
 
-const { Bookmarks, arrangeAs, bookmarksOf, canEdit, canSave, freeName, linkOf, move, patchTo, rename, save, stateNow, update } = await load('state/bookmarks.js');
+const { Bookmarks, arrangeAs, bookmarksOf, canEdit, canSave, freeName, linkOf, move, patchTo, rename, save, stateNow, update } =
+  await load('state/bookmarks.js');
 const { mergePatch } = await load('wire/merge.js');
 const { UiState } = await load('state/ui.js');
 
-const row = (id, order, more = {}) => ({ id, kind: 'bookmark', version: 1, author: 'm1', author_name: 'A', created_ms: 1, changed_ms: 1, body: { format: 'beamroom-bookmark', version: 1, name: id, order, scene: {}, views: [], token: `t${id}`, later: 7, ...more } });
+const row = (id, order, more = {}) => ({
+  id,
+  kind: 'bookmark',
+  version: 1,
+  author: 'm1',
+  author_name: 'A',
+  created_ms: 1,
+  changed_ms: 1,
+  body: { format: 'beamroom-bookmark', version: 1, name: id, order, scene: {}, views: [], token: `t${id}`, later: 7, ...more },
+});
 
 function world(list, rows = []) {
   const made = roomWorld(list);
@@ -36,8 +46,17 @@ test('what is saved are the visible views with their cameras, the layout and the
   room.patchView(1, { camera: { position_mm: [1, 2, 3] } });
   ui.setLayout('2x1');
   const state = stateNow(of);
-  assert.deepEqual(state.views.map(({ view, document }) => [view, document.kind, document.camera?.position_mm ?? null]), [[1, '3d', [1, 2, 3]], [2, 'axial', null]]);
-  assert.deepEqual([state.scene, state.layout, 'override' in state], [null, { layout: '2x1', cells: [1, 2], maximised: 0, active: 1 }, false]);
+  assert.deepEqual(
+    state.views.map(({ view, document }) => [view, document.kind, document.camera?.position_mm ?? null]),
+    [
+      [1, '3d', [1, 2, 3]],
+      [2, 'axial', null],
+    ],
+  );
+  assert.deepEqual(
+    [state.scene, state.layout, 'override' in state],
+    [null, { layout: '2x1', cells: [1, 2], maximised: 0, active: 1 }, false],
+  );
   assert.ok(!('size_px' in state.views[0].document));
   const saved = save(of, '');
   assert.deepEqual([puts()[0].type, puts()[0].kind, puts()[0].body.name, puts()[0].body.order], ['item.put', 'bookmark', 'View 1', 1]);
@@ -53,7 +72,10 @@ test('a change keeps what this version does not know, and the link', async () =>
   const of = world(undefined, [row('i-1', 1)]);
   const [one] = bookmarksOf(of.room);
   void rename(of, one, 'x'.repeat(100));
-  assert.deepEqual([of.puts()[0].item, of.puts()[0].version, of.puts()[0].body.later, of.puts()[0].body.token, of.puts()[0].body.name.length], ['i-1', 1, 7, 'ti-1', 80]);
+  assert.deepEqual(
+    [of.puts()[0].item, of.puts()[0].version, of.puts()[0].body.later, of.puts()[0].body.token, of.puts()[0].body.name.length],
+    ['i-1', 1, 7, 'ti-1', 80],
+  );
   void update(of, one);
   assert.deepEqual([of.puts()[1].body.scene, of.puts()[1].body.name, of.puts()[1].body.token], [null, 'i-1', 'ti-1']);
   assert.equal(linkOf(one, 'https://host/at/#/rooms/r/p'), 'https://host/at/#/p/ti-1');
@@ -62,10 +84,20 @@ test('a change keeps what this version does not know, and the link', async () =>
 test('rows stand in their order, and are moved between their neighbours', () => {
   const of = world(undefined, [row('b', 2), row('a', 1), row('c', 3)]);
   const rows = bookmarksOf(of.room);
-  assert.deepEqual(rows.map(({ id }) => id), ['a', 'b', 'c']);
+  assert.deepEqual(
+    rows.map(({ id }) => id),
+    ['a', 'b', 'c'],
+  );
   assert.equal(freeName(rows), 'View 4');
   const wanted = [];
-  for (const [item, by] of [[rows[2], -1], [rows[1], -1], [rows[0], 1], [rows[1], 1], [rows[0], -1], [rows[2], 1]]) {
+  for (const [item, by] of [
+    [rows[2], -1],
+    [rows[1], -1],
+    [rows[0], 1],
+    [rows[1], 1],
+    [rows[0], -1],
+    [rows[2], 1],
+  ]) {
     const before = of.puts().length;
     void move(of, item, by);
     wanted.push(of.puts().length === before ? null : of.puts().at(-1).body.order);
@@ -77,21 +109,34 @@ test('who may save and change: not observers, and others only where they present
   const mine = row('i-1', 1);
   const hers = { ...row('i-2', 2), author: 'm2' };
   const [alone, follower, observer] = [world(), world(members('m2', ['m1'])), world(members('m2', ['m1'], { m1: { role: 'observer' } }))];
-  assert.deepEqual([alone, follower, observer].map(({ room }) => [canSave(room), canEdit(room, mine), canEdit(room, hers)]), [[true, true, true], [true, true, false], [false, false, false]]);
+  assert.deepEqual(
+    [alone, follower, observer].map(({ room }) => [canSave(room), canEdit(room, mine), canEdit(room, hers)]),
+    [
+      [true, true, true],
+      [true, true, false],
+      [false, false, false],
+    ],
+  );
 });
 
 test('a layout that this page does not have, or nonsense, changes nothing', () => {
   const { ui } = world();
   arrangeAs(ui, { layout: '2x1', cells: [3, 1], maximised: 0, active: 3 });
   assert.deepEqual([ui.visible.value, ui.active.value], [[3, 1], 3]);
-  for (const bad of [undefined, { layout: 'spiral', cells: [9, 9], maximised: 'x', active: -1 }, { layout: '2x1', cells: [1, 1] }]) arrangeAs(ui, bad);
+  for (const bad of [undefined, { layout: 'spiral', cells: [9, 9], maximised: 'x', active: -1 }, { layout: '2x1', cells: [1, 1] }])
+    arrangeAs(ui, bad);
   assert.deepEqual([ui.visible.value, ui.active.value, ui.maximised.value], [[3, 1], 3, 0]);
 });
 
 test('a presentation goes from one to the next, and stays at its ends', async () => {
   const of = world(undefined, [row('a', 1), row('b', 2)]);
   const asked = [];
-  const api = { bookmark: async (_, id) => (asked.push(id), { name: id, scene: { ...of.room.scene.value, axes: { visible: id === 'b' } }, views: [], layout: {}, report: [], n_report: 0 }) };
+  const api = {
+    bookmark: async (_, id) => (
+      asked.push(id),
+      { name: id, scene: { ...of.room.scene.value, axes: { visible: id === 'b' } }, views: [], layout: {}, report: [], n_report: 0 }
+    ),
+  };
   const bookmarks = new Bookmarks({ ...of, api }, { createObjectURL: () => 'blob:x', revokeObjectURL: () => {} });
   await bookmarks.play();
   assert.deepEqual([bookmarks.position(), bookmarks.isPlaying.value], [0, true]);
@@ -111,20 +156,33 @@ test('a saved view hides planes and levels that it does not hold, and leaves mar
   const line = (name, visible = true) => ({ kind: 'distance', name, author: 'Dr A', visible, points: [] });
   const draft = (enabled, x) => ({ enabled, shows_planned: false, line: { name: '', entry_mm: [x, 0, 0], target_mm: [0, 0, 0] } });
   const now = {
-    measures: { 'm1-m2': line('since'), 'm2-m3': line('moved since') }, probes: { 'pin-1-m2': { at_mm: [1, 2, 3] } }, constraints: { 'limit-1-m2': { region: 'brain', limit: 9 } },
-    image: { obliques: { b: { visible: true, origin_mm: [1, 1, 1] }, c: { visible: false } } }, dose: { levels: { 90: { value: 90, visible: true } } },
+    measures: { 'm1-m2': line('since'), 'm2-m3': line('moved since') },
+    probes: { 'pin-1-m2': { at_mm: [1, 2, 3] } },
+    constraints: { 'limit-1-m2': { region: 'brain', limit: 9 } },
+    image: { obliques: { b: { visible: true, origin_mm: [1, 1, 1] }, c: { visible: false } } },
+    dose: { levels: { 90: { value: 90, visible: true } } },
     beam: { kept: { k: { name: 'AP' } }, draft: draft(true, 7) },
   };
   const saved = {
-    measures: { 'm2-m3': line('as saved', false), m9: line('deleted since') }, probes: {}, constraints: {},
-    image: { obliques: {} }, dose: { levels: { 50: { value: 50, visible: true } } }, beam: { kept: {}, draft: draft(false, 0) },
+    measures: { 'm2-m3': line('as saved', false), m9: line('deleted since') },
+    probes: {},
+    constraints: {},
+    image: { obliques: {} },
+    dose: { levels: { 50: { value: 50, visible: true } } },
+    beam: { kept: {}, draft: draft(false, 0) },
   };
   const { scene, hidden, changed } = mergedScene(now, saved);
   assert.deepEqual(scene.measures, { 'm1-m2': line('since'), 'm2-m3': line('moved since', false), m9: line('deleted since') });
-  assert.deepEqual([scene.probes, scene.constraints, scene.beam.kept, scene.beam.draft], [now.probes, now.constraints, now.beam.kept, draft(false, 7)]);
+  assert.deepEqual(
+    [scene.probes, scene.constraints, scene.beam.kept, scene.beam.draft],
+    [now.probes, now.constraints, now.beam.kept, draft(false, 7)],
+  );
   assert.deepEqual(scene.image.obliques, { b: { visible: false, origin_mm: [1, 1, 1] }, c: { visible: false } });
   assert.deepEqual(scene.dose.levels, { 90: { value: 90, visible: false }, 50: { value: 50, visible: true } });
-  assert.equal(toldOfMerge({ hidden, changed, left: [] }), 'Hidden, not deleted: 1 measure, 1 oblique plane, 1 isodose level, the draft beam. Changed since, and left so: 1 measure.');
+  assert.equal(
+    toldOfMerge({ hidden, changed, left: [] }),
+    'Hidden, not deleted: 1 measure, 1 oblique plane, 1 isodose level, the draft beam. Changed since, and left so: 1 measure.',
+  );
   assert.equal(toldOfMerge(mergedScene(now, now)), '');
 });
 
@@ -136,7 +194,14 @@ test('whatever was made before and since, showing a saved view deletes none of i
   };
   const pick = (make) => Object.fromEntries(Array.from({ length: 40 }, (_, at) => [`e${at}`, make(at)]).filter(() => below(2)));
   const mark = () => ({ visible: below(2) > 0, value: below(3) });
-  const made = () => ({ measures: pick(mark), probes: pick(() => ({ value: below(3) })), constraints: pick(() => ({ value: below(3) })), image: { obliques: Object.fromEntries(Object.entries(pick(mark)).slice(0, 4)) }, dose: { levels: Object.fromEntries(Object.entries(pick(mark)).slice(0, 20)), weights: pick(() => ({ boron_ratio: 1 })) }, beam: { kept: pick(() => ({ value: below(3) })), draft: { enabled: below(2) > 0, line: { x: below(9) } } } });
+  const made = () => ({
+    measures: pick(mark),
+    probes: pick(() => ({ value: below(3) })),
+    constraints: pick(() => ({ value: below(3) })),
+    image: { obliques: Object.fromEntries(Object.entries(pick(mark)).slice(0, 4)) },
+    dose: { levels: Object.fromEntries(Object.entries(pick(mark)).slice(0, 20)), weights: pick(() => ({ boron_ratio: 1 })) },
+    beam: { kept: pick(() => ({ value: below(3) })), draft: { enabled: below(2) > 0, line: { x: below(9) } } },
+  });
   const of = (scene) => [scene.measures, scene.probes, scene.constraints, scene.image.obliques, scene.dose.levels, scene.beam.kept];
   for (let run = 0; run < 200; run++) {
     const [now, saved] = [made(), made()];
@@ -156,7 +221,9 @@ test('whatever was made before and since, showing a saved view deletes none of i
       assert.equal(told, hidden);
       assert.equal(merge.hidden.includes('the draft beam'), now.beam.draft.enabled && !after.beam.draft.enabled);
       if (!saved.beam.draft.enabled) assert.deepEqual(after.beam.draft.line, now.beam.draft.line);
-      [64, 32, 64, 8, 32, 16].forEach((most, kind) => assert.ok(Object.keys(of(after)[kind]).length <= Math.max(most, Object.keys(of(now)[kind]).length)));
+      [64, 32, 64, 8, 32, 16].forEach((most, kind) =>
+        assert.ok(Object.keys(of(after)[kind]).length <= Math.max(most, Object.keys(of(now)[kind]).length)),
+      );
     }
   }
 });

@@ -11,7 +11,9 @@ test('a lost connection is tried again after 0.5, 1, 2, 4 and 4 s, as the same m
   const clock = { now: () => 0, setTimeout: (callback, ms) => timers.push({ callback, ms }), clearTimeout() {} };
   class Socket extends EventTarget {
     sent = [];
-    send(text) { this.sent.push(JSON.parse(text)); }
+    send(text) {
+      this.sent.push(JSON.parse(text));
+    }
     close() {}
     tell(message) {
       const event = new Event('message');
@@ -19,10 +21,27 @@ test('a lost connection is tried again after 0.5, 1, 2, 4 and 4 s, as the same m
       this.dispatchEvent(event);
     }
   }
-  const connection = new Connection('ws://x', { clock, makeSocket: () => { const socket = new Socket(); sockets.push(socket); return socket; } });
+  const connection = new Connection('ws://x', {
+    clock,
+    makeSocket: () => {
+      const socket = new Socket();
+      sockets.push(socket);
+      return socket;
+    },
+  });
   connection.open();
   sockets[0].dispatchEvent(new Event('open'));
-  sockets[0].tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0, items: [] });
+  sockets[0].tell({
+    type: 'welcome',
+    protocol: 2,
+    room: 'r',
+    member: 'm-1',
+    secret: 'abc',
+    name: 'R',
+    plan_id: 'p',
+    revision: 0,
+    items: [],
+  });
   const waits = [];
   for (let turn = 0; turn < 5; turn++) {
     timers.length = 0;
@@ -43,22 +62,59 @@ function fakeConnection(more = {}) {
   let timer = () => {};
   class Socket extends EventTarget {
     sent = [];
-    send(text) { this.sent.push(JSON.parse(text)); }
-    close() { this.isClosed = true; }
-    tell(message) { this.dispatchEvent(Object.assign(new Event('message'), { data: JSON.stringify(message) })); }
-    open() { this.dispatchEvent(new Event('open')); }
-    welcome() { this.tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0, items: [] }); }
-    lose() { waits.length = 0; this.dispatchEvent(new Event('close')); }
+    send(text) {
+      this.sent.push(JSON.parse(text));
+    }
+    close() {
+      this.isClosed = true;
+    }
+    tell(message) {
+      this.dispatchEvent(Object.assign(new Event('message'), { data: JSON.stringify(message) }));
+    }
+    open() {
+      this.dispatchEvent(new Event('open'));
+    }
+    welcome() {
+      this.tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0, items: [] });
+    }
+    lose() {
+      waits.length = 0;
+      this.dispatchEvent(new Event('close'));
+    }
   }
-  const clock = { now: () => 0, setTimeout: (callback, ms) => { waits.push(ms); timer = callback; }, clearTimeout() {} };
-  const connection = new Connection('ws://x', { clock, makeSocket: () => { const socket = new Socket(); sockets.push(socket); return socket; }, ...more });
+  const clock = {
+    now: () => 0,
+    setTimeout: (callback, ms) => {
+      waits.push(ms);
+      timer = callback;
+    },
+    clearTimeout() {},
+  };
+  const connection = new Connection('ws://x', {
+    clock,
+    makeSocket: () => {
+      const socket = new Socket();
+      sockets.push(socket);
+      return socket;
+    },
+    ...more,
+  });
   const told = [];
   for (const type of ['up', 'lost', 'renewing', 'ended']) connection.addEventListener(type, ({ detail }) => told.push({ type, ...detail }));
   connection.open();
   return { connection, told, waits, sockets, last: () => sockets.at(-1), n: () => sockets.length, wait: () => timer() };
 }
 
-for (const [retryMs, expected] of [[0, 500], [300, 500], [500, 500], [2000, 2000], [2500, 2500], [5000, 5000], [30000, 30000], [600000, 600000]])
+for (const [retryMs, expected] of [
+  [0, 500],
+  [300, 500],
+  [500, 500],
+  [2000, 2000],
+  [2500, 2500],
+  [5000, 5000],
+  [30000, 30000],
+  [600000, 600000],
+])
   test(`a bye that asks to wait ${retryMs} ms is heeded: ${expected} ms`, () => {
     const fake = fakeConnection();
     fake.last().open();
@@ -86,8 +142,14 @@ test('"Try now" does not wait for what a bye asked for', () => {
 });
 
 test('a page that could not get back asks whether the room is there, and ends where it is gone', async () => {
-  let asked = 0, isGone = false;
-  const fake = fakeConnection({ isGone: async () => { asked += 1; return isGone; } });
+  let asked = 0,
+    isGone = false;
+  const fake = fakeConnection({
+    isGone: async () => {
+      asked += 1;
+      return isGone;
+    },
+  });
   fake.last().open();
   fake.last().welcome();
   fake.last().lose(); // it was open: nobody asks
@@ -123,16 +185,36 @@ function runningConnection() {
     send(text) {
       const message = JSON.parse(text);
       if (isSilent) return;
-      if (message.type === 'hello') this.tell({ type: 'welcome', protocol: 2, room: 'r', member: 'm-1', secret: 'abc', name: 'R', plan_id: 'p', revision: 0, items: [] });
+      if (message.type === 'hello')
+        this.tell({
+          type: 'welcome',
+          protocol: 2,
+          room: 'r',
+          member: 'm-1',
+          secret: 'abc',
+          name: 'R',
+          plan_id: 'p',
+          revision: 0,
+          items: [],
+        });
       if (message.type === 'ping') this.tell({ type: 'pong', time_ms: message.time_ms });
     }
-    close() { this.isClosed = true; } // and never says so, as without a network
-    tell(message) { this.dispatchEvent(Object.assign(new Event('message'), { data: JSON.stringify(message) })); }
+    close() {
+      this.isClosed = true;
+    } // and never says so, as without a network
+    tell(message) {
+      this.dispatchEvent(Object.assign(new Event('message'), { data: JSON.stringify(message) }));
+    }
   }
   const clock = {
     now: () => now,
-    setTimeout: (callback, ms) => { timers.push({ callback, at: now + ms }); return timers.at(-1); },
-    clearTimeout: (timer) => { timers = timers.filter((other) => other !== timer); },
+    setTimeout: (callback, ms) => {
+      timers.push({ callback, at: now + ms });
+      return timers.at(-1);
+    },
+    clearTimeout: (timer) => {
+      timers = timers.filter((other) => other !== timer);
+    },
   };
   const advance = (ms) => {
     const end = now + ms;
@@ -145,12 +227,29 @@ function runningConnection() {
     }
     now = end;
   };
-  const connection = new Connection('ws://x', { clock, makeSocket: () => { sockets.push(new Socket()); return sockets.at(-1); } });
+  const connection = new Connection('ws://x', {
+    clock,
+    makeSocket: () => {
+      sockets.push(new Socket());
+      return sockets.at(-1);
+    },
+  });
   for (const type of ['quiet', 'heard', 'lost', 'up']) connection.addEventListener(type, ({ detail }) => told.push([type, now, detail]));
   connection.open();
   sockets[0].dispatchEvent(new Event('open'));
   told.length = 0;
-  return { connection, sockets, told, advance, sleep: (ms) => { now += ms; }, silence: (value) => { isSilent = value; } };
+  return {
+    connection,
+    sockets,
+    told,
+    advance,
+    sleep: (ms) => {
+      now += ms;
+    },
+    silence: (value) => {
+      isSilent = value;
+    },
+  };
 }
 
 test('a server that answers is never quiet', () => {
@@ -167,10 +266,16 @@ test('2 s without an answer that is due: quiet; 5 s: lost, and tried again on a 
   advance(1000); // a ping went unanswered at 20000 + 500 or + 1000
   assert.deepEqual(told, []);
   advance(2500);
-  assert.deepEqual(told.map(([type]) => type), ['quiet']);
+  assert.deepEqual(
+    told.map(([type]) => type),
+    ['quiet'],
+  );
   assert.equal(told[0][2].since, 20000, 'its age counts from the last answer');
   advance(3000);
-  assert.deepEqual(told.map(([type]) => type), ['quiet', 'lost']);
+  assert.deepEqual(
+    told.map(([type]) => type),
+    ['quiet', 'lost'],
+  );
   assert.ok(told[1][1] - told[0][1] >= 3000 - 500 && told[1][1] - told[0][1] <= 3000 + 500, 'a beat is 500 ms');
   assert.equal(sockets[0].isClosed, true);
   silence(false);
@@ -186,10 +291,16 @@ test('an answer after 3 s ends the doubt', () => {
   const { sockets, told, advance, silence } = runningConnection();
   silence(true);
   advance(4000);
-  assert.deepEqual(told.map(([type]) => type), ['quiet']);
+  assert.deepEqual(
+    told.map(([type]) => type),
+    ['quiet'],
+  );
   silence(false);
   sockets[0].tell({ type: 'pong', time_ms: 1 });
-  assert.deepEqual(told.map(([type]) => type), ['quiet', 'heard']);
+  assert.deepEqual(
+    told.map(([type]) => type),
+    ['quiet', 'heard'],
+  );
   advance(10000);
   assert.equal(told.length, 2);
 });
@@ -216,9 +327,15 @@ test('connections that end soon after their welcome get more time, so that one l
   told.length = 0;
   silence(true);
   advance(8000);
-  assert.deepEqual(told.map(([type]) => type), ['quiet']);
+  assert.deepEqual(
+    told.map(([type]) => type),
+    ['quiet'],
+  );
   advance(4000); // 1 s and 10 s
-  assert.deepEqual(told.map(([type]) => type), ['quiet', 'lost']);
+  assert.deepEqual(
+    told.map(([type]) => type),
+    ['quiet', 'lost'],
+  );
 });
 
 test('a page that slept is not a lost connection', () => {
@@ -251,7 +368,10 @@ test('another name comes back as the same member on a new socket; the old one st
   sockets[1].welcome();
   assert.equal(sockets[0].isClosed, true);
   assert.equal(connection.send({ type: 'view.close', view: 1 }), true);
-  assert.deepEqual(told.map(({ type }) => type), ['up', 'renewing', 'up']);
+  assert.deepEqual(
+    told.map(({ type }) => type),
+    ['up', 'renewing', 'up'],
+  );
 });
 
 test('a link that is dead shows 2 s after another name was given; the name goes with the next hello', () => {
@@ -262,9 +382,15 @@ test('a link that is dead shows 2 s after another name was given; the name goes 
   connection.rename('Dr Chen');
   assert.deepEqual(waits, [2000]);
   wait();
-  assert.deepEqual(told.map(({ type }) => type), ['up', 'renewing', 'lost']);
+  assert.deepEqual(
+    told.map(({ type }) => type),
+    ['up', 'renewing', 'lost'],
+  );
   connection.rename('Dr Chang'); // without a connection
   last().open();
   assert.equal(last().sent[0].name, 'Dr Chang');
-  assert.deepEqual(told.map(({ type }) => type), ['up', 'renewing', 'lost']);
+  assert.deepEqual(
+    told.map(({ type }) => type),
+    ['up', 'renewing', 'lost'],
+  );
 });

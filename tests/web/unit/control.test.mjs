@@ -6,7 +6,16 @@ import { members, roomWorld } from './fake_room.mjs';
 const roles = { m1: { role: 'reviewer' }, m2: { role: 'presenter' }, m3: { role: 'observer' } };
 /** The page is m1, a reviewer, and m2 presents. */
 const reviewer = (role = 'reviewer') => roomWorld(members('m2', ['m1', 'm3'], { ...roles, m1: { role } }));
-const control = (more = {}) => ({ type: 'control', presenter: 'm2', locked: false, requests: [], act: 'none', member: '', by: '', ...more });
+const control = (more = {}) => ({
+  type: 'control',
+  presenter: 'm2',
+  locked: false,
+  requests: [],
+  act: 'none',
+  member: '',
+  by: '',
+  ...more,
+});
 const offers = ({ control: { canTake, canRequest } }) => [canTake.value && 'take', canRequest.value && 'request'].filter(Boolean);
 
 test('who may take control and who may request it', () => {
@@ -39,7 +48,13 @@ test('a request is sent, withdrawn and refused in words', () => {
   connection.receive(control({ act: 'refused', member: 'm1', by: 'm2' }));
   assert.equal(room.control.isRequesting.value, false);
   assert.equal(told.at(-1)[1], 'Dr A keeps control for now.');
-  connection.receive({ type: 'problem', to: 'control.request', view: 0, input: 0, problem: { type: '/problems/limit', status: 429, detail: 'm2 refused control', retry_after_ms: 8100 } });
+  connection.receive({
+    type: 'problem',
+    to: 'control.request',
+    view: 0,
+    input: 0,
+    problem: { type: '/problems/limit', status: 429, detail: 'm2 refused control', retry_after_ms: 8100 },
+  });
   assert.equal(told.at(-1)[1], 'Dr A keeps control for now. Ask again in 9 s.');
 });
 
@@ -59,7 +74,11 @@ test('who is given control while on their own follows the room first', () => {
   connection.sent.length = 0;
   connection.receive(members('m1', ['m2', 'm3'], roles));
   assert.equal(room.following.isPresenting.value, true);
-  assert.deepEqual(connection.sent.filter(({ type }) => type === 'present'), [], 'the own views do not become the room\'s');
+  assert.deepEqual(
+    connection.sent.filter(({ type }) => type === 'present'),
+    [],
+    "the own views do not become the room's",
+  );
 });
 
 test('who loses control is told, and that a change did not arrive', () => {
@@ -71,13 +90,25 @@ test('who loses control is told, and that a change did not arrive', () => {
   connection.receive(control({ presenter: 'm2', act: 'taken', member: 'm2', by: 'm2' }));
   connection.receive(members('m2', ['m1'], roles));
   assert.equal(told.at(-1)[1], 'Dr A presents now. You follow.');
-  connection.receive({ type: 'problem', to: 'view.patch', view: 1, input, problem: { type: '/problems/not-presenter', status: 403, detail: '' } });
+  connection.receive({
+    type: 'problem',
+    to: 'view.patch',
+    view: 1,
+    input,
+    problem: { type: '/problems/not-presenter', status: 403, detail: '' },
+  });
   assert.equal(told.at(-1)[1], 'Dr A presents now: your last change was not made.');
 });
 
 test('sentences of the server have names in place of ids', () => {
   const { room, connection, told } = reviewer('presenter');
-  connection.receive({ type: 'problem', to: 'control.take', view: 0, input: 0, problem: { type: '/problems/not-presenter', status: 403, code: 'locked', detail: 'm2 has locked control: request it' } });
+  connection.receive({
+    type: 'problem',
+    to: 'control.take',
+    view: 0,
+    input: 0,
+    problem: { type: '/problems/not-presenter', status: 403, code: 'locked', detail: 'm2 has locked control: request it' },
+  });
   assert.equal(told.at(-1)[1], 'Dr A has locked control: request it');
   assert.equal(room.control.named('m99 and m3'), 'm99 and Dr B');
 });
@@ -87,7 +118,9 @@ test('the connection takes link and person into hello', async () => {
   const { Connection } = await load('net/connection.js');
   const sent = [];
   class Socket extends EventTarget {
-    send(text) { sent.push(JSON.parse(text)); }
+    send(text) {
+      sent.push(JSON.parse(text));
+    }
     close() {}
   }
   const socket = new Socket();

@@ -10,10 +10,22 @@ const { setTimeout } = globalThis;
 globalThis.setTimeout = (...given) => setTimeout(...given).unref();
 
 let made, said;
-beforeEach(() => { [made, said] = [[], []]; });
-globalThis.document = { createElement: () => ({ click() { made.push(this.download); } }), querySelector: () => ({}) };
+beforeEach(() => {
+  [made, said] = [[], []];
+});
+globalThis.document = {
+  createElement: () => ({
+    click() {
+      made.push(this.download);
+    },
+  }),
+  querySelector: () => ({}),
+};
 globalThis.URL.createObjectURL = () => 'blob:';
-globalThis.print = () => { globalThis.onbeforeprint(); made.push('print'); };
+globalThis.print = () => {
+  globalThis.onbeforeprint();
+  made.push('print');
+};
 
 /** @param {(object|null)[]} answers one for each call: null, or the problem with which it is refused */
 function worldThat(answers) {
@@ -25,7 +37,13 @@ function worldThat(answers) {
     if (problem) throw Object.assign(new Error(problem.detail), problem);
     return null;
   };
-  return { calls, api: { call }, room: { id: 'r1', identity: { member: 'm2', secret: 's' }, planId: { value: 'phantom' } }, ui: { notify: (kind, text) => said.push([kind, text]) }, clock: { setTimeout: (run) => run() } };
+  return {
+    calls,
+    api: { call },
+    room: { id: 'r1', identity: { member: 'm2', secret: 's' }, planId: { value: 'phantom' } },
+    ui: { notify: (kind, text) => said.push([kind, text]) },
+    clock: { setTimeout: (run) => run() },
+  };
 }
 
 test('a file is made once the export is recorded, under the name that was recorded', async () => {
@@ -43,10 +61,19 @@ test('the server may need time to know the revision of the files: the page asks 
 });
 
 test('what the server refuses is not made, and the reason is said', async () => {
-  await exportFile(worldThat([{ type: '/problems/storage', detail: 'the disk takes no more records now' }]), 'dvh', 'a.csv', '', 'text/csv');
+  await exportFile(
+    worldThat([{ type: '/problems/storage', detail: 'the disk takes no more records now' }]),
+    'dvh',
+    'a.csv',
+    '',
+    'text/csv',
+  );
   await printable(worldThat([{ type: '', detail: 'The server does not answer.' }]), 'printed-report', 'report')();
   assert.deepEqual(made, []);
-  assert.deepEqual(said, [['err', 'Not saved: the disk takes no more records now'], ['err', 'Not saved: The server does not answer.']]);
+  assert.deepEqual(said, [
+    ['err', 'Not saved: the disk takes no more records now'],
+    ['err', 'Not saved: The server does not answer.'],
+  ]);
 });
 
 test('a printout is told once by its button, and also when the menu of the browser prints it', async () => {
@@ -55,13 +82,22 @@ test('a printout is told once by its button, and also when the menu of the brows
   assert.deepEqual([made, world.calls.length], [['print'], 1]);
   made.length = 0;
   globalThis.onbeforeprint();
-  assert.deepEqual(world.calls.map(([, , body]) => body), [{ what: 'printed-record', name: 'record of room r1' }, { what: 'printed-record', name: 'record of room r1' }]);
+  assert.deepEqual(
+    world.calls.map(([, , body]) => body),
+    [
+      { what: 'printed-record', name: 'record of room r1' },
+      { what: 'printed-record', name: 'record of room r1' },
+    ],
+  );
 });
 
 test('a saved picture is asked for by the member, so that its row says who', async () => {
   const world = worldThat([]);
   const rooms = [];
-  world.api.snapshot = async (room) => { rooms.push(room); return new Blob(['png']); };
+  world.api.snapshot = async (room) => {
+    rooms.push(room);
+    return new Blob(['png']);
+  };
   await savePicture(world, { kind: 'axial' }, {});
   assert.deepEqual([rooms, made], [[world.room], ['phantom-axial.png']]);
 });

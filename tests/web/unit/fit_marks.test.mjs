@@ -3,7 +3,13 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-globalThis.document = { createTreeWalker: () => ({}), createComment: () => ({}), addEventListener() {}, querySelector: () => null, head: { append() {} } };
+globalThis.document = {
+  createTreeWalker: () => ({}),
+  createComment: () => ({}),
+  addEventListener() {},
+  querySelector: () => null,
+  head: { append() {} },
+};
 const { fitBar, fitBlock, numberMark, usedRows, usedSheet, wordMark } = await load('panels/fit_panels.js');
 const { nothing } = await load('../lib/lit-html.js');
 const { pairKey } = await load('state/accepted.js');
@@ -17,26 +23,75 @@ function textOf(part) {
   return typeof part === 'object' ? '' : String(part);
 }
 /** What is read: without tags. */
-const read = (part) => textOf(part).replace(/<[^>]*>/g, ' ').replace(/\s+/g, ' ').trim();
+const read = (part) =>
+  textOf(part)
+    .replace(/<[^>]*>/g, ' ')
+    .replace(/\s+/g, ' ')
+    .trim();
 
 const reason = 'Dose “Boost” is not used with MR: it was computed in another frame of reference. It may be shifted against this image.';
 const fact = 'It was computed in another frame of reference. It may be shifted against this image.';
 const plan = {
-  images: [{ id: 'mr', name: 'MR', frame: 1 }], regions: [], beams: [], patients: [], treatmentPlans: [],
-  doses: [{ id: 'boost', name: 'Boost', frame: 0 }, { id: 'own', name: 'Own' }],
-  fits: [{ thing: 'dose:boost', with: 'image:mr', relation: 'frame', needs: 'acceptance', reason }, { thing: 'dose:own', with: 'image:mr', relation: 'same', needs: 'nothing', reason: '' }],
+  images: [{ id: 'mr', name: 'MR', frame: 1 }],
+  regions: [],
+  beams: [],
+  patients: [],
+  treatmentPlans: [],
+  doses: [
+    { id: 'boost', name: 'Boost', frame: 0 },
+    { id: 'own', name: 'Own' },
+  ],
+  fits: [
+    { thing: 'dose:boost', with: 'image:mr', relation: 'frame', needs: 'acceptance', reason },
+    { thing: 'dose:own', with: 'image:mr', relation: 'same', needs: 'nothing', reason: '' },
+  ],
 };
-const row = { id: 'i-1', kind: 'acceptance', author_name: 'Ann', created_ms: Date.UTC(2026, 10, 27, 9, 30), body: { thing: 'dose:boost', with: 'image:mr', reason: 'same-session', words: 'one couch, one hour', fact: reason } };
+const row = {
+  id: 'i-1',
+  kind: 'acceptance',
+  author_name: 'Ann',
+  created_ms: Date.UTC(2026, 10, 27, 9, 30),
+  body: { thing: 'dose:boost', with: 'image:mr', reason: 'same-session', words: 'one couch, one hour', fact: reason },
+};
 
 function worldOf({ isAccepted = true, id = 'boost', isPresenting = true } = {}) {
-  const scene = { image: { id: 'mr', blend: { id: '' } }, regions: {}, beam: { looks: {} }, tracks: { visible: false }, dose: { id, sum: {}, compare: { id: '', mode: 'none' }, wash: { visible: true }, lines: { visible: false }, surfaces: { visible: false }, coverage: { visible: false } } };
-  const room = { plan: { value: plan }, scene: { value: scene }, accepted: { value: new Map(isAccepted ? [[pairKey('dose:boost', 'image:mr'), row]] : []) }, canChange: { value: true }, following: { isPresenting: { value: isPresenting } }, items: { rows: { value: new Map() } }, acceptances: { value: { items: [], known: true } } };
+  const scene = {
+    image: { id: 'mr', blend: { id: '' } },
+    regions: {},
+    beam: { looks: {} },
+    tracks: { visible: false },
+    dose: {
+      id,
+      sum: {},
+      compare: { id: '', mode: 'none' },
+      wash: { visible: true },
+      lines: { visible: false },
+      surfaces: { visible: false },
+      coverage: { visible: false },
+    },
+  };
+  const room = {
+    plan: { value: plan },
+    scene: { value: scene },
+    accepted: { value: new Map(isAccepted ? [[pairKey('dose:boost', 'image:mr'), row]] : []) },
+    canChange: { value: true },
+    following: { isPresenting: { value: isPresenting } },
+    items: { rows: { value: new Map() } },
+    acceptances: { value: { items: [], known: true } },
+  };
   return { room, ui: { selection: { value: { kind: 'dose', id: 'boost' } }, active: { value: 1 } } };
 }
 
 test('paper lists the parts, the fact, the words, who said it and when; nothing where all fits', () => {
   const words = read(usedSheet(worldOf()));
-  for (const part of ['Parts used though they do not fit', 'Dose “Boost” with MR', fact, 'Same session and couch: one couch, one hour', 'Ann, ']) assert.ok(words.includes(part), `"${words}" has no "${part}"`);
+  for (const part of [
+    'Parts used though they do not fit',
+    'Dose “Boost” with MR',
+    fact,
+    'Same session and couch: one couch, one hour',
+    'Ann, ',
+  ])
+    assert.ok(words.includes(part), `"${words}" has no "${part}"`);
   assert.ok(!words.includes('is not used'), 'it is used');
   assert.equal(usedSheet(worldOf({ isAccepted: false })), nothing);
 });
@@ -50,7 +105,9 @@ test('numbers of an accepted dose are marked, those of another dose are not', ()
 });
 
 test('files of numbers say it in a row', () => {
-  assert.deepEqual(usedRows(worldOf()), [['used though it does not fit', 'Dose “Boost” with MR', fact, 'Ann, 2026-11-27T09:30:00.000Z', 'one couch, one hour']]);
+  assert.deepEqual(usedRows(worldOf()), [
+    ['used though it does not fit', 'Dose “Boost” with MR', fact, 'Ann, 2026-11-27T09:30:00.000Z', 'one couch, one hour'],
+  ]);
   assert.deepEqual(usedRows(worldOf({ id: 'own' })), []);
 });
 

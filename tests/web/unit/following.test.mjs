@@ -8,7 +8,15 @@ const { RoomState } = await load('state/room.js');
 const { widen, widening } = await load('view/own_camera.js');
 
 const camera = { position_mm: [0, 0, -1000], target_mm: [0, 0, 0], up: [0, -1, 0], projection: 'parallel', fov_deg: 30, height_mm: 300 };
-const shared = { kind: 'axial', number: 1, plane: '', size_px: [900, 600], camera, beam: { along_mm: null, crosshair: true, aperture_mm: null }, override: {} };
+const shared = {
+  kind: 'axial',
+  number: 1,
+  plane: '',
+  size_px: [900, 600],
+  camera,
+  beam: { along_mm: null, crosshair: true, aperture_mm: null },
+  override: {},
+};
 const viewMessage = (follow, more = {}) => ({ type: 'view', view: 2, document: { ...shared, ...more }, follow, by: 'm2' });
 const sent = (connection) => connection.sent.map(({ type }) => type);
 
@@ -55,14 +63,22 @@ test('a follower who moves the crosshair leaves: with their own size, scale and 
   assert.deepEqual(sent(connection), ['follow', 'view.patch']);
   const [{ follow, views }, { patch }] = connection.sent;
   assert.equal(follow, false);
-  assert.deepEqual(views.map(({ view }) => view), [2]);
+  assert.deepEqual(
+    views.map(({ view }) => view),
+    [2],
+  );
   const [{ document }] = views;
   assert.deepEqual(document.size_px, [400, 400]);
   // 900 x 600 is shown 400 px wide, at 4/9; 300 mm over 600 px is 0.5 mm a px, so 1.125 mm per own px: 450 mm over 400 px
   assert.ok(Math.abs(document.camera.height_mm - 450) < 1e-9);
-  assert.deepEqual(document.override, { image: { slices: { axial: { position_mm: 0 }, coronal: { position_mm: 0 }, sagittal: { position_mm: 0 } } } });
+  assert.deepEqual(document.override, {
+    image: { slices: { axial: { position_mm: 0 }, coronal: { position_mm: 0 }, sagittal: { position_mm: 0 } } },
+  });
   assert.deepEqual(patch, { override: { image: { slices: { axial: { position_mm: 7 } } } } });
-  assert.deepEqual(told.map(([, text, , action]) => [text, action.word]), [['On your own.', 'Return']]);
+  assert.deepEqual(
+    told.map(([, text, , action]) => [text, action.word]),
+    [['On your own.', 'Return']],
+  );
 });
 
 test('the drag that made a member leave goes on in the own view, in its scale', () => {
@@ -78,15 +94,26 @@ test('the drag that made a member leave goes on in the own view, in its scale', 
   assert.equal(connection.sent[2].patch.camera.height_mm, 200, 'later ones are of the own view already');
 });
 
-test('a change of the scene by somebody on their own goes into all own views, and the presenter\'s stays under it', () => {
+test("a change of the scene by somebody on their own goes into all own views, and the presenter's stays under it", () => {
   const { room, connection, flush } = follower();
   room.showView(1, [800, 600]);
   room.following.leave();
   connection.sent.length = 0;
   room.patchScene({ regions: { brain: { visible: false } } }, { view: 1 });
   flush();
-  assert.deepEqual(connection.sent.map(({ type, view }) => [type, view]), [['view.patch', 1], ['view.patch', 2]]);
-  connection.receive({ type: 'scene', revision: 2, patch: { regions: { brain: { opacity: 0.5, visible: true } }, image: { slices: { axial: { position_mm: 30 } } } }, by: 'm2' });
+  assert.deepEqual(
+    connection.sent.map(({ type, view }) => [type, view]),
+    [
+      ['view.patch', 1],
+      ['view.patch', 2],
+    ],
+  );
+  connection.receive({
+    type: 'scene',
+    revision: 2,
+    patch: { regions: { brain: { opacity: 0.5, visible: true } }, image: { slices: { axial: { position_mm: 30 } } } },
+    by: 'm2',
+  });
   const { regions, image } = room.scene.value;
   assert.deepEqual([regions.brain.visible, regions.brain.opacity, image.slices.axial.position_mm], [false, 0.5, 0]);
   room.showView(3, [300, 300]); // a pane that opens later
@@ -94,11 +121,14 @@ test('a change of the scene by somebody on their own goes into all own views, an
   assert.equal(connection.sent.at(-1).document.override.regions.brain.visible, false);
 });
 
-test('the size of a follower\'s pane is told and changes no shared document; a presenter\'s does', () => {
+test("the size of a follower's pane is told and changes no shared document; a presenter's does", () => {
   const { room, connection, flush } = follower();
   room.showView(2, [500, 300]);
   flush();
-  assert.deepEqual(connection.sent.map(({ patch }) => patch), [{ size_px: [500, 300] }]);
+  assert.deepEqual(
+    connection.sent.map(({ patch }) => patch),
+    [{ size_px: [500, 300] }],
+  );
   assert.deepEqual(room.view(2).document.value.size_px, [900, 600]);
   connection.receive(viewMessage(true, { size_px: [700, 700] }));
   room.following.leave();
@@ -114,7 +144,10 @@ test('return follows again with all panes and drops the override; Esc and F have
   connection.sent.length = 0;
   assert.equal(room.following.return(), true);
   assert.equal(room.scene.value.image.slices.axial.position_mm, 0);
-  assert.deepEqual(connection.sent.map(({ type, follow }) => [type, follow]), [['follow', true]]);
+  assert.deepEqual(
+    connection.sent.map(({ type, follow }) => [type, follow]),
+    [['follow', true]],
+  );
   assert.equal(room.following.return(), false);
 });
 
@@ -174,12 +207,22 @@ test('who is left alone is told so, and not that somebody who is gone called', (
   connection.receive(viewMessage(true)); // the own views have become the room's
   connection.receive(members('m1', ['m2'], { m2: { connected: false } }));
   assert.equal(room.following.standing.value, 'presenting');
-  assert.deepEqual(told.map(([, text]) => text), ['You are alone here, and present now.']);
+  assert.deepEqual(
+    told.map(([, text]) => text),
+    ['You are alone here, and present now.'],
+  );
 });
 
 // ---- what crosses on the way ----------------------------------------------------------------------------------------------
 
-const notPresenter = (to, input, more = {}) => ({ type: 'problem', to, view: 0, input, problem: { type: '/problems/not-presenter', status: 403, detail: 'only the presenter, m2, may do that' }, ...more });
+const notPresenter = (to, input, more = {}) => ({
+  type: 'problem',
+  to,
+  view: 0,
+  input,
+  problem: { type: '/problems/not-presenter', status: 403, detail: 'only the presenter, m2, may do that' },
+  ...more,
+});
 
 test('a change that was on its way when the presenter called everybody back is dropped without a word', () => {
   const { room, connection, flush, told } = follower();
@@ -207,7 +250,10 @@ test('a change of the room that was on its way when somebody else took over is t
   connection.receive(members('m2', ['m1']));
   told.length = 0;
   connection.receive(notPresenter('scene.patch', input));
-  assert.deepEqual(told.map(([kind, text]) => [kind, text]), [['warn', 'Dr A presents now: your last change was not made.']]);
+  assert.deepEqual(
+    told.map(([kind, text]) => [kind, text]),
+    [['warn', 'Dr A presents now: your last change was not made.']],
+  );
   assert.equal(room.scene.value.regions.brain.opacity, 1);
 });
 
@@ -217,7 +263,10 @@ test('what only a presenter may do is still refused aloud while this member pres
   flush();
   told.length = 0;
   connection.receive(notPresenter('scene.patch', connection.sent.at(-1).input));
-  assert.deepEqual(told.map(([kind]) => kind), ['err']);
+  assert.deepEqual(
+    told.map(([kind]) => kind),
+    ['err'],
+  );
 });
 
 test('who leaves in the moment in which they are left alone presents what the page shows, without a word', () => {
@@ -282,7 +331,10 @@ test('who leaves without a connection is on their own after it, with the then cu
   room.patchScene({ image: { slices: { axial: { position_mm: 9 } } } }, { view: 2 });
   flush();
   back();
-  assert.deepEqual(connection.sent.map(({ type, follow }) => [type, follow]), [['view.open', false]]);
+  assert.deepEqual(
+    connection.sent.map(({ type, follow }) => [type, follow]),
+    [['view.open', false]],
+  );
   const { document } = connection.sent[0];
   assert.equal(document.override.image.slices.axial.position_mm, 9);
   assert.deepEqual(document.size_px, [400, 400]);
@@ -290,16 +342,28 @@ test('who leaves without a connection is on their own after it, with the then cu
   assert.equal(scene.image.slices.axial.position_mm, 0);
 });
 
-test('who comes back on their own and is alone presents what they see: the own views become the room\'s', () => {
+test("who comes back on their own and is alone presents what they see: the own views become the room's", () => {
   const { room, connection, lose, back } = follower();
   room.patchScene({ image: { slices: { axial: { position_mm: 9 } } } }, { view: 2 });
   connection.receive(viewMessage(false));
   lose();
   back(members('m1', ['m2'], { m2: { connected: false } }));
-  assert.deepEqual(connection.sent.map(({ type, follow }) => [type, follow]), [['view.open', false], ['present', undefined]]);
+  assert.deepEqual(
+    connection.sent.map(({ type, follow }) => [type, follow]),
+    [
+      ['view.open', false],
+      ['present', undefined],
+    ],
+  );
   assert.equal(room.scene.value.image.slices.axial.position_mm, 9, 'until the server has answered, too');
   assert.equal(room.following.return(), false);
-  connection.receive({ type: 'scene', revision: 2, patch: { image: { slices: { axial: { position_mm: 9 } } } }, by: 'm1', input: connection.sent[1].input });
+  connection.receive({
+    type: 'scene',
+    revision: 2,
+    patch: { image: { slices: { axial: { position_mm: 9 } } } },
+    by: 'm1',
+    input: connection.sent[1].input,
+  });
   connection.receive(viewMessage(true));
   assert.equal(room.following.isFollowing.value, true);
   assert.equal(room.following.override.value, null);

@@ -29,15 +29,34 @@ test('powers in units are raised, names that end in a digit are left alone', () 
 });
 
 test('a volume in a list has the figures that count, and is never none when there is one', () => {
-  assert.deepEqual([67.152, 1043.1, 9.999, 0.027, 0.0031, 0].map(volume), ['67.2 cm³', '1043 cm³', '10.0 cm³', '0.03 cm³', '< 0.01 cm³', '0.00 cm³']);
+  assert.deepEqual([67.152, 1043.1, 9.999, 0.027, 0.0031, 0].map(volume), [
+    '67.2 cm³',
+    '1043 cm³',
+    '10.0 cm³',
+    '0.03 cm³',
+    '< 0.01 cm³',
+    '0.00 cm³',
+  ]);
 });
 
 test('a difference carries its sign, none carries none', () => {
-  assert.deepEqual([0.312, -0.04, 1e-14, -1e-14, 0].map((value) => signed(value, 2)), ['+0.31', '\u22120.04', '0.00', '0.00', '0.00']);
+  assert.deepEqual(
+    [0.312, -0.04, 1e-14, -1e-14, 0].map((value) => signed(value, 2)),
+    ['+0.31', '\u22120.04', '0.00', '0.00', '0.00'],
+  );
 });
 
 test('a measured value has three figures that count, and its true minus', () => {
-  const written = { 4.8249: '4.82', 0.0446999: '0.0447', 0.00876: '0.00876', 9.996: '10.0', 999.6: '1000', 139: '139', 12345.6: '12\u2009346', 0: '0' };
+  const written = {
+    4.8249: '4.82',
+    0.0446999: '0.0447',
+    0.00876: '0.00876',
+    9.996: '10.0',
+    999.6: '1000',
+    139: '139',
+    12345.6: '12\u2009346',
+    0: '0',
+  };
   for (const [value, text] of Object.entries(written)) assert.equal(significant(Number(value)), text);
   assert.equal(significant(-64.94), '\u221264.9');
   assert.equal(significant(1.2345e10), '1.23 × 10¹⁰');
@@ -46,7 +65,10 @@ test('a measured value has three figures that count, and its true minus', () => 
 });
 
 test('thousands are set apart from five figures on', () => {
-  assert.deepEqual([1043, 13028, 1234567.891].map((value) => number(value)), ['1043', '13\u2009028', '1\u2009234\u2009568']);
+  assert.deepEqual(
+    [1043, 13028, 1234567.891].map((value) => number(value)),
+    ['1043', '13\u2009028', '1\u2009234\u2009568'],
+  );
 });
 
 test('an image has whole numbers as they are, others by three figures, with the unit', () => {

@@ -37,7 +37,8 @@ function meeting() {
         assert.ok(id === 'm1' || marks.isOwn(patch, id), `${id} may not: ${JSON.stringify(patch)}`);
         truth = mergePatch(truth, patch);
         revision += 1;
-        for (const [other, { connection }] of Object.entries(pages)) connection.receive({ type: 'scene', patch, revision, by: id, ...(other === id && { input }) });
+        for (const [other, { connection }] of Object.entries(pages))
+          connection.receive({ type: 'scene', patch, revision, by: id, ...(other === id && { input }) });
       }
     }
     for (const { room } of Object.values(pages)) if (room.following.isFollowing.value) assert.deepEqual(room.scene.value, truth);
@@ -53,9 +54,16 @@ function meeting() {
 
 test('three who draw at the same moment keep all three, each with its author, and nobody leaves', () => {
   const { pages, deliver, draw, measures } = meeting();
-  assert.deepEqual(['m1', 'm2', 'm3'].map((id) => draw(id, 10)), ['m1', 'm1-m2', 'm1-m3']);
+  assert.deepEqual(
+    ['m1', 'm2', 'm3'].map((id) => draw(id, 10)),
+    ['m1', 'm1-m2', 'm1-m3'],
+  );
   deliver();
-  assert.deepEqual(Object.fromEntries(Object.entries(measures()).map(([id, { author }]) => [id, author])), { m1: 'Ann', 'm1-m2': 'Ben', 'm1-m3': 'Cem' });
+  assert.deepEqual(Object.fromEntries(Object.entries(measures()).map(([id, { author }]) => [id, author])), {
+    m1: 'Ann',
+    'm1-m2': 'Ben',
+    'm1-m3': 'Cem',
+  });
   assert.equal(draw('m3', 20), 'm2-m3', 'the next number, whoever has the others');
   for (const { room } of Object.values(pages)) assert.equal(room.following.isFollowing.value, true);
 });
@@ -63,7 +71,10 @@ test('three who draw at the same moment keep all three, each with its author, an
 test('each takes back what they changed, whatever the others did in between, and nothing of theirs', () => {
   const { pages, deliver, draw, measures, isVisible } = meeting();
   const names = () => Object.keys(measures()).sort();
-  const step = (run) => { run(); deliver(); };
+  const step = (run) => {
+    run();
+    deliver();
+  };
   step(() => draw('m2', 1));
   step(() => pages.m1.room.patchScene({ regions: { brain: { visible: false } } }));
   step(() => draw('m3', 2));
@@ -86,7 +97,10 @@ test('each takes back what they changed, whatever the others did in between, and
   step(() => pages.m2.undo.undo());
   step(() => pages.m2.undo.undo());
   assert.deepEqual([names(), pages.m2.undo.next.value, pages.m3.undo.next.value], [[], null, null]);
-  assert.deepEqual([...pages.m2.told, ...pages.m3.told].filter(([, , topic]) => topic === 'undo'), []);
+  assert.deepEqual(
+    [...pages.m2.told, ...pages.m3.told].filter(([, , topic]) => topic === 'undo'),
+    [],
+  );
 });
 
 test('what the presenter has changed of a mark meanwhile is not undone, and that is said', () => {
@@ -123,10 +137,13 @@ test('who follows and changes a mark of somebody else leaves, as with any other 
   assert.equal(room.sharesMarks, false);
   room.patchScene({ measures: { [freeId({}, room.sharesMarks, room.markSuffix)]: line(1) } });
   flush();
-  assert.deepEqual(connection.sent.map(({ type }) => type), ['follow', 'view.patch']);
+  assert.deepEqual(
+    connection.sent.map(({ type }) => type),
+    ['follow', 'view.patch'],
+  );
 });
 
-test('what was marked on one\'s own stays behind with the return, and can be given to the room', () => {
+test("what was marked on one's own stays behind with the return, and can be given to the room", () => {
   const { pages, deliver, draw, measures } = meeting();
   draw('m1', 1);
   deliver();
@@ -152,9 +169,15 @@ test('a mark that was made while the connection was lost is sent when it is back
   lose();
   room.patchScene({ measures: { 'm1-m2': line(1) } });
   back(members('m1', ['m2', 'm3'], roles), { member: 'm2', name: 'Ben', scene: whole });
-  assert.deepEqual(connection.sent.filter(({ type }) => type === 'scene.patch').map(({ patch }) => Object.keys(patch.measures)), [['m1-m2']]);
+  assert.deepEqual(
+    connection.sent.filter(({ type }) => type === 'scene.patch').map(({ patch }) => Object.keys(patch.measures)),
+    [['m1-m2']],
+  );
   assert.ok(room.scene.value.measures['m1-m2']);
-  assert.deepEqual(told.filter(([kind]) => kind === 'err'), []);
+  assert.deepEqual(
+    told.filter(([kind]) => kind === 'err'),
+    [],
+  );
 });
 
 test('a room that ends refuses what it has not answered, and says that changes are lost', async () => {
@@ -173,7 +196,16 @@ test('a room that ends refuses what it has not answered, and says that changes a
 
 test('which patches are of marks, and whose', () => {
   const own = { measures: { 'm1-m2': null } };
-  for (const [patch, is] of [[own, true], [{ measures: { m1: null } }, false], [{ measures: { '-m2': {} } }, false], [{ ...own, probes: { 'pin-1': {} } }, false], [{ ...own, axes: { visible: true } }, false], [{}, false], [{ measures: {} }, false], [{ measures: null }, false]])
+  for (const [patch, is] of [
+    [own, true],
+    [{ measures: { m1: null } }, false],
+    [{ measures: { '-m2': {} } }, false],
+    [{ ...own, probes: { 'pin-1': {} } }, false],
+    [{ ...own, axes: { visible: true } }, false],
+    [{}, false],
+    [{ measures: {} }, false],
+    [{ measures: null }, false],
+  ])
     assert.equal(marks.isOwn(patch, 'm2'), is, JSON.stringify(patch));
   assert.deepEqual(marks.ownPart({ ...own, axes: {}, probes: { 'pin-1': {} } }, 'm2'), own);
   assert.equal(marks.freeNumber(['m1', 'm2-m3', 'm4', 'own3'], 'm'), 3);
@@ -182,9 +214,17 @@ test('which patches are of marks, and whose', () => {
 
 test('marks that a picture brings from another room come under ids of who shows it, once; numbers there are other people’s', () => {
   const scene = { ...whole, measures: { 'm1-m2': line(1) }, probes: { 'pin-1': { at_mm: [0, 0, 0] } } };
-  const patch = () => ({ regions: { brain: { visible: false } }, measures: { 'm1-m2': { name: 'here, too' }, 'm4-m2': line(4), 'm2-m7': line(7), m3: line(3), 'm5-m1': line(5) }, probes: { 'pin-1-m3': { at_mm: [1, 1, 1] } } });
+  const patch = () => ({
+    regions: { brain: { visible: false } },
+    measures: { 'm1-m2': { name: 'here, too' }, 'm4-m2': line(4), 'm2-m7': line(7), m3: line(3), 'm5-m1': line(5) },
+    probes: { 'pin-1-m3': { at_mm: [1, 1, 1] } },
+  });
   const adopted = marks.adopted(patch(), scene, 'm1');
-  assert.deepEqual(adopted, { regions: { brain: { visible: false } }, measures: { 'm1-m2': { name: 'here, too' }, m3: line(3), 'm5-m1': line(5), 'm4-m1': line(4), 'm2-m1': line(7) }, probes: { 'pin-2-m1': { at_mm: [1, 1, 1] } } });
+  assert.deepEqual(adopted, {
+    regions: { brain: { visible: false } },
+    measures: { 'm1-m2': { name: 'here, too' }, m3: line(3), 'm5-m1': line(5), 'm4-m1': line(4), 'm2-m1': line(7) },
+    probes: { 'pin-2-m1': { at_mm: [1, 1, 1] } },
+  });
   const again = marks.adopted(patch(), mergePatch(scene, adopted), 'm1');
   assert.deepEqual([Object.keys(again.measures), again.probes], [['m1-m2', 'm3', 'm5-m1'], undefined]);
 });

@@ -5,7 +5,8 @@ import { load } from './page.mjs';
 
 const planes = await load('state/obliques.js');
 
-const near = (actual, expected, tolerance = 1e-9) => expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${actual} is not ${expected}`));
+const near = (actual, expected, tolerance = 1e-9) =>
+  expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${actual} is not ${expected}`));
 const half = Math.SQRT1_2;
 
 test('a normal along a patient axis gives exactly that slice, whichever way it points', () => {
@@ -37,10 +38,17 @@ test('of equally near slices axial comes before coronal, coronal before sagittal
 });
 
 test('right, up and normal are at right angles in any direction, with the handedness of the nearest slice', () => {
-  for (const [direction, side] of [[[1, 2, 5], -1], [[1, -5, 2], -1], [[5, 1, -2], 1]]) {
+  for (const [direction, side] of [
+    [[1, 2, 5], -1],
+    [[1, -5, 2], -1],
+    [[5, 1, -2], 1],
+  ]) {
     const { right, up, normal } = planes.planeOfNormal([0, 0, 0], direction);
     const cross = [right[1] * up[2] - right[2] * up[1], right[2] * up[0] - right[0] * up[2], right[0] * up[1] - right[1] * up[0]];
-    near(cross, normal.map((part) => part * side)); // axial: L x A = -S, coronal: L x S = -P, sagittal: P x S = L
+    near(
+      cross,
+      normal.map((part) => part * side),
+    ); // axial: L x A = -S, coronal: L x S = -P, sagittal: P x S = L
   }
 });
 
@@ -59,9 +67,17 @@ test('turn and tilt name a direction: 0 anterior, 90 left, upwards superior; and
 });
 
 test('the plane through three points holds them; three on a line make none', () => {
-  const points = [[10, 0, 0], [0, 20, 0], [0, 0, 20]];
+  const points = [
+    [10, 0, 0],
+    [0, 20, 0],
+    [0, 0, 20],
+  ];
   const { origin_mm: origin, normal } = planes.throughPoints(...points);
-  near(normal, [2, 1, 1].map((part) => part / Math.sqrt(6)), 1e-6); // x / 10 + y / 20 + z / 20 = 1
+  near(
+    normal,
+    [2, 1, 1].map((part) => part / Math.sqrt(6)),
+    1e-6,
+  ); // x / 10 + y / 20 + z / 20 = 1
   for (const point of points) near([point.reduce((sum, value, axis) => sum + (value - origin[axis]) * normal[axis], 0)], [0], 1e-3);
   assert.equal(planes.throughPoints([0, 0, 0], [1, 1, 1], [5, 5, 5]), null);
 });
@@ -69,7 +85,11 @@ test('the plane through three points holds them; three on a line make none', () 
 test('the plane through a line drawn on an axial slice stands upright on it', () => {
   const plane = planes.throughLine(planes.planeOfKind('axial', 12), [0, 0, 12], [30, 30, 12]);
   near(plane.origin_mm, [15, 15, 12]);
-  near(plane.normal, [half, -half, 0].map((part) => -part), 1e-6); // across the line, to the posterior side: the coronal slice is as near as the sagittal one and comes first
+  near(
+    plane.normal,
+    [half, -half, 0].map((part) => -part),
+    1e-6,
+  ); // across the line, to the posterior side: the coronal slice is as near as the sagittal one and comes first
   assert.equal(planes.throughLine(planes.planeOfKind('axial', 0), [1, 1, 0], [1, 1, 0]), null);
 });
 
@@ -98,7 +118,12 @@ test('a step of the wheel across a plane is the step of the slice it is nearest 
 });
 
 test('a view shows the plane it names; one that is not there is the axial slice', () => {
-  const scene = { image: { slices: { sagittal: { position_mm: 1 }, coronal: { position_mm: 2 }, axial: { position_mm: 3 } }, obliques: { a: { origin_mm: [1, 1, 1], normal: [1, 0, 0] } } } };
+  const scene = {
+    image: {
+      slices: { sagittal: { position_mm: 1 }, coronal: { position_mm: 2 }, axial: { position_mm: 3 } },
+      obliques: { a: { origin_mm: [1, 1, 1], normal: [1, 0, 0] } },
+    },
+  };
   assert.deepEqual(planes.planeOfView(scene, { kind: 'coronal' }).origin, [0, 2, 0]);
   assert.deepEqual(planes.planeOfView(scene, { kind: 'oblique', plane: 'a' }).normal, [1, 0, 0]);
   assert.deepEqual(planes.planeOfView(scene, { kind: 'oblique', plane: 'b' }), planes.planeOfKind('axial', 3));

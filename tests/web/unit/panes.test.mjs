@@ -47,7 +47,10 @@ test('an input in a pane that it does not reach is answered by the first one tha
   assert.ok(room.view(1).staleSince.value > 0);
   connection.receive(told(input, 2, [1]));
   assert.equal(room.view(1).staleSince.value, 0, 'no picture is due there');
-  assert.deepEqual(room.frameShown(frame(4, input, 2, 2)).map(({ at }) => at), [990]);
+  assert.deepEqual(
+    room.frameShown(frame(4, input, 2, 2)).map(({ at }) => at),
+    [990],
+  );
 });
 
 test('an input that no picture shows is waited for nowhere', () => {
@@ -57,7 +60,10 @@ test('an input that no picture shows is waited for nowhere', () => {
   room.patchScene(moved, { view: 1, at: 990 });
   flush();
   connection.receive(told(connection.sent.at(-1).input, 2, [1, 4]));
-  assert.deepEqual([1, 4].map((number) => room.view(number).staleSince.value), [0, 0]);
+  assert.deepEqual(
+    [1, 4].map((number) => room.view(number).staleSince.value),
+    [0, 0],
+  );
 });
 
 function undoWorld(list) {
@@ -65,10 +71,20 @@ function undoWorld(list) {
   let now = 0;
   const undo = new Undo(world.room, { clock: { now: () => now }, notify: () => {} });
   for (const view of [1, 2, 3, 6]) world.room.showView(view, [400, 400]);
-  return { ...world, undo, wait: (ms) => { now += ms; } };
+  return {
+    ...world,
+    undo,
+    wait: (ms) => {
+      now += ms;
+    },
+  };
 }
 const heights = (room) => [2, 3].map((number) => room.view(number).document.value.camera?.height_mm);
-const zoomTo = (room, height_mm) => room.patchViews([[2, { camera: { height_mm } }], [3, { camera: { height_mm } }]]);
+const zoomTo = (room, height_mm) =>
+  room.patchViews([
+    [2, { camera: { height_mm } }],
+    [3, { camera: { height_mm } }],
+  ]);
 
 test('an act on several views is one step, and one with the same act just before it', () => {
   const { room, undo, wait } = undoWorld();
@@ -98,7 +114,13 @@ test('an act on several views of a follower leaves once, and keeps the scale of 
 
 test('who leaves keeps the second 3-D view, and oblique planes where they are', () => {
   const { room, connection, flush } = undoWorld(members('m2', ['m1']));
-  connection.receive({ type: 'scene', revision: 2, patch: { image: { obliques: { a: { visible: false, name: '', origin_mm: [1, 2, 3], normal: [0, 1, 1] } } } }, by: 'm2', input: 0 });
+  connection.receive({
+    type: 'scene',
+    revision: 2,
+    patch: { image: { obliques: { a: { visible: false, name: '', origin_mm: [1, 2, 3], normal: [0, 1, 1] } } } },
+    by: 'm2',
+    input: 0,
+  });
   room.following.leave();
   flush();
   const { views } = connection.sent.find(({ type }) => type === 'follow');
@@ -108,9 +130,19 @@ test('who leaves keeps the second 3-D view, and oblique planes where they are', 
 });
 
 test('what is selected has a box: a region its own, a measure that of its points, and no box is flat', () => {
-  const plan = { regions: [{ id: 'r', bounds_mm: { low: [0, 0, 0], high: [20, 30, 40] } }, { id: 'empty', bounds_mm: null }] };
+  const plan = {
+    regions: [
+      { id: 'r', bounds_mm: { low: [0, 0, 0], high: [20, 30, 40] } },
+      { id: 'empty', bounds_mm: null },
+    ],
+  };
   const scene = { measures: { m: { points: [{ at_mm: [5, 0, 0] }, { at_mm: [25, 0, 40] }] } } };
   assert.deepEqual(boxOfSelection({ kind: 'region', id: 'r' }, plan, scene), plan.regions[0].bounds_mm);
   assert.deepEqual(boxOfSelection({ kind: 'measure', id: 'm' }, plan, scene), { low: [5, -5, 0], high: [25, 5, 40] });
-  for (const selection of [{ kind: 'region', id: 'empty' }, { kind: 'measure', id: 'gone' }, { kind: 'view', id: '' }]) assert.equal(boxOfSelection(selection, plan, scene), null);
+  for (const selection of [
+    { kind: 'region', id: 'empty' },
+    { kind: 'measure', id: 'gone' },
+    { kind: 'view', id: '' },
+  ])
+    assert.equal(boxOfSelection(selection, plan, scene), null);
 });

@@ -7,7 +7,8 @@ const { handleBox, heightAt, heightsOver, keptPart, lineOf, namePlace, onLine, t
 const { sliderKey } = await load('panels/slider_keys.js');
 const { overlap } = await load('view/place.js');
 
-const near = (actual, expected, tolerance = 1e-4) => expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${actual} is not ${expected}`));
+const near = (actual, expected, tolerance = 1e-4) =>
+  expected.forEach((value, at) => assert.ok(Math.abs(actual[at] - value) <= tolerance, `${actual} is not ${expected}`));
 /** An axial picture of 200 x 200 mm in 400 x 400 px whose middle is the patient's origin: x = L, y down = P, 2 px per mm. */
 const matrix = Float32Array.from([1 / 100, 0, 0, 0, 0, -1 / 100, 0, 0, 0, 0, 1 / 1000, 0, 0, 0, 0, 1]);
 const box = { x: 10, y: 20, width: 400, height: 400 };
@@ -35,7 +36,10 @@ test('a plane along the slice, or outside the picture, has no line', () => {
 });
 
 test('a slanted line ends inside the picture, its left end first', () => {
-  const heights = of([0, 0, 0], [1, 2, 0].map((part) => part / Math.sqrt(5))); // L + 2 P = 0: 87 mm left of the middle 43.5 mm below it
+  const heights = of(
+    [0, 0, 0],
+    [1, 2, 0].map((part) => part / Math.sqrt(5)),
+  ); // L + 2 P = 0: 87 mm left of the middle 43.5 mm below it
   const { from, to } = lineOf(heights, box);
   near([...from, ...to], [36, 307, 384, 133], 1e-3);
   near(lineOf(heights, box, [-1, 0]).from, [384, 133], 1e-3); // as it ran before, so that a handle stays at its end while the line turns
@@ -48,8 +52,12 @@ test('what is kept is what no plane cuts off', () => {
   assert.equal(area(keptPart([], box)), 400 * 400);
   near([area(keptPart([of([25, 0, 0], [1, 0, 0])], box))], [250 * 400], 2);
   near([area(keptPart([of([25, 0, 0], [1, 0, 0]), of([0, -50, 0], [0, -1, 0])], box))], [250 * 300], 2);
-  near([area(keptPart([of([0, 0, 0], [Math.SQRT1_2, Math.SQRT1_2, 0])], box))], [400 * 400 / 2], 2);
-  assert.deepEqual(keptPart([of([-10, 0, 0], [1, 0, 0]), of([10, 0, 0], [-1, 0, 0])], box), [], 'two planes that have passed each other leave nothing');
+  near([area(keptPart([of([0, 0, 0], [Math.SQRT1_2, Math.SQRT1_2, 0])], box))], [(400 * 400) / 2], 2);
+  assert.deepEqual(
+    keptPart([of([-10, 0, 0], [1, 0, 0]), of([10, 0, 0], [-1, 0, 0])], box),
+    [],
+    'two planes that have passed each other leave nothing',
+  );
 });
 
 test('a slice beyond a plane along it is cut off as a whole; one in the plane is not', () => {

@@ -8,11 +8,21 @@ const { Pointed, restMs } = await load('state/pointed.js');
 const { cardOf, overlap, placeBeside } = await load('view/place.js');
 
 class FakeElement extends EventTarget {
-  getBoundingClientRect() { return { left: 0, top: 0, width: 400, height: 300 }; }
+  getBoundingClientRect() {
+    return { left: 0, top: 0, width: 400, height: 300 };
+  }
   setPointerCapture() {}
   focus() {}
   fire(type, x, y, { at = 0, ...how } = {}) {
-    const event = Object.assign(new Event(type, { cancelable: true }), { pointerId: 1, pointerType: 'mouse', button: 0, buttons: 0, clientX: x, clientY: y, ...how });
+    const event = Object.assign(new Event(type, { cancelable: true }), {
+      pointerId: 1,
+      pointerType: 'mouse',
+      button: 0,
+      buttons: 0,
+      clientX: x,
+      clientY: y,
+      ...how,
+    });
     Object.defineProperty(event, 'timeStamp', { value: at });
     this.dispatchEvent(event);
   }
@@ -21,7 +31,12 @@ class FakeElement extends EventTarget {
 function reader() {
   const element = new FakeElement();
   const told = [];
-  const handlers = Object.fromEntries(['start', 'move', 'end', 'tap', 'doubleTap', 'longPress', 'hover', 'leave', 'wheel', 'pinch'].map((name) => [name, (...words) => told.push([name, ...words])]));
+  const handlers = Object.fromEntries(
+    ['start', 'move', 'end', 'tap', 'doubleTap', 'longPress', 'hover', 'leave', 'wheel', 'pinch'].map((name) => [
+      name,
+      (...words) => told.push([name, ...words]),
+    ]),
+  );
   const pointer = new PointerReader(element, handlers);
   const click = (x, y, at, how) => {
     element.fire('pointerdown', x, y, { at, ...how });
@@ -31,28 +46,29 @@ function reader() {
 }
 
 /** The timers of the page stand still while the test runs, and go on by pass(ms). */
-const withTimers = (name, run) => test(name, () => {
-  const { setTimeout, clearTimeout } = globalThis;
-  const waiting = new Map();
-  let [now, last] = [0, 0];
-  globalThis.setTimeout = (callback, ms) => {
-    waiting.set(++last, { callback, at: now + ms });
-    return last;
-  };
-  globalThis.clearTimeout = (timer) => waiting.delete(timer);
-  const pass = (ms) => {
-    now += ms;
-    for (const [timer, { callback, at }] of [...waiting].sort(([, a], [, b]) => a.at - b.at)) {
-      if (at > now || !waiting.delete(timer)) continue;
-      callback();
+const withTimers = (name, run) =>
+  test(name, () => {
+    const { setTimeout, clearTimeout } = globalThis;
+    const waiting = new Map();
+    let [now, last] = [0, 0];
+    globalThis.setTimeout = (callback, ms) => {
+      waiting.set(++last, { callback, at: now + ms });
+      return last;
+    };
+    globalThis.clearTimeout = (timer) => waiting.delete(timer);
+    const pass = (ms) => {
+      now += ms;
+      for (const [timer, { callback, at }] of [...waiting].sort(([, a], [, b]) => a.at - b.at)) {
+        if (at > now || !waiting.delete(timer)) continue;
+        callback();
+      }
+    };
+    try {
+      return run(pass);
+    } finally {
+      Object.assign(globalThis, { setTimeout, clearTimeout });
     }
-  };
-  try {
-    return run(pass);
-  } finally {
-    Object.assign(globalThis, { setTimeout, clearTimeout });
-  }
-});
+  });
 
 withTimers('a tap is reported once no second one can make it a double tap', (pass) => {
   const { click, names } = reader();
@@ -69,7 +85,10 @@ withTimers('a double tap is no tap', (pass) => {
   pass(200);
   click(12, 11, 220);
   pass(1000);
-  assert.deepEqual(names().filter((name) => /tap/i.test(name)), ['doubleTap']);
+  assert.deepEqual(
+    names().filter((name) => /tap/i.test(name)),
+    ['doubleTap'],
+  );
 });
 
 withTimers('the second press of a double tap may take its time', (pass) => {
@@ -79,7 +98,10 @@ withTimers('the second press of a double tap may take its time', (pass) => {
   element.fire('pointerdown', 10, 10, { at: 260 });
   pass(400);
   element.fire('pointerup', 10, 10, { at: 660 });
-  assert.deepEqual(names().filter((name) => /tap/i.test(name)), ['doubleTap']);
+  assert.deepEqual(
+    names().filter((name) => /tap/i.test(name)),
+    ['doubleTap'],
+  );
 });
 
 withTimers('taps apart from each other are two, in their order, and so are a tap and a drag', (pass) => {
@@ -87,14 +109,20 @@ withTimers('taps apart from each other are two, in their order, and so are a tap
   click(10, 10, 0);
   click(100, 10, 100);
   pass(1000);
-  assert.deepEqual(told.filter(([name]) => name === 'tap').map(([, { x }]) => x), [10, 100]);
+  assert.deepEqual(
+    told.filter(([name]) => name === 'tap').map(([, { x }]) => x),
+    [10, 100],
+  );
   told.length = 0;
   click(10, 10, 2000);
   element.fire('pointerdown', 10, 10, { at: 2100 });
   element.fire('pointermove', 40, 10, { at: 2120, buttons: 1 });
   element.fire('pointerup', 40, 10, { at: 2140 });
   pass(1000);
-  assert.deepEqual(told.map(([name]) => name), ['start', 'end', 'start', 'tap', 'move', 'end']);
+  assert.deepEqual(
+    told.map(([name]) => name),
+    ['start', 'end', 'start', 'tap', 'move', 'end'],
+  );
 });
 
 withTimers('a drag is reported at once', () => {
@@ -102,7 +130,10 @@ withTimers('a drag is reported at once', () => {
   element.fire('pointerdown', 10, 10, { at: 0 });
   element.fire('pointermove', 12, 10, { at: 5, buttons: 1 }); // not yet a drag
   element.fire('pointermove', 20, 10, { at: 10, buttons: 1, altKey: true });
-  assert.deepEqual(told.map(([name]) => name), ['start', 'move']);
+  assert.deepEqual(
+    told.map(([name]) => name),
+    ['start', 'move'],
+  );
   assert.deepEqual(told[1][2], { x: 20, y: 10, dx: 10, dy: 0, alt: true, at: 10 });
 });
 
@@ -136,9 +167,16 @@ withTimers('a finger held half a second presses long, and is no tap afterwards',
 function resting() {
   const timers = [];
   const asked = [];
-  const clock = { setTimeout: (callback, ms) => timers.push({ callback, ms }), clearTimeout: (timer) => { if (timer) timers[timer - 1].callback = () => {}; } };
+  const clock = {
+    setTimeout: (callback, ms) => timers.push({ callback, ms }),
+    clearTimeout: (timer) => {
+      if (timer) timers[timer - 1].callback = () => {};
+    },
+  };
   const pointed = new Pointed((x, y) => new Promise((resolve, reject) => asked.push({ x, y, resolve, reject })), clock);
-  const pass = () => { for (const timer of timers.splice(0, timers.length, ...timers.map(({ ms }) => ({ ms, callback: () => {} })))) timer.callback(); };
+  const pass = () => {
+    for (const timer of timers.splice(0, timers.length, ...timers.map(({ ms }) => ({ ms, callback: () => {} })))) timer.callback();
+  };
   const settle = () => new Promise((resolve) => setImmediate(resolve));
   return { pointed, asked, pass, settle, timers, facts: () => pointed.shown.value?.facts };
 }
@@ -150,7 +188,10 @@ test('facts are asked once the pointer rests, and shown where it rests', async (
   assert.equal(timers.at(-1).ms, restMs);
   assert.equal(asked.length, 0);
   pass();
-  assert.deepEqual(asked.map(({ x, y }) => [x, y]), [[50, 60]]);
+  assert.deepEqual(
+    asked.map(({ x, y }) => [x, y]),
+    [[50, 60]],
+  );
   asked[0].resolve({ name: 'brain' });
   await settle();
   assert.deepEqual(pointed.shown.value, { x: 50, y: 60, isHeld: false, facts: { name: 'brain' } });
@@ -166,11 +207,17 @@ test('one question at a time, and then the newest place', async () => {
     pointed.hover(x, 0);
     pass();
   }
-  assert.deepEqual(asked.map(({ x }) => x), [10]);
+  assert.deepEqual(
+    asked.map(({ x }) => x),
+    [10],
+  );
   asked[0].resolve({ of: 10 });
   await settle();
   assert.equal(facts(), undefined, 'the pointer has gone on');
-  assert.deepEqual(asked.map(({ x }) => x), [10, 50]);
+  assert.deepEqual(
+    asked.map(({ x }) => x),
+    [10, 50],
+  );
   asked[1].resolve({ of: 50 });
   await settle();
   assert.deepEqual(facts(), { of: 50 });
@@ -224,7 +271,12 @@ const box = ({ x, y }) => ({ x, y, width: size[0], height: size[1] });
 
 test('a card lies beside its point, inside the pane, on no letter', () => {
   const pane = [500, 400];
-  const letters = [{ x: 10, y: 190, width: 12, height: 16 }, { x: 478, y: 190, width: 12, height: 16 }, { x: 244, y: 8, width: 12, height: 16 }, { x: 244, y: 378, width: 12, height: 16 }];
+  const letters = [
+    { x: 10, y: 190, width: 12, height: 16 },
+    { x: 478, y: 190, width: 12, height: 16 },
+    { x: 244, y: 8, width: 12, height: 16 },
+    { x: 244, y: 378, width: 12, height: 16 },
+  ];
   for (let x = 0; x <= pane[0]; x += 20)
     for (let y = 0; y <= pane[1]; y += 20) {
       const card = box(placeBeside({ x, y }, size, pane, letters, 16));
@@ -240,7 +292,11 @@ test('where nothing is free a card covers as little as it can', () => {
 });
 
 test('a card is no wider than its pane, where the position takes two lines', () => {
-  const words = { name: 'tumor', value: { label: 'MR', text: '138', unit: '' }, lines: ['in brain, scalp', 'L \u2212124.9  P 138.4  S \u221264.9 mm'] };
+  const words = {
+    name: 'tumor',
+    value: { label: 'MR', text: '138', unit: '' },
+    lines: ['in brain, scalp', 'L \u2212124.9  P 138.4  S \u221264.9 mm'],
+  };
   const wide = cardOf(words, 500, false);
   assert.deepEqual(wide.lines, words.lines);
   const narrow = cardOf(words, 150, false);
@@ -254,7 +310,11 @@ test('a drag takes a place as soon as the mouse has it, and no place twice', () 
   const { element, told } = reader();
   element.fire('pointerdown', 10, 10, { at: 0 });
   element.fire('pointerrawupdate', 30, 10, { at: 2 });
-  assert.deepEqual(told.filter(([name]) => name === 'move'), [], 'a press is a drag once the pointer has moved');
+  assert.deepEqual(
+    told.filter(([name]) => name === 'move'),
+    [],
+    'a press is a drag once the pointer has moved',
+  );
   element.fire('pointermove', 30, 10, { at: 8 });
   element.fire('pointerrawupdate', 35, 10, { at: 12 }); // 4 ms later: it waits for the next frame
   element.fire('pointerrawupdate', 40, 10, { at: 23 });
@@ -263,7 +323,11 @@ test('a drag takes a place as soon as the mouse has it, and no place twice', () 
   element.fire('pointerup', 41, 10, { at: 31 });
   element.fire('pointerrawupdate', 90, 10, { at: 80 });
   const moves = told.filter(([name]) => name === 'move').map(([, mode, { x, dx, at }]) => [mode, x, dx, at]);
-  assert.deepEqual(moves, [['primary', 30, 20, 8], ['primary', 40, 10, 23], ['primary', 41, 1, 30]]);
+  assert.deepEqual(moves, [
+    ['primary', 30, 20, 8],
+    ['primary', 40, 10, 23],
+    ['primary', 41, 1, 30],
+  ]);
 });
 
 test('two fingers pinch by the places of the animation frames alone', () => {

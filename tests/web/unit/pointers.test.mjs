@@ -56,9 +56,22 @@ test('a pointer that stops fades after 3 s and is gone after 8 s', () => {
 
 test('labels cover neither each other nor the letters at the edges', () => {
   const pane = [420, 380];
-  const marks = [[210, 190], [214, 192], [218, 188], [8, 190], [210, 6], [412, 190]].map(([x, y], n) => ({ x, y, name: `Dr ${'ABCDEF'[n]} of the clinic`, words: '' }));
+  const marks = [
+    [210, 190],
+    [214, 192],
+    [218, 188],
+    [8, 190],
+    [210, 6],
+    [412, 190],
+  ].map(([x, y], n) => ({ x, y, name: `Dr ${'ABCDEF'[n]} of the clinic`, words: '' }));
   const boxes = labelled(marks, pane, false).map(({ box: label }) => label);
-  const letters = [[0, 177], [394, 177], [197, 0]].map(([x, y]) => ({ x, y, width: 26, height: 26 })).concat({ x: 0, y: 350, width: 420, height: 30 });
+  const letters = [
+    [0, 177],
+    [394, 177],
+    [197, 0],
+  ]
+    .map(([x, y]) => ({ x, y, width: 26, height: 26 }))
+    .concat({ x: 0, y: 350, width: 420, height: 30 });
   const overlap = (a, b) => a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
   for (const [n, label] of boxes.entries()) {
     assert.ok(label.x >= 0 && label.y >= 0 && label.x + label.width <= pane[0] && label.y + label.height <= pane[1], `${n} in the pane`);
@@ -91,7 +104,13 @@ test('of several places that come before a frame of the screen the newest is sho
   at('m3', [9, 0, 0]);
   assert.equal(pointers.all.value.size, 0);
   flush();
-  assert.deepEqual([...pointers.all.value.values()].map(({ member, point }) => [member, point[0]]), [['m2', 2], ['m3', 9]]);
+  assert.deepEqual(
+    [...pointers.all.value.values()].map(({ member, point }) => [member, point[0]]),
+    [
+      ['m2', 2],
+      ['m3', 9],
+    ],
+  );
   at('m2', [3, 0, 0]);
   at('m2', null);
   flush();
@@ -131,8 +150,13 @@ function fakeClock() {
   let [now, timers, id] = [0, [], 0];
   return {
     now: () => now,
-    setTimeout: (run, ms) => { timers.push({ id: ++id, at: now + ms, run }); return id; },
-    clearTimeout: (which) => { timers = timers.filter((timer) => timer.id !== which); },
+    setTimeout: (run, ms) => {
+      timers.push({ id: ++id, at: now + ms, run });
+      return id;
+    },
+    clearTimeout: (which) => {
+      timers = timers.filter((timer) => timer.id !== which);
+    },
     advance: (ms) => {
       now += ms;
       const due = timers.filter(({ at }) => at <= now);
@@ -161,13 +185,22 @@ test('in 3-D one question is asked at a time, then about the newest place', asyn
   const pointing = new Pointing({ point: (view, point) => sent.push(point?.[0] ?? null) }, clock);
   const open = [];
   const ask = (n) => () => new Promise((done) => open.push({ n, done: () => done([n, 0, 0]) }));
-  const turn = async () => { await new Promise(setImmediate); clock.advance(45); };
+  const turn = async () => {
+    await new Promise(setImmediate);
+    clock.advance(45);
+  };
   for (let n = 1; n <= 5; n++) pointing.seen(1, ask(n));
   await turn();
-  assert.deepEqual(open.map(({ n }) => n), [1]);
+  assert.deepEqual(
+    open.map(({ n }) => n),
+    [1],
+  );
   open[0].done();
   await turn();
-  assert.deepEqual(open.map(({ n }) => n), [1, 5]);
+  assert.deepEqual(
+    open.map(({ n }) => n),
+    [1, 5],
+  );
   pointing.at(2, [77, 0, 0]); // the pointer went to a slice
   open[1].done();
   await turn();

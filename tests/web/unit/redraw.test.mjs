@@ -13,9 +13,15 @@ class FakePart {
     this.pane = pane;
     this.children = children;
   }
-  closest() { return this.pane; }
-  contains(element) { return this.children.includes(element); }
-  toggleAttribute(name, isOn) { this.marks[isOn ? 'add' : 'delete'](name); }
+  closest() {
+    return this.pane;
+  }
+  contains(element) {
+    return this.children.includes(element);
+  }
+  toggleAttribute(name, isOn) {
+    this.marks[isOn ? 'add' : 'delete'](name);
+  }
 }
 
 class FakePane extends FakePart {
@@ -96,10 +102,14 @@ test('the pane in which something is dragged is drawn once for each frame, after
   value.value = 1;
   value.value = 2;
   assert.deepEqual(drawn, [0]);
-  redraw.schedule(() => { value.value = 3; }); // a picture that is painted
+  redraw.schedule(() => {
+    value.value = 3;
+  }); // a picture that is painted
   frame();
   assert.deepEqual(drawn, [0, 3]);
-  redraw.schedule(() => { value.value = 4; }); // notified in the frame for the first time
+  redraw.schedule(() => {
+    value.value = 4;
+  }); // notified in the frame for the first time
   frame();
   assert.deepEqual(drawn, [0, 3, 4]);
 });
@@ -108,10 +118,11 @@ test('another pane is drawn with its picture, also when that brings the change, 
   const { clock, redraw, frames, value, part, frame, drag } = world();
   const pane = new FakePane();
   const drawn = part(pane);
-  const paint = (of, more = () => {}) => redraw.schedule(() => {
-    redraw.painted(of);
-    more();
-  });
+  const paint = (of, more = () => {}) =>
+    redraw.schedule(() => {
+      redraw.painted(of);
+      more();
+    });
   drag();
   value.value = 1;
   assert.equal(frames.length, 0, 'no frame for it alone');
@@ -121,7 +132,9 @@ test('another pane is drawn with its picture, also when that brings the change, 
   paint(pane);
   frame();
   assert.deepEqual(drawn, [0, 1]);
-  paint(pane, () => { value.value = 2; });
+  paint(pane, () => {
+    value.value = 2;
+  });
   frame();
   assert.deepEqual(drawn, [0, 1, 2]);
   value.value = 3;
@@ -137,10 +150,11 @@ test('while pictures follow one another where something is dragged, those of oth
   const { clock, frames, redraw, frame, drag, pressed } = world();
   const [here, one, other] = [new FakePane({ pressed }), new FakePane(), new FakePane()];
   const painted = [];
-  const paint = (pane, name) => redraw.schedulePicture(pane, () => {
-    redraw.painted(pane);
-    painted.push(name);
-  });
+  const paint = (pane, name) =>
+    redraw.schedulePicture(pane, () => {
+      redraw.painted(pane);
+      painted.push(name);
+    });
   drag();
   paint(one, 'one'); // nothing came for this pane yet: the other's is all there is to see
   frame();
@@ -239,15 +253,34 @@ test('what is around the panes is drawn sooner in a frame without pictures, so t
   drag();
   value.value = 1;
   frame();
-  assert.deepEqual([one, other], [[0, 1], [0, 1]]);
+  assert.deepEqual(
+    [one, other],
+    [
+      [0, 1],
+      [0, 1],
+    ],
+  );
   clock.pass(70);
   value.value = 2;
   redraw.schedule(() => {});
   frame();
-  assert.deepEqual([one, other], [[0, 1], [0, 1]], 'with a picture, and not due yet');
+  assert.deepEqual(
+    [one, other],
+    [
+      [0, 1],
+      [0, 1],
+    ],
+    'with a picture, and not due yet',
+  );
   value.value = 3;
   frame();
-  assert.deepEqual([one, other], [[0, 1, 3], [0, 1, 3]]);
+  assert.deepEqual(
+    [one, other],
+    [
+      [0, 1, 3],
+      [0, 1, 3],
+    ],
+  );
 });
 
 test('a frame is not filled with panels around the panes', () => {
@@ -320,7 +353,10 @@ test('changes go at once, those within 14 ms together after them', async () => {
   const clock = fakeClock();
   const send = soon(clock);
   const sent = [];
-  const settle = () => new Promise((resolve) => { setImmediate(resolve); });
+  const settle = () =>
+    new Promise((resolve) => {
+      setImmediate(resolve);
+    });
   send(() => sent.push('first'));
   assert.deepEqual(sent, [], 'not before the handler is through');
   await settle();

@@ -6,7 +6,10 @@ import { reportCodes } from '../../../proto/gen/report_codes.mjs';
 
 test('every code of the list is read, over line ends and joined strings', () => {
   const header = '#define REPORT_CODES(X) \\\n X("b.one", "It \\"is\\" so.", "Do " "it.") \\\n X("a.two", "M", \\\n   "R, (really)")\n';
-  assert.deepEqual(reportCodes(header), [{ code: 'a.two', meaning: 'M', remedy: 'R, (really)' }, { code: 'b.one', meaning: 'It "is" so.', remedy: 'Do it.' }]);
+  assert.deepEqual(reportCodes(header), [
+    { code: 'a.two', meaning: 'M', remedy: 'R, (really)' },
+    { code: 'b.one', meaning: 'It "is" so.', remedy: 'Do it.' },
+  ]);
 });
 
 test('a code that cannot be read is an error, not a gap', () => {

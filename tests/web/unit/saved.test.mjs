@@ -5,7 +5,24 @@ import { roomWorld, welcome } from './fake_room.mjs';
 
 const saved = (more = {}) => ({ type: 'saved', state: 'saved', revision: 1, problem: null, ...more });
 const full = { type: 'saved', state: 'failing', revision: 1, problem: { type: '/problems/storage', code: 'full' } };
-const note = { type: 'item', id: 'i-1', item: { id: 'i-1', kind: 'note', version: 1, author: 'm2', author_name: 'Dr A', author_color: '#ffffff', changed_name: 'Dr A', created_ms: 1, changed_ms: 1, body: { text: 'x' } }, by: 'm2', input: 0 };
+const note = {
+  type: 'item',
+  id: 'i-1',
+  item: {
+    id: 'i-1',
+    kind: 'note',
+    version: 1,
+    author: 'm2',
+    author_name: 'Dr A',
+    author_color: '#ffffff',
+    changed_name: 'Dr A',
+    created_ms: 1,
+    changed_ms: 1,
+    body: { text: 'x' },
+  },
+  by: 'm2',
+  input: 0,
+};
 
 test('nothing is called saved before the server has said so', () => {
   const { room, connection } = roomWorld();
@@ -14,7 +31,7 @@ test('nothing is called saved before the server has said so', () => {
   assert.equal(room.saved.state.value, 'saved');
 });
 
-test('a change of the scene is being saved from this page\'s own act on, until the server says saved after it', () => {
+test("a change of the scene is being saved from this page's own act on, until the server says saved after it", () => {
   const { room, connection, flush } = roomWorld();
   connection.receive(saved());
   room.patchScene({ image: { window: { center: 50 } } });
@@ -50,7 +67,7 @@ test('a plan that is loaded anew with another scene is being saved, with the sam
 test('a full disk is said until it is fine again, also over a reconnection', () => {
   const { room, connection, lose, back } = roomWorld();
   connection.receive(full);
-  assert.equal(room.saved.problem.value, 'The server\'s disk is full: what is changed now is not kept');
+  assert.equal(room.saved.problem.value, "The server's disk is full: what is changed now is not kept");
   connection.receive(note);
   assert.equal(room.saved.state.value, 'failing', 'a change makes it no better');
   lose();

@@ -10,8 +10,10 @@ const { Refusals, inQuestion, nameSome } = await load('state/refusals.js');
 const { signal } = await load('../lib/signals-core.js');
 
 const scene = {
-  surface: { algorithm: 'eight-cell' }, outline: { method: 'marching-squares' },
-  points: { inner_boundary: true }, nurbs: { order: 3, sampling: 'degree-bins', bins: 24 },
+  surface: { algorithm: 'eight-cell' },
+  outline: { method: 'marching-squares' },
+  points: { inner_boundary: true },
+  nurbs: { order: 3, sampling: 'degree-bins', bins: 24 },
 };
 
 test('a shape is asked for with what decides it in this scene, and nothing else', () => {
@@ -35,10 +37,12 @@ test('the difference to the univels is in per cent of theirs', () => {
 });
 
 test('the table for a spreadsheet keeps a name with a comma in one cell, and a refusal as its reason', () => {
-  const [head, one, two] = csvText(figureRows([
-    { region: 'brain', name: 'Surface, smooth', result: { triangles: 12, ms: 3.5, area_mm2: null } },
-    { region: 'brain', name: 'Fan', error: 'too "many" points' },
-  ])).split('\r\n');
+  const [head, one, two] = csvText(
+    figureRows([
+      { region: 'brain', name: 'Surface, smooth', result: { triangles: 12, ms: 3.5, area_mm2: null } },
+      { region: 'brain', name: 'Fan', error: 'too "many" points' },
+    ]),
+  ).split('\r\n');
   assert.equal(head.split(',').length, 15);
   assert.match(one, /^brain,"Surface, smooth",12,,,,3\.5,/);
   assert.match(two, /^brain,Fan,,{11},"too ""many"" points"$/);
@@ -46,16 +50,21 @@ test('the table for a spreadsheet keeps a name with a comma in one cell, and a r
 
 test('a comparison fills row by row; a newer one drops what the older still waits for', async () => {
   const waiting = [];
-  const api = { surface: (plan, region, query, aborted) => new Promise((done, fail) => {
-    waiting.push({ region, query, done, fail });
-    aborted.addEventListener('abort', () => fail(new Error('aborted')));
-  }) };
+  const api = {
+    surface: (plan, region, query, aborted) =>
+      new Promise((done, fail) => {
+        waiting.push({ region, query, done, fail });
+        aborted.addEventListener('abort', () => fail(new Error('aborted')));
+      }),
+  };
   const comparison = new Comparison(api, signal([]));
   const old = comparison.start('plan', { id: 'brain' }, scene);
   assert.equal(waiting.length, 1, 'one question at a time');
   assert.equal(waiting[0].query.frames, '5');
   waiting[0].done({ triangles: 7 });
-  await new Promise((done) => { setTimeout(done); });
+  await new Promise((done) => {
+    setTimeout(done);
+  });
   assert.deepEqual(comparison.rows.value[0].result, { triangles: 7 });
   const next = comparison.start('plan', { id: 'tumor' }, scene);
   await old;
@@ -67,14 +76,30 @@ test('a comparison fills row by row; a newer one drops what the older still wait
 
 test('a dose says its unit, what it is per and what it holds; a beam says where it comes from', async () => {
   const { beamWords, doseWords, frameWords } = await load('state/plan.js');
-  assert.equal(doseWords({ unit: 'Gy', per: 'per fraction', components: [{ quantity: 'boron', per_ppm: true }, { quantity: 'gamma' }] }), 'Gy per fraction, boron per ppm, gamma');
+  assert.equal(
+    doseWords({ unit: 'Gy', per: 'per fraction', components: [{ quantity: 'boron', per_ppm: true }, { quantity: 'gamma' }] }),
+    'Gy per fraction, boron per ppm, gamma',
+  );
   assert.equal(doseWords({ unit: '', per: '', components: [] }), 'no unit');
-  assert.equal(doseWords({ unit: 'cGy', per: '', components: [{ quantity: 'total', per_ppm: false, boron_ppm: 1 }, { quantity: 'total', per_ppm: false, boron_ppm: null }] }), 'cGy, total with boron at 1 ppm, total');
+  assert.equal(
+    doseWords({
+      unit: 'cGy',
+      per: '',
+      components: [
+        { quantity: 'total', per_ppm: false, boron_ppm: 1 },
+        { quantity: 'total', per_ppm: false, boron_ppm: null },
+      ],
+    }),
+    'cGy, total with boron at 1 ppm, total',
+  );
   assert.match(frameWords({ frame_of_reference: 'differs' }), /another frame of reference/);
   assert.match(frameWords({ frame_of_reference: 'unknown' }), /Nothing says/);
   assert.deepEqual([frameWords({ frame_of_reference: 'same' }), frameWords({ frame_of_reference: null })], ['', '']);
   assert.equal(beamWords({ aperture_mm: 120, delivery: null }), 'aperture 120 mm');
-  assert.equal(beamWords({ aperture_mm: null, delivery: { radiation: 'NEUTRON', gantry_deg: 90, gantry_stop_deg: 150 } }), 'neutron, gantry 90° to 150°');
+  assert.equal(
+    beamWords({ aperture_mm: null, delivery: { radiation: 'NEUTRON', gantry_deg: 90, gantry_stop_deg: 150 } }),
+    'neutron, gantry 90° to 150°',
+  );
 });
 
 // ---- what is missing from the picture ---------------------------------------------------------------------------------------
@@ -83,19 +108,30 @@ const style = (representation, change = {}) => ({ visible: true, opacity: 1, rep
 
 test('only visible regions shown as splines are in question', () => {
   const plan = { regions: ['a', 'b', 'c', 'd', 'e'].map((id) => ({ id, voxels: id === 'e' ? 0 : 9 })) };
-  const regions = { a: style('nurbs'), b: style('surface'), c: style('nurbs', { visible: false }), d: style('nurbs', { opacity: 0 }), e: style('nurbs') };
-  assert.deepEqual(inQuestion(plan, { ...scene, regions }).map(({ id }) => id), ['a']);
+  const regions = {
+    a: style('nurbs'),
+    b: style('surface'),
+    c: style('nurbs', { visible: false }),
+    d: style('nurbs', { opacity: 0 }),
+    e: style('nurbs'),
+  };
+  assert.deepEqual(
+    inQuestion(plan, { ...scene, regions }).map(({ id }) => id),
+    ['a'],
+  );
   assert.deepEqual(inQuestion(null, null), []);
 });
 
 test('a refused region is known with its reason, each is asked for once, and who is busy has refused nothing', async () => {
   const asked = [];
-  const api = { surface: async (plan, region) => {
-    asked.push(region);
-    if (region === 'hollow') throw Object.assign(new Error('hollow'), { status: 422 });
-    if (region === 'late') throw Object.assign(new Error('busy'), { status: 503 });
-    return {};
-  } };
+  const api = {
+    surface: async (plan, region) => {
+      asked.push(region);
+      if (region === 'hollow') throw Object.assign(new Error('hollow'), { status: 422 });
+      if (region === 'late') throw Object.assign(new Error('busy'), { status: 503 });
+      return {};
+    },
+  };
   const refusals = new Refusals(api, signal({}));
   const questions = ['round', 'hollow', 'late'].map((id) => ({ id, query: { bins: '36' } }));
   await refusals.ask('p', questions);

@@ -13,8 +13,10 @@ const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
 const number = (n) => Buffer.from([n >>> 24, (n >>> 16) & 255, (n >>> 8) & 255, n & 255]);
 const chunk = (type, data = Buffer.alloc(0), crc = crc32(Buffer.concat([Buffer.from(type), data]))) =>
   Buffer.concat([number(data.length), Buffer.from(type), data, number(crc)]);
-const itxt = (text, { keyword = 'beamroom', flag = 1, method = 0, data = flag ? deflateSync(text) : Buffer.from(text), middle = '\0\0' } = {}) =>
-  Buffer.concat([Buffer.from(`${keyword}\0`), Buffer.from([flag, method]), Buffer.from(middle), data]);
+const itxt = (
+  text,
+  { keyword = 'beamroom', flag = 1, method = 0, data = flag ? deflateSync(text) : Buffer.from(text), middle = '\0\0' } = {},
+) => Buffer.concat([Buffer.from(`${keyword}\0`), Buffer.from([flag, method]), Buffer.from(middle), data]);
 const header = chunk('IHDR', Buffer.from([0, 0, 0, 1, 0, 0, 0, 1, 8, 6, 0, 0, 0]));
 const png = (...chunks) => Buffer.concat([signature, header, ...chunks]);
 const end = chunk('IEND');
@@ -58,7 +60,15 @@ test('damaged and hostile pictures are refused with a sentence', async () => {
 
 const scene = readDocument('scene', { regions: { brain: { opacity: 0.5 }, skull: {} }, image: { window: { center: 40, width: 80 } } });
 const view = readDocument('view', { kind: 'axial', camera: { height_mm: 120, target_mm: [1, 2, 3] } });
-const record = { version: 1, program: 'Beamroom 9', plan: { id: 'head-1', name: 'Head' }, date: '2026-07-01T09:30:00Z', revision: 12, scene, view };
+const record = {
+  version: 1,
+  program: 'Beamroom 9',
+  plan: { id: 'head-1', name: 'Head' },
+  date: '2026-07-01T09:30:00Z',
+  revision: 12,
+  scene,
+  view,
+};
 const file = (json) => new Blob([png(chunk('iTXt', itxt(typeof json === 'string' ? json : JSON.stringify(json))), end)]);
 
 test('a record is read with its defaults, and what is wrong with one is said', async () => {
@@ -80,16 +90,29 @@ test('a record is read with its defaults, and what is wrong with one is said', a
 });
 
 test('the difference of two scenes is the patch from one to the other', () => {
-  const now = mergePatch(scene, { regions: { brain: { opacity: 1, color: '#010203' }, other: { visible: true } }, image: { window: { width: 400 } }, surface: { normals: 'face' } });
+  const now = mergePatch(scene, {
+    regions: { brain: { opacity: 1, color: '#010203' }, other: { visible: true } },
+    image: { window: { width: 400 } },
+    surface: { normals: 'face' },
+  });
   const patch = difference(now, scene);
-  assert.deepEqual(patch, { regions: { brain: { opacity: 0.5, color: '#c8c8c8' } }, image: { window: { width: 80 } }, surface: { normals: 'vertex' } });
+  assert.deepEqual(patch, {
+    regions: { brain: { opacity: 0.5, color: '#c8c8c8' } },
+    image: { window: { width: 80 } },
+    surface: { normals: 'vertex' },
+  });
   assert.deepEqual(difference(mergePatch(now, patch), scene), {});
   assert.deepEqual(difference(scene, scene), {});
 });
 
 test('a picture is shown again by one change of the scene and one of the view of its kind, as one step to undo', () => {
   const calls = [];
-  const ui = { active: { value: 1 }, maximised: { value: 3 }, visible: { value: [3] }, showInPlaceOf: (from, to) => calls.push(['instead', from, to]) };
+  const ui = {
+    active: { value: 1 },
+    maximised: { value: 3 },
+    visible: { value: [3] },
+    showInPlaceOf: (from, to) => calls.push(['instead', from, to]),
+  };
   const room = {
     member: { value: 'm1' },
     scene: { value: mergePatch(scene, { regions: { brain: { opacity: 1 } } }) },
@@ -117,24 +140,47 @@ const { Printout } = await load('state/printout.js');
 class Memory {
   items = new Map();
   most = Infinity;
-  getItem(key) { return this.items.get(key) ?? null; }
-  removeItem(key) { this.items.delete(key); }
+  getItem(key) {
+    return this.items.get(key) ?? null;
+  }
+  removeItem(key) {
+    this.items.delete(key);
+  }
   setItem(key, value) {
     if (value.length > this.most) throw new Error('QuotaExceededError');
     this.items.set(key, value);
   }
 }
-globalThis.FileReader ??= class { // as much of a browser's as is needed
-  readAsDataURL(blob) { blob.arrayBuffer().then((bytes) => { this.result = `data:image/png;base64,${Buffer.from(bytes).toString('base64')}`; this.onload(); }); }
+globalThis.FileReader ??= class {
+  // as much of a browser's as is needed
+  readAsDataURL(blob) {
+    blob.arrayBuffer().then((bytes) => {
+      this.result = `data:image/png;base64,${Buffer.from(bytes).toString('base64')}`;
+      this.onload();
+    });
+  }
 };
 const room = { id: 'r1', planId: { value: 'head-1' } };
-const plan = { regions: [{ id: 'brain', voxels: 5 }, { id: 'skull', voxels: 7 }, { id: 'empty', voxels: 0 }] };
+const plan = {
+  regions: [
+    { id: 'brain', voxels: 5 },
+    { id: 'skull', voxels: 7 },
+    { id: 'empty', voxels: 0 },
+  ],
+};
 const probed = [];
 const asked = [];
 const api = {
   snapshot: async () => file(record),
-  probe: async (_, point) => { probed.push(point); return { regions: [] }; },
-  surface: async (_, region, query) => { asked.push([region, query]); if (region === 'skull') throw new Error('too many triangles'); return { triangles: 8 }; },
+  probe: async (_, point) => {
+    probed.push(point);
+    return { regions: [] };
+  },
+  surface: async (_, region, query) => {
+    asked.push([region, query]);
+    if (region === 'skull') throw new Error('too many triangles');
+    return { triangles: 8 };
+  },
 };
 
 test('snapshots of a report are put in order, described, kept for a reload, and measured', async () => {
@@ -148,7 +194,13 @@ test('snapshots of a report are put in order, described, kept for a reload, and 
   printout.move(b, -1);
   printout.move(b, -1); // it is the first already
   printout.remove(c);
-  assert.deepEqual(printout.entries.value.map(({ key, caption }) => [key, caption]), [[b, 'second'], [a, '']]);
+  assert.deepEqual(
+    printout.entries.value.map(({ key, caption }) => [key, caption]),
+    [
+      [b, 'second'],
+      [a, ''],
+    ],
+  );
   const again = new Printout('r1', api, storage);
   assert.deepEqual(again.entries.value, printout.entries.value);
   assert.equal(new Printout('r2', api, storage).entries.value.length, 0);
@@ -157,8 +209,17 @@ test('snapshots of a report are put in order, described, kept for a reload, and 
   assert.equal(again.isComplete.value, false);
   await measuring;
   assert.equal(again.isComplete.value, true);
-  assert.deepEqual(asked, [['brain', { representation: 'surface', algorithm: 'smooth' }], ['skull', { representation: 'surface', algorithm: 'smooth' }]]);
-  assert.deepEqual(again.figures.value.map(({ region, result, error }) => [region.id, result, error]), [['brain', { triangles: 8 }, ''], ['skull', null, 'too many triangles']]);
+  assert.deepEqual(asked, [
+    ['brain', { representation: 'surface', algorithm: 'smooth' }],
+    ['skull', { representation: 'surface', algorithm: 'smooth' }],
+  ]);
+  assert.deepEqual(
+    again.figures.value.map(({ region, result, error }) => [region.id, result, error]),
+    [
+      ['brain', { triangles: 8 }, ''],
+      ['skull', null, 'too many triangles'],
+    ],
+  );
 });
 
 test('pictures that are too large to be kept are there all the same, and that is said', async () => {

@@ -32,13 +32,22 @@ function staleWorld(seed) {
     if (!of || !room.view(view).isOpen.value) return;
     const held = isCurrent(view) ? server.revision : of;
     const input_id = isCurrent(view) ? (server.waits.get(view) ?? 0) : 0;
-    server.onWay.get(view).push({ of, header: { view, sequence: ++server.sequence, input_id, scene_revision: held, is_still: true, scale_percent: 100 } });
+    server.onWay
+      .get(view)
+      .push({ of, header: { view, sequence: ++server.sequence, input_id, scene_revision: held, is_still: true, scale_percent: 100 } });
   }
   function tell(input, isReached) {
     server.revision++;
     for (const view of views) if (isReached(view)) server.reached.set(view, server.revision);
     const unchanged = views.filter((view) => room.view(view).isOpen.value && !isReached(view));
-    connection.receive({ type: 'scene', revision: server.revision, patch: patch(server.revision), by: input ? 'm1' : 'm2', input, unchanged: unchanged.length ? unchanged : null });
+    connection.receive({
+      type: 'scene',
+      revision: server.revision,
+      patch: patch(server.revision),
+      by: input ? 'm1' : 'm2',
+      input,
+      unchanged: unchanged.length ? unchanged : null,
+    });
   }
   /** Reads what the page has sent. */
   function serve(isReached = () => true) {
@@ -64,7 +73,8 @@ function staleWorld(seed) {
       flush();
       serve((view) => mask & (1 << (view - 1)));
     },
-    changeOfNothing: () => connection.receive({ type: 'scene', revision: server.revision, patch: patch(server.revision), by: 'm1', input: 0, unchanged: null }),
+    changeOfNothing: () =>
+      connection.receive({ type: 'scene', revision: server.revision, patch: patch(server.revision), by: 'm1', input: 0, unchanged: null }),
     layout: () => {
       const view = views[below(3)];
       if (room.view(view).isOpen.value) room.hideView(view);
@@ -99,9 +109,21 @@ function staleWorld(seed) {
     for (const view of views) {
       const state = room.view(view);
       if (!state.painted.value || !state.isOpen.value) continue;
-      const badge = fidelity({ link: room.link.value, renderer: 'ready', header: state.painted.value, staleSince: state.staleSince.value, behindSince: state.behindSince.value, fps: 0, now: 1e9 });
+      const badge = fidelity({
+        link: room.link.value,
+        renderer: 'ready',
+        header: state.painted.value,
+        staleSince: state.staleSince.value,
+        behindSince: state.behindSince.value,
+        fps: 0,
+        now: 1e9,
+      });
       const isDue = server.waits.has(view) || drawn.get(view) < (server.reached.get(view) ?? 1);
-      assert.equal(badge.state === 'stale', isDue, `run ${seed}, after ${what}: view ${view} is ${badge.state}, and a newer picture is ${isDue ? '' : 'not '}due`);
+      assert.equal(
+        badge.state === 'stale',
+        isDue,
+        `run ${seed}, after ${what}: view ${view} is ${badge.state}, and a newer picture is ${isDue ? '' : 'not '}due`,
+      );
     }
   }
   for (const view of views) room.showView(view, [400, 300]);

@@ -9,7 +9,7 @@ const { RoomState } = await load('state/room.js');
 const { fidelity, worst } = await load('state/fidelity.js');
 const { crosshairPatch, isLowWhite, readPlan, shownImage, soloPatch } = await load('state/plan.js');
 
-test('an own change shows at once; the server\'s order wins', () => {
+test("an own change shows at once; the server's order wins", () => {
   const replica = new Replica({ opacity: 1, color: 'red' });
   replica.queue({ opacity: 0.5 });
   assert.equal(replica.value.opacity, 0.5);
@@ -62,7 +62,10 @@ test('a change that was on its way when another name was given is sent again, an
   assert.equal(room.link.value.state, 'open');
   assert.equal(room.scene.value.regions.brain.opacity, 0.4);
   back();
-  assert.deepEqual(connection.sent.filter(({ type }) => type === 'scene.patch').map((message) => message.patch), [patch]);
+  assert.deepEqual(
+    connection.sent.filter(({ type }) => type === 'scene.patch').map((message) => message.patch),
+    [patch],
+  );
 });
 
 test('many changes before a paint become one message with a growing input', () => {
@@ -72,10 +75,13 @@ test('many changes before a paint become one message with a growing input', () =
   for (const opacity of [0.9, 0.8, 0.7]) room.patchScene({ regions: { brain: { opacity } } }, { view: 1 });
   room.patchView(1, { camera: { fov_deg: 20 } });
   flush();
-  assert.deepEqual(connection.sent.map(({ type, patch }) => [type, patch]), [
-    ['view.patch', { camera: { fov_deg: 20 } }],
-    ['scene.patch', { regions: { brain: { opacity: 0.7 } } }],
-  ]);
+  assert.deepEqual(
+    connection.sent.map(({ type, patch }) => [type, patch]),
+    [
+      ['view.patch', { camera: { fov_deg: 20 } }],
+      ['scene.patch', { regions: { brain: { opacity: 0.7 } } }],
+    ],
+  );
   assert.ok(connection.sent[1].input > connection.sent[0].input);
   assert.equal(connection.sent[1].view, 1, 'its pictures go first');
   flush();
@@ -99,7 +105,13 @@ test('after a lost connection every open picture is asked for again', () => {
   lose();
   assert.equal(room.canChange.value, true, 'changes are kept meanwhile');
   back(undefined, { revision: 9 });
-  assert.deepEqual(connection.sent.map(({ type, view }) => [type, view]), [['view.open', 1], ['view.open', 3]]);
+  assert.deepEqual(
+    connection.sent.map(({ type, view }) => [type, view]),
+    [
+      ['view.open', 1],
+      ['view.open', 3],
+    ],
+  );
   assert.equal(room.revision.value, 9);
 });
 
@@ -127,7 +139,10 @@ test('the time an input waits ends with the picture that shows it', () => {
   const { input } = connection.sent.at(-1);
   const frame = (input_id) => ({ view: 1, sequence: 1, input_id, scene_revision: 1 });
   assert.equal(room.frameShown(frame(input - 1)).filter((entry) => entry.input === input).length, 0);
-  assert.deepEqual(room.frameShown(frame(input)).map(({ at }) => at), [990]);
+  assert.deepEqual(
+    room.frameShown(frame(input)).map(({ at }) => at),
+    [990],
+  );
   assert.equal(connection.sent.at(-1).type, 'frame.shown');
 });
 
@@ -155,7 +170,12 @@ test('a picture that came before the refusal does not end it, whatever has chang
 // ---- badges ---------------------------------------------------------------------------------------------------------------
 
 const facts = {
-  link: { state: 'open', retryAt: 0 }, renderer: 'ready', staleSince: 0, behindSince: 0, fps: 27, now: 10000,
+  link: { state: 'open', retryAt: 0 },
+  renderer: 'ready',
+  staleSince: 0,
+  behindSince: 0,
+  fps: 27,
+  now: 10000,
   header: { is_still: false, is_lossless: false, is_coarse: false, scale_percent: 100, quality: 80, scene_revision: 3 },
 };
 const still = { ...facts.header, is_still: true };
@@ -171,14 +191,21 @@ for (const [what, change, state] of [
   ['a view that cannot be drawn as it is', { header: still, refusal: 'the camera looks at itself' }, 'stale'],
   ['a restarting renderer', { header: still, renderer: 'restarting' }, 'stale'],
   ['a link that is quiet for 3 s', { header: still, link: { state: 'open', retryAt: 0, quietSince: 7000, dueSince: 7500 } }, 'link'],
-  ['an answer that is due for 5 s', { header: still, link: { state: 'open', retryAt: 0, quietSince: 4500, dueSince: 5000 } }, 'disconnected'],
+  [
+    'an answer that is due for 5 s',
+    { header: still, link: { state: 'open', retryAt: 0, quietSince: 4500, dueSince: 5000 } },
+    'disconnected',
+  ],
   ['a lost connection', { header: still, link: { state: 'lost', retryAt: 12000 } }, 'disconnected'],
 ])
   test(`badge of ${what}`, () => assert.equal(fidelity({ ...facts, ...change })?.state, state));
 
 test('the age of a quiet link counts', () => {
   const link = { state: 'open', retryAt: 0, quietSince: 7000, dueSince: 7500 };
-  assert.deepEqual([9200, 10000, 11900].map((now) => fidelity({ ...facts, link, now }).text), ['Link? 2 s', 'Link? 3 s', 'Link? 4 s']);
+  assert.deepEqual(
+    [9200, 10000, 11900].map((now) => fidelity({ ...facts, link, now }).text),
+    ['Link? 2 s', 'Link? 3 s', 'Link? 4 s'],
+  );
 });
 
 test('latency is the median of the last 20 times from input to paint', () => {
@@ -203,7 +230,11 @@ test('solo shows one region only, and all again the second time', () => {
 
 test('low values are white where the scene says so, else where the image does', () => {
   for (const isInverted of [false, true])
-    for (const [low_values, expected] of [['own', isInverted], ['black', false], ['white', true]])
+    for (const [low_values, expected] of [
+      ['own', isInverted],
+      ['black', false],
+      ['white', true],
+    ])
       assert.equal(isLowWhite({ isInverted }, { image: { low_values } }), expected);
 });
 
@@ -216,9 +247,17 @@ function imagePlan(rows, size, bounds) {
 }
 const placed = (patch) => ['sagittal', 'coronal', 'axial'].map((name) => patch.image.slices[name].position_mm);
 
-test('the crosshair snaps to the centre of the image\'s voxel, also where axes are reversed and exchanged', () => {
+test("the crosshair snaps to the centre of the image's voxel, also where axes are reversed and exchanged", () => {
   // i runs to the right in steps of 0.5 mm, j to superior in 2.5, k to posterior in 3: centres at L 10 - 0.5 i, P -4 + 3 k, S 1 + 2.5 j
-  const { plan, image } = imagePlan([[-0.5, 0, 0, 10], [0, 0, 3, -4], [0, 2.5, 0, 1]], [41, 11, 5], { low: [-10.25, -5.5, -0.25], high: [10.25, 9.5, 27.25] });
+  const { plan, image } = imagePlan(
+    [
+      [-0.5, 0, 0, 10],
+      [0, 0, 3, -4],
+      [0, 2.5, 0, 1],
+    ],
+    [41, 11, 5],
+    { low: [-10.25, -5.5, -0.25], high: [10.25, 9.5, 27.25] },
+  );
   assert.deepEqual(placed(crosshairPatch(plan, image, [7.2, 0.6, 9])), [7, 2, 8.5]);
   assert.deepEqual(placed(crosshairPatch(plan, image, [7.26, 0.4, 9.8])), [7.5, -1, 11]);
   assert.deepEqual(placed(crosshairPatch(plan, image, [99, -99, 99])), [10, -4, 26], 'outside: the outermost voxel');
@@ -228,14 +267,26 @@ test('the crosshair snaps to the centre of the image\'s voxel, also where axes a
 test('the crosshair snaps to voxels of an oblique image in all three coordinates', () => {
   // turned by 30 degrees about S: i towards (cos 30, sin 30), 2 mm apart
   const [c, s] = [Math.sqrt(3) / 2, 0.5];
-  const { plan, image } = imagePlan([[2 * c, -2 * s, 0, 0], [2 * s, 2 * c, 0, 0], [0, 0, 2, 0]], [10, 10, 10], { low: [-10, -1, -1], high: [18, 28, 19] });
+  const { plan, image } = imagePlan(
+    [
+      [2 * c, -2 * s, 0, 0],
+      [2 * s, 2 * c, 0, 0],
+      [0, 0, 2, 0],
+    ],
+    [10, 10, 10],
+    { low: [-10, -1, -1], high: [18, 28, 19] },
+  );
   const centre = [2 * c * 3 - 2 * s * 4, 2 * s * 3 + 2 * c * 4, 10]; // of voxel 3, 4, 5
   const found = placed(crosshairPatch(plan, image, [centre[0] + 0.6, centre[1] - 0.5, centre[2] + 0.9]));
   found.forEach((value, axis) => assert.ok(Math.abs(value - centre[axis]) < 1e-4, `${found}, expected ${centre}`));
 });
 
 test('the first image is that of the shown patient, as on the server', () => {
-  const images = [{ id: 'a', patient: 1 }, { id: 'b', patient: 0 }, { id: 'c', patient: null }];
+  const images = [
+    { id: 'a', patient: 1 },
+    { id: 'b', patient: 0 },
+    { id: 'c', patient: null },
+  ];
   const idOf = (shownPatient, id = '') => shownImage({ images, shownPatient }, { image: { id } })?.id ?? null;
   assert.deepEqual([idOf(0), idOf(1), idOf(null), idOf(2), idOf(0, 'a')], ['b', 'a', 'a', 'c', 'a']);
   assert.equal(shownImage({ images: images.slice(0, 1), shownPatient: 0 }, { image: { id: '' } }), null);

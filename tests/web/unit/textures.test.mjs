@@ -4,7 +4,13 @@ import { test } from 'node:test';
 import { load } from './page.mjs';
 
 const { textureNote, textureOf, texturePatch, textures, withInner } = await load('state/textures.js');
-const regions = [{ id: 'scalp', parent: '' }, { id: 'skull', parent: 'scalp' }, { id: 'brain', parent: 'skull' }, { id: 'eye', parent: 'scalp' }, { id: 'couch', parent: '' }];
+const regions = [
+  { id: 'scalp', parent: '' },
+  { id: 'skull', parent: 'scalp' },
+  { id: 'brain', parent: 'skull' },
+  { id: 'eye', parent: 'scalp' },
+  { id: 'couch', parent: '' },
+];
 const plan = { regions, images: [{}], doses: [] };
 const sceneOf = (styles, dose = {}) => ({ regions: styles, dose: { wash: { visible: false }, compare: { mode: 'none' }, ...dose } });
 const styled = (texture, more = {}) => ({ texture, visible: true, representation: 'surface', ...more });
@@ -17,10 +23,21 @@ test('the choices are those that the plan has, and what is chosen now', () => {
 });
 
 test('several regions have a common one or none, and a region has all inside it, at any depth', () => {
-  assert.deepEqual(withInner(plan, regions[0]).map(({ id }) => id), ['scalp', 'skull', 'eye', 'brain']);
-  const scene = sceneOf({ scalp: styled('dose'), skull: styled('dose'), brain: styled('dose'), eye: styled('dose'), couch: styled('none') });
+  assert.deepEqual(
+    withInner(plan, regions[0]).map(({ id }) => id),
+    ['scalp', 'skull', 'eye', 'brain'],
+  );
+  const scene = sceneOf({
+    scalp: styled('dose'),
+    skull: styled('dose'),
+    brain: styled('dose'),
+    eye: styled('dose'),
+    couch: styled('none'),
+  });
   assert.deepEqual([textureOf(scene, withInner(plan, regions[0])), textureOf(scene, regions)], ['dose', '']);
-  assert.deepEqual(texturePatch([regions[1], regions[4]], 'image'), { regions: { skull: { texture: 'image' }, couch: { texture: 'image' } } });
+  assert.deepEqual(texturePatch([regions[1], regions[4]], 'image'), {
+    regions: { skull: { texture: 'image' }, couch: { texture: 'image' } },
+  });
 });
 
 test('where it does not show, the reason is said', () => {

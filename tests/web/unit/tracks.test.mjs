@@ -8,7 +8,14 @@ const { TrackPlay } = await load('state/track_play.js');
 const { mergePatch } = await load('wire/merge.js');
 
 const plan = { nTracks: 1000 };
-const all = { visible: true, classes: { neutron_high: true, lost: false }, first: 0, count: null, energy_low_mev: null, energy_high_mev: null };
+const all = {
+  visible: true,
+  classes: { neutron_high: true, lost: false },
+  first: 0,
+  count: null,
+  energy_low_mev: null,
+  energy_high_mev: null,
+};
 const sceneOf = (part = {}) => ({ tracks: { ...all, ...part } });
 
 test('a class is shown while it and the tracks are, and to show one shows the tracks', () => {
@@ -28,22 +35,47 @@ test('the range is held to the segments of the files, and all of them are no lim
   assert.equal(tracks.countPatch(plan, sceneOf(), 1e9).tracks.count, null);
   assert.equal(tracks.countPatch(plan, sceneOf(), -3).tracks.count, 0);
   assert.equal(tracks.isWhole(sceneOf()), true);
-  for (const part of [{ first: 1 }, { count: 0 }, { energy_low_mev: 0 }, { energy_high_mev: 1 }]) assert.equal(tracks.isWhole(sceneOf(part)), false);
+  for (const part of [{ first: 1 }, { count: 0 }, { energy_low_mev: 0 }, { energy_high_mev: 1 }])
+    assert.equal(tracks.isWhole(sceneOf(part)), false);
 });
 
 /** A room whose scene takes each patch at once, and a clock that moves by advance(). */
 function world(part) {
-  const box = (value) => ({ value, peek() { return this.value; } });
+  const box = (value) => ({
+    value,
+    peek() {
+      return this.value;
+    },
+  });
   const timers = new Map();
   let [now, next] = [0, 1];
-  const clock = { now: () => now, setTimeout: (run, ms) => { timers.set(next, { run, at: now + ms }); return next++; }, clearTimeout: (id) => timers.delete(id) };
+  const clock = {
+    now: () => now,
+    setTimeout: (run, ms) => {
+      timers.set(next, { run, at: now + ms });
+      return next++;
+    },
+    clearTimeout: (id) => timers.delete(id),
+  };
   const patches = [];
-  const room = { plan: box(plan), scene: box(sceneOf(part)), canChange: box(true), isScenePending: box(false),
-    patchScene: (patch) => { patches.push({ at: now, ...patch.tracks }); room.scene.value = mergePatch(room.scene.value, patch); } };
+  const room = {
+    plan: box(plan),
+    scene: box(sceneOf(part)),
+    canChange: box(true),
+    isScenePending: box(false),
+    patchScene: (patch) => {
+      patches.push({ at: now, ...patch.tracks });
+      room.scene.value = mergePatch(room.scene.value, patch);
+    },
+  };
   const advance = (ms) => {
-    for (const end = now + ms; now < end;) {
+    for (const end = now + ms; now < end; ) {
       now += 5;
-      for (const [id, { run, at }] of [...timers]) if (at <= now) { timers.delete(id); run(); }
+      for (const [id, { run, at }] of [...timers])
+        if (at <= now) {
+          timers.delete(id);
+          run();
+        }
     }
   };
   return { room, patches, advance, timers, play: new TrackPlay(room, clock) };
@@ -87,7 +119,14 @@ test('it goes on from where it was paused, and waits for a server that has not t
 });
 
 test('it stops when the tracks are hidden or the scene may not be changed any more', () => {
-  for (const stop of [(room) => { room.scene.value.tracks.visible = false; }, (room) => { room.canChange.value = false; }]) {
+  for (const stop of [
+    (room) => {
+      room.scene.value.tracks.visible = false;
+    },
+    (room) => {
+      room.canChange.value = false;
+    },
+  ]) {
     const { play, patches, advance, room } = world();
     play.start();
     advance(300);

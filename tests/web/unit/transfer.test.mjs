@@ -3,11 +3,30 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from './page.mjs';
 
-const { axisOf, bars, fromPlot, gapBeside, inserted, mostPoints, moved, nearest, recolored, removed, sampleAt, showPatchWithVolume, toPlot, visiblePatch } = await load('state/transfer.js');
+const {
+  axisOf,
+  bars,
+  fromPlot,
+  gapBeside,
+  inserted,
+  mostPoints,
+  moved,
+  nearest,
+  recolored,
+  removed,
+  sampleAt,
+  showPatchWithVolume,
+  toPlot,
+  visiblePatch,
+} = await load('state/transfer.js');
 const { mergePatch } = await load('wire/merge.js');
 
 const axis = { low: 0, high: 1000 };
-const points = [{ value: 100, color: '#000000', opacity: 0 }, { value: 300, color: '#ff8000', opacity: 0.5 }, { value: 500, color: '#ffffff', opacity: 1 }];
+const points = [
+  { value: 100, color: '#000000', opacity: 0 },
+  { value: 300, color: '#ff8000', opacity: 0.5 },
+  { value: 500, color: '#ffffff', opacity: 1 },
+];
 const isNear = (a, b) => assert.ok(Math.abs(a - b) < 1e-9, `${a}, expected ${b}`);
 
 test('places and points say the same: half of the height stands for a quarter of the light', () => {
@@ -27,7 +46,10 @@ test('a new point keeps the order and takes the colour that is there', () => {
   const { points: list, index } = inserted(points, axis, 400, 0.2);
   assert.equal(index, 2);
   assert.deepEqual(list[2], { value: 400, color: '#ffc080', opacity: 0.2 });
-  assert.deepEqual(list.map(({ value }) => value), [100, 300, 400, 500]);
+  assert.deepEqual(
+    list.map(({ value }) => value),
+    [100, 300, 400, 500],
+  );
   assert.equal(inserted(points, axis, 400).points[2].opacity, 0.75, 'without an opacity: the one that is there');
   assert.equal(inserted(points, axis, 300).index, -1, 'no second point of the same value');
   assert.equal(inserted([], axis, 10, 0.1).points.length, 1);
@@ -49,8 +71,14 @@ test('a point never passes its neighbours', () => {
 });
 
 test('a point is recoloured and removed alone', () => {
-  assert.deepEqual(recolored(points, 1, '#123456').map(({ color }) => color), ['#000000', '#123456', '#ffffff']);
-  assert.deepEqual(removed(points, 1).map(({ value }) => value), [100, 500]);
+  assert.deepEqual(
+    recolored(points, 1, '#123456').map(({ color }) => color),
+    ['#000000', '#123456', '#ffffff'],
+  );
+  assert.deepEqual(
+    removed(points, 1).map(({ value }) => value),
+    [100, 500],
+  );
 });
 
 test('a point added by key lies in the wider gap beside the chosen one', () => {
@@ -85,14 +113,33 @@ const ct = { id: 'ct', modality: 'CT', unit: 'HU', isInverted: false, window: { 
 const mr = { id: 'mr', modality: 'MR', unit: '', isInverted: false, window: { center: 50, width: 100 } };
 const mr2 = { id: 'mr2', modality: 'MR', unit: '', isInverted: false, window: { center: 500, width: 1000 } };
 const plan = { images: [ct, mr, mr2] };
-const scene = (image, list) => ({ image: { id: image.id, window: image.window, color_map: 'grey', cull_below: -1e12, looks: {}, blend: { id: '' }, volume: { visible: false, points: list, cull_below: -1e12 } } });
+const scene = (image, list) => ({
+  image: {
+    id: image.id,
+    window: image.window,
+    color_map: 'grey',
+    cull_below: -1e12,
+    looks: {},
+    blend: { id: '' },
+    volume: { visible: false, points: list, cull_below: -1e12 },
+  },
+});
 
 test('with an image in another unit the volume gets a preset of that unit; with one of the same kind the same parts of the window', () => {
   const first = mergePatch(scene(ct, points), showPatchWithVolume(plan, scene(ct, points), mr));
   assert.ok(first.image.volume.points.length > 1);
-  assert.ok(first.image.volume.points.every(({ value }) => value >= 0 && value <= 100), 'within the window');
-  const list = [{ value: 0, color: '#000000', opacity: 0 }, { value: 100, color: '#ffffff', opacity: 1 }]; // the ends of the window
-  assert.deepEqual(showPatchWithVolume(plan, scene(mr, list), mr2).image.volume.points.map(({ value }) => value), [0, 1000]);
+  assert.ok(
+    first.image.volume.points.every(({ value }) => value >= 0 && value <= 100),
+    'within the window',
+  );
+  const list = [
+    { value: 0, color: '#000000', opacity: 0 },
+    { value: 100, color: '#ffffff', opacity: 1 },
+  ]; // the ends of the window
+  assert.deepEqual(
+    showPatchWithVolume(plan, scene(mr, list), mr2).image.volume.points.map(({ value }) => value),
+    [0, 1000],
+  );
 });
 
 test('a volume that has no transfer function yet gets one when it is shown', () => {

@@ -11,12 +11,31 @@ const { mergePatch } = await load('wire/merge.js');
 function world() {
   let now = 1000;
   const told = [];
-  const views = [{ name: '3-D', document: { value: { kind: '3d', size_px: [10, 10] } } }, { name: 'Axial', document: { value: { kind: 'axial' } } }];
+  const views = [
+    { name: '3-D', document: { value: { kind: '3d', size_px: [10, 10] } } },
+    { name: 'Axial', document: { value: { kind: 'axial' } } },
+  ];
   const room = {
     canChange: { value: true },
     following: { isPresenting: { value: true } },
-    plan: { value: { images: [{ id: 'ct', unit: 'HU' }], regions: [{ id: 'r1', name: 'brain' }, { id: 'r2', name: 'tumor' }] } },
-    scene: { value: { regions: { r1: { opacity: 1, visible: true }, r2: { opacity: 1, visible: true } }, image: { window: { center: 40, width: 400 }, slices: { axial: { position_mm: 0 }, coronal: { position_mm: 0 }, sagittal: { position_mm: 0 } } } } },
+    plan: {
+      value: {
+        images: [{ id: 'ct', unit: 'HU' }],
+        regions: [
+          { id: 'r1', name: 'brain' },
+          { id: 'r2', name: 'tumor' },
+        ],
+      },
+    },
+    scene: {
+      value: {
+        regions: { r1: { opacity: 1, visible: true }, r2: { opacity: 1, visible: true } },
+        image: {
+          window: { center: 40, width: 400 },
+          slices: { axial: { position_mm: 0 }, coronal: { position_mm: 0 }, sagittal: { position_mm: 0 } },
+        },
+      },
+    },
     view: (number) => views[number - 1],
     patchScene(patch) {
       room.recorder('scene', patch, room.scene.value);
@@ -30,8 +49,19 @@ function world() {
   };
   const undo = new Undo(room, { clock: { now: () => now }, notify: (...words) => told.push(words) });
   const opacity = (value, id = 'r1') => room.patchScene({ regions: { [id]: { opacity: value } } });
-  const other = (patch) => { room.scene.value = mergePatch(room.scene.value, patch); }; // another member
-  return { room, undo, told, opacity, other, wait: (ms = joinMs + 1) => { now += ms; } };
+  const other = (patch) => {
+    room.scene.value = mergePatch(room.scene.value, patch);
+  }; // another member
+  return {
+    room,
+    undo,
+    told,
+    opacity,
+    other,
+    wait: (ms = joinMs + 1) => {
+      now += ms;
+    },
+  };
 }
 const opacityOf = (room, id = 'r1') => room.scene.value.regions[id].opacity;
 
@@ -190,17 +220,26 @@ test('the oldest of more than 100 steps is forgotten', () => {
   assert.equal(room.scene.value.image.window.center, 45);
 });
 
-test('what was changed on one\'s own is no step any more after the return, the steps of the room stay', () => {
+test("what was changed on one's own is no step any more after the return, the steps of the room stay", () => {
   const { room, connection, told, flush, advance } = roomWorld(members('m1', ['m2']));
   const undo = new Undo(room, { clock: { now: () => 0 }, notify: (...words) => told.push(words) });
   room.showView(2, [400, 400]);
-  const opacity = (value) => { room.patchScene({ regions: { brain: { opacity: value } } }); flush(); };
+  const opacity = (value) => {
+    room.patchScene({ regions: { brain: { opacity: value } } });
+    flush();
+  };
   opacity(0.5); // as the presenter
-  connection.receive({ type: 'scene', revision: 2, patch: { regions: { brain: { opacity: 0.5 } } }, by: 'm1', input: connection.sent.at(-1).input });
+  connection.receive({
+    type: 'scene',
+    revision: 2,
+    patch: { regions: { brain: { opacity: 0.5 } } },
+    by: 'm1',
+    input: connection.sent.at(-1).input,
+  });
   connection.receive(members('m2', ['m1']));
   const isOwn = () => !room.following.isFollowing.value;
   undo.undo();
-  assert.deepEqual([undo.next.value, isOwn()], [null, false], 'a step of the room is the presenter\'s');
+  assert.deepEqual([undo.next.value, isOwn()], [null, false], "a step of the room is the presenter's");
   opacity(0.4);
   advance(joinMs + 1);
   room.patchView(2, { camera: { height_mm: 200 } });
@@ -223,13 +262,14 @@ test('what was changed on one\'s own is no step any more after the return, the s
   assert.equal(room.scene.value.regions.brain.opacity, 1);
 });
 
-test('what was changed on one\'s own is no step any more after the presenter has called everybody back', () => {
+test("what was changed on one's own is no step any more after the presenter has called everybody back", () => {
   const { room, connection, told, flush } = roomWorld(members('m2', ['m1']));
   const undo = new Undo(room, { clock: { now: () => 0 }, notify: (...words) => told.push(words) });
   room.showView(2, [400, 400]);
   room.patchScene({ regions: { brain: { opacity: 0.4 } } });
   flush();
-  const view = (follow) => connection.receive({ type: 'view', view: 2, document: { kind: 'axial', size_px: [400, 400] }, follow, by: 'm2' });
+  const view = (follow) =>
+    connection.receive({ type: 'view', view: 2, document: { kind: 'axial', size_px: [400, 400] }, follow, by: 'm2' });
   view(false);
   assert.notEqual(undo.next.value, null);
   connection.receive({ type: 'scene', revision: 2, patch: { regions: { brain: { opacity: 0.7 } } }, by: 'm2' });
@@ -272,7 +312,11 @@ test('steps are named, with the value and its unit', () => {
   wait();
   room.patchScene({ image: { window: { center: 80, width: 200 } } });
   assert.equal(title(), 'Undo: window, to C 40  W 400 HU (Ctrl+Z)');
-  const name = (of, ...paths) => stepName(paths.map((path) => ({ of, path: path.split('.') })), room);
+  const name = (of, ...paths) =>
+    stepName(
+      paths.map((path) => ({ of, path: path.split('.') })),
+      room,
+    );
   assert.equal(name('scene', 'regions.r1.visible', 'regions.r2.visible'), 'visibility of 2 regions');
   assert.equal(name('scene', 'image.slices.axial.position_mm', 'image.slices.coronal.position_mm'), 'crosshair');
   assert.equal(name('scene', 'outline.width_px'), 'outline width');

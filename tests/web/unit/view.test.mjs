@@ -19,7 +19,8 @@ const near = (actual, expected, tolerance = 1e-9) =>
 const front = { position_mm: [0, -500, 0], target_mm: [0, 0, 0], up: [0, 0, 1], projection: 'perspective', fov_deg: 30, height_mm: null };
 
 /** Column-major clip matrix of a parallel picture, 200 mm high and wide, from its axes. */
-const parallel = (right, up, forward) => Float32Array.from([0, 1, 2].flatMap((i) => [right[i] / 100, up[i] / 100, forward[i] / 1000, 0]).concat([0, 0, 0, 1]));
+const parallel = (right, up, forward) =>
+  Float32Array.from([0, 1, 2].flatMap((i) => [right[i] / 100, up[i] / 100, forward[i] / 1000, 0]).concat([0, 0, 0, 1]));
 
 test('the picture from the front has patient left at its right and superior up', () => {
   const { right, up, forward } = cameras.axes(front);
@@ -28,8 +29,15 @@ test('the picture from the front has patient left at its right and superior up',
   near(forward, [0, 1, 0]);
 });
 
-test('the home camera is the server\'s; that of oblique views, which it may not give, is as high as the highest of the slices', () => {
-  const slice = (height_mm) => ({ position_mm: [0, 0, -1000], target_mm: [1, 2, 3], up: [0, -1, 0], projection: 'parallel', fov_deg: 30, height_mm });
+test("the home camera is the server's; that of oblique views, which it may not give, is as high as the highest of the slices", () => {
+  const slice = (height_mm) => ({
+    position_mm: [0, 0, -1000],
+    target_mm: [1, 2, 3],
+    up: [0, -1, 0],
+    projection: 'parallel',
+    fov_deg: 30,
+    height_mm,
+  });
   const given = { position_mm: [1, 2, 3], target_mm: [4, 5, 6], up: [0, 0, 1], projection: 'perspective', fov_deg: 30 };
   const plan = { home: { '3d': given, axial: slice(200), coronal: slice(300), sagittal: slice(250) } };
   assert.deepEqual(homeCamera(plan, '3d'), { ...given, height_mm: null });
@@ -39,7 +47,7 @@ test('the home camera is the server\'s; that of oblique views, which it may not 
   assert.equal(homeCamera({ home: { ...plan.home, oblique: slice(7) } }, 'oblique').height_mm, 7);
 });
 
-test('a quarter turn about the long axis looks from the patient\'s left', () => {
+test("a quarter turn about the long axis looks from the patient's left", () => {
   const turned = cameras.orbit(front, 90, 0);
   near(turned.position_mm, [500, 0, 0]);
   near(turned.up, [0, 0, 1]);
@@ -96,7 +104,11 @@ test('letters are those that the pictures of reports have', () => {
   const list = ({ left, right, top, bottom }) => [left, right, top, bottom];
   for (const { kind, letters: expected } of fixture.planes)
     assert.deepEqual(list(edgeLetters(parallel(planeOfKind(kind, 0).right, planeOfKind(kind, 0).up, [0, 0, 0]))), expected, kind);
-  for (const { about, camera: [position_mm, target_mm, up], letters: expected } of fixture.cameras) {
+  for (const {
+    about,
+    camera: [position_mm, target_mm, up],
+    letters: expected,
+  } of fixture.cameras) {
     const axes = cameras.axes({ ...front, position_mm, target_mm, up });
     assert.deepEqual(list(edgeLetters(parallel(axes.right, axes.up, axes.forward))), expected, about);
   }
@@ -115,11 +127,23 @@ test('the cube shows the sides that face the eye, each in its place', () => {
   const front = sides(parallel([1, 0, 0], [0, 0, 1], [0, 1, 0]));
   assert.deepEqual(Object.keys(front), ['A']);
   near(front.A.middle, [0, 0]);
-  assert.deepEqual(front.A.corners.map((corner) => corner.map((part) => Math.round(part * 10) / 10 || 0)).sort().join(' '), '-0.5,-0.5 -0.5,0.5 0.5,-0.5 0.5,0.5');
+  assert.deepEqual(
+    front.A.corners
+      .map((corner) => corner.map((part) => Math.round(part * 10) / 10 || 0))
+      .sort()
+      .join(' '),
+    '-0.5,-0.5 -0.5,0.5 0.5,-0.5 0.5,0.5',
+  );
   // from 60 degrees to the patient's left and 30 above: the cosines of the sides are those of the direction to the eye
   const [c60, s60, c30, s30] = [0.5, Math.sqrt(3) / 2, Math.sqrt(3) / 2, 0.5];
   const back = [c30 * s60, -c30 * c60, s30];
-  const turned = sides(parallel([c60, s60, 0], [-s30 * s60, s30 * c60, c30], back.map((part) => -part)));
+  const turned = sides(
+    parallel(
+      [c60, s60, 0],
+      [-s30 * s60, s30 * c60, c30],
+      back.map((part) => -part),
+    ),
+  );
   assert.deepEqual(Object.keys(turned), ['A', 'S', 'L'], 'the side that faces the eye most is drawn last');
   near([turned.L.facing, turned.A.facing, turned.S.facing], [0.75, c30 / 2, 0.5], 1e-6);
   near(turned.S.middle, [0, -c30 / 2], 1e-6);
@@ -146,13 +170,16 @@ test('fitting shows the whole box from the same side, in perspective and paralle
   near(fitted.target_mm, [30, 40, 80]);
   near(cameras.axes(fitted).forward, [0, 1, 0]);
   // the near corners, 20 mm before the middle, are 50 mm above and below it: at tan 15 / 1.08
-  assert.ok(Math.abs(cameras.distance(fitted) - (50 * 1.08 / Math.tan(Math.PI / 12) + 20)) < 1e-9);
+  assert.ok(Math.abs(cameras.distance(fitted) - ((50 * 1.08) / Math.tan(Math.PI / 12) + 20)) < 1e-9);
   assert.ok(Math.abs(cameras.fit({ ...front, projection: 'parallel', height_mm: 9 }, box).height_mm - 108) < 1e-9);
 });
 
 test('fitting a slice takes the sides of the box that lie in it', () => {
   const slice = { ...front, projection: 'parallel', height_mm: 9 };
-  near([cameras.fitSlice(slice, planeOfKind('axial', 0), box).height_mm, cameras.fitSlice(slice, planeOfKind('sagittal', 0), box).height_mm], [43.2, 108]);
+  near(
+    [cameras.fitSlice(slice, planeOfKind('axial', 0), box).height_mm, cameras.fitSlice(slice, planeOfKind('sagittal', 0), box).height_mm],
+    [43.2, 108],
+  );
   near(cameras.fitSlice(slice, planeOfKind('axial', 0), box).target_mm, [30, 40, 80]);
   // 45 degrees between axial and coronal: half of 40 and 100 mm along the picture's up
   near([cameras.fitSlice(slice, planeOfNormal([0, 0, 0], [0, -1, 1]), box).height_mm], [1.08 * (40 + 100) * Math.SQRT1_2], 1e-9);
@@ -161,10 +188,26 @@ test('fitting a slice takes the sides of the box that lie in it', () => {
 test('a linked slice has as many mm per pixel, and the crosshair at the same place', () => {
   const axial = { ...front, target_mm: [10, 0, 0], height_mm: 200 };
   const crosshair = [30, 20, 50]; // 20 mm right of the axial picture's middle, 20 mm below it
-  const other = cameras.linkedSlice(axial, planeOfKind('axial', 50), [400, 500], { ...front, height_mm: 90 }, planeOfKind('sagittal', 30), [200, 300], crosshair);
+  const other = cameras.linkedSlice(
+    axial,
+    planeOfKind('axial', 50),
+    [400, 500],
+    { ...front, height_mm: 90 },
+    planeOfKind('sagittal', 30),
+    [200, 300],
+    crosshair,
+  );
   assert.equal(other.height_mm, 100); // half a mm per pixel, 200 pixels
   near(other.target_mm, [30, 0, 70]); // right in a sagittal slice is posterior, up is superior
-  const far = cameras.linkedSlice({ ...axial, target_mm: [-400, 0, 0] }, planeOfKind('axial', 50), [400, 500], front, planeOfKind('coronal', 20), [200, 200], crosshair);
+  const far = cameras.linkedSlice(
+    { ...axial, target_mm: [-400, 0, 0] },
+    planeOfKind('axial', 50),
+    [400, 500],
+    front,
+    planeOfKind('coronal', 20),
+    [200, 200],
+    crosshair,
+  );
   near(far.target_mm, [30 - 45, 20, 50 + 20], 1e-9); // inside the picture still
 });
 
@@ -192,16 +235,28 @@ function painterWorld() {
   const painter = new Painter(canvas, {
     decode: () => {
       most = Math.max(most, ++running);
-      return new Promise((resolve, reject) => decodes.push({
-        done: (name) => { running -= 1; resolve({ name, close() {} }); },
-        fail: () => { running -= 1; reject(new Error('broken')); },
-      }));
+      return new Promise((resolve, reject) =>
+        decodes.push({
+          done: (name) => {
+            running -= 1;
+            resolve({ name, close() {} });
+          },
+          fail: () => {
+            running -= 1;
+            reject(new Error('broken'));
+          },
+        }),
+      );
     },
     schedule: (callback) => scheduled.push(callback),
     onPainted: (header, isDrawn) => shown.push(`${isDrawn ? 'shown' : 'passed'} ${header.sequence}`),
   });
-  const offer = (sequence) => painter.offer({ header: { sequence, view: 1, media_type: 'image/jpeg', width_px: 4, height_px: 3 }, picture: new Uint8Array(1) });
-  const settle = () => new Promise((resolve) => { setImmediate(resolve); });
+  const offer = (sequence) =>
+    painter.offer({ header: { sequence, view: 1, media_type: 'image/jpeg', width_px: 4, height_px: 3 }, picture: new Uint8Array(1) });
+  const settle = () =>
+    new Promise((resolve) => {
+      setImmediate(resolve);
+    });
   const paint = () => scheduled.splice(0).forEach((callback) => callback());
   return { painter, offer, decodes, shown, settle, paint, most: () => most };
 }
@@ -233,15 +288,27 @@ test('a picture that cannot be decoded is acknowledged and not drawn', async () 
 class FakeWorker extends EventTarget {
   asked = [];
   isTerminated = false;
-  postMessage(message) { this.asked.push(message); }
-  terminate() { this.isTerminated = true; }
-  tell(data) { this.dispatchEvent(Object.assign(new Event('message'), { data })); }
+  postMessage(message) {
+    this.asked.push(message);
+  }
+  terminate() {
+    this.isTerminated = true;
+  }
+  tell(data) {
+    this.dispatchEvent(Object.assign(new Event('message'), { data }));
+  }
 }
 
 function decoderWorld() {
   const worker = new FakeWorker();
   const here = [];
-  const { decode } = new Decoder({ makeWorker: () => worker, decodeHere: async (picture, type) => { here.push([picture[0], type]); return `here ${picture[0]}`; } });
+  const { decode } = new Decoder({
+    makeWorker: () => worker,
+    decodeHere: async (picture, type) => {
+      here.push([picture[0], type]);
+      return `here ${picture[0]}`;
+    },
+  });
   return { worker, here, decode };
 }
 
@@ -250,7 +317,13 @@ test('pictures are decoded here until the worker is ready, then there, in the or
   assert.equal(await decode(new Uint8Array([1]), 'image/jpeg'), 'here 1');
   worker.tell({ isReady: true });
   const two = [decode(new Uint8Array([2]), 'image/jpeg'), decode(new Uint8Array([3]), 'image/png')];
-  assert.deepEqual(worker.asked.map(({ picture, type }) => [picture[0], type]), [[2, 'image/jpeg'], [3, 'image/png']]);
+  assert.deepEqual(
+    worker.asked.map(({ picture, type }) => [picture[0], type]),
+    [
+      [2, 'image/jpeg'],
+      [3, 'image/png'],
+    ],
+  );
   worker.tell({ id: worker.asked[1].id, bitmap: 'there 3' });
   worker.tell({ id: worker.asked[0].id, bitmap: 'there 2' });
   assert.deepEqual(await Promise.all(two), ['there 2', 'there 3']);
@@ -273,13 +346,17 @@ test('what the worker cannot decode is decoded here, and all of it once the work
 });
 
 test('a browser that allows no worker decodes here', async () => {
-  const { decode } = new Decoder({ makeWorker: () => { throw new Error('not allowed'); }, decodeHere: async () => 'here' });
+  const { decode } = new Decoder({
+    makeWorker: () => {
+      throw new Error('not allowed');
+    },
+    decodeHere: async () => 'here',
+  });
   assert.equal(await decode(new Uint8Array(1), 'image/jpeg'), 'here');
 });
 
 test('characters that do not show are the tags that captions have', () => {
   const { cases } = JSON.parse(readFileSync(new URL('../../data/invisible_characters.json', import.meta.url), 'utf8'));
-  for (const [text, shown] of cases)
-    assert.equal(visibleText(text), shown);
+  for (const [text, shown] of cases) assert.equal(visibleText(text), shown);
   assert.equal(visibleText('\u202e'), '«RLO»');
 });

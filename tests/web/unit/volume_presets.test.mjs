@@ -10,7 +10,10 @@ test('presets in HU are for images in HU, the others are laid over the window', 
   assert.ok(presetsOfImage({ unit: 'HU' }).every(({ modality }) => modality === 'CT'));
   assert.ok(presetsOfImage({ unit: '' }).length > 0);
   const preset = { unit: 'window', points: [{ value: 0 }, { value: 0.25 }, { value: 1 }] };
-  assert.deepEqual(presetPoints(preset, { center: 100, width: 40 }).map(({ value }) => value), [80, 90, 120]);
+  assert.deepEqual(
+    presetPoints(preset, { center: 100, width: 40 }).map(({ value }) => value),
+    [80, 90, 120],
+  );
 });
 
 test('every preset is a transfer function that the scene accepts', () => {

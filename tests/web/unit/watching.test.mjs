@@ -33,7 +33,12 @@ test('in a room that plays a recording it shows the replay', () => {
 test('it says when its picture is old, and why', () => {
   assert.deepEqual(liveness(now), { state: 'live', text: 'Live', why: '' });
   assert.equal(liveness({ ...now, paintedAt: 0 }).state, 'wait');
-  const cases = [[{ link: { state: 'lost', quietSince: 0 } }, 'lost', /connection/], [{ link: { ...open, quietSince: 5 } }, 'old', /does not answer/], [{ renderer: 'restarting' }, 'old', /not being drawn/], [{ isLate: true }, 'old', /not come yet/]];
+  const cases = [
+    [{ link: { state: 'lost', quietSince: 0 } }, 'lost', /connection/],
+    [{ link: { ...open, quietSince: 5 } }, 'old', /does not answer/],
+    [{ renderer: 'restarting' }, 'old', /not being drawn/],
+    [{ isLate: true }, 'old', /not come yet/],
+  ];
   for (const [more, state, why] of cases) {
     const said = liveness({ ...now, ...more });
     assert.equal(said.state, state, JSON.stringify(more));
@@ -67,7 +72,16 @@ test('the view worked in is the one acted in last, once it lasts, and not back a
   const told = [];
   let now = 0;
   let timer = null;
-  const worked = new WorkedIn((view) => told.push([now, view]), { now: () => now, setTimeout: (run, ms) => { timer = { run, at: now + ms }; return timer; }, clearTimeout: (old) => { if (old === timer) timer = null; } });
+  const worked = new WorkedIn((view) => told.push([now, view]), {
+    now: () => now,
+    setTimeout: (run, ms) => {
+      timer = { run, at: now + ms };
+      return timer;
+    },
+    clearTimeout: (old) => {
+      if (old === timer) timer = null;
+    },
+  });
   const pass = (ms) => {
     const end = now + ms;
     for (let due; timer && timer.at <= end; due.run()) {
@@ -79,7 +93,8 @@ test('the view worked in is the one acted in last, once it lasts, and not back a
   };
   worked.acted(1);
   pass(5000);
-  for (let turn = 0; turn < 5; turn++) { // a wheel over the axial pane
+  for (let turn = 0; turn < 5; turn++) {
+    // a wheel over the axial pane
     worked.acted(2);
     pass(100);
   }

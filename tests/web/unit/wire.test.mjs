@@ -9,7 +9,9 @@ const { joinPatches, mergePatch } = await load('wire/merge.js');
 
 const fixtures = (kind) => {
   const folder = `${root}proto/fixtures/${kind}`;
-  return readdirSync(folder).filter((name) => name.endsWith('.json')).map((name) => [name, JSON.parse(readFileSync(`${folder}/${name}`, 'utf8'))]);
+  return readdirSync(folder)
+    .filter((name) => name.endsWith('.json'))
+    .map((name) => [name, JSON.parse(readFileSync(`${folder}/${name}`, 'utf8'))]);
 };
 
 for (const [name, { from, message }] of fixtures('good'))
@@ -17,16 +19,27 @@ for (const [name, { from, message }] of fixtures('good'))
 
 for (const [name, { from, message, error }] of fixtures('bad'))
   test(`bad message ${name} is refused with its code and place`, () => {
-    assert.throws(() => readMessage(message, from), (thrown) => {
-      assert.ok(thrown instanceof WireError, String(thrown));
-      assert.deepEqual([thrown.code, thrown.pointer], [error.code, error.pointer]);
-      return true;
-    });
+    assert.throws(
+      () => readMessage(message, from),
+      (thrown) => {
+        assert.ok(thrown instanceof WireError, String(thrown));
+        assert.deepEqual([thrown.code, thrown.pointer], [error.code, error.pointer]);
+        return true;
+      },
+    );
   });
 
 test('a document gets every default of proto/scene.json', () => {
   const scene = readDocument('scene', { regions: { brain: { opacity: 0.5 } } });
-  assert.deepEqual(scene.regions.brain, { visible: true, representation: 'surface', order: 0, color: '#c8c8c8', opacity: 0.5, texture: 'none', clipped: true });
+  assert.deepEqual(scene.regions.brain, {
+    visible: true,
+    representation: 'surface',
+    order: 0,
+    color: '#c8c8c8',
+    opacity: 0.5,
+    texture: 'none',
+    clipped: true,
+  });
   assert.deepEqual(scene.image.window, { center: 40, width: 400 });
   assert.equal(readDocument('view', {}).camera.fov_deg, 30);
   assert.equal(readDocument('view', {}).camera.position_mm, null);
@@ -68,7 +81,11 @@ for (const [target, patch, expected] of [
   [{ a: 'c' }, { a: ['b'] }, { a: ['b'] }],
   [{ a: { b: 'c' } }, { a: { b: 'd', c: null } }, { a: { b: 'd' } }],
   [{ a: [{ b: 'c' }] }, { a: [1] }, { a: [1] }],
-  [['a', 'b'], ['c', 'd'], ['c', 'd']],
+  [
+    ['a', 'b'],
+    ['c', 'd'],
+    ['c', 'd'],
+  ],
   [{ a: 'b' }, ['c'], ['c']],
   [{ a: 'foo' }, null, null],
   [{ a: 'foo' }, 'bar', 'bar'],
@@ -132,17 +149,41 @@ function frameBytes(change = () => {}, { headerBytes = 112, pictureBytes = 5 } =
 
 test('a frame header is read field by field', () => {
   const { header, picture } = readFrame(frameBytes());
-  assert.deepEqual({ ...header, clip_from_lps_mm: [...header.clip_from_lps_mm] }, {
-    media_type: 'image/jpeg', is_still: true, is_lossless: false, is_full_color: true, is_shared: false, is_coarse: true,
-    quality: 95, scale_percent: 50, view: 3, sequence: 77, scene_revision: 12, input_id: 4000000001,
-    width_px: 640, height_px: 480, full_px: [1280, 960], render_us: 12345, encode_us: 678, pixels_per_mm: 2.5,
-    clip_from_lps_mm: Array.from({ length: 16 }, (_, i) => i + 0.5),
-  });
+  assert.deepEqual(
+    { ...header, clip_from_lps_mm: [...header.clip_from_lps_mm] },
+    {
+      media_type: 'image/jpeg',
+      is_still: true,
+      is_lossless: false,
+      is_full_color: true,
+      is_shared: false,
+      is_coarse: true,
+      quality: 95,
+      scale_percent: 50,
+      view: 3,
+      sequence: 77,
+      scene_revision: 12,
+      input_id: 4000000001,
+      width_px: 640,
+      height_px: 480,
+      full_px: [1280, 960],
+      render_us: 12345,
+      encode_us: 678,
+      pixels_per_mm: 2.5,
+      clip_from_lps_mm: Array.from({ length: 16 }, (_, i) => i + 0.5),
+    },
+  );
   assert.deepEqual([...picture], [1, 2, 3, 4, 5]);
 });
 
 test('a reduced picture stands for a view of its size times the divisor', () => {
-  const of = (flags, scale) => readFrame(frameBytes((data) => { data.setUint8(9, flags); data.setUint8(11, scale); })).header.full_px;
+  const of = (flags, scale) =>
+    readFrame(
+      frameBytes((data) => {
+        data.setUint8(9, flags);
+        data.setUint8(11, scale);
+      }),
+    ).header.full_px;
   assert.deepEqual(of(8, 100), [640, 480]);
   assert.deepEqual(of(8 | 32, 100), [1280, 960]);
   assert.deepEqual(of(8 | 64, 50), [5120, 3840]);

@@ -42,11 +42,16 @@ export function makeApi(fetch, base = 'api/v1') {
     plans: (signal) => call('GET', 'plans', { signal }),
     plan: (plan, signal) => call('GET', `plans/${id(plan)}`, { signal }),
     openPlan: (plan) => call('POST', `plans/${id(plan)}/open`, { body: {} }),
-    removePlan: (plan, { keepsRecords = false, by = '' } = {}) => call('DELETE', `plans/${id(plan)}?by=${id(by)}${keepsRecords ? '&records=keep' : ''}`),
+    removePlan: (plan, { keepsRecords = false, by = '' } = {}) =>
+      call('DELETE', `plans/${id(plan)}?by=${id(by)}${keepsRecords ? '&records=keep' : ''}`),
     uploadUrl: (name) => (name ? `${base}/plans?name=${id(name)}` : `${base}/plans`),
     job: (job, signal) => call('GET', `jobs/${id(job)}`, { signal }),
     cancelJob: (job) => call('DELETE', `jobs/${id(job)}`),
-    thumbnail: (plan) => call('POST', `plans/${id(plan)}/render`, { isPicture: true, body: { view: { kind: '3d', size_px: thumbnailPx }, format: 'jpeg', quality: 85, only_loaded: true } }),
+    thumbnail: (plan) =>
+      call('POST', `plans/${id(plan)}/render`, {
+        isPicture: true,
+        body: { view: { kind: '3d', size_px: thumbnailPx }, format: 'jpeg', quality: 85, only_loaded: true },
+      }),
     rooms: (signal) => call('GET', 'rooms', { signal }),
     makeRoom: (plan) => call('POST', 'rooms', { body: { plan } }),
     /** Any other call, of parts that are loaded later. */
@@ -60,17 +65,26 @@ export function makeApi(fetch, base = 'api/v1') {
     makeLink: (room, identity, link) => call('POST', `rooms/${id(room)}/links`, { body: link, more: ofMember(identity) }),
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),
     pick: (plan, room, view, px, py, prefer = '') =>
-      call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`),
+      call(
+        'GET',
+        `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`,
+      ),
     /** A question about the scene of a room with a view's override: dvh, profile, constraints, dose/probe. */
-    ofScene: (plan, question, room, view, parameters, signal) => call('GET', `plans/${id(plan)}/${question}?${new URLSearchParams({ room, view: JSON.stringify(view), ...parameters })}`, { signal }),
+    ofScene: (plan, question, room, view, parameters, signal) =>
+      call('GET', `plans/${id(plan)}/${question}?${new URLSearchParams({ room, view: JSON.stringify(view), ...parameters })}`, { signal }),
     /** Where the labels of a slice pane's isodose lines stand on its picture. */
     isolines: (plan, room, view, textPx, signal) =>
       call('GET', `plans/${id(plan)}/dose/isolines?room=${id(room)}&view=${id(JSON.stringify(view))}&text_px=${textPx}`, { signal }),
     histogram: (plan, image) => call('GET', `plans/${id(plan)}/images/${id(image)}/histogram`),
     ellipse: (plan, image, [centre, a, b]) => call('GET', `plans/${id(plan)}/images/${id(image)}/ellipse?center=${centre}&a=${a}&b=${b}`),
-    surface: (plan, region, query, signal) => call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),
+    surface: (plan, region, query, signal) =>
+      call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),
     surfaceUrl: (plan, region, query) => `${base}/plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`,
     /** The annotated picture as a PNG. @returns {Promise<Blob>} */
-    snapshot: (room, view) => call('GET', `rooms/${id(room.id)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true`, { isPicture: true, more: ofMember(room.identity) }),
+    snapshot: (room, view) =>
+      call('GET', `rooms/${id(room.id)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true`, {
+        isPicture: true,
+        more: ofMember(room.identity),
+      }),
   };
 }

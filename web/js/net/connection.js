@@ -120,7 +120,8 @@ export class Connection extends EventTarget {
   retryNow() {
     this.#failures = 0;
     this.#serverWaitMs = 0;
-    if (!this.#isWelcome) { // also instead of an attempt that got no answer yet
+    if (!this.#isWelcome) {
+      // also instead of an attempt that got no answer yet
       this.#stopTimers();
       this.#socket?.close();
       this.#socket = null;
@@ -245,7 +246,9 @@ export class Connection extends EventTarget {
   async #endIfGone() {
     if (!(await this.#isGone()) || this.#isEnded) return;
     this.close();
-    this.#tell('ended', { reason: 'the room is no longer there; it ends with a restart of the server, and when nobody has been in it for long' });
+    this.#tell('ended', {
+      reason: 'the room is no longer there; it ends with a restart of the server, and when nobody has been in it for long',
+    });
   }
 
   #tell(type, detail) {

@@ -2,8 +2,14 @@
 
 const mostFiles = 100000;
 
-const entries = (reader) => new Promise((resolve, reject) => { reader.readEntries(resolve, reject); });
-const fileOf = (entry) => new Promise((resolve, reject) => { entry.file(resolve, reject); });
+const entries = (reader) =>
+  new Promise((resolve, reject) => {
+    reader.readEntries(resolve, reject);
+  });
+const fileOf = (entry) =>
+  new Promise((resolve, reject) => {
+    entry.file(resolve, reject);
+  });
 
 async function walk(entry, files) {
   if (files.length > mostFiles) throw new Error(`More than ${mostFiles} files; drop one plan.`);
@@ -18,7 +24,9 @@ async function walk(entry, files) {
 /** @param {DataTransfer} data @returns {Promise<{path: string, file: File}[]>} in order of path */
 export async function filesOfDrop(data) {
   // an item from another program, such as an archive in a mail, is a file without an entry; both must be read before the first await
-  const dropped = [...data.items].filter((item) => item.kind === 'file').map((item) => ({ entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
+  const dropped = [...data.items]
+    .filter((item) => item.kind === 'file')
+    .map((item) => ({ entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
   const files = [];
   for (const { entry, file } of dropped) {
     if (entry) await walk(entry, files);

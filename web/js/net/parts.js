@@ -59,8 +59,12 @@ export class Parts {
       if (this.#bytes.length >= maxHead) throw new RangeError(`the head of a part has more than ${maxHead} bytes`);
       return null;
     }
-    const lines = latin1(this.#take(end + 4).subarray(boundary.length)).trim().split('\r\n');
-    const fields = Object.fromEntries(lines.map((line) => [line.slice(0, line.indexOf(':')).toLowerCase(), line.slice(line.indexOf(':') + 1).trim()]));
+    const lines = latin1(this.#take(end + 4).subarray(boundary.length))
+      .trim()
+      .split('\r\n');
+    const fields = Object.fromEntries(
+      lines.map((line) => [line.slice(0, line.indexOf(':')).toLowerCase(), line.slice(line.indexOf(':') + 1).trim()]),
+    );
     const n = /^\d{1,9}$/.test(fields['content-length'] ?? '') ? Number(fields['content-length']) : NaN;
     if (!(n > 0 && n <= maxBody)) throw new RangeError(`a part of ${fields['content-length']} bytes, expected 1 to ${maxBody}`);
     return { fields, n };
@@ -71,6 +75,16 @@ export class Parts {
 export function pictureHeader(fields) {
   const [width, height] = (fields['beamroom-size'] ?? '').split('x').map(Number);
   const matrix = (fields['beamroom-clip-from-lps'] ?? '').split(' ').map(Number);
-  if (!(width > 0 && height > 0) || matrix.length !== 16 || !matrix.every(Number.isFinite)) throw new RangeError('a part of the stream says neither size nor camera of its picture');
-  return { media_type: 'image/jpeg', view: 0, sequence: Number(fields['beamroom-picture']), width_px: width, height_px: height, clip_from_lps_mm: Float32Array.from(matrix), missing: fields['beamroom-missing'] ?? '', kind: fields['beamroom-view'] ?? '' };
+  if (!(width > 0 && height > 0) || matrix.length !== 16 || !matrix.every(Number.isFinite))
+    throw new RangeError('a part of the stream says neither size nor camera of its picture');
+  return {
+    media_type: 'image/jpeg',
+    view: 0,
+    sequence: Number(fields['beamroom-picture']),
+    width_px: width,
+    height_px: height,
+    clip_from_lps_mm: Float32Array.from(matrix),
+    missing: fields['beamroom-missing'] ?? '',
+    kind: fields['beamroom-view'] ?? '',
+  };
 }

@@ -56,14 +56,15 @@ export async function textOfPng(bytes, keyword) {
   if (!isPng(bytes)) return null;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const key = [...new TextEncoder().encode(keyword), 0];
-  for (let at = signature.length; at + 12 <= bytes.length;) {
+  for (let at = signature.length; at + 12 <= bytes.length; ) {
     const length = view.getUint32(at);
     if (length > bytes.length - at - 12) break;
     const type = String.fromCharCode(...bytes.subarray(at + 4, at + 8));
     const data = bytes.subarray(at + 8, at + 8 + length);
     if (type === 'IEND') return null;
     if (type === 'iTXt' && key.every((byte, index) => data[index] === byte)) {
-      if (crc32(bytes.subarray(at + 4, at + 8 + length)) !== view.getUint32(at + 8 + length)) throw new Error('The text in the picture is damaged.');
+      if (crc32(bytes.subarray(at + 4, at + 8 + length)) !== view.getUint32(at + 8 + length))
+        throw new Error('The text in the picture is damaged.');
       try {
         return await readText(data.subarray(key.length));
       } catch (error) {

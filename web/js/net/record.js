@@ -3,8 +3,11 @@ import { ofMember, Problem } from './api.js';
 
 /** As an export it is recorded as one. @param {string} room its id @param {{member: string, secret: string}} identity of who asks */
 export async function fetchRecord(room, identity, isExport = false) {
-  const response = await fetch(`api/v1/rooms/${room}/record?export=${isExport}`, { headers: ofMember(identity) }).catch(() => { throw new Problem({ detail: 'The server does not answer.' }); });
+  const response = await fetch(`api/v1/rooms/${room}/record?export=${isExport}`, { headers: ofMember(identity) }).catch(() => {
+    throw new Problem({ detail: 'The server does not answer.' });
+  });
   const answer = await response.json().catch(() => null);
-  if (!response.ok || !answer) throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
+  if (!response.ok || !answer)
+    throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
   return answer;
 }

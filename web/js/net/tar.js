@@ -17,7 +17,13 @@ function header(name, size, seconds, type) {
   put('        ', 148);
   put(type, 156);
   put('ustar\u000000', 257);
-  put(octal(bytes.reduce((sum, byte) => sum + byte, 0), 6), 148);
+  put(
+    octal(
+      bytes.reduce((sum, byte) => sum + byte, 0),
+      6,
+    ),
+    148,
+  );
   return bytes;
 }
 
@@ -60,7 +66,11 @@ const archive = /\.(zip|tar|tgz|txz|tbz2?|tzst|tar\.(gz|xz|bz2|zst))$/i;
 export function bodyOf(files) {
   const [only] = files;
   if (files.length === 1 && archive.test(only.path)) {
-    const type = /\.zip$/i.test(only.path) ? 'application/zip' : /\.tar$/i.test(only.path) ? 'application/x-tar' : 'application/octet-stream';
+    const type = /\.zip$/i.test(only.path)
+      ? 'application/zip'
+      : /\.tar$/i.test(only.path)
+        ? 'application/x-tar'
+        : 'application/octet-stream';
     return { name: only.path.split('/').at(-1).replace(archive, ''), body: only.file, type };
   }
   const top = only.path.split('/')[0];

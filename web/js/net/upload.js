@@ -22,7 +22,9 @@ export function sendPlan({ makeRequest, url, body, type, onSent, signal }) {
       if (request.status === 202 && answer()) resolve(answer());
       else reject(new Problem({ status: request.status, ...(answer() ?? { detail: `The server answered ${request.status}.` }) }));
     });
-    request.addEventListener('error', () => reject(answer() ? new Problem(answer()) : new Problem({ detail: 'The connection broke before the plan was there.' })));
+    request.addEventListener('error', () =>
+      reject(answer() ? new Problem(answer()) : new Problem({ detail: 'The connection broke before the plan was there.' })),
+    );
     request.addEventListener('abort', () => reject(new Problem({ detail: 'The upload was cancelled.' })));
     signal.addEventListener('abort', () => request.abort());
     request.send(body);

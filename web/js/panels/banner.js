@@ -11,7 +11,8 @@ import { roomChip } from './room_chip.js';
 import { roving } from './roving.js';
 import { stripEnd } from './tools.js';
 
-export const brand = () => html`<a class="brand" href="#/" title="All plans" aria-label="Beamroom, all plans">${icon('logo', 20)}<b>Beamroom</b></a>`;
+export const brand = () =>
+  html`<a class="brand" href="#/" title="All plans" aria-label="Beamroom, all plans">${icon('logo', 20)}<b>Beamroom</b></a>`;
 
 const invite = new Lazy(async () => (await Promise.all([import('./invite.js'), styled('css/invite.css')]))[0]);
 
@@ -51,14 +52,22 @@ export function banner(world) {
     ${approval(world)}${ofDose(room)?.doseBasis(world, 'aside')}
     ${warnings(world)}
     <span class="grow"></span>
-    ${own ? html`<div class="you" title=${`${own.name} (you)`}><span class="avatar own">${initials(own.name)}</span><span class="you-words"><b>${own.name} (you)</b>
-      <span class="dim">${others.length ? `${others.length} more in this room` : 'alone in this room'}</span></span></div>` : nothing}
+    ${
+      own
+        ? html`<div class="you" title=${`${own.name} (you)`}><span class="avatar own">${initials(own.name)}</span><span class="you-words"><b>${own.name} (you)</b>
+      <span class="dim">${others.length ? `${others.length} more in this room` : 'alone in this room'}</span></span></div>`
+        : nothing
+    }
     <div class="members" role="group" aria-label="Members">${others.slice(0, 6).map((member) => html`<span class="avatar member" ${variables({ '--member': member.color ?? '#929ba6' })} title=${member.name}>${initials(member.name)}</span>`)}
       ${others.length > 6 ? html`<span class="dim">+${others.length - 6}</span>` : nothing}</div>
     ${roomChip(world, 'banner')}
     ${isTouch ? html`<div class="strip-end" role="toolbar" aria-label="This picture" @keydown=${roving}>${stripEnd(world)}</div>` : nothing}
     <span class="anchor"><button class="invite-button" @click=${() => ui.toggle('invite')} aria-label="Invite" aria-expanded=${ui.popover.value === 'invite'}>${icon('invite')}<span>Invite</span></button>
-      ${ui.popover.value === 'invite' ? html`<div class="popover invite"><label for="invite-link">Link to this room <code>${room.id}</code></label>
-        <div class="pair"><input id="invite-link" readonly .value=${location.href}><button class="primary" @click=${() => copyLink(ui)}>Copy</button></div>${room.control.may('control') ? invite.draw((loaded) => loaded.inviteForm(world)) : nothing}</div>` : nothing}</span>
+      ${
+        ui.popover.value === 'invite'
+          ? html`<div class="popover invite"><label for="invite-link">Link to this room <code>${room.id}</code></label>
+        <div class="pair"><input id="invite-link" readonly .value=${location.href}><button class="primary" @click=${() => copyLink(ui)}>Copy</button></div>${room.control.may('control') ? invite.draw((loaded) => loaded.inviteForm(world)) : nothing}</div>`
+          : nothing
+      }</span>
     <button class="icon-button" title="Keys and mouse (?)" aria-label="Help" aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
 }

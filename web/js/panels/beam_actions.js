@@ -41,4 +41,7 @@ export function openBeamsEye({ room, ui }) {
 }
 
 /** What a selected row stands for: the chosen beam, or the draft, for the row of drafts. */
-export const selectedBeam = ({ room, ui }) => (ui.selection.value.id ? room.plan.value.beams.find(({ id }) => id === ui.selection.value.id) ?? null : chosenBeam(room.plan.value, room.scene.value));
+export const selectedBeam = ({ room, ui }) =>
+  ui.selection.value.id
+    ? (room.plan.value.beams.find(({ id }) => id === ui.selection.value.id) ?? null)
+    : chosenBeam(room.plan.value, room.scene.value);

@@ -20,7 +20,8 @@ export function beamBlock(world, isDisabled) {
   const chosen = chosenBeam(plan, scene);
   const isChosen = beam === chosen;
   const isDraft = isChosen && isDraftOn(room);
-  if (!beam && !isDraft) return html`<section class="block"><h3>${icon('target')} ${ui.selection.value.id ? 'Beam' : 'New draft'}</h3>
+  if (!beam && !isDraft)
+    return html`<section class="block"><h3>${icon('target')} ${ui.selection.value.id ? 'Beam' : 'New draft'}</h3>
     <p class="note">This plan has no beam. A draft begins at the crosshair, from anterior; it shows what a beam would meet, and changes nothing of the plan.</p>
     <div class="buttons"><button class="primary" ?disabled=${isDisabled} @click=${(event) => startDraft(world, event)}>Draft a new position</button></div></section>`;
   const { result, error, isOld } = beamFacts(world, isChosen ? '' : beam.id).answer.value;
@@ -30,8 +31,13 @@ export function beamBlock(world, isDisabled) {
       ${geometry(world, beam, isDraft, facts, isOld)}${why ? html`<p class="note why" role="status">${icon('warning', 12)} ${why}</p>` : nothing}
       <div class="buttons"><button title="Look along the beam (B)" @click=${() => eyeOf(world, beam, isChosen)}>Beam's eye</button>
         ${isChosen ? nothing : html`<button title="The beam's-eye view, the beam slice and the read-outs are of the chosen beam" ?disabled=${isDisabled} @click=${(event) => choose(world, beam.id, event)}>Choose</button>`}
-        ${!isChosen ? nothing : isDraft ? html`<button ?disabled=${isDisabled} @click=${(event) => resetDraft(world, event)}>${beam ? 'Reset to planned' : 'Put away'}</button>`
-          : html`<button ?disabled=${isDisabled} @click=${(event) => startDraft(world, event)}>Draft a new position</button>`}</div></section>
+        ${
+          !isChosen
+            ? nothing
+            : isDraft
+              ? html`<button ?disabled=${isDisabled} @click=${(event) => resetDraft(world, event)}>${beam ? 'Reset to planned' : 'Put away'}</button>`
+              : html`<button ?disabled=${isDisabled} @click=${(event) => startDraft(world, event)}>Draft a new position</button>`
+        }</div></section>
     ${isChosen ? placeBlock(world, isDisabled, facts) : nothing}${regionBlocks(world, facts, isOld)}${beam ? lookBlock(world, beam, isDisabled) : nothing}`;
 }
 
@@ -59,11 +65,28 @@ function apertureWords({ name, facts, line }) {
 const rows = [
   ['Target, mm', ({ line }) => place(line.target_mm)],
   ['Entry, mm', ({ line }) => place(line.entry_mm), 'A point of the axis before the target: the centre of the aperture'],
-  ['Angles φ, θ', ({ facts }) => facts.sera && `${angle(facts.sera.phi_deg)}, ${angle(facts.sera.theta_deg)}`, 'As SERA has them: φ from superior, θ from patient right, positive towards anterior'],
-  ['Gantry, couch', ({ facts }) => facts.iec && `${angle(facts.iec.gantry_deg)}, ${angle(facts.iec.couch_deg)}`, 'IEC 61217', ({ facts }) => !facts.iec],
+  [
+    'Angles φ, θ',
+    ({ facts }) => facts.sera && `${angle(facts.sera.phi_deg)}, ${angle(facts.sera.theta_deg)}`,
+    'As SERA has them: φ from superior, θ from patient right, positive towards anterior',
+  ],
+  [
+    'Gantry, couch',
+    ({ facts }) => facts.iec && `${angle(facts.iec.gantry_deg)}, ${angle(facts.iec.couch_deg)}`,
+    'IEC 61217',
+    ({ facts }) => !facts.iec,
+  ],
   ['Entry to target', ({ facts }) => mm(facts.length_mm)],
-  ['Skin gap', ({ facts }) => (Number.isFinite(facts.gap_mm) ? mm(facts.gap_mm) : missing(facts.skin_reason || 'axis misses the skin')), 'From the entry to the skin, along the axis'],
-  ['Depth to target', ({ facts }) => (Number.isFinite(facts.depth_mm) ? mm(facts.depth_mm) : missing(facts.skin_reason || 'axis misses the skin')), 'From the skin to the target, along the axis'],
+  [
+    'Skin gap',
+    ({ facts }) => (Number.isFinite(facts.gap_mm) ? mm(facts.gap_mm) : missing(facts.skin_reason || 'axis misses the skin')),
+    'From the entry to the skin, along the axis',
+  ],
+  [
+    'Depth to target',
+    ({ facts }) => (Number.isFinite(facts.depth_mm) ? mm(facts.depth_mm) : missing(facts.skin_reason || 'axis misses the skin')),
+    'From the skin to the target, along the axis',
+  ],
   ['Aperture', apertureWords, 'Diameter'],
   ['Source', ({ facts }) => sources[facts.source] ?? facts.source],
   ['Radiation', ({ facts }) => facts.radiation, undefined, ({ facts }) => !facts.radiation],
@@ -71,10 +94,17 @@ const rows = [
 
 function geometry(world, beam, isDraft, facts, isOld) {
   const { line } = world.room.scene.value.beam.draft;
-  const columns = [...(isDraft ? [{ name: 'Draft', line, facts }] : []), ...(beam ? [{ name: 'Planned', line: beam, facts: isDraft ? facts?.planned : facts }] : [])];
-  const cell = (value, column, at) => html`<td class=${classMap({ old: isOld && at > 1, planned: isDraft && column.name === 'Planned' })}>${value(column)}</td>`;
+  const columns = [
+    ...(isDraft ? [{ name: 'Draft', line, facts }] : []),
+    ...(beam ? [{ name: 'Planned', line: beam, facts: isDraft ? facts?.planned : facts }] : []),
+  ];
+  const cell = (value, column, at) =>
+    html`<td class=${classMap({ old: isOld && at > 1, planned: isDraft && column.name === 'Planned' })}>${value(column)}</td>`;
   const shown = rows.filter(([, , , isLeftOut]) => !isLeftOut || columns.some((column) => column.facts && !isLeftOut(column)));
-  const about = [beam?.delivery?.machine && ['Machine', beam.delivery.machine], facts?.iec?.patient_position && ['Position', facts.iec.patient_position]].filter(Boolean);
+  const about = [
+    beam?.delivery?.machine && ['Machine', beam.delivery.machine],
+    facts?.iec?.patient_position && ['Position', facts.iec.patient_position],
+  ].filter(Boolean);
   return html`<table class="beam-table"><thead><tr><th scope="col"><span class="hidden">Geometry</span></th>${columns.map(({ name }) => html`<th scope="col">${name}</th>`)}</tr></thead>
     <tbody>${shown.map(([name, value, title], at) => html`<tr><th scope="row" title=${title ?? nothing}>${name}</th>${columns.map((column) => (at < 2 || column.facts ? cell(value, column, at) : html`<td class="dim">…</td>`))}</tr>`)}</tbody></table>
     ${about.length ? html`<dl class="beam-about">${about.map(([name, value]) => html`<dt>${name}</dt><dd>${value}</dd>`)}</dl>` : nothing}`;
@@ -90,8 +120,13 @@ function lookBlock(world, beam, isDisabled) {
   return html`<section class="block"><h3>Drawn <span class="dim">in 3-D and in slices</span></h3>
     <div class="beam-look">${checkbox('Line', look.visible, isDisabled, (on, event) => set({ visible: on }, event))}${checkbox('Opening', look.opening, isDisabled, (on, event) => set({ opening: on }, event), 'The aperture around the line')}
       <input type="color" aria-label=${`Colour of ${beamName(beam)}`} .value=${live(look.color)} ?disabled=${isDisabled} @change=${(event) => set({ color: event.target.value }, event)}></div>
-    <dl><dt title="Of the apertures of all beams">Opacity of openings</dt><dd>${numberField('Opacity of openings in per cent', Math.round(scene.beam.opacity * 100), '%', isDisabled,
-      (value, event) => changeBeam(world, () => ({ beam: { opacity: Math.min(Math.max(value, 0), 100) / 100 } }), event))}</dd></dl></section>`;
+    <dl><dt title="Of the apertures of all beams">Opacity of openings</dt><dd>${numberField(
+      'Opacity of openings in per cent',
+      Math.round(scene.beam.opacity * 100),
+      '%',
+      isDisabled,
+      (value, event) => changeBeam(world, () => ({ beam: { opacity: Math.min(Math.max(value, 0), 100) / 100 } }), event),
+    )}</dd></dl></section>`;
 }
 
 // ---- a draft that was kept ----------------------------------------------------------------------------------------------

@@ -22,10 +22,21 @@ export function exportMenu(world) {
     endCompare(room);
     make();
   };
-  const json = () => exportFile(world, 'beam', `${room.planId.value}-draft-beam.json`, `${JSON.stringify(draftDocument(room.plan.value, room.scene.value, room.planId.value, answer), null, 2)}\n`, 'application/json');
+  const json = () =>
+    exportFile(
+      world,
+      'beam',
+      `${room.planId.value}-draft-beam.json`,
+      `${JSON.stringify(draftDocument(room.plan.value, room.scene.value, room.planId.value, answer), null, 2)}\n`,
+      'application/json',
+    );
   const card = () => exportFile(world, 'beam-card', `${room.planId.value}-draft-beam.txt`, answer.card, 'text/plain');
   return html`<span class="anchor"><button aria-haspopup="menu" aria-expanded=${isOpen} title="Save the draft as a file" @click=${() => ui.toggle('beam-export')}>Export</button>
-    ${isOpen ? html`<div class="popover beam-export"><div class="menu" role="menu" aria-label="Export the draft">
+    ${
+      isOpen
+        ? html`<div class="popover beam-export"><div class="menu" role="menu" aria-label="Export the draft">
       <button role="menuitem" @click=${save(json)}>${icon('download')}<span>JSON: planned and draft geometry</span></button>
-      <button role="menuitem" ?disabled=${!answer?.card} title=${answer?.card ? nothing : 'The server has not said it yet'} @click=${save(card)}>${icon('download')}<span>SERA beam card</span></button></div></div>` : nothing}</span>`;
+      <button role="menuitem" ?disabled=${!answer?.card} title=${answer?.card ? nothing : 'The server has not said it yet'} @click=${save(card)}>${icon('download')}<span>SERA beam card</span></button></div></div>`
+        : nothing
+    }</span>`;
 }

@@ -26,7 +26,12 @@ export function beamFoot({ room, ui, view }, along) {
   const patch = (change, event) => room.patchScene(change, { view: view.number, at: event.timeStamp });
   const value = Math.round(at * 10) / 10 || 0;
   const colour = (id) => scene.regions[id]?.color ?? room.plan.value.regions.find((region) => region.id === id)?.color ?? '#6d7682';
-  const step = (by, name, picture, key) => html`<button class="icon-button" aria-label=${name} title=${`${name} (${key}, with Shift 10 mm)`} ?disabled=${isOff}
+  const step = (
+    by,
+    name,
+    picture,
+    key,
+  ) => html`<button class="icon-button" aria-label=${name} title=${`${name} (${key}, with Shift 10 mm)`} ?disabled=${isOff}
     @click=${(event) => slideBy(by * (event.shiftKey ? 10 : 1), event.timeStamp)}>${icon(picture)}</button>`;
   const onKey = (event) => {
     const by = { PageUp: 10, PageDown: -10, ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1 }[event.key];
@@ -34,7 +39,11 @@ export function beamFoot({ room, ui, view }, along) {
     event.preventDefault();
     slideBy(by * (event.shiftKey && Math.abs(by) === 1 ? 10 : 1), event.timeStamp);
   };
-  const mainly = html`<select aria-label="What slides along the beam" title="What the slider and the keys [ and ] move" .value=${live(mover)} @change=${(event) => { ui.beamMover.value = event.target.value; }}>
+  const mainly = html`<select aria-label="What slides along the beam" title="What the slider and the keys [ and ] move" .value=${live(mover)} @change=${(
+    event,
+  ) => {
+    ui.beamMover.value = event.target.value;
+  }}>
       ${movers(isTogether).map(([id, name]) => html`<option value=${id} ?selected=${id === mover}>${name}</option>`)}</select>`;
   return html`<div class="beam-foot" role="group" aria-label="Along the beam">${width < wideFrom ? nothing : mainly}
     <span class="beam-slide">${step(-1, 'Back along the beam', 'chevronLeft', '[')}
@@ -46,7 +55,15 @@ export function beamFoot({ room, ui, view }, along) {
         <span class="beam-ticks" aria-hidden="true">${ticksOf(range, Math.max(3, (width - roomPx - (width < wideFrom ? 0 : 130) - (width < widestFrom ? 0 : checksPx)) / tickPx)).map((mm) => html`<b ${variables({ '--at': part(mm) })}>${number(mm)}</b>`)}</span></span>
       ${step(1, 'On along the beam', 'chevronRight', ']')}
       ${numberField('Along the beam in mm', value, 'mm', isOff, (mm, event) => slide(mm, event.timeStamp))}</span>
-    <span class="beam-checks">${width < wideFrom ? mainly : nothing}${checkbox(html`<span><span class="beam-roomy">slide </span>together</span>`, isTogether, false, (isOn) => { ui.panes.isBeamTogether.value = isOn; }, 'Beam slice and clip plane move as one')}
+    <span class="beam-checks">${width < wideFrom ? mainly : nothing}${checkbox(
+      html`<span><span class="beam-roomy">slide </span>together</span>`,
+      isTogether,
+      false,
+      (isOn) => {
+        ui.panes.isBeamTogether.value = isOn;
+      },
+      'Beam slice and clip plane move as one',
+    )}
       ${checkbox(html`<span>clip<span class="beam-roomy"> in front</span></span>`, scene.clip.beam.enabled, isOff, (isOn, event) => patch(clipInFront(scene, beam, isTogether, isOn), event), 'Cuts off what lies before the clip plane across the beam')}
       ${checkbox('slice', scene.beam.slice.visible, isOff, (visible, event) => patch({ beam: { slice: visible ? { visible, along_mm: firstAlong(scene.beam, beam) } : { visible } } }, event), 'The beam slice in 3-D pictures')}
       <span class="beam-ring-field">${checkbox('ring', ring !== null, isOff, (isOn, event) => toggleRing(event.timeStamp), 'A ring about the axis: parallel projection, so that its size is true at every depth')}${numberField('Diameter of the ring in mm', ring ?? beam.aperture ?? usualRingMm, 'mm', isOff || ring === null, (mm, event) => setRing(Math.min(Math.max(mm, 0.1), 2000), event.timeStamp))}</span></span></div>`;

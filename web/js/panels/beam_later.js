@@ -30,11 +30,16 @@ async function slideBeam(room, ui, mm, at) {
   const { slidPatch, rangeAlong } = await import('../state/beam_along.js');
   const [plan, scene] = [room.plan.value, room.scene.value];
   const beam = beamShown(plan, scene);
-  if (beam) room.patchScene(slidPatch(scene, 'slice', ui.panes.isBeamTogether.value, scene.beam.slice.along_mm + mm, rangeAlong(plan, scene, beam, [])), { view: ui.active.value, at });
+  if (beam)
+    room.patchScene(
+      slidPatch(scene, 'slice', ui.panes.isBeamTogether.value, scene.beam.slice.along_mm + mm, rangeAlong(plan, scene, beam, [])),
+      { view: ui.active.value, at },
+    );
 }
 
 /** True while something of that is shown. */
-const isBeamCut = ({ views, scene: { value: scene } }) => scene?.beam && (scene.beam.slice.visible || scene.clip.beam.enabled || views[beamSliceView - 1].isOpen.value);
+const isBeamCut = ({ views, scene: { value: scene } }) =>
+  scene?.beam && (scene.beam.slice.visible || scene.clip.beam.enabled || views[beamSliceView - 1].isOpen.value);
 
 /** What one of these keys does; null: another key, or nothing to move. */
 export function beamKey(room, ui, { code, shiftKey }, at) {
@@ -53,7 +58,13 @@ export function leaveBeam({ room, ui }) {
         const free = room.views.find((other) => !isOfBeam(other.kind) && !ui.visible.peek().includes(other.number));
         ui.showInPlaceOf(number, number === beamSliceView && free ? free.number : spaceInstead({ room, ui }));
       }
-      ui.notify('ok', plan.beams.length ? 'The beam of this pane is gone: it shows something else now.' : 'There is no beam: the pane shows something else now.', 'beam');
+      ui.notify(
+        'ok',
+        plan.beams.length
+          ? 'The beam of this pane is gone: it shows something else now.'
+          : 'There is no beam: the pane shows something else now.',
+        'beam',
+      );
     });
   });
 }

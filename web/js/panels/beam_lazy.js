@@ -14,7 +14,8 @@ export const ofBeams = ({ plan, scene }) => (plan.value && scene.value?.beam && 
 export const drawBeam = (use) => panels.draw(use);
 
 /** Above the panes while a beam is drafted. */
-export const draftBar = (world) => (panels.loaded.value || world.room.scene.value?.beam?.draft.enabled ? known(panels)?.draftBar(world) : null);
+export const draftBar = (world) =>
+  panels.loaded.value || world.room.scene.value?.beam?.draft.enabled ? known(panels)?.draftBar(world) : null;
 
 /** Turns the tool on that moves a beam, or off again. */
 export async function toggleMove(world) {

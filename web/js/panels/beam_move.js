@@ -102,7 +102,11 @@ class PaneMove {
     return () => {
       const mm = shiftKey ? 10 : 1;
       const axes = pictureAxes(this.#matrix);
-      this.#set(movedPoint.value, add(this.#line[`${movedPoint.value}_mm`], add(scale(axes.right, right * mm), scale(axes.up, up * mm))), at);
+      this.#set(
+        movedPoint.value,
+        add(this.#line[`${movedPoint.value}_mm`], add(scale(axes.right, right * mm), scale(axes.up, up * mm))),
+        at,
+      );
     };
   }
 
@@ -114,7 +118,15 @@ class PaneMove {
 
   draw() {
     const points = this.#points;
-    return { handles: points.length ? html`<div class=${classMap({ 'beam-handles': true, on: this.#pane.room.canChange.value })}>${repeat(points, ({ part }) => part, (one) => this.#handle(one))}</div>` : nothing };
+    return {
+      handles: points.length
+        ? html`<div class=${classMap({ 'beam-handles': true, on: this.#pane.room.canChange.value })}>${repeat(
+            points,
+            ({ part }) => part,
+            (one) => this.#handle(one),
+          )}</div>`
+        : nothing,
+    };
   }
 
   #isOff(point) {
@@ -130,7 +142,13 @@ class PaneMove {
       ui.active.value = view.number;
     };
     return html`<i class=${classMap({ 'beam-handle': true, chosen: movedPoint.value === part, off: this.#isOff(point) })} role="button" tabindex="0" data-part=${part} aria-label=${text} aria-disabled=${!room.canChange.value}
-      title=${`${text} (drag, arrow keys)`} ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @focus=${focus}><svg viewBox="-22 -22 44 44" width="44" height="44" aria-hidden="true">${['under', 'ink'].map((layer) => (part === 'target'
-        ? svg`<g class=${layer}><circle r="7" /><path d="M-11 0h4M7 0h4M0 -11v4M0 7v4" /></g>` : svg`<g class=${layer}><path d="M0 -8L8 0L0 8L-8 0Z" /></g>`))}<circle class="dot" r="1.8" /></svg></i>`;
+      title=${`${text} (drag, arrow keys)`} ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @focus=${focus}><svg viewBox="-22 -22 44 44" width="44" height="44" aria-hidden="true">${[
+        'under',
+        'ink',
+      ].map((layer) =>
+        part === 'target'
+          ? svg`<g class=${layer}><circle r="7" /><path d="M-11 0h4M7 0h4M0 -11v4M0 7v4" /></g>`
+          : svg`<g class=${layer}><path d="M0 -8L8 0L0 8L-8 0Z" /></g>`,
+      )}<circle class="dot" r="1.8" /></svg></i>`;
   }
 }

@@ -86,7 +86,8 @@ class BeamSlice extends AlongBeam {
     if (view.isOpen.value === this.#isShown) return;
     this.#isShown = view.isOpen.value;
     const along_mm = firstAlong(room.scene.value.beam, this.beam);
-    if (this.#isShown && room.following.isPresenting.value && along_mm !== room.scene.value.beam.slice.along_mm) queueMicrotask(() => room.patchScene({ beam: { slice: { along_mm } } }, { view: view.number }));
+    if (this.#isShown && room.following.isPresenting.value && along_mm !== room.scene.value.beam.slice.along_mm)
+      queueMicrotask(() => room.patchScene({ beam: { slice: { along_mm } } }, { view: view.number }));
   }
 
   setSlice(mm, at) {
@@ -118,9 +119,14 @@ class BeamSlice extends AlongBeam {
       event.preventDefault();
       actions.stepSlice(steps[event.key], event.timeStamp);
     };
-    const numbers = header && pane[0] > 1 && ringNumbers({ header, box, pane, beam, ring: null }, view.document.value.beam?.crosshair !== false);
-    return { where: this.words(mm), overlay: numbers, slider: html`<label class="slice-slider" title="Along the beam (wheel, arrow keys, [ and ])"><input type="range" aria-label=${`${view.name}, mm from entry`} min=${low} max=${high} step="0.1" .value=${live(String(mm))}
-      ?disabled=${!room.canChange.value} aria-valuetext=${this.words(mm)} @input=${(event) => this.slide(event.target.valueAsNumber, event.timeStamp)} @keydown=${onKey}></label>` };
+    const numbers =
+      header && pane[0] > 1 && ringNumbers({ header, box, pane, beam, ring: null }, view.document.value.beam?.crosshair !== false);
+    return {
+      where: this.words(mm),
+      overlay: numbers,
+      slider: html`<label class="slice-slider" title="Along the beam (wheel, arrow keys, [ and ])"><input type="range" aria-label=${`${view.name}, mm from entry`} min=${low} max=${high} step="0.1" .value=${live(String(mm))}
+      ?disabled=${!room.canChange.value} aria-valuetext=${this.words(mm)} @input=${(event) => this.slide(event.target.valueAsNumber, event.timeStamp)} @keydown=${onKey}></label>`,
+    };
   }
 }
 
@@ -150,7 +156,7 @@ class BeamEye extends AlongBeam {
 
   toggleRing(at) {
     const isOn = (this.pane.view.document.value.beam?.aperture_mm ?? null) !== null;
-    if (this.beam) this.setRing(isOn ? null : this.beam.aperture ?? usualRingMm, at);
+    if (this.beam) this.setRing(isOn ? null : (this.beam.aperture ?? usualRingMm), at);
   }
 
   /** The pane becomes the 3-D view, and that has this camera: the picture stays. */
@@ -166,7 +172,10 @@ class BeamEye extends AlongBeam {
   }
 
   #tellLocked() {
-    this.pane.ui.notify('ok', 'The camera is locked to the beam.', 'beam-lock', { word: 'Turn it freely', act: () => this.unlock(performance.now()) });
+    this.pane.ui.notify('ok', 'The camera is locked to the beam.', 'beam-lock', {
+      word: 'Turn it freely',
+      act: () => this.unlock(performance.now()),
+    });
     return true;
   }
 
@@ -219,9 +228,23 @@ class BeamEye extends AlongBeam {
         @click=${(event) => this.toggleRing(event.timeStamp)}>${ringPicture}</button>`,
       overlay: place && ringNumbers(place, document.beam?.crosshair !== false),
       handles: place && ring !== null ? ringHandle(place, isOff, (mm, at) => this.setRing(mm, at)) : nothing,
-      foot: beamFoot({ room, ui, view }, { beam, ring, range: this.range, bands: this.bands, mover, words: (mm) => this.words(mm),
-        at: placeOf(room.scene.value, mover, mover === 'eye' ? eyeAlong(room.plan.value, beam, document) : 0), width: pane[0],
-        slide: (mm, at) => this.slide(mm, at, mover), slideBy: (mm, at) => this.slideBy(mm, at, mover), setRing: (mm, at) => this.setRing(mm, at), toggleRing: (at) => this.toggleRing(at) }),
+      foot: beamFoot(
+        { room, ui, view },
+        {
+          beam,
+          ring,
+          range: this.range,
+          bands: this.bands,
+          mover,
+          words: (mm) => this.words(mm),
+          at: placeOf(room.scene.value, mover, mover === 'eye' ? eyeAlong(room.plan.value, beam, document) : 0),
+          width: pane[0],
+          slide: (mm, at) => this.slide(mm, at, mover),
+          slideBy: (mm, at) => this.slideBy(mm, at, mover),
+          setRing: (mm, at) => this.setRing(mm, at),
+          toggleRing: (at) => this.toggleRing(at),
+        },
+      ),
     };
   }
 }

@@ -14,11 +14,16 @@ const leastApertureMm = 0.1; // scene.json
 const mostApertureMm = 2000;
 
 /** Once the server has this person's changes of the scene, which the question is about. */
-const toldToServer = ({ isScenePending }) => new Promise((done) => {
-  const stop = isScenePending.subscribe((isPending) => {
-    if (!isPending) queueMicrotask(() => { stop(); done(); });
+const toldToServer = ({ isScenePending }) =>
+  new Promise((done) => {
+    const stop = isScenePending.subscribe((isPending) => {
+      if (!isPending)
+        queueMicrotask(() => {
+          stop();
+          done();
+        });
+    });
   });
-});
 
 /** Asks where the beam is to be, and puts the draft there. The newest question wins. */
 let asked = 0;
@@ -30,7 +35,13 @@ async function ask(world, event, parameters) {
   await toldToServer(room);
   try {
     const override = room.following.override.peek();
-    const { entry_mm, target_mm, why } = await api.ofScene(room.planId.peek(), 'beam/place', room.id, override ? { override } : {}, parameters);
+    const { entry_mm, target_mm, why } = await api.ofScene(
+      room.planId.peek(),
+      'beam/place',
+      room.id,
+      override ? { override } : {},
+      parameters,
+    );
     if (number !== asked) return;
     if (!entry_mm || !target_mm) ui.notify('warn', why || 'There is no such position.', 'beam');
     else setLine(world, { entry_mm, target_mm }, at);
@@ -53,14 +64,33 @@ export function placeBlock(world, isDisabled, facts) {
   const line = shownLine(room.plan.value, room.scene.value);
   if (!line) return nothing;
   const isDraft = isDraftOn(room);
-  const point = (part, name) => html`<dt>${name}</dt><dd class="beam-fields">${['L', 'P', 'S'].map((letter, axis) => numberField(`${name}, ${letter} in mm`, tenths(line[`${part}_mm`][axis]), letter, isDisabled,
-    (value, event) => setLine(world, { [`${part}_mm`]: replaced(line[`${part}_mm`], axis, value) }, event)))}</dd>`;
+  const point = (part, name) =>
+    html`<dt>${name}</dt><dd class="beam-fields">${['L', 'P', 'S'].map((letter, axis) =>
+      numberField(`${name}, ${letter} in mm`, tenths(line[`${part}_mm`][axis]), letter, isDisabled, (value, event) =>
+        setLine(world, { [`${part}_mm`]: replaced(line[`${part}_mm`], axis, value) }, event),
+      ),
+    )}</dd>`;
   const { phi_deg: phi, theta_deg: theta } = facts?.sera ?? {};
   const turn = (angles) => (value, event) => ask(world, event, { mode: 'angles', phi_deg: phi, theta_deg: theta, ...angles(value) });
   return html`<section class="block beam-place"><h3 class="beam-head">Position <span class="dim">${isDraft ? 'of the draft' : 'a change begins a draft'}</span></h3>
-    <div class="beam-moved-point"><div class="segment" role="group" aria-label="Move by dragging in the panes">${[['target', 'Move target'], ['entry', 'Move entry']].map(([part, words]) => moveButton(world, part, words, isDisabled))}</div></div>
+    <div class="beam-moved-point"><div class="segment" role="group" aria-label="Move by dragging in the panes">${[
+      ['target', 'Move target'],
+      ['entry', 'Move entry'],
+    ].map(([part, words]) => moveButton(world, part, words, isDisabled))}</div></div>
     <dl>${point('target', 'Target')}${point('entry', 'Entry')}
-      <dt title="The entry turns about the target, as far from it as before">Angles φ, θ</dt><dd class="beam-fields">${numberField('Angle φ in degrees', tenths(phi), '°', isDisabled || !facts?.sera, turn((value) => ({ phi_deg: Math.min(Math.max(value, 0), 180) })))}${numberField('Angle θ in degrees', tenths(theta), '°', isDisabled || !facts?.sera, turn((value) => ({ theta_deg: value % 360 })))}</dd>
+      <dt title="The entry turns about the target, as far from it as before">Angles φ, θ</dt><dd class="beam-fields">${numberField(
+        'Angle φ in degrees',
+        tenths(phi),
+        '°',
+        isDisabled || !facts?.sera,
+        turn((value) => ({ phi_deg: Math.min(Math.max(value, 0), 180) })),
+      )}${numberField(
+        'Angle θ in degrees',
+        tenths(theta),
+        '°',
+        isDisabled || !facts?.sera,
+        turn((value) => ({ theta_deg: value % 360 })),
+      )}</dd>
       <dt title="The entry moves along the axis; angles and target stay">Skin gap</dt><dd class="beam-fields">${numberField('Skin gap in mm', tenths(facts?.gap_mm), 'mm', isDisabled || !facts, (value, event) => ask(world, event, { mode: 'gap', gap_mm: value }))}</dd>
       <dt title="Diameter">Aperture</dt><dd class="beam-fields">${numberField('Aperture of the draft in mm', tenths(line.aperture_mm), 'mm', isDisabled, (value, event) => setLine(world, { aperture_mm: Math.min(Math.max(value, leastApertureMm), mostApertureMm) }, event))}</dd></dl>
     <div class="buttons"><button ?disabled=${isDisabled} title="The axis runs through the crosshair to the target; the distance stays" @click=${(event) => ask(world, event, { mode: 'through', point_lps_mm: crosshair(room.scene.value).join() })}>${icon('crosshair')}Through the crosshair</button>

@@ -11,14 +11,33 @@ export function presetItems(world, act = (run) => run) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   if (!plan || !scene) return '';
   const isOff = !room.canChange.value;
-  return html`<div class="menu beam-presets" role="group" aria-label="Show together">${presetsOf(plan, scene).map(({ id, name, icon: picture, about, why }) => html`<button ?disabled=${isOff || Boolean(why)} title=${why ? `${about}. Here: ${why}.` : about}
-    @click=${(event) => act(() => applyPreset(world, id, event.timeStamp))(event)}>${icon(picture)}<span>${name}</span>${why ? html`<span class="tail">${why}</span>` : ''}</button>`)}</div>`;
+  return html`<div class="menu beam-presets" role="group" aria-label="Show together">${presetsOf(plan, scene).map(
+    ({
+      id,
+      name,
+      icon: picture,
+      about,
+      why,
+    }) => html`<button ?disabled=${isOff || Boolean(why)} title=${why ? `${about}. Here: ${why}.` : about}
+    @click=${(event) => act(() => applyPreset(world, id, event.timeStamp))(event)}>${icon(picture)}<span>${name}</span>${why ? html`<span class="tail">${why}</span>` : ''}</button>`,
+  )}</div>`;
 }
 
 /** The same in the tree. */
 export function presetRows(world) {
   const { room } = world;
-  return presetsOf(room.plan.value, room.scene.value).map(({ id, name, icon: picture, about, why }) => presetItem(world, {
-    id, words: [name, why].filter(Boolean).join(', '), title: why ? `${about}. Here: ${why}.` : about, indent: 1, isOff: !room.canChange.value || Boolean(why), act: (event) => applyPreset(world, id, event.timeStamp),
-  }, html`${icon(picture)}${nameOf(name)} <span class="tail">${why}</span>`));
+  return presetsOf(room.plan.value, room.scene.value).map(({ id, name, icon: picture, about, why }) =>
+    presetItem(
+      world,
+      {
+        id,
+        words: [name, why].filter(Boolean).join(', '),
+        title: why ? `${about}. Here: ${why}.` : about,
+        indent: 1,
+        isOff: !room.canChange.value || Boolean(why),
+        act: (event) => applyPreset(world, id, event.timeStamp),
+      },
+      html`${icon(picture)}${nameOf(name)} <span class="tail">${why}</span>`,
+    ),
+  );
 }

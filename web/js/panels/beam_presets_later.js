@@ -13,7 +13,9 @@ const isOpen = signal(false); // the rows of the tree
 /** The presets in a menu, where the plan has a beam or a dose. @param {(run: () => void) => (event: Event) => void} act what a click does */
 export function presetMenu(world, act) {
   const plan = world.room.plan.value;
-  return plan?.beams.length || plan?.doses.length ? html`<p class="menu-head">Show together</p>${presets.draw(({ presetItems }) => presetItems(world, act))}` : nothing;
+  return plan?.beams.length || plan?.doses.length
+    ? html`<p class="menu-head">Show together</p>${presets.draw(({ presetItems }) => presetItems(world, act))}`
+    : nothing;
 }
 
 /** A row of the tree that does something. */
@@ -29,6 +31,8 @@ export function presetItem({ ui }, { id, words, title = words, isUnfolded = noth
 
 /** The row that unfolds the presets, and they below it. */
 export function presetRows(world) {
-  const fold = () => { isOpen.value = !isOpen.value; };
+  const fold = () => {
+    isOpen.value = !isOpen.value;
+  };
   return html`${presetItem(world, { id: 'all', words: 'Show together', isUnfolded: isOpen.value, indent: 0, act: fold }, html`${icon(isOpen.value ? 'chevronDown' : 'chevronRight')}${name('Show together')}`)}${isOpen.value ? known(presets)?.presetRows(world) : nothing}`;
 }

@@ -33,17 +33,32 @@ function frameOf({ header, box, beam }) {
 /** 20, 40 and 80 mm beside the crosshair, 5 and 10 very near; in perspective a line that says where they are true. @param {object} place {header, box, pane, beam, ring} */
 export function ringNumbers(place, hasCrosshair) {
   const frame = frameOf(place);
-  const { header, pane: [width, height], ring } = place;
+  const {
+    header,
+    pane: [width, height],
+    ring,
+  } = place;
   if (!frame) return nothing;
-  const { middle: [x, y], pxPerMm } = frame;
+  const {
+    middle: [x, y],
+    pxPerMm,
+  } = frame;
   const isIn = (px, py) => px > edgePx && py > edgePx && px < width - edgePx && py < height - edgePx;
   const isNear = 20 * pxPerMm > Math.min(width, height) / 2 - edgePx;
-  const shown = (isNear ? nearMm : numbersMm).reduce((kept, mm) => ((mm - (kept.at(-1) ?? 0)) * pxPerMm >= (kept.length ? leastPx : firstPx) ? [...kept, mm] : kept), []);
-  const text = (px, py, mm, anchor) => (isIn(px, py) ? svg`<text class="halo caption beam-number" x=${placed(px)} y=${placed(py)} text-anchor=${anchor}>${mm}</text>` : nothing);
-  return svg`${hasCrosshair ? shown.map((mm) => {
-    const r = mm * pxPerMm;
-    return svg`${text(x + r, y + 20, mm, 'middle')}${text(x - r, y + 20, mm, 'middle')}${text(x + 13, y - r + 4, mm, 'start')}${text(x + 13, y + r + 4, mm, 'start')}`;
-  }) : nothing}${hasCrosshair && !(header.pixels_per_mm > 0) ? svg`<text class="halo caption beam-depth" x="12" y=${height - 12}>mm at the target’s depth</text>` : nothing}
+  const shown = (isNear ? nearMm : numbersMm).reduce(
+    (kept, mm) => ((mm - (kept.at(-1) ?? 0)) * pxPerMm >= (kept.length ? leastPx : firstPx) ? [...kept, mm] : kept),
+    [],
+  );
+  const text = (px, py, mm, anchor) =>
+    isIn(px, py) ? svg`<text class="halo caption beam-number" x=${placed(px)} y=${placed(py)} text-anchor=${anchor}>${mm}</text>` : nothing;
+  return svg`${
+    hasCrosshair
+      ? shown.map((mm) => {
+          const r = mm * pxPerMm;
+          return svg`${text(x + r, y + 20, mm, 'middle')}${text(x - r, y + 20, mm, 'middle')}${text(x + 13, y - r + 4, mm, 'start')}${text(x + 13, y + r + 4, mm, 'start')}`;
+        })
+      : nothing
+  }${hasCrosshair && !(header.pixels_per_mm > 0) ? svg`<text class="halo caption beam-depth" x="12" y=${height - 12}>mm at the target’s depth</text>` : nothing}
     ${ring === null ? nothing : ringWords(frame, ring, place.beam, width)}`;
 }
 
@@ -53,7 +68,11 @@ const handleAt = ({ middle: [x, y], pxPerMm }, ring) => [x + (ring / 2) * pxPerM
 function ringWords(frame, ring, { aperture, isShaped }, width) {
   const [x, y] = handleAt(frame, ring);
   const isPlanned = aperture && Math.abs(ring - aperture) < 0.05;
-  const below = !aperture ? `drawn; ${isShaped ? 'the opening is not round' : 'aperture not known'}` : isPlanned ? 'as the aperture' : `drawn; the aperture is ${number(aperture, aperture % 1 ? 1 : 0)} mm`;
+  const below = !aperture
+    ? `drawn; ${isShaped ? 'the opening is not round' : 'aperture not known'}`
+    : isPlanned
+      ? 'as the aperture'
+      : `drawn; the aperture is ${number(aperture, aperture % 1 ? 1 : 0)} mm`;
   const isLeft = x + 20 + Math.max(18, below.length) * charPx > width;
   const at = placed(isLeft ? x - 14 : x + 14);
   return svg`<g text-anchor=${isLeft ? 'end' : 'start'}><text class="halo beam-aperture" x=${at} y=${placed(y - 4)}>ring ${number(ring, ring % 1 ? 1 : 0)} mm</text><text class="halo caption" x=${at} y=${placed(y + 10)}>${below}</text></g>`;
@@ -63,7 +82,10 @@ function ringWords(frame, ring, { aperture, isShaped }, width) {
 export function ringHandle(place, isOff, set) {
   const frame = frameOf(place);
   if (!frame) return nothing;
-  const { ring, pane: [width, height] } = place;
+  const {
+    ring,
+    pane: [width, height],
+  } = place;
   const [x, y] = handleAt(frame, ring);
   if (x < 0 || y < 0 || x > width || y > height) return nothing;
   const words = `ring ${number(ring, 1)} mm`;

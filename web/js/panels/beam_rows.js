@@ -29,9 +29,22 @@ function beamRow(world, beam) {
   const words = beamName(beam);
   const about = beamWords(beam);
   const tail = beam === chosenBeam(plan, scene) ? 'chosen' : about;
-  const toggle = (event) => room.patchScene(lookPatch(room.scene.value, beam.id, { visible: !look.visible }), { view: ui.active.value, at: event.timeStamp });
-  return treeRow(world, { kind: 'beam', id: beam.id, words: [words, ofFits(room)?.rowWords(world, 'beam', beam.id) ?? '', tail], more: tail === about ? [] : [about].filter(Boolean), title: [words, about].filter(Boolean).join(', '), isOn: look.visible, toggle }, html`
-    ${eye(look.visible, `Show ${words}`, `${look.visible ? 'Hide' : 'Show'} its line and aperture`, !room.canChange.value, toggle)}${swatch(look.color)}${name(words)} ${ofFits(room)?.rowMark(world, 'beam', beam.id) ?? nothing}<span class="tail clipped">${tail}</span>`);
+  const toggle = (event) =>
+    room.patchScene(lookPatch(room.scene.value, beam.id, { visible: !look.visible }), { view: ui.active.value, at: event.timeStamp });
+  return treeRow(
+    world,
+    {
+      kind: 'beam',
+      id: beam.id,
+      words: [words, ofFits(room)?.rowWords(world, 'beam', beam.id) ?? '', tail],
+      more: tail === about ? [] : [about].filter(Boolean),
+      title: [words, about].filter(Boolean).join(', '),
+      isOn: look.visible,
+      toggle,
+    },
+    html`
+    ${eye(look.visible, `Show ${words}`, `${look.visible ? 'Hide' : 'Show'} its line and aperture`, !room.canChange.value, toggle)}${swatch(look.color)}${name(words)} ${ofFits(room)?.rowMark(world, 'beam', beam.id) ?? nothing}<span class="tail clipped">${tail}</span>`,
+  );
 }
 
 /** The draft, or where one is begun. */
@@ -40,18 +53,36 @@ function draftRow(world) {
   const isOn = isDraftOn(room);
   const about = isOn ? draftWords(room.plan.value, room.scene.value) : '…';
   const tail = about.replace('target moved ', '').replace('direction ', '');
-  return treeRow(world, { kind: 'beam', id: '', words: [isOn ? 'Draft' : 'New draft', tail], more: isOn ? [about] : [], title: isOn ? 'A beam that is being positioned; the plan keeps its own' : 'A new position for a beam; the plan keeps its own' }, html`
-    ${icon(isOn ? 'warning' : 'plus')}${name(isOn ? 'Draft' : 'New draft')} <span class=${isOn ? 'tail clipped warn' : 'tail'}>${tail}</span>`);
+  return treeRow(
+    world,
+    {
+      kind: 'beam',
+      id: '',
+      words: [isOn ? 'Draft' : 'New draft', tail],
+      more: isOn ? [about] : [],
+      title: isOn ? 'A beam that is being positioned; the plan keeps its own' : 'A new position for a beam; the plan keeps its own',
+    },
+    html`
+    ${icon(isOn ? 'warning' : 'plus')}${name(isOn ? 'Draft' : 'New draft')} <span class=${isOn ? 'tail clipped warn' : 'tail'}>${tail}</span>`,
+  );
 }
 
 function keptRow(world, id, line) {
   const words = keptName(id, line);
-  return treeRow(world, { kind: 'kept', id, words: [words, 'kept'], title: `${words}: a draft that was kept` }, html`${icon('marker')}${name(words)} <span class="tail">kept</span>`);
+  return treeRow(
+    world,
+    { kind: 'kept', id, words: [words, 'kept'], title: `${words}: a draft that was kept` },
+    html`${icon('marker')}${name(words)} <span class="tail">kept</span>`,
+  );
 }
 
 function curveRow(world, { id, name: own }) {
   const words = own || id;
-  return treeRow(world, { kind: 'curve', id, words: [words, 'reference curve'], title: 'reference curve' }, html`${icon('curve')}${name(words)} <span class="tail clipped">reference curve</span>`);
+  return treeRow(
+    world,
+    { kind: 'curve', id, words: [words, 'reference curve'], title: 'reference curve' },
+    html`${icon('curve')}${name(words)} <span class="tail clipped">reference curve</span>`,
+  );
 }
 
 /** In the strip above the panes: entry or target of a beam by dragging. */

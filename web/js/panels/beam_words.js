@@ -5,7 +5,10 @@ import { number } from './format.js';
 /** "target moved 5.4 mm, direction 10.1°", "as planned"; '' in a plan without beams. @param {{targetMm: number, directionDeg: number}|null} moved */
 export function movedWords(moved) {
   if (!moved) return '';
-  const parts = [moved.targetMm >= 0.05 && `target moved ${number(moved.targetMm, 1)} mm`, moved.directionDeg >= 0.05 && `direction ${number(moved.directionDeg, 1)}°`].filter(Boolean);
+  const parts = [
+    moved.targetMm >= 0.05 && `target moved ${number(moved.targetMm, 1)} mm`,
+    moved.directionDeg >= 0.05 && `direction ${number(moved.directionDeg, 1)}°`,
+  ].filter(Boolean);
   return parts.join(', ') || 'as planned';
 }
 

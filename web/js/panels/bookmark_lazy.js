@@ -14,7 +14,12 @@ const n = ({ room }) => [...room.items.rows.value.values()].filter(({ kind }) =>
 
 export const bookmarkNote = (world) => String(n(world) || '');
 
-const newRow = (world) => treeRow(world, { kind: 'bookmark', id: '', words: ['Save this view', '…'], title: 'Keeps scene, cameras and panes as they are now' }, html`${icon('plus')}${name('Save this view …')}`);
+const newRow = (world) =>
+  treeRow(
+    world,
+    { kind: 'bookmark', id: '', words: ['Save this view', '…'], title: 'Keeps scene, cameras and panes as they are now' },
+    html`${icon('plus')}${name('Save this view …')}`,
+  );
 
 export const bookmarkRows = (world) => html`${n(world) ? known(parts)?.bookmarkRows(world) : nothing}${newRow(world)}`;
 

@@ -29,15 +29,27 @@ export async function attempt({ ui }, run, done = '') {
 }
 
 /** What of a saved view could not be shown, in a sentence; '' when it is whole. */
-const lost = ({ report, n_report: all }) => (all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}.` : '');
+const lost = ({ report, n_report: all }) =>
+  all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}.` : '';
 
 function told(world, opened, isQuiet = false) {
   if (!opened) return;
   const isReported = opened.n_report > 0;
   const why = [lost(opened), toldOfMerge(opened.merge)].filter(Boolean).join(' ');
   const who = world.room.following.isPresenting.value ? '' : ' In your own view.';
-  if (why) world.ui.notify('warn', `“${opened.name}”: ${why}`, 'saved', isReported ? { word: 'All', act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) } : null);
-  else if (who && !isQuiet) world.ui.notify('ok', `“${opened.name}”.${who}`, 'saved', { word: 'Return', keys: 'Esc or F', act: () => world.room.following.return() });
+  if (why)
+    world.ui.notify(
+      'warn',
+      `“${opened.name}”: ${why}`,
+      'saved',
+      isReported ? { word: 'All', act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) } : null,
+    );
+  else if (who && !isQuiet)
+    world.ui.notify('ok', `“${opened.name}”.${who}`, 'saved', {
+      word: 'Return',
+      keys: 'Esc or F',
+      act: () => world.room.following.return(),
+    });
 }
 
 /** Shows a saved view: the presenter to everybody, anybody else to themselves. */
@@ -52,15 +64,33 @@ export function pictureOf(world, row) {
 export function bookmarkRows(world) {
   const { room } = world;
   const { shown } = bookmarksIn(world);
-  return repeat(bookmarksOf(room), ({ id }) => id, (row) => {
-    const { name: words } = row.body;
-    const isShown = shown.value === row.id;
-    const toggle = () => void show(world, row);
-    const about = room.following.isPresenting.value ? 'Show to everybody' : 'Show in your own view';
-    return treeRow(world, { kind: 'bookmark', id: row.id, words: [words], more: [...(isShown ? ['shown last'] : [])], title: `${words}, saved by ${row.author_name}`, toggle }, html`
+  return repeat(
+    bookmarksOf(room),
+    ({ id }) => id,
+    (row) => {
+      const { name: words } = row.body;
+      const isShown = shown.value === row.id;
+      const toggle = () => void show(world, row);
+      const about = room.following.isPresenting.value ? 'Show to everybody' : 'Show in your own view';
+      return treeRow(
+        world,
+        {
+          kind: 'bookmark',
+          id: row.id,
+          words: [words],
+          more: [...(isShown ? ['shown last'] : [])],
+          title: `${words}, saved by ${row.author_name}`,
+          toggle,
+        },
+        html`
       ${pictureOf(world, row)}${name(words)}<button class="eye bookmark-show" tabindex="-1" aria-label=${`Show ${words}`} title=${about} ?disabled=${!room.canChange.value}
-        @click=${(event) => { event.stopPropagation(); toggle(); }}>${icon('eye')}</button>`);
-  });
+        @click=${(event) => {
+          event.stopPropagation();
+          toggle();
+        }}>${icon('eye')}</button>`,
+      );
+    },
+  );
 }
 
 // ---- presenting ---------------------------------------------------------------------------------------------------------
@@ -119,5 +149,10 @@ export async function begin(world) {
   if (!saved) return;
   const why = saved.n_report ? lost(saved) : '';
   bookmarksIn(world).begin(saved);
-  world.ui.notify(why ? 'warn' : 'ok', `“${saved.name}” in a new room of its own.${why ? ` ${why}` : ''}`, 'saved', why ? { word: 'All', act: () => world.ui.choose('bookmark', 'begun') } : null);
+  world.ui.notify(
+    why ? 'warn' : 'ok',
+    `“${saved.name}” in a new room of its own.${why ? ` ${why}` : ''}`,
+    'saved',
+    why ? { word: 'All', act: () => world.ui.choose('bookmark', 'begun') } : null,
+  );
 }

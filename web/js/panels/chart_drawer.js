@@ -19,4 +19,5 @@ export function drawer(world) {
   return html`${dvhPart(world, { isInline: isRight })}${profilePart(world, { isInline: isRight, close })}`;
 }
 
-export const sheet = (world) => html`<div class="chart-sheet">${dvhPart(world, { isInline: false })}${profilePart(world, { isInline: false })}</div>`;
+export const sheet = (world) =>
+  html`<div class="chart-sheet">${dvhPart(world, { isInline: false })}${profilePart(world, { isInline: false })}</div>`;

@@ -18,7 +18,15 @@ export class Highlight {
   /** @param {{region: string, low: number, high: number|null, quantity: string, tissue: string}} part of the region, in the quantity and with the weights of its histogram */
   show(part) {
     if (!this.#room.canShowOwn) return;
-    this.#wanted = { visible: true, region: part.region, low: part.low, ...(part.high === null ? {} : { high: part.high }), unit: 'dose', quantity: part.quantity, tissue: part.tissue };
+    this.#wanted = {
+      visible: true,
+      region: part.region,
+      low: part.low,
+      ...(part.high === null ? {} : { high: part.high }),
+      unit: 'dose',
+      quantity: part.quantity,
+      tissue: part.tissue,
+    };
     if (!this.#timer) this.#timer = setTimeout(() => this.#send(), highlightMs);
   }
 

@@ -5,7 +5,9 @@ export class ChartLoader {
   #parts;
 
   constructor(world) {
-    this.#parts = new Lazy(async () => (await Promise.all([import('./charts.js'), styled('lib/uplot.css'), styled('css/chart.css')]))[0].makeCharts(world));
+    this.#parts = new Lazy(async () =>
+      (await Promise.all([import('./charts.js'), styled('lib/uplot.css'), styled('css/chart.css')]))[0].makeCharts(world),
+    );
   }
 
   /** One part of the plots as a template. @param {'drawer'|'sheet'|'limits'|'printed'} name */

@@ -23,7 +23,9 @@ export function options({ ui }, id, words, content) {
 export function tableButton({ curves }, id, words) {
   const isOn = curves.isTable.value[id];
   return html`<button class=${classMap({ 'icon-button': true, small: true, on: isOn })} title=${isOn ? 'Show the plot' : 'Show it as a table'} aria-label=${words} aria-pressed=${isOn}
-    @click=${() => { curves.isTable.value = { ...curves.isTable.value, [id]: !isOn }; }}>${icon('table', 12)}</button>`;
+    @click=${() => {
+      curves.isTable.value = { ...curves.isTable.value, [id]: !isOn };
+    }}>${icon('table', 12)}</button>`;
 }
 
 /** Says why there is no plot; null where there is one. @param {{result: object|null, error: string, isOld: boolean}} state @param {{empty: string, idle: string}} words empty: of an answer
@@ -34,8 +36,10 @@ export function instead(state, { empty, idle }) {
   return empty ? html`<p class="chart-note empty">${empty}</p>` : null;
 }
 
-export const staleMark = (isOld) => (isOld ? html`<span class="chart-stale warn" title="Being computed anew">${icon('stale', 12)} old</span>` : nothing);
-export const withoutMark = (missing) => (missing?.length ? html`<span class="chart-without warn">${icon('warning', 12)} without ${missing.join(', ')}</span>` : nothing);
+export const staleMark = (isOld) =>
+  isOld ? html`<span class="chart-stale warn" title="Being computed anew">${icon('stale', 12)} old</span>` : nothing;
+export const withoutMark = (missing) =>
+  missing?.length ? html`<span class="chart-without warn">${icon('warning', 12)} without ${missing.join(', ')}</span>` : nothing;
 
 /** What does not fit and is used by a person's word is marked wherever its numbers stand. */
 export const doubtMark = ({ room }) => ofFits(room)?.numberMark({ room }) ?? nothing;

@@ -67,14 +67,28 @@ class PlotDirective extends Directive {
       this.#spec[name]?.(chart, chart.ctx, UPlot.pxRatio);
       chart.ctx.restore();
     };
-    this.#chart = new UPlot({
-      width, height, legend: { show: false }, padding: [8, 12, 0, 0],
-      cursor: { y: false, drag: { x: false, y: false, setScale: false }, points: { show: false }, bind: { dblclick: () => null } },
-      hooks: { drawAxes: [layer('below')], draw: [layer('above')], setCursor: [(chart) => this.#spec.pointed?.(placeOf(chart))] },
-      axes: axes.map((axis) => ({ stroke: axisInk, font: font(), grid: { stroke: gridInk, width: 1 }, ticks: { show: false }, border: { show: true, stroke: faintInk, width: 1 }, ...axis })),
-      pxAlign: 0, // curves are not rounded to whole pixels
-      ...options,
-    }, this.#spec.data, this.#element);
+    this.#chart = new UPlot(
+      {
+        width,
+        height,
+        legend: { show: false },
+        padding: [8, 12, 0, 0],
+        cursor: { y: false, drag: { x: false, y: false, setScale: false }, points: { show: false }, bind: { dblclick: () => null } },
+        hooks: { drawAxes: [layer('below')], draw: [layer('above')], setCursor: [(chart) => this.#spec.pointed?.(placeOf(chart))] },
+        axes: axes.map((axis) => ({
+          stroke: axisInk,
+          font: font(),
+          grid: { stroke: gridInk, width: 1 },
+          ticks: { show: false },
+          border: { show: true, stroke: faintInk, width: 1 },
+          ...axis,
+        })),
+        pxAlign: 0, // curves are not rounded to whole pixels
+        ...options,
+      },
+      this.#spec.data,
+      this.#element,
+    );
     const { over } = this.#chart;
     over.addEventListener('click', (event) => {
       const place = this.#chart && placeOf(this.#chart);
@@ -87,7 +101,12 @@ class PlotDirective extends Directive {
 function placeOf(chart) {
   const { left, top } = chart.cursor;
   if (!(left >= 0) || !(top >= 0)) return null;
-  return { value: chart.posToVal(left, 'x'), yValue: chart.posToVal(top, 'y'), x: left + chart.over.offsetLeft, y: top + chart.over.offsetTop };
+  return {
+    value: chart.posToVal(left, 'x'),
+    yValue: chart.posToVal(top, 'y'),
+    x: left + chart.over.offsetLeft,
+    y: top + chart.over.offsetTop,
+  };
 }
 
 export const plot = directive(PlotDirective);
@@ -95,7 +114,14 @@ export const plot = directive(PlotDirective);
 /** Words in a plot, with a halo so that they can be read on curves. */
 export function write(pen, px, text, x, y, { color = ink, align = 'left', weight = 400 } = {}) {
   pen.font = `${weight} ${Math.round(11 * px)}px "Inter Variable", system-ui, sans-serif`;
-  [pen.textAlign, pen.textBaseline, pen.lineJoin, pen.lineWidth, pen.strokeStyle, pen.fillStyle] = [align, 'middle', 'round', 3 * px, '#14171b', color];
+  [pen.textAlign, pen.textBaseline, pen.lineJoin, pen.lineWidth, pen.strokeStyle, pen.fillStyle] = [
+    align,
+    'middle',
+    'round',
+    3 * px,
+    '#14171b',
+    color,
+  ];
   pen.setLineDash([]);
   pen.strokeText(visibleText(text), x, y);
   pen.fillText(visibleText(text), x, y);
@@ -150,9 +176,17 @@ export function dot(pen, px, x, y, color) {
 /** A region's colour as it can be read on the dark panel: dark ones are lightened. */
 export function legible(color) {
   const rgb = [1, 3, 5].map((at) => Number.parseInt(color.slice(at, at + 2), 16) / 255);
-  const light = rgb.map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)).reduce((sum, c, at) => sum + c * [0.2126, 0.7152, 0.0722][at], 0);
+  const light = rgb
+    .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, c, at) => sum + c * [0.2126, 0.7152, 0.0722][at], 0);
   const least = 0.2; // relative luminance: 4.5:1 on #14171b
   if (light >= least) return color;
-  const part = (least - light) / (1 - light) * 1.15;
-  return `#${rgb.map((c) => Math.round(255 * Math.min(1, c + (1 - c) * Math.sqrt(part))).toString(16).padStart(2, '0')).join('')}`;
+  const part = ((least - light) / (1 - light)) * 1.15;
+  return `#${rgb
+    .map((c) =>
+      Math.round(255 * Math.min(1, c + (1 - c) * Math.sqrt(part)))
+        .toString(16)
+        .padStart(2, '0'),
+    )
+    .join('')}`;
 }

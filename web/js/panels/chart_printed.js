@@ -18,7 +18,10 @@ function ticksOf(low, high) {
   const rough = (high - low) / 5;
   const size = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 2.5, 5, 10].map((part) => part * size).find((one) => one >= rough);
-  return Array.from({ length: Math.floor(high / step + 1e-9) - Math.ceil(low / step - 1e-9) + 1 }, (_, at) => (Math.ceil(low / step - 1e-9) + at) * step);
+  return Array.from(
+    { length: Math.floor(high / step + 1e-9) - Math.ceil(low / step - 1e-9) + 1 },
+    (_, at) => (Math.ceil(low / step - 1e-9) + at) * step,
+  );
 }
 
 /** On paper a colour has to be dark enough. */
@@ -34,14 +37,17 @@ function drawing(label, lines, { xWords, yWords, low, high, top }) {
   const y = (value) => height - foot - (value / top) * (height - foot - 12);
   const path = ({ xs, ys }) => {
     let isDown = false;
-    return xs.map((value, at) => {
-      const isThere = ys[at] !== null && Number.isFinite(ys[at]);
-      const step = isThere ? `${isDown ? 'L' : 'M'}${x(value).toFixed(1)} ${y(ys[at]).toFixed(1)}` : '';
-      isDown = isThere;
-      return step;
-    }).join('');
+    return xs
+      .map((value, at) => {
+        const isThere = ys[at] !== null && Number.isFinite(ys[at]);
+        const step = isThere ? `${isDown ? 'L' : 'M'}${x(value).toFixed(1)} ${y(ys[at]).toFixed(1)}` : '';
+        isDown = isThere;
+        return step;
+      })
+      .join('');
   };
-  const band = ({ xs, ys, tops }) => `${[...xs.map((value, at) => [value, tops[at]]), ...xs.map((value, at) => [value, ys[at]]).reverse()].map(([value, to], at) => `${at ? 'L' : 'M'}${x(value).toFixed(1)} ${y(to).toFixed(1)}`).join('')}Z`;
+  const band = ({ xs, ys, tops }) =>
+    `${[...xs.map((value, at) => [value, tops[at]]), ...xs.map((value, at) => [value, ys[at]]).reverse()].map(([value, to], at) => `${at ? 'L' : 'M'}${x(value).toFixed(1)} ${y(to).toFixed(1)}`).join('')}Z`;
   return html`<svg class="chart-paper" viewBox=${`0 0 ${width} ${height}`} role="img" aria-label=${label}>
     ${ticksOf(low, high).map((value) => svg`<line x1=${x(value)} x2=${x(value)} y1="12" y2=${height - foot} stroke="#ddd" /><text x=${x(value)} y=${height - foot + 13} text-anchor="middle">${significant(value)}</text>`)}
     ${ticksOf(0, top).map((value) => svg`<line x1=${left} x2=${width - 10} y1=${y(value)} y2=${y(value)} stroke="#ddd" /><text x=${left - 5} y=${y(value) + 4} text-anchor="end">${significant(value)}</text>`)}
@@ -68,10 +74,30 @@ function histograms(world, plan, scene) {
   const regions = [...new Set(list.map(({ region }) => region))];
   const isPercent = curves.unit.value === 'percent' && !curves.isDifferential.value;
   const name = (curve) => `${regionName(plan)(curve.region)}${curve.of ? `, ${doseName(plan, curve.dose)}` : ''}`;
-  const basis = basisRows(world, result.quantity || scene.dose.quantity, result, { basis: basisWords(world), population: populationWords(curves.population) }).filter(([word]) => !['plan', 'revision', 'use', 'method'].includes(word));
+  const basis = basisRows(world, result.quantity || scene.dose.quantity, result, {
+    basis: basisWords(world),
+    population: populationWords(curves.population),
+  }).filter(([word]) => !['plan', 'revision', 'use', 'method'].includes(word));
   return html`<h2>Dose-volume histogram</h2><p class="values">${basis.map(([word, ...value]) => `${word}: ${value.join(', ')}`).join('; ')}.</p>
-    ${drawing('Dose-volume histogram', list.map((curve, at) => ({ name: bandName(curve, name(curve), curves.isDifferential.value), color: scene.regions[curve.region]?.color ?? '#888888', dash: dashes[regions.indexOf(curve.region) % dashes.length], isThin: curve.of > 0, xs: doses, ys: values[at], tops: tops[at] })),
-      { low: 0, high: end, top: isPercent ? 100 : Math.max(1e-9, ...values.flat(), ...tops.flatMap((one) => one ?? [])), xWords: listed(unitPer(result), quantityName(result.quantity || scene.dose.quantity)), yWords: `${curves.unit.value === 'cm3' ? 'cm³' : '% of the whole volume'}${curves.isDifferential.value ? ` per ${unit}` : ''}` })}
+    ${drawing(
+      'Dose-volume histogram',
+      list.map((curve, at) => ({
+        name: bandName(curve, name(curve), curves.isDifferential.value),
+        color: scene.regions[curve.region]?.color ?? '#888888',
+        dash: dashes[regions.indexOf(curve.region) % dashes.length],
+        isThin: curve.of > 0,
+        xs: doses,
+        ys: values[at],
+        tops: tops[at],
+      })),
+      {
+        low: 0,
+        high: end,
+        top: isPercent ? 100 : Math.max(1e-9, ...values.flat(), ...tops.flatMap((one) => one ?? [])),
+        xWords: listed(unitPer(result), quantityName(result.quantity || scene.dose.quantity)),
+        yWords: `${curves.unit.value === 'cm3' ? 'cm³' : '% of the whole volume'}${curves.isDifferential.value ? ` per ${unit}` : ''}`,
+      },
+    )}
     <div class="numbers-scroll" role="group" tabindex="0" aria-label="Figures of the histograms"><table class="numbers-table chart-figures"><thead><tr><th scope="col">${listed('Region', unit)}</th><th scope="col">cm³</th><th scope="col">without dose, cm³</th><th scope="col">Univels</th>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<th scope="col">${figure}</th>`)}</tr></thead>
       <tbody>${list.map((curve) => html`<tr><th scope="row">${name(curve)}</th><td>${number(curve.volume, 2)}</td><td>${curve.missing ? significant(curve.missing) : '0'}</td><td>${number(curve.univels)}</td>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<td>${boundsWords(curve.figures[figure], significant)}</td>`)}</tr>`)}</tbody></table></div>
     <p class="values">${result.method} ${leftWords(world)}</p>`;
@@ -81,10 +107,28 @@ function profile({ curves, room }, scene) {
   const { result } = curves.profile.value;
   if (!result?.curves.length || !curves.chosenLine.value) return nothing;
   const top = Math.max(1e-30, ...result.curves.flatMap(({ values }) => values).filter(Number.isFinite)) * 1.05;
-  const facts = [readOuts(result), ...result.bands.map(({ region, from, to }) => `${regionName(room.plan.value)(region)} ${number(from, 1)} to ${number(to, 1)} mm`)].filter(Boolean);
+  const facts = [
+    readOuts(result),
+    ...result.bands.map(({ region, from, to }) => `${regionName(room.plan.value)(region)} ${number(from, 1)} to ${number(to, 1)} mm`),
+  ].filter(Boolean);
   return html`<h2>Depth profile, ${curves.chosenLine.value.name}</h2>
-    ${drawing('Depth profile', result.curves.map(({ quantity, values }, at) => ({ name: lookOf(quantity).name, color: at === 0 ? '#222222' : lookOf(quantity).color, dash: lookOf(quantity).dash, xs: result.depths, ys: values })),
-      { low: result.depths[0], high: result.depths.at(-1), top, xWords: curves.chosenLine.value.kind === 'beam' ? 'mm from entry' : 'mm from the first point', yWords: listed(unitPer(result), quantityName(scene.dose.quantity)) })}
+    ${drawing(
+      'Depth profile',
+      result.curves.map(({ quantity, values }, at) => ({
+        name: lookOf(quantity).name,
+        color: at === 0 ? '#222222' : lookOf(quantity).color,
+        dash: lookOf(quantity).dash,
+        xs: result.depths,
+        ys: values,
+      })),
+      {
+        low: result.depths[0],
+        high: result.depths.at(-1),
+        top,
+        xWords: curves.chosenLine.value.kind === 'beam' ? 'mm from entry' : 'mm from the first point',
+        yWords: listed(unitPer(result), quantityName(scene.dose.quantity)),
+      },
+    )}
     <p class="values">${facts.join('; ')}. ${result.doubts.join(' ')} ${result.method}</p>`;
 }
 

@@ -1,6 +1,23 @@
 // The inspector's Selection of a clip plane: where it is, which side it keeps, caps, and what it does not cut.
 import { html, nothing } from '../../lib/lit-html.js';
-import { allThroughCrosshair, beamOf, clipName, clipRow, clipThrough, clipWords, clipsOf, enabledClips, flippedClip, freeByAngles, leavesNothing, movedClip, positionOfClip, rangeOfClip, switchedClip, toggledClips } from '../state/clip.js';
+import {
+  allThroughCrosshair,
+  beamOf,
+  clipName,
+  clipRow,
+  clipThrough,
+  clipWords,
+  clipsOf,
+  enabledClips,
+  flippedClip,
+  freeByAngles,
+  leavesNothing,
+  movedClip,
+  positionOfClip,
+  rangeOfClip,
+  switchedClip,
+  toggledClips,
+} from '../state/clip.js';
 import { ownRegions } from '../state/identity.js';
 import { replaced } from '../state/lists.js';
 import { alongBeam, anglesOf, facing } from '../state/obliques.js';
@@ -58,15 +75,22 @@ function axisFields({ row, plan, scene, isDisabled, change }) {
     return html`<div class=${style.enabled ? '' : 'off'}>${checkbox(word, style.enabled, isDisabled, (on, event) => change(switchedClip(plan, scene, id, on), event), `Keep what is ${keeps} it`)}
       <span class="clip-number"><span aria-hidden="true">${row.letter}</span>${numberField(`${row.name}, keeps ${keeps}, ${row.letter} in mm`, tenths(style.position_mm), 'mm', isDisabled, (value, event) => change(movedClip(plan, scene, id, value), event))}</span></div>`;
   };
-  const thumbs = ids.map((id, at) => ({ label: `${row.name}, keeps ${clipRow(id).keeps}`, value: tenths([low, high][at].position_mm), text: clipPosition(row, [low, high][at].position_mm),
-    isOn: [low, high][at].enabled, isChosen: id === row.id, move: move(at) }));
+  const thumbs = ids.map((id, at) => ({
+    label: `${row.name}, keeps ${clipRow(id).keeps}`,
+    value: tenths([low, high][at].position_mm),
+    text: clipPosition(row, [low, high][at].position_mm),
+    isOn: [low, high][at].enabled,
+    isChosen: id === row.id,
+    move: move(at),
+  }));
   return html`<div class="clip-ends">${field(0, 'Keeps from')}${field(1, 'to')}</div>
     ${clipRange(range, thumbs, [low.enabled ? low.position_mm : range.low, high.enabled ? high.position_mm : range.high], isDisabled)}
     ${ends(row, range)}
     ${leavesNothing(scene, row.axis) ? html`<p class="note why" role="status">${icon('warning', 12)} Nothing is left: each of the two planes cuts off what the other one keeps.</p>` : nothing}`;
 }
 
-const ends = (row, { low, high }) => html`<div class="clip-scale"><span>${clipPosition(row, low)}</span><span>${clipPosition(row, high)}</span></div>`;
+const ends = (row, { low, high }) =>
+  html`<div class="clip-scale"><span>${clipPosition(row, low)}</span><span>${clipPosition(row, high)}</span></div>`;
 
 /** One number and a slider with one thumb: along a beam, or along the free plane's normal. */
 function alongFields({ row, plan, scene, isDisabled, change }, label, keptFrom) {
@@ -90,7 +114,8 @@ function freeFields(part) {
   const { scene, isDisabled, change } = part;
   const { origin_mm: origin, normal } = scene.clip.free;
   const { turn, tilt } = anglesOf(normal);
-  const place = (axis) => (value, event) => change({ clip: { free: { origin_mm: replaced(origin, axis, Math.min(Math.max(value, -1e5), 1e5)) } } }, event);
+  const place = (axis) => (value, event) =>
+    change({ clip: { free: { origin_mm: replaced(origin, axis, Math.min(Math.max(value, -1e5), 1e5)) } } }, event);
   return html`${alongFields(part, 'Along its direction', false)}
     <dl class="clip-list"><dt title="About the patient's long axis: 0 anterior, 90 left, 180 posterior, −90 right">Turn</dt><dd>${numberField('Turn in degrees', tenths(turn), '°', isDisabled, (value, event) => change(freeByAngles(value, tilt), event))}</dd>
       <dt title="Upwards: 90 superior, −90 inferior">Tilt</dt><dd>${numberField('Tilt in degrees', tenths(tilt), '°', isDisabled, (value, event) => change(freeByAngles(turn, Math.min(Math.max(value, -90), 90)), event))}</dd>
@@ -101,7 +126,8 @@ function freeFields(part) {
 function freeButtons({ world, plan, scene, isDisabled, change }) {
   const { panes, ui } = world;
   const camera = () => (panes()[ui.active.value - 1]?.actions.is3d ? panes()[ui.active.value - 1] : panes()[0]).actions.camera;
-  const square = (event) => change({ clip: { free: { normal: axes(camera()).forward.map((value) => Math.round(-value * 1e6) / 1e6 || 0) } } }, event);
+  const square = (event) =>
+    change({ clip: { free: { normal: axes(camera()).forward.map((value) => Math.round(-value * 1e6) / 1e6 || 0) } } }, event);
   const shown = beamOf(plan, scene);
   const beam = shown && alongBeam({ entry_mm: shown.entry, target_mm: shown.target });
   return html`<button ?disabled=${isDisabled} title="Square to the line of sight of the 3-D picture; what is nearer is cut off" @click=${square}>Square to the view</button>
@@ -121,18 +147,25 @@ function capBlock({ row, plan, scene, isDisabled, change }) {
 
 function exemptBlock({ plan, scene, isDisabled, change }) {
   const regions = ownRegions(plan, scene);
-  const names = regions.map(({ id, name, color }) => html`<label><input type="checkbox" .checked=${!scene.regions[id]?.clipped} ?disabled=${isDisabled}
-    @change=${(event) => change({ regions: { [id]: { clipped: !event.target.checked } } }, event)}>${swatch(scene.regions[id]?.color ?? color)}${name}</label>`);
+  const names = regions.map(
+    ({ id, name, color }) => html`<label><input type="checkbox" .checked=${!scene.regions[id]?.clipped} ?disabled=${isDisabled}
+    @change=${(event) => change({ regions: { [id]: { clipped: !event.target.checked } } }, event)}>${swatch(scene.regions[id]?.color ?? color)}${name}</label>`,
+  );
   const n = regions.filter(({ id }) => scene.regions[id]?.clipped === false).length;
   return html`<section class="block"><h3>Not cut <span class="dim">by any plane</span></h3>
     ${names.length > manyRegions ? html`<details class="more"><summary>${icon('chevronDown', 12)}Regions <span class="dim">${n ? `${number(n)} not cut` : 'all are cut'}</span></summary><div class="clip-checks">${names}</div></details>` : html`<div class="clip-checks">${names}</div>`}
-    <div class="clip-checks">${plan.images.length ? html`${checkbox('Slices', !scene.image.clipped, isDisabled, (on, event) => change({ image: { clipped: !on } }, event), 'The slices in the 3-D picture')}
-      ${checkbox('Volume', !scene.image.volume.clipped, isDisabled, (on, event) => change({ image: { volume: { clipped: !on } } }, event), 'The image as a volume')}` : nothing}</div></section>`;
+    <div class="clip-checks">${
+      plan.images.length
+        ? html`${checkbox('Slices', !scene.image.clipped, isDisabled, (on, event) => change({ image: { clipped: !on } }, event), 'The slices in the 3-D picture')}
+      ${checkbox('Volume', !scene.image.volume.clipped, isDisabled, (on, event) => change({ image: { volume: { clipped: !on } } }, event), 'The image as a volume')}`
+        : nothing
+    }</div></section>`;
 }
 
 function cuttingBlock({ world, plan, scene, isDisabled, change }) {
   const on = enabledClips(plan, scene);
-  if (!on.length) return html`<section class="block"><p class="note">No plane cuts. C in a pane turns clipping on, K closes or opens the cuts.</p></section>`;
+  if (!on.length)
+    return html`<section class="block"><p class="note">No plane cuts. C in a pane turns clipping on, K closes or opens the cuts.</p></section>`;
   const off = (event) => {
     const { patch, remembered } = toggledClips(plan, scene, world.ui.clips);
     world.ui.clips = remembered;

@@ -13,11 +13,13 @@ const percent = (value, { low, high }) => Math.min(Math.max((value - low) / Math
  */
 export function clipRange(range, thumbs, kept, isDisabled) {
   const from = percent(kept[0], range);
-  return html`<div class="clip-range" ${variables({ '--from': `${from}%`, '--kept': `${Math.max(percent(kept[1], range) - from, 0)}%` })}>${thumbs.map((thumb) => html`<i
+  return html`<div class="clip-range" ${variables({ '--from': `${from}%`, '--kept': `${Math.max(percent(kept[1], range) - from, 0)}%` })}>${thumbs.map(
+    (thumb) => html`<i
     class=${classMap({ 'clip-thumb': true, off: !thumb.isOn, chosen: thumb.isChosen })} role="slider" tabindex=${isDisabled ? -1 : 0} aria-label=${thumb.label} aria-disabled=${isDisabled}
     aria-valuemin=${range.low} aria-valuemax=${range.high} aria-valuenow=${thumb.value} aria-valuetext=${thumb.text} ${variables({ '--at': `${percent(thumb.value, range)}%` })}
     @pointerdown=${(event) => !isDisabled && hold(event)} @pointermove=${(event) => event.currentTarget.hasPointerCapture(event.pointerId) && thumb.move(valueAt(event, range), event)}
-    @keydown=${(event) => !isDisabled && step(event, thumb, range)}></i>`)}</div>`;
+    @keydown=${(event) => !isDisabled && step(event, thumb, range)}></i>`,
+  )}</div>`;
 }
 
 function hold(event) {

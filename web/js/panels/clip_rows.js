@@ -1,7 +1,18 @@
 // The clip planes in the tree: a row for each with its switch, the side it keeps, its position and its cap; below them what caps show. Keys C and K.
 import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
-import { allThroughCrosshair, capWords, clipName, clipsOf, enabledClips, movedClip, positionOfClip, switchedClip, toggledCaps, toggledClips } from '../state/clip.js';
+import {
+  allThroughCrosshair,
+  capWords,
+  clipName,
+  clipsOf,
+  enabledClips,
+  movedClip,
+  positionOfClip,
+  switchedClip,
+  toggledCaps,
+  toggledClips,
+} from '../state/clip.js';
 import { number } from './format.js';
 import { icon } from './icons.js';
 import { eye, name, treeRow } from './tree_row.js';
@@ -39,18 +50,38 @@ function planeRow(world, row) {
   const move = (mm, event) => Number.isFinite(mm) && change(movedClip(plan, scene, id, mm), event);
   const still = (event) => event.stopPropagation();
   const text = clipPosition(row, position);
-  return treeRow(world, { kind: 'clip', id, words: [words, text], more: [cap ? 'with cap' : 'without cap'], title: `${words}: ${text}`, isOn, toggle, step: (by, event) => move(position + by, event) }, html`
+  return treeRow(
+    world,
+    {
+      kind: 'clip',
+      id,
+      words: [words, text],
+      more: [cap ? 'with cap' : 'without cap'],
+      title: `${words}: ${text}`,
+      isOn,
+      toggle,
+      step: (by, event) => move(position + by, event),
+    },
+    html`
     ${eye(isOn, `Clip plane ${words}`, isOn ? 'Do not cut here' : 'Cut here; at first through the crosshair', isDisabled, toggle)}${name(words)}
     <span class="field clip-field" data-letter=${row.letter} @click=${still}><input type="number" step="any" tabindex="-1" .value=${live(position.toFixed(1))}
       aria-label=${`Position of ${words} in mm`} ?disabled=${isDisabled} @change=${(event) => move(event.target.valueAsNumber, event)}></span>
     <button class="clip-cap" tabindex="-1" aria-pressed=${cap} aria-label=${`Cap of ${words}`} title=${cap ? 'The cut is closed with a cap; leave it open' : 'Close the cut with a cap'} ?disabled=${isDisabled}
-      @click=${(event) => { event.stopPropagation(); change({ clip: { [id]: { cap: !cap } } }, event); }}>${icon('image')}</button>`);
+      @click=${(event) => {
+        event.stopPropagation();
+        change({ clip: { [id]: { cap: !cap } } }, event);
+      }}>${icon('image')}</button>`,
+  );
 }
 
 /** What caps show: chosen as a plane is, and then in Selection. */
 function capsRow(world) {
   const words = capWords(world.room.scene.value.clip.cap);
-  return treeRow(world, { kind: 'clip', id: 'caps', words: ['Caps show', words], title: `Caps show ${words}` }, html`${icon('image')}${name('Caps show')} <span class="tail clipped">${words}</span>`);
+  return treeRow(
+    world,
+    { kind: 'clip', id: 'caps', words: ['Caps show', words], title: `Caps show ${words}` },
+    html`${icon('image')}${name('Caps show')} <span class="tail clipped">${words}</span>`,
+  );
 }
 
 /** What acts on all planes: as key C does, and to the crosshair. */
@@ -66,7 +97,10 @@ function actionRow(room, ui, id, picture, words, isOff, act) {
   const key = `clip:${id}`;
   const run = (event) => !isDisabled && act(event);
   return html`<li class=${`row clip-all${ui.row.value === key ? ' current' : ''}`} role="treeitem" id=${`row-${key}`} data-key=${key} aria-level="2" aria-selected="false" aria-disabled=${isDisabled}
-    aria-label=${words} @click=${(event) => { ui.row.value = key; run(event); }} @row-toggle=${(event) => run(event.detail)}><button tabindex="-1" ?disabled=${isDisabled}>${icon(picture)}${words}</button></li>`;
+    aria-label=${words} @click=${(event) => {
+      ui.row.value = key;
+      run(event);
+    }} @row-toggle=${(event) => run(event.detail)}><button tabindex="-1" ?disabled=${isDisabled}>${icon(picture)}${words}</button></li>`;
 }
 
 // ---- keys of a pane -----------------------------------------------------------------------------------------------------

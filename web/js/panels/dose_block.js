@@ -1,7 +1,17 @@
 // A dose in Selection: what is shown of it, on which basis, its reference, how it is drawn; below it weights, sum, comparison, coverage.
 import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
-import { basisWords, choosePatch, doseName, isWeighted, missingOf, missingWords, quantityName, shownDose, summedDoses } from '../state/dose.js';
+import {
+  basisWords,
+  choosePatch,
+  doseName,
+  isWeighted,
+  missingOf,
+  missingWords,
+  quantityName,
+  shownDose,
+  summedDoses,
+} from '../state/dose.js';
 import { joinReason } from '../state/fits.js';
 import { doseWords } from '../state/plan.js';
 import { compareBlock, coverageBlock } from './dose_compare.js';
@@ -56,7 +66,9 @@ function aboutWords(plan, scene) {
 function reasonNote({ room, doses }) {
   const { result, error } = doses.scale.value;
   const reason = error || (result && !result.drawn && result.reason);
-  return reason && reason !== shownDose(room.plan.value, room.scene.value).fit_reason ? html`<p class="note why">${icon('warning', 12)} Nothing is drawn: ${reason}${/[.]$/.test(reason) ? '' : '.'}</p>` : nothing;
+  return reason && reason !== shownDose(room.plan.value, room.scene.value).fit_reason
+    ? html`<p class="note why">${icon('warning', 12)} Nothing is drawn: ${reason}${/[.]$/.test(reason) ? '' : '.'}</p>`
+    : nothing;
 }
 
 function otherBlock(dose, isDisabled, change, plan, scene) {
@@ -71,13 +83,40 @@ function drawnBlock(scene, isDisabled, changeScene) {
   return html`<section class="block"><h3>Drawn as</h3>
     <div class="checks dose-checks">${checkbox('Isodose lines (I)', lines.visible, isDisabled, change('lines', 'visible'))}${checkbox('Wash (D)', wash.visible, isDisabled, change('wash', 'visible'))}
       ${checkbox('Surfaces in 3-D', surfaces.visible, isDisabled, change('surfaces', 'visible'), 'Of the levels that have a surface')}</div>
-    <dl class="dose-list"><dt>Wash</dt><dd>${segment('Style of the wash in Selection', [['bands', 'Bands'], ['smooth', 'Smooth']], wash.style, isDisabled, change('wash', 'style'))}</dd>
+    <dl class="dose-list"><dt>Wash</dt><dd>${segment(
+      'Style of the wash in Selection',
+      [
+        ['bands', 'Bands'],
+        ['smooth', 'Smooth'],
+      ],
+      wash.style,
+      isDisabled,
+      change('wash', 'style'),
+    )}</dd>
       <dt>Wash from</dt><dd>${numberField('Wash from, in per cent of the reference', wash.below_percent, '%', isDisabled, limits('wash', 'below_percent', 0, 100))}</dd>
       <dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(wash.opacity * 100)))} aria-label="Opacity of the wash" ?disabled=${isDisabled}
         @input=${(event) => change('wash', 'opacity')(event.target.valueAsNumber / 100, event)}>${numberField('Opacity of the wash in per cent', Math.round(wash.opacity * 100), '%', isDisabled, (value, event) => change('wash', 'opacity')(Math.min(Math.max(value, 0), 100) / 100, event))}</dd>
       <dt>Width of lines</dt><dd>${numberField('Width of isodose lines', lines.width_px, 'px', isDisabled, limits('lines', 'width_px', 1, 8))}</dd>
-      <dt>Surfaces in</dt><dd>${segment('Grid of the surfaces', [['dose', "dose's grid"], ['univels', 'univels', 'In the grid of the regions, as Sera3d does']], surfaces.grid, isDisabled, change('surfaces', 'grid'))}</dd>
-      <dt>Between voxels</dt><dd>${segment('Between voxels of the dose', [['linear', 'Tri-linear'], ['slice', 'In slices', 'Bilinear within the nearest slice of the dose, as Sera3d does']], interpolation, isDisabled, (value, event) => changeScene({ dose: { interpolation: value } }, event))}</dd></dl>
+      <dt>Surfaces in</dt><dd>${segment(
+        'Grid of the surfaces',
+        [
+          ['dose', "dose's grid"],
+          ['univels', 'univels', 'In the grid of the regions, as Sera3d does'],
+        ],
+        surfaces.grid,
+        isDisabled,
+        change('surfaces', 'grid'),
+      )}</dd>
+      <dt>Between voxels</dt><dd>${segment(
+        'Between voxels of the dose',
+        [
+          ['linear', 'Tri-linear'],
+          ['slice', 'In slices', 'Bilinear within the nearest slice of the dose, as Sera3d does'],
+        ],
+        interpolation,
+        isDisabled,
+        (value, event) => changeScene({ dose: { interpolation: value } }, event),
+      )}</dd></dl>
     <div class="checks dose-checks">${checkbox('Wash on the volume', wash.volume, isDisabled, change('wash', 'volume'))}${checkbox('Clip planes cut surfaces', surfaces.clipped, isDisabled, change('surfaces', 'clipped'))}
       ${checkbox('Statistical error as wash', error, isDisabled, (value, event) => changeScene({ dose: { error: value } }, event), 'In per cent of the value, where the files give it')}</div></section>`;
 }
@@ -108,8 +147,12 @@ function fileBlock(scene, shown, isDisabled, change) {
 function factsBlock(shown) {
   const grids = new Set(shown.components.map(({ grid }) => JSON.stringify(grid.lps_mm_from_ijk)));
   const [{ grid }] = shown.components;
-  const rows = [['Grid', `${grid.size.join(' × ')} of ${grid.spacing_mm.map((mm) => number(mm, 1)).join(' × ')} mm`], grids.size > 1 && ['Other components', 'have grids of their own'],
-    ['Axes of the grid', grid.orientation], shown.masked && ['Outside the body', 'not known']].filter(Boolean);
+  const rows = [
+    ['Grid', `${grid.size.join(' × ')} of ${grid.spacing_mm.map((mm) => number(mm, 1)).join(' × ')} mm`],
+    grids.size > 1 && ['Other components', 'have grids of their own'],
+    ['Axes of the grid', grid.orientation],
+    shown.masked && ['Outside the body', 'not known'],
+  ].filter(Boolean);
   return html`<details class="block more"><summary>${icon('chevronDown', 12)}<span>The file: ${doseWords(shown)}</span></summary>
     <dl class="dose-list">${rows.map(([name, value]) => html`<dt>${name}</dt><dd>${value}</dd>`)}</dl>
     <table><thead><tr><th scope="col">Component</th><th scope="col">Highest</th><th scope="col">in body</th></tr></thead>

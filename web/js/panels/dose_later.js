@@ -18,6 +18,12 @@ export function ofDrawnDose(room) {
   const scene = room.scene.value;
   if (!room.plan.value?.doses.length || !scene?.dose) return null;
   const { wash, lines, surfaces, coverage, compare } = scene.dose;
-  const isOn = wash.visible || lines.visible || surfaces.visible || coverage.visible || compare.mode !== 'none' || Object.keys(scene.probes).length > 0;
+  const isOn =
+    wash.visible ||
+    lines.visible ||
+    surfaces.visible ||
+    coverage.visible ||
+    compare.mode !== 'none' ||
+    Object.keys(scene.probes).length > 0;
   return isOn ? known(drawn) : null;
 }

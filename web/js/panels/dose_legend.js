@@ -22,13 +22,21 @@ export function doseLegend({ room, ui, doses }, view, [width, height], isLeftTak
   const [plan, scene] = [room.plan.value, room.scene.value];
   const dose = shownDose(plan, scene);
   const { result: answer, isOld } = doses.scale.value;
-  if (!dose || !answer?.drawn || !doses.isOfScene(answer) || !isShown(scene, is3d) || (width < narrowest && !is3d && ui.active.value !== view.number)) return nothing;
+  if (
+    !dose ||
+    !answer?.drawn ||
+    !doses.isOfScene(answer) ||
+    !isShown(scene, is3d) ||
+    (width < narrowest && !is3d && ui.active.value !== view.number)
+  )
+    return nothing;
   const { surfaces, compare } = scene.dose;
   const isWash = washKind(plan, scene) === 'levels';
   const isLines = hasLines(plan, scene);
   const reference = doses.reference.value;
   const unit = unitOf(dose, scene.dose.quantity);
-  const isUsed = (level) => level.visible && ((level.wash && isWash) || (level.line && isLines) || (is3d && level.surface && surfaces.visible));
+  const isUsed = (level) =>
+    level.visible && ((level.wash && isWash) || (level.line && isLines) || (is3d && level.surface && surfaces.visible));
   const all = levelsOf(scene, reference).filter(isUsed);
   const scale = shownScale(plan, scene, reference, significant);
   const most = Math.max(1, Math.floor((height - besidesPx) / 2 / rowPx) - 1 - (scale ? scaleRows : 0));
@@ -59,11 +67,18 @@ const isWhole = (value) => Math.abs(value - Math.round(value)) < 0.05;
 function isShown(scene, is3d) {
   const { wash, lines, surfaces, compare, coverage } = scene.dose;
   if (!is3d) return isOn(scene) && (wash.visible || lines.visible || compare.mode !== 'none' || coverage.visible);
-  const hasPlane = Object.values(scene.image.slices).some(({ visible }) => visible) || Object.values(scene.image.obliques ?? {}).some(({ visible }) => visible);
+  const hasPlane =
+    Object.values(scene.image.slices).some(({ visible }) => visible) ||
+    Object.values(scene.image.obliques ?? {}).some(({ visible }) => visible);
   const hasCap = Object.values(scene.clip).some((plane) => plane?.enabled);
   const hasTexture = Object.values(scene.regions).some(({ visible, texture }) => visible && texture === 'dose');
   const isFlat = wash.visible || lines.visible || compare.mode !== 'none';
-  return surfaces.visible || coverage.visible || (isFlat && (hasPlane || hasCap)) || (wash.visible && (hasTexture || (wash.volume && scene.image.volume.visible)));
+  return (
+    surfaces.visible ||
+    coverage.visible ||
+    (isFlat && (hasPlane || hasCap)) ||
+    (wash.visible && (hasTexture || (wash.volume && scene.image.volume.visible)))
+  );
 }
 
 /** Of the second dose, whose lines are dashed. */

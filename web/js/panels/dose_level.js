@@ -40,7 +40,16 @@ export function levelBlock(world, isDisabled, changeScene) {
   const other = level.unit === 'percent' ? `${otherText(level, reference)} ${unit}` : `${otherText(level, reference)} % of the reference`;
   return html`<section class="block"><h3>${icon('dose')} Level ${levelWords(level, unit)} <span class="dim">${other}</span></h3>
     <dl><dt>Value</dt><dd class="dose-pair">${numberField('Value of the level', Number(level.value.toPrecision(6)), '', isDisabled, (value, event) => value >= 0 && change({ value }, event))}
-        ${segment('Unit of the level', [['percent', '%'], ['dose', unit]], level.unit, isDisabled, turn)}</dd>
+        ${segment(
+          'Unit of the level',
+          [
+            ['percent', '%'],
+            ['dose', unit],
+          ],
+          level.unit,
+          isDisabled,
+          turn,
+        )}</dd>
       <dt>Colour</dt><dd><input type="color" class="dose-swatch" .value=${live(level.color)} aria-label="Colour" ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}></dd>
       <dt>Opacity of surface</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(level.opacity * 100)))} aria-label="Opacity of the surface" ?disabled=${isDisabled}
         @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(level.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd></dl>
@@ -54,6 +63,12 @@ export function levelBlock(world, isDisabled, changeScene) {
 /** Why the level may be on and yet not be seen. */
 function hint(scene, level) {
   const { lines, wash, surfaces } = scene.dose;
-  const off = [[level.line, lines, 'lines'], [level.wash, wash, 'the wash'], [level.surface, surfaces, 'surfaces']].filter(([on, part]) => on && !part.visible).map(([, , words]) => words);
+  const off = [
+    [level.line, lines, 'lines'],
+    [level.wash, wash, 'the wash'],
+    [level.surface, surfaces, 'surfaces'],
+  ]
+    .filter(([on, part]) => on && !part.visible)
+    .map(([, , words]) => words);
   return level.visible && off.length ? html`<p class="note dose-hint">Switched off for all levels: ${off.join(', ')}.</p>` : nothing;
 }

@@ -11,14 +11,19 @@ import { eye, treeRow } from './tree_row.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
 const still = (event) => event.stopPropagation();
-export const levelParts = [['line', 'isoline', 'Line'], ['wash', 'wash', 'Wash'], ['surface', 'globe', 'Surface in 3-D']];
+export const levelParts = [
+  ['line', 'isoline', 'Line'],
+  ['wash', 'wash', 'Wash'],
+  ['surface', 'globe', 'Surface in 3-D'],
+];
 
 /** "90", "1.25": a level's number as it was given. */
 export const plain = (value) => String(Number(value.toPrecision(6)));
 /** The level in words: "90 %", "1.01 Gy(w)". */
 export const levelWords = (level, unit) => (level.unit === 'percent' ? `${plain(level.value)} %` : `${plain(level.value)} ${unit}`);
 /** The same dose in the other unit, without it: "1.01" or "90"; a dash where 100 % is not known. */
-export const otherText = (level, reference) => (level.unit === 'percent' ? significant(doseOf(level, reference)) : number(percentOf(level, reference), 0));
+export const otherText = (level, reference) =>
+  level.unit === 'percent' ? significant(doseOf(level, reference)) : number(percentOf(level, reference), 0);
 
 export const levelContext = ({ room, doses }) => {
   const [plan, scene] = [room.plan.value, room.scene.value];
@@ -40,15 +45,36 @@ function levelRow(world, level, reference, unit) {
   const words = levelWords(level, unit);
   const other = level.unit === 'percent' ? `${otherText(level, reference)} ${unit}` : `${otherText(level, reference)} %`;
   const isUsed = (part) => level[part] && level.visible;
-  return treeRow(world, { kind: 'level', id, words: [words, other], more: levelParts.filter(([part]) => isUsed(part)).map(([, , about]) => about.toLowerCase()), title: `${words}: ${other}`, isOn: level.visible, toggle,
-    step: (by, event) => setValue(Math.max(level.value + by * (level.unit === 'percent' ? 1 : level.value / 100), 0), event) }, html`
+  return treeRow(
+    world,
+    {
+      kind: 'level',
+      id,
+      words: [words, other],
+      more: levelParts.filter(([part]) => isUsed(part)).map(([, , about]) => about.toLowerCase()),
+      title: `${words}: ${other}`,
+      isOn: level.visible,
+      toggle,
+      step: (by, event) => setValue(Math.max(level.value + by * (level.unit === 'percent' ? 1 : level.value / 100), 0), event),
+    },
+    html`
     ${eye(level.visible, `Level ${words}`, 'Show or hide this level', isDisabled, toggle)}
     <input type="color" tabindex="-1" .value=${live(level.color)} aria-label=${`Colour of level ${words}`} ?disabled=${isDisabled} @click=${still} @input=${(event) => change({ color: event.target.value }, event)}>
     <span class="field dose-value" @click=${still}><input type="number" step="any" min="0" tabindex="-1" .value=${typed(plain(level.value))} aria-label=${`Level in ${level.unit === 'percent' ? 'per cent' : unit}`} ?disabled=${isDisabled}
       @change=${(event) => setValue(event.target.valueAsNumber, event)}></span><span class="dose-unit">${level.unit === 'percent' ? '%' : unit}</span>
     <button class="name dose-other" tabindex="-1" title=${other}>${otherText(level, reference)}${level.unit === 'percent' ? '' : ' %'}</button>
-    ${levelParts.map(([part, picture, about]) => html`<button class=${classMap({ 'dose-toggle': true, on: isUsed(part) })} tabindex="-1" aria-pressed=${level[part]} aria-label=${`${about} of level ${words}`} title=${about} ?disabled=${isDisabled}
-      @click=${(event) => { still(event); change({ [part]: !level[part] }, event); }}>${icon(picture)}</button>`)}`);
+    ${levelParts.map(
+      ([
+        part,
+        picture,
+        about,
+      ]) => html`<button class=${classMap({ 'dose-toggle': true, on: isUsed(part) })} tabindex="-1" aria-pressed=${level[part]} aria-label=${`${about} of level ${words}`} title=${about} ?disabled=${isDisabled}
+      @click=${(event) => {
+        still(event);
+        change({ [part]: !level[part] }, event);
+      }}>${icon(picture)}</button>`,
+    )}`,
+  );
 }
 
 /** Adding a level, and the tables to begin with. */
@@ -59,7 +85,9 @@ export function levelActions(world) {
   const isDisabled = !room.canChange.value;
   const enter = (event) => event.currentTarget.querySelector('button')?.focus();
   return html`<li class=${`row dose-control dose-actions${ui.row.value === key ? ' current' : ''}`} role="treeitem" id=${`row-${key}`} data-key=${key} aria-level="2" aria-selected="false" aria-label="Level Presets"
-    @click=${() => { ui.row.value = key; }} @row-toggle=${enter}><button tabindex="-1" ?disabled=${isDisabled || isFull} @click=${(event) => addLevel(world, event)}>${icon('plus')}Level</button> <button tabindex="-1" title="Tables of levels, in Selection" @click=${() => ui.choose('dosing', 'levels')}>Presets</button></li>`;
+    @click=${() => {
+      ui.row.value = key;
+    }} @row-toggle=${enter}><button tabindex="-1" ?disabled=${isDisabled || isFull} @click=${(event) => addLevel(world, event)}>${icon('plus')}Level</button> <button tabindex="-1" title="Tables of levels, in Selection" @click=${() => ui.choose('dosing', 'levels')}>Presets</button></li>`;
 }
 
 export function addLevel(world, event) {

@@ -15,20 +15,32 @@ export function lineLabels({ doses, view, host, header, box }) {
   if (!levels.length || host.clientWidth < narrowest) return '';
   const k = box.width / header.full_px[0];
   const taken = takenIn(host);
-  return svg`<g class="dose-labels">${levels.map(({ id, color, text, labels }) => labels.map(({ x_px: px, y_px: py, angle_deg: angle, width_px: width, height_px: height }) => {
-    const [x, y] = [box.x + px * k, box.y + py * k];
-    const [across, up] = extent(width * k, height * k, angle);
-    const isFree = taken.every((other) => x + across / 2 + sparePx < other.left || x - across / 2 - sparePx > other.right || y + up / 2 + sparePx < other.top || y - up / 2 - sparePx > other.bottom);
-    return isFree ? svg`<text class="halo dose-line-label" data-level=${id} transform=${`translate(${x.toFixed(1)} ${y.toFixed(1)}) rotate(${angle.toFixed(1)})`} dy="0.35em" ${variables({ '--color': readable(color) })}>${text}</text>` : '';
-  }))}</g>`;
+  return svg`<g class="dose-labels">${levels.map(({ id, color, text, labels }) =>
+    labels.map(({ x_px: px, y_px: py, angle_deg: angle, width_px: width, height_px: height }) => {
+      const [x, y] = [box.x + px * k, box.y + py * k];
+      const [across, up] = extent(width * k, height * k, angle);
+      const isFree = taken.every(
+        (other) =>
+          x + across / 2 + sparePx < other.left ||
+          x - across / 2 - sparePx > other.right ||
+          y + up / 2 + sparePx < other.top ||
+          y - up / 2 - sparePx > other.bottom,
+      );
+      return isFree
+        ? svg`<text class="halo dose-line-label" data-level=${id} transform=${`translate(${x.toFixed(1)} ${y.toFixed(1)}) rotate(${angle.toFixed(1)})`} dy="0.35em" ${variables({ '--color': readable(color) })}>${text}</text>`
+        : '';
+    }),
+  )}</g>`;
 }
 
 /** The colour, mixed with white until it can be read: blue is too dark for letters. */
 export function readable(color) {
   const rgb = [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
-  const luminance = (parts) => parts.map((part) => (part / 255) ** 2.2).reduce((sum, part, at) => sum + part * [0.2126, 0.7152, 0.0722][at], 0);
+  const luminance = (parts) =>
+    parts.map((part) => (part / 255) ** 2.2).reduce((sum, part, at) => sum + part * [0.2126, 0.7152, 0.0722][at], 0);
   let mixed = rgb;
-  for (let white = 0.1; luminance(mixed) < leastLuminance && white < 1; white += 0.1) mixed = rgb.map((part) => Math.round(part + (255 - part) * white));
+  for (let white = 0.1; luminance(mixed) < leastLuminance && white < 1; white += 0.1)
+    mixed = rgb.map((part) => Math.round(part + (255 - part) * white));
   return `#${mixed.map((part) => part.toString(16).padStart(2, '0')).join('')}`;
 }
 

@@ -6,5 +6,12 @@ import { crosshair } from '../state/plan.js';
 export function pinHere({ room, ui }, at) {
   const pinned = pinnedAt(room.scene.value, crosshair(room.scene.value), room.markSuffix);
   if (pinned) room.patchScene(pinned.patch, { view: ui.active.value, at });
-  else ui.notify('ok', pinsOf(room.scene.value).length >= maxPins ? `There are ${maxPins} pinned probes; remove one first.` : 'This point is pinned already.', 'pin');
+  else
+    ui.notify(
+      'ok',
+      pinsOf(room.scene.value).length >= maxPins
+        ? `There are ${maxPins} pinned probes; remove one first.`
+        : 'This point is pinned already.',
+      'pin',
+    );
 }

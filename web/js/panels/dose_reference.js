@@ -25,8 +25,16 @@ function chosenPatch(world, key) {
   const [kind, region = ''] = key.split(' ');
   const scene = world.room.scene.value;
   const value = world.doses.reference.value;
-  return { dose: { reference: { kind, ...(kind.startsWith('region') && { region }), ...(kind === 'point' && { point_mm: crosshair(scene) }),
-    ...(kind === 'value' && Number.isFinite(value) && value > 0 && { value: Number(value.toPrecision(4)) }) } } };
+  return {
+    dose: {
+      reference: {
+        kind,
+        ...(kind.startsWith('region') && { region }),
+        ...(kind === 'point' && { point_mm: crosshair(scene) }),
+        ...(kind === 'value' && Number.isFinite(value) && value > 0 && { value: Number(value.toPrecision(4)) }),
+      },
+    },
+  };
 }
 
 export function referenceSelect(world, { tabindex }) {
@@ -36,12 +44,16 @@ export function referenceSelect(world, { tabindex }) {
   const dose = shownDose(plan, scene);
   const own = Number.isFinite(dose.components.find((part) => part.quantity === quantity)?.reference);
   const chosen = keyOf(reference);
-  const option = (key, words) => html`<option value=${key} ?selected=${key === chosen} .selected=${live(key === chosen)}>${key === chosen ? referenceText(world) : words}</option>`;
+  const option = (key, words) =>
+    html`<option value=${key} ?selected=${key === chosen} .selected=${live(key === chosen)}>${key === chosen ? referenceText(world) : words}</option>`;
   const choices = ownRegions(plan, scene);
   const firstTarget = choices.find(({ is_target: is }) => is);
   const regions = choices.filter(({ voxels }) => voxels > 0);
-  const ofRegions = (kind, words) => (regions.length ? html`<optgroup label=${words}>${reference.kind === kind && !reference.region ? option(`${kind} `, firstTarget?.name) : nothing}
-    ${regions.map(({ id, name }) => option(`${kind} ${id}`, name))}</optgroup>` : nothing);
+  const ofRegions = (kind, words) =>
+    regions.length
+      ? html`<optgroup label=${words}>${reference.kind === kind && !reference.region ? option(`${kind} `, firstTarget?.name) : nothing}
+    ${regions.map(({ id, name }) => option(`${kind} ${id}`, name))}</optgroup>`
+      : nothing;
   const change = (event) => room.patchScene(chosenPatch(world, event.target.value), { view: ui.active.value, at: event.timeStamp });
   return html`<select class="dose-select" aria-label="Reference: what 100 % is" title=${`100 % is ${referenceText(world)}`} tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
     ${option('body', 'maximum in the body')}${own || reference.kind === 'file' ? option('file', "the file's own reference") : nothing}${option('point', 'value at the crosshair')}${option('value', 'a prescription')}

@@ -2,7 +2,21 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
-import { choosePatch, dependsOnBlood, doseName, isOn, isWeighted, missingOf, missingWords, quantitiesOf, quantityName, referenceWords, shownDose, toggledPatch, unitOf } from '../state/dose.js';
+import {
+  choosePatch,
+  dependsOnBlood,
+  doseName,
+  isOn,
+  isWeighted,
+  missingOf,
+  missingWords,
+  quantitiesOf,
+  quantityName,
+  referenceWords,
+  shownDose,
+  toggledPatch,
+  unitOf,
+} from '../state/dose.js';
 import { approvalOf, isOfOther, shownTreatmentPlan } from '../state/identity.js';
 import { doseWords } from '../state/plan.js';
 import { levelActions, levelRows } from './dose_levels.js';
@@ -43,8 +57,13 @@ function grouped(world, shown) {
   if (plan.treatmentPlans.length < 2) return own.map(row);
   const first = shownTreatmentPlan(plan, scene);
   const groups = [first, ...plan.treatmentPlans.filter((one) => one !== first), undefined];
-  return groups.map((treatment) => [treatment, own.filter((dose) => plan.treatmentPlans[dose.plan] === treatment)]).filter(([, doses]) => doses.length)
-    .map(([treatment, doses]) => html`<li class="row-group" role="presentation">${treatment ? `Plan ${treatment.label} · ${approvalOf(treatment)[0].toLowerCase()}` : 'No plan stated'}${treatment && treatment !== first ? html`<span class="dim"> · compare only</span>` : nothing}</li>${doses.map(row)}`);
+  return groups
+    .map((treatment) => [treatment, own.filter((dose) => plan.treatmentPlans[dose.plan] === treatment)])
+    .filter(([, doses]) => doses.length)
+    .map(
+      ([treatment, doses]) =>
+        html`<li class="row-group" role="presentation">${treatment ? `Plan ${treatment.label} · ${approvalOf(treatment)[0].toLowerCase()}` : 'No plan stated'}${treatment && treatment !== first ? html`<span class="dim"> · compare only</span>` : nothing}</li>${doses.map(row)}`,
+    );
 }
 
 function doseRow(world, dose, isShown) {
@@ -56,9 +75,22 @@ function doseRow(world, dose, isShown) {
   const tail = isShown && room.plan.value.doses.length > 1 ? 'chosen' : dose.unit;
   const toggle = (event) => room.patchScene(toggledPatch(room.plan.value, room.scene.value, dose, isShown), how(ui, event));
   const choose = (event) => !isShown && room.patchScene(choosePatch(room.plan.value, room.scene.value, dose), how(ui, event));
-  return treeRow(world, { kind: 'dose', id: dose.id, words: [words, ofFits(room)?.rowWords(world, 'dose', dose.id) ?? '', tail], more: [doseWords(dose)], title: doseWords(dose), isOn: isVisible, toggle, choose }, html`
+  return treeRow(
+    world,
+    {
+      kind: 'dose',
+      id: dose.id,
+      words: [words, ofFits(room)?.rowWords(world, 'dose', dose.id) ?? '', tail],
+      more: [doseWords(dose)],
+      title: doseWords(dose),
+      isOn: isVisible,
+      toggle,
+      choose,
+    },
+    html`
     ${eye(isVisible, `Show ${words}`, isVisible ? 'Hide lines, wash and surfaces' : 'Show its isodose lines and wash', !room.canChange.value, toggle)}${name(words)} ${ofFits(room)?.rowMark(world, 'dose', dose.id) ?? nothing}
-    <span class="tail">${tail}</span>`);
+    <span class="tail">${tail}</span>`,
+  );
 }
 
 function radioRow(world, dose, quantity) {
@@ -67,9 +99,23 @@ function radioRow(world, dose, quantity) {
   const isChosen = scene.dose.quantity === quantity;
   const choose = (event) => !isChosen && room.patchScene({ dose: { quantity } }, how(ui, event));
   const missing = missingWords(missingOf(dose, quantity));
-  const tail = [unitOf(dose, quantity), quantity === 'boron' && dependsOnBlood(dose, quantity) ? `${number(scene.dose.blood_ppm)} ppm` : ''].filter(Boolean).join(', ');
-  return treeRow(world, { kind: 'quantity', id: quantity, words: [quantityName(quantity), missing || tail], more: [missing ? tail : '', isChosen ? 'chosen' : ''].filter(Boolean), title: [quantityName(quantity), missing].filter(Boolean).join(', '), toggle: choose, choose }, html`
-    <i class=${classMap({ 'dose-radio': true, on: isChosen })}></i>${name(quantityName(quantity))} <span class="tail clipped">${missing ? html`<span class="warn">${missing}</span>` : tail}</span>`);
+  const tail = [unitOf(dose, quantity), quantity === 'boron' && dependsOnBlood(dose, quantity) ? `${number(scene.dose.blood_ppm)} ppm` : '']
+    .filter(Boolean)
+    .join(', ');
+  return treeRow(
+    world,
+    {
+      kind: 'quantity',
+      id: quantity,
+      words: [quantityName(quantity), missing || tail],
+      more: [missing ? tail : '', isChosen ? 'chosen' : ''].filter(Boolean),
+      title: [quantityName(quantity), missing].filter(Boolean).join(', '),
+      toggle: choose,
+      choose,
+    },
+    html`
+    <i class=${classMap({ 'dose-radio': true, on: isChosen })}></i>${name(quantityName(quantity))} <span class="tail clipped">${missing ? html`<span class="warn">${missing}</span>` : tail}</span>`,
+  );
 }
 
 /** The same as one field, where rows are dear. */
@@ -93,15 +139,28 @@ function controlRow({ ui }, id, content, label) {
   const key = `dosing:${id}`;
   const enter = (event) => event.currentTarget.querySelector('select, input')?.focus();
   return html`<li class=${classMap({ row: true, 'dose-control': true, current: ui.row.value === key })} role="treeitem" id=${`row-${key}`} data-key=${key} aria-level="2" aria-selected="false" aria-label=${label}
-    @click=${() => { ui.row.value = key; }} @row-toggle=${enter}>${content}</li>`;
+    @click=${() => {
+      ui.row.value = key;
+    }} @row-toggle=${enter}>${content}</li>`;
 }
 
 function switchRow(world, id, words, key) {
   const { room, ui } = world;
   const { visible } = room.scene.value.dose[id];
   const toggle = (event) => room.patchScene({ dose: { [id]: { visible: !visible } } }, how(ui, event));
-  return treeRow(world, { kind: 'dosing', id, words: [words, id === 'surfaces' ? 'in 3-D' : ''], title: key ? `${words} (${key})` : words, isOn: visible, toggle }, html`
-    ${eye(visible, words, `${visible ? 'Hide' : 'Show'}${key ? ` (${key})` : ''}`, !room.canChange.value, toggle)}${name(words)} <span class="tail">${id === 'surfaces' ? 'in 3-D' : ''}</span>`);
+  return treeRow(
+    world,
+    {
+      kind: 'dosing',
+      id,
+      words: [words, id === 'surfaces' ? 'in 3-D' : ''],
+      title: key ? `${words} (${key})` : words,
+      isOn: visible,
+      toggle,
+    },
+    html`
+    ${eye(visible, words, `${visible ? 'Hide' : 'Show'}${key ? ` (${key})` : ''}`, !room.canChange.value, toggle)}${name(words)} <span class="tail">${id === 'surfaces' ? 'in 3-D' : ''}</span>`,
+  );
 }
 
 function washRow(world) {
@@ -111,12 +170,21 @@ function washRow(world) {
   const change = (patch, event) => room.patchScene({ dose: { wash: patch } }, how(ui, event));
   const toggle = (event) => change({ visible: !wash.visible }, event);
   const words = `Wash, ${wash.style} from ${number(wash.below_percent)} %`;
-  return treeRow(world, { kind: 'dosing', id: 'wash', words: ['Wash'], more: [words], title: `${words} (D)`, isOn: wash.visible, toggle }, html`
+  return treeRow(
+    world,
+    { kind: 'dosing', id: 'wash', words: ['Wash'], more: [words], title: `${words} (D)`, isOn: wash.visible, toggle },
+    html`
     ${eye(wash.visible, 'Wash', `${wash.visible ? 'Hide' : 'Show'} (D)`, isDisabled, toggle)}${name('Wash')}
     <select class="dose-style" aria-label="Style of the wash" tabindex="-1" ?disabled=${isDisabled} @click=${still} @change=${(event) => change({ style: event.target.value }, event)}>
-      ${[['bands', 'Bands'], ['smooth', 'Smooth']].map(([id, text]) => html`<option value=${id} ?selected=${id === wash.style} .selected=${live(id === wash.style)}>${text}</option>`)}</select>
+      ${[
+        ['bands', 'Bands'],
+        ['smooth', 'Smooth'],
+      ].map(
+        ([id, text]) => html`<option value=${id} ?selected=${id === wash.style} .selected=${live(id === wash.style)}>${text}</option>`,
+      )}</select>
     <span class="field dose-from" @click=${still}><input type="number" step="any" min="0" max="100" tabindex="-1" aria-label="Wash from this part of the reference, in per cent" .value=${typed(String(wash.below_percent))} ?disabled=${isDisabled}
-      @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change({ below_percent: Math.min(Math.max(event.target.valueAsNumber, 0), 100) }, event)}><span>%</span></span>`);
+      @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change({ below_percent: Math.min(Math.max(event.target.valueAsNumber, 0), 100) }, event)}><span>%</span></span>`,
+  );
 }
 
 // ---- keys of a pane ---------------------------------------------------------------------------------------------------------

@@ -2,7 +2,17 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
 import { dependsOnBlood } from '../state/dose.js';
-import { choosePresetPatch, editPatch, isEdited, isoeffectiveSets, presetOf, presetRow, presetsFor, tissueFor, weightsOf } from '../state/dose_weights.js';
+import {
+  choosePresetPatch,
+  editPatch,
+  isEdited,
+  isoeffectiveSets,
+  presetOf,
+  presetRow,
+  presetsFor,
+  tissueFor,
+  weightsOf,
+} from '../state/dose_weights.js';
 import { ownRegions } from '../state/identity.js';
 import { numberField, typed } from './fields.js';
 import { number } from './format.js';
@@ -10,7 +20,13 @@ import { icon } from './icons.js';
 import { swatch } from './probe.js';
 
 const [sliderHigh, highest] = [40, 1000]; // ppm: the slider's end, proto/scene.json
-const columns = [['boron_ratio', 'Boron as a multiple of that in blood'], ['cbe', 'CBE, the weight of boron'], ['nitrogen', 'RBE of nitrogen'], ['fast', 'RBE of fast neutrons'], ['gamma', 'Weight of gamma']];
+const columns = [
+  ['boron_ratio', 'Boron as a multiple of that in blood'],
+  ['cbe', 'CBE, the weight of boron'],
+  ['nitrogen', 'RBE of nitrogen'],
+  ['fast', 'RBE of fast neutrons'],
+  ['gamma', 'Weight of gamma'],
+];
 
 /** Boron in blood, live. */
 export function bloodBlock({ room }, dose, isDisabled, change) {
@@ -37,7 +53,9 @@ export function weightsBlock({ room }, isDisabled, change) {
         ${presetsFor(plan).map(({ name }) => html`<option value=${name} ?selected=${!edited && preset?.name === name} .selected=${live(!edited && preset?.name === name)}>${name}</option>`)}</select>
       <button class="icon-button" title=${preset ? `Back to ${preset.name}` : 'The set is not known'} aria-label="Reset the weights" ?disabled=${isDisabled || !edited || !preset} @click=${(event) => change(choosePresetPatch(plan, scene, preset), event)}>${icon('reset')}</button></h3>
     <table class="dose-weights"><thead><tr><th scope="col">Tissue</th><th scope="col" title=${columns[0][1]}>¹⁰B to blood</th><th scope="col">ppm</th><th scope="col" title=${columns[1][1]}>CBE</th><th scope="col" title=${columns[2][1]}>RBE N</th><th scope="col" title=${columns[3][1]}>RBE fast</th><th scope="col" title=${columns[4][1]}>γ</th></tr></thead>
-      <tbody>${ownRegions(plan, scene).filter(({ voxels }) => voxels > 0).map((region) => weightRow(plan, scene, region, preset, isDisabled, change))}</tbody></table>
+      <tbody>${ownRegions(plan, scene)
+        .filter(({ voxels }) => voxels > 0)
+        .map((region) => weightRow(plan, scene, region, preset, isDisabled, change))}</tbody></table>
     <p class="note dose-warn">${icon('warning', 12)} Example values, not a prescription. The plan is not changed.</p>
     ${preset ? html`<p class="note">${preset.name}: ${preset.source}.</p>` : nothing}${hasOther ? html`<p class="note">Other recoils and captures count with weight 1 unless the set says otherwise.</p>` : nothing}</section>`;
 }
@@ -47,7 +65,13 @@ function weightRow(plan, scene, region, preset, isDisabled, change) {
   const given = presetRow(preset, region);
   const kind = preset && !preset.rows ? tissueFor(preset, region) : null;
   const isInherited = held && held.from !== region.id;
-  const about = [held ? '' : 'no weights, so no weighted dose', isInherited ? `as ${plan.regions.find(({ id }) => id === held.from).name} around it` : '', kind ? `${preset.name}: ${kind.tissue}${kind.assumed ? ` (${kind.assumed})` : ''}` : ''].filter(Boolean).join('; ');
+  const about = [
+    held ? '' : 'no weights, so no weighted dose',
+    isInherited ? `as ${plan.regions.find(({ id }) => id === held.from).name} around it` : '',
+    kind ? `${preset.name}: ${kind.tissue}${kind.assumed ? ` (${kind.assumed})` : ''}` : '',
+  ]
+    .filter(Boolean)
+    .join('; ');
   const cell = ([field, words]) => {
     const value = held?.row[field];
     const isChanged = given && held && value !== given[field];

@@ -47,11 +47,12 @@ export function printable(world, what, name) {
   globalThis.onbeforeprint = () => {
     if (!isPrinting && document.querySelector('.printout')) void tell(world, what, name).catch(() => {});
   };
-  return () => made(world, what, name, () => {
-    isPrinting = true;
-    globalThis.print();
-    isPrinting = false;
-  });
+  return () =>
+    made(world, what, name, () => {
+      isPrinting = true;
+      globalThis.print();
+      isPrinting = false;
+    });
 }
 
 /** The view as a picture with letters, scale and caption; the server records it. */

@@ -13,8 +13,12 @@ class Typed extends Directive {
   update({ element }, [value]) {
     if (!this.isKnown) {
       this.isKnown = true;
-      element.addEventListener('input', () => { this.isTyping = true; });
-      element.addEventListener('change', () => { this.isTyping = false; });
+      element.addEventListener('input', () => {
+        this.isTyping = true;
+      });
+      element.addEventListener('change', () => {
+        this.isTyping = false;
+      });
     }
     if (this.isTyping && element === document.activeElement) return noChange;
     this.isTyping = false;
@@ -34,9 +38,14 @@ export function numberField(label, value, unit, isDisabled, change) {
 
 /** Buttons to choose one of a few words. An option is [word, name] or [word, name, tooltip]. */
 export function segment(label, options, chosen, isDisabled, choose) {
-  const stop = Math.max(0, options.findIndex(([id]) => id === chosen)); // the first one where none is chosen
-  return html`<div class="segment" role="radiogroup" aria-label=${label} @keydown=${roving}>${options.map(([id, name, about], index) => html`<button role="radio" aria-checked=${id === chosen}
-    tabindex=${index === stop ? 0 : -1} class=${classMap({ on: id === chosen })} title=${about ?? nothing} ?disabled=${isDisabled} @click=${(event) => choose(id, event)}>${name}</button>`)}</div>`;
+  const stop = Math.max(
+    0,
+    options.findIndex(([id]) => id === chosen),
+  ); // the first one where none is chosen
+  return html`<div class="segment" role="radiogroup" aria-label=${label} @keydown=${roving}>${options.map(
+    ([id, name, about], index) => html`<button role="radio" aria-checked=${id === chosen}
+    tabindex=${index === stop ? 0 : -1} class=${classMap({ on: id === chosen })} title=${about ?? nothing} ?disabled=${isDisabled} @click=${(event) => choose(id, event)}>${name}</button>`,
+  )}</div>`;
 }
 
 export function checkbox(name, isOn, isDisabled, change, about) {

@@ -25,10 +25,18 @@ export function figuresDialog(world) {
   return html`<section class="card compare" role="dialog" tabindex="-1" aria-label="Methods compared">
     <div class="card-head"><h2>${region.name}: methods compared</h2><span class="grow"></span>
       <button ?disabled=${!rows.length || n < rows.length} @click=${() => exportRows(world, 'methods', `${room.planId.value}-${region.id}-methods.csv`, figureRows(rows))}>CSV</button>
-      <button class="icon-button" aria-label="Close" @click=${() => { ui.popover.value = ''; }}>${icon('close')}</button></div>
+      <button class="icon-button" aria-label="Close" @click=${() => {
+        ui.popover.value = '';
+      }}>${icon('close')}</button></div>
     <p class="note">${n < rows.length ? html`<span role="status">Working out ${n + 1} of ${rows.length} …</span>` : html`${number(region.volume_cm3, 2)} cm³ in ${number(region.voxels)} univels of its own.`}
       With all regions inside it. Drawn alone, 650 × 650 pixels, moving picture.</p>
     <div class="table"><table><thead><tr><th scope="col">Method</th>${columns.map(([name]) => html`<th scope="col">${name}</th>`)}</tr></thead>
-      <tbody>${rows.map(({ name, result, error }) => html`<tr><th scope="row">${name}</th>${result ? columns.map(([, text]) => html`<td>${text(result)}</td>`)
-        : html`<td colspan=${columns.length} class=${error ? 'why' : 'dim'}>${error ?? '…'}</td>`}</tr>`)}</tbody></table></div></section>`;
+      <tbody>${rows.map(
+        ({ name, result, error }) =>
+          html`<tr><th scope="row">${name}</th>${
+            result
+              ? columns.map(([, text]) => html`<td>${text(result)}</td>`)
+              : html`<td colspan=${columns.length} class=${error ? 'why' : 'dim'}>${error ?? '…'}</td>`
+          }</tr>`,
+      )}</tbody></table></div></section>`;
 }

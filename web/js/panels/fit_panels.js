@@ -2,7 +2,24 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { signal } from '../../lib/signals-core.js';
-import { byWordOf, factOf, inNumbersOf, leftOffPatch, markWords, minLetters, nLetters, partName, partOf, questionsOf, reasonName, reasons, selectedUse, selectionOf, usesOf, voidRows } from '../state/fits.js';
+import {
+  byWordOf,
+  factOf,
+  inNumbersOf,
+  leftOffPatch,
+  markWords,
+  minLetters,
+  nLetters,
+  partName,
+  partOf,
+  questionsOf,
+  reasonName,
+  reasons,
+  selectedUse,
+  selectionOf,
+  usesOf,
+  voidRows,
+} from '../state/fits.js';
 import { patientOf } from '../state/identity.js';
 import { icon } from './icons.js';
 
@@ -34,7 +51,13 @@ export function fitBar(world) {
   const [first, ...others] = waiting;
   const line = (use) => html`<p>${sentence(use.reason)}</p>${buttons(world, use)}`;
   return html`<div class="fit-bar" role="alert"><span class="warn">${icon('warning')}</span>${line(first)}${room.following.isPresenting.value ? nothing : html`<span class="note why">${onlyPresenter}</span>`}
-    ${others.length ? html`<button class="ghost" aria-expanded=${isOpen.value} @click=${() => { isOpen.value = !isOpen.value; }}>and ${others.length} more</button>` : nothing}
+    ${
+      others.length
+        ? html`<button class="ghost" aria-expanded=${isOpen.value} @click=${() => {
+            isOpen.value = !isOpen.value;
+          }}>and ${others.length} more</button>`
+        : nothing
+    }
     ${others.length && isOpen.value ? html`<ul>${others.map((use) => html`<li>${line(use)}</li>`)}</ul>` : nothing}</div>`;
 
   function buttons(of, use) {
@@ -79,7 +102,8 @@ export function wordMark(world, kinds = []) {
   return mark(used);
 }
 
-const mark = (used) => html`<span class="fit-mark warn" title=${used.map((use) => `${factOf(use.reason)} ${byWords(use)}`).join('\n')}>${icon('warning', 12)} ${markWords(used[0].relation)}</span>`;
+const mark = (used) =>
+  html`<span class="fit-mark warn" title=${used.map((use) => `${factOf(use.reason)} ${byWords(use)}`).join('\n')}>${icon('warning', 12)} ${markWords(used[0].relation)}</span>`;
 
 const inNumbers = ({ room }) => inNumbersOf(room.plan.value, room.scene.value, worldUses({ room }));
 
@@ -90,7 +114,14 @@ export function numberMark(world) {
 }
 
 /** The same as rows of a file: [name, parts, fact, who, words]. */
-export const usedRows = ({ room }) => inNumbers({ room }).map((use) => ['used though it does not fit', `${partName(room.plan.value, use.thing)} with ${partName(room.plan.value, use.with)}`, factOf(use.reason), `${use.by.author_name}, ${new Date(use.by.created_ms).toISOString()}`, use.by.body.words]);
+export const usedRows = ({ room }) =>
+  inNumbers({ room }).map((use) => [
+    'used though it does not fit',
+    `${partName(room.plan.value, use.thing)} with ${partName(room.plan.value, use.with)}`,
+    factOf(use.reason),
+    `${use.by.author_name}, ${new Date(use.by.created_ms).toISOString()}`,
+    use.by.body.words,
+  ]);
 
 /** On paper: what is used though it does not fit, with who said so. */
 export function usedSheet({ room }) {
@@ -108,16 +139,22 @@ export function fitBlock(world) {
   const { room, ui } = world;
   const use = selectedUse(room.plan.value, worldUses(world), ui.selection.value);
   if (!use) return nothing;
-  if (use.needs === 'never') return html`<section class="block fit-block err"><h3>${icon('error')} ${partName(room.plan.value, use.thing)}</h3><p>${sentence(use.reason)} It is never used.</p></section>`;
+  if (use.needs === 'never')
+    return html`<section class="block fit-block err"><h3>${icon('error')} ${partName(room.plan.value, use.thing)}</h3><p>${sentence(use.reason)} It is never used.</p></section>`;
   return use.state === 'by-word' ? usedBlock(world, use) : formBlock(world, use);
 }
 
 function factsTable(plan, use) {
   const [one, two] = [partOf(plan, use.thing), partOf(plan, use.with)];
-  const of = (part, word) => ({ patient: patientOf(plan, part?.patient), frame: part?.frame ?? null, plan: plan.treatmentPlans[part?.plan]?.label ?? '' })[word];
+  const of = (part, word) =>
+    ({ patient: patientOf(plan, part?.patient), frame: part?.frame ?? null, plan: plan.treatmentPlans[part?.plan]?.label ?? '' })[word];
   const isStated = (value) => value !== null && value !== undefined && value !== '';
   const cell = (value, word) => (!isStated(value) ? 'not stated' : word === 'frame' ? `frame ${Number(value) + 1}` : value);
-  const rows = [['Patient', 'patient'], ['Frame of reference', 'frame'], ['Plan', 'plan']].map(([name, word]) => [name, word, of(one.part, word), of(two.part, word)]);
+  const rows = [
+    ['Patient', 'patient'],
+    ['Frame of reference', 'frame'],
+    ['Plan', 'plan'],
+  ].map(([name, word]) => [name, word, of(one.part, word), of(two.part, word)]);
   return html`<table class="fit-facts"><thead><tr><td></td><th scope="col">${one.word.toLowerCase()}${one.name ? ` ‘${one.name}’` : ''}</th><th scope="col">${two.name}</th></tr></thead>
     <tbody>${rows.map(([name, word, a, b]) => html`<tr class=${classMap({ warn: a !== b && (isStated(a) || isStated(b)) && word !== 'plan' })}><th scope="row">${name}</th><td>${cell(a, word)}</td><td>${cell(b, word)}</td></tr>`)}</tbody></table>`;
 }
@@ -127,7 +164,9 @@ function formBlock(world, use) {
   const plan = room.plan.value;
   const pair = `${use.thing} ${use.with}`;
   const now = form.value.pair === pair ? form.value : { pair, reason: 'registered-elsewhere', words: '', error: '', isSent: false };
-  const set = (more) => { form.value = { ...now, ...more }; };
+  const set = (more) => {
+    form.value = { ...now, ...more };
+  };
   const mayAccept = room.following.isPresenting.value;
   const isShort = nLetters(now.words) < minLetters;
   const cancel = () => {
@@ -156,7 +195,8 @@ async function accept(world, use, { reason, words }, set) {
       undo?.noteAct({ name: `use of ${partName(room.plan.peek(), use.thing)}`, ...acts(room, row, body) });
       return void set({ isSent: false, words: '' });
     } catch (problem) {
-      if (problem.type !== '/problems/busy' || n === tries) return void set({ isSent: false, error: problem.detail || 'The server refused it.' });
+      if (problem.type !== '/problems/busy' || n === tries)
+        return void set({ isSent: false, error: problem.detail || 'The server refused it.' });
       await new Promise((done) => clock.setTimeout(done, retryMs));
     }
   }
@@ -165,7 +205,12 @@ async function accept(world, use, { reason, words }, set) {
 /** Taking an acceptance back, and making it again. */
 function acts(room, first, body) {
   let row = first;
-  return { undo: () => room.items.delete(row), redo: async () => { row = await room.items.put('acceptance', body); } };
+  return {
+    undo: () => room.items.delete(row),
+    redo: async () => {
+      row = await room.items.put('acceptance', body);
+    },
+  };
 }
 
 async function withdraw(world, row) {
@@ -174,13 +219,20 @@ async function withdraw(world, row) {
     await room.items.delete(row);
     const body = { thing: row.body.thing, with: row.body.with, reason: row.body.reason, words: row.body.words };
     let again = row;
-    undo?.noteAct({ name: 'withdrawal', undo: async () => { again = await room.items.put('acceptance', body); }, redo: () => room.items.delete(again) });
+    undo?.noteAct({
+      name: 'withdrawal',
+      undo: async () => {
+        again = await room.items.put('acceptance', body);
+      },
+      redo: () => room.items.delete(again),
+    });
   } catch (problem) {
     room.notify('err', problem.detail || 'The server refused it.');
   }
 }
 
-const usedBlock = (world, use) => html`<section class="block fit-block"><h3 class="warn">${icon('warning')} ${markWords(use.relation)}</h3><p class="note">${factOf(use.reason)}</p></section>${listBlock(world)}`;
+const usedBlock = (world, use) =>
+  html`<section class="block fit-block"><h3 class="warn">${icon('warning')} ${markWords(use.relation)}</h3><p class="note">${factOf(use.reason)}</p></section>${listBlock(world)}`;
 
 /** What is used all the same in this room, with who said so; and what was accepted for other files. */
 export function listBlock(world) {
@@ -190,7 +242,10 @@ export function listBlock(world) {
   const old = voidRows(room.items.rows.value, room.acceptances.value.items);
   if (!rows.length && !old.length) return nothing;
   const mayWithdraw = room.following.isPresenting.value;
-  const entry = (row, isVoid) => html`<dl class=${classMap({ 'fit-used': true, void: isVoid })}><dt>${partOf(plan, row.body.thing).word}</dt><dd>${partOf(plan, row.body.thing).name}, with ${partOf(plan, row.body.with).name}</dd>
+  const entry = (
+    row,
+    isVoid,
+  ) => html`<dl class=${classMap({ 'fit-used': true, void: isVoid })}><dt>${partOf(plan, row.body.thing).word}</dt><dd>${partOf(plan, row.body.thing).name}, with ${partOf(plan, row.body.with).name}</dd>
       <dt>By</dt><dd>${row.author_name}, ${time(row.created_ms)}</dd><dt>Because</dt><dd>${reasonName(row.body.reason).toLowerCase()}: ${row.body.words}</dd></dl>
     ${isVoid ? html`<p class="note">${room.acceptances.value.known ? 'Void: the plan’s files are others than those it was said of.' : 'Does not count yet: the plan’s files are being read.'}</p>` : nothing}
     <div class="buttons"><button ?disabled=${!mayWithdraw} title=${mayWithdraw ? '' : 'Only who presents may withdraw it.'} @click=${() => withdraw(world, row)}>Withdraw</button></div>`;

@@ -6,7 +6,18 @@ import { shownImage } from '../state/plan.js';
 import { icon } from './icons.js';
 
 const names = { image: 'Image', dose: 'Dose', beam: 'Beam', region: 'Region' };
-const relationWords = { same: 'same', registered: 'by registration', unstated: 'not stated', absent: 'same', plan: 'same', unit: 'same', per: 'same', apart: 'apart', frame: 'other', patient: 'other' };
+const relationWords = {
+  same: 'same',
+  registered: 'by registration',
+  unstated: 'not stated',
+  absent: 'same',
+  plan: 'same',
+  unit: 'same',
+  per: 'same',
+  apart: 'apart',
+  frame: 'other',
+  patient: 'other',
+};
 
 /** Each part against the shown image: frame, patient, plan, in words. */
 export function fitsTable({ room }) {
@@ -20,7 +31,8 @@ export function fitsTable({ room }) {
     const isOther = part && plan.patients[part.patient] && plan.patients[image.patient] && part.patient !== image.patient;
     const patient = !part || !plan.patients[part.patient] || !plan.patients[image.patient] ? 'not stated' : isOther ? 'other' : 'same';
     const of = plan.treatmentPlans[part?.plan]?.label ?? (relation === 'absent' ? 'not here' : '–');
-    const isBad = (text) => (['other', 'apart', 'not here'].includes(text) ? 'err' : text === 'same' || text === 'by registration' ? 'ok' : '');
+    const isBad = (text) =>
+      ['other', 'apart', 'not here'].includes(text) ? 'err' : text === 'same' || text === 'by registration' ? 'ok' : '';
     const frame = relationWords[relation] ?? relation;
     return html`<tr title=${reason}><th scope="row">${kind === 'image' ? name : [word, name && `‘${name}’`].filter(Boolean).join(' ')}</th><td class=${isBad(frame)}>${frame}</td><td class=${isBad(patient)}>${patient}</td><td class=${isBad(of)}>${of}</td></tr>`;
   };
@@ -34,7 +46,11 @@ export function otherPatientsBar({ room }) {
   const others = plan && scene ? partsOfOthers(plan, scene) : [];
   if (!others.length) return nothing;
   const byPatient = [...new Set(others.map(({ masked }) => masked))].map((masked) => {
-    const kinds = [...new Set(others.filter((part) => part.masked === masked).map(({ kind, name }) => (kind === 'image' ? name : names[kind].toLowerCase())))];
+    const kinds = [
+      ...new Set(
+        others.filter((part) => part.masked === masked).map(({ kind, name }) => (kind === 'image' ? name : names[kind].toLowerCase())),
+      ),
+    ];
     return `${kinds.length > 1 ? `${kinds.slice(0, -1).join(', ')} and ${kinds.at(-1)}` : kinds[0]} of ${masked}`;
   });
   const label = plan.treatmentPlans.find(({ patient }) => plan.patients[patient] === shownPatient(plan, scene))?.label;

@@ -6,10 +6,22 @@ import { icon } from './icons.js';
 
 const signs = { ok: 'check', warn: 'warning', err: 'error' };
 
-export const toasts = ({ ui }) => html`${repeat(ui.toasts.value, (toast) => toast.id, ({ id, kind, text, action }) => html`
+export const toasts = ({ ui }) =>
+  html`${repeat(
+    ui.toasts.value,
+    (toast) => toast.id,
+    ({ id, kind, text, action }) => html`
   <div class="toast" role=${kind === 'err' ? 'alert' : 'status'}><span class=${kind}>${icon(signs[kind])}</span><span>${text}</span>
-    ${action ? html`<button class="toast-act" @click=${() => { ui.dismiss(id); action.act(); }}>${action.word}${action.keys ? html` <kbd>${action.keys}</kbd>` : nothing}</button>` : nothing}
-    <button class="icon-button small" aria-label="Dismiss" @click=${() => ui.dismiss(id)}>${icon('close', 12)}</button><i></i></div>`)}`;
+    ${
+      action
+        ? html`<button class="toast-act" @click=${() => {
+            ui.dismiss(id);
+            action.act();
+          }}>${action.word}${action.keys ? html` <kbd>${action.keys}</kbd>` : nothing}</button>`
+        : nothing
+    }
+    <button class="icon-button small" aria-label="Dismiss" @click=${() => ui.dismiss(id)}>${icon('close', 12)}</button><i></i></div>`,
+  )}`;
 
 const keys = [
   ['Left drag', 'Turn in 3-D, crosshair in slices (Alt: free, not on voxels only)'],
@@ -63,14 +75,18 @@ const keys = [
   ['Esc', 'Leave tool, popover, pointing, own view, message, full pane'],
 ];
 
-export const help = ({ ui }) => (ui.popover.value !== 'help' ? nothing : html`<section class="card help" role="dialog" tabindex="-1" aria-label="Keys and mouse">
+export const help = ({ ui }) =>
+  ui.popover.value !== 'help'
+    ? nothing
+    : html`<section class="card help" role="dialog" tabindex="-1" aria-label="Keys and mouse">
   <div class="card-head"><h2>Keys and mouse</h2><span class="grow"></span><button class="icon-button" aria-label="Close" @click=${() => ui.toggle('help')}>${icon('close')}</button></div>
   <p class="note">Keys act in the pane that has the focus.</p>
   <dl>${keys.map(([key, what]) => html`<dt>${key}</dt><dd>${what}</dd>`)}</dl>
-  <p class="note"><a href="gen/reference.html" target="_blank">Reference: scene, messages, HTTP API, problems, codes of load reports</a></p></section>`);
+  <p class="note"><a href="gen/reference.html" target="_blank">Reference: scene, messages, HTTP API, problems, codes of load reports</a></p></section>`;
 
 /** While the report to print is open, what it covers takes no focus. @returns {() => void} stops */
-export const coverPage = (host, ui) => effect(() => {
-  const isOpen = ui.popover.value === 'printout';
-  for (const part of host.querySelectorAll('.room > :not(.floating)')) part.inert = isOpen;
-});
+export const coverPage = (host, ui) =>
+  effect(() => {
+    const isOpen = ui.popover.value === 'printout';
+    for (const part of host.querySelectorAll('.room > :not(.floating)')) part.inert = isOpen;
+  });

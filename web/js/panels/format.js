@@ -59,7 +59,10 @@ export const seconds = (ms) => (ms < 1000 ? `${number(ms)} ms` : `${number(ms / 
 export const count = (n, word) => `${number(n)} ${word}${n === 1 ? '' : 's'}`;
 
 /** "1/cm²" for a unit as files write it, "1/cm2"; "Gy(w)" for a weighted dose under its older names. */
-export const unitText = (unit) => unit.replace(/\bGy[- ]?Eq\b|\bGyw\b/gi, 'Gy(w)').replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
+export const unitText = (unit) =>
+  unit
+    .replace(/\bGy[- ]?Eq\b|\bGyw\b/gi, 'Gy(w)')
+    .replace(/\b([cm]?m)([23])\b/g, (_, metre, power) => `${metre}${power === '2' ? '²' : '³'}`);
 
 /** "Physical total, Gy"; without a comma where one is empty. */
 export const listed = (...words) => words.filter(Boolean).join(', ');

@@ -22,8 +22,30 @@ export function imageBlock(world, isDisabled, change) {
       ${windowFields(world, image, '', isDisabled, set)}
       ${colorBar(world, image)}
       <dl class="image-rows">${colorMapRow(world, image, '', isDisabled, change)}
-        ${isShown ? html`<dt>Low values</dt><dd>${segment('Low values', [['black', 'Black'], ['white', 'White', 'The values stay; only their greys go the other way']], isLowWhite(image, scene) ? 'white' : 'black', isDisabled, (low_values, event) => change({ image: { low_values } }, event))}</dd>
-        <dt>Between voxels</dt><dd>${segment('Interpolation', [['linear', 'Linear'], ['nearest', 'Nearest']], scene.image.interpolation, isDisabled, (interpolation, event) => change({ image: { interpolation } }, event))}</dd>` : nothing}</dl></section>
+        ${
+          isShown
+            ? html`<dt>Low values</dt><dd>${segment(
+                'Low values',
+                [
+                  ['black', 'Black'],
+                  ['white', 'White', 'The values stay; only their greys go the other way'],
+                ],
+                isLowWhite(image, scene) ? 'white' : 'black',
+                isDisabled,
+                (low_values, event) => change({ image: { low_values } }, event),
+              )}</dd>
+        <dt>Between voxels</dt><dd>${segment(
+          'Interpolation',
+          [
+            ['linear', 'Linear'],
+            ['nearest', 'Nearest'],
+          ],
+          scene.image.interpolation,
+          isDisabled,
+          (interpolation, event) => change({ image: { interpolation } }, event),
+        )}</dd>`
+            : nothing
+        }</dl></section>
     ${isShown ? html`${blendBlock(world, image, isDisabled, change)}${slicesBlock(scene, image, isDisabled, change)}` : nothing}`;
 }
 
@@ -35,14 +57,19 @@ function blendBlock(world, image, isDisabled, change) {
   if (!others.length) return nothing;
   const blended = blendedImage(plan, scene);
   const percent = Math.round((scene.image.blend?.opacity ?? 0.5) * 100);
-  const setOpacity = (value, event) => Number.isFinite(value) && change({ image: { blend: { opacity: Math.min(Math.max(value, 0), 100) / 100 } } }, event);
+  const setOpacity = (value, event) =>
+    Number.isFinite(value) && change({ image: { blend: { opacity: Math.min(Math.max(value, 0), 100) / 100 } } }, event);
   const options = [['', 'None'], ...others.map((other) => [other.id, imageName(plan, other)])];
   const choose = (id, event) => change({ image: { blend: { id } } }, event);
   return html`<section class="block"><h3>Second image over it</h3>
     <select aria-label="Second image" ?disabled=${isDisabled} @change=${(event) => choose(event.target.value, event)}>${options.map(([id, name]) => html`<option value=${id} .selected=${live(id === (blended?.id ?? ''))}>${name}</option>`)}</select>
-    ${blended ? html`<dl class="image-rows"><dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(percent))} aria-label="Opacity of the second image" ?disabled=${isDisabled}
+    ${
+      blended
+        ? html`<dl class="image-rows"><dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(percent))} aria-label="Opacity of the second image" ?disabled=${isDisabled}
         @input=${(event) => setOpacity(event.target.valueAsNumber, event)}>${numberField('Opacity of the second image in per cent', percent, '%', isDisabled, setOpacity)}</dd></dl>
       ${windowFields(world, blended, 'Second image', isDisabled, (window, event) => change(lookPatch(plan, room.scene.value, blended, { window }), event))}
       ${colorBar(world, blended)}
-      <dl class="image-rows">${colorMapRow(world, blended, 'Second image', isDisabled, change)}</dl>` : nothing}</section>`;
+      <dl class="image-rows">${colorMapRow(world, blended, 'Second image', isDisabled, change)}</dl>`
+        : nothing
+    }</section>`;
 }

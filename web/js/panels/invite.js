@@ -2,8 +2,16 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
 
-const kinds = [['reviewer', 'Reviewer: points, writes notes, requests control'], ['observer', 'Observer: looks and follows'], ['presenter', 'Presenter: takes control, invites']];
-const times = [[3600, 'for an hour'], [86400, 'for a day'], [604800, 'for a week']];
+const kinds = [
+  ['reviewer', 'Reviewer: points, writes notes, requests control'],
+  ['observer', 'Observer: looks and follows'],
+  ['presenter', 'Presenter: takes control, invites'],
+];
+const times = [
+  [3600, 'for an hour'],
+  [86400, 'for a day'],
+  [604800, 'for a week'],
+];
 const made = signal({ url: '', words: '', error: '', isBusy: false });
 
 /** The page's address of this room with the link in it. */
@@ -28,7 +36,11 @@ async function make(event, { room, api }) {
   const data = new FormData(event.target);
   made.value = { url: '', words: '', error: '', isBusy: true };
   try {
-    const { token } = await api.makeLink(room.id, room.identity, { role: data.get('role'), expires_s: Number(data.get('expires')), one_use: data.has('one') });
+    const { token } = await api.makeLink(room.id, room.identity, {
+      role: data.get('role'),
+      expires_s: Number(data.get('expires')),
+      one_use: data.has('one'),
+    });
     made.value = { url: addressOf(room, token), words: '', error: '', isBusy: false };
     queueMicrotask(() => void copy(made.peek().url)); // after it is drawn
   } catch (error) {

@@ -18,7 +18,9 @@ export class Lazy {
   draw(use) {
     if (this.loaded.value) return use(this.loaded.value);
     if (this.#error.value)
-      return html`<p class="empty" role="alert">This part of the page could not be loaded. <button class="link" @click=${() => { this.#error.value = false; }}>Try again</button></p>`;
+      return html`<p class="empty" role="alert">This part of the page could not be loaded. <button class="link" @click=${() => {
+        this.#error.value = false;
+      }}>Try again</button></p>`;
     this.load();
     return html`<p class="empty">Loading …</p>`;
   }
@@ -53,7 +55,10 @@ export async function styled(href) {
   const link = known ?? Object.assign(document.createElement('link'), { rel: 'stylesheet', href });
   await new Promise((done, failed) => {
     link.addEventListener('load', done);
-    link.addEventListener('error', () => { link.remove(); failed(new Error(href)); });
+    link.addEventListener('error', () => {
+      link.remove();
+      failed(new Error(href));
+    });
     if (!known) document.head.append(link);
   });
 }

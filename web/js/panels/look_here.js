@@ -55,13 +55,25 @@ export function startLook(world) {
         told = 0;
       } else if (isOwn) {
         told = look.number;
-        ui.notify('ok', `You ask to look here: ${look.came.length} of ${Math.max(n, look.came.length)} came`, topic, { word: 'End', act: () => pointers.ask(null) }, shownMs);
+        ui.notify(
+          'ok',
+          `You ask to look here: ${look.came.length} of ${Math.max(n, look.came.length)} came`,
+          topic,
+          { word: 'End', act: () => pointers.ask(null) },
+          shownMs,
+        );
       } else if (look.came.includes(room.member.peek())) {
         told = look.number;
         close();
       } else if (told !== look.number) {
         told = look.number;
-        ui.notify('ok', `${pointers.nameOf(look.by)} asks you to look here`, topic, { word: 'Come', act: () => come(world, look) }, shownMs);
+        ui.notify(
+          'ok',
+          `${pointers.nameOf(look.by)} asks you to look here`,
+          topic,
+          { word: 'Come', act: () => come(world, look) },
+          shownMs,
+        );
       }
     });
   });

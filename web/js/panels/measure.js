@@ -20,7 +20,10 @@ const letters = ['L', 'P', 'S'];
 
 const jump = ({ room, ui }, measure, event) => {
   const [plan, scene] = [room.plan.value, room.scene.value];
-  room.patchScene(crosshairPatch(plan, shownImage(plan, scene), pointsOf(measure)[0], { isFree: true }), { view: ui.active.value, at: event.timeStamp });
+  room.patchScene(crosshairPatch(plan, shownImage(plan, scene), pointsOf(measure)[0], { isFree: true }), {
+    view: ui.active.value,
+    at: event.timeStamp,
+  });
 };
 function remove({ room, ui }, id, event) {
   room.patchScene(removePatch(id, room.isForRoom({ measures: { [id]: null } })), { view: ui.active.value, at: event.timeStamp });
@@ -40,7 +43,9 @@ export function measuresBlock(world, isDisabled) {
   return html`<section class="block"><h3>${icon('measure')} Measure</h3>
       <div class="shown-as">${segment('What is measured', kinds, kind, isDisabled, choose)}</div>
       <p class="note">${how} In a slice; Esc ends it. By keys: Enter sets a point at the crosshair.</p>
-      <div class="buttons"><button class=${classMap({ on: isTool })} aria-pressed=${isTool} title="Key M" @click=${() => { ui.tool.value = isTool ? 'crosshair' : 'measure'; }}>Draw in a slice</button>
+      <div class="buttons"><button class=${classMap({ on: isTool })} aria-pressed=${isTool} title="Key M" @click=${() => {
+        ui.tool.value = isTool ? 'crosshair' : 'measure';
+      }}>Draw in a slice</button>
         <button ?disabled=${isDisabled} @click=${(event) => addAtCrosshair(world, kind, event)}>Add at the crosshair</button></div></section>
     ${listBlock(world, isDisabled)}`;
 }
@@ -51,8 +56,12 @@ function addAtCrosshair({ room, ui }, kind, event) {
   const active = room.view(ui.active.value);
   const plane = planeOfView(scene, isInSpace(active.kind) ? { kind: 'axial' } : active.document.value, room.plan.value);
   const id = freeId(scene.measures, room.sharesMarks, room.markSuffix);
-  if (measuresOf(scene).length >= mostMeasures) return void ui.notify('warn', `There are ${mostMeasures} measures already: delete one first.`, 'measures');
-  room.patchScene(newMeasure(id, kind, pointsAround(kind, nearestIn(plane, crosshair(scene)), plane), shownImage(room.plan.value, scene)), { view: ui.active.value, at: event.timeStamp });
+  if (measuresOf(scene).length >= mostMeasures)
+    return void ui.notify('warn', `There are ${mostMeasures} measures already: delete one first.`, 'measures');
+  room.patchScene(newMeasure(id, kind, pointsAround(kind, nearestIn(plane, crosshair(scene)), plane), shownImage(room.plan.value, scene)), {
+    view: ui.active.value,
+    at: event.timeStamp,
+  });
   ui.select('measure', id);
 }
 
@@ -63,13 +72,17 @@ function listBlock(world, isDisabled) {
   const { room, ui } = world;
   const entries = measuresOf(room.scene.value);
   if (!entries.length) return nothing;
-  return html`<section class="block"><h3>Measures <span class="dim">${entries.length}</span></h3><ul class="image-list" aria-label="Measures">${repeat(entries, ([id]) => id, ([id, measure]) => {
-    const words = measureName(id, measure);
-    return html`<li><button class="image-measure-name" title=${words} @click=${() => ui.choose('measure', id)}>${icon(kindIcons[measure.kind])}<b>${words}</b><span>${byOther(room, measure)}${valueTexts(world, id, measure).map((text) => html`<span>${text}</span> `)}</span></button>
+  return html`<section class="block"><h3>Measures <span class="dim">${entries.length}</span></h3><ul class="image-list" aria-label="Measures">${repeat(
+    entries,
+    ([id]) => id,
+    ([id, measure]) => {
+      const words = measureName(id, measure);
+      return html`<li><button class="image-measure-name" title=${words} @click=${() => ui.choose('measure', id)}>${icon(kindIcons[measure.kind])}<b>${words}</b><span>${byOther(room, measure)}${valueTexts(world, id, measure).map((text) => html`<span>${text}</span> `)}</span></button>
       <button class="icon-button small" aria-pressed=${measure.visible} aria-label=${`Show ${words} in the pictures`} title="Show or hide" ?disabled=${isDisabled} @click=${(event) => showMeasure(world, id, !measure.visible, event)}>${icon(measure.visible ? 'eye' : 'eyeOff')}</button>
       <button class="icon-button small" aria-label=${`Crosshair to ${words}`} title="Crosshair there" ?disabled=${isDisabled} @click=${(event) => jump(world, measure, event)}>${icon('target')}</button>
       <button class="icon-button small" aria-label=${`Delete ${words}`} title="Delete" ?disabled=${isDisabled} @click=${(event) => remove(world, id, event)}>${icon('trash')}</button></li>`;
-  })}</ul></section>`;
+    },
+  )}</ul></section>`;
 }
 
 /** One measure. */
@@ -86,8 +99,14 @@ export function measureBlock(world, isDisabled, changeScene) {
       <p class="image-measured" role="status">${valueTexts(world, id, measure).map((text) => html`<b>${text}</b> `)}</p>
       <dl class="image-rows"><dt>Name</dt><dd><input maxlength="40" aria-label="Name of the measure" placeholder=${words} .value=${live(measure.name)} ?disabled=${isDisabled} @change=${(event) => change({ name: event.target.value.trim() }, event)}></dd>
         ${measure.author ? html`<dt>By</dt><dd>${measure.author}</dd>` : nothing}
-        ${isEllipse && plan.images.length > 1 ? html`<dt>Image</dt><dd><select aria-label="Image that is measured" ?disabled=${isDisabled} @change=${(event) => change({ image: event.target.value }, event)}>${plan.images.map((image) =>
-          html`<option value=${image.id} .selected=${live(image === imageOf(plan, scene, measure))}>${imageName(plan, image)}</option>`)}</select></dd>` : nothing}</dl>
+        ${
+          isEllipse && plan.images.length > 1
+            ? html`<dt>Image</dt><dd><select aria-label="Image that is measured" ?disabled=${isDisabled} @change=${(event) => change({ image: event.target.value }, event)}>${plan.images.map(
+                (image) =>
+                  html`<option value=${image.id} .selected=${live(image === imageOf(plan, scene, measure))}>${imageName(plan, image)}</option>`,
+              )}</select></dd>`
+            : nothing
+        }</dl>
       ${pointTable(measure, isDisabled, change)}
       <div class="checks">${checkbox('In the pictures', measure.visible, isDisabled, (isOn, event) => showMeasure(world, id, isOn, event))}</div>
       <div class="buttons">${measure.kind === 'polyline' ? html`<button ?disabled=${isDisabled || measure.points.length >= mostPoints} @click=${(event) => change({ points: listed(continued(pointsOf(measure))) }, event)}>Add a point</button>` : nothing}
@@ -97,16 +116,25 @@ export function measureBlock(world, isDisabled, changeScene) {
 }
 
 /** The line goes on as far again as its last part. */
-const continued = (points) => [...points, points.length > 1 ? add(points.at(-1), subtract(points.at(-1), points.at(-2))) : add(points[0], scale([1, 0, 0], 10))];
+const continued = (points) => [
+  ...points,
+  points.length > 1 ? add(points.at(-1), subtract(points.at(-1), points.at(-2))) : add(points[0], scale([1, 0, 0], 10)),
+];
 
 const pointNames = { ellipse: ['Centre', 'Edge', 'Edge 2'] };
 
 function pointTable({ kind, points }, isDisabled, change) {
   const places = points.map(({ at_mm: at }) => at);
-  const set = (index, axis, value, event) => change({ points: listed(replaced(places, index, replaced(places[index], axis, Math.min(Math.max(value, -100000), 100000)))) }, event);
+  const set = (index, axis, value, event) =>
+    change({ points: listed(replaced(places, index, replaced(places[index], axis, Math.min(Math.max(value, -100000), 100000)))) }, event);
   const nameOf = (index) => pointNames[kind]?.[index] ?? `Point ${index + 1}`;
   const isLine = kind === 'polyline' && places.length > 2;
   return html`<table class="image-places"><thead><tr><th scope="col">mm</th>${letters.map((letter) => html`<th scope="col">${letter}</th>`)}${isLine ? html`<th scope="col"><span class="hidden">Remove</span></th>` : nothing}</tr></thead>
-    <tbody>${places.map((place, index) => html`<tr><th scope="row">${nameOf(index)}</th>${place.map((value, axis) => html`<td>${numberField(`${nameOf(index)}, ${letters[axis]} in mm`, Number(value.toFixed(2)), '', isDisabled, (entered, event) => set(index, axis, entered, event))}</td>`)}
-      ${isLine ? html`<td><button class="icon-button small" aria-label=${`Remove ${nameOf(index)}`} ?disabled=${isDisabled} @click=${(event) => change({ points: listed(without(places, index)) }, event)}>${icon('close', 12)}</button></td>` : nothing}</tr>`)}</tbody></table>`;
+    <tbody>${places.map(
+      (
+        place,
+        index,
+      ) => html`<tr><th scope="row">${nameOf(index)}</th>${place.map((value, axis) => html`<td>${numberField(`${nameOf(index)}, ${letters[axis]} in mm`, Number(value.toFixed(2)), '', isDisabled, (entered, event) => set(index, axis, entered, event))}</td>`)}
+      ${isLine ? html`<td><button class="icon-button small" aria-label=${`Remove ${nameOf(index)}`} ?disabled=${isDisabled} @click=${(event) => change({ points: listed(without(places, index)) }, event)}>${icon('close', 12)}</button></td>` : nothing}</tr>`,
+    )}</tbody></table>`;
 }

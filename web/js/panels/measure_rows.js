@@ -9,14 +9,23 @@ export const measuresOf = (scene) => Object.entries(scene?.measures ?? {});
 
 export const hasMeasures = (plan, scene) => measuresOf(scene).length > 0;
 
-export const showMeasure = ({ room, ui }, id, visible, event) => room.patchScene({ measures: { [id]: { visible } } }, { view: ui.active.value, at: event.timeStamp });
+export const showMeasure = ({ room, ui }, id, visible, event) =>
+  room.patchScene({ measures: { [id]: { visible } } }, { view: ui.active.value, at: event.timeStamp });
 
 export function measureRows(world) {
   const { room } = world;
-  return repeat(measuresOf(room.scene.value), ([id]) => id, ([id, measure]) => {
-    const [words, value] = [measureName(id, measure), valueTexts(world, id, measure)[0] ?? ''];
-    const toggle = (event) => showMeasure(world, id, !measure.visible, event);
-    return treeRow(world, { kind: 'measure', id, words: [words, value], title: kindName(measure.kind), isOn: measure.visible, toggle }, html`
-      ${eye(measure.visible, `Show ${words}`, 'Show or hide', !room.canChange.value, toggle)}${name(words)} <span class="tail">${value}</span>`);
-  });
+  return repeat(
+    measuresOf(room.scene.value),
+    ([id]) => id,
+    ([id, measure]) => {
+      const [words, value] = [measureName(id, measure), valueTexts(world, id, measure)[0] ?? ''];
+      const toggle = (event) => showMeasure(world, id, !measure.visible, event);
+      return treeRow(
+        world,
+        { kind: 'measure', id, words: [words, value], title: kindName(measure.kind), isOn: measure.visible, toggle },
+        html`
+      ${eye(measure.visible, `Show ${words}`, 'Show or hide', !room.canChange.value, toggle)}${name(words)} <span class="tail">${value}</span>`,
+      );
+    },
+  );
 }

@@ -27,7 +27,14 @@ export function leftOver(room, ids) {
     const [of, name] = key.split(' ');
     const id = /^(?:re|edit)-(.+)$/.exec(name)?.[1];
     if (of !== room.id || !id || ids.has(id) || !draft.value.text.trim()) return [];
-    return [{ text: draft.value.text, drop: () => { draft.value = empty; } }];
+    return [
+      {
+        text: draft.value.text,
+        drop: () => {
+          draft.value = empty;
+        },
+      },
+    ];
   });
 }
 
@@ -45,7 +52,9 @@ export function noteEditor({ room, ui }, { key, label, word, save, cancel = null
   const { text, error, isSending, names, chosen } = draft.value;
   const me = meIn(room);
   const others = room.members.value.filter(({ id }) => id !== me.id);
-  const set = (part) => { draft.value = { ...draft.peek(), ...part }; };
+  const set = (part) => {
+    draft.value = { ...draft.peek(), ...part };
+  };
   const left = maxText - [...text].length;
   const look = ({ target }) => set({ text: target.value, names: completion(target.value, target.selectionStart, others), chosen: 0 });
   const pick = (field, name) => {
@@ -88,8 +97,17 @@ export function noteEditor({ room, ui }, { key, label, word, save, cancel = null
     <label class="note-label" for=${`note-field-${key}`}>${label}</label>
     <textarea id=${`note-field-${key}`} rows="3" .value=${text} ?readonly=${isSending} aria-autocomplete="list" aria-controls=${names ? list : nothing} aria-activedescendant=${names ? `${list}-${chosen}` : nothing}
       aria-describedby=${`note-hint-${key}`} @input=${look} @keydown=${onKey} @blur=${() => setTimeout(() => set({ names: null }), 200)}></textarea>
-    ${names ? html`<ul class="note-names" role="listbox" id=${list} aria-label="Members">${names.names.map((name, at) => html`<li role="option" id=${`${list}-${at}`} aria-selected=${at === chosen}
-      @pointerdown=${(event) => { event.preventDefault(); pick(event.target.closest('.note-editor').querySelector('textarea'), name); }}>${name}</li>`)}</ul>` : nothing}
+    ${
+      names
+        ? html`<ul class="note-names" role="listbox" id=${list} aria-label="Members">${names.names.map(
+            (name, at) => html`<li role="option" id=${`${list}-${at}`} aria-selected=${at === chosen}
+      @pointerdown=${(event) => {
+        event.preventDefault();
+        pick(event.target.closest('.note-editor').querySelector('textarea'), name);
+      }}>${name}</li>`,
+          )}</ul>`
+        : nothing
+    }
     ${error ? html`<p class="note-error" role="alert">${error}</p>` : nothing}
     <p class="note-hint" id=${`note-hint-${key}`}>${isSending && room.link.value.state !== 'open' ? 'Kept, and sent when the connection is back' : left < 200 ? (left < 0 ? `${-left} characters too many` : `${left} characters left`) : html`@ names a member<span class="note-keys"> · <kbd>Ctrl</kbd> + <kbd>Enter</kbd> sends</span>`}</p>
     <div class="note-buttons"><button class="note-send" ?disabled=${isSending || !text.trim() || left < 0} @click=${send}>${isSending ? 'Sending …' : word}</button>

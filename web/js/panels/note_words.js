@@ -21,4 +21,5 @@ export function byline(row) {
     <time class="dim" datetime=${full.toISOString()} title=${full.toLocaleString()}>${whenWords(row.created_ms, now)}</time>${isChanged ? html`<span class="dim" title=${`Version ${row.version}, ${new Date(row.changed_ms).toLocaleString()}`}>changed${row.changed_name === row.author_name ? '' : ` by ${row.changed_name}`} ${whenWords(row.changed_ms, now)}</span>` : nothing}</span>`;
 }
 
-export const words = (row) => partsOf(row.body.text, row.body.mentions).map(({ text, isName }) => (isName ? html`<b class="note-name">${text}</b>` : text));
+export const words = (row) =>
+  partsOf(row.body.text, row.body.mentions).map(({ text, isName }) => (isName ? html`<b class="note-name">${text}</b>` : text));

@@ -15,11 +15,15 @@ export function openNote(ui, id) {
 /** Scrolls to a note that is opened, and tells of a note or a reply of somebody else that mentions this person. @returns {() => void} */
 export function watch({ room, ui }) {
   const stop = effect(() => {
-    if (ui.note.value && ui.tab.value === 'notes') requestAnimationFrame(() => document.querySelector('.notes > li.open')?.scrollIntoView({ block: 'nearest' })); // once it is drawn
+    if (ui.note.value && ui.tab.value === 'notes')
+      requestAnimationFrame(() => document.querySelector('.notes > li.open')?.scrollIntoView({ block: 'nearest' })); // once it is drawn
   });
   const end = room.items.listen((item) => {
     if (item.kind === 'note' && mentions(item, meIn(room)))
-      ui.notify('ok', `${item.author_name} mentions you in a note.`, `note ${item.id}`, { word: 'Show', act: () => openNote(ui, item.body.parent || item.id) });
+      ui.notify('ok', `${item.author_name} mentions you in a note.`, `note ${item.id}`, {
+        word: 'Show',
+        act: () => openNote(ui, item.body.parent || item.id),
+      });
   });
   return () => {
     stop();

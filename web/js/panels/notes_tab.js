@@ -34,18 +34,32 @@ export function notesTab(world) {
   const shown = filtered(threads, filter.value, meIn(room));
   if (opened && !shown.includes(opened)) shown.unshift(opened); // a pin that was clicked, whatever the filter
   return html`${head(world)}${left(world, rows)}${threads.length ? filters(room, rows, threads) : nothing}
-    ${shown.length ? html`<ol class="notes" aria-label="Notes">${repeat(shown, ({ note }) => note.id, (thread) => item(world, thread, thread === opened))}</ol>`
-      : html`<p class="empty">${threads.length ? 'No note passes the filter.' : 'No notes yet. A note stands at a point or a region, for everybody in the room.'}</p>`}`;
+    ${
+      shown.length
+        ? html`<ol class="notes" aria-label="Notes">${repeat(
+            shown,
+            ({ note }) => note.id,
+            (thread) => item(world, thread, thread === opened),
+          )}</ol>`
+        : html`<p class="empty">${threads.length ? 'No note passes the filter.' : 'No notes yet. A note stands at a point or a region, for everybody in the room.'}</p>`
+    }`;
 }
 
 function head(world) {
   const { room, ui } = world;
-  if (!mayWrite(room)) return html`<section class="block"><p class="note">${room.link.value.state === 'ended' ? 'The room has ended: its notes can be read here until you leave this page.' : 'As an observer you read notes; presenters and reviewers write them.'}</p></section>`;
+  if (!mayWrite(room))
+    return html`<section class="block"><p class="note">${room.link.value.state === 'ended' ? 'The room has ended: its notes can be read here until you leave this page.' : 'As an observer you read notes; presenters and reviewers write them.'}</p></section>`;
   const region = ui.region.value;
   const anchor = ui.newNote.value;
   if (!anchor)
     return html`<section class="block note-new"><button @click=${() => noteHere(world)}>${icon('plus', 12)} Note at the crosshair <kbd>N</kbd></button>
-      ${region ? html`<button @click=${() => { ui.newNote.value = { region }; }}>${icon('plus', 12)} On ${regionName(room, region)}</button>` : nothing}</section>`;
+      ${
+        region
+          ? html`<button @click=${() => {
+              ui.newNote.value = { region };
+            }}>${icon('plus', 12)} On ${regionName(room, region)}</button>`
+          : nothing
+      }</section>`;
   if (focusedFor !== anchor) {
     focusedFor = anchor;
     focusField('new');
@@ -54,7 +68,15 @@ function head(world) {
     const made = await room.items.put('note', { text, anchor, resolved: false, mentions, parent: '' });
     if (made) ui.note.value = made.id;
   };
-  return html`<section class="block">${noteEditor(world, { key: 'new', label: `New note · ${placeWords(room, anchor)}`, word: 'Add note', save, cancel: () => { ui.newNote.value = null; } })}</section>`;
+  return html`<section class="block">${noteEditor(world, {
+    key: 'new',
+    label: `New note · ${placeWords(room, anchor)}`,
+    word: 'Add note',
+    save,
+    cancel: () => {
+      ui.newNote.value = null;
+    },
+  })}</section>`;
 }
 
 /** Words that were written for a note that somebody has deleted are not lost with it. */
@@ -71,12 +93,18 @@ function left({ room, ui }, rows) {
 }
 
 function filters(room, rows, threads) {
-  const set = (part) => { filter.value = { ...filter.peek(), ...part }; };
+  const set = (part) => {
+    filter.value = { ...filter.peek(), ...part };
+  };
   const { text, author, who, hasResolved } = filter.value;
   const nResolved = threads.filter(isResolved).length;
   return html`<section class="block note-filter" role="group" aria-label="Which notes">
     <input type="search" placeholder="Filter" aria-label="Text in notes" .value=${text} @input=${({ target }) => set({ text: target.value })}>
-    <select aria-label="Whose notes" @change=${({ target }) => set({ who: target.value })}>${[['all', 'All'], ['mine', 'Mine'], ['mentions', 'Mention me']].map(([id, name]) => html`<option value=${id} ?selected=${who === id}>${name}</option>`)}</select>
+    <select aria-label="Whose notes" @change=${({ target }) => set({ who: target.value })}>${[
+      ['all', 'All'],
+      ['mine', 'Mine'],
+      ['mentions', 'Mention me'],
+    ].map(([id, name]) => html`<option value=${id} ?selected=${who === id}>${name}</option>`)}</select>
     <select aria-label="Author" @change=${({ target }) => set({ author: target.value })}><option value="" ?selected=${!author}>By anybody</option>${authorsOf(rows).map((name) => html`<option value=${name} ?selected=${author === name}>${name}</option>`)}</select>
     <label class="note-check"><input type="checkbox" .checked=${hasResolved} @change=${({ target }) => set({ hasResolved: target.checked })}> Resolved${nResolved ? ` (${nResolved})` : ''}</label></section>`;
 }
@@ -95,11 +123,19 @@ function item(world, thread, isOpen) {
       <span class="note-number">${isDone ? icon('check', 12) : number}<span class="hidden">${isDone ? ` Note ${number}, resolved` : ''}</span></span>
       <span class="note-line"><span class="note-text">${words(note)}</span>
         <span class="note-facts">${byline(note)}${replies.length ? html`<span class="dim">${nReplies(replies)}</span>` : nothing}</span></span></button>
-    ${isOpen ? html`<div class="note-thread" id=${id}><p class="dim note-place">${placeWords(room, note.body.anchor)}</p>${actions(world, thread)}
+    ${
+      isOpen
+        ? html`<div class="note-thread" id=${id}><p class="dim note-place">${placeWords(room, note.body.anchor)}</p>${actions(world, thread)}
       ${editing.value === note.id ? editor(world, note) : nothing}
-      <ol class="note-replies" aria-label="Replies">${repeat(replies, (reply) => reply.id, (reply) => html`<li data-note=${reply.id}>${byline(reply)}
-        ${editing.value === reply.id ? editor(world, reply) : html`<p class="note-words">${words(reply)}</p>${rowActions(world, reply, [])}`}</li>`)}</ol>
-      ${mayWrite(room) ? noteEditor(world, { key: `re-${note.id}`, label: 'Reply', word: 'Reply', save: (text, mentions) => room.items.put('note', { text, mentions, parent: note.id }) }) : nothing}</div>` : nothing}</li>`;
+      <ol class="note-replies" aria-label="Replies">${repeat(
+        replies,
+        (reply) => reply.id,
+        (reply) => html`<li data-note=${reply.id}>${byline(reply)}
+        ${editing.value === reply.id ? editor(world, reply) : html`<p class="note-words">${words(reply)}</p>${rowActions(world, reply, [])}`}</li>`,
+      )}</ol>
+      ${mayWrite(room) ? noteEditor(world, { key: `re-${note.id}`, label: 'Reply', word: 'Reply', save: (text, mentions) => room.items.put('note', { text, mentions, parent: note.id }) }) : nothing}</div>`
+        : nothing
+    }</li>`;
 }
 
 /** Whether the jump moves the room or this person's own view stands on the button. */
@@ -111,7 +147,10 @@ function actions(world, thread) {
   const jump = (event) => {
     const plan = room.plan.value;
     if (note.body.anchor?.region) ui.select('region', note.body.anchor.region, false);
-    room.patchScene(crosshairPatch(plan, shownImage(plan, room.scene.value), point, { isFree: true }), { view: ui.active.value, at: event.timeStamp });
+    room.patchScene(crosshairPatch(plan, shownImage(plan, room.scene.value), point, { isFree: true }), {
+      view: ui.active.value,
+      at: event.timeStamp,
+    });
   };
   return html`<div class="note-buttons">${point ? html`<button ?disabled=${!room.canChange.value} title=${isForAll ? 'Moves the crosshair of the room, for everybody who follows' : 'Moves your crosshair; nobody else is moved'} @click=${jump}>${icon('target', 12)} ${isForAll ? 'Jump, for everybody' : 'Jump, in my view'}</button>` : nothing}
     ${mayChange(room, note) ? html`<button @click=${() => change(world, note, { resolved: !note.body.resolved })}>${icon('check', 12)} ${note.body.resolved ? 'Reopen' : 'Resolve'}</button>` : nothing}
@@ -151,14 +190,27 @@ async function change({ room, ui }, row, part) {
 /** Saving again after a conflict is for the version that is shown by then, above the field. */
 function editor(world, row) {
   const { room } = world;
-  const save = (text, mentions) => room.items.put('note', { ...row.body, text, mentions }, bases.get(row.id) ?? row).catch((problem) => {
-    bases.delete(row.id);
-    throw problem.type === '/problems/conflict' ? { detail: `${problem.detail}. The newest text stands above; save again to replace it.` } : problem;
-  });
+  const save = (text, mentions) =>
+    room.items.put('note', { ...row.body, text, mentions }, bases.get(row.id) ?? row).catch((problem) => {
+      bases.delete(row.id);
+      throw problem.type === '/problems/conflict'
+        ? { detail: `${problem.detail}. The newest text stands above; save again to replace it.` }
+        : problem;
+    });
   if (!bases.has(row.id)) bases.set(row.id, row);
-  return html`${bases.get(row.id) !== row ? html`<p class="note-error" role="status">Changed by ${row.changed_name} meanwhile.</p>` : nothing}${noteEditor(world, { key: `edit-${row.id}`, label: 'Change the text', word: 'Save', save, before: row.body.mentions, cancel: () => {
-    bases.delete(row.id);
-    editing.value = '';
-  } })}`;
+  return html`${bases.get(row.id) !== row ? html`<p class="note-error" role="status">Changed by ${row.changed_name} meanwhile.</p>` : nothing}${noteEditor(
+    world,
+    {
+      key: `edit-${row.id}`,
+      label: 'Change the text',
+      word: 'Save',
+      save,
+      before: row.body.mentions,
+      cancel: () => {
+        bases.delete(row.id);
+        editing.value = '';
+      },
+    },
+  )}`;
 }
 const bases = new Map(); // by id: the row that was there when its change was begun

@@ -1,7 +1,18 @@
 // The inspector's Selection of an oblique plane, or of a new one: its name, direction and place, and the ways to make one.
 import { html, nothing } from '../../lib/lit-html.js';
 import { live } from '../../lib/directives/live.js';
-import { alongBeam, anglesOf, facing, normalOfAngles, normalOfKind, obliqueName, originAt, planeOfNormal, positionOf, roundedOrigin } from '../state/obliques.js';
+import {
+  alongBeam,
+  anglesOf,
+  facing,
+  normalOfAngles,
+  normalOfKind,
+  obliqueName,
+  originAt,
+  planeOfNormal,
+  positionOf,
+  roundedOrigin,
+} from '../state/obliques.js';
 import { crosshair } from '../state/plan.js';
 import { checkbox, numberField } from './fields.js';
 import { position as positionText } from './format.js';
@@ -10,7 +21,11 @@ import { change, deleteOblique, isFull, obliquesOf, openOblique, setOblique } fr
 import { takePoint } from './pane_picking.js';
 
 const tenths = (value) => Math.round(value * 10) / 10 || 0;
-const slices = [['axial', 'Axial'], ['coronal', 'Coronal'], ['sagittal', 'Sagittal']];
+const slices = [
+  ['axial', 'Axial'],
+  ['coronal', 'Coronal'],
+  ['sagittal', 'Sagittal'],
+];
 
 export function obliqueBlock(world, isDisabled) {
   const { id } = world.ui.selection.value;
@@ -44,7 +59,9 @@ function placeBlock(world, id, isDisabled) {
   const through = () => roundedOrigin(crosshair(room.scene.value));
   const set = (plane, event) => setOblique(world, id, plane, event);
   const beams = plan.beams.filter(alongBeam);
-  const start = (kind) => { ui.picking.value = { kind, id, points: [], from: null, to: null, view: 0 }; };
+  const start = (kind) => {
+    ui.picking.value = { kind, id, points: [], from: null, to: null, view: 0 };
+  };
   return html`<section class="block"><h3>${icon('plane')} ${id ? 'Another place' : 'New plane'} <span class="dim">${!id && isFull(world) ? 'eight are the most' : ''}</span></h3>
     <div class="clip-make"><span class="dim">Through the crosshair, as</span><div class="buttons">${slices.map(([kind, word]) => html`<button ?disabled=${isOff} @click=${(event) => set({ origin_mm: through(), normal: normalOfKind[kind] }, event)}>${word}</button>`)}</div>
       <span class="dim">Through the crosshair, facing</span><form class="clip-angles" @submit=${(event) => byAngles(event, through, set)}>
@@ -68,7 +85,9 @@ function picking(world) {
   const { ui } = world;
   const { kind, points } = ui.picking.value ?? {};
   if (!kind) return nothing;
-  const cancel = html`<button @click=${() => { ui.picking.value = null; }}>Cancel</button>`;
+  const cancel = html`<button @click=${() => {
+    ui.picking.value = null;
+  }}>Cancel</button>`;
   if (kind === 'line') return html`<p class="note" role="status">Drag a line in a slice pane.</p><div class="buttons">${cancel}</div>`;
   return html`<p class="note" role="status">Point ${points.length + 1} of 3: click it in a slice pane.</p>${points.length ? html`<ol class="clip-points">${points.map((point) => html`<li>${positionText(point)}</li>`)}</ol>` : nothing}
     <div class="buttons"><button @click=${(event) => takePoint(world, crosshair(world.room.scene.value), event)}>${icon('crosshair')}Take the crosshair</button>${cancel}</div>`;

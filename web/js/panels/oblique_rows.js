@@ -19,19 +19,31 @@ export function obliqueRows(world) {
   const { room, ui } = world;
   const isDisabled = !room.canChange.value;
   const rows = Object.entries(obliquesOf(world));
-  return html`${repeat(rows, ([id]) => id, ([id, oblique]) => {
-    const words = obliqueName(id, oblique);
-    const about = facing(oblique.normal);
-    const toggle = (event) => change(world, id, { visible: !oblique.visible }, event);
-    return treeRow(world, { kind: 'oblique', id, words: [words, about], title: `${words}: faces ${about}`, isOn: oblique.visible, toggle }, html`
+  return html`${repeat(
+    rows,
+    ([id]) => id,
+    ([id, oblique]) => {
+      const words = obliqueName(id, oblique);
+      const about = facing(oblique.normal);
+      const toggle = (event) => change(world, id, { visible: !oblique.visible }, event);
+      return treeRow(
+        world,
+        { kind: 'oblique', id, words: [words, about], title: `${words}: faces ${about}`, isOn: oblique.visible, toggle },
+        html`
       ${eye(oblique.visible, `Show ${words} in 3-D`, 'Show or hide in 3-D', isDisabled, toggle)}${name(words)} <span class="tail clipped">${about}</span>
-      <button class="eye" tabindex="-1" aria-label=${`Show ${words} in a pane`} title="Show in a pane" @click=${(event) => { event.stopPropagation(); openOblique(world, id); }}>${icon('single')}</button>`);
-  })}${treeRow(world, { kind: 'oblique', id: '', words: ['New plane', '…'], title: 'By angles, by points, by a line, along a beam' }, html`${icon('plane')}${name('New plane …')}`)}`;
+      <button class="eye" tabindex="-1" aria-label=${`Show ${words} in a pane`} title="Show in a pane" @click=${(event) => {
+        event.stopPropagation();
+        openOblique(world, id);
+      }}>${icon('single')}</button>`,
+      );
+    },
+  )}${treeRow(world, { kind: 'oblique', id: '', words: ['New plane', '…'], title: 'By angles, by points, by a line, along a beam' }, html`${icon('plane')}${name('New plane …')}`)}`;
 }
 
 // ---- changes ------------------------------------------------------------------------------------------------------------
 
-export const change = ({ room, ui }, id, fields, event) => room.patchScene({ image: { obliques: { [id]: fields } } }, { view: ui.active.value, at: event.timeStamp });
+export const change = ({ room, ui }, id, fields, event) =>
+  room.patchScene({ image: { obliques: { [id]: fields } } }, { view: ui.active.value, at: event.timeStamp });
 
 /** Makes a plane and chooses it; with an id, gives that plane another place. @param {{origin_mm: number[], normal: number[]}|null} plane */
 export function setOblique(world, id, plane, event) {

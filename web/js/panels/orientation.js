@@ -23,7 +23,11 @@ export function orientation({ room, ui }, actions, size) {
   const isTouch = ui.isTouch.value;
   const isDisabled = !room.canChange.value;
   const picture = html`<svg class="view-cube" viewBox="-36 -36 72 72" role=${isTouch ? nothing : 'group'} aria-label=${isTouch ? nothing : `Look from, ${view.name}`} aria-hidden=${isTouch ? 'true' : nothing}>
-    ${repeat(seen, ({ letter }) => letter, (side) => face(side, isTouch || isDisabled ? null : (event) => actions.lookFrom(side.name, event.timeStamp)))}</svg>`;
+    ${repeat(
+      seen,
+      ({ letter }) => letter,
+      (side) => face(side, isTouch || isDisabled ? null : (event) => actions.lookFrom(side.name, event.timeStamp)),
+    )}</svg>`;
   return html`<div class="view-figure">
     ${isTouch ? nothing : picture}
     <span class="anchor"><button class=${isTouch ? 'view-all touch' : 'view-all'} title="Look from, fit, roll, projection" aria-haspopup="dialog" aria-expanded=${isOpen} @click=${() => ui.toggle(name)}>${isTouch ? picture : icon('camera3d')}<span class="hidden">Camera of ${view.name}</span></button>
@@ -55,14 +59,25 @@ function menu({ room, ui }, actions, isDisabled) {
     if (isOn) cameras.link(event.timeStamp);
   };
   return html`<div class="popover view-menu" role="dialog" aria-label="Camera">
-    <div class="view-sides" role="group" aria-label="Look from">${sides.map(({ letter, name }) => html`<button ?disabled=${isDisabled} aria-label=${`Look from ${name}`} title=${`Look from ${name}`}
-      @click=${act((at) => cameras.lookFrom(name, at))}>${letter}</button>`)}</div>
+    <div class="view-sides" role="group" aria-label="Look from">${sides.map(
+      ({ letter, name }) => html`<button ?disabled=${isDisabled} aria-label=${`Look from ${name}`} title=${`Look from ${name}`}
+      @click=${act((at) => cameras.lookFrom(name, at))}>${letter}</button>`,
+    )}</div>
     <div class="view-acts">
       <button ?disabled=${isDisabled} title="Fit to the selected region or measure (G)" @click=${act((at) => cameras.fit(at))}>Fit</button>
       <button ?disabled=${isDisabled} title="Reset this view (R)" @click=${act((at) => cameras.reset(at))}>Reset</button>
       <button ?disabled=${isDisabled} title="Roll to the left by 5° (,)" aria-label="Roll to the left" @click=${act((at) => cameras.roll(5, at))}>${icon('rollLeft')}</button>
       <button ?disabled=${isDisabled} title="Roll to the right by 5° (.)" aria-label="Roll to the right" @click=${act((at) => cameras.roll(-5, at))}>${icon('rollRight')}</button></div>
-    ${segment('Projection', [['perspective', 'Perspective'], ['parallel', 'Parallel']], cameras.value.projection, isDisabled, (id, event) => cameras.setProjection(id, event.timeStamp))}
+    ${segment(
+      'Projection',
+      [
+        ['perspective', 'Perspective'],
+        ['parallel', 'Parallel'],
+      ],
+      cameras.value.projection,
+      isDisabled,
+      (id, event) => cameras.setProjection(id, event.timeStamp),
+    )}
     <div class="checks">${scene?.axes ? checkbox('Patient axes', scene.axes.visible, isDisabled, (visible, event) => room.patchScene({ axes: { visible } }, { view: actions.view.number, at: event.timeStamp }), 'Lines through the middle of the plan, for everybody') : nothing}
       ${view.ofKind > 1 ? onlyTargets(room, view, isDisabled) : nothing}
       ${checkbox('Link the 3-D cameras', ui.panes.areCamerasLinked.value, false, link, hasTwo ? 'The two 3-D panes turn together' : 'For two 3-D panes: put 3-D 2 into a pane by its name')}</div></div>`;
@@ -73,8 +88,13 @@ function onlyTargets(room, view, isDisabled) {
   const regions = room.plan.value?.regions ?? [];
   if (!regions.some(isTarget)) return nothing;
   const hidden = Object.fromEntries(regions.map((region) => [region.id, { visible: isTarget(region) }]));
-  return checkbox('Only targets here', hasOwnRegions(view), isDisabled, (isOn, event) => room.patchView(view.number, { override: { regions: isOn ? hidden : null } }, { at: event.timeStamp }),
-    'In this picture alone, for everybody who sees it');
+  return checkbox(
+    'Only targets here',
+    hasOwnRegions(view),
+    isDisabled,
+    (isOn, event) => room.patchView(view.number, { override: { regions: isOn ? hidden : null } }, { at: event.timeStamp }),
+    'In this picture alone, for everybody who sees it',
+  );
 }
 
 /** True if the view shows other regions than the scene. */

@@ -55,23 +55,29 @@ export class Pane {
     this.host = host;
     this.actions = new PaneActions(room, ui, api, view.number, { histograms, ellipses });
     this.lines = new PaneLines(room, ui, view, () => this.place);
-    this.badge = computed(() => fidelity({
-      link: room.link.value,
-      renderer: room.renderer.value.state,
-      header: view.painted.value,
-      staleSince: view.staleSince.value,
-      behindSince: view.behindSince.value,
-      fps: view.fps.value,
-      now: ui.now.value,
-      refusal: view.refusal.value,
-    }));
+    this.badge = computed(() =>
+      fidelity({
+        link: room.link.value,
+        renderer: room.renderer.value.state,
+        header: view.painted.value,
+        staleSince: view.staleSince.value,
+        behindSince: view.behindSince.value,
+        fps: view.fps.value,
+        now: ui.now.value,
+        refusal: view.refusal.value,
+      }),
+    );
     this.#stops.push(mount(host, () => this.#draw(), redraw));
     this.#stops.push(mount(host.querySelector(`#caption-${view.number}`), () => html`${this.#caption()}`, redraw));
     const body = host.querySelector('.picture');
-    this.painter = new Painter(host.querySelector('canvas'), { decode, schedule: (callback) => redraw.schedulePicture(host, callback), onPainted: (header, isDrawn) => {
-      if (isDrawn) redraw.painted(host);
-      onPainted(header, isDrawn);
-    } });
+    this.painter = new Painter(host.querySelector('canvas'), {
+      decode,
+      schedule: (callback) => redraw.schedulePicture(host, callback),
+      onPainted: (header, isDrawn) => {
+        if (isDrawn) redraw.painted(host);
+        onPainted(header, isDrawn);
+      },
+    });
     const pointer = new PointerReader(body, this.actions);
     this.#stops.push(...this.#readOut(body.querySelector('.pointed')));
     body.addEventListener('keydown', (event) => {
@@ -80,7 +86,11 @@ export class Pane {
     const observer = new ResizeObserver(() => this.#measure(body));
     observer.observe(body);
     this.#measure(body);
-    this.#stops.push(() => pointer.stop(), () => observer.disconnect(), () => this.painter.stop());
+    this.#stops.push(
+      () => pointer.stop(),
+      () => observer.disconnect(),
+      () => this.painter.stop(),
+    );
   }
 
   /** The card at the pointer: drawn apart from the pane, and gone with the picture that it is about. */
@@ -88,12 +98,18 @@ export class Pane {
     const { pointed } = this.actions;
     const onKey = ({ key }) => key === 'Escape' && pointed.hide();
     addEventListener('keydown', onKey);
-    return [() => removeEventListener('keydown', onKey), mount(host, () => readOut({ room: this.#room, pointed }, host)), effect(() => {
-      const header = this.#view.painted.value;
-      if (header) pointed.picture(`${header.scene_revision} ${header.clip_from_lps_mm}`);
-    }), effect(() => {
-      if (this.#ui.active.value !== this.#view.number) pointed.hide();
-    }), () => pointed.hide()];
+    return [
+      () => removeEventListener('keydown', onKey),
+      mount(host, () => readOut({ room: this.#room, pointed }, host)),
+      effect(() => {
+        const header = this.#view.painted.value;
+        if (header) pointed.picture(`${header.scene_revision} ${header.clip_from_lps_mm}`);
+      }),
+      effect(() => {
+        if (this.#ui.active.value !== this.#view.number) pointed.hide();
+      }),
+      () => pointed.hide(),
+    ];
   }
 
   stop() {
@@ -146,7 +162,9 @@ export class Pane {
       <div class="pane-body">
         <div class=${classMap({ picture: true, stale: this.badge.value?.state === 'stale', lost: this.badge.value?.state === 'disconnected' })}
           tabindex="0" role="group" aria-label=${`${name} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
-          @focus=${() => { this.#ui.active.value = n; }}>
+          @focus=${() => {
+            this.#ui.active.value = n;
+          }}>
           <canvas width="16" height="16"></canvas>
           ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}${tools.overlay}</svg>${handles}${this.#notePins()}${tools.handles}
           <svg class="overlay pointers" aria-hidden="true"></svg><div class="pointed"></div>
@@ -201,14 +219,23 @@ export class Pane {
     const image = shownImage(plan, scene);
     const plane = isInSpace(view.kind) ? null : this.actions.plane;
     const tolerance = plane && stepAcross(plane.normal, image?.stepMm ?? [1, 1, 1]) / 2;
-    return html`${this.actions.measures.overlay({ header, box, pane })}${ofDrawnDose(this.#room)?.lineLabels({ doses: this.#doses, view, host: this.host, header, box })}${ofDrawnDose(this.#room)?.pinMarks({ scene, plane, tolerance, header, box, pane })}${plane ? nothing : ofTracks(this.#room)?.chosenTrack({ room: this.#room, ui: this.#ui }, { header, box })}${overlay({
-      kind: view.kind, header, box, pane,
-      isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
-      axes: scene.axes?.visible ? plan?.bounds : null,
-      point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
-      pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
-      windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? 'No image: regions' : '',
-    })}`;
+    return html`${this.actions.measures.overlay({ header, box, pane })}${ofDrawnDose(this.#room)?.lineLabels({ doses: this.#doses, view, host: this.host, header, box })}${ofDrawnDose(this.#room)?.pinMarks({ scene, plane, tolerance, header, box, pane })}${plane ? nothing : ofTracks(this.#room)?.chosenTrack({ room: this.#room, ui: this.#ui }, { header, box })}${overlay(
+      {
+        kind: view.kind,
+        header,
+        box,
+        pane,
+        isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
+        axes: scene.axes?.visible ? plan?.bounds : null,
+        point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
+        pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
+        windowText: image
+          ? windowText(scene.image.window, image.unit, isLowWhite(image, scene))
+          : plan?.regions.length
+            ? 'No image: regions'
+            : '',
+      },
+    )}`;
   }
 
   #notePins() {
@@ -217,14 +244,18 @@ export class Pane {
     if (!notes || !scene.value) return nothing;
     const plane = isInSpace(this.#view.kind) ? null : this.actions.plane;
     const tolerance = plane && stepAcross(plane.normal, shownImage(plan.value, scene.value)?.stepMm ?? [1, 1, 1]) / 2;
-    return notes.notePins({ room: this.#room, ui: this.#ui }, { header: this.#view.painted.value, box: this.#box, pane: this.#size.value, plane, tolerance });
+    return notes.notePins(
+      { room: this.#room, ui: this.#ui },
+      { header: this.#view.painted.value, box: this.#box, pane: this.#size.value, plane, tolerance },
+    );
   }
 
   #cover() {
     const { state, phase, percent, problem } = this.#room.renderer.value;
     if (state === 'failed' || state === 'closed')
       return html`<div class="cover"><div class="refusal">${icon('error')}<div><b>The plan cannot be shown.</b><p>${problem?.detail ?? 'The renderer gave no reason.'}</p></div></div></div>`;
-    if (state === 'restarting' && problem) return html`<div class="cover"><div class="refusal" role="status">${icon('warning')}<div><b>No new picture yet.</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
+    if (state === 'restarting' && problem)
+      return html`<div class="cover"><div class="refusal" role="status">${icon('warning')}<div><b>No new picture yet.</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
     const { value: refusal } = this.#view.refusal;
     if (refusal && state === 'ready')
       return html`<div class="cover"><div class="refusal" role="status">${icon('error')}<div><b>This view cannot be drawn.</b><p>${refusal}</p>
@@ -249,17 +280,29 @@ export class Pane {
     if (!scene || !plan || !this.#view.painted.value) return nothing;
     const isLow = this.#size.value[1] < lowPane;
     if (isLow && !isInSpace(this.#view.kind) && this.#ui.active.value !== this.#view.number) return nothing;
-    const check = !isInSpace(this.#view.kind) && scene.check.visible && plan.regions.length ? html`<ul class="legend" aria-label="Colours of the check">
-        <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>` : nothing;
+    const check =
+      !isInSpace(this.#view.kind) && scene.check.visible && plan.regions.length
+        ? html`<ul class="legend" aria-label="Colours of the check">
+        <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>`
+        : nothing;
     const reasons = isInSpace(this.#view.kind) ? this.#refused.value : this.#view.missing.value.reasons;
     const missing = plan.regions.filter(({ id }) => reasons[id]);
     const images = isInSpace(this.#view.kind) ? nothing : imageLegend({ room: this.#room }, this.#view.number);
-    const dose = ofDrawnDose(this.#room)?.doseLegend({ room: this.#room, ui: this.#ui, doses: this.#doses }, this.#view, this.#size.value, missing.length > 0 || check !== nothing);
+    const dose = ofDrawnDose(this.#room)?.doseLegend(
+      { room: this.#room, ui: this.#ui, doses: this.#doses },
+      this.#view,
+      this.#size.value,
+      missing.length > 0 || check !== nothing,
+    );
     return html`${images}${dose}${missing.length ? this.#missing(scene, missing, reasons, check) : check}`;
   }
 
   #missing(scene, missing, reasons, check) {
-    const words = !isInSpace(this.#view.kind) ? 'Not checked' : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs') ? 'Not shown as NURBS' : 'Not drawn';
+    const words = !isInSpace(this.#view.kind)
+      ? 'Not checked'
+      : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs')
+        ? 'Not shown as NURBS'
+        : 'Not drawn';
     const nUnnamed = Math.max(0, this.#view.missing.value.n - missing.length);
     const show = () => {
       this.#ui.choose('region', missing[0].id);
@@ -296,7 +339,10 @@ export class Pane {
   #caption() {
     const { result, isOld } = this.#probed.value;
     if (!this.#view.painted.value?.is_still || isOld) return this.#lastCaption;
-    const facts = this.#ui.active.value === this.#view.number && result ? [...spoken(result, this.#room.plan.value, this.#room.scene.value), ofDose(this.#room)?.doseHere({ doses: this.#doses })] : [];
+    const facts =
+      this.#ui.active.value === this.#view.number && result
+        ? [...spoken(result, this.#room.plan.value, this.#room.scene.value), ofDose(this.#room)?.doseHere({ doses: this.#doses })]
+        : [];
     this.#lastCaption = [this.#view.name, this.#where(), ...facts].filter(Boolean).join(', ');
     return this.#lastCaption;
   }

@@ -42,7 +42,12 @@ export class PaneActions {
     this.window = new PaneWindow(room, histograms, number);
     this.cameras = new PaneCamera(room, ui, number, () => this.box);
     this.#pick = new PanePick(room, api, this.view, () => this.box);
-    this.measures = new PaneMeasures({ room, ui, ellipses }, this.view, () => this.box, (x, y) => this.#pick.pointAt(x, y));
+    this.measures = new PaneMeasures(
+      { room, ui, ellipses },
+      this.view,
+      () => this.box,
+      (x, y) => this.#pick.pointAt(x, y),
+    );
     this.tools = new PaneTools({ room, ui, api, view: this.view, actions: this });
     this.pointed = new Pointed((x, y) => this.#pick.factsAt(x, y));
   }
@@ -113,7 +118,7 @@ export class PaneActions {
     try {
       const hit = this.is3d ? await this.#crosshairToSeen(x, y, at) : null;
       if (!this.is3d) this.#crosshairAt(x, y, at);
-      const facts = this.is3d ? hit && await this.#pick.factsOf(hit) : await this.#pick.factsAt(x, y);
+      const facts = this.is3d ? hit && (await this.#pick.factsOf(hit)) : await this.#pick.factsAt(x, y);
       if (facts) this.pointed.hold(x, y, facts);
     } catch (error) {
       this.#ui.notify('err', error.message);
@@ -203,7 +208,7 @@ export class PaneActions {
   /** Selects the track, the region, the isodose surface or the beam that is seen at a place; the crosshair stays. */
   async #selectAt(x, y) {
     try {
-      const track = this.is3d && this.#room.scene.value.tracks?.visible && await this.#pick.trackAt(x, y);
+      const track = this.is3d && this.#room.scene.value.tracks?.visible && (await this.#pick.trackAt(x, y));
       if (track) {
         this.#ui.track.value = track;
         return void this.#ui.select('track', String(track.segment));
@@ -211,7 +216,12 @@ export class PaneActions {
       const hit = await this.#pick.seenAt(x, y);
       if (hit?.level) this.#ui.select('level', hit.level, this.is3d);
       else if (hit?.beam != null) this.#ui.select('beam', hit.draft ? '' : hit.beam, this.is3d);
-      else if (hit) this.#ui.select(hit.region === null ? 'image' : 'region', hit.region ?? shownImage(this.#room.plan.value, this.#room.scene.value)?.id, this.is3d);
+      else if (hit)
+        this.#ui.select(
+          hit.region === null ? 'image' : 'region',
+          hit.region ?? shownImage(this.#room.plan.value, this.#room.scene.value)?.id,
+          this.is3d,
+        );
     } catch (error) {
       this.#ui.notify('err', error.message);
     }
@@ -230,7 +240,11 @@ export class PaneActions {
     if (this.tools.take('setSlice', positionMm, at)) return;
     const { plane } = this.view.document.value;
     const oblique = this.view.kind === 'oblique' && this.#room.scene.value.image.obliques?.[plane];
-    if (oblique) return void this.#room.patchScene({ image: { obliques: { [plane]: { origin_mm: originAt({ ...this.plane, origin: oblique.origin_mm }, positionMm) } } } }, { view: this.#number, at });
+    if (oblique)
+      return void this.#room.patchScene(
+        { image: { obliques: { [plane]: { origin_mm: originAt({ ...this.plane, origin: oblique.origin_mm }, positionMm) } } } },
+        { view: this.#number, at },
+      );
     const point = crosshair(this.#room.scene.value);
     point[this.plane.normal.indexOf(1)] = positionMm;
     this.#moveCrosshair(point, at);
@@ -242,7 +256,11 @@ export class PaneActions {
   key(event) {
     if (event.altKey || event.metaKey) return false;
     const at = event.timeStamp;
-    const act = this.tools.key(event, at) ?? this.measures.key(event, at) ?? beamKey(this.#room, this.#ui, event, at) ?? (event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at));
+    const act =
+      this.tools.key(event, at) ??
+      this.measures.key(event, at) ??
+      beamKey(this.#room, this.#ui, event, at) ??
+      (event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at));
     if (!act || !this.#room.canChange.value) return false;
     this.pointed.hide();
     act();
@@ -256,26 +274,47 @@ export class PaneActions {
 
   #keyAction({ key, code, shiftKey }, at) {
     const layout = shiftKey && layouts[/^Digit([1-7])$/.exec(code)?.[1] - 1];
-    if (layout && (layout.id !== 'beam' || beamShown(this.#room.plan.value, this.#room.scene.value))) return () => this.#ui.setLayout(layout.id);
+    if (layout && (layout.id !== 'beam' || beamShown(this.#room.plan.value, this.#room.scene.value)))
+      return () => this.#ui.setLayout(layout.id);
     const look = /^Numpad[137]$/.test(code) && this.is3d ? looks[code.at(-1)][shiftKey ? 1 : 0] : null;
     if (look) return () => this.cameras.lookFrom(look, at);
     if (/^[1-5]$/.test(key) && code.startsWith('Digit') && this.window.image) return () => this.window.setPreset(key, at);
     const arrows = this.is3d
-      ? { ArrowLeft: () => this.cameras.orbit(keyDegrees, 0, at), ArrowRight: () => this.cameras.orbit(-keyDegrees, 0, at),
-          ArrowUp: () => this.cameras.orbit(0, -keyDegrees, at), ArrowDown: () => this.cameras.orbit(0, keyDegrees, at),
-          ',': () => this.cameras.roll(keyDegrees, at), '.': () => this.cameras.roll(-keyDegrees, at) }
-      : { ArrowUp: () => this.stepSlice(1, at), ArrowRight: () => this.stepSlice(1, at),
-          ArrowDown: () => this.stepSlice(-1, at), ArrowLeft: () => this.stepSlice(-1, at),
-          PageUp: () => this.stepSlice(10, at), PageDown: () => this.stepSlice(-10, at) };
+      ? {
+          ArrowLeft: () => this.cameras.orbit(keyDegrees, 0, at),
+          ArrowRight: () => this.cameras.orbit(-keyDegrees, 0, at),
+          ArrowUp: () => this.cameras.orbit(0, -keyDegrees, at),
+          ArrowDown: () => this.cameras.orbit(0, keyDegrees, at),
+          ',': () => this.cameras.roll(keyDegrees, at),
+          '.': () => this.cameras.roll(-keyDegrees, at),
+        }
+      : {
+          ArrowUp: () => this.stepSlice(1, at),
+          ArrowRight: () => this.stepSlice(1, at),
+          ArrowDown: () => this.stepSlice(-1, at),
+          ArrowLeft: () => this.stepSlice(-1, at),
+          PageUp: () => this.stepSlice(10, at),
+          PageDown: () => this.stepSlice(-10, at),
+        };
     const common = {
-      '+': () => this.cameras.zoom(keyZoom, null, at), '=': () => this.cameras.zoom(keyZoom, null, at), '-': () => this.cameras.zoom(1 / keyZoom, null, at),
-      r: () => this.reset(at), ' ': () => this.reset(at), g: () => this.cameras.fit(at),
-      f: () => this.#room.following.toggle(), v: () => this.#ui.toggleDrawer(),
-      c: () => toggleClips(this.#room, this.#ui, at), k: () => toggleCaps(this.#room, this.#ui, at),
-      d: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'wash', at), i: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'lines', at), q: () => this.#dose() && pinHere({ room: this.#room, ui: this.#ui }, at),
+      '+': () => this.cameras.zoom(keyZoom, null, at),
+      '=': () => this.cameras.zoom(keyZoom, null, at),
+      '-': () => this.cameras.zoom(1 / keyZoom, null, at),
+      r: () => this.reset(at),
+      ' ': () => this.reset(at),
+      g: () => this.cameras.fit(at),
+      f: () => this.#room.following.toggle(),
+      v: () => this.#ui.toggleDrawer(),
+      c: () => toggleClips(this.#room, this.#ui, at),
+      k: () => toggleCaps(this.#room, this.#ui, at),
+      d: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'wash', at),
+      i: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'lines', at),
+      q: () => this.#dose() && pinHere({ room: this.#room, ui: this.#ui }, at),
       n: () => noteHere({ room: this.#room, ui: this.#ui }),
       t: () => toggleTracks({ room: this.#room, ui: this.#ui }, at),
-      w: () => this.#toggleTool('window'), m: () => this.#toggleTool('measure'), z: () => this.#toggleTool('zoom'),
+      w: () => this.#toggleTool('window'),
+      m: () => this.#toggleTool('measure'),
+      z: () => this.#toggleTool('zoom'),
       p: () => pointKey(this.#room, this.#ui, shiftKey),
       b: () => toggleBeamEye(this.#room, this.#ui),
       Enter: () => this.#ui.maximise(this.#number),

@@ -117,23 +117,41 @@ export class PaneCamera {
   /** Gives this pane the camera, and those that are linked with it theirs. */
   set(camera, at) {
     if (!this.#room.plan.value || JSON.stringify(camera) === JSON.stringify(this.value)) return;
-    this.#room.patchViews([[this.#number, { camera }], ...this.#linked(camera).map(([number, other]) => [number, { camera: other }])], { at });
+    this.#room.patchViews([[this.#number, { camera }], ...this.#linked(camera).map(([number, other]) => [number, { camera: other }])], {
+      at,
+    });
   }
 
   /** Makes the linked panes go with this one at once. */
   link(at) {
-    this.#room.patchViews(this.#linked(this.value).map(([number, camera]) => [number, { camera }]), { at });
+    this.#room.patchViews(
+      this.#linked(this.value).map(([number, camera]) => [number, { camera }]),
+      { at },
+    );
   }
 
   #linked(camera) {
     const { panes } = this.#ui;
     const others = this.#room.views.filter(({ number, isOpen }) => number !== this.#number && isOpen.value);
-    if (this.is3d) return panes.areCamerasLinked.value ? others.filter(({ kind }) => isTurnable(kind)).map(({ number }) => [number, { ...camera }]) : [];
+    if (this.is3d)
+      return panes.areCamerasLinked.value ? others.filter(({ kind }) => isTurnable(kind)).map(({ number }) => [number, { ...camera }]) : [];
     const scene = this.#room.scene.value;
     if (!panes.isZoomLinked.value || !scene) return [];
     const sizeOf = (view) => view.document.value.size_px ?? view.ownSize ?? [1, 1];
-    return others.filter(({ kind }) => !isInSpace(kind)).map((view) => [view.number,
-      cameras.linkedSlice(camera, this.plane, sizeOf(this.#view), this.#of(view), planeOfView(scene, view.document.value, this.#room.plan.value), sizeOf(view), crosshair(scene))]);
+    return others
+      .filter(({ kind }) => !isInSpace(kind))
+      .map((view) => [
+        view.number,
+        cameras.linkedSlice(
+          camera,
+          this.plane,
+          sizeOf(this.#view),
+          this.#of(view),
+          planeOfView(scene, view.document.value, this.#room.plan.value),
+          sizeOf(view),
+          crosshair(scene),
+        ),
+      ]);
   }
 }
 
@@ -142,7 +160,7 @@ const leastMm = 10; // a box is framed as if it were at least so large
 /** The box of the selected region or measure; null: nothing with a place is selected. */
 export function boxOfSelection({ kind, id }, plan, scene) {
   const region = kind === 'region' ? plan?.regions.find((other) => other.id === id) : null;
-  const points = kind === 'measure' ? scene?.measures?.[id]?.points ?? [] : [];
+  const points = kind === 'measure' ? (scene?.measures?.[id]?.points ?? []) : [];
   const ends = region?.bounds_mm ? [region.bounds_mm.low, region.bounds_mm.high] : points.map(({ at_mm }) => at_mm);
   if (!ends.length) return null;
   const along = (pick) => [0, 1, 2].map((axis) => pick(...ends.map((end) => end[axis])));

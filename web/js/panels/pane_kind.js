@@ -27,7 +27,8 @@ function menu({ room, ui }, view) {
     ui.popover.value = '';
     queueMicrotask(() => host.querySelector(`#picture-${ui.active.value}`)?.focus({ preventScroll: true })); // the pane may be another element now
   };
-  const item = (words, isOn, run, isDisabled = false) => html`<button role="menuitemradio" aria-checked=${isOn} ?disabled=${isDisabled} @click=${choose(run)}>${isOn ? icon('check', 12) : html`<i></i>`}<span>${words}</span></button>`;
+  const item = (words, isOn, run, isDisabled = false) =>
+    html`<button role="menuitemradio" aria-checked=${isOn} ?disabled=${isDisabled} @click=${choose(run)}>${isOn ? icon('check', 12) : html`<i></i>`}<span>${words}</span></button>`;
   const isOff = !room.canChange.value;
   return html`<div class="popover view-kinds"><div class="menu" role="menu" aria-label=${`In the pane of ${view.name}`} @keydown=${move}>
     ${views.map(({ name, kind }, index) => (isOfBeam(kind) && !beamShown(room.plan.value, room.scene.value) ? nothing : item(name, index + 1 === view.number, () => ui.showInPlaceOf(view.number, index + 1))))}
@@ -39,8 +40,20 @@ function planeItems(room, view, item, isOff) {
   const { plane } = view.document.value;
   return html`${obliques.map(([id, oblique]) => item(obliqueName(id, oblique), id === plane, (at) => room.patchView(view.number, { plane: id }, { at }), isOff))}
     ${obliques.length < maxObliques ? item('New plane through the crosshair', false, () => addOblique(room), isOff) : nothing}
-    ${obliques.some(([id]) => id === plane) ? item('Move it to the crosshair', false,
-      (at) => room.patchScene({ image: { obliques: { [plane]: { origin_mm: roundedOrigin(crosshair(room.scene.value)) } } } }, { view: view.number, at }), isOff) : nothing}`;
+    ${
+      obliques.some(([id]) => id === plane)
+        ? item(
+            'Move it to the crosshair',
+            false,
+            (at) =>
+              room.patchScene(
+                { image: { obliques: { [plane]: { origin_mm: roundedOrigin(crosshair(room.scene.value)) } } } },
+                { view: view.number, at },
+              ),
+            isOff,
+          )
+        : nothing
+    }`;
 }
 
 function move(event) {

@@ -13,10 +13,11 @@ const layoutsOf = ({ plan, scene }) => layouts.filter(({ id }) => id !== 'beam' 
 const extra = ['2x1', 'oblique', 'beam']; // left out where the strip is narrow; they are in the menu
 const chosen = ({ arrangement, panes }) => layoutId(arrangement.value.layout, panes.two.value);
 
-export const layoutButtons = ({ room, ui }) => layoutsOf(room).map(({ id, icon: picture, name }, index) => {
-  const isOn = chosen(ui) === id;
-  return html`<button class=${classMap({ tool: true, plain: true, on: isOn, 'view-extra': extra.includes(id) })} title=${`${name} (Shift + ${index + 1})`} aria-label=${name} aria-pressed=${isOn} tabindex="-1" @click=${() => ui.setLayout(id)}>${icon(picture)}</button>`;
-});
+export const layoutButtons = ({ room, ui }) =>
+  layoutsOf(room).map(({ id, icon: picture, name }, index) => {
+    const isOn = chosen(ui) === id;
+    return html`<button class=${classMap({ tool: true, plain: true, on: isOn, 'view-extra': extra.includes(id) })} title=${`${name} (Shift + ${index + 1})`} aria-label=${name} aria-pressed=${isOn} tabindex="-1" @click=${() => ui.setLayout(id)}>${icon(picture)}</button>`;
+  });
 
 /** The 3-D pane that buttons outside of panes act on: the active one, else the first that is shown. */
 export function active3d({ room, ui, panes }) {
@@ -40,13 +41,28 @@ export function panesMenu(world, isDock = false) {
   };
   return html`<span class="anchor"><button class=${classMap({ tool: true, plain: !isDock, on: isOpen })} tabindex="-1" title="Panes: layouts, linked zoom and cameras" aria-label="Panes" aria-haspopup="dialog" aria-expanded=${isOpen}
       @click=${() => ui.toggle('panes')}>${icon(isDock ? 'grid' : 'chevronDown', isDock ? 20 : 16)}${isDock ? html`<span class="word">Panes</span>` : nothing}</button>
-    ${isOpen ? html`<div class=${isDock ? 'popover view-panes up' : 'popover view-panes'} role="dialog" aria-label="Panes">
-      <div class="menu" role="radiogroup" aria-label="Layout">${layoutsOf(room).map(({ id, name, icon: picture }, index) => html`<button role="radio" aria-checked=${chosen(ui) === id} class=${classMap({ on: chosen(ui) === id })}
-        @click=${act(() => ui.setLayout(id))}>${icon(picture)}<span>${name}</span>${isDock ? nothing : html`<kbd>Shift ${index + 1}</kbd>`}</button>`)}</div>
+    ${
+      isOpen
+        ? html`<div class=${isDock ? 'popover view-panes up' : 'popover view-panes'} role="dialog" aria-label="Panes">
+      <div class="menu" role="radiogroup" aria-label="Layout">${layoutsOf(room).map(
+        (
+          { id, name, icon: picture },
+          index,
+        ) => html`<button role="radio" aria-checked=${chosen(ui) === id} class=${classMap({ on: chosen(ui) === id })}
+        @click=${act(() => ui.setLayout(id))}>${icon(picture)}<span>${name}</span>${isDock ? nothing : html`<kbd>Shift ${index + 1}</kbd>`}</button>`,
+      )}</div>
       ${presetMenu(world, act)}
       <div class="checks">${checkbox('Link zoom', ui.panes.isZoomLinked.value, false, link, 'All slice panes show as many mm per pixel, and the crosshair at the same place')}
-        ${checkbox('Link the 3-D cameras', ui.panes.areCamerasLinked.value, false, (isOn, event) => {
-          ui.panes.areCamerasLinked.value = isOn;
-          if (isOn) active3d(world).actions.cameras.link(event.timeStamp);
-        }, 'The two 3-D panes turn together')}</div></div>` : nothing}</span>`;
+        ${checkbox(
+          'Link the 3-D cameras',
+          ui.panes.areCamerasLinked.value,
+          false,
+          (isOn, event) => {
+            ui.panes.areCamerasLinked.value = isOn;
+            if (isOn) active3d(world).actions.cameras.link(event.timeStamp);
+          },
+          'The two 3-D panes turn together',
+        )}</div></div>`
+        : nothing
+    }</span>`;
 }

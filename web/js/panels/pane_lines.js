@@ -1,8 +1,30 @@
 // In a slice pane: the lines in which clip planes and oblique planes cut the slice, and the handles that move and turn them.
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
-import { clipName, clipPlane, clipRow, clipWords, enabledClips, keepsWords, movedClip, positionOfClip, rangeOfClip } from '../state/clip.js';
-import { angleBetween, heightOver, nearestIn, obliqueName, originAt, planeOfNormal, planeOfView, positionOf, reachOf, roundedOrigin, turned } from '../state/obliques.js';
+import {
+  clipName,
+  clipPlane,
+  clipRow,
+  clipWords,
+  enabledClips,
+  keepsWords,
+  movedClip,
+  positionOfClip,
+  rangeOfClip,
+} from '../state/clip.js';
+import {
+  angleBetween,
+  heightOver,
+  nearestIn,
+  obliqueName,
+  originAt,
+  planeOfNormal,
+  planeOfView,
+  positionOf,
+  reachOf,
+  roundedOrigin,
+  turned,
+} from '../state/obliques.js';
 import { isInSpace } from '../view/kinds.js';
 import { handleBox, heightsOver, keptPart, lineOf, namePlace, onLine, takenIn } from '../view/plane_lines.js';
 import { fromPicture, subtract } from '../view/vec.js';
@@ -14,7 +36,16 @@ import { sliderKey } from './slider_keys.js';
 
 const namesFrom = 240; // px of width
 const [turnPart, degrees] = [0.93, Math.PI / 180];
-const partOf = { axial_high: 0.1, axial_low: 0.22, coronal_high: 0.1, coronal_low: 0.22, sagittal_high: 0.1, sagittal_low: 0.22, beam: 0.34, free: 0.34 }; // where on a line its handle is, so that two of an axis stand apart
+const partOf = {
+  axial_high: 0.1,
+  axial_low: 0.22,
+  coronal_high: 0.1,
+  coronal_low: 0.22,
+  sagittal_high: 0.1,
+  sagittal_low: 0.22,
+  beam: 0.34,
+  free: 0.34,
+}; // where on a line its handle is, so that two of an axis stand apart
 const clampOrigin = (origin) => roundedOrigin(origin.map((value) => Math.min(Math.max(value, -1e5), 1e5)));
 
 /**
@@ -51,12 +82,30 @@ export class PaneLines {
       const heights = heightsOver(line.plane, header.clip_from_lps_mm, this.#slice(scene).origin, box);
       const cut = lineOf(heights, box, this.#along.get(line.id));
       if (cut) this.#along.set(line.id, cut.along);
-      return { ...line, heights, cut, at: cut && onLine(cut, line.part), turnAt: cut && line.turnedTo && onLine(cut, turnPart), isChosen: this.#isChosen(line) };
+      return {
+        ...line,
+        heights,
+        cut,
+        at: cut && onLine(cut, line.part),
+        turnAt: cut && line.turnedTo && onLine(cut, turnPart),
+        isChosen: this.#isChosen(line),
+      };
     });
     const cut = shown.filter((line) => line.cut);
     return {
-      lines: html`<svg class="overlay clip-lines" aria-hidden="true">${this.#dimmed(shown.filter(({ kind }) => kind === 'clip'), box)}${cut.map((line) => drawnLine(line))}${pane[0] >= namesFrom ? this.#names(cut, pane, scene) : nothing}</svg>`,
-      handles: html`${cut.length ? html`<div class="clip-handles">${repeat(cut, ({ kind, id }) => `${kind} ${id}`, (line) => html`${this.#handle(line)}${line.turnAt ? this.#turnHandle(line) : nothing}`)}</div>` : nothing}${pickingLayer({ room: this.#room, ui: this.#ui }, this.#view, box)}`,
+      lines: html`<svg class="overlay clip-lines" aria-hidden="true">${this.#dimmed(
+        shown.filter(({ kind }) => kind === 'clip'),
+        box,
+      )}${cut.map((line) => drawnLine(line))}${pane[0] >= namesFrom ? this.#names(cut, pane, scene) : nothing}</svg>`,
+      handles: html`${
+        cut.length
+          ? html`<div class="clip-handles">${repeat(
+              cut,
+              ({ kind, id }) => `${kind} ${id}`,
+              (line) => html`${this.#handle(line)}${line.turnAt ? this.#turnHandle(line) : nothing}`,
+            )}</div>`
+          : nothing
+      }${pickingLayer({ room: this.#room, ui: this.#ui }, this.#view, box)}`,
     };
   }
 
@@ -64,26 +113,55 @@ export class PaneLines {
   #lines(plan, scene) {
     const clips = enabledClips(plan, scene).map(({ id, origin, normal }) => {
       const position = positionOfClip(plan, scene, id);
-      return { kind: 'clip', id, name: clipName(id), words: [`${clipRow(id).name}`, keepsWords(id)].filter(Boolean).join(', '), label: `Clip plane ${clipWords(id)}`, text: clipPosition(clipRow(id), position), plane: { origin, normal }, position,
-        range: rangeOfClip(plan, scene, id), sign: /_low$|^beam$/.test(id) ? -1 : 1, part: partOf[id],
-        moved: (mm) => movedClip(plan, scene, id, mm), turnedTo: id === 'free' ? (origin_mm, normal) => ({ clip: { free: { origin_mm, normal } } }) : null };
+      return {
+        kind: 'clip',
+        id,
+        name: clipName(id),
+        words: [`${clipRow(id).name}`, keepsWords(id)].filter(Boolean).join(', '),
+        label: `Clip plane ${clipWords(id)}`,
+        text: clipPosition(clipRow(id), position),
+        plane: { origin, normal },
+        position,
+        range: rangeOfClip(plan, scene, id),
+        sign: /_low$|^beam$/.test(id) ? -1 : 1,
+        part: partOf[id],
+        moved: (mm) => movedClip(plan, scene, id, mm),
+        turnedTo: id === 'free' ? (origin_mm, normal) => ({ clip: { free: { origin_mm, normal } } }) : null,
+      };
     });
     return [...clips, ...this.#obliques(plan, scene)];
   }
 
   /** Those that are shown in 3-D or in a pane, and the chosen one; not this pane's own. */
   #obliques(plan, scene) {
-    const inPanes = this.#room.views.filter((view) => view.kind === 'oblique' && view.isOpen.value).map((view) => view.document.value.plane);
+    const inPanes = this.#room.views
+      .filter((view) => view.kind === 'oblique' && view.isOpen.value)
+      .map((view) => view.document.value.plane);
     const own = this.#view.kind === 'oblique' ? this.#view.document.value.plane : '';
     const chosen = this.#ui.selection.value;
-    return Object.entries(scene.image.obliques ?? {}).filter(([id, { visible }]) => id !== own && (visible || inPanes.includes(id) || (chosen.kind === 'oblique' && chosen.id === id))).map(([id, oblique], n) => {
-      const plane = planeOfNormal(oblique.origin_mm, oblique.normal);
-      const name = obliqueName(id, oblique);
-      const change = (fields) => ({ image: { obliques: { [id]: fields } } });
-      const range = reachOf(plane.normal, plan.bounds);
-      return { kind: 'oblique', id, name, words: name, label: name, text: `${positionOf(plane).toFixed(1).replace('-', '−')} mm`, plane, position: positionOf(plane), range, sign: 1, part: 0.28 + 0.07 * n,
-        moved: (mm) => change({ origin_mm: originAt(plane, Math.min(Math.max(mm, range.low), range.high)) }), turnedTo: (origin_mm, normal) => change({ origin_mm, normal }) };
-    });
+    return Object.entries(scene.image.obliques ?? {})
+      .filter(([id, { visible }]) => id !== own && (visible || inPanes.includes(id) || (chosen.kind === 'oblique' && chosen.id === id)))
+      .map(([id, oblique], n) => {
+        const plane = planeOfNormal(oblique.origin_mm, oblique.normal);
+        const name = obliqueName(id, oblique);
+        const change = (fields) => ({ image: { obliques: { [id]: fields } } });
+        const range = reachOf(plane.normal, plan.bounds);
+        return {
+          kind: 'oblique',
+          id,
+          name,
+          words: name,
+          label: name,
+          text: `${positionOf(plane).toFixed(1).replace('-', '−')} mm`,
+          plane,
+          position: positionOf(plane),
+          range,
+          sign: 1,
+          part: 0.28 + 0.07 * n,
+          moved: (mm) => change({ origin_mm: originAt(plane, Math.min(Math.max(mm, range.low), range.high)) }),
+          turnedTo: (origin_mm, normal) => change({ origin_mm, normal }),
+        };
+      });
   }
 
   #slice(scene) {
@@ -97,14 +175,25 @@ export class PaneLines {
 
   #dimmed(clips, box) {
     if (!clips.length) return nothing;
-    const kept = keptPart(clips.map(({ heights }) => heights), box);
+    const kept = keptPart(
+      clips.map(({ heights }) => heights),
+      box,
+    );
     const path = (points) => (points.length > 2 ? `M${points.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join('L')}Z` : '');
-    const whole = [[box.x, box.y], [box.x + box.width, box.y], [box.x + box.width, box.y + box.height], [box.x, box.y + box.height]];
+    const whole = [
+      [box.x, box.y],
+      [box.x + box.width, box.y],
+      [box.x + box.width, box.y + box.height],
+      [box.x, box.y + box.height],
+    ];
     return svg`<path class="clip-dim" fill-rule="evenodd" d=${path(whole) + path(kept)} />`;
   }
 
   #names(cut, pane, scene) {
-    const taken = [...takenIn(pane, scene.check?.visible), ...cut.flatMap(({ at, turnAt }) => [handleBox(at), ...(turnAt ? [handleBox(turnAt)] : [])])];
+    const taken = [
+      ...takenIn(pane, scene.check?.visible),
+      ...cut.flatMap(({ at, turnAt }) => [handleBox(at), ...(turnAt ? [handleBox(turnAt)] : [])]),
+    ];
     return cut.map((line) => {
       const place = namePlace(line.cut, line.words, pane, taken);
       if (!place) return nothing;
@@ -121,7 +210,11 @@ export class PaneLines {
     const isClip = line.kind === 'clip';
     return html`<i class=${`clip-handle${line.isChosen ? ' chosen' : ''}`} role="slider" tabindex="0" data-plane=${line.id} aria-label=${isClip ? `${line.label}, ${keepsWords(line.id) || 'in any direction'}` : `Plane ${line.label}`}
       aria-valuemin=${line.range.low} aria-valuemax=${line.range.high} aria-valuenow=${Math.round(line.position * 10) / 10 || 0} aria-valuetext=${line.text} title=${`${line.name}: ${line.text} (drag, arrow keys)`}
-      ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @pointerdown=${(event) => this.#hold(event, line)} @pointermove=${(event) => this.#drag(event)} @pointerup=${() => { this.#held = null; }} @pointercancel=${() => { this.#held = null; }}
+      ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @pointerdown=${(event) => this.#hold(event, line)} @pointermove=${(event) => this.#drag(event)} @pointerup=${() => {
+        this.#held = null;
+      }} @pointercancel=${() => {
+        this.#held = null;
+      }}
       @keydown=${(event) => this.#key(event, line, 'move')} @focus=${() => this.#focus(line)}><svg viewBox="-32 -32 64 64" width="64" height="64" aria-hidden="true"><g transform=${`rotate(${angle.toFixed(2)})`}>
         ${isClip ? svg`<path class="clip-arrow under" d="M-17 0h-11M-24 -4l-4 4 4 4" /><path class="clip-arrow" d="M-17 0h-11M-24 -4l-4 4 4 4" />` : nothing}
         <rect x="-13" y="-8" width="26" height="16" rx="6" /><path class="clip-grips" d="M-4 -4v8M0 -4v8M4 -4v8" /></g></svg></i>`;
@@ -132,7 +225,11 @@ export class PaneLines {
     const angle = Math.round(Math.atan2(line.cut.from[1] - line.cut.to[1], line.cut.to[0] - line.cut.from[0]) / degrees);
     return html`<i class=${`clip-handle clip-turn${line.isChosen ? ' chosen' : ''}`} role="slider" tabindex="0" data-turn=${line.id} aria-label=${`Turn ${line.kind === 'clip' ? 'the free clip plane' : line.name}`}
       aria-valuemin="-180" aria-valuemax="180" aria-valuenow=${angle} aria-valuetext=${`${String(angle).replace('-', '−')}° in this pane`} title=${`Turn ${line.name} (drag, arrow keys)`}
-      ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @pointerdown=${(event) => this.#hold(event, line, true)} @pointermove=${(event) => this.#drag(event)} @pointerup=${() => { this.#held = null; }} @pointercancel=${() => { this.#held = null; }}
+      ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @pointerdown=${(event) => this.#hold(event, line, true)} @pointermove=${(event) => this.#drag(event)} @pointerup=${() => {
+        this.#held = null;
+      }} @pointercancel=${() => {
+        this.#held = null;
+      }}
       @keydown=${(event) => this.#key(event, line, 'turn')} @focus=${() => this.#focus(line)}><span>${icon('reset', 12)}</span></i>`;
   }
 
@@ -145,7 +242,11 @@ export class PaneLines {
   #point({ clientX, clientY, currentTarget }, scene) {
     const { left, top } = currentTarget.closest('.picture').getBoundingClientRect();
     const { box } = this.#place();
-    return fromPicture(this.#view.painted.value.clip_from_lps_mm, [(clientX - left - box.x) / box.width, (clientY - top - box.y) / box.height], this.#slice(scene).origin);
+    return fromPicture(
+      this.#view.painted.value.clip_from_lps_mm,
+      [(clientX - left - box.x) / box.width, (clientY - top - box.y) / box.height],
+      this.#slice(scene).origin,
+    );
   }
 
   #hold(event, line, isTurn = false) {
@@ -164,7 +265,10 @@ export class PaneLines {
   #pivot({ plane }, scene) {
     const slice = this.#slice(scene);
     const start = nearestIn(slice, plane.origin);
-    const inSlice = subtract(plane.normal, slice.normal.map((part) => part * plane.normal.reduce((sum, value, axis) => sum + value * slice.normal[axis], 0)));
+    const inSlice = subtract(
+      plane.normal,
+      slice.normal.map((part) => part * plane.normal.reduce((sum, value, axis) => sum + value * slice.normal[axis], 0)),
+    );
     const size = inSlice.reduce((sum, part) => sum + part * part, 0);
     return size > 1e-12 ? start.map((value, axis) => value - (inSlice[axis] * heightOver(plane, start)) / size) : start;
   }
@@ -175,7 +279,8 @@ export class PaneLines {
     if (!held || !event.currentTarget.hasPointerCapture(event.pointerId)) return;
     const point = this.#point(event, this.#room.scene.value);
     const { line, slice, pivot } = held;
-    if (held.isTurn) this.#change(this.#turn(line, pivot, slice, angleBetween(slice, subtract(held.point, pivot), subtract(point, pivot))), event);
+    if (held.isTurn)
+      this.#change(this.#turn(line, pivot, slice, angleBetween(slice, subtract(held.point, pivot), subtract(point, pivot))), event);
     else this.#change(line.moved(line.position + line.sign * (heightOver(line.plane, point) - held.grab)), event);
   }
 

@@ -1,5 +1,16 @@
 // Measures in one pane: drawn by pointer and keys, their points dragged, those of the pane's plane shown.
-import { circle, freeId, halfVoxelMm, isIn, listed, mostMeasures, mostPoints, pointsOf, pointsToDraw, withPoint } from '../state/measures.js';
+import {
+  circle,
+  freeId,
+  halfVoxelMm,
+  isIn,
+  listed,
+  mostMeasures,
+  mostPoints,
+  pointsOf,
+  pointsToDraw,
+  withPoint,
+} from '../state/measures.js';
 import { nearestIn, planeOfView } from '../state/obliques.js';
 import { crosshair, shownImage } from '../state/plan.js';
 import { isInSpace } from '../view/kinds.js';
@@ -34,7 +45,9 @@ export class PaneMeasures {
   }
 
   get #plane() {
-    return this.#scene && !isInSpace(this.#view.kind) ? planeOfView(this.#scene, this.#view.document.value, this.#world.room.plan.value) : null;
+    return this.#scene && !isInSpace(this.#view.kind)
+      ? planeOfView(this.#scene, this.#view.document.value, this.#world.room.plan.value)
+      : null;
   }
 
   get #isTool() {
@@ -72,14 +85,29 @@ export class PaneMeasures {
 
   overlay({ header, box, pane }) {
     const is3d = isInSpace(this.#view.kind);
-    const measures = this.#shown.map(([id, measure]) => ({ id, kind: measure.kind, points: pointsOf(measure), isChosen: this.#isChosen(id), hasHandles: this.#isTool || this.#isChosen(id),
-      texts: [...(measure.name ? [measureName(id, measure)] : []), ...valueTexts(this.#world, id, measure)] }));
+    const measures = this.#shown.map(([id, measure]) => ({
+      id,
+      kind: measure.kind,
+      points: pointsOf(measure),
+      isChosen: this.#isChosen(id),
+      hasHandles: this.#isTool || this.#isChosen(id),
+      texts: [...(measure.name ? [measureName(id, measure)] : []), ...valueTexts(this.#world, id, measure)],
+    }));
     const draft = this.#draft;
     if (draft) {
       const points = this.#completed(draft, draft.at ? [...draft.points, draft.at] : draft.points);
-      measures.push({ id: 'draft', kind: draft.kind, points, isChosen: true, hasHandles: true, texts: valueTexts(this.#world, '', { kind: draft.kind, points: listed(points) }) });
+      measures.push({
+        id: 'draft',
+        kind: draft.kind,
+        points,
+        isChosen: true,
+        hasHandles: true,
+        texts: valueTexts(this.#world, '', { kind: draft.kind, points: listed(points) }),
+      });
     }
-    return measures.length ? measureOverlay({ measures, is3d, matrix: header.clip_from_lps_mm, box, pane, mark: this.#pixel(crosshair(this.#scene)) }) : null;
+    return measures.length
+      ? measureOverlay({ measures, is3d, matrix: header.clip_from_lps_mm, box, pane, mark: this.#pixel(crosshair(this.#scene)) })
+      : null;
   }
 
   /** An ellipse is a circle until its points are dragged. */
@@ -152,7 +180,9 @@ export class PaneMeasures {
   key({ key }, at) {
     if (!this.#isTool || !['Enter', 'Backspace'].includes(key)) return null;
     if (key === 'Enter') return () => this.#addPoint(nearestIn(this.#plane, crosshair(this.#scene)), at);
-    return this.#draft ? () => this.#set(this.#draft.points.length > 1 ? { ...this.#draft, points: this.#draft.points.slice(0, -1) } : null) : null;
+    return this.#draft
+      ? () => this.#set(this.#draft.points.length > 1 ? { ...this.#draft, points: this.#draft.points.slice(0, -1) } : null)
+      : null;
   }
 
   // ---- drawing --------------------------------------------------------------------------------------------------------------------
@@ -195,8 +225,12 @@ export class PaneMeasures {
     this.#set(null);
     if (!draft || draft.points.length < 2) return;
     const id = freeId(this.#scene.measures, room.sharesMarks, room.markSuffix);
-    if (Object.keys(this.#scene.measures).length >= mostMeasures) return void ui.notify('warn', `There are ${mostMeasures} measures already: delete one first.`, 'measures');
-    room.patchScene(newMeasure(id, draft.kind, this.#completed(draft, draft.points), shownImage(room.plan.value, this.#scene)), { view: this.#view.number, at });
+    if (Object.keys(this.#scene.measures).length >= mostMeasures)
+      return void ui.notify('warn', `There are ${mostMeasures} measures already: delete one first.`, 'measures');
+    room.patchScene(newMeasure(id, draft.kind, this.#completed(draft, draft.points), shownImage(room.plan.value, this.#scene)), {
+      view: this.#view.number,
+      at,
+    });
     ui.select('measure', id);
   }
 
@@ -208,7 +242,10 @@ export class PaneMeasures {
     const measure = this.#scene.measures[id];
     const point = this.#placed(x, y);
     if (!measure || !point) return;
-    room.patchScene({ measures: { [id]: { points: listed(withPoint(measure.kind, pointsOf(measure), index, point)) } } }, { view: this.#view.number, at });
+    room.patchScene(
+      { measures: { [id]: { points: listed(withPoint(measure.kind, pointsOf(measure), index, point)) } } },
+      { view: this.#view.number, at },
+    );
   }
 
   /** With the tool the points of all measures, without it those of the chosen one. */
@@ -226,16 +263,23 @@ export class PaneMeasures {
   /** The measure whose points or straight lines run through a place. */
   #nearLine(x, y) {
     if (isInSpace(this.#view.kind)) return '';
-    return this.#shown.find(([, measure]) => {
-      const places = pointsOf(measure).map((point) => this.#pixel(point)).filter(Boolean);
-      const ends = measure.kind === 'ellipse' ? places.slice(1).map((end) => [places[0], end]) : places.slice(1).map((end, at) => [places[at], end]);
-      return ends.some(([a, b]) => fromSegment(a, b, { x, y }) <= linePx);
-    })?.[0] ?? '';
+    return (
+      this.#shown.find(([, measure]) => {
+        const places = pointsOf(measure)
+          .map((point) => this.#pixel(point))
+          .filter(Boolean);
+        const ends =
+          measure.kind === 'ellipse' ? places.slice(1).map((end) => [places[0], end]) : places.slice(1).map((end, at) => [places[at], end]);
+        return ends.some(([a, b]) => fromSegment(a, b, { x, y }) <= linePx);
+      })?.[0] ?? ''
+    );
   }
 }
 
 /** The patch that makes a measure; written whole, so that undo finds it as it was made. */
-export const newMeasure = (id, kind, points, image) => ({ measures: { [id]: { kind, name: '', visible: true, image: image?.id ?? '', points: listed(points) } } });
+export const newMeasure = (id, kind, points, image) => ({
+  measures: { [id]: { kind, name: '', visible: true, image: image?.id ?? '', points: listed(points) } },
+});
 
 function fromSegment(a, b, { x, y }) {
   const [dx, dy] = [b.x - a.x, b.y - a.y];

@@ -65,7 +65,10 @@ export class PanePick {
     const at = this.#pixelAt(x, y);
     if (!at) return null;
     const number = ++this.#newest;
-    const track = await this.#api.ofScene(this.#room.planId.value, 'track', this.#room.id, this.#view.document.value, { px: at[0], py: at[1] });
+    const track = await this.#api.ofScene(this.#room.planId.value, 'track', this.#room.id, this.#view.document.value, {
+      px: at[0],
+      py: at[1],
+    });
     return number === this.#newest && track.segment !== null ? track : null;
   }
 
@@ -75,7 +78,7 @@ export class PanePick {
     if (u < 0 || v < 0 || u >= 1 || v >= 1) return null;
     if (!isInSpace(this.#view.kind)) {
       const point = this.pointAt(x, y);
-      const result = point && await this.#api.probe(this.#room.planId.value, point);
+      const result = point && (await this.#api.probe(this.#room.planId.value, point));
       return result && (result.regions.length || result.images.length) ? this.#withDose(result) : null;
     }
     const hit = await this.#hit(x, y);
@@ -97,7 +100,9 @@ export class PanePick {
     if (!this.#room.plan.value?.doses.length || !(wash.visible || lines.visible || surfaces.visible)) return facts;
     const [x, y, z] = facts.point_lps_mm;
     const { override } = this.#view.document.value;
-    const dose = await this.#api.ofScene(this.#room.planId.value, 'dose/probe', this.#room.id, override ? { override } : {}, { x, y, z }).catch(() => null);
+    const dose = await this.#api
+      .ofScene(this.#room.planId.value, 'dose/probe', this.#room.id, override ? { override } : {}, { x, y, z })
+      .catch(() => null);
     return { ...facts, dose };
   }
 }

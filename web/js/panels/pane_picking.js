@@ -57,7 +57,9 @@ export function pickingLayer(world, view, box) {
   };
   const marks = picking.kind === 'points' ? picking.points.map(pixelOf) : [];
   const line = picking.from && picking.view === view.number ? [picking.from, picking.to].map(pixelOf) : null;
-  return html`<div class="clip-picking" @pointerdown=${down} @pointermove=${move} @pointerup=${up} @pointercancel=${() => { ui.picking.value = { ...picking, from: null, to: null, view: 0 }; }}>
+  return html`<div class="clip-picking" @pointerdown=${down} @pointermove=${move} @pointerup=${up} @pointercancel=${() => {
+    ui.picking.value = { ...picking, from: null, to: null, view: 0 };
+  }}>
     <svg class="overlay" aria-hidden="true">${marks.map(([x, y], n) => svg`<g class="marker">${['under', 'ink'].map((layer) => svg`<circle class=${layer} cx=${x} cy=${y} r="5" />`)}</g><text class="halo caption" x=${x + 9} y=${y - 7}>${n + 1}</text>`)}
       ${line ? ['under', 'ink'].map((layer) => svg`<g class="clip-line chosen"><line class=${layer} x1=${line[0][0]} y1=${line[0][1]} x2=${line[1][0]} y2=${line[1][1]} /></g>`) : nothing}</svg></div>`;
 }

@@ -7,9 +7,15 @@ import { undoButtons } from './undo_buttons.js';
 export function paneSwitch(world) {
   const { room, ui } = world;
   if (ui.arrangement.value.size !== 'phone') return nothing;
-  const panes = segment('Pane', ui.panes.four.value.map((number) => [number, room.view(number).name]), ui.visible.value[0], false, (number) => {
-    ui.maximised.value = 0;
-    ui.active.value = number;
-  });
+  const panes = segment(
+    'Pane',
+    ui.panes.four.value.map((number) => [number, room.view(number).name]),
+    ui.visible.value[0],
+    false,
+    (number) => {
+      ui.maximised.value = 0;
+      ui.active.value = number;
+    },
+  );
   return html`${panes}<div class="steps" role="toolbar" aria-label="Steps" @keydown=${roving}>${undoButtons(world)}</div>`;
 }

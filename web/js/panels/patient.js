@@ -35,9 +35,11 @@ export function patientBlock({ room }) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   const patient = shownPatient(plan, scene);
   const treatment = shownTreatmentPlan(plan, scene);
-  const rows = [['Patient', patient?.masked ?? (plan.isPhantom ? 'phantom' : unknownWords)],
+  const rows = [
+    ['Patient', patient?.masked ?? (plan.isPhantom ? 'phantom' : unknownWords)],
     treatment && ['Plan', [treatment.label, dateWords(treatment.date) && `of ${dateWords(treatment.date)}`].filter(Boolean).join(', ')],
     treatment && ['Approval', [approvalOf(treatment)[0], dateWords(treatment.review_date), treatment.reviewer].filter(Boolean).join(', ')],
-    plan.treatmentPlans.length > 1 && ['Plans in this folder', plan.treatmentPlans.map(({ label }) => label).join(', ')]].filter(Boolean);
+    plan.treatmentPlans.length > 1 && ['Plans in this folder', plan.treatmentPlans.map(({ label }) => label).join(', ')],
+  ].filter(Boolean);
   return html`<section class="block"><h3>Patient and plan</h3><dl>${rows.map(([name, value]) => html`<dt>${name}</dt><dd>${value}</dd>`)}</dl></section>`;
 }

@@ -49,10 +49,19 @@ async function show({ room, api }) {
     const found = plan === asked ? identityOf(plan, scene, patients) : null;
     hide();
     if (found) {
-      identity.value = { room, patient: shownPatient(plan, scene), name: nameWords(found.name ?? ''), id: found.id ?? '', birth: found.birth_date ?? '' };
+      identity.value = {
+        room,
+        patient: shownPatient(plan, scene),
+        name: nameWords(found.name ?? ''),
+        id: found.id ?? '',
+        birth: found.birth_date ?? '',
+      };
       timer = setTimeout(hide, shownMs);
     }
-    state.value = { error: found ? '' : 'The files have changed since this page opened them. Open the plan again to read whose it is.', isAsked: false };
+    state.value = {
+      error: found ? '' : 'The files have changed since this page opened them. Open the plan again to read whose it is.',
+      isAsked: false,
+    };
   } catch (problem) {
     state.value = { error: problem.message, isAsked: false };
   }
@@ -62,8 +71,11 @@ export function patientCard(world) {
   const known = shownIdentity(world);
   const { error, isAsked } = state.value;
   return html`<div class="popover patient-card"><h3>Patient</h3>
-    ${known ? html`<p><b>${known.name}</b></p><dl><dt>Id</dt><dd>${known.id || 'not given'}</dd><dt>Born</dt><dd>${known.birth || 'not given'}</dd></dl><div class="buttons"><button @click=${hide}>${icon('eyeOff')}<span>Mask it again</span></button></div>`
-    : html`<p class="note">Masked, as for everybody.</p><div class="buttons"><button class="primary" ?disabled=${isAsked} @click=${() => show(world)}>${icon('eye')}<span>Show to me</span></button></div>`}
+    ${
+      known
+        ? html`<p><b>${known.name}</b></p><dl><dt>Id</dt><dd>${known.id || 'not given'}</dd><dt>Born</dt><dd>${known.birth || 'not given'}</dd></dl><div class="buttons"><button @click=${hide}>${icon('eyeOff')}<span>Mask it again</span></button></div>`
+        : html`<p class="note">Masked, as for everybody.</p><div class="buttons"><button class="primary" ?disabled=${isAsked} @click=${() => show(world)}>${icon('eye')}<span>Show to me</span></button></div>`
+    }
     ${error ? html`<p class="note err" role="alert">${error}</p>` : nothing}
     <p class="note">To you alone, until you leave the room, at most 15 min. The audit keeps who, when and from where.</p></div>`;
 }

@@ -25,7 +25,11 @@ export function permalinkPage(host, token, { api, enter }) {
     }
   };
   void styled('css/bookmark.css').catch(() => {});
-  const unmount = mount(host, () => html`<main class="permalink">${problem.value ? refused(problem.value, open) : html`<p class="empty" role="status">Opening the saved view …</p>`}</main>`);
+  const unmount = mount(
+    host,
+    () =>
+      html`<main class="permalink">${problem.value ? refused(problem.value, open) : html`<p class="empty" role="status">Opening the saved view …</p>`}</main>`,
+  );
   document.title = 'Saved view – Beamroom';
   void open();
   return () => {

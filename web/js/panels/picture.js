@@ -7,12 +7,18 @@ import { numberField, segment } from './fields.js';
 import { icon } from './icons.js';
 import { active3d } from './pane_layouts.js';
 
-const sides = [['sagittal', 'Sagittal'], ['coronal', 'Coronal'], ['axial', 'Axial']];
+const sides = [
+  ['sagittal', 'Sagittal'],
+  ['coronal', 'Coronal'],
+  ['axial', 'Axial'],
+];
 
 /** The slices of the image in the 3-D picture. */
 export function slicesBlock(scene, image, isDisabled, change) {
-  return html`<section class="block"><h3>Slices in the 3-D picture</h3><div class="checks" role="group" aria-label="Slices in 3-D">${sides.map(([id, name]) => html`<label><input type="checkbox" .checked=${live(scene.image.slices[id].visible)} ?disabled=${isDisabled}
-    @change=${(event) => change({ image: { slices: { [id]: { visible: event.target.checked } } } }, event)}>${name}</label>`)}</div>${cullRow(scene, image, isDisabled, change)}</section>`;
+  return html`<section class="block"><h3>Slices in the 3-D picture</h3><div class="checks" role="group" aria-label="Slices in 3-D">${sides.map(
+    ([id, name]) => html`<label><input type="checkbox" .checked=${live(scene.image.slices[id].visible)} ?disabled=${isDisabled}
+    @change=${(event) => change({ image: { slices: { [id]: { visible: event.target.checked } } } }, event)}>${name}</label>`,
+  )}</div>${cullRow(scene, image, isDisabled, change)}</section>`;
 }
 
 /** The threshold below which slices in the 3-D view are transparent, so that air hides nothing. */
@@ -31,10 +37,50 @@ export function pictureBlock(world, isDisabled, change) {
   const image = shownImage(room.plan.value, scene);
   const { cameras } = active3d(world).actions;
   return html`<section class="block"><h3>${icon('cube')} 3-D picture</h3>
-      <dl>${room.view(1).document.value ? html`<dt>Projection</dt><dd>${segment('Projection', [['perspective', 'Perspective'], ['parallel', 'Parallel']], cameras.value.projection, isDisabled, (id, event) => cameras.setProjection(id, event.timeStamp))}</dd>` : nothing}
-        <dt>Translucency</dt><dd>${segment('Translucency', [['rim', 'Rim'], ['plain', 'Plain']], scene.surface.translucency, isDisabled, (translucency, event) => change({ surface: { translucency } }, event))}</dd>
-        <dt>Overlaps</dt><dd>${segment('What lies before what', [['exact', 'Exact', 'Each pixel in its own order, also where regions cross'], ['hierarchy', 'By hierarchy', 'Whole regions, inner before outer, as Sera3d does']], scene.surface.translucent_order, isDisabled, (translucent_order, event) => change({ surface: { translucent_order } }, event))}</dd></dl>
-      <div class="buttons looks" role="group" aria-label="Look from">${['anterior', 'posterior', 'left', 'right', 'superior', 'inferior'].map((name) => html`<button ?disabled=${isDisabled} title=${`Look from ${name}`}
-        @click=${(event) => cameras.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`)}</div></section>
+      <dl>${
+        room.view(1).document.value
+          ? html`<dt>Projection</dt><dd>${segment(
+              'Projection',
+              [
+                ['perspective', 'Perspective'],
+                ['parallel', 'Parallel'],
+              ],
+              cameras.value.projection,
+              isDisabled,
+              (id, event) => cameras.setProjection(id, event.timeStamp),
+            )}</dd>`
+          : nothing
+      }
+        <dt>Translucency</dt><dd>${segment(
+          'Translucency',
+          [
+            ['rim', 'Rim'],
+            ['plain', 'Plain'],
+          ],
+          scene.surface.translucency,
+          isDisabled,
+          (translucency, event) => change({ surface: { translucency } }, event),
+        )}</dd>
+        <dt>Overlaps</dt><dd>${segment(
+          'What lies before what',
+          [
+            ['exact', 'Exact', 'Each pixel in its own order, also where regions cross'],
+            ['hierarchy', 'By hierarchy', 'Whole regions, inner before outer, as Sera3d does'],
+          ],
+          scene.surface.translucent_order,
+          isDisabled,
+          (translucent_order, event) => change({ surface: { translucent_order } }, event),
+        )}</dd></dl>
+      <div class="buttons looks" role="group" aria-label="Look from">${[
+        'anterior',
+        'posterior',
+        'left',
+        'right',
+        'superior',
+        'inferior',
+      ].map(
+        (name) => html`<button ?disabled=${isDisabled} title=${`Look from ${name}`}
+        @click=${(event) => cameras.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`,
+      )}</div></section>
     ${image ? slicesBlock(scene, image, isDisabled, change) : nothing}`;
 }

@@ -9,29 +9,45 @@ import { variables } from './mount.js';
 import { roving } from './roving.js';
 import { uploadRows } from './upload.js';
 
-const filters = [['all', 'All'], ['ready', 'Ready'], ['warnings', 'With warnings']];
+const filters = [
+  ['all', 'All'],
+  ['ready', 'Ready'],
+  ['warnings', 'With warnings'],
+];
 
 export function planList(state, uploads, thumbnails) {
   const isKnown = state.plans.value !== null;
   const shown = state.shown.value;
   const n = (state.plans.value?.length ?? 0) - state.folders.value.length;
   return html`<div class="list-head"><h1>Plans</h1><span class="dim">${isKnown ? count(n, 'plan') : 'Looking for plans'}</span><span class="grow"></span>
-      <div class="segment" role="radiogroup" aria-label="Which plans" @keydown=${roving}>${filters.map(([id, name]) => html`<button role="radio" aria-checked=${state.filter.value === id} tabindex=${state.filter.value === id ? 0 : -1}
-        class=${classMap({ on: state.filter.value === id })} @click=${() => { state.filter.value = id; }}>${name}</button>`)}</div></div>
+      <div class="segment" role="radiogroup" aria-label="Which plans" @keydown=${roving}>${filters.map(
+        ([id, name]) => html`<button role="radio" aria-checked=${state.filter.value === id} tabindex=${state.filter.value === id ? 0 : -1}
+        class=${classMap({ on: state.filter.value === id })} @click=${() => {
+          state.filter.value = id;
+        }}>${name}</button>`,
+      )}</div></div>
     <div class="columns" aria-hidden="true"><span></span><span>Plan</span><span>Parts</span><span class="end">Size</span><span>State</span></div>
-    <ul class="plans" aria-label="Plans">${uploadRows(uploads)}${repeat(shown, (plan) => plan.id, (plan) => row(state, thumbnails, plan))}</ul>
+    <ul class="plans" aria-label="Plans">${uploadRows(uploads)}${repeat(
+      shown,
+      (plan) => plan.id,
+      (plan) => row(state, thumbnails, plan),
+    )}</ul>
     ${isKnown && !shown.length ? html`<p class="empty">${n ? 'No plan fits the search and the filter.' : 'No plans here. Drop one on this page; the server also looks in the folders given with --plans.'}</p>` : nothing}
     ${folders(state.folders.value)}`;
 }
 
-const folders = (list) => (list.length ? html`<details class="folders"><summary>${count(list.length, 'folder')} ${list.length === 1 ? 'is not a plan' : 'are not plans'}</summary>
-  <ul>${list.map(({ id, reason }) => html`<li><code>${id}</code><span>${reason}</span></li>`)}</ul></details>` : nothing);
+const folders = (list) =>
+  list.length
+    ? html`<details class="folders"><summary>${count(list.length, 'folder')} ${list.length === 1 ? 'is not a plan' : 'are not plans'}</summary>
+  <ul>${list.map(({ id, reason }) => html`<li><code>${id}</code><span>${reason}</span></li>`)}</ul></details>`
+    : nothing;
 
 /** True for a plan that could not be loaded for want of a place on the server. */
 const isWaiting = (plan) => plan.state === 'failed' && isOfServer(plan.problem);
 
 /** Why the plan cannot be opened, if known. */
-export const refusalOf = (state, plan) => state.refusals.value[plan.id] || (['failed', 'unreadable'].includes(plan.state) && !isWaiting(plan) ? plan.reason : '');
+export const refusalOf = (state, plan) =>
+  state.refusals.value[plan.id] || (['failed', 'unreadable'].includes(plan.state) && !isWaiting(plan) ? plan.reason : '');
 
 function row(state, thumbnails, plan) {
   const job = state.jobs.value[plan.id];
@@ -47,7 +63,8 @@ function row(state, thumbnails, plan) {
     ${refusal && !job ? html`<div class="refusal">${icon('error')}<div><p>${refusal}</p><p class="place">Nothing was loaded.</p></div></div>` : nothing}</li>`;
 }
 
-const thumbnail = (url, refusal) => html`<span class="thumb">${url ? html`<img src=${url} alt="" width="96" height="58">` : icon(refusal ? 'error' : 'image')}</span>`;
+const thumbnail = (url, refusal) =>
+  html`<span class="thumb">${url ? html`<img src=${url} alt="" width="96" height="58">` : icon(refusal ? 'error' : 'image')}</span>`;
 
 function stateWords(plan, job, refusal) {
   if (job || ['loading', 'starting', 'restarting'].includes(plan.state)) return html`<b>Loading</b>`;
@@ -62,12 +79,17 @@ function action(state, plan, job, isChosen) {
     event.stopPropagation();
     run(plan.id);
   };
-  if (job) return html`<button ?disabled=${!job.id} aria-label=${`Cancel loading ${plan.name}`} @click=${act((id) => state.cancel(id))}>${icon('close')}<span>Cancel</span></button>`;
-  const remove = plan.uploaded ? html`<button class="icon-button" title="Delete this uploaded plan" aria-label=${`Delete ${plan.name}`} @click=${act((id) => state.askToRemove(id))}>${icon('trash')}</button>` : nothing;
+  if (job)
+    return html`<button ?disabled=${!job.id} aria-label=${`Cancel loading ${plan.name}`} @click=${act((id) => state.cancel(id))}>${icon('close')}<span>Cancel</span></button>`;
+  const remove = plan.uploaded
+    ? html`<button class="icon-button" title="Delete this uploaded plan" aria-label=${`Delete ${plan.name}`} @click=${act((id) => state.askToRemove(id))}>${icon('trash')}</button>`
+    : nothing;
   if (plan.state === 'unreadable') return remove;
   const word = plan.state === 'failed' ? 'Try again' : 'Open';
   return html`${remove}<button class=${classMap({ primary: isChosen })} aria-label=${`${word} ${plan.name}`} @click=${act((id) => state.open(id))}>${word}</button>`;
 }
 
-const progress = (job) => html`<div class="progress"><i class="bar" role="progressbar" aria-label="Loading" aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(job.percent ?? 0)}
+const progress = (
+  job,
+) => html`<div class="progress"><i class="bar" role="progressbar" aria-label="Loading" aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(job.percent ?? 0)}
   ${variables({ '--fill': `${job.percent ?? 0}%` })}></i><b>${number(job.percent ?? 0)} %</b><span class="phase">${icon('phase')} ${job.phase || 'Waiting'}</span></div>`;

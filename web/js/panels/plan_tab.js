@@ -9,7 +9,14 @@ import { reportLines } from './report.js';
 export function planTab(world) {
   const { room, charts } = world;
   const plan = room.plan.value;
-  const parts = [['Images', plan.images.length], ['Regions', plan.regions.length], ['Doses', plan.doses.length], ['Beams', plan.beams.length], ['Reference curves', plan.curves.length], ['Segments of tracks', plan.nTracks]];
+  const parts = [
+    ['Images', plan.images.length],
+    ['Regions', plan.regions.length],
+    ['Doses', plan.doses.length],
+    ['Beams', plan.beams.length],
+    ['Reference curves', plan.curves.length],
+    ['Segments of tracks', plan.nTracks],
+  ];
   return html`${patientBlock(world)}<section class="block"><h3>${plan.name}</h3>${plan.note ? html`<p>${plan.note}</p>` : nothing}
       <dl class="parts">${parts.filter(([, n]) => n).map(([name, n]) => html`<dt>${name}</dt><dd>${number(n)}</dd>`)}</dl></section>
     ${ofFits(room)?.fitsTable(world) ?? nothing}

@@ -42,12 +42,16 @@ export function startPointing({ room, api, clock, panes }) {
       if (event.type === 'pointermove' || (isFinger && event.type === 'pointerdown')) move(event);
       else if (isFinger && event.type !== 'pointerdown') last = null; // the place stays until it fades
     };
-    for (const type of ['pointerdown', 'pointermove', 'pointerup', 'pointercancel']) pane.host.addEventListener(type, take, { signal: abort.signal, capture: true });
-    picture.addEventListener('pointerleave', (event) => event.pointerType !== 'touch' && pointers.isPointing.peek() && leave(), { signal: abort.signal });
+    for (const type of ['pointerdown', 'pointermove', 'pointerup', 'pointercancel'])
+      pane.host.addEventListener(type, take, { signal: abort.signal, capture: true });
+    picture.addEventListener('pointerleave', (event) => event.pointerType !== 'touch' && pointers.isPointing.peek() && leave(), {
+      signal: abort.signal,
+    });
   }
 
   const stops = [
-    effect(() => { // what lies under a pointer at rest changes with the picture
+    effect(() => {
+      // what lies under a pointer at rest changes with the picture
       if (!pointers.isPointing.value) return;
       for (const { number, painted, kind } of room.views) {
         const header = painted.value;

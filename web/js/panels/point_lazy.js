@@ -48,8 +48,12 @@ export function pointTools(world, isDock = false) {
     if (event.detail && pointers.isPointing.peek()) document.querySelector(`#picture-${ui.active.peek()}`)?.focus({ preventScroll: true }); // a mouse: its next key is for the pane
   };
   return html`<span class="anchor point-tools">
-    ${pointers.mayPoint.value ? html`<button class=${classMap({ tool: true, plain: true, on: isOn })} tabindex="-1" title=${title} aria-label="Point" aria-pressed=${isOn}
-      @click=${press}>${icon('point', isDock ? 20 : 16)}${isDock ? html`<span class="word">Point</span>` : nothing}</button>` : nothing}
+    ${
+      pointers.mayPoint.value
+        ? html`<button class=${classMap({ tool: true, plain: true, on: isOn })} tabindex="-1" title=${title} aria-label="Point" aria-pressed=${isOn}
+      @click=${press}>${icon('point', isDock ? 20 : 16)}${isDock ? html`<span class="word">Point</span>` : nothing}</button>`
+        : nothing
+    }
     <button class=${classMap({ tool: true, plain: true, 'point-more': true, on: isOpen })} tabindex="-1" title="Look here, pointers of the others" aria-label="Pointers" aria-haspopup="dialog" aria-expanded=${isOpen}
       @click=${() => ui.toggle('point')}>${icon('chevronDown', isDock ? 16 : 12)}</button>
     ${isOpen ? panels.loaded.value?.pointMenu(world, isDock) : nothing}</span>`;

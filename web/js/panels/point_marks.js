@@ -20,10 +20,24 @@ function shown({ room }, number) {
       const pointer = pointers.all.value.get(member.id);
       if (pointer) list.push({ id: member.id, name: member.name, color: colorOf(member), point: pointer.point, movedAt: pointer.movedAt });
     }
-  if (own && own.view !== number) list.push({ id: own.member, name: 'You', color: colorOf(room.members.value.find(({ id }) => id === own.member) ?? { id: own.member }), point: own.point, movedAt: own.movedAt });
+  if (own && own.view !== number)
+    list.push({
+      id: own.member,
+      name: 'You',
+      color: colorOf(room.members.value.find(({ id }) => id === own.member) ?? { id: own.member }),
+      point: own.point,
+      movedAt: own.movedAt,
+    });
   if (look) {
     const asker = room.members.value.find(({ id }) => id === look.by) ?? { id: look.by, name: look.by };
-    list.push({ id: `look-${look.number}`, name: `${look.by === room.member.value ? 'You' : asker.name}: look here`, color: colorOf(asker), point: look.point, movedAt: null, isLook: true });
+    list.push({
+      id: `look-${look.number}`,
+      name: `${look.by === room.member.value ? 'You' : asker.name}: look here`,
+      color: colorOf(asker),
+      point: look.point,
+      movedAt: null,
+      isLook: true,
+    });
   }
   return list;
 }
@@ -42,7 +56,9 @@ function marksOf(world, pane, number, hidden) {
   const half = plane && stepAcross(plane.normal, shownImage(room.plan.value, scene)?.stepMm ?? [1, 1, 1]) / 2;
   const marks = list.flatMap((pointer) => {
     const place = placeOf(header.clip_from_lps_mm, pointer.point, box);
-    const look = place && (plane ? lookInSlice(heightOver(plane, pointer.point), half) : lookInSpace(hidden.get(`${number} ${pointer.id}`)?.isHidden ?? false));
+    const look =
+      place &&
+      (plane ? lookInSlice(heightOver(plane, pointer.point), half) : lookInSpace(hidden.get(`${number} ${pointer.id}`)?.isHidden ?? false));
     const fade = pointer.movedAt === null ? 1 : fading(now - pointer.movedAt);
     return look && fade > 0 ? [{ ...pointer, ...place, ...look, fade }] : [];
   });
@@ -61,7 +77,11 @@ function drawn({ id, x, y, size, strength, fade, color, text, box, words, isLook
 /** @param {object} world {room, ui, api, clock, panes} @returns {() => void} stops */
 export function startMarks(world) {
   const hidden = signal(new Map()); // "view id" of a pointer -> {of: what was asked about, isHidden}
-  const layers = world.panes().map((pane, index) => mount(pane.host.querySelector('.pointers'), () => svg`${marksOf(world, pane, index + 1, hidden.value).map(drawn)}`));
+  const layers = world
+    .panes()
+    .map((pane, index) =>
+      mount(pane.host.querySelector('.pointers'), () => svg`${marksOf(world, pane, index + 1, hidden.value).map(drawn)}`),
+    );
   const stop = askDepths(world, hidden);
   return () => {
     stop();
@@ -107,9 +127,9 @@ function askDepths(world, hidden) {
     const place = placeOf(matrix, point, panes()[number - 1].place.box);
     isAsking = true;
     // a question that fails leaves the last answer
-    const hit = place && await picks[number - 1].seenAt(place.x, place.y).catch(() => undefined);
+    const hit = place && (await picks[number - 1].seenAt(place.x, place.y).catch(() => undefined));
     isAsking = false;
-    const isHidden = hit === undefined ? hidden.peek().get(key)?.isHidden ?? false : isBehind(matrix, point, hit?.point_lps_mm ?? null);
+    const isHidden = hit === undefined ? (hidden.peek().get(key)?.isHidden ?? false) : isBehind(matrix, point, hit?.point_lps_mm ?? null);
     const ids = new Set(room.views.flatMap((view) => shown(world, view.number).map(({ id }) => `${view.number} ${id}`)));
     hidden.value = new Map([...hidden.peek(), [key, { of, isHidden }]].filter(([known]) => ids.has(known)));
     run();

@@ -14,7 +14,15 @@ import { count, number, signed, significant, unitText } from './format.js';
 import { icon } from './icons.js';
 import { measureName, valueText } from './measure_words.js';
 
-const kinds = { '3d': '3-D', axial: 'Axial', coronal: 'Coronal', sagittal: 'Sagittal', oblique: 'Oblique', beam: "Beam's-eye view", 'beam-slice': 'Beam slice' };
+const kinds = {
+  '3d': '3-D',
+  axial: 'Axial',
+  coronal: 'Coronal',
+  sagittal: 'Sagittal',
+  oblique: 'Oblique',
+  beam: "Beam's-eye view",
+  'beam-slice': 'Beam slice',
+};
 const research = 'For research and plan review. Not a medical device; not for diagnosis or treatment decisions.';
 
 let measured = null; // what the figures were measured for: the list of entries
@@ -32,7 +40,9 @@ export function printoutDialog(world) {
     measured = records;
     queueMicrotask(() => printout.measure(room.planId.peek(), plan));
   }
-  const close = () => { ui.popover.value = ''; };
+  const close = () => {
+    ui.popover.value = '';
+  };
   return html`<section class="printout" role="dialog" aria-modal="true" tabindex="-1" aria-label="Report to print">
     <div class="printout-bar"><b>Report to print</b><span class="note" role="status">${printout.isComplete.value ? '' : 'Measuring surfaces …'}</span><span class="grow"></span>
       <button class="primary" ?disabled=${!plan || !printout.isComplete.value} @click=${printable(world, 'printed-report', `report on plan ${room.planId.value}`)}>${icon('print')}<span>Print or save as PDF</span></button>
@@ -42,11 +52,17 @@ export function printoutDialog(world) {
 }
 
 /** A table of layout: its foot stands on every printed page. */
-const sheet = (world, plan) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${hasCharts(plan) ? world.charts.draw('printed') : nothing}${ofFits(world.room)?.usedSheet(world) ?? nothing}${measures(world)}${warnings(plan)}</div>
+const sheet = (
+  world,
+  plan,
+) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${hasCharts(plan) ? world.charts.draw('printed') : nothing}${ofFits(world.room)?.usedSheet(world) ?? nothing}${measures(world)}${warnings(plan)}</div>
   <footer class="sheet-foot"><div>${plan.name} · printed ${new Date().toISOString().slice(0, 16).replace('T', ' ')} UTC · revision ${world.room.revision.value}<br><b>${research}</b></div></footer></article>`;
 
 function head({ room }, plan) {
-  const images = plan.images.map(({ id, modality, size, stepMm }) => `${modality} ${id}, ${size.join(' × ')} voxels, ${stepMm.map((mm) => number(mm, 2)).join(' × ')} mm`);
+  const images = plan.images.map(
+    ({ id, modality, size, stepMm }) =>
+      `${modality} ${id}, ${size.join(' × ')} voxels, ${stepMm.map((mm) => number(mm, 2)).join(' × ')} mm`,
+  );
   const rows = [
     ['Plan', html`${plan.name} <code>${room.planId.value}</code>${plan.isPhantom ? ' (phantom)' : ''}`],
     ['Images', images.join('; ') || 'none'],
@@ -61,23 +77,30 @@ function head({ room }, plan) {
 
 function pictures({ printout }, plan) {
   const entries = printout.entries.value;
-  if (!entries.length) return html`<p class="empty on-screen">No picture yet. Close this, choose a pane, and use “Add it to the report to print” under the camera.</p>`;
-  return repeat(entries, ({ key }) => key, (entry, at) => {
-    const { key, record } = entry;
-    const name = `Figure ${at + 1}`;
-    return html`<figure data-entry=${key}><img src=${entry.url} alt=${`${name}: ${kinds[record.view.kind]} of ${record.plan.name}`}>
+  if (!entries.length)
+    return html`<p class="empty on-screen">No picture yet. Close this, choose a pane, and use “Add it to the report to print” under the camera.</p>`;
+  return repeat(
+    entries,
+    ({ key }) => key,
+    (entry, at) => {
+      const { key, record } = entry;
+      const name = `Figure ${at + 1}`;
+      return html`<figure data-entry=${key}><img src=${entry.url} alt=${`${name}: ${kinds[record.view.kind]} of ${record.plan.name}`}>
       <figcaption><b>${name}.</b> <span class="on-paper">${entry.caption}</span>
         <span class="on-screen edit"><input name="caption" aria-label=${`Caption of ${name}`} placeholder="Caption" maxlength="500" .value=${live(entry.caption)} @input=${(event) => printout.describe(key, event.target.value)} @change=${() => printout.keep()}>
           <button class="small" ?disabled=${at === 0} aria-label=${`${name} earlier`} @click=${() => printout.move(key, -1)}>Up</button>
           <button class="small" ?disabled=${at === entries.length - 1} aria-label=${`${name} later`} @click=${() => printout.move(key, 1)}>Down</button>
           <button class="small" aria-label=${`Remove ${name}`} @click=${() => printout.remove(key)}>Remove</button></span></figcaption>
       ${draft(entry, plan)}${values(entry, plan)}</figure>`;
-  });
+    },
+  );
 }
 
 /** Whose dose the picture shows, while a beam was drafted. */
 function draft({ record: { scene } }, plan) {
-  return isDrafted(plan, scene) ? html`<p class="values"><b>Draft beam:</b> ${[draftBelongs(plan, scene), draftWords(plan, scene)].filter(Boolean).join(', ')}.</p>` : nothing;
+  return isDrafted(plan, scene)
+    ? html`<p class="values"><b>Draft beam:</b> ${[draftBelongs(plan, scene), draftWords(plan, scene)].filter(Boolean).join(', ')}.</p>`
+    : nothing;
 }
 
 /** The values at the picture's crosshair. */
@@ -88,17 +111,28 @@ function values({ record, probe }, plan) {
   const image = shownImage(plan, record.scene);
   const value = probe.images?.find((other) => other.id === image?.id);
   const inside = (probe.regions ?? []).map((id) => plan.regions.find((region) => region.id === id)?.name).filter(Boolean);
-  const doses = plan.doses.map((dose) => [dose, (probe.doses ?? []).filter((row) => row.id === dose.id && row.value !== null)]).filter(([, rows]) => rows.length);
+  const doses = plan.doses
+    .map((dose) => [dose, (probe.doses ?? []).filter((row) => row.id === dose.id && row.value !== null)])
+    .filter(([, rows]) => rows.length);
   return html`<p class="values">${place}${value && value.value !== null ? `, ${image.modality} ${significant(value.value)}${value.unit ? ` ${value.unit}` : ''}` : ''}${inside.length ? `, in ${inside.join(', in ')}` : ', outside every region'}.
-    ${doses.map(([dose, rows]) => html`<br>${dose.name || dose.id}${rows[0].per ? `, per ${unitText(rows[0].per.replace(/^per /, ''))}` : ''}: ${rows.map((row) =>
-      `${row.quantity.replaceAll('-', ' ')}${row.per_ppm ? ' per ppm' : ''} ${significant(row.value)} ${unitText(row.unit)}`).join(', ')}.`)}</p>`;
+    ${doses.map(
+      ([dose, rows]) =>
+        html`<br>${dose.name || dose.id}${rows[0].per ? `, per ${unitText(rows[0].per.replace(/^per /, ''))}` : ''}: ${rows
+          .map(
+            (row) => `${row.quantity.replaceAll('-', ' ')}${row.per_ppm ? ' per ppm' : ''} ${significant(row.value)} ${unitText(row.unit)}`,
+          )
+          .join(', ')}.`,
+    )}</p>`;
 }
 
 function figures({ printout }) {
   const rows = printout.figures.value;
   if (!rows.length) return nothing;
-  const cells = ({ result, error }) => (result ? html`<td>${result.triangles ? number(result.triangles) : '–'}</td><td>${result.area_mm2 ? number(result.area_mm2 / 100, 1) : '–'}</td><td>${result.volume_mm3 ? number(result.volume_mm3 / 1000, 2) : '–'}</td>
-    <td>${result.volume_mm3 ? `${signed(volumeDifference(result), 2)}` : '–'}</td><td>${Number.isFinite(result.distance_max_mm) ? number(result.distance_max_mm, 2) : '–'}</td>` : html`<td colspan="5">${error || '…'}</td>`);
+  const cells = ({ result, error }) =>
+    result
+      ? html`<td>${result.triangles ? number(result.triangles) : '–'}</td><td>${result.area_mm2 ? number(result.area_mm2 / 100, 1) : '–'}</td><td>${result.volume_mm3 ? number(result.volume_mm3 / 1000, 2) : '–'}</td>
+    <td>${result.volume_mm3 ? `${signed(volumeDifference(result), 2)}` : '–'}</td><td>${Number.isFinite(result.distance_max_mm) ? number(result.distance_max_mm, 2) : '–'}</td>`
+      : html`<td colspan="5">${error || '…'}</td>`;
   return html`<h2>Regions</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label="Figures of the regions"><table class="numbers-table"><thead><tr><th scope="col">Region</th><th scope="col">Univels</th><th scope="col">Volume, cm³</th><th scope="col">Surface</th><th scope="col">Triangles</th><th scope="col">Area, cm²</th><th scope="col">Encloses, cm³</th><th scope="col">to univels, %</th><th scope="col">Off at most, mm</th></tr></thead>
     <tbody>${rows.map((row) => html`<tr><th scope="row">${row.region.name}</th><td>${number(row.region.voxels)}</td><td>${number(row.region.volume_cm3, 2)}</td><td>${row.method}</td>${cells(row)}</tr>`)}</tbody></table></div>
     <p class="values">Univels and volume are the region's own; surfaces enclose all regions inside it as well. Off: distance from the univels' border.</p>`;

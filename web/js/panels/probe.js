@@ -22,7 +22,8 @@ export function probe(world) {
     ${dose?.doseAtCrosshair(world)}${ofDrawnDose(room)?.pinsBlock(world)}`;
 }
 
-export const swatch = (color) => html`<svg class="swatch" viewBox="0 0 12 12" width="12" height="12" aria-hidden="true"><rect width="12" height="12" rx="2.5" fill=${color}/></svg>`;
+export const swatch = (color) =>
+  html`<svg class="swatch" viewBox="0 0 12 12" width="12" height="12" aria-hidden="true"><rect width="12" height="12" rx="2.5" fill=${color}/></svg>`;
 
 function inside(plan, scene, result, ui) {
   if (!result) return html`<span class="dim">…</span>`;

@@ -17,7 +17,13 @@ export function readOut({ room, pointed }, host) {
   if (!shown || !plan || !scene) return nothing;
   const picture = host.parentElement.getBoundingClientRect();
   const { name, color, lines, value, width, height } = cardOf(words(shown.facts, plan, scene), picture.width, shown.isHeld);
-  const { x, y } = placeBeside(shown, [width, height], [picture.width, picture.height], takenIn(host.parentElement, picture), shown.isHeld ? touchGap : mouseGap);
+  const { x, y } = placeBeside(
+    shown,
+    [width, height],
+    [picture.width, picture.height],
+    takenIn(host.parentElement, picture),
+    shown.isHeld ? touchGap : mouseGap,
+  );
   return html`${shown.isHeld ? html`<svg class="rings">${[0, 1].map((layer) => rings.map((r) => svg`<circle class=${layer ? 'ink' : 'under'} cx=${shown.x} cy=${shown.y} r=${r} />`))}</svg>` : nothing}
     <div class="read-out" role=${shown.isHeld ? 'status' : nothing} aria-hidden=${shown.isHeld ? nothing : 'true'} ?data-held=${shown.isHeld}
       ${variables({ '--x': `${x}px`, '--y': `${y}px`, '--width': `${width}px`, '--height': `${height}px` })}>
@@ -33,16 +39,26 @@ export function words({ regions: ids, images, point_lps_mm: point, onSurface, do
   const image = shownImage(plan, scene);
   const found = image && images?.find(({ id }) => id === image.id);
   return {
-    name: first?.name ?? (plan.regions.length ? 'Outside every region' : image?.modality ?? ''),
+    name: first?.name ?? (plan.regions.length ? 'Outside every region' : (image?.modality ?? '')),
     color: first && (scene.regions[first.id]?.color ?? first.color),
     value: found && found.value !== null ? { label: image.modality, ...imageValue(found.value, image.unit) } : null,
-    lines: [doseLine(dose), outer.length ? `in ${outer.map((region) => region.name).join(', ')}` : '', first && scene.regions[first.id]?.visible === false ? 'hidden in this scene' : '',
-      onSurface && first?.voxels ? volume(first.volume_cm3) : '', position(point)].filter(Boolean),
+    lines: [
+      doseLine(dose),
+      outer.length ? `in ${outer.map((region) => region.name).join(', ')}` : '',
+      first && scene.regions[first.id]?.visible === false ? 'hidden in this scene' : '',
+      onSurface && first?.voxels ? volume(first.volume_cm3) : '',
+      position(point),
+    ].filter(Boolean),
   };
 }
 
 /** "4.82 Gy(w), 78.6 %"; '' where the dose is not shown or has no value. */
-const doseLine = (answer) => (Number.isFinite(answer?.value) ? [`${significant(answer.value)} ${unitText(answer.unit)}`, Number.isFinite(answer.percent) ? `${number(answer.percent, 1)} %` : ''].filter(Boolean).join(', ') : '');
+const doseLine = (answer) =>
+  Number.isFinite(answer?.value)
+    ? [`${significant(answer.value)} ${unitText(answer.unit)}`, Number.isFinite(answer.percent) ? `${number(answer.percent, 1)} %` : '']
+        .filter(Boolean)
+        .join(', ')
+    : '';
 
 /** The same for a caption: values at the crosshair. */
 export function spoken(result, plan, scene) {
@@ -53,7 +69,10 @@ export function spoken(result, plan, scene) {
 
 /** What the card must not cover: letters, scale bar, axes figure, legend. */
 function takenIn(picture, { left, top }) {
-  const marks = [...picture.querySelectorAll('.overlay text, .overlay .figure, .overlay .scale'), ...picture.parentElement.querySelectorAll('.legend')];
+  const marks = [
+    ...picture.querySelectorAll('.overlay text, .overlay .figure, .overlay .scale'),
+    ...picture.parentElement.querySelectorAll('.legend'),
+  ];
   return marks.map((mark) => {
     const box = mark.getBoundingClientRect();
     return { x: box.left - left, y: box.top - top, width: box.width, height: box.height };

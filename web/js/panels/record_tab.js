@@ -21,9 +21,13 @@ function recordOf({ room }) {
   return records.get(room);
 }
 
-const fail = (form, problem) => { failed.value = { ...failed.peek(), [form]: problem?.detail || problem?.message || '' }; };
+const fail = (form, problem) => {
+  failed.value = { ...failed.peek(), [form]: problem?.detail || problem?.message || '' };
+};
 
-const keep = (form, words) => { kept.value = { ...kept.peek(), [form]: words }; };
+const keep = (form, words) => {
+  kept.value = { ...kept.peek(), [form]: words };
+};
 const timeOf = (ms) => new Date(ms).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit' });
 
 /** Writes an item, which the server accepts only once it is on its disk; why not stands at the form. Resolves to whether it was written. */
@@ -41,8 +45,14 @@ async function write(room, form, kind, body, of = null) {
   }
 }
 
-const errorOf = (form) => (failed.value[form] ? html`<p class="note-error" role="alert">${failed.value[form]}</p>` : kept.value[form] ? html`<p class="note" role="status">${kept.value[form]}</p>` : nothing);
-const when = (ms) => html`<time datetime=${new Date(ms).toISOString()} title=${new Date(ms).toLocaleString()}>${whenWords(ms, Date.now())}</time>`;
+const errorOf = (form) =>
+  failed.value[form]
+    ? html`<p class="note-error" role="alert">${failed.value[form]}</p>`
+    : kept.value[form]
+      ? html`<p class="note" role="status">${kept.value[form]}</p>`
+      : nothing;
+const when = (ms) =>
+  html`<time datetime=${new Date(ms).toISOString()} title=${new Date(ms).toLocaleString()}>${whenWords(ms, Date.now())}</time>`;
 
 export function recordTab(world) {
   const { room } = world;
@@ -52,7 +62,8 @@ export function recordTab(world) {
   const nLines = rows.filter(({ kind }) => kind === 'decision' || kind === 'signature').length;
   queueMicrotask(() => record.keep(`${room.planId.value} ${nLines} ${present}`));
   const facts = record.facts.value;
-  if (!facts) return html`<p class="empty" role="status">${record.error.value || 'The plan’s files are being read: what is written here stands under their revision.'}</p>`;
+  if (!facts)
+    return html`<p class="empty" role="status">${record.error.value || 'The plan’s files are being read: what is written here stands under their revision.'}</p>`;
   const revision = facts.plan_revision;
   return html`${head(facts)}${checks(world, rows, revision)}${decided(world, rows, revision)}${signed(world, rows, revision)}${attendance(facts)}${earlier(rows, revision)}${exports(world)}`;
 }
@@ -70,10 +81,14 @@ function checks(world, rows, revision) {
     event.preventDefault();
     const form = event.target;
     const text = new FormData(form).get('text').trim();
-    if (text && await write(room, 'entry', 'check', { entry: '', text, state: 'open', comment: '' })) form.reset();
+    if (text && (await write(room, 'entry', 'check', { entry: '', text, state: 'open', comment: '' }))) form.reset();
   };
   return html`<section class="block"><h3>Checklist <span class="dim">${nDone} of ${entries.length}</span></h3>
-    <ol class="checks" aria-label="Checklist">${repeat(entries, ({ key }) => key, (entry) => check(world, entry, revision))}</ol>
+    <ol class="checks" aria-label="Checklist">${repeat(
+      entries,
+      ({ key }) => key,
+      (entry) => check(world, entry, revision),
+    )}</ol>
     ${mayWrite(room) ? html`<form class="record-add" @submit=${add}><input name="text" maxlength="200" aria-label="Another entry" placeholder="Another entry"><button>${icon('plus', 12)} Add</button></form>${errorOf('entry')}` : nothing}</section>`;
 }
 
@@ -84,7 +99,7 @@ function check({ room }, { key, entry, text, row }, revision) {
   const say = async (event) => {
     const comment = event.target.value.trim();
     comments.set(`${revision} ${key}`, comment);
-    if (comment === (row?.body.comment ?? '') || await set({ comment })) comments.delete(`${revision} ${key}`);
+    if (comment === (row?.body.comment ?? '') || (await set({ comment }))) comments.delete(`${revision} ${key}`);
   };
   const id = `check-${key}`;
   return html`<li data-check=${key} data-state=${state}><span class="check-text" id=${id}>${text}</span>
@@ -95,15 +110,21 @@ function check({ room }, { key, entry, text, row }, revision) {
 
 // ---- decision and signatures -------------------------------------------------------------------------------------------
 
-const lines = (list, label, words) => (list.length ? html`<ol class="record-lines" aria-label=${label}>${list.map(({ row, isCorrected }) => html`<li data-corrected=${isCorrected}>${words(row)}<span class="dim">${row.author_name}, ${row.body.role}, ${when(row.created_ms)}${isCorrected ? ' · corrected by a later line' : ''}</span></li>`)}</ol>` : nothing);
+const lines = (list, label, words) =>
+  list.length
+    ? html`<ol class="record-lines" aria-label=${label}>${list.map(({ row, isCorrected }) => html`<li data-corrected=${isCorrected}>${words(row)}<span class="dim">${row.author_name}, ${row.body.role}, ${when(row.created_ms)}${isCorrected ? ' · corrected by a later line' : ''}</span></li>`)}</ol>`
+    : nothing;
 
-const decisionWords = ({ body }) => html`<b>${wordOf(decisions, body.decision)}</b>${body.text ? html`<span class="note-words">${body.text}</span>` : nothing}`;
+const decisionWords = ({ body }) =>
+  html`<b>${wordOf(decisions, body.decision)}</b>${body.text ? html`<span class="note-words">${body.text}</span>` : nothing}`;
 const signatureWords = ({ body }) => html`<b>${body.name}</b> <span>${wordOf(meanings, body.meaning)}</span>`;
 
 /** Which earlier line a new one corrects. */
 const corrects = (list, words) => {
   const open = list.filter(({ isCorrected }) => !isCorrected);
-  return open.length ? html`<label>Corrects <select name="corrects"><option value="">no earlier line</option>${open.map(({ row }) => html`<option value=${row.id}>${words(row)}</option>`)}</select></label>` : nothing;
+  return open.length
+    ? html`<label>Corrects <select name="corrects"><option value="">no earlier line</option>${open.map(({ row }) => html`<option value=${row.id}>${words(row)}</option>`)}</select></label>`
+    : nothing;
 };
 
 function decided({ room }, rows, revision) {
@@ -112,14 +133,20 @@ function decided({ room }, rows, revision) {
     event.preventDefault();
     const form = event.target;
     const data = Object.fromEntries(new FormData(form));
-    if (await write(room, 'decision', 'decision', { decision: data.decision, text: data.text.trim(), corrects: data.corrects ?? '' })) form.reset();
+    if (await write(room, 'decision', 'decision', { decision: data.decision, text: data.text.trim(), corrects: data.corrects ?? '' }))
+      form.reset();
   };
   const isMine = meIn(room).role === 'presenter' && mayWrite(room);
   return html`<section class="block"><h3>Decision</h3>${lines(list, 'Decisions', decisionWords)}
-    ${isMine ? html`<form class="record-form" @submit=${submit}><label>Decision <select name="decision" required><option value="">–</option>${decisions.map(([id, name]) => html`<option value=${id}>${name}</option>`)}</select></label>
+    ${
+      isMine
+        ? html`<form class="record-form" @submit=${submit}><label>Decision <select name="decision" required><option value="">–</option>${decisions.map(([id, name]) => html`<option value=${id}>${name}</option>`)}</select></label>
       <label>In words <textarea name="text" rows="2" maxlength="2000"></textarea></label>${corrects(list, ({ body }) => wordOf(decisions, body.decision))}
       <p class="note">It is never changed or deleted: a correction is another line.</p><div class="note-buttons"><button>Write down</button></div></form>${errorOf('decision')}`
-      : list.length ? nothing : html`<p class="note">None yet. A member of role presenter writes it down.</p>`}</section>`;
+        : list.length
+          ? nothing
+          : html`<p class="note">None yet. A member of role presenter writes it down.</p>`
+    }</section>`;
 }
 
 function signed({ room }, rows, revision) {
@@ -128,13 +155,17 @@ function signed({ room }, rows, revision) {
     event.preventDefault();
     const form = event.target;
     const data = Object.fromEntries(new FormData(form));
-    if (await write(room, 'signature', 'signature', { name: data.name.trim(), meaning: data.meaning, corrects: data.corrects ?? '' })) form.reset();
+    if (await write(room, 'signature', 'signature', { name: data.name.trim(), meaning: data.meaning, corrects: data.corrects ?? '' }))
+      form.reset();
   };
   return html`<section class="block"><h3>Signatures</h3>${lines(list, 'Signatures', signatureWords)}
-    ${mayWrite(room) ? html`<form class="record-form" @submit=${submit}><label>Name <input name="name" required maxlength="80" autocomplete="name"></label>
+    ${
+      mayWrite(room)
+        ? html`<form class="record-form" @submit=${submit}><label>Name <input name="name" required maxlength="80" autocomplete="name"></label>
       <label>Meaning <select name="meaning">${meanings.map(([id, name]) => html`<option value=${id}>${name}</option>`)}</select></label>${corrects(list, ({ body }) => `${body.name}, ${wordOf(meanings, body.meaning)}`)}
       <p class="note">${legal} A line is never changed or deleted.</p><div class="note-buttons"><button>Sign</button></div></form>${errorOf('signature')}`
-      : html`<p class="note">${legal}</p>`}</section>`;
+        : html`<p class="note">${legal}</p>`
+    }</section>`;
 }
 
 // ---- who was there, earlier revisions, export --------------------------------------------------------------------------
@@ -146,17 +177,30 @@ function attendance({ present, n_present_dropped: nDropped }) {
 
 function earlier(rows, revision) {
   const groups = earlierRevisions(rows, revision);
-  const words = (row) => (row.kind === 'check' ? html`${row.body.text}: <b>${wordOf(states, row.body.state)}</b>${row.body.comment ? html`<span class="note-words">${row.body.comment}</span>` : nothing}` : row.kind === 'decision' ? decisionWords(row) : signatureWords(row));
-  return groups.map(({ revision: of, rows: list }) => html`<section class="block"><details class="record-earlier"><summary>Earlier revision <code title=${of}>${of.slice(0, 12)}</code> <span class="dim">${list.length} lines</span></summary>
+  const words = (row) =>
+    row.kind === 'check'
+      ? html`${row.body.text}: <b>${wordOf(states, row.body.state)}</b>${row.body.comment ? html`<span class="note-words">${row.body.comment}</span>` : nothing}`
+      : row.kind === 'decision'
+        ? decisionWords(row)
+        : signatureWords(row);
+  return groups.map(
+    ({
+      revision: of,
+      rows: list,
+    }) => html`<section class="block"><details class="record-earlier"><summary>Earlier revision <code title=${of}>${of.slice(0, 12)}</code> <span class="dim">${list.length} lines</span></summary>
     <p class="note">The plan’s files have changed since: these lines were written about what they were before.</p>
-    <ol class="record-lines">${list.map((row) => html`<li>${words(row)}<span class="dim">${row.changed_name}, ${when(row.changed_ms)}</span></li>`)}</ol></details></section>`);
+    <ol class="record-lines">${list.map((row) => html`<li>${words(row)}<span class="dim">${row.changed_name}, ${when(row.changed_ms)}</span></li>`)}</ol></details></section>`,
+  );
 }
 
 function exports(world) {
   const { room, ui } = world;
   const save = async () => {
     try {
-      saveBlob(`record-${room.id}.json`, new Blob([JSON.stringify(await fetchRecord(room.id, room.identity, true), null, 1)], { type: 'application/json' }));
+      saveBlob(
+        `record-${room.id}.json`,
+        new Blob([JSON.stringify(await fetchRecord(room.id, room.identity, true), null, 1)], { type: 'application/json' }),
+      );
     } catch (problem) {
       ui.notify('err', `No record: ${problem.message}`, 'record');
     }

@@ -20,7 +20,9 @@ function listOf(room, api, ui) {
     try {
       const answer = await api.call('GET', `rooms/${room.id}/recordings`);
       if (number === newest) list.value = answer.recordings;
-    } catch (problem) { ui.notify('err', problem.message); }
+    } catch (problem) {
+      ui.notify('err', problem.message);
+    }
   };
   effect(() => {
     void room.recording.running.value; // one has begun or ended
@@ -33,13 +35,19 @@ async function play(room, api, ui, id) {
   try {
     const made = await api.call('POST', 'rooms', { body: { recording: { room: room.id, id } } });
     window.open(`#/rooms/${made.id}`, '_blank');
-  } catch (problem) { ui.notify('err', problem.message); }
+  } catch (problem) {
+    ui.notify('err', problem.message);
+  }
 }
 
 async function remove(room, api, ui, list, id) {
   try {
-    await api.call('DELETE', `rooms/${room.id}/recordings/${id}`, { more: { 'Beamroom-Member': `${room.identity.member} ${room.identity.secret}` } });
-  } catch (problem) { ui.notify('err', problem.message); }
+    await api.call('DELETE', `rooms/${room.id}/recordings/${id}`, {
+      more: { 'Beamroom-Member': `${room.identity.member} ${room.identity.secret}` },
+    });
+  } catch (problem) {
+    ui.notify('err', problem.message);
+  }
   void list.ask();
 }
 
@@ -70,12 +78,18 @@ function transport({ recording, control }) {
     ${marks.length ? html`<details><summary>${marks.length} marks</summary><ul>${marks.map(([t_ms, kind, name]) => html`<li><button @click=${() => recording.say('replay.seek', { t_ms })}>${timeOf(t_ms)}</button><span>${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}</span></li>`)}</ul></details>` : nothing}`;
 }
 
-const then = ({ presenting, connected }) => [presenting ? 'presented' : '', connected === false ? 'was away' : ''].filter(Boolean).join(', ') || 'was there';
+const then = ({ presenting, connected }) =>
+  [presenting ? 'presented' : '', connected === false ? 'was away' : ''].filter(Boolean).join(', ') || 'was there';
 
 /** Who was in the meeting at the time that is shown. */
-const people = ({ recording: { members } }, avatar) => (members.value.length ? html`<h3 class="replay-title">In the meeting at this time</h3>
-  <ul aria-label="In the meeting at this time">${members.value.map((member) => html`<li data-was=${member.id} data-away=${member.connected === false}>${avatar(member)}
-    <span class="roster-who"><span class="clipped" title=${member.name}>${member.name}</span><span class="dim">${[member.role, then(member)].filter(Boolean).join(' · ')}</span></span></li>`)}</ul>` : nothing);
+const people = ({ recording: { members } }, avatar) =>
+  members.value.length
+    ? html`<h3 class="replay-title">In the meeting at this time</h3>
+  <ul aria-label="In the meeting at this time">${members.value.map(
+    (member) => html`<li data-was=${member.id} data-away=${member.connected === false}>${avatar(member)}
+    <span class="roster-who"><span class="clipped" title=${member.name}>${member.name}</span><span class="dim">${[member.role, then(member)].filter(Boolean).join(' · ')}</span></span></li>`,
+  )}</ul>`
+    : nothing;
 
 /** @param {object} world {room, ui, api} @param {(member: object) => object} avatar of a member, as in the list above */
 export function recordings({ room, ui, api }, avatar) {
@@ -85,8 +99,14 @@ export function recordings({ room, ui, api }, avatar) {
   const list = listOf(room, api, ui);
   const rows = (list.value ?? []).filter(({ state }) => state !== 'running');
   const isOurs = following.isPresenting.value;
-  return html`<div class="room-actions">${recording.running.value
-    ? (isOurs || room.control.may('control') ? html`<button title="Everybody is told" @click=${() => recording.say('recording.stop')}>End recording</button>` : nothing)
-    : isOurs ? html`<button title="Scene, shared views, pointers and notes can be replayed later; everybody sees that it is recorded" @click=${() => recording.say('recording.start')}>Record meeting</button>` : nothing}</div>
+  return html`<div class="room-actions">${
+    recording.running.value
+      ? isOurs || room.control.may('control')
+        ? html`<button title="Everybody is told" @click=${() => recording.say('recording.stop')}>End recording</button>`
+        : nothing
+      : isOurs
+        ? html`<button title="Scene, shared views, pointers and notes can be replayed later; everybody sees that it is recorded" @click=${() => recording.say('recording.start')}>Record meeting</button>`
+        : nothing
+  }</div>
     ${rows.length ? html`<h3 class="dim">Recordings</h3><ul aria-label="Recordings">${rows.map((one) => row(one, { room, api, ui, list }))}</ul>` : nothing}`;
 }

@@ -85,13 +85,17 @@ export class Redraw {
   watch(target) {
     const abort = new AbortController();
     const on = (type, act) => target.addEventListener(type, act, { signal: abort.signal, capture: true, passive: true });
-    on('pointerdown', (event) => { this.#pressed = event.target; });
+    on('pointerdown', (event) => {
+      this.#pressed = event.target;
+    });
     on('pointermove', ({ buttons }) => {
       if (!buttons) this.#end();
       else if (this.#pressed) this.#isDragging = true;
     });
     for (const type of ['pointerup', 'pointercancel']) on(type, () => this.#end());
-    on('blur', (event) => { if (event.target === target) this.#end(); }); // not when the focus moves within the page, as it does at a press
+    on('blur', (event) => {
+      if (event.target === target) this.#end();
+    }); // not when the focus moves within the page, as it does at a press
     return () => {
       abort.abort();
       this.#end();
@@ -127,13 +131,19 @@ export class Redraw {
     if (at === Infinity || (this.#timer && this.#timerAt <= at)) return;
     this.#clock.clearTimeout(this.#timer);
     this.#timerAt = at;
-    this.#timer = this.#clock.setTimeout(() => {
-      this.#timer = 0;
-      const now = this.#clock.now();
-      const isDue = this.#gatheredAt <= now || [...this.#slow.values()].some((other) => other <= now) || [...this.#withPicture.values()].some((other) => other.at <= now);
-      if (isDue) this.#request();
-      else this.#wake(); // those for which the timer was set were drawn with a picture
-    }, Math.max(0, at - this.#clock.now()));
+    this.#timer = this.#clock.setTimeout(
+      () => {
+        this.#timer = 0;
+        const now = this.#clock.now();
+        const isDue =
+          this.#gatheredAt <= now ||
+          [...this.#slow.values()].some((other) => other <= now) ||
+          [...this.#withPicture.values()].some((other) => other.at <= now);
+        if (isDue) this.#request();
+        else this.#wake(); // those for which the timer was set were drawn with a picture
+      },
+      Math.max(0, at - this.#clock.now()),
+    );
   }
 
   #request() {
@@ -152,7 +162,9 @@ export class Redraw {
       try {
         callback();
       } catch (error) {
-        queueMicrotask(() => { throw error; }); // the others are called, and the browser tells it
+        queueMicrotask(() => {
+          throw error;
+        }); // the others are called, and the browser tells it
       }
     }
     const now = this.#clock.now();

@@ -12,7 +12,11 @@ import { checkbox, numberField, segment } from './fields.js';
 import { number, seconds, signed, significant, volume } from './format.js';
 import { icon } from './icons.js';
 
-const files = [['stl', 'binary STL'], ['ply', 'binary PLY'], ['glb', 'GLB (glTF 2.0), in metres with the top up']];
+const files = [
+  ['stl', 'binary STL'],
+  ['ply', 'binary PLY'],
+  ['glb', 'GLB (glTF 2.0), in metres with the top up'],
+];
 
 export function regionBlock(world, region) {
   const { room, ui } = world;
@@ -28,7 +32,8 @@ export function regionBlock(world, region) {
   const own = ownRegions(plan, scene);
   const isAlone = own.every((other) => Boolean(scene.regions[other.id]?.visible) === (other.id === region.id));
   const isShared = own.every((other) => scene.regions[other.id]?.representation === style.representation);
-  const share = (event) => room.patchScene({ regions: Object.fromEntries(own.map(({ id }) => [id, { representation: style.representation }])) }, how(event));
+  const share = (event) =>
+    room.patchScene({ regions: Object.fromEntries(own.map(({ id }) => [id, { representation: style.representation }])) }, how(event));
   return html`<section class="block"><h3>Region ${region.name} <span class="dim">${parent ? `in ${parent.name}` : ''}</span></h3>
     <dl><dt>Volume</dt><dd>${volume(region.volume_cm3)}, ${number(region.voxels)} univels</dd>
       ${region.touches_edge ? html`<dt>Edge</dt><dd>cut by the edge of the scan</dd>` : nothing}
@@ -43,7 +48,13 @@ export function regionBlock(world, region) {
     <div class="buttons"><button aria-pressed=${isAlone} class=${classMap({ on: isAlone })} ?disabled=${isDisabled} @click=${(event) => room.patchScene(soloPatch(own, scene, region.id), how(event))}>${icon('solo')}<span>Solo</span></button>
       ${region.center_mm ? html`<button ?disabled=${isDisabled} @click=${show}>${icon('target')}<span>Go to centre</span></button>` : nothing}
       ${own.length > 1 ? html`<button ?disabled=${isDisabled || isShared} @click=${share}><span>All regions like this</span></button>` : nothing}
-      ${region.voxels ? html`<button aria-haspopup="dialog" @click=${() => { ui.popover.value = 'figures'; }}><span>Compare methods</span></button>` : nothing}</div>
+      ${
+        region.voxels
+          ? html`<button aria-haspopup="dialog" @click=${() => {
+              ui.popover.value = 'figures';
+            }}><span>Compare methods</span></button>`
+          : nothing
+      }</div>
     ${region.voxels && isExportable(style.representation) && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
 }
 
@@ -56,9 +67,13 @@ function coloured({ room }, region, isDisabled, how) {
   const isOff = note.startsWith('The wash');
   return html`<div class="shown-as"><span class="dim">Coloured by</span>${segment('Coloured by', textures(plan, texture), texture, isDisabled || !region.voxels, (wanted, event) => room.patchScene(texturePatch([region], wanted), how(event)))}</div>
     ${note ? html`<p class="note why">${icon('warning', 12)} ${note}</p>` : nothing}
-    ${isOff || (inner.length > 1 && textureOf(scene, inner) !== texture) ? html`<div class="buttons">
+    ${
+      isOff || (inner.length > 1 && textureOf(scene, inner) !== texture)
+        ? html`<div class="buttons">
       ${isOff ? html`<button ?disabled=${isDisabled} @click=${(event) => room.patchScene({ dose: { wash: { visible: true } } }, how(event))}><span>Show the wash</span></button>` : nothing}
-      ${inner.length > 1 && textureOf(scene, inner) !== texture ? html`<button ?disabled=${isDisabled} @click=${(event) => room.patchScene(texturePatch(inner, texture), how(event))}><span>Those inside it too</span></button>` : nothing}</div>` : nothing}`;
+      ${inner.length > 1 && textureOf(scene, inner) !== texture ? html`<button ?disabled=${isDisabled} @click=${(event) => room.patchScene(texturePatch(inner, texture), how(event))}><span>Those inside it too</span></button>` : nothing}</div>`
+        : nothing
+    }`;
 }
 
 /** True when the server cannot build the shape, so there is no file to save either. */
@@ -69,17 +84,26 @@ function isRefused({ shaped, refused }, region, representation) {
 
 function downloads({ api, room }, region, representation) {
   const query = shapeQuery(room.scene.value, representation);
-  return html`<div class="buttons downloads" role="group" aria-label="Download the surface"><span class="dim">Surface, mm LPS</span>${files.map(([format, about]) => html`<a class="button"
-    download href=${api.surfaceUrl(room.planId.value, region.id, { format, ...query })} title=${`Download the surface of ${region.name} as ${about}`}>${format.toUpperCase()}</a>`)}</div>`;
+  return html`<div class="buttons downloads" role="group" aria-label="Download the surface"><span class="dim">Surface, mm LPS</span>${files.map(
+    ([format, about]) => html`<a class="button"
+    download href=${api.surfaceUrl(room.planId.value, region.id, { format, ...query })} title=${`Download the surface of ${region.name} as ${about}`}>${format.toUpperCase()}</a>`,
+  )}</div>`;
 }
 
 /** The server's figures of the shape that is shown. */
 function figures({ room, shaped }, region, representation) {
   const { region: of, representation: as, result, error } = shaped.value;
-  if (of !== region.id || as !== representation || (!result && !error)) return html`<p class="note figures">${waitReason(room) || 'Working out its figures …'}</p>`;
+  if (of !== region.id || as !== representation || (!result && !error))
+    return html`<p class="note figures">${waitReason(room) || 'Working out its figures …'}</p>`;
   if (error) return html`<p class="figures err" role="status">${icon('error')} ${error}</p>`;
-  const counts = [['triangles', 'triangles'], ['lines', 'outlines'], ['points', 'points'], ['vertices', 'vertices']]
-    .filter(([name]) => result[name]).map(([name, word]) => `${number(result[name])} ${word}`);
+  const counts = [
+    ['triangles', 'triangles'],
+    ['lines', 'outlines'],
+    ['points', 'points'],
+    ['vertices', 'vertices'],
+  ]
+    .filter(([name]) => result[name])
+    .map(([name, word]) => `${number(result[name])} ${word}`);
   const difference = volumeDifference(result);
   return html`<dl class="figures"><dt>Made of</dt><dd>${counts.join(', ') || 'nothing'}</dd>
     ${result.area_mm2 ? html`<dt>Area</dt><dd>${significant(result.area_mm2 / 100)} cm²</dd>` : nothing}

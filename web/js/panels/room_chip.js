@@ -14,11 +14,23 @@ function words({ following, control, recording }) {
   const name = following.presenter.value?.name ?? '';
   const n = following.nFollowers.value;
   switch (following.standing.value) {
-    case 'presenting': return { text: control.isLocked.value ? 'Presenting, locked' : 'Presenting', more: n ? `· ${n} follow${n === 1 ? 's' : ''}` : '' };
-    case 'own': return { text: replay ?? 'On my own', act: { word: 'Return', keys: 'F', about: name ? `Return to ${name}` : 'Return to the shared view', do: () => following.return() } };
-    case 'away': return { text: `${name} is away` };
-    case 'none': return { text: replay ?? 'No presenter', act: !replay && control.may('scene') && { word: 'Take over', about: 'Take over: your view becomes the room\'s', do: () => following.present() } };
-    default: return { text: replay ?? (name ? `Following ${name}` : 'Following') };
+    case 'presenting':
+      return { text: control.isLocked.value ? 'Presenting, locked' : 'Presenting', more: n ? `· ${n} follow${n === 1 ? 's' : ''}` : '' };
+    case 'own':
+      return {
+        text: replay ?? 'On my own',
+        act: { word: 'Return', keys: 'F', about: name ? `Return to ${name}` : 'Return to the shared view', do: () => following.return() },
+      };
+    case 'away':
+      return { text: `${name} is away` };
+    case 'none':
+      return {
+        text: replay ?? 'No presenter',
+        act: !replay &&
+          control.may('scene') && { word: 'Take over', about: "Take over: your view becomes the room's", do: () => following.present() },
+      };
+    default:
+      return { text: replay ?? (name ? `Following ${name}` : 'Following') };
   }
 }
 

@@ -44,7 +44,8 @@ const tickMs = 250;
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
 const drawer = (world) => (world.ui.arrangement.value.drawer ? world.charts.draw('drawer') : nothing);
-const floating = (world) => html`${help(world)}${selected.loaded.value?.figuresDialog(world) ?? nothing}${ended(world)}${otherPlanDialog(world)}${world.printoutDialog.value?.(world) ?? nothing}`;
+const floating = (world) =>
+  html`${help(world)}${selected.loaded.value?.figuresDialog(world) ?? nothing}${ended(world)}${otherPlanDialog(world)}${world.printoutDialog.value?.(world) ?? nothing}`;
 
 const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>
@@ -59,7 +60,11 @@ const frame = () => html`<div class="room">
  *   plan: the room's, as far as the address knows it}
  * @returns {() => void} leaves the room
  */
-export function roomPage(host, id, { api, connect, clock, redraw, decode, hooks, enter, ownName, storage = null, isBack = false, plan = '' }) {
+export function roomPage(
+  host,
+  id,
+  { api, connect, clock, redraw, decode, hooks, enter, ownName, storage = null, isBack = false, plan = '' },
+) {
   const stops = [mount(host, frame)];
   const part = (name) => host.querySelector(name);
   const ui = new UiState(clock, storage);
@@ -80,24 +85,97 @@ export function roomPage(host, id, { api, connect, clock, redraw, decode, hooks,
     const answered = room.frameShown(header, isDrawn);
     hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
   };
-  stops.push(redraw.watch(globalThis), loadBeforeClicks(), adapt(ui), effect(() => layOut(host.querySelector('.room'), ui))); // before the panes measure themselves: views open at their sizes
-  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), { room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted }, view));
+  stops.push(
+    redraw.watch(globalThis),
+    loadBeforeClicks(),
+    adapt(ui),
+    effect(() => layOut(host.querySelector('.room'), ui)),
+  ); // before the panes measure themselves: views open at their sizes
+  const panes = room.views.map(
+    (view) =>
+      new Pane(
+        part(`[data-view="${view.number}"]`),
+        { room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted },
+        view,
+      ),
+  );
   connection.addEventListener('frame', ({ detail }) => {
     room.frameCame(detail.header);
     panes[detail.header.view - 1]?.painter.offer(detail);
   });
 
   const after = new AfterRoom({ api, clock, enter });
-  const world = { after, room, ui, api, clock, connection, decode, storage, ownName, undo, probed, shaped, refused, comparison, histograms, ellipses, doses, panes: () => panes, printout: new Printout(id, api, globalThis.sessionStorage), otherPlan: signal(null), printoutDialog: signal(null) };
+  const world = {
+    after,
+    room,
+    ui,
+    api,
+    clock,
+    connection,
+    decode,
+    storage,
+    ownName,
+    undo,
+    probed,
+    shaped,
+    refused,
+    comparison,
+    histograms,
+    ellipses,
+    doses,
+    panes: () => panes,
+    printout: new Printout(id, api, globalThis.sessionStorage),
+    otherPlan: signal(null),
+    printoutDialog: signal(null),
+  };
   world.charts = new ChartLoader(world);
   stops.push(() => world.charts.stop());
-  for (const [name, draw] of [['.banner', banner], ['.tree', tree], ['.strip', toolStrip], ['.switch', paneSwitch], ['.dose-bars', () => html`${filesBar(world)}${ofFits(room)?.otherPatientsBar(world)}${ofFits(room)?.fitBar(world)}${draftBar(world)}${playBar(world)}`], ['.chart-drawer', drawer], ['.inspector', inspector], ['.status', status], ['.toasts', (shown) => html`${savedLine(shown)}${requestLines(shown)}${toasts(shown)}`], ['.floating', floating]])
+  for (const [name, draw] of [
+    ['.banner', banner],
+    ['.tree', tree],
+    ['.strip', toolStrip],
+    ['.switch', paneSwitch],
+    [
+      '.dose-bars',
+      () =>
+        html`${filesBar(world)}${ofFits(room)?.otherPatientsBar(world)}${ofFits(room)?.fitBar(world)}${draftBar(world)}${playBar(world)}`,
+    ],
+    ['.chart-drawer', drawer],
+    ['.inspector', inspector],
+    ['.status', status],
+    ['.toasts', (shown) => html`${savedLine(shown)}${requestLines(shown)}${toasts(shown)}`],
+    ['.floating', floating],
+  ])
     stops.push(mount(part(name), () => draw(world), redraw));
   if (!isBack) stops.push(offerName(world));
-  stops.push(effect(() => describeTitle(room)), reveal(host, ui), probe(room, api, probed, clock), doses.start(clock));
-  stops.push(listenKeys(ui, room), listenUndo(globalThis, undo), shape(room, ui, api, shaped), compare(room, ui, comparison), refuse(room, refusals), moveFocus(host, ui), watchEnd(host, room, after, plan), giveOblique(world), watchNotes(world), leaveBeam(world), startPointers(world), listenSnapshots(world), resumeSnapshot(world), resumeBookmark(world), () => leaveBookmarks(world), coverPage(host, ui));
+  stops.push(
+    effect(() => describeTitle(room)),
+    reveal(host, ui),
+    probe(room, api, probed, clock),
+    doses.start(clock),
+  );
+  stops.push(
+    listenKeys(ui, room),
+    listenUndo(globalThis, undo),
+    shape(room, ui, api, shaped),
+    compare(room, ui, comparison),
+    refuse(room, refusals),
+    moveFocus(host, ui),
+    watchEnd(host, room, after, plan),
+    giveOblique(world),
+    watchNotes(world),
+    leaveBeam(world),
+    startPointers(world),
+    listenSnapshots(world),
+    resumeSnapshot(world),
+    resumeBookmark(world),
+    () => leaveBookmarks(world),
+    coverPage(host, ui),
+  );
 
-  const tick = setInterval(() => { ui.now.value = clock.now(); }, tickMs);
+  const tick = setInterval(() => {
+    ui.now.value = clock.now();
+  }, tickMs);
   hooks.enter(room, panes);
   connection.open();
   return () => {
@@ -115,7 +193,9 @@ function layOut(element, ui) {
   Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout });
   const panes = [...element.querySelectorAll('.pane')];
   const cells = [...ui.panes[layout === '2x1' || layout === '1x2' ? 'two' : 'four'].value];
-  const order = [...cells, ...views.map((_, index) => index + 1).filter((n) => !cells.includes(n))].map((n) => panes.find((pane) => Number(pane.dataset.view) === n));
+  const order = [...cells, ...views.map((_, index) => index + 1).filter((n) => !cells.includes(n))].map((n) =>
+    panes.find((pane) => Number(pane.dataset.view) === n),
+  );
   const focused = document.activeElement;
   if (order.some((pane, index) => pane !== panes[index])) panes[0].parentElement.append(...order); // Tab goes through them as they stand
   for (const pane of panes) {
@@ -185,10 +265,15 @@ function shape(room, ui, api, shaped) {
     pending?.abort();
     if (!wanted.value) return;
     const [region, representation, query] = JSON.parse(wanted.value);
-    const { signal: aborted } = pending = new AbortController();
+    const { signal: aborted } = (pending = new AbortController());
     shaped.value = { region: '', representation: '', result: null, error: '' };
-    const tell = (answer) => { if (!aborted.aborted) shaped.value = { region, representation, result: null, error: '', ...answer }; };
-    api.surface(room.planId.peek(), region, query, aborted).then((result) => tell({ result }), (error) => tell({ error: error.message }));
+    const tell = (answer) => {
+      if (!aborted.aborted) shaped.value = { region, representation, result: null, error: '', ...answer };
+    };
+    api.surface(room.planId.peek(), region, query, aborted).then(
+      (result) => tell({ result }),
+      (error) => tell({ error: error.message }),
+    );
   });
   return () => {
     stop();
@@ -198,7 +283,9 @@ function shape(room, ui, api, shaped) {
 
 /** Finds the regions that cannot be drawn whenever other regions are shown, or in another way. */
 function refuse(room, refusals) {
-  const questions = computed(() => (room.renderer.value.state === 'ready' ? JSON.stringify(inQuestion(room.plan.value, room.scene.value)) : ''));
+  const questions = computed(() =>
+    room.renderer.value.state === 'ready' ? JSON.stringify(inQuestion(room.plan.value, room.scene.value)) : '',
+  );
   const stop = effect(() => {
     if (questions.value) refusals.ask(room.planId.peek(), JSON.parse(questions.value));
   });
@@ -241,7 +328,7 @@ function adapt(ui) {
     const before = ui.window.peek();
     const { clientWidth: width, clientHeight: height } = document.documentElement; // innerWidth is larger where a telephone shows more than the page
     ui.window.value = { width, height, isCoarse: coarse.matches };
-    if ((before.width >= inspectorFrom) !== (width >= inspectorFrom)) ui.isInspectorOpen.value = width >= inspectorFrom;
+    if (before.width >= inspectorFrom !== width >= inspectorFrom) ui.isInspectorOpen.value = width >= inspectorFrom;
   };
   set();
   addEventListener('resize', set);
@@ -260,7 +347,8 @@ function moveFocus(host, ui) {
     const isOpen = isDialog.value;
     if (!isOpen && !opener) return;
     if (isOpen) opener = document.activeElement;
-    queueMicrotask(() => { // after it is drawn
+    queueMicrotask(() => {
+      // after it is drawn
       const dialog = host.querySelector('[role="dialog"]');
       if (isOpen) return void dialog?.focus();
       if (document.activeElement === document.body) opener?.focus();
@@ -276,7 +364,8 @@ function listenKeys(ui, room) {
     else if (event.key === '?' && !isTyping) ui.toggle('help');
   };
   const onPress = (event) => {
-    if (ui.popover.value && !['help', 'figures', 'printout', 'other-plan'].includes(ui.popover.value) && !event.target.closest('.anchor')) ui.popover.value = '';
+    if (ui.popover.value && !['help', 'figures', 'printout', 'other-plan'].includes(ui.popover.value) && !event.target.closest('.anchor'))
+      ui.popover.value = '';
   };
   addEventListener('keydown', onKey);
   addEventListener('pointerdown', onPress);

@@ -20,11 +20,13 @@ function doing({ presenting, following, connected }, presenter) {
   return presenter ? `follows ${presenter.name}` : 'follows';
 }
 
-export const avatar = (member, size = 'small') => html`<span class=${`avatar member ${size}`} aria-hidden="true" ${variables({ '--member': member.color ?? '#929ba6' })}>${initials(member.name)}</span>`;
+export const avatar = (member, size = 'small') =>
+  html`<span class=${`avatar member ${size}`} aria-hidden="true" ${variables({ '--member': member.color ?? '#929ba6' })}>${initials(member.name)}</span>`;
 
 /** What the presenter can do for another member. */
 function buttonsFor(member, { following, control }) {
-  if (!following.isPresenting.value || member.presenting || member.connected === false || !control.may('scene', member.role)) return nothing;
+  if (!following.isPresenting.value || member.presenting || member.connected === false || !control.may('scene', member.role))
+    return nothing;
   const isAsking = control.requested.value.includes(member.id);
   return html`<span class="roster-buttons"><button aria-label=${`Give control to ${member.name}`} @click=${() => control.give(member.id)}>Give control</button>
     ${isAsking ? html`<button aria-label=${`Refuse control to ${member.name}`} @click=${() => control.refuse(member.id)}>Refuse</button>` : nothing}</span>`;
@@ -43,19 +45,40 @@ function row(member, room) {
     ${buttonsFor(member, room)}</li>`;
 }
 
-const actions = ({ following, control, recording: { replay } }, watching) => [
-  following.isPresenting.value && { word: 'Show everyone', about: 'Everybody follows you again', do: () => following.showEveryone() },
-  following.isPresenting.value && control.may('control') && (control.isLocked.value
-    ? { word: 'Unlock', about: 'Presenters may take control again', do: () => control.lock(false) }
-    : { word: 'Lock control', about: 'Nobody takes control: you can only give it', do: () => control.lock(true) }),
-  !replay.value && control.canTake.value && { word: following.presenter.value ? 'Take control' : 'Take over', about: following.presenter.value ? 'You present what the room shows now' : 'Your view becomes the room\'s', do: () => control.take() },
-  control.canRequest.value && (control.isRequesting.value
-    ? { word: 'Withdraw request', about: 'You do not want control any more', do: () => control.withdraw() }
-    : { word: 'Request control', about: 'The presenter is asked to give you control', do: () => control.request() }),
-  !following.isFollowing.value && watching?.isClosed.value && { word: 'Show presenter\'s picture', about: 'What the presenter works in, small, in a corner of your panes', do: () => { watching.isClosed.value = false; } },
-  !following.isFollowing.value && { word: 'Return', about: 'Follow with all panes again', do: () => following.return() },
-  following.isFollowing.value && !following.isPresenting.value && { word: 'Look for yourself', about: 'Your panes alone, from what they show now', do: () => following.leave() },
-].filter(Boolean);
+const actions = ({ following, control, recording: { replay } }, watching) =>
+  [
+    following.isPresenting.value && { word: 'Show everyone', about: 'Everybody follows you again', do: () => following.showEveryone() },
+    following.isPresenting.value &&
+      control.may('control') &&
+      (control.isLocked.value
+        ? { word: 'Unlock', about: 'Presenters may take control again', do: () => control.lock(false) }
+        : { word: 'Lock control', about: 'Nobody takes control: you can only give it', do: () => control.lock(true) }),
+    !replay.value &&
+      control.canTake.value && {
+        word: following.presenter.value ? 'Take control' : 'Take over',
+        about: following.presenter.value ? 'You present what the room shows now' : "Your view becomes the room's",
+        do: () => control.take(),
+      },
+    control.canRequest.value &&
+      (control.isRequesting.value
+        ? { word: 'Withdraw request', about: 'You do not want control any more', do: () => control.withdraw() }
+        : { word: 'Request control', about: 'The presenter is asked to give you control', do: () => control.request() }),
+    !following.isFollowing.value &&
+      watching?.isClosed.value && {
+        word: "Show presenter's picture",
+        about: 'What the presenter works in, small, in a corner of your panes',
+        do: () => {
+          watching.isClosed.value = false;
+        },
+      },
+    !following.isFollowing.value && { word: 'Return', about: 'Follow with all panes again', do: () => following.return() },
+    following.isFollowing.value &&
+      !following.isPresenting.value && {
+        word: 'Look for yourself',
+        about: 'Your panes alone, from what they show now',
+        do: () => following.leave(),
+      },
+  ].filter(Boolean);
 
 /** The own name, which can be given or changed at any time. */
 function nameForm({ room, ui, ownName }) {
@@ -85,7 +108,11 @@ export function roster({ room, ui, ownName, api, watching }) {
     what();
   };
   const locked = room.control.isLocked.value;
-  return html`<ul>${repeat(room.members.value, ({ id }) => id, (member) => row(member, room))}</ul>
+  return html`<ul>${repeat(
+    room.members.value,
+    ({ id }) => id,
+    (member) => row(member, room),
+  )}</ul>
     ${locked ? html`<p class="dim roster-locked">Control is locked: it can only be given.</p>` : nothing}
     <div class="room-actions">${actions(room, watching).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
     ${recordings({ room, ui, api }, avatar)}
@@ -95,7 +122,11 @@ export function roster({ room, ui, ownName, api, watching }) {
 /** For the presenter, above the toasts: the oldest requests for control, one line each. */
 export function requestLines({ room: { control } }) {
   const asking = control.requests.value;
-  return html`${repeat(asking.slice(0, 2), ({ id }) => id, (member) => html`<div class="request-line" role="status">${avatar(member)}<span class="clipped">${member.name} requests control</span>
-    <button @click=${() => control.give(member.id)} aria-label=${`Give control to ${member.name}`}>Give</button><button class="ghost" @click=${() => control.refuse(member.id)} aria-label=${`Refuse control to ${member.name}`}>Refuse</button></div>`)}
+  return html`${repeat(
+    asking.slice(0, 2),
+    ({ id }) => id,
+    (member) => html`<div class="request-line" role="status">${avatar(member)}<span class="clipped">${member.name} requests control</span>
+    <button @click=${() => control.give(member.id)} aria-label=${`Give control to ${member.name}`}>Give</button><button class="ghost" @click=${() => control.refuse(member.id)} aria-label=${`Refuse control to ${member.name}`}>Refuse</button></div>`,
+  )}
     ${asking.length > 2 ? html`<div class="request-line" role="status">${asking.length - 2} more request control: see the members</div>` : nothing}`;
 }

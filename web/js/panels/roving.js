@@ -2,10 +2,17 @@
 
 /** A keydown listener of the element around the buttons. In a toolbar the keys only move; in tabs and segments they choose too. */
 export function roving(event) {
-  const buttons = [...event.currentTarget.querySelectorAll('button:not([disabled])')].filter((button) => button.getClientRects().length > 0);
+  const buttons = [...event.currentTarget.querySelectorAll('button:not([disabled])')].filter(
+    (button) => button.getClientRects().length > 0,
+  );
   const at = buttons.indexOf(event.target.closest('button'));
   const next = {
-    ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: buttons.length - 1,
+    ArrowRight: at + 1,
+    ArrowDown: at + 1,
+    ArrowLeft: at - 1,
+    ArrowUp: at - 1,
+    Home: 0,
+    End: buttons.length - 1,
   }[event.key];
   if (next === undefined || at < 0 || event.altKey || event.ctrlKey || event.metaKey) return;
   const button = buttons[(next + buttons.length) % buttons.length];

@@ -17,7 +17,26 @@ import { volumeBlock } from './volume.js';
 
 export { figuresDialog } from './figures.js'; // which a region's block opens
 
-const kinds = { view: pictureBlock, image: imageBlock, volume: volumeBlock, region: regionPart, dose: doseBlock, quantity: doseBlock, dosing: doseBlock, level: levelBlock, beam: (...args) => drawBeam(({ beamBlock }) => beamBlock(...args)), kept: (...args) => drawBeam(({ keptBlock }) => keptBlock(...args)), curve, tracks: (...args) => drawTracks(({ trackBlock }) => trackBlock(...args)), track: (...args) => drawTracks(({ segmentBlock }) => segmentBlock(...args)), clip: clipBlock, oblique: obliqueBlock, measure: measureBlock, measures: measuresBlock, bookmark: (...args) => drawBookmark(({ bookmarkBlock }) => bookmarkBlock(...args)) };
+const kinds = {
+  view: pictureBlock,
+  image: imageBlock,
+  volume: volumeBlock,
+  region: regionPart,
+  dose: doseBlock,
+  quantity: doseBlock,
+  dosing: doseBlock,
+  level: levelBlock,
+  beam: (...args) => drawBeam(({ beamBlock }) => beamBlock(...args)),
+  kept: (...args) => drawBeam(({ keptBlock }) => keptBlock(...args)),
+  curve,
+  tracks: (...args) => drawTracks(({ trackBlock }) => trackBlock(...args)),
+  track: (...args) => drawTracks(({ segmentBlock }) => segmentBlock(...args)),
+  clip: clipBlock,
+  oblique: obliqueBlock,
+  measure: measureBlock,
+  measures: measuresBlock,
+  bookmark: (...args) => drawBookmark(({ bookmarkBlock }) => bookmarkBlock(...args)),
+};
 
 export function selection(world) {
   const { room, ui } = world;
@@ -35,6 +54,12 @@ function regionPart(world, isDisabled, change) {
 
 function curve(world) {
   const shown = chosen(world, 'curves');
-  return shown ? html`<section class="block"><h3>${icon('curve')} Reference curve ${shown.name || shown.id}</h3>
-    ${facts(Object.entries(shown).filter(([name, value]) => !['id', 'name'].includes(name) && ['number', 'string'].includes(typeof value) && value !== '').map(([name, value]) => [name.replaceAll('_', ' '), String(value)]))}</section>` : nothing;
+  return shown
+    ? html`<section class="block"><h3>${icon('curve')} Reference curve ${shown.name || shown.id}</h3>
+    ${facts(
+      Object.entries(shown)
+        .filter(([name, value]) => !['id', 'name'].includes(name) && ['number', 'string'].includes(typeof value) && value !== '')
+        .map(([name, value]) => [name.replaceAll('_', ' '), String(value)]),
+    )}</section>`
+    : nothing;
 }

@@ -61,11 +61,15 @@ export function snapshotMenu(world) {
   };
   return html`<span class="anchor"><button class="tool plain" tabindex="-1" title="Snapshot of the active pane" aria-label="Snapshot" aria-haspopup="menu" aria-expanded=${isOpen}
       @click=${() => ui.toggle('snapshot')}>${icon('camera')}</button>
-    ${isOpen ? html`<div class="popover snapshots"><div class="menu" role="menu" aria-label="Snapshot" @keydown=${move}>
+    ${
+      isOpen
+        ? html`<div class="popover snapshots"><div class="menu" role="menu" aria-label="Snapshot" @keydown=${move}>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>Save the active pane as PNG</span></button>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>Add it to the report to print</span></button>
       <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>Report to print</span><span class="tag">${n}</span></button></div>
-      <p class="note">With letters, scale and caption. Drop the PNG on this page to see it again as it was.</p></div>` : nothing}</span>`;
+      <p class="note">With letters, scale and caption. Drop the PNG on this page to see it again as it was.</p></div>`
+        : nothing
+    }</span>`;
 }
 
 function move(event) {
@@ -102,19 +106,29 @@ export function listenSnapshots(world, target = globalThis) {
   const drop = async (data) => {
     try {
       const [first] = await filesOfDrop(data);
-      const record = first && await (await records()).recordOfFile(first.file);
+      const record = first && (await (await records()).recordOfFile(first.file));
       if (record) await show(world, record);
       else world.ui.notify('warn', 'Only a snapshot as PNG can be dropped here. Plans are dropped on the start page.', 'snapshot');
     } catch (error) {
       world.ui.notify('err', error.message, 'snapshot');
     }
   };
-  target.addEventListener('dragover', (event) => { if (isFiles(event)) event.preventDefault(); }, { signal: abort.signal });
-  target.addEventListener('drop', (event) => {
-    if (!isFiles(event)) return;
-    event.preventDefault();
-    drop(event.dataTransfer);
-  }, { signal: abort.signal });
+  target.addEventListener(
+    'dragover',
+    (event) => {
+      if (isFiles(event)) event.preventDefault();
+    },
+    { signal: abort.signal },
+  );
+  target.addEventListener(
+    'drop',
+    (event) => {
+      if (!isFiles(event)) return;
+      event.preventDefault();
+      drop(event.dataTransfer);
+    },
+    { signal: abort.signal },
+  );
   return () => abort.abort();
 }
 
@@ -129,7 +143,9 @@ export async function openSnapshot(api, record, enter) {
 export async function openDroppedSnapshot(api, file, enter) {
   const record = await (await records()).recordOfFile(file);
   if (!record) return false;
-  await openSnapshot(api, record, enter).catch((error) => { throw new Error(`The picture shows the plan ${record.plan.name}: ${error.message}`); });
+  await openSnapshot(api, record, enter).catch((error) => {
+    throw new Error(`The picture shows the plan ${record.plan.name}: ${error.message}`);
+  });
   return true;
 }
 
@@ -150,10 +166,14 @@ export function resumeSnapshot(world) {
 export function otherPlanDialog({ room, ui, api, otherPlan }) {
   const record = otherPlan.value;
   if (ui.popover.value !== 'other-plan' || !record) return nothing;
-  const close = () => { ui.popover.value = ''; };
+  const close = () => {
+    ui.popover.value = '';
+  };
   const open = () => {
     close();
-    openSnapshot(api, record, (id) => { location.hash = `#/rooms/${id}`; }).catch((error) => ui.notify('err', `${record.plan.name}: ${error.message}`, 'snapshot'));
+    openSnapshot(api, record, (id) => {
+      location.hash = `#/rooms/${id}`;
+    }).catch((error) => ui.notify('err', `${record.plan.name}: ${error.message}`, 'snapshot'));
   };
   return html`<section class="card other-plan" role="dialog" tabindex="-1" aria-label="Picture of another plan">
     <p><b>This picture shows another plan</b>: ${record.plan.name} <code>${record.plan.id}</code>, not ${room.plan.value?.name ?? room.planId.value}.</p>

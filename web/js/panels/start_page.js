@@ -19,18 +19,24 @@ import { dropZone, listenDrops } from './upload.js';
 /** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, thumbnails} @returns {() => void} leaves the page */
 export function startPage(host, world) {
   const state = new PlansState({ ...world, seen: (plans) => void world.thumbnails.update(plans) });
-  const uploads = new UploadsState({ ...world, arrived: (plan) => state.arrived(plan).then(() => reveal(host, plan)), limit: () => state.version.value?.max_upload_bytes ?? Infinity });
+  const uploads = new UploadsState({
+    ...world,
+    arrived: (plan) => state.arrived(plan).then(() => reveal(host, plan)),
+    limit: () => state.version.value?.max_upload_bytes ?? Infinity,
+  });
   const unmount = mount(host, () => page(state, uploads, world));
   const unwatch = watchDialog(host, state);
   const unlisten = listenDrops(uploads, (file) => openDroppedSnapshot(world.api, file, world.enter));
   let newest = 0;
-  const unscroll = effect(() => { // scrolls to a newly chosen upload, which asks for its name
+  const unscroll = effect(() => {
+    // scrolls to a newly chosen upload, which asks for its name
     const { key = 0 } = uploads.rows.value.at(-1) ?? {};
-    if (key > newest) queueMicrotask(() => {
-      const row = host.querySelector(`[data-upload="${key}"]`);
-      row?.scrollIntoView({ block: 'center' });
-      row?.querySelector('input[name="name"]')?.focus({ preventScroll: true });
-    });
+    if (key > newest)
+      queueMicrotask(() => {
+        const row = host.querySelector(`[data-upload="${key}"]`);
+        row?.scrollIntoView({ block: 'center' });
+        row?.querySelector('input[name="name"]')?.focus({ preventScroll: true });
+      });
     newest = Math.max(newest, key);
   });
   state.start();
@@ -48,16 +54,28 @@ const reveal = (host, plan) => host.querySelector(`[data-plan="${CSS.escape(plan
 
 const page = (state, uploads, { enter, ownName, thumbnails }) => html`<div class="start">
   <header class="banner">${brand()}<span class="grow"></span>
-    <label class="search">${icon('search')}<input type="search" placeholder="Find a plan" aria-label="Find a plan" .value=${state.search.value} @input=${(event) => { state.search.value = event.target.value; }}></label>
+    <label class="search">${icon('search')}<input type="search" placeholder="Find a plan" aria-label="Find a plan" .value=${state.search.value} @input=${(
+      event,
+    ) => {
+      state.search.value = event.target.value;
+    }}></label>
     ${join(state, enter)}${nameButton(state, ownName)}</header>
   <main>${notices(state)}${askName(ownName)}${roomsList(state, enter)}${planList(state, uploads, thumbnails)}</main>
   <aside class="load-report" aria-label="Load report and upload"><div class="found">${report(state)}</div>${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
   <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">Research use. Not for diagnosis or treatment decisions.</b></footer>${deleteDialog(state, ownName)}</div>`;
 
 /** What concerns the server and not one plan. */
-const notices = (state) => html`${state.error.value ? html`<div class="notice bad" role="alert">${icon('error')}<div><b>${state.error.value}</b><p>Trying again every few seconds.</p></div></div>` : nothing}
-  ${state.notice.value ? html`<div class="notice" role="alert">${icon('warning')}<div><b>The server is full</b><p>${state.notice.value[0].toUpperCase()}${state.notice.value.slice(1)}. Try again when a room has ended.</p></div>
-    <button class="icon-button small" aria-label="Dismiss" @click=${() => { state.notice.value = ''; }}>${icon('close', 12)}</button></div>` : nothing}`;
+const notices = (
+  state,
+) => html`${state.error.value ? html`<div class="notice bad" role="alert">${icon('error')}<div><b>${state.error.value}</b><p>Trying again every few seconds.</p></div></div>` : nothing}
+  ${
+    state.notice.value
+      ? html`<div class="notice" role="alert">${icon('warning')}<div><b>The server is full</b><p>${state.notice.value[0].toUpperCase()}${state.notice.value.slice(1)}. Try again when a room has ended.</p></div>
+    <button class="icon-button small" aria-label="Dismiss" @click=${() => {
+      state.notice.value = '';
+    }}>${icon('close', 12)}</button></div>`
+      : nothing
+  }`;
 
 function join(state, enter) {
   const go = (event) => {
@@ -68,9 +86,17 @@ function join(state, enter) {
     field.setCustomValidity(isId(id) ? '' : 'A room is named by letters a to z, digits and -.');
     if (field.reportValidity()) enter(id, isId(plan) ? plan : '');
   };
-  return html`<span class="anchor"><button aria-expanded=${state.isJoining.value} @click=${() => { state.isJoining.value = !state.isJoining.value; }}>${icon('people')}<span>Join a room</span></button>
-    ${state.isJoining.value ? html`<form class="popover invite" @submit=${go} @keydown=${(event) => { if (event.key === 'Escape') state.isJoining.value = false; }}>
-      <label for="join-id">Room id or link</label><div class="pair"><input id="join-id" name="room" autocomplete="off" @input=${(event) => event.target.setCustomValidity('')}><button class="primary">Join</button></div></form>` : nothing}</span>`;
+  return html`<span class="anchor"><button aria-expanded=${state.isJoining.value} @click=${() => {
+    state.isJoining.value = !state.isJoining.value;
+  }}>${icon('people')}<span>Join a room</span></button>
+    ${
+      state.isJoining.value
+        ? html`<form class="popover invite" @submit=${go} @keydown=${(event) => {
+            if (event.key === 'Escape') state.isJoining.value = false;
+          }}>
+      <label for="join-id">Room id or link</label><div class="pair"><input id="join-id" name="room" autocomplete="off" @input=${(event) => event.target.setCustomValidity('')}><button class="primary">Join</button></div></form>`
+        : nothing
+    }</span>`;
 }
 
 function report(state) {
@@ -81,12 +107,18 @@ function report(state) {
   return html`<header><h2>Load report</h2><code>${plan.id}</code></header>
     ${found ? html`<p class="note">${reportSummary(found)}${found.loadMs === null ? '' : `, loaded in ${seconds(found.loadMs)}`}</p>` : nothing}
     ${plan.note ? html`<p class="plan-note">${plan.note}</p>` : nothing}
-    ${found ? reportLines(found) : refusal ? html`<ul class="report"><li><span class="err">${icon('error')}</span><div><p><b class="err">Refused</b></p><p>${refusal}</p><p class="place">Nothing was loaded.</p></div></li></ul>`
-      : html`<p class="empty">The plan is not loaded. Open it to see what was noticed.</p>`}`;
+    ${
+      found
+        ? reportLines(found)
+        : refusal
+          ? html`<ul class="report"><li><span class="err">${icon('error')}</span><div><p><b class="err">Refused</b></p><p>${refusal}</p><p class="place">Nothing was loaded.</p></div></li></ul>`
+          : html`<p class="empty">The plan is not loaded. Open it to see what was noticed.</p>`
+    }`;
 }
 
 function serverStatus(state) {
-  if (state.error.value) return html`<span class="badge disconnected">${icon('disconnected', 12)}<span>Server does not answer</span></span>`;
+  if (state.error.value)
+    return html`<span class="badge disconnected">${icon('disconnected', 12)}<span>Server does not answer</span></span>`;
   const version = state.version.value;
   if (!version) return nothing;
   const gl = version.gl;

@@ -9,7 +9,11 @@ import { savedMark } from './saved.js';
 
 export function status({ room, ui, panes, probed, doses }) {
   const shown = ui.visible.value;
-  const badge = worst(panes().filter((_, index) => shown.includes(index + 1)).map((pane) => pane.badge.value));
+  const badge = worst(
+    panes()
+      .filter((_, index) => shown.includes(index + 1))
+      .map((pane) => pane.badge.value),
+  );
   const scene = room.scene.value;
   const plan = room.plan.value;
   const latency = room.latencyMs.value;

@@ -29,7 +29,10 @@ function choose(ui, id) {
   if (id === 'measure') ui.choose('measures');
 }
 
-const tool = (ui, [id, name, title]) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${title} aria-pressed=${ui.tool.value === id}
+const tool = (
+  ui,
+  [id, name, title],
+) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${title} aria-pressed=${ui.tool.value === id}
   aria-label=${name} tabindex=${id === 'crosshair' ? 0 : -1} @click=${() => choose(ui, id)}>${icon(id)}<span class="word">${name}</span></button>`;
 
 export function toolStrip(world) {
@@ -67,7 +70,10 @@ function doseTools({ room, ui }, size = '') {
   const [plan, scene] = [room.plan.value, room.scene.value];
   if (!plan?.doses.length || !scene || size === 'phone') return nothing;
   const isDock = Boolean(size);
-  return [['lines', 'isodose', 'Isodose', 'Isodose lines (I)'], ['wash', 'wash', 'Wash', 'Wash of dose (D)']].map(([part, picture, word, title]) => {
+  return [
+    ['lines', 'isodose', 'Isodose', 'Isodose lines (I)'],
+    ['wash', 'wash', 'Wash', 'Wash of dose (D)'],
+  ].map(([part, picture, word, title]) => {
     const { visible } = scene.dose[part];
     return html`<button class=${classMap({ tool: true, plain: !isDock, on: visible })} tabindex="-1" title=${title} aria-label=${word} aria-pressed=${visible} ?disabled=${!room.canChange.value}
       @click=${(event) => ofDose(room)?.toggleDose(room, ui, part, event.timeStamp)}>${icon(picture, isDock ? 20 : 16)}${isDock ? html`<span class="word">${word}</span>` : nothing}</button>`;
@@ -87,7 +93,8 @@ function dock(world) {
     if (isTab(tab)) ui.sheet.value = '';
     else ui.showTab(tab);
   };
-  const button = (picture, name, isOn, act) => html`<button class=${classMap({ tool: true, on: isOn })} tabindex="-1" aria-expanded=${isOn} @click=${act}>${icon(picture, 20)}<span class="word">${name}</span></button>`;
+  const button = (picture, name, isOn, act) =>
+    html`<button class=${classMap({ tool: true, on: isOn })} tabindex="-1" aria-expanded=${isOn} @click=${act}>${icon(picture, 20)}<span class="word">${name}</span></button>`;
   return html`<div class="tools dock" role="toolbar" aria-label="Tools" @keydown=${roving}>
     ${tools.filter(([id]) => (size !== 'phone' && !plan?.doses.length) || ['crosshair', 'window', 'measure'].includes(id)).map((row) => tool(ui, row))}
     ${size === 'phone' ? nothing : html`<i class="rule"></i>`}
@@ -95,7 +102,11 @@ function dock(world) {
     ${doseTools(world, size)}${button('target', 'Probe', isTab('probe'), open('probe'))}
     ${hasCharts(plan) && size !== 'phone' ? button('curve', 'DVH', isTab('dvh'), open('dvh')) : nothing}
     ${button('panel', 'Selection', isTab('selection'), open('selection'))}
-    ${size === 'phone' ? nothing : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}${pointTools(world, true)}
-      <span class="grow"></span><p class="at-crosshair"><b>${[region?.name, ofDose(room)?.doseHere(world)].filter(Boolean).join(' · ')}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`}
+    ${
+      size === 'phone'
+        ? nothing
+        : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}${pointTools(world, true)}
+      <span class="grow"></span><p class="at-crosshair"><b>${[region?.name, ofDose(room)?.doseHere(world)].filter(Boolean).join(' · ')}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`
+    }
   </div>`;
 }

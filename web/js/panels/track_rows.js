@@ -31,8 +31,12 @@ function allRow(world) {
   const words = 'Particle tracks';
   const total = number(room.plan.value.nTracks);
   const toggle = (event) => toggleTracks(world, event.timeStamp);
-  return treeRow(world, { kind: 'tracks', id: '', words: [words, total], more: ['segments'], title: `${words} in 3-D (T)`, isOn: visible, toggle }, html`
-    ${eye(visible, `Show ${words.toLowerCase()}`, `${visible ? 'Hide' : 'Show'} (T)`, !room.canChange.value, toggle)}${name(words)} <span class="tail">${total}</span>`);
+  return treeRow(
+    world,
+    { kind: 'tracks', id: '', words: [words, total], more: ['segments'], title: `${words} in 3-D (T)`, isOn: visible, toggle },
+    html`
+    ${eye(visible, `Show ${words.toLowerCase()}`, `${visible ? 'Hide' : 'Show'} (T)`, !room.canChange.value, toggle)}${name(words)} <span class="tail">${total}</span>`,
+  );
 }
 
 function classRow(world, one) {
@@ -41,9 +45,13 @@ function classRow(world, one) {
   const isOn = isShownClass(room.scene.value, id);
   const words = className(id);
   const toggle = (event) => room.patchScene(classPatch(id, !isShownClass(room.scene.value, id)), how(ui, event));
-  return treeRow(world, { kind: 'tracks', id, words: [words, number(n)], more: ['segments'], title: `${words}: ${number(n)} segments`, depth: 1, isOn, toggle }, html`
+  return treeRow(
+    world,
+    { kind: 'tracks', id, words: [words, number(n)], more: ['segments'], title: `${words}: ${number(n)} segments`, depth: 1, isOn, toggle },
+    html`
     <input type="checkbox" class="track-check" tabindex="-1" aria-label=${`Show ${words}`} .checked=${live(isOn)} ?disabled=${!room.canChange.value} @click=${(event) => event.stopPropagation()} @change=${toggle}>
-    ${trackSwatch(one)}${name(words)} <span class="tail">${number(n)}</span>`);
+    ${trackSwatch(one)}${name(words)} <span class="tail">${number(n)}</span>`,
+  );
 }
 
 /** The chosen segment over the picture of a view into space, as far as it lies before the eye. @param {{header: object, box: {x: number, y: number, width: number, height: number}}} place */

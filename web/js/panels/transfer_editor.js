@@ -20,7 +20,9 @@ export function transferEditor(world, image, isDisabled, change) {
   const axis = dragged?.axis ?? axisOf(image, histogram, points);
   const at = Math.min(ui.transferPoint.value, points.length - 1);
   const set = (list, event) => !isDisabled && change({ points: list }, event);
-  const choose = (index) => { ui.transferPoint.value = index; };
+  const choose = (index) => {
+    ui.transferPoint.value = index;
+  };
   const insert = (value, opacity, event) => {
     const next = inserted(pointsNow(room), axis, value, opacity);
     if (next.index < 0) return;
@@ -41,7 +43,8 @@ export function transferEditor(world, image, isDisabled, change) {
 
 const pointsNow = (room) => room.scene.peek().image.volume.points;
 const percentOf = (opacity) => Number((opacity * 100).toPrecision(3));
-const words = ({ value, opacity }, index, unit) => `Point ${index + 1}: ${significant(value)} ${unitText(unit)}, ${percentOf(opacity)} % stopped by 1 mm`.replace(' ,', ',');
+const words = ({ value, opacity }, index, unit) =>
+  `Point ${index + 1}: ${significant(value)} ${unitText(unit)}, ${percentOf(opacity)} % stopped by 1 mm`.replace(' ,', ',');
 
 /** One tab stop: arrows move the chosen point, Page up and Page down choose another. */
 function plot(tools, points, histogram, image) {
@@ -53,7 +56,13 @@ function plot(tools, points, histogram, image) {
     <g aria-hidden="true">
       <svg viewBox="0 0 1 1" preserveAspectRatio="none" width="100%" height="100%">
         <linearGradient id="transfer-colors" gradientUnits="userSpaceOnUse" x1="0" x2="1" y1="0" y2="0">${points.map((point) => svg`<stop offset=${Math.min(Math.max(toPlot(point, axis)[0], 0), 1)} stop-color=${point.color} />`)}</linearGradient>
-        ${histogram ? svg`<path class="counts" d=${`M0 1${bars(histogram, axis).map(([x, y]) => `L${x.toFixed(4)} ${(1 - y).toFixed(4)}`).join('')}L1 1Z`} />` : nothing}
+        ${
+          histogram
+            ? svg`<path class="counts" d=${`M0 1${bars(histogram, axis)
+                .map(([x, y]) => `L${x.toFixed(4)} ${(1 - y).toFixed(4)}`)
+                .join('')}L1 1Z`} />`
+            : nothing
+        }
         ${points.length ? svg`<path class="fill" fill="url(#transfer-colors)" d=${`${curve(points, axis)}V1H0Z`} /><path class="curve under" d=${curve(points, axis)} /><path class="curve ink" d=${curve(points, axis)} />` : nothing}</svg>
       ${opacityTicks.map((tick) => svg`<line class="tick" x1="0" x2="100%" y1=${percent(1 - Math.sqrt(tick))} y2=${percent(1 - Math.sqrt(tick))} /><text x="3" y=${percent(1 - Math.sqrt(tick))} dy=${tick === 1 ? 11 : -3}>${percentOf(tick)} %${tick === 1 ? ' stopped by 1 mm' : ''}</text>`)}</g>
     ${points.map((point, index) => {
@@ -68,7 +77,15 @@ function curve(points, axis) {
   const places = points.flatMap((point, index) => {
     const next = points[index + 1];
     if (!next) return [toPlot(point, axis)];
-    return Array.from({ length: 12 }, (_, step) => toPlot({ value: point.value + ((next.value - point.value) * step) / 12, opacity: point.opacity + ((next.opacity - point.opacity) * step) / 12 }, axis));
+    return Array.from({ length: 12 }, (_, step) =>
+      toPlot(
+        {
+          value: point.value + ((next.value - point.value) * step) / 12,
+          opacity: point.opacity + ((next.opacity - point.opacity) * step) / 12,
+        },
+        axis,
+      ),
+    );
   });
   const [first, last] = [places[0], places.at(-1)];
   return `M0 ${1 - first[1]}${places.map(([x, y]) => `L${x.toFixed(5)} ${(1 - y).toFixed(5)}`).join('')}L1 ${1 - last[1]}`;
@@ -115,21 +132,45 @@ function keys(event, { room, axis, at, set, choose, insertBeside, remove }) {
   const by = (dx, dy) => () => {
     if (!points[at]) return;
     const [x, y] = toPlot(points[at], axis);
-    set(moved(points, axis, at, { ...(dx ? { value: fromPlot([x + dx * step, y], axis).value } : {}), ...(dy ? { opacity: fromPlot([x, y + dy * step], axis).opacity } : {}) }), event);
+    set(
+      moved(points, axis, at, {
+        ...(dx ? { value: fromPlot([x + dx * step, y], axis).value } : {}),
+        ...(dy ? { opacity: fromPlot([x, y + dy * step], axis).opacity } : {}),
+      }),
+      event,
+    );
   };
   const to = (index) => () => choose(Math.min(Math.max(index, 0), points.length - 1));
-  const act = { ArrowLeft: by(-1, 0), ArrowRight: by(1, 0), ArrowUp: by(0, 1), ArrowDown: by(0, -1), PageUp: to(at - 1), PageDown: to(at + 1), Home: to(0), End: to(points.length - 1),
-    Insert: () => insertBeside(event), Delete: () => points[at] && remove(at, event) }[event.key];
+  const act = {
+    ArrowLeft: by(-1, 0),
+    ArrowRight: by(1, 0),
+    ArrowUp: by(0, 1),
+    ArrowDown: by(0, -1),
+    PageUp: to(at - 1),
+    PageDown: to(at + 1),
+    Home: to(0),
+    End: to(points.length - 1),
+    Insert: () => insertBeside(event),
+    Delete: () => points[at] && remove(at, event),
+  }[event.key];
   if (!act) return;
   event.preventDefault();
   act();
 }
 
-const valueField = ({ room, axis, isDisabled, set }, points, index, unit) => numberField(`Value of point ${index + 1}`, Number(points[index].value.toPrecision(6)), unitText(unit), isDisabled,
-  (value, event) => set(moved(pointsNow(room), axis, index, { value }), event));
-const opacityField = ({ room, axis, isDisabled, set }, points, index) => numberField(`Opacity of point ${index + 1} in per cent`, percentOf(points[index].opacity), '%', isDisabled,
-  (percent, event) => set(moved(pointsNow(room), axis, index, { opacity: percent / 100 }), event));
-const colorField = ({ room, isDisabled, set }, points, index) => html`<input type="color" .value=${live(points[index].color)} aria-label=${`Colour of point ${index + 1}`} ?disabled=${isDisabled}
+const valueField = ({ room, axis, isDisabled, set }, points, index, unit) =>
+  numberField(`Value of point ${index + 1}`, Number(points[index].value.toPrecision(6)), unitText(unit), isDisabled, (value, event) =>
+    set(moved(pointsNow(room), axis, index, { value }), event),
+  );
+const opacityField = ({ room, axis, isDisabled, set }, points, index) =>
+  numberField(`Opacity of point ${index + 1} in per cent`, percentOf(points[index].opacity), '%', isDisabled, (percent, event) =>
+    set(moved(pointsNow(room), axis, index, { opacity: percent / 100 }), event),
+  );
+const colorField = (
+  { room, isDisabled, set },
+  points,
+  index,
+) => html`<input type="color" .value=${live(points[index].color)} aria-label=${`Colour of point ${index + 1}`} ?disabled=${isDisabled}
   @input=${(event) => set(recolored(pointsNow(room), index, event.target.value), event)}>`;
 
 /** Adding, removing, and the colour of the chosen point. */
@@ -137,8 +178,12 @@ function chosenPoint(tools, points, image) {
   const { at, isDisabled, insertBeside, remove } = tools;
   const point = points[at];
   return html`<p class="image-chosen" role="status">${point ? words(point, at, image.unit) : 'No point: nothing is drawn.'}</p>
-    <div class="buttons image-edit">${point ? html`<label>Colour <input type="color" .value=${live(point.color)} aria-label="Colour of the chosen point" ?disabled=${isDisabled}
-        @input=${(event) => tools.set(recolored(pointsNow(tools.room), at, event.target.value), event)}></label>` : nothing}
+    <div class="buttons image-edit">${
+      point
+        ? html`<label>Colour <input type="color" .value=${live(point.color)} aria-label="Colour of the chosen point" ?disabled=${isDisabled}
+        @input=${(event) => tools.set(recolored(pointsNow(tools.room), at, event.target.value), event)}></label>`
+        : nothing
+    }
       <button title="Add a point (double click, Insert)" ?disabled=${isDisabled || points.length >= mostPoints} @click=${insertBeside}>Add</button>
       <button title="Remove the chosen point (Delete)" ?disabled=${isDisabled || !point} @click=${(event) => remove(at, event)}>Remove</button></div>`;
 }

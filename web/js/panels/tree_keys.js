@@ -18,13 +18,23 @@ export function treeKeys(event, ui) {
   const isSection = item?.hasAttribute('aria-expanded');
   const isOpen = item?.getAttribute('aria-expanded') === 'true';
   const send = (name, detail) => item?.dispatchEvent(new CustomEvent(name, { detail }));
-  const step = (by) => (event.shiftKey ? send('row-step', { by, event }) : by > 0
-    ? isSection && (isOpen ? go(at + 1) : send('row-toggle', event))
-    : isSection ? isOpen && send('row-toggle', event) : go(items.findLastIndex((other, n) => n < at && other.hasAttribute('aria-expanded'))));
+  const step = (by) =>
+    event.shiftKey
+      ? send('row-step', { by, event })
+      : by > 0
+        ? isSection && (isOpen ? go(at + 1) : send('row-toggle', event))
+        : isSection
+          ? isOpen && send('row-toggle', event)
+          : go(items.findLastIndex((other, n) => n < at && other.hasAttribute('aria-expanded')));
   const act = {
-    ArrowDown: () => go(at + 1), ArrowUp: () => go(at - 1), Home: () => go(0), End: () => go(items.length - 1),
-    ArrowRight: () => step(1), ArrowLeft: () => step(-1),
-    ' ': () => send('row-toggle', event), Enter: () => (isSection ? send('row-toggle', event) : item?.click()),
+    ArrowDown: () => go(at + 1),
+    ArrowUp: () => go(at - 1),
+    Home: () => go(0),
+    End: () => go(items.length - 1),
+    ArrowRight: () => step(1),
+    ArrowLeft: () => step(-1),
+    ' ': () => send('row-toggle', event),
+    Enter: () => (isSection ? send('row-toggle', event) : item?.click()),
   }[key];
   if (act) act();
   else if (key.length === 1 && key !== '?' && !event.ctrlKey) find(key, timeStamp, items, at, go);

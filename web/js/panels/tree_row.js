@@ -14,8 +14,17 @@ export function clipped(text) {
 
 export const name = (text) => html`<button class="name" tabindex="-1" title=${text}>${clipped(text)}</button>`;
 
-export const eye = (isOn, label, title, isDisabled, toggle) => html`<button class="eye" tabindex="-1" aria-pressed=${isOn} aria-label=${label} title=${title} ?disabled=${isDisabled}
-  @click=${(event) => { event.stopPropagation(); toggle(event); }}>${icon(isOn ? 'eye' : 'eyeOff')}</button>`;
+export const eye = (
+  isOn,
+  label,
+  title,
+  isDisabled,
+  toggle,
+) => html`<button class="eye" tabindex="-1" aria-pressed=${isOn} aria-label=${label} title=${title} ?disabled=${isDisabled}
+  @click=${(event) => {
+    event.stopPropagation();
+    toggle(event);
+  }}>${icon(isOn ? 'eye' : 'eyeOff')}</button>`;
 
 /**
  * @param {object} of kind and id of what it stands for; words: its name and what stands at its end, as they are on the screen; more: said by screen readers after

@@ -21,13 +21,21 @@ export function listenDrops(uploads, openPicture = async () => false, target = g
     event.preventDefault();
     uploads.isOver.value = true;
   };
-  const leave = (event) => { if (!event.relatedTarget) uploads.isOver.value = false; };
+  const leave = (event) => {
+    if (!event.relatedTarget) uploads.isOver.value = false;
+  };
   const drop = (event) => {
     if (!isFiles(event)) return;
     event.preventDefault();
     uploads.isOver.value = false;
-    const handle = async (files) => { if (files.length !== 1 || !(await openPicture(files[0].file))) take(uploads, files); };
-    filesOfDrop(event.dataTransfer).then(handle).catch((error) => { uploads.error.value = error.message; });
+    const handle = async (files) => {
+      if (files.length !== 1 || !(await openPicture(files[0].file))) take(uploads, files);
+    };
+    filesOfDrop(event.dataTransfer)
+      .then(handle)
+      .catch((error) => {
+        uploads.error.value = error.message;
+      });
   };
   target.addEventListener('dragover', over);
   target.addEventListener('dragleave', leave);
@@ -75,14 +83,22 @@ function asking(uploads, upload) {
 
 function row(uploads, upload) {
   if (upload.state === 'asking') return asking(uploads, upload);
-  const percent = upload.state === 'sending' ? (100 * upload.sent) / Math.max(upload.bytes, 1) : upload.job?.percent ?? 0;
+  const percent = upload.state === 'sending' ? (100 * upload.sent) / Math.max(upload.bytes, 1) : (upload.job?.percent ?? 0);
   const hasFailed = upload.state === 'failed';
   return html`<li class="plan upload" data-upload=${upload.key}><div class="plan-row"><span class="thumb">${icon(hasFailed ? 'error' : 'upload')}</span><div class="title"><b>${upload.name}</b><code>upload</code></div><div class="parts"></div>
       <div class="end size">${bytes(upload.bytes)}</div><div class="plan-state">${hasFailed ? html`<span class="err">${icon('error')} Refused</span>` : html`<b>Uploading</b>`}</div>
       <div class="end buttons-of">${hasFailed ? html`<button @click=${() => uploads.dismiss(upload.key)}>Dismiss</button>` : html`<button @click=${() => uploads.cancel(upload.key)}>${icon('close')}<span>Cancel</span></button>`}</div></div>
-    ${hasFailed ? html`<div class="refusal" role="alert">${icon('error')}<div><p>${upload.error}</p><p class="place">Nothing was kept.</p></div></div>`
-      : html`<div class="progress" role="progressbar" aria-label=${`Upload of ${upload.name}`} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(percent)}>
-        <i class="bar" ${variables({ '--fill': `${percent}%` })}></i><b>${number(percent)} %</b><span class="phase">${icon('phase')} ${words(upload)}</span></div>`}</li>`;
+    ${
+      hasFailed
+        ? html`<div class="refusal" role="alert">${icon('error')}<div><p>${upload.error}</p><p class="place">Nothing was kept.</p></div></div>`
+        : html`<div class="progress" role="progressbar" aria-label=${`Upload of ${upload.name}`} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(percent)}>
+        <i class="bar" ${variables({ '--fill': `${percent}%` })}></i><b>${number(percent)} %</b><span class="phase">${icon('phase')} ${words(upload)}</span></div>`
+    }</li>`;
 }
 
-export const uploadRows = (uploads) => html`${repeat(uploads.rows.value, ({ key }) => key, (upload) => row(uploads, upload))}`;
+export const uploadRows = (uploads) =>
+  html`${repeat(
+    uploads.rows.value,
+    ({ key }) => key,
+    (upload) => row(uploads, upload),
+  )}`;

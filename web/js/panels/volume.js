@@ -24,7 +24,16 @@ export function volumeBlock(world, isDisabled, changeScene) {
         ${checkbox('Cut by clip planes', volume.clipped, isDisabled, (clipped, event) => change({ clipped }, event))}</div>
       <div class="shown-as"><span class="dim">Drawn by</span>${segment('Method of the volume', methods, volume.method, isDisabled, (method, event) => change({ method }, event))}</div>
       <dl class="image-rows">${volume.method === 'slices' ? html`<dt>Slices</dt><dd>${numberField('Number of slices', volume.steps, '', isDisabled, (value, event) => change({ steps: Math.min(Math.max(Math.round(value), fewest), most) }, event))}</dd>` : nothing}
-        <dt>Between voxels</dt><dd>${segment('Volume between voxels', [['linear', 'Linear'], ['nearest', 'Nearest']], volume.interpolation, isDisabled, (interpolation, event) => change({ interpolation }, event))}</dd></dl>
+        <dt>Between voxels</dt><dd>${segment(
+          'Volume between voxels',
+          [
+            ['linear', 'Linear'],
+            ['nearest', 'Nearest'],
+          ],
+          volume.interpolation,
+          isDisabled,
+          (interpolation, event) => change({ interpolation }, event),
+        )}</dd></dl>
       ${cullRow(image, scene, volume, isDisabled, change)}</section>
     ${volume.method === 'ray' ? rayBlock(world, image, isDisabled, change) : nothing}`;
 }
@@ -39,11 +48,13 @@ function cullRow(image, scene, volume, isDisabled, change) {
 function rayBlock(world, image, isDisabled, change) {
   const { window, volume } = world.room.scene.value.image;
   return html`<section class="block"><h3>Transfer function <span class="dim">of ${image.modality}</span></h3>
-    <div class="buttons looks image-presets" role="group" aria-label="Presets of the transfer function">${presetsOfImage(image).map((preset) => {
-      const points = presetPoints(preset, window);
-      const isOn = isSamePoints(volume.points, points);
-      return html`<button class=${classMap({ on: isOn })} aria-pressed=${isOn} ?disabled=${isDisabled} @click=${(event) => change({ points }, event)}>${preset.name}</button>`;
-    })}</div>
+    <div class="buttons looks image-presets" role="group" aria-label="Presets of the transfer function">${presetsOfImage(image).map(
+      (preset) => {
+        const points = presetPoints(preset, window);
+        const isOn = isSamePoints(volume.points, points);
+        return html`<button class=${classMap({ on: isOn })} aria-pressed=${isOn} ?disabled=${isDisabled} @click=${(event) => change({ points }, event)}>${preset.name}</button>`;
+      },
+    )}</div>
     ${transferEditor(world, image, isDisabled, change)}
     <div class="checks">${checkbox('Shaded', volume.shaded, isDisabled, (shaded, event) => change({ shaded }, event), 'Lit by the direction in which the value changes')}</div></section>`;
 }

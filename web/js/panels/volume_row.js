@@ -17,8 +17,13 @@ export function volumeRow(world) {
   const image = shownImage(plan, scene);
   const volume = scene?.image.volume;
   if (!image || !volume) return nothing;
-  const toggle = (event) => room.patchScene(visiblePatch(plan, room.scene.value, !volume.visible), { view: ui.active.value, at: event.timeStamp });
+  const toggle = (event) =>
+    room.patchScene(visiblePatch(plan, room.scene.value, !volume.visible), { view: ui.active.value, at: event.timeStamp });
   const tail = methods.find(([id]) => id === volume.method)[1].toLowerCase();
-  return treeRow(world, { kind: 'volume', id: '', words: ['Volume', tail], title: `${image.modality} as a volume in 3-D`, isOn: volume.visible, toggle }, html`
-    ${eye(volume.visible, 'Show the volume', 'Show the image as a volume in 3-D', !room.canChange.value, toggle)}${name('Volume')} <span class="tail">${tail}</span>`);
+  return treeRow(
+    world,
+    { kind: 'volume', id: '', words: ['Volume', tail], title: `${image.modality} as a volume in 3-D`, isOn: volume.visible, toggle },
+    html`
+    ${eye(volume.visible, 'Show the volume', 'Show the image as a volume in 3-D', !room.canChange.value, toggle)}${name('Volume')} <span class="tail">${tail}</span>`,
+  );
 }

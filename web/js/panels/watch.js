@@ -23,7 +23,8 @@ const nameOf = ({ kind, number: ofKind = 1 }) => views.find((view) => view.kind 
 function paneAt(host, corner) {
   const all = host.getBoundingClientRect();
   const [isBottom, isRight] = [corner.startsWith('bottom'), corner.endsWith('right')];
-  const far = ({ left, right, top, bottom }) => Math.hypot(isRight ? all.right - right : left - all.left, isBottom ? all.bottom - bottom : top - all.top);
+  const far = ({ left, right, top, bottom }) =>
+    Math.hypot(isRight ? all.right - right : left - all.left, isBottom ? all.bottom - bottom : top - all.top);
   const panes = [...host.querySelectorAll('.pane:not([hidden])')].map((pane) => ({ pane, box: pane.getBoundingClientRect() }));
   return panes.sort((a, b) => far(a.box) - far(b.box))[0] ?? null;
 }
@@ -43,9 +44,13 @@ function place(host, corner, ratio) {
   if (!found) return null;
   const picture = found.pane.querySelector('.picture').getBoundingClientRect();
   const all = host.getBoundingClientRect();
-  const room = { width: picture.width - 2 * edge.side, height: Math.min(picture.height - edge.top - edge.bottom, mostOfPane * picture.height) - headOf(host) };
+  const room = {
+    width: picture.width - 2 * edge.side,
+    height: Math.min(picture.height - edge.top - edge.bottom, mostOfPane * picture.height) - headOf(host),
+  };
   const width = Math.min(widest, room.width, room.height * ratio);
-  if (width < narrowest) return { isTight: true, ...inset(corner, picture, all), width: Math.max(narrowest, Math.min(widest, room.width)), height: 0 };
+  if (width < narrowest)
+    return { isTight: true, ...inset(corner, picture, all), width: Math.max(narrowest, Math.min(widest, room.width)), height: 0 };
   return { isTight: false, ...inset(corner, picture, all), width: Math.round(width), height: Math.round(width / ratio) };
 }
 
@@ -77,15 +82,23 @@ class Small {
     const abort = new AbortController();
     const on = (type, act) => connection.addEventListener(type, ({ detail }) => act(detail), { signal: abort.signal });
     on('message', (message) => this.#take(message));
-    on('frame', (frame) => { if (frame.header.view === number) this.#offer(frame); });
-    const observer = new ResizeObserver(() => { this.#layout.value += 1; });
+    on('frame', (frame) => {
+      if (frame.header.view === number) this.#offer(frame);
+    });
+    const observer = new ResizeObserver(() => {
+      this.#layout.value += 1;
+    });
     observer.observe(this.#panes);
     this.place = computed(() => this.#place());
     this.stops = [
-      () => abort.abort(), () => observer.disconnect(), () => this.#painter?.stop(),
+      () => abort.abort(),
+      () => observer.disconnect(),
+      () => this.#painter?.stop(),
       mount(this.#host, () => this.#draw()),
       effect(() => this.#tell()),
-      effect(() => { if (!watched(room)) this.#forget(); }),
+      effect(() => {
+        if (!watched(room)) this.#forget();
+      }),
       () => this.#host.remove(),
     ];
   }
@@ -155,12 +168,16 @@ class Small {
     this.#painter?.stop();
     this.#canvas = canvas;
     const { decode } = this.#world;
-    this.#painter = new Painter(canvas, { decode, schedule: (callback) => requestAnimationFrame(callback), onPainted: (header, isDrawn) => {
-      this.#acknowledge(header);
-      if (!isDrawn) return;
-      this.#paintedAt = Date.now();
-      this.#painted.value = header;
-    } });
+    this.#painter = new Painter(canvas, {
+      decode,
+      schedule: (callback) => requestAnimationFrame(callback),
+      onPainted: (header, isDrawn) => {
+        this.#acknowledge(header);
+        if (!isDrawn) return;
+        this.#paintedAt = Date.now();
+        this.#painted.value = header;
+      },
+    });
   }
 
   #draw() {
@@ -175,18 +192,36 @@ class Small {
     const isFolded = watching.isFolded.value || at.isTight;
     const header = this.#painted.value;
     const { document: shown, isLate } = this.#shown.value;
-    const live = liveness({ link: room.link.value, renderer: room.renderer.value.state, isLate, paintedAt: header ? this.#paintedAt : 0, isAway: who.isAway });
+    const live = liveness({
+      link: room.link.value,
+      renderer: room.renderer.value.state,
+      isLate,
+      paintedAt: header ? this.#paintedAt : 0,
+      isAway: who.isAway,
+    });
     const words = isFolded ? `${who.name} presents` : [live.text, who.name, shown ? nameOf(shown) : ''].filter(Boolean).join(' · ');
     queueMicrotask(() => this.#start(this.#host.querySelector('canvas')));
     return html`<section class="watch" data-corner=${this.corner} data-state=${live.state} ?data-folded=${isFolded} aria-label="Picture of the presenter"
       ${variables({ '--x': `${at.x}px`, '--y': `${at.y}px`, '--wide': `${at.width}px`, '--high': `${at.height}px`, ...this.#box() })}>
       <div class="watch-head" @pointerdown=${(event) => this.#drag(event)}><p role="status" title=${[words, live.why].filter(Boolean).join('. ')}>${words}</p>
         <button class="icon-button small" title="Move to the next corner" aria-label="Move the picture of the presenter to the next corner" @click=${() => this.#next()}>${icon('flip', 12)}</button>
-        ${at.isTight ? nothing : html`<button class="icon-button small" aria-expanded=${!isFolded} title=${isFolded ? 'Unfold' : 'Fold'} aria-label=${isFolded ? 'Unfold the picture of the presenter' : 'Fold the picture of the presenter'} @click=${() => { watching.isFolded.value = !isFolded; }}>${icon(isFolded ? 'chevronLeft' : 'chevronDown', 12)}</button>`}
-        <button class="icon-button small" title="Close; the room chip shows it again" aria-label="Close the picture of the presenter" @click=${() => { watching.isClosed.value = true; }}>${icon('close', 12)}</button></div>
-      ${isFolded ? nothing : html`<button class="watch-picture" title=${`Return to ${who.name}`} @click=${() => room.following.return()}>
+        ${
+          at.isTight
+            ? nothing
+            : html`<button class="icon-button small" aria-expanded=${!isFolded} title=${isFolded ? 'Unfold' : 'Fold'} aria-label=${isFolded ? 'Unfold the picture of the presenter' : 'Fold the picture of the presenter'} @click=${() => {
+                watching.isFolded.value = !isFolded;
+              }}>${icon(isFolded ? 'chevronLeft' : 'chevronDown', 12)}</button>`
+        }
+        <button class="icon-button small" title="Close; the room chip shows it again" aria-label="Close the picture of the presenter" @click=${() => {
+          watching.isClosed.value = true;
+        }}>${icon('close', 12)}</button></div>
+      ${
+        isFolded
+          ? nothing
+          : html`<button class="watch-picture" title=${`Return to ${who.name}`} @click=${() => room.following.return()}>
         <canvas width="16" height="16" ?hidden=${!header}></canvas><svg class="overlay" aria-hidden="true">${header ? this.#overlay(header, shown, at) : nothing}</svg><span class="hidden">Return to ${who.name}; ${this.#spoken(header, shown)}</span></button>
-        ${this.#missing.value ? html`<p class="watch-missing">${icon('warning', 12)} ${this.#missing.value} region${this.#missing.value === 1 ? '' : 's'} not drawn</p>` : nothing}`}
+        ${this.#missing.value ? html`<p class="watch-missing">${icon('warning', 12)} ${this.#missing.value} region${this.#missing.value === 1 ? '' : 's'} not drawn</p>` : nothing}`
+      }
     </section>`;
   }
 
@@ -194,7 +229,12 @@ class Small {
   #box() {
     const { offsetLeft: left, offsetTop: top, offsetWidth: width, offsetHeight: height } = this.#panes;
     const parent = this.#panes.parentElement;
-    return { '--left': `${left}px`, '--top': `${top}px`, '--right': `${parent.clientWidth - left - width}px`, '--bottom': `${parent.clientHeight - top - height}px` };
+    return {
+      '--left': `${left}px`,
+      '--top': `${top}px`,
+      '--right': `${parent.clientWidth - left - width}px`,
+      '--bottom': `${parent.clientHeight - top - height}px`,
+    };
   }
 
   #spoken(header, shown) {
@@ -231,7 +271,9 @@ class Small {
       card.style.removeProperty('translate');
     };
     head.setPointerCapture(event.pointerId);
-    on('pointermove', ({ clientX, clientY }) => { card.style.setProperty('translate', `${clientX - fromX}px ${clientY - fromY}px`); });
+    on('pointermove', ({ clientX, clientY }) => {
+      card.style.setProperty('translate', `${clientX - fromX}px ${clientY - fromY}px`);
+    });
     on('pointerup', () => {
       const [box, all] = [card.getBoundingClientRect(), this.#panes.getBoundingClientRect()];
       end();

@@ -36,10 +36,14 @@ function tellActive({ room, ui, connection }) {
 export function startWatch(world) {
   world.watching = new Watching(world.storage);
   let stop = null;
-  const stops = [tellActive(world), world.watching.stop, effect(() => {
-    if (!watched(world.room) || world.watching.isClosed.value) return;
-    if (!panel.loaded.value) return void panel.load();
-    stop ??= untracked(() => panel.loaded.value.startPicture(world));
-  })];
+  const stops = [
+    tellActive(world),
+    world.watching.stop,
+    effect(() => {
+      if (!watched(world.room) || world.watching.isClosed.value) return;
+      if (!panel.loaded.value) return void panel.load();
+      stop ??= untracked(() => panel.loaded.value.startPicture(world));
+    }),
+  ];
   return () => [...stops, () => stop?.()].forEach((end) => end());
 }

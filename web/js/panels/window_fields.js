@@ -1,7 +1,19 @@
 // Window and colour map of one image as fields, buttons and a bar of its colours, for the image shown and for one blended over it.
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
-import { blendedImage, colorMaps, endsOf, isCt, isPet, isSameWindow, lookOf, lookPatch, roundedWindow, windowFrom, windowPresets } from '../state/image_look.js';
+import {
+  blendedImage,
+  colorMaps,
+  endsOf,
+  isCt,
+  isPet,
+  isSameWindow,
+  lookOf,
+  lookPatch,
+  roundedWindow,
+  windowFrom,
+  windowPresets,
+} from '../state/image_look.js';
 import { isLowWhite, shownImage } from '../state/plan.js';
 import { numberField, segment } from './fields.js';
 import { significant, unitText } from './format.js';
@@ -23,7 +35,8 @@ export function windowFields(world, image, of, isDisabled, set) {
   const { window } = lookOf(room.plan.value, room.scene.value, image);
   const { low, high } = endsOf(window);
   const name = (words) => (of ? `${of} ${words}` : `${words[0].toUpperCase()}${words.slice(1)}`);
-  const field = (words, value, change) => html`<label class="image-field"><span>${words}</span>${numberField(name(`window ${words.toLowerCase()}`), shown(value, window.width), unitText(image.unit), isDisabled, (entered, event) => set(roundedWindow(change(entered)), event))}</label>`;
+  const field = (words, value, change) =>
+    html`<label class="image-field"><span>${words}</span>${numberField(name(`window ${words.toLowerCase()}`), shown(value, window.width), unitText(image.unit), isDisabled, (entered, event) => set(roundedWindow(change(entered)), event))}</label>`;
   return html`<div class="image-window" role="group" aria-label=${name('window')}>
       ${field('Centre', window.center, (center) => ({ ...window, center }))}${field('Low', low, (value) => windowFrom(value, high))}
       ${field('Width', window.width, (width) => ({ ...window, width: Math.max(width, narrowest) }))}${field('High', high, (value) => windowFrom(low, value))}</div>
@@ -43,8 +56,13 @@ export function colorMapRow(world, image, of, isDisabled, change) {
   const { room } = world;
   const { color_map: chosen } = lookOf(room.plan.value, room.scene.value, image);
   if (!of && !isPet(image) && chosen === 'grey') return nothing;
-  return html`<dt>Colours</dt><dd>${segment(of ? `${of} colours` : 'Colours', colorMaps.map(([id, name, about]) => [id, name, about]), chosen, isDisabled,
-    (color_map, event) => change(lookPatch(room.plan.value, room.scene.value, image, { color_map }), event))}</dd>`;
+  return html`<dt>Colours</dt><dd>${segment(
+    of ? `${of} colours` : 'Colours',
+    colorMaps.map(([id, name, about]) => [id, name, about]),
+    chosen,
+    isDisabled,
+    (color_map, event) => change(lookPatch(room.plan.value, room.scene.value, image, { color_map }), event),
+  )}</dd>`;
 }
 
 /** The colours of a window from its lower to its upper end. place: names the bar on the page. */
@@ -64,5 +82,7 @@ export function imageLegend({ room }, place) {
   const blended = blendedImage(plan, scene);
   const shown = shownImage(plan, scene);
   const images = [shown, blended].filter((image) => image && (image === blended || lookOf(plan, scene, image).color_map !== 'grey'));
-  return images.length ? html`<ul class="legend image-legend" aria-label="Colours of images">${images.map((image) => html`<li><span>${image.modality}${image === blended ? ` ${Math.round(scene.image.blend.opacity * 100)} %` : ''}</span>${colorBar({ room }, image, place)}</li>`)}</ul>` : nothing;
+  return images.length
+    ? html`<ul class="legend image-legend" aria-label="Colours of images">${images.map((image) => html`<li><span>${image.modality}${image === blended ? ` ${Math.round(scene.image.blend.opacity * 100)} %` : ''}</span>${colorBar({ room }, image, place)}</li>`)}</ul>`
+    : nothing;
 }

@@ -3,4 +3,10 @@
 export const pairKey = (thing, other) => [thing, other].sort().join(' ');
 
 /** @param {Map<string, object>} rows of the room's items @param {string[]} counting ids @returns {Map<string, object>} rows by pair */
-export const acceptedPairs = (rows, counting) => new Map(counting.map((id) => rows.get(id)).filter(Boolean).map((row) => [pairKey(row.body.thing, row.body.with), row]));
+export const acceptedPairs = (rows, counting) =>
+  new Map(
+    counting
+      .map((id) => rows.get(id))
+      .filter(Boolean)
+      .map((row) => [pairKey(row.body.thing, row.body.with), row]),
+  );

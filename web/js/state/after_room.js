@@ -31,7 +31,10 @@ export class AfterRoom {
    *  @param {string} planId '' when it is not known */
   async look(planId) {
     for (let attempt = 1; planId && !this.plan.value && attempt <= attempts && !this.#isStopped; attempt++) {
-      if (attempt > 1) await new Promise((resolve) => { this.#clock.setTimeout(resolve, againMs); });
+      if (attempt > 1)
+        await new Promise((resolve) => {
+          this.#clock.setTimeout(resolve, againMs);
+        });
       await this.#lookOnce(planId);
     }
     this.isPlanGone.value = planId !== '' && !this.plan.value && !this.error.value;

@@ -48,7 +48,15 @@ function besideDrawer({ width }, chosen) {
   const layout = chosen.maximised || chosen.layout === 'single' ? 'single' : '1x2';
   const fits = width - railPx - (chosen.isInspectorOpen ? inspectorPx : railPx) - narrowestPane >= narrowestDrawer;
   const inspector = chosen.isInspectorOpen ? (fits ? 'pushes' : 'floats') : 'folded';
-  return { size: 'wide', tree: 'rail', sheet: '', inspector, overlay: chosen.section ? 'floats' : '', drawer: 'right', ...panes(layout, chosen) };
+  return {
+    size: 'wide',
+    tree: 'rail',
+    sheet: '',
+    inspector,
+    overlay: chosen.section ? 'floats' : '',
+    drawer: 'right',
+    ...panes(layout, chosen),
+  };
 }
 
 function onDesk(size, { width, height }, chosen) {
@@ -60,7 +68,7 @@ function onDesk(size, { width, height }, chosen) {
   const asChosen = chosen.maximised ? 'single' : chosen.layout || '2x2';
   const layout = isLow && ['2x2', '1+3'].includes(asChosen) ? 'row' : asChosen;
   // from 1400 px on both panels fit beside two columns, as they get a little narrower there (room.css)
-  const fits = (aside, columns) => size === 'wide' && !section || (width - left - aside) / columns >= narrowestPane;
+  const fits = (aside, columns) => (size === 'wide' && !section) || (width - left - aside) / columns >= narrowestPane;
   const fitsRow = (aside) => (width - left - aside) / (2 + activeOfRow) >= narrowestOfRow;
   const columns = ['2x2', '1+3', '2x1'].includes(layout) ? 2 : 1;
   const place = (isPushing) => ({ overlay: section ? (isPushing ? 'pushes' : 'floats') : '' });

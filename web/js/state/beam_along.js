@@ -11,7 +11,13 @@ export function rangeAlong(plan, scene, beam, bands) {
   return { low: Math.floor(Math.min(0, ...ends) - beyondMm), high: Math.ceil(Math.max(beam.length, ...ends) + beyondMm) };
 }
 
-const reach = ({ low, high }, beam) => [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => alongOf(beam, low.map((value, axis) => ((corner >> axis) & 1 ? high[axis] : value))));
+const reach = ({ low, high }, beam) =>
+  [0, 1, 2, 3, 4, 5, 6, 7].map((corner) =>
+    alongOf(
+      beam,
+      low.map((value, axis) => ((corner >> axis) & 1 ? high[axis] : value)),
+    ),
+  );
 
 /** Round places of numbers, about as many as there is room for. */
 export function ticksOf({ low, high }, most) {
@@ -27,10 +33,21 @@ export const regionAt = (bands, mm) => bands.find(({ from_mm: from, to_mm: to })
 const isClipOfBeam = (scene) => !scene.clip.beam.id || (scene.clip.beam.id === scene.beam.id && !scene.beam.draft.enabled);
 
 /** What the slider moves: [id, name][]. */
-export const movers = (isTogether) => (isTogether ? [['slice', 'Slice, clip'], ['eye', 'Eye']] : [['slice', 'Slice'], ['clip', 'Clip plane'], ['eye', 'Eye']]);
+export const movers = (isTogether) =>
+  isTogether
+    ? [
+        ['slice', 'Slice, clip'],
+        ['eye', 'Eye'],
+      ]
+    : [
+        ['slice', 'Slice'],
+        ['clip', 'Clip plane'],
+        ['eye', 'Eye'],
+      ];
 
 /** Where that is. @param {number} eye of the view */
-export const placeOf = (scene, mover, eye) => (mover === 'eye' ? eye : mover === 'clip' ? scene.clip.beam.along_mm : scene.beam.slice.along_mm);
+export const placeOf = (scene, mover, eye) =>
+  mover === 'eye' ? eye : mover === 'clip' ? scene.clip.beam.along_mm : scene.beam.slice.along_mm;
 
 /** The patch of the scene that moves slice or clip plane to a place, both where they slide together. */
 export function slidPatch(scene, mover, isTogether, mm, { low, high }) {
@@ -47,6 +64,10 @@ export const firstAlong = ({ slice }, beam) => (slice.along_mm === 0 ? tenths(be
 export function clipInFront(scene, beam, isTogether, isOn) {
   const along_mm = firstAlong(scene.beam, beam);
   const isUntouched = scene.clip.beam.along_mm === 0;
-  const clip = { clip: { beam: { enabled: isOn, ...(isOn && !isClipOfBeam(scene) && { id: '' }), ...(isOn && (isTogether || isUntouched) && { along_mm }) } } };
+  const clip = {
+    clip: {
+      beam: { enabled: isOn, ...(isOn && !isClipOfBeam(scene) && { id: '' }), ...(isOn && (isTogether || isUntouched) && { along_mm }) },
+    },
+  };
   return isOn && isTogether && along_mm !== scene.beam.slice.along_mm ? { ...clip, beam: { slice: { along_mm } } } : clip;
 }

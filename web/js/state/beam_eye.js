@@ -33,7 +33,10 @@ function homeMm(plan, beam, fovDeg) {
   const { right, up, normal } = beamPlane(beam, beam.length);
   const { low, high } = homeBox(plan);
   const distances = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
-    const d = subtract(low.map((value, axis) => ((corner >> axis) & 1 ? high[axis] : value)), beam.target);
+    const d = subtract(
+      low.map((value, axis) => ((corner >> axis) & 1 ? high[axis] : value)),
+      beam.target,
+    );
     return Math.max(Math.abs(dot(d, right)), Math.abs(dot(d, up))) * (margin / slope(fovDeg)) + dot(d, normal);
   });
   return Math.max(1, ...distances);
@@ -64,7 +67,8 @@ export function ringPatch(plan, beam, view, diameterMm) {
   const extent = extentMm(plan, beam, view);
   if (is) return { beam: beamPatch, camera: { height_mm: clamp(Math.max(extent, ringRoom * diameterMm), leastMm, mostMm) } };
   const eye = eyeAlong(plan, beam, view);
-  const camera = beam.length - eye > nearestMm ? { fov_deg: angleOf(extent / 2 / (beam.length - eye)), height_mm: null } : { height_mm: null };
+  const camera =
+    beam.length - eye > nearestMm ? { fov_deg: angleOf(extent / 2 / (beam.length - eye)), height_mm: null } : { height_mm: null };
   return { beam: { ...beamPatch, along_mm: rounded(eye) }, camera };
 }
 
@@ -77,6 +81,12 @@ export function cameraAsSeen(plan, beam, view) {
   const position_mm = beamPoint(beam, eye);
   const parallel = isParallel(view);
   const away = beam.length - eye >= nearestMm ? beam.length - eye : 100;
-  return { position_mm, target_mm: add(position_mm, scale(beam.direction, away)), up: beamPlane(beam, 0).up, projection: parallel ? 'parallel' : 'perspective', fov_deg: fovOf(view),
-    height_mm: parallel ? extentMm(plan, beam, view) : null };
+  return {
+    position_mm,
+    target_mm: add(position_mm, scale(beam.direction, away)),
+    up: beamPlane(beam, 0).up,
+    projection: parallel ? 'parallel' : 'perspective',
+    fov_deg: fovOf(view),
+    height_mm: parallel ? extentMm(plan, beam, view) : null,
+  };
 }

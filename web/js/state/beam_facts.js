@@ -55,7 +55,10 @@ export class BeamFacts {
       const wanted = key.value;
       const isSettled = !this.#room.isScenePending.peek();
       if (!wanted) return;
-      const told = await this.#ask(JSON.parse(wanted)[2]).then((result) => ({ result, error: '' }), (error) => ({ result: null, error: error.message }));
+      const told = await this.#ask(JSON.parse(wanted)[2]).then(
+        (result) => ({ result, error: '' }),
+        (error) => ({ result: null, error: error.message }),
+      );
       if (key.value) this.answer.value = { ...told, isOld: !isSettled || key.value !== wanted };
       if (isSettled) settled = wanted;
     }, this.#clock);
@@ -83,6 +86,9 @@ export class BeamFacts {
   #ask(ring) {
     const override = this.#room.following.override.peek();
     const shown = isComparing(this.#room) ? mergePatch(override ?? {}, { beam: { draft: { shows_planned: false } } }) : override;
-    return this.#api.ofScene(this.#room.planId.peek(), 'beam', this.#room.id, shown ? { override: shown } : {}, { ...(this.#id ? { beam: this.#id } : {}), ...(ring ? { aperture_mm: ring } : {}) });
+    return this.#api.ofScene(this.#room.planId.peek(), 'beam', this.#room.id, shown ? { override: shown } : {}, {
+      ...(this.#id ? { beam: this.#id } : {}),
+      ...(ring ? { aperture_mm: ring } : {}),
+    });
   }
 }

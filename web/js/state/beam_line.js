@@ -13,11 +13,25 @@ export function beamShown(plan, scene, id = '') {
   const { id: chosen = '', draft = null } = scene.beam ?? {};
   const wanted = id || chosen;
   const planned = wanted ? plan.beams.find((beam) => beam.id === wanted) : plan.beams[0];
-  const isDraft = !id && Boolean(draft?.enabled) && !(draft.shows_planned && planned) && length(subtract(draft.line.target_mm, draft.line.entry_mm)) >= leastMm;
+  const isDraft =
+    !id &&
+    Boolean(draft?.enabled) &&
+    !(draft.shows_planned && planned) &&
+    length(subtract(draft.line.target_mm, draft.line.entry_mm)) >= leastMm;
   if (!planned && (!isDraft || chosen)) return null;
   const { entry_mm: entry, target_mm: target, aperture_mm: aperture } = isDraft ? draft.line : planned;
   const line = subtract(target, entry);
-  return { id: planned?.id ?? '', name: (isDraft && draft.line.name) || planned?.name || planned?.id || 'Draft', isDraft, entry, target, direction: unit(line), length: length(line), aperture: aperture ?? planned?.aperture_mm ?? null, isShaped: !isDraft && Boolean(planned.delivery?.outline) };
+  return {
+    id: planned?.id ?? '',
+    name: (isDraft && draft.line.name) || planned?.name || planned?.id || 'Draft',
+    isDraft,
+    entry,
+    target,
+    direction: unit(line),
+    length: length(line),
+    aperture: aperture ?? planned?.aperture_mm ?? null,
+    isShaped: !isDraft && Boolean(planned.delivery?.outline),
+  };
 }
 
 /** A point of the beam's line; 0: the entry, positive towards the target and beyond. */

@@ -27,7 +27,10 @@ function onlyTargets(plan, opacity) {
   const targets = targetsOf(plan);
   const others = plan.regions.filter((region) => !targets.includes(region));
   return [
-    { words: `${listed(targets)} ${opacity < 1 ? 'transparent' : 'shown'}`, patch: { regions: Object.fromEntries(targets.map(({ id }) => [id, { visible: true, opacity }])) } },
+    {
+      words: `${listed(targets)} ${opacity < 1 ? 'transparent' : 'shown'}`,
+      patch: { regions: Object.fromEntries(targets.map(({ id }) => [id, { visible: true, opacity }])) },
+    },
     { words: 'other regions hidden', patch: { regions: Object.fromEntries(others.map(({ id }) => [id, { visible: false }])) } },
   ];
 }
@@ -43,10 +46,17 @@ function outerOf(plan, region) {
 function targetsInside(plan, scene) {
   const targets = targetsOf(plan);
   const outer = new Set(targets.flatMap((target) => [...outerOf(plan, target)]));
-  const around = plan.regions.filter((region) => targets.length && !targets.includes(region) && (scene.regions[region.id]?.visible || outer.has(region.id)));
+  const around = plan.regions.filter(
+    (region) => targets.length && !targets.includes(region) && (scene.regions[region.id]?.visible || outer.has(region.id)),
+  );
   const clear = ({ id, depth }) => [id, { visible: true, opacity: Math.min(scene.regions[id].opacity, aroundTarget[Math.min(depth, 1)]) }];
   return [
-    { words: `${listed(targets)} shown`, patch: { regions: Object.fromEntries(targets.map(({ id }) => [id, { visible: true, opacity: outer.has(id) ? aroundTarget[1] : 1 }])) } }, // one in another is seen
+    {
+      words: `${listed(targets)} shown`,
+      patch: {
+        regions: Object.fromEntries(targets.map(({ id }) => [id, { visible: true, opacity: outer.has(id) ? aroundTarget[1] : 1 }])),
+      },
+    }, // one in another is seen
     { words: 'regions around transparent', patch: { regions: Object.fromEntries(around.map(clear)) } },
   ];
 }
@@ -55,9 +65,20 @@ const off = (names, fields) => Object.fromEntries(names.map((name) => [name, fie
 const axes = ['axial', 'coronal', 'sagittal'];
 const clips = ['axial_low', 'axial_high', 'coronal_low', 'coronal_high', 'sagittal_low', 'sagittal_high', 'beam', 'free'];
 
-const noSlices = (scene) => ({ words: 'slices hidden', patch: { image: { slices: off(axes, { visible: false }), obliques: off(Object.keys(scene.image.obliques ?? {}), { visible: false }) } } });
+const noSlices = (scene) => ({
+  words: 'slices hidden',
+  patch: { image: { slices: off(axes, { visible: false }), obliques: off(Object.keys(scene.image.obliques ?? {}), { visible: false }) } },
+});
 const noVolume = { words: 'volume hidden', patch: { image: { volume: { visible: false } } } };
-const noPatientClips = { words: 'clip planes off', patch: { clip: off(clips.filter((id) => id !== 'beam'), { enabled: false }) } }; // one across the beam belongs to it
+const noPatientClips = {
+  words: 'clip planes off',
+  patch: {
+    clip: off(
+      clips.filter((id) => id !== 'beam'),
+      { enabled: false },
+    ),
+  },
+}; // one across the beam belongs to it
 const noClips = { words: 'clip planes off', patch: { clip: off(clips, { enabled: false }) } };
 const noBeamSlice = { words: 'beam slice hidden', patch: { beam: { slice: { visible: false } } } };
 const noSurfaces = { words: 'isodose surfaces hidden', patch: { dose: { surfaces: { visible: false } } } };
@@ -96,7 +117,10 @@ function ninety(scene) {
   const known = Object.entries(levels).find(([, { value, unit }]) => value === 90 && unit === 'percent')?.[0];
   const style = { visible: true, surface: true, opacity: 0.4 };
   const others = Object.keys(levels).filter((id) => id !== known && levels[id].surface);
-  return { ...off(others, { surface: false }), [known ?? 'preset-90']: known ? style : { value: 90, unit: 'percent', color: '#ffb52e', line: true, wash: true, ...style } };
+  return {
+    ...off(others, { surface: false }),
+    [known ?? 'preset-90']: known ? style : { value: 90, unit: 'percent', color: '#ffb52e', line: true, wash: true, ...style },
+  };
 }
 
 /** As SERA's contours are: without jumps at the target's border, in per cent of the maximum in the tissue around it. What a person has chosen stays. */
@@ -106,8 +130,12 @@ function asTissueAround(plan, { dose }) {
   const around = plan.regions.find(({ id }) => id === outer?.parent);
   if (!around) return [];
   return [
-    ...(isWeighted(dose.quantity) && !dose.tissue ? [{ words: `weights of ${nameOf(around)} everywhere`, patch: { dose: { tissue: around.id } } }] : []),
-    ...(dose.reference.kind === 'body' ? [{ words: `100 % is the maximum in ${nameOf(around)}`, patch: { dose: { reference: { kind: 'region-max', region: around.id } } } }] : []),
+    ...(isWeighted(dose.quantity) && !dose.tissue
+      ? [{ words: `weights of ${nameOf(around)} everywhere`, patch: { dose: { tissue: around.id } } }]
+      : []),
+    ...(dose.reference.kind === 'body'
+      ? [{ words: `100 % is the maximum in ${nameOf(around)}`, patch: { dose: { reference: { kind: 'region-max', region: around.id } } } }]
+      : []),
   ];
 }
 
@@ -116,58 +144,122 @@ function alongClip(plan, scene) {
   const direction = beamShown(plan, scene)?.direction ?? [0, 1, 0];
   const { position_mm: position, target_mm: target } = plan.home['3d'];
   const look = unit(subtract(position, target));
-  const best = [0, 1, 2].map((axis) => ({ axis, rank: Math.abs(look[axis]) * (1 - Math.abs(direction[axis])) })).sort((a, b) => b.rank - a.rank)[0].axis;
+  const best = [0, 1, 2]
+    .map((axis) => ({ axis, rank: Math.abs(look[axis]) * (1 - Math.abs(direction[axis])) }))
+    .sort((a, b) => b.rank - a.rank)[0].axis;
   const id = `${['sagittal', 'coronal', 'axial'][best]}_${look[best] > 0 ? 'high' : 'low'}`;
-  return { words: `${id.split('_')[0]} clip plane through ${targetsOf(plan).length ? 'the target' : 'the crosshair'}`, patch: { clip: { ...noClips.patch.clip, [id]: { enabled: true, cap: true, position_mm: tenths(middleOf(plan, scene)[best]) } } } };
+  return {
+    words: `${id.split('_')[0]} clip plane through ${targetsOf(plan).length ? 'the target' : 'the crosshair'}`,
+    patch: { clip: { ...noClips.patch.clip, [id]: { enabled: true, cap: true, position_mm: tenths(middleOf(plan, scene)[best]) } } },
+  };
 }
 
 const table = [
   {
-    id: 'beam-slice', name: 'Beam slice through the target', icon: 'plane', needs: ['beam', 'image', 'target'], kind: '3d',
+    id: 'beam-slice',
+    name: 'Beam slice through the target',
+    icon: 'plane',
+    needs: ['beam', 'image', 'target'],
+    kind: '3d',
     about: 'The image across the beam at the middle of the target, which is transparent',
     make: (plan, scene) => {
       const line = beamShown(plan, scene);
       const along = tenths(dot(subtract(middleOf(plan, scene), line.entry), line.direction));
-      const look = line.id ? { looks: { [line.id]: { visible: true, ...(scene.beam.looks[line.id] ? {} : { opening: true, color: '#f4f6f8' }) } } } : {};
+      const look = line.id
+        ? { looks: { [line.id]: { visible: true, ...(scene.beam.looks[line.id] ? {} : { opening: true, color: '#f4f6f8' }) } } }
+        : {};
       return {
-        parts: [{ words: `beam slice ${along} mm from the entry`, patch: { beam: { slice: { visible: true, along_mm: along } } } }, { words: 'beam shown', patch: { beam: look } },
-          ...onlyTargets(plan, throughTarget), noSlices(scene), noVolume, noSurfaces, noClips],
+        parts: [
+          { words: `beam slice ${along} mm from the entry`, patch: { beam: { slice: { visible: true, along_mm: along } } } },
+          { words: 'beam shown', patch: { beam: look } },
+          ...onlyTargets(plan, throughTarget),
+          noSlices(scene),
+          noVolume,
+          noSurfaces,
+          noClips,
+        ],
         view: { camera: besideBeam(plan, line) },
       };
     },
   },
   {
-    id: 'ninety', name: '90 % surface over the target', icon: 'isodose', needs: ['dose', 'target'], kind: '3d',
+    id: 'ninety',
+    name: '90 % surface over the target',
+    icon: 'isodose',
+    needs: ['dose', 'target'],
+    kind: '3d',
     about: 'The isodose surface of 90 % around the target: whether it fits',
     make: (plan, scene) => ({
-      parts: [{ words: 'isodose surface of 90 %', patch: { dose: { surfaces: { visible: true }, levels: ninety(scene) } } }, ...asTissueAround(plan, scene), ...onlyTargets(plan, underSurface), noSlices(scene), noBeamSlice, noVolume, noClips],
+      parts: [
+        { words: 'isodose surface of 90 %', patch: { dose: { surfaces: { visible: true }, levels: ninety(scene) } } },
+        ...asTissueAround(plan, scene),
+        ...onlyTargets(plan, underSurface),
+        noSlices(scene),
+        noBeamSlice,
+        noVolume,
+        noClips,
+      ],
       view: {},
     }),
   },
   {
-    id: 'washed-volume', name: 'Clipped volume with wash', icon: 'cube', needs: ['dose', 'image'], kind: '3d',
+    id: 'washed-volume',
+    name: 'Clipped volume with wash',
+    icon: 'cube',
+    needs: ['dose', 'image'],
+    kind: '3d',
     about: 'The image as a volume, coloured by the dose, cut through the target along the beam',
     make: (plan, scene) => ({
-      parts: [{ words: 'volume shown', patch: { image: { volume: { visible: true, clipped: true } } } }, { words: 'wash on it', patch: { dose: { wash: { visible: true, volume: true } } } }, alongClip(plan, scene),
-        ...(targetsOf(plan).length ? onlyTargets(plan, 1) : [{ words: 'regions hidden', patch: { regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { visible: false }])) } }]), noSlices(scene), noBeamSlice, noSurfaces],
+      parts: [
+        { words: 'volume shown', patch: { image: { volume: { visible: true, clipped: true } } } },
+        { words: 'wash on it', patch: { dose: { wash: { visible: true, volume: true } } } },
+        alongClip(plan, scene),
+        ...(targetsOf(plan).length
+          ? onlyTargets(plan, 1)
+          : [{ words: 'regions hidden', patch: { regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { visible: false }])) } }]),
+        noSlices(scene),
+        noBeamSlice,
+        noSurfaces,
+      ],
       view: { camera: cameraFrom(plan, unit(subtract(plan.home['3d'].position_mm, plan.home['3d'].target_mm))) },
     }),
   },
   {
-    id: 'beams-eye', name: "Beam's eye with aperture", icon: 'target', needs: ['beam'], kind: 'beam',
+    id: 'beams-eye',
+    name: "Beam's eye with aperture",
+    icon: 'target',
+    needs: ['beam'],
+    kind: 'beam',
     about: 'Along the beam, in parallel projection, with a ring of its aperture',
     make: (plan, scene) => {
       const aperture = beamShown(plan, scene).aperture ?? usualApertureMm;
-      return { parts: [{ words: `ring of ${tenths(aperture)} mm, parallel projection`, patch: {} }, ...targetsInside(plan, scene), noSlices(scene), noBeamSlice, noVolume, noPatientClips], view: { beam: { aperture_mm: aperture, crosshair: true, along_mm: null } } };
+      return {
+        parts: [
+          { words: `ring of ${tenths(aperture)} mm, parallel projection`, patch: {} },
+          ...targetsInside(plan, scene),
+          noSlices(scene),
+          noBeamSlice,
+          noVolume,
+          noPatientClips,
+        ],
+        view: { beam: { aperture_mm: aperture, crosshair: true, along_mm: null } },
+      };
     },
   },
 ];
 
 /** The presets of a plan and, of one that it cannot have, why. @returns {{id: string, name: string, icon: string, about: string, why: string}[]} */
-export const presetsOf = (plan, scene) => table.map(({ id, name, icon, about, needs }) => ({ id, name, icon, about, why: needs.map((need) => lacks[need](plan, scene)).find(Boolean) ?? '' }));
+export const presetsOf = (plan, scene) =>
+  table.map(({ id, name, icon, about, needs }) => ({
+    id,
+    name,
+    icon,
+    about,
+    why: needs.map((need) => lacks[need](plan, scene)).find(Boolean) ?? '',
+  }));
 
-const holds = (now, patch) => (isObject(patch)
-  ? Object.entries(patch).every(([name, value]) => holds(now?.[name], value)) : (now ?? null) === (patch ?? null));
+const holds = (now, patch) =>
+  isObject(patch) ? Object.entries(patch).every(([name, value]) => holds(now?.[name], value)) : (now ?? null) === (patch ?? null);
 
 /**
  * One preset as a change of scene and view.
@@ -177,7 +269,13 @@ export function presetChange(plan, scene, presetId) {
   const { name, kind, make } = table.find(({ id }) => id === presetId);
   const { parts, view } = make(plan, scene);
   const changing = parts.filter(({ patch }) => !holds(scene, patch) || !Object.keys(patch).length);
-  return { name, kind, view, patch: changing.reduce((whole, { patch }) => joinPatches(whole, patch), {}), words: changing.map(({ words }) => words).filter(Boolean) };
+  return {
+    name,
+    kind,
+    view,
+    patch: changing.reduce((whole, { patch }) => joinPatches(whole, patch), {}),
+    words: changing.map(({ words }) => words).filter(Boolean),
+  };
 }
 
 // ---- applying them ------------------------------------------------------------------------------------------------------
@@ -186,7 +284,7 @@ export function presetChange(plan, scene, presetId) {
 export function viewFor({ room, ui }, kind) {
   const shown = [ui.active.value, ...ui.visible.value].filter((number) => ui.visible.value.includes(number));
   const number = shown.find((one) => room.view(one).kind === kind) ?? room.views.find((view) => view.kind === kind)?.number ?? 0;
-  return { number, instead: shown.includes(number) ? 0 : shown.find((one) => room.view(one).kind === '3d') ?? shown[0] };
+  return { number, instead: shown.includes(number) ? 0 : (shown.find((one) => room.view(one).kind === '3d') ?? shown[0]) };
 }
 
 /** A closed view opens with the change. */
@@ -204,11 +302,13 @@ export function applyPreset({ room, ui, undo }, id, at) {
   const { number, instead } = viewFor({ room, ui }, kind);
   if (!number) return;
   const isOnScreen = !instead;
-  room.together(`preset ${id}`, () => batch(() => {
-    if (instead) ui.showInPlaceOf(instead, number);
-    else ui.active.value = number;
-    if (Object.keys(patch).length) room.patchScene(patch, { view: isOnScreen ? number : 0, at });
-    if (Object.keys(view).length) changeView(room, number, view, at);
-  }));
+  room.together(`preset ${id}`, () =>
+    batch(() => {
+      if (instead) ui.showInPlaceOf(instead, number);
+      else ui.active.value = number;
+      if (Object.keys(patch).length) room.patchScene(patch, { view: isOnScreen ? number : 0, at });
+      if (Object.keys(view).length) changeView(room, number, view, at);
+    }),
+  );
   ui.notify('ok', `${name}: ${words.join(', ')}.`, 'preset', { word: 'Undo', keys: 'Ctrl+Z', act: () => undo.undo() });
 }

@@ -33,7 +33,10 @@ export function movedFrom(planned, line) {
   if (!planned) return null;
   const [a, b] = [planned, line].map(({ entry_mm: entry, target_mm: target }) => unit(subtract(target, entry)));
   const sine = length(subtract(a, b)) / 2; // exact for small angles, as the arc cosine is not
-  return { targetMm: length(subtract(line.target_mm, planned.target_mm)), directionDeg: (2 * Math.asin(Math.min(sine, 1)) * 180) / Math.PI };
+  return {
+    targetMm: length(subtract(line.target_mm, planned.target_mm)),
+    directionDeg: (2 * Math.asin(Math.min(sine, 1)) * 180) / Math.PI,
+  };
 }
 
 // ---- how beams are drawn ------------------------------------------------------------------------------------------------
@@ -42,10 +45,14 @@ export function movedFrom(planned, line) {
 export const lookOf = (scene, id) => ({ visible: false, opening: true, color: plainColor, ...scene.beam.looks[id] });
 
 /** Written whole, so that undo finds the first change of a beam's look as it was. */
-export const lookPatch = (scene, id, fields) => ({ beam: { looks: { [id]: scene.beam.looks[id] ? fields : { ...lookOf(scene, id), ...fields } } } });
+export const lookPatch = (scene, id, fields) => ({
+  beam: { looks: { [id]: scene.beam.looks[id] ? fields : { ...lookOf(scene, id), ...fields } } },
+});
 
 /** Chooses another beam; a draft belongs to the one that was chosen, and is put away. */
-export const choosePatch = (plan, scene, id) => ({ beam: { id, ...(isDrafted(plan, scene) ? { draft: { enabled: false, shows_planned: false } } : {}) } });
+export const choosePatch = (plan, scene, id) => ({
+  beam: { id, ...(isDrafted(plan, scene) ? { draft: { enabled: false, shows_planned: false } } : {}) },
+});
 
 // ---- the draft ----------------------------------------------------------------------------------------------------------
 
@@ -88,7 +95,10 @@ export function keptDraft(plan, scene, name = '') {
   let n = 1;
   while (kept[`draft-${n}`]) n += 1;
   const { entry_mm, target_mm, aperture_mm } = shownLine(plan, scene);
-  return { id: `draft-${n}`, patch: { beam: { kept: { [`draft-${n}`]: { name, entry_mm, target_mm, ...(aperture_mm ? { aperture_mm } : {}) } } } } };
+  return {
+    id: `draft-${n}`,
+    patch: { beam: { kept: { [`draft-${n}`]: { name, entry_mm, target_mm, ...(aperture_mm ? { aperture_mm } : {}) } } } },
+  };
 }
 
 /** A kept line becomes the draft. */

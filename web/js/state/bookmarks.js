@@ -9,12 +9,16 @@ export const maxName = 80; // characters
 const mostPictures = 60; // kept in this tab; never written to the disk of this computer: they show patients
 
 /** The bookmarks of a room in their order. */
-export const bookmarksOf = (room) => [...room.items.rows.value.values()].filter(({ kind }) => kind === 'bookmark').sort((a, b) => (a.body.order ?? 0) - (b.body.order ?? 0) || a.created_ms - b.created_ms || (a.id < b.id ? -1 : 1));
+export const bookmarksOf = (room) =>
+  [...room.items.rows.value.values()]
+    .filter(({ kind }) => kind === 'bookmark')
+    .sort((a, b) => (a.body.order ?? 0) - (b.body.order ?? 0) || a.created_ms - b.created_ms || (a.id < b.id ? -1 : 1));
 
 const own = ({ members, member }) => members.value.find(({ id }) => id === member.value);
 /** Observers look only. */
 export const canSave = (room) => room.canChange.value && own(room)?.role !== 'observer';
-export const canEdit = (room, row) => canSave(room) && (row.author === room.member.value || room.following.isPresenting.value || own(room)?.role === 'presenter');
+export const canEdit = (room, row) =>
+  canSave(room) && (row.author === room.member.value || room.following.isPresenting.value || own(room)?.role === 'presenter');
 
 // ---- saving -------------------------------------------------------------------------------------------------------------
 
@@ -22,7 +26,12 @@ const usual = { phone: 'single', tablet: '1+3', compact: '2x2', wide: '2x2' };
 
 function layoutNow(ui) {
   const layout = ui.panes.layout.value || usual[ui.arrangement.value.size];
-  return { layout, cells: layout === '2x1' ? ui.panes.two.value : ui.panes.four.value, maximised: ui.maximised.value, active: ui.active.value };
+  return {
+    layout,
+    cells: layout === '2x1' ? ui.panes.two.value : ui.panes.four.value,
+    maximised: ui.maximised.value,
+    active: ui.active.value,
+  };
 }
 
 /** The document of a view as it is kept: without its size and the own override, which becomes part of the scene. */
@@ -34,7 +43,12 @@ function keptDocument({ kind, document }) {
 /** The present state as the body of a bookmark; the server adds the scene. */
 export function stateNow({ room, ui }) {
   const override = room.following.override.value;
-  return { ...(override && { override }), scene: null, views: ui.visible.value.map((number) => ({ view: number, document: keptDocument(room.view(number)) })), layout: layoutNow(ui) };
+  return {
+    ...(override && { override }),
+    scene: null,
+    views: ui.visible.value.map((number) => ({ view: number, document: keptDocument(room.view(number)) })),
+    layout: layoutNow(ui),
+  };
 }
 
 const lastOrder = (rows) => rows.reduce((most, { body }) => Math.max(most, body.order ?? 0), 0);
@@ -63,10 +77,12 @@ export async function move({ room }, row, by) {
   const beyond = to + by;
   const isEnd = !rows[beyond];
   const place = isEnd ? order(to) + by : (order(to) + order(beyond)) / 2;
-  if (place !== order(to) && (isEnd || place !== order(beyond))) return void await room.items.put('bookmark', { ...row.body, order: place }, row);
+  if (place !== order(to) && (isEnd || place !== order(beyond)))
+    return void (await room.items.put('bookmark', { ...row.body, order: place }, row));
   const wanted = rows.filter((other) => other !== row); // no number is left between them
   wanted.splice(to, 0, row);
-  for (const [index, other] of wanted.entries()) if (other.body.order !== index + 1) await room.items.put('bookmark', { ...other.body, order: index + 1 }, other);
+  for (const [index, other] of wanted.entries())
+    if (other.body.order !== index + 1) await room.items.put('bookmark', { ...other.body, order: index + 1 }, other);
 }
 
 export const linkOf = (row, href = location.href) => `${href.split('#')[0]}#/p/${row.body.token}`;
@@ -95,7 +111,11 @@ export function patchTo(now, wanted, isOwn = false) {
   return patch;
 }
 
-const isCells = (cells, n) => Array.isArray(cells) && cells.length === n && new Set(cells).size === n && cells.every((view) => Number.isInteger(view) && view >= 1 && view <= 8);
+const isCells = (cells, n) =>
+  Array.isArray(cells) &&
+  cells.length === n &&
+  new Set(cells).size === n &&
+  cells.every((view) => Number.isInteger(view) && view >= 1 && view <= 8);
 const isView = (number) => Number.isInteger(number) && number >= 1 && number <= 8;
 
 /** Arranges the panes of this page as they were saved. */
@@ -120,14 +140,20 @@ function viewPatch(document) {
 export function showViews(room, views) {
   const stops = [];
   const known = views.filter(({ view, document }) => room.view(view)?.kind === document.kind);
-  const [open, closed] = [known.filter(({ view }) => room.view(view).isOpen.value), known.filter(({ view }) => !room.view(view).isOpen.value)];
+  const [open, closed] = [
+    known.filter(({ view }) => room.view(view).isOpen.value),
+    known.filter(({ view }) => !room.view(view).isOpen.value),
+  ];
   room.patchViews(open.map(({ view, document }) => [view, viewPatch(document)]));
   for (const { view, document } of closed) {
     let isDone = false;
     const stop = effect(() => {
       if (isDone || !room.view(view).isOpen.value) return;
       isDone = true;
-      queueMicrotask(() => { stop(); room.patchView(view, viewPatch(document)); });
+      queueMicrotask(() => {
+        stop();
+        room.patchView(view, viewPatch(document));
+      });
     });
     stops.push(stop);
   }
@@ -235,7 +261,7 @@ export class Bookmarks {
     if (this.#isRunning) return;
     this.#isRunning = true;
     const { room, api } = this.#world;
-    for (let key; (key = [...this.#asked].find((other) => !this.#urls.has(other)));) {
+    for (let key; (key = [...this.#asked].find((other) => !this.#urls.has(other))); ) {
       const [id] = key.split(' ');
       this.#urls.set(key, ''); // a refused one is not asked for again before the bookmark changes
       const blob = await api.bookmarkPicture(room.id, id).catch(() => null);

@@ -12,9 +12,22 @@ export const checklist = [
   ['positioning', 'The position can be set up, and checked at the beam'],
   ['deviations', 'Deviations from the protocol are named and justified'],
 ];
-export const states = [['open', 'Open'], ['ok', 'OK'], ['issue', 'Issue']];
-export const decisions = [['accept', 'Accept'], ['accept-with-changes', 'Accept with changes'], ['reject', 'Reject'], ['defer', 'Defer']];
-export const meanings = [['reviewed', 'Reviewed'], ['approved', 'Approved'], ['seen', 'Seen']];
+export const states = [
+  ['open', 'Open'],
+  ['ok', 'OK'],
+  ['issue', 'Issue'],
+];
+export const decisions = [
+  ['accept', 'Accept'],
+  ['accept-with-changes', 'Accept with changes'],
+  ['reject', 'Reject'],
+  ['defer', 'Defer'],
+];
+export const meanings = [
+  ['reviewed', 'Reviewed'],
+  ['approved', 'Approved'],
+  ['seen', 'Seen'],
+];
 export const wordOf = (words, id) => words.find(([word]) => word === id)?.[1] ?? id;
 export const legal = 'Names are as members gave them; these lines are not electronic signatures in the legal sense.';
 
@@ -24,14 +37,23 @@ const entryOf = (row) => row.body.entry || row.id;
 export function entriesOf(rows, revision) {
   const here = rows.filter(({ kind, body }) => kind === 'check' && body.plan_revision === revision);
   const marked = new Map(here.map((row) => [entryOf(row), row]));
-  return [...checklist.map(([id, text]) => ({ key: id, entry: id, text: marked.get(id)?.body.text ?? text, row: marked.get(id) ?? null })),
-    ...here.filter(({ body }) => !checklist.some(([id]) => id === body.entry)).map((row) => ({ key: row.id, entry: row.body.entry, text: row.body.text, row }))];
+  return [
+    ...checklist.map(([id, text]) => ({ key: id, entry: id, text: marked.get(id)?.body.text ?? text, row: marked.get(id) ?? null })),
+    ...here
+      .filter(({ body }) => !checklist.some(([id]) => id === body.entry))
+      .map((row) => ({ key: row.id, entry: row.body.entry, text: row.body.text, row })),
+  ];
 }
 
 /** Items of one kind under a revision, oldest first; corrected: those that a later one replaces. */
 export function linesOf(rows, kind, revision) {
   const lines = rows.filter((row) => row.kind === kind && row.body.plan_revision === revision);
-  const corrected = new Set(rows.filter((row) => row.kind === kind).map(({ body }) => body.corrects).filter(Boolean));
+  const corrected = new Set(
+    rows
+      .filter((row) => row.kind === kind)
+      .map(({ body }) => body.corrects)
+      .filter(Boolean),
+  );
   return lines.map((row) => ({ row, isCorrected: corrected.has(row.id) }));
 }
 
@@ -41,5 +63,7 @@ export function earlierRevisions(rows, revision) {
   for (const row of rows)
     if (['check', 'decision', 'signature'].includes(row.kind) && row.body.plan_revision !== revision)
       groups.set(row.body.plan_revision, [...(groups.get(row.body.plan_revision) ?? []), row]);
-  return [...groups].map(([of, list]) => ({ revision: of, rows: list })).sort((a, b) => b.rows.at(-1).created_ms - a.rows.at(-1).created_ms);
+  return [...groups]
+    .map(([of, list]) => ({ revision: of, rows: list }))
+    .sort((a, b) => b.rows.at(-1).created_ms - a.rows.at(-1).created_ms);
 }

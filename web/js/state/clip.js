@@ -6,18 +6,37 @@ import { crosshair, shownImage } from './plan.js';
 
 const letters = { axial: 'S', coronal: 'P', sagittal: 'L' };
 const axisOf = { axial: 2, coronal: 1, sagittal: 0 };
-const axisRow = (axis, end, keeps) => ({ id: `${axis}_${end}`, axis, end, other: `${axis}_${end === 'low' ? 'high' : 'low'}`, name: `${axis[0].toUpperCase()}${axis.slice(1)}`, keeps, letter: letters[axis] });
+const axisRow = (axis, end, keeps) => ({
+  id: `${axis}_${end}`,
+  axis,
+  end,
+  other: `${axis}_${end === 'low' ? 'high' : 'low'}`,
+  name: `${axis[0].toUpperCase()}${axis.slice(1)}`,
+  keeps,
+  letter: letters[axis],
+});
 
 /** The eight planes in the order of the list: of each axis first the one that is used most. high cuts off what lies towards the axis's positive letter. */
 export const clipTable = [
-  axisRow('axial', 'high', 'below'), axisRow('axial', 'low', 'above'),
-  axisRow('sagittal', 'high', 'right of'), axisRow('sagittal', 'low', 'left of'),
-  axisRow('coronal', 'low', 'behind'), axisRow('coronal', 'high', 'before'),
+  axisRow('axial', 'high', 'below'),
+  axisRow('axial', 'low', 'above'),
+  axisRow('sagittal', 'high', 'right of'),
+  axisRow('sagittal', 'low', 'left of'),
+  axisRow('coronal', 'low', 'behind'),
+  axisRow('coronal', 'high', 'before'),
   { id: 'beam', name: 'Beam', keeps: 'behind', letter: '' },
   { id: 'free', name: 'Free', keeps: '', letter: '' },
 ];
 const rowOf = Object.fromEntries(clipTable.map((row) => [row.id, row]));
-const sides = { axial_high: 'below', axial_low: 'above', sagittal_high: 'right', sagittal_low: 'left', coronal_low: 'behind', coronal_high: 'before', beam: 'behind' };
+const sides = {
+  axial_high: 'below',
+  axial_low: 'above',
+  sagittal_high: 'right',
+  sagittal_low: 'left',
+  coronal_low: 'behind',
+  coronal_high: 'before',
+  beam: 'behind',
+};
 const tenths = (value) => Math.round(value * 10) / 10 || 0; // no -0
 
 /** "Axial, below": the name with the side that is kept. */
@@ -54,7 +73,12 @@ export function clipPlane(plan, scene, id) {
 }
 
 /** The planes that cut, in the order of the list: {id, origin, normal}. */
-export const enabledClips = (plan, scene) => (scene?.clip ? clipsOf(plan).filter(({ id }) => scene.clip[id].enabled).map(({ id }) => ({ id, ...clipPlane(plan, scene, id) })) : []);
+export const enabledClips = (plan, scene) =>
+  scene?.clip
+    ? clipsOf(plan)
+        .filter(({ id }) => scene.clip[id].enabled)
+        .map(({ id }) => ({ id, ...clipPlane(plan, scene, id) }))
+    : [];
 
 /** Where a plane is: along the patient's axis, along the beam, or along its normal from the patient's origin. */
 export function positionOfClip(plan, scene, id) {
@@ -101,7 +125,8 @@ export function positionThrough(plan, scene, id, point) {
 }
 
 /** The patch that moves a plane through a point; the free plane gets it as its origin. */
-export const clipThrough = (plan, scene, id, point) => (id === 'free' ? patchOf(id, { origin_mm: roundedOrigin(point) }) : movedClip(plan, scene, id, positionThrough(plan, scene, id, point)));
+export const clipThrough = (plan, scene, id, point) =>
+  id === 'free' ? patchOf(id, { origin_mm: roundedOrigin(point) }) : movedClip(plan, scene, id, positionThrough(plan, scene, id, point));
 
 const isUntouched = (scene, id) => {
   const { position_mm: position, along_mm: along, origin_mm: origin } = scene.clip[id];
@@ -120,7 +145,15 @@ export function flippedClip(scene, id) {
   const style = scene.clip[id];
   if (id === 'free') return { id, patch: patchOf(id, { normal: style.normal.map((part) => -part || 0) }) };
   if (!other) return null;
-  return { id: other, patch: { clip: { [other]: { enabled: style.enabled, position_mm: style.position_mm, cap: style.cap }, [id]: { enabled: false, position_mm: scene.clip[other].position_mm } } } };
+  return {
+    id: other,
+    patch: {
+      clip: {
+        [other]: { enabled: style.enabled, position_mm: style.position_mm, cap: style.cap },
+        [id]: { enabled: false, position_mm: scene.clip[other].position_mm },
+      },
+    },
+  };
 }
 
 /** True if the two planes of an axis leave nothing between them. */
@@ -130,7 +163,9 @@ export const leavesNothing = (scene, axis) => {
 };
 
 /** All planes that cut, through the crosshair. */
-export const allThroughCrosshair = (plan, scene) => ({ clip: Object.assign({}, ...enabledClips(plan, scene).map(({ id }) => clipThrough(plan, scene, id, crosshair(scene)).clip)) });
+export const allThroughCrosshair = (plan, scene) => ({
+  clip: Object.assign({}, ...enabledClips(plan, scene).map(({ id }) => clipThrough(plan, scene, id, crosshair(scene)).clip)),
+});
 
 /**
  * Key C: all planes off, or those on again that were; with none to remember the axial one through the crosshair.
@@ -156,4 +191,5 @@ export function toggledCaps(plan, scene) {
 export const freeByAngles = (turnDeg, tiltDeg) => patchOf('free', { normal: normalOfAngles(turnDeg, tiltDeg) });
 
 /** "image, region colours", "nothing": what caps show. */
-export const capWords = ({ image, regions, outlines }) => [image && 'image', regions && 'region colours', outlines && 'outlines'].filter(Boolean).join(', ') || 'nothing';
+export const capWords = ({ image, regions, outlines }) =>
+  [image && 'image', regions && 'region colours', outlines && 'outlines'].filter(Boolean).join(', ') || 'nothing';

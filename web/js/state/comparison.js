@@ -24,8 +24,10 @@ export class Comparison {
     const rows = methods(scene).map((method) => ({ ...method, region: region.id }));
     this.rows.value = rows;
     for (const [i, { query }] of rows.entries()) {
-      const answer = await this.#api.surface(plan, region.id, { ...query, frames: '5' }, pending.signal)
-        .then((result) => ({ result }), (error) => ({ error: error.message }));
+      const answer = await this.#api.surface(plan, region.id, { ...query, frames: '5' }, pending.signal).then(
+        (result) => ({ result }),
+        (error) => ({ error: error.message }),
+      );
       if (pending.signal.aborted) return;
       rows[i] = { ...rows[i], ...answer };
       this.rows.value = [...rows];

@@ -23,7 +23,12 @@ export class Control {
     this.role = computed(() => this.member(room.member.value)?.role ?? '');
     this.isRequesting = computed(() => this.requested.value.includes(room.member.value));
     /** Whether control can be had at once. */
-    this.canTake = computed(() => this.may('scene') && !room.following.isPresenting.value && (!room.following.presenter.value || (this.may('control') && !this.isLocked.value)));
+    this.canTake = computed(
+      () =>
+        this.may('scene') &&
+        !room.following.isPresenting.value &&
+        (!room.following.presenter.value || (this.may('control') && !this.isLocked.value)),
+    );
     this.canRequest = computed(() => this.may('scene') && !this.canTake.value && !room.following.isPresenting.value);
   }
 
@@ -39,7 +44,8 @@ export class Control {
   // ---- acts of the user -------------------------------------------------------------------------------------------
 
   request() {
-    if (this.#say({ type: 'control.request' })) this.#room.notify('ok', `You have asked ${this.#presenter()} for control.`, topic, { word: 'Withdraw', act: () => this.withdraw() });
+    if (this.#say({ type: 'control.request' }))
+      this.#room.notify('ok', `You have asked ${this.#presenter()} for control.`, topic, { word: 'Withdraw', act: () => this.withdraw() });
   }
 
   withdraw() {

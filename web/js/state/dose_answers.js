@@ -16,17 +16,41 @@ const finite = (value) => (Number.isFinite(value) ? value : NaN);
  *  left: regions without a curve of the dose shown. */
 export function readDvh(answer) {
   const rows = answer.without_curves ?? [];
-  const without = rows.filter(({ region }) => !region).map(({ dose, reason }) => `${dose}: ${reason}`).join('. ');
+  const without = rows
+    .filter(({ region }) => !region)
+    .map(({ dose, reason }) => `${dose}: ${reason}`)
+    .join('. ');
   return {
-    unit: answer.curves[0]?.unit ?? answer.unit ?? '', quantity: answer.curves[0]?.quantity ?? answer.quantity ?? '', method: answer.method ?? '', missing: answer.missing ?? [],
-    reason: without || answer.reason || '', per: answer.per ?? '',
+    unit: answer.curves[0]?.unit ?? answer.unit ?? '',
+    quantity: answer.curves[0]?.quantity ?? answer.quantity ?? '',
+    method: answer.method ?? '',
+    missing: answer.missing ?? [],
+    reason: without || answer.reason || '',
+    per: answer.per ?? '',
     left: rows.filter(({ region, dose }) => region && dose === answer.id).map(({ region, reason }) => ({ region, reason })),
-    curves: answer.curves.map((row) => withSums({
-      region: row.region, dose: row.dose, of: row.dose === answer.id ? 0 : 1, volume: row.volume_cm3, cm3: row.volume_cm3 - row.missing_cm3, missing: row.missing_cm3, univels: row.n_univels,
-      isPartial: row.is_partial === true, population: row.population ?? '', basis: row.basis ?? '', high: finite(row.least?.max ?? row.max),
-      figures: Object.fromEntries([...['min', 'mean', 'max'].map((name) => [name, boundsOf(row, (of) => of[name])]), ...figureNames.map((name) => [name, boundsOf(row, (of) => of.metrics?.[name])])]),
-      conformity: row.conformity ?? [], from: row.bin_from, width: row.bin_width, counts: row.counts_cm3,
-    })),
+    curves: answer.curves.map((row) =>
+      withSums({
+        region: row.region,
+        dose: row.dose,
+        of: row.dose === answer.id ? 0 : 1,
+        volume: row.volume_cm3,
+        cm3: row.volume_cm3 - row.missing_cm3,
+        missing: row.missing_cm3,
+        univels: row.n_univels,
+        isPartial: row.is_partial === true,
+        population: row.population ?? '',
+        basis: row.basis ?? '',
+        high: finite(row.least?.max ?? row.max),
+        figures: Object.fromEntries([
+          ...['min', 'mean', 'max'].map((name) => [name, boundsOf(row, (of) => of[name])]),
+          ...figureNames.map((name) => [name, boundsOf(row, (of) => of.metrics?.[name])]),
+        ]),
+        conformity: row.conformity ?? [],
+        from: row.bin_from,
+        width: row.bin_width,
+        counts: row.counts_cm3,
+      }),
+    ),
   };
 }
 
@@ -34,17 +58,43 @@ export function readDvh(answer) {
  *  count from where the line enters the body. @returns {import('./dose_profile.js').Profile} */
 export function readProfile(answer) {
   const unit = answer.unit ?? '';
-  const curves = answer.reason ? [] : answer.curves.map(({ quantity, unit: own, values, physical, physical_unit: physicalUnit }) => ({ quantity, unit: own, values, physical, physicalUnit }));
+  const curves = answer.reason
+    ? []
+    : answer.curves.map(({ quantity, unit: own, values, physical, physical_unit: physicalUnit }) => ({
+        quantity,
+        unit: own,
+        values,
+        physical,
+        physicalUnit,
+      }));
   const zero = (answer.isFromEntry && answer.entry_mm) || 0;
   const depthOf = (mm) => (Number.isFinite(mm) ? mm - zero : null);
   const entry = depthOf(answer.entry_mm);
   return {
-    unit, quantity: answer.quantity ?? '', method: answer.method ?? '', missing: answer.missing ?? [], per: answer.per ?? '', reason: answer.reason ?? '', zero, depths: answer.depths_mm.map(depthOf),
-    curves: curves.filter((curve) => curve.unit === unit), others: curves.filter((curve) => curve.unit !== unit),
+    unit,
+    quantity: answer.quantity ?? '',
+    method: answer.method ?? '',
+    missing: answer.missing ?? [],
+    per: answer.per ?? '',
+    reason: answer.reason ?? '',
+    zero,
+    depths: answer.depths_mm.map(depthOf),
+    curves: curves.filter((curve) => curve.unit === unit),
+    others: curves.filter((curve) => curve.unit !== unit),
     bands: answer.bands.map(({ region, from_mm: from, to_mm: to }) => ({ region, from: depthOf(from), to: depthOf(to) })),
-    entry, peak: answer.peak ? { depth: depthOf(answer.peak.depth_mm), value: answer.peak.value } : null, advantage: depthOf(answer.advantage_mm), advantageReason: answer.advantage?.reason ?? '',
-    references: answer.references.map(({ id, name, quantity, unit: own, per, radius_mm: radius, depths_mm: depths, values }) =>
-      ({ name: `${name || id}${radius ? `, ${radius} mm off the axis` : ''}`, quantity, unit: own, per, depths: depths.map((depth) => depth + (entry ?? 0)), values })),
-    doubts: answer.notes.filter((note) => !/^Reference curves/.test(note)), notes: answer.notes,
+    entry,
+    peak: answer.peak ? { depth: depthOf(answer.peak.depth_mm), value: answer.peak.value } : null,
+    advantage: depthOf(answer.advantage_mm),
+    advantageReason: answer.advantage?.reason ?? '',
+    references: answer.references.map(({ id, name, quantity, unit: own, per, radius_mm: radius, depths_mm: depths, values }) => ({
+      name: `${name || id}${radius ? `, ${radius} mm off the axis` : ''}`,
+      quantity,
+      unit: own,
+      per,
+      depths: depths.map((depth) => depth + (entry ?? 0)),
+      values,
+    })),
+    doubts: answer.notes.filter((note) => !/^Reference curves/.test(note)),
+    notes: answer.notes,
   };
 }

@@ -45,7 +45,10 @@ export class Asked {
   async #ask({ key, ask }) {
     this.#pending = new AbortController();
     const { signal: aborted } = this.#pending;
-    const answer = await ask(aborted).then((result) => ({ result, error: '' }), (error) => ({ result: null, error: error.message }));
+    const answer = await ask(aborted).then(
+      (result) => ({ result, error: '' }),
+      (error) => ({ result: null, error: error.message }),
+    );
     if (!aborted.aborted) this.#known.value = { key, ...answer };
   }
 }

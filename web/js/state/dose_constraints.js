@@ -16,7 +16,10 @@ const metricPattern = /^(mean|min|max|D(\d+(?:\.\d+)?)(%|cc)|V(\d+(?:\.\d+)?)(cc
 /** The metric in the form of the scene: "d95 %" is "D95%", "V20%" is "V20". '' if it is none, also with a
  *  unit of dose: V20Gy would be read as 20 cGy where the dose is in cGy. */
 export function readMetric(text) {
-  const bare = String(text).replace(/\s+/g, '').replace(/cm(3|³)$/i, 'cc').replace(/^V([\d.]+)%$/i, 'V$1');
+  const bare = String(text)
+    .replace(/\s+/g, '')
+    .replace(/cm(3|³)$/i, 'cc')
+    .replace(/^V([\d.]+)%$/i, 'V$1');
   const metric = /^(mean|min|max)$/i.test(bare) ? bare.toLowerCase() : bare.replace(/^d/, 'D').replace(/^v/, 'V').replace(/cc$/i, 'cc');
   const parts = metricPattern.exec(metric);
   if (!parts || metric.length > 24) return '';
@@ -41,7 +44,8 @@ export function limitAt({ metric, limit }) {
 }
 
 /** An id that none of them has. suffix: of the ids of who does not present, so that two people's do not meet. */
-export const freeConstraintId = (constraints, taken = [], suffix = '') => `limit-${freeNumber([...Object.keys(constraints ?? {}), ...taken], 'limit-')}${suffix}`;
+export const freeConstraintId = (constraints, taken = [], suffix = '') =>
+  `limit-${freeNumber([...Object.keys(constraints ?? {}), ...taken], 'limit-')}${suffix}`;
 
 const regionOf = (plan, word) => plan.regions.find(({ id }) => id === word) ?? plan.regions.find(({ name }) => name === word);
 
@@ -52,13 +56,18 @@ export function readConstraint({ region, quantity, metric, side, limit, tissue =
   if (!found) throw new Error(`The plan has no region “${region}”.`);
   const weighing = tissue && regionOf(plan, tissue);
   if (tissue && !weighing) throw new Error(`The plan has no region “${tissue}” whose weights could count.`);
-  if (!enums.dose_quantity.includes(quantity)) throw new Error(`“${quantity}” is no quantity; there are ${enums.dose_quantity.join(', ')}.`);
+  if (!enums.dose_quantity.includes(quantity))
+    throw new Error(`“${quantity}” is no quantity; there are ${enums.dose_quantity.join(', ')}.`);
   const known = readMetric(metric);
-  if (!known) throw new Error(`“${metric}” is no figure; there are mean, min, max, D95%, D2cc, V20 and V20cc with any number, doses in the unit of the dose.`);
+  if (!known)
+    throw new Error(
+      `“${metric}” is no figure; there are mean, min, max, D95%, D2cc, V20 and V20cc with any number, doses in the unit of the dose.`,
+    );
   if (!enums.limit_side.includes(side)) throw new Error(`“${side}” is no side; there are ${enums.limit_side.join(', ')}.`);
   const text = String(limit).trim();
   const value = Number(text);
-  if (text === '' || !Number.isFinite(value) || value < 0 || value > 1e30) throw new Error(`The limit “${limit}” is not a number from 0 on.`);
+  if (text === '' || !Number.isFinite(value) || value < 0 || value > 1e30)
+    throw new Error(`The limit “${limit}” is not a number from 0 on.`);
   if (measureOf(known) === 'percent' && value > 100) throw new Error(`The limit ${value} % of a volume is over 100 %.`);
   return { region: found.id, quantity, metric: known, side, limit: value, ...(weighing && { tissue: weighing.id }) };
 }
@@ -69,7 +78,10 @@ export function constraintsFromCsv(text, plan) {
   const [head, ...rows] = csvRows(text);
   const columns = head?.cells.map((name) => name.toLowerCase()) ?? [];
   const missing = needed.filter((name) => !columns.includes(name));
-  if (missing.length) throw new Error(`The first line has to name the columns ${needed.join(', ')}; ${missing.join(', ')} ${missing.length > 1 ? 'are' : 'is'} not there.`);
+  if (missing.length)
+    throw new Error(
+      `The first line has to name the columns ${needed.join(', ')}; ${missing.join(', ')} ${missing.length > 1 ? 'are' : 'is'} not there.`,
+    );
   const unknown = columns.filter((name) => !needed.includes(name) && !told.includes(name) && name !== 'tissue');
   if (unknown.length) throw new Error(`The column “${unknown[0]}” is not known.`);
   const twice = columns.find((name, index) => columns.indexOf(name) !== index);
@@ -86,15 +98,32 @@ export function constraintsFromCsv(text, plan) {
       return null;
     }
   });
-  if (errors.length) throw new Error([...errors.slice(0, 5), ...(errors.length > 5 ? [`${errors.length - 5} more lines are wrong.`] : [])].join(' '));
+  if (errors.length)
+    throw new Error([...errors.slice(0, 5), ...(errors.length > 5 ? [`${errors.length - 5} more lines are wrong.`] : [])].join(' '));
   return constraints;
 }
 
 /** @param {{id: string, constraint: Constraint, verdict: Verdict}[]} rows */
-export const constraintsCsv = (rows, plan) => csvText([[...needed, 'value', 'unit', 'met', 'reason', 'region name', 'tissue', 'weights', 'population'],
-  ...rows.map(({ constraint: { region, quantity, metric, side, limit, tissue = '' }, verdict }) => [region, quantity, metric, side, limit,
-    verdict.value ?? (Number.isFinite(verdict.bounds[0]) ? boundsWords(verdict.bounds, (value) => String(Number(value.toPrecision(9)))) : ''), verdict.unit,
-    { met: 'yes', 'not met': 'no' }[verdict.word] ?? 'not known', verdict.reason, plan.regions.find(({ id }) => id === region)?.name ?? '', tissue, verdict.basis, populationWords(verdict.population)])]);
+export const constraintsCsv = (rows, plan) =>
+  csvText([
+    [...needed, 'value', 'unit', 'met', 'reason', 'region name', 'tissue', 'weights', 'population'],
+    ...rows.map(({ constraint: { region, quantity, metric, side, limit, tissue = '' }, verdict }) => [
+      region,
+      quantity,
+      metric,
+      side,
+      limit,
+      verdict.value ??
+        (Number.isFinite(verdict.bounds[0]) ? boundsWords(verdict.bounds, (value) => String(Number(value.toPrecision(9)))) : ''),
+      verdict.unit,
+      { met: 'yes', 'not met': 'no' }[verdict.word] ?? 'not known',
+      verdict.reason,
+      plan.regions.find(({ id }) => id === region)?.name ?? '',
+      tissue,
+      verdict.basis,
+      populationWords(verdict.population),
+    ]),
+  ]);
 
 /**
  * What is known of a limit. @typedef {{word: 'met'|'not met'|'not known', value: number|null, bounds: [number, number], unit: string, reason: string, basis: string, population: string}} Verdict
@@ -108,7 +137,12 @@ export function verdictOf(row, error = '') {
   const bounds = isNumber ? [row.value, row.value] : Number.isFinite(row.least) ? [row.least, row.most ?? Infinity] : none.bounds;
   const isKnown = typeof row.met === 'boolean' && Number.isFinite(bounds[0]);
   return {
-    word: isKnown ? (row.met ? 'met' : 'not met') : 'not known', value: isNumber ? row.value : null, bounds, unit: row.unit ?? '', basis: row.basis ?? '', population: row.population ?? '',
+    word: isKnown ? (row.met ? 'met' : 'not met') : 'not known',
+    value: isNumber ? row.value : null,
+    bounds,
+    unit: row.unit ?? '',
+    basis: row.basis ?? '',
+    population: row.population ?? '',
     reason: isKnown ? '' : row.reason || 'The server gave no reason.',
   };
 }

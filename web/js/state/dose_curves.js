@@ -40,7 +40,11 @@ export class DoseCurves {
     this.lines = computed(() => linesOf(room.plan.value, room.scene.value));
     this.chosenLine = computed(() => this.lines.value.find(({ key }) => key === this.line.value) ?? this.lines.value[0] ?? null);
     /** The regions that the scene shows. */
-    this.regions = computed(() => (room.plan.value && room.scene.value ? ownRegions(room.plan.value, room.scene.value) : []).filter(({ id, voxels }) => voxels > 0 && room.scene.value.regions[id]?.visible));
+    this.regions = computed(() =>
+      (room.plan.value && room.scene.value ? ownRegions(room.plan.value, room.scene.value) : []).filter(
+        ({ id, voxels }) => voxels > 0 && room.scene.value.regions[id]?.visible,
+      ),
+    );
     /** Those among them that have curves. */
     this.shownRegions = computed(() => this.regions.value.filter(({ id }) => !this.hidden.value.has(id)));
 
@@ -48,7 +52,8 @@ export class DoseCurves {
     this.#profile = new Asked(() => (this.isProfileShown.value ? this.#along() : null), clock);
     this.#limits = new Asked(() => (this.areLimitsShown.value ? this.#kept() : null), clock);
 
-    const read = (asked, as) => computed(() => ({ ...asked.state.value, result: asked.state.value.result && as(asked.state.value.result) }));
+    const read = (asked, as) =>
+      computed(() => ({ ...asked.state.value, result: asked.state.value.result && as(asked.state.value.result) }));
     this.dvh = read(this.#dvh, readDvh);
     this.profile = read(this.#profile, readProfile);
     this.limits = this.#limits.state;
@@ -91,7 +96,19 @@ export class DoseCurves {
     const regions = this.regions.value.map(({ id }) => id);
     const bins = Math.max(16, Math.min(mostBins, Math.floor(allBins / (2 * Math.max(1, regions.length)))));
     const levels = this.#room.scene.value?.dose?.levels; // of which targets have their conformity
-    return regions.length ? this.#question('dvh', [regions, levels], {}, { quantity: this.quantity.value, ...(this.tissue.value && { tissue: this.tissue.value }), bins, ...(regions.join().length <= mostIds ? { regions: regions.join() } : {}) }) : null;
+    return regions.length
+      ? this.#question(
+          'dvh',
+          [regions, levels],
+          {},
+          {
+            quantity: this.quantity.value,
+            ...(this.tissue.value && { tissue: this.tissue.value }),
+            bins,
+            ...(regions.join().length <= mostIds ? { regions: regions.join() } : {}),
+          },
+        )
+      : null;
   }
 
   #along() {
@@ -106,7 +123,7 @@ export class DoseCurves {
   /** Which univels of a region count in everything that is said of it: the scene's choice. @returns {'own'|'whole'|''} */
   get population() {
     const { population } = this.#room.scene.value?.dose ?? {};
-    return ['own', 'whole'].includes(population) ? population : this.dvh.value.result?.curves[0]?.population ?? '';
+    return ['own', 'whole'].includes(population) ? population : (this.dvh.value.result?.curves[0]?.population ?? '');
   }
 
   #kept() {

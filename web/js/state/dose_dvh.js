@@ -77,45 +77,102 @@ export function plotPoints(curves, { isDifferential, unit, nPoints = 500 }) {
   const end = axisEnd(curves);
   const doses = Array.from({ length: nPoints + 1 }, (_, index) => (index * end) / nPoints);
   const step = end / nPoints;
-  const values = curves.map((curve) => doses.map((dose) => {
-    const cm3 = isDifferential ? (volumeFrom(curve, dose) - volumeFrom(curve, dose + step)) / step : volumeFrom(curve, dose);
-    return shareOf(curve, cm3, unit);
-  }));
-  const tops = curves.map((curve, at) => (openOf(curve) > 0 && !isDifferential ? values[at].map((value) => value + shareOf(curve, openOf(curve), unit)) : null));
+  const values = curves.map((curve) =>
+    doses.map((dose) => {
+      const cm3 = isDifferential ? (volumeFrom(curve, dose) - volumeFrom(curve, dose + step)) / step : volumeFrom(curve, dose);
+      return shareOf(curve, cm3, unit);
+    }),
+  );
+  const tops = curves.map((curve, at) =>
+    openOf(curve) > 0 && !isDifferential ? values[at].map((value) => value + shareOf(curve, openOf(curve), unit)) : null,
+  );
   return { doses, values, end, tops };
 }
 
 /** The curves under a dose: name, share and volume that have at least it. */
-export const readAt = (curves, dose) => curves.map((curve) => {
-  const cm3 = volumeFrom(curve, dose);
-  return { curve, cm3, percent: shareOf(curve, cm3, 'percent') };
-});
+export const readAt = (curves, dose) =>
+  curves.map((curve) => {
+    const cm3 = volumeFrom(curve, dose);
+    return { curve, cm3, percent: shareOf(curve, cm3, 'percent') };
+  });
 
 /** The figures and the curves of histograms, with what they depend on in its first lines. @param {{words: string[][], regionName: (id: string) => string, unit: string}} about */
 export function dvhCsv(curves, { words, regionName, unit }) {
   const { doses, values, tops } = plotPoints(curves, { isDifferential: false, unit: 'percent', nPoints: 200 });
   const name = (curve) => `${regionName(curve.region)}${curve.of ? ` (${curve.dose})` : ''}`;
   const cell = (bounds) => (bounds[0] === bounds[1] ? bounds[0] : boundsWords(bounds, (value) => String(Number(value.toPrecision(9)))));
-  const rows = curves.map((curve) => [name(curve), curve.volume, curve.univels, curve.missing, ...['min', 'mean', 'max', ...figureNames].map((figure) => cell(curve.figures[figure])), populationWords(curve.population), curve.basis]);
-  const columns = curves.flatMap((curve, at) => (tops[at] ? [[`${name(curve)}: least % of the whole volume with at least it`, values[at]], [`${name(curve)}: most %, were all of missing_cm3 above it`, tops[at]]] : [[`${name(curve)}: % of the whole volume with at least it`, values[at]]]));
+  const rows = curves.map((curve) => [
+    name(curve),
+    curve.volume,
+    curve.univels,
+    curve.missing,
+    ...['min', 'mean', 'max', ...figureNames].map((figure) => cell(curve.figures[figure])),
+    populationWords(curve.population),
+    curve.basis,
+  ]);
+  const columns = curves.flatMap((curve, at) =>
+    tops[at]
+      ? [
+          [`${name(curve)}: least % of the whole volume with at least it`, values[at]],
+          [`${name(curve)}: most %, were all of missing_cm3 above it`, tops[at]],
+        ]
+      : [[`${name(curve)}: % of the whole volume with at least it`, values[at]]],
+  );
   return csvText([
-    ...words, [],
-    ['region', 'cm3', 'univels', 'missing_cm3', ...['min', 'mean', 'max', ...figureNames].map((figure) => (figure === 'HI' ? figure : `${figure} (${unit})`)), 'population', 'weights'], ...rows, [],
+    ...words,
+    [],
+    [
+      'region',
+      'cm3',
+      'univels',
+      'missing_cm3',
+      ...['min', 'mean', 'max', ...figureNames].map((figure) => (figure === 'HI' ? figure : `${figure} (${unit})`)),
+      'population',
+      'weights',
+    ],
+    ...rows,
+    [],
     ...conformityRows(curves, { name, unit }),
-    [`dose (${unit})`, ...columns.map(([head]) => head)], ...doses.map((dose, index) => [dose, ...columns.map(([, list]) => list[index])]),
+    [`dose (${unit})`, ...columns.map(([head]) => head)],
+    ...doses.map((dose, index) => [dose, ...columns.map(([, list]) => list[index])]),
   ]);
 }
 
 /** How well the isodose of each level fits the targets. paddick: covered² / (target x isodose), rtog: isodose / target, in cm3. */
 function conformityRows(curves, { name, unit }) {
-  const rows = curves.flatMap((curve) => curve.conformity.map((row) => [name(curve), row.value, row.isodose_cm3, row.covered_cm3, row.paddick, row.rtog]));
-  return rows.length ? [['target', `level (${unit})`, 'isodose (cm3)', 'covered (cm3)', 'Paddick: covered^2 / (target x isodose)', 'RTOG: isodose / target'], ...rows, []] : [];
+  const rows = curves.flatMap((curve) =>
+    curve.conformity.map((row) => [name(curve), row.value, row.isodose_cm3, row.covered_cm3, row.paddick, row.rtog]),
+  );
+  return rows.length
+    ? [
+        [
+          'target',
+          `level (${unit})`,
+          'isodose (cm3)',
+          'covered (cm3)',
+          'Paddick: covered^2 / (target x isodose)',
+          'RTOG: isodose / target',
+        ],
+        ...rows,
+        [],
+      ]
+    : [];
 }
 
-export const dvhJson = (curves, { words, regionName, unit }) => JSON.stringify({
-  ...Object.fromEntries(words.map(([name, ...value]) => [name.replaceAll(' ', '_'), value.join(', ')])), unit,
-  histograms: curves.map(({ above, of, missing, isPartial, figures, ...curve }) => ({
-    ...curve, missing_cm3: missing, is_partial: isPartial, region_name: regionName(curve.region), compared: of > 0,
-    figures: Object.fromEntries(Object.entries(figures).map(([figure, [least, most]]) => [figure, { least, most }])), // null: no bound
-  })),
-}, null, 1);
+export const dvhJson = (curves, { words, regionName, unit }) =>
+  JSON.stringify(
+    {
+      ...Object.fromEntries(words.map(([name, ...value]) => [name.replaceAll(' ', '_'), value.join(', ')])),
+      unit,
+      histograms: curves.map(({ above, of, missing, isPartial, figures, ...curve }) => ({
+        ...curve,
+        missing_cm3: missing,
+        is_partial: isPartial,
+        region_name: regionName(curve.region),
+        compared: of > 0,
+        figures: Object.fromEntries(Object.entries(figures).map(([figure, [least, most]]) => [figure, { least, most }])), // null: no bound
+      })),
+    },
+    null,
+    1,
+  );

@@ -38,22 +38,51 @@ export class DoseFacts {
   /** @returns {() => void} stops asking */
   start(clock) {
     const room = this.#room;
-    const isReady = computed(() => room.renderer.value.state === 'ready' && Boolean(room.plan.value?.doses.length) && Boolean(room.scene.value));
+    const isReady = computed(
+      () => room.renderer.value.state === 'ready' && Boolean(room.plan.value?.doses.length) && Boolean(room.scene.value),
+    );
     const style = computed(() => (isReady.value ? JSON.stringify([scaleStyle(room.scene.value.dose), room.fitKey.value]) : ''));
     const place = computed(() => (isReady.value ? crosshair(room.scene.value).join(' ') : ''));
     const pinned = computed(() => (isReady.value ? JSON.stringify(room.scene.value.probes) : '{}'));
-    const covered = computed(() => (isReady.value && room.scene.value.dose.coverage.visible ? JSON.stringify([style.value, room.scene.value.dose.coverage]) : ''));
-    const compared = computed(() => (isReady.value && ['gamma', 'difference'].includes(room.scene.value.dose.compare.mode) && room.scene.value.dose.compare.id ? JSON.stringify([style.value, room.scene.value.dose.compare]) : ''));
+    const covered = computed(() =>
+      isReady.value && room.scene.value.dose.coverage.visible ? JSON.stringify([style.value, room.scene.value.dose.coverage]) : '',
+    );
+    const compared = computed(() =>
+      isReady.value && ['gamma', 'difference'].includes(room.scene.value.dose.compare.mode) && room.scene.value.dose.compare.id
+        ? JSON.stringify([style.value, room.scene.value.dose.compare])
+        : '',
+    );
     const askers = [
-      this.#follow(clock, () => style.value, this.scale, () => this.#ask('dose', {})),
-      this.#follow(clock, () => style.value && place.value && `${style.value} ${place.value}`, this.here,
-        () => this.#ask('dose/probe', at(place.peek().split(' ')))),
+      this.#follow(
+        clock,
+        () => style.value,
+        this.scale,
+        () => this.#ask('dose', {}),
+      ),
+      this.#follow(
+        clock,
+        () => style.value && place.value && `${style.value} ${place.value}`,
+        this.here,
+        () => this.#ask('dose/probe', at(place.peek().split(' '))),
+      ),
       this.#followPins(clock, style, pinned),
-      this.#follow(clock, () => covered.value, this.coverage, () => this.#ask('coverage', {})),
-      this.#follow(clock, () => compared.value, this.gamma, () => this.#ask('gamma', {})),
+      this.#follow(
+        clock,
+        () => covered.value,
+        this.coverage,
+        () => this.#ask('coverage', {}),
+      ),
+      this.#follow(
+        clock,
+        () => compared.value,
+        this.gamma,
+        () => this.#ask('gamma', {}),
+      ),
       this.labels.start(clock),
     ];
-    return () => { for (const stop of askers) stop(); };
+    return () => {
+      for (const stop of askers) stop();
+    };
   }
 
   /** Asks when the key changes, and once more when the server has the change. */
@@ -63,8 +92,13 @@ export class DoseFacts {
       const wanted = key();
       const isSettled = !this.#room.isScenePending.peek();
       if (!wanted) return;
-      const tell = (facts) => { if (key() === wanted) answer.value = { result: null, error: '', isOld: !isSettled, ...facts }; };
-      await ask().then((result) => tell({ result }), (error) => tell({ error: error.message }));
+      const tell = (facts) => {
+        if (key() === wanted) answer.value = { result: null, error: '', isOld: !isSettled, ...facts };
+      };
+      await ask().then(
+        (result) => tell({ result }),
+        (error) => tell({ error: error.message }),
+      );
       if (isSettled) settled = wanted;
     }, clock);
     const stop = effect(() => {
@@ -88,7 +122,10 @@ export class DoseFacts {
       const isSettled = !this.#room.isScenePending.peek();
       const known = {};
       for (const [id, { at_mm: mm }] of Object.entries(JSON.parse(pinned.peek()))) {
-        known[id] = await this.#ask('dose/probe', at(mm)).then((result) => ({ at: mm, result, error: '' }), (error) => ({ at: mm, result: null, error: error.message }));
+        known[id] = await this.#ask('dose/probe', at(mm)).then(
+          (result) => ({ at: mm, result, error: '' }),
+          (error) => ({ at: mm, result: null, error: error.message }),
+        );
       }
       this.pins.value = known;
       if (isSettled) asked = key;

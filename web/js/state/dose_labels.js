@@ -30,7 +30,9 @@ export class DoseLabels {
   /** @returns {() => void} stops asking */
   start(clock) {
     const stops = this.#room.views.map((view) => this.#follow(view, clock));
-    return () => { for (const stop of stops) stop(); };
+    return () => {
+      for (const stop of stops) stop();
+    };
   }
 
   #follow(view, clock) {
@@ -38,7 +40,12 @@ export class DoseLabels {
     const known = this.#known.get(view.number);
     const wanted = () => {
       const header = view.painted.value;
-      const isShown = header?.is_still && view.isOpen.value && !isInSpace(view.kind) && room.plan.value?.doses.length && room.scene.value?.dose.lines.visible;
+      const isShown =
+        header?.is_still &&
+        view.isOpen.value &&
+        !isInSpace(view.kind) &&
+        room.plan.value?.doses.length &&
+        room.scene.value?.dose.lines.visible;
       return isShown ? pictureOf(header) : '';
     };
     const asker = new Asker(async () => {

@@ -10,7 +10,9 @@ export const percentOf = ({ value, unit }, reference) => (unit === 'percent' ? v
 /** The levels {id, ...}, highest first; with levels in both units by the reference. */
 export function levelsOf(scene, reference) {
   const rank = (level) => (Number.isFinite(reference) ? doseOf(level, reference) : level.value);
-  return Object.entries(scene.dose.levels).map(([id, level]) => ({ id, ...level })).sort((a, b) => rank(b) - rank(a));
+  return Object.entries(scene.dose.levels)
+    .map(([id, level]) => ({ id, ...level }))
+    .sort((a, b) => rank(b) - rank(a));
 }
 
 const colours = ['#ff5a36', '#ffb52e', '#ffd60a', '#6fd33a', '#22b4d6', '#3aa0ff', '#8b7cf6', '#e05bff'];
@@ -29,7 +31,25 @@ export function addedLevel(scene, reference) {
   const id = freeId(scene.dose.levels);
   const value = last ? Number((last.value > 10 && last.unit === 'percent' ? last.value - 10 : last.value / 2).toPrecision(3)) : 50;
   const color = colours.find((other) => !all.some((level) => level.color === other)) ?? colours[0];
-  return { id, patch: { dose: { levels: { [id]: { value, unit: last?.unit ?? 'percent', color, visible: true, line: true, wash: true, surface: false, opacity: last?.opacity ?? 0.4 } } } } };
+  return {
+    id,
+    patch: {
+      dose: {
+        levels: {
+          [id]: {
+            value,
+            unit: last?.unit ?? 'percent',
+            color,
+            visible: true,
+            line: true,
+            wash: true,
+            surface: false,
+            opacity: last?.opacity ?? 0.4,
+          },
+        },
+      },
+    },
+  };
 }
 
 export const levelPatch = (id, change) => ({ dose: { levels: { [id]: change } } });

@@ -33,10 +33,27 @@ export const lookOf = (quantity) => looks[quantity] ?? { color: '#b9c0c9', dash:
 
 /** @returns {Line[]} */
 export function linesOf(plan, scene) {
-  const beams = (plan?.beams ?? []).map((beam) => ({ key: `beam ${beam.id}`, kind: 'beam', id: beam.id, name: beam.name || beam.id, from: beam.entry_mm, to: beam.target_mm }));
+  const beams = (plan?.beams ?? []).map((beam) => ({
+    key: `beam ${beam.id}`,
+    kind: 'beam',
+    id: beam.id,
+    name: beam.name || beam.id,
+    from: beam.entry_mm,
+    to: beam.target_mm,
+  }));
   const distances = Object.entries(scene?.measures ?? {}).filter(([, { kind, points }]) => kind === 'distance' && points.length === 2);
-  return [...beams, ...distances.map(([id, { name, points: [a, b] }]) => ({ key: `measure ${id}`, kind: 'measure', id, name: name || 'distance', from: a.at_mm, to: b.at_mm }))]
-    .filter(({ from, to }) => Math.hypot(...from.map((mm, axis) => to[axis] - mm)) > 1e-6);
+  return [
+    ...beams,
+    ...distances.map(
+      ([
+        id,
+        {
+          name,
+          points: [a, b],
+        },
+      ]) => ({ key: `measure ${id}`, kind: 'measure', id, name: name || 'distance', from: a.at_mm, to: b.at_mm }),
+    ),
+  ].filter(({ from, to }) => Math.hypot(...from.map((mm, axis) => to[axis] - mm)) > 1e-6);
 }
 
 const direction = ({ from, to }) => {
@@ -58,7 +75,10 @@ export const pointAt = (line, depth) => direction(line).map((mm, axis) => line.f
 /** Linear between the points of a curve; null outside them, and beside a point without a value. */
 export function valueAt(depths, values, depth) {
   if (!(depth >= depths[0] && depth <= depths.at(-1))) return null;
-  const next = Math.max(1, depths.findIndex((mm) => mm >= depth));
+  const next = Math.max(
+    1,
+    depths.findIndex((mm) => mm >= depth),
+  );
   const [a, b] = [values[next - 1], values[next]];
   if (a === null || b === null || !Number.isFinite(a) || !Number.isFinite(b)) return depth === depths[next] ? b : null;
   return a + ((b - a) * (depth - depths[next - 1])) / (depths[next] - depths[next - 1]);
@@ -68,8 +88,15 @@ export function valueAt(depths, values, depth) {
 export function aligned(profile, references = []) {
   if (!references.length) return { depths: profile.depths, lists: profile.curves.map(({ values }) => values) };
   const [low, high] = [profile.depths[0], profile.depths.at(-1)];
-  const depths = [...new Set([...profile.depths, ...references.flatMap((curve) => curve.depths.filter((depth) => depth >= low && depth <= high))])].sort((a, b) => a - b);
-  return { depths, lists: [...profile.curves, ...references].map((curve) => depths.map((depth) => valueAt(curve.depths ?? profile.depths, curve.values, depth))) };
+  const depths = [
+    ...new Set([...profile.depths, ...references.flatMap((curve) => curve.depths.filter((depth) => depth >= low && depth <= high))]),
+  ].sort((a, b) => a - b);
+  return {
+    depths,
+    lists: [...profile.curves, ...references].map((curve) =>
+      depths.map((depth) => valueAt(curve.depths ?? profile.depths, curve.values, depth)),
+    ),
+  };
 }
 
 /** Reference curves that have one axis: of the same file and unit. @returns {{key: string, name: string, unit: string, curves: object[]}[]} */
@@ -77,25 +104,49 @@ export function referenceGroups(references) {
   const groups = new Map();
   for (const curve of references) {
     const key = `${curve.name}\n${curve.unit}`;
-    groups.set(key, { key, name: curve.name, unit: curve.unit, curves: [...groups.get(key)?.curves ?? [], curve] });
+    groups.set(key, { key, name: curve.name, unit: curve.unit, curves: [...(groups.get(key)?.curves ?? []), curve] });
   }
   return [...groups.values()];
 }
 
 export function profileCsv(profile, { words, regionName }) {
-  const band = (depth) => profile.bands.filter(({ from, to }) => depth >= from && depth <= to).map(({ region }) => regionName(region)).join(' and ');
-  const columns = [...profile.curves, ...profile.others].flatMap(({ quantity, unit, values, physical, physicalUnit }) =>
-    [{ name: quantity, unit, values }, ...physical ? [{ name: `${quantity} without weight`, unit: physicalUnit, values: physical }] : []]);
+  const band = (depth) =>
+    profile.bands
+      .filter(({ from, to }) => depth >= from && depth <= to)
+      .map(({ region }) => regionName(region))
+      .join(' and ');
+  const columns = [...profile.curves, ...profile.others].flatMap(({ quantity, unit, values, physical, physicalUnit }) => [
+    { name: quantity, unit, values },
+    ...(physical ? [{ name: `${quantity} without weight`, unit: physicalUnit, values: physical }] : []),
+  ]);
   return csvText([
-    ...words, ...profile.notes.map((note) => ['note', note]), [],
-    ...[['entry (mm)', profile.entry], ['peak (mm)', profile.peak?.depth], ['advantage depth (mm)', profile.advantage ?? profile.advantageReason]], [],
+    ...words,
+    ...profile.notes.map((note) => ['note', note]),
+    [],
+    ...[
+      ['entry (mm)', profile.entry],
+      ['peak (mm)', profile.peak?.depth],
+      ['advantage depth (mm)', profile.advantage ?? profile.advantageReason],
+    ],
+    [],
     ['depth (mm)', ...columns.map(({ name, unit }) => `${name} (${unit})`), 'region'],
     ...profile.depths.map((depth, index) => [depth, ...columns.map(({ values }) => values[index]), band(depth)]),
-    ...profile.references.flatMap((curve) => [[], [`reference curve of a phantom: ${curve.name}, ${curve.quantity}`], ['depth (mm)', `${curve.quantity} (${curve.unit})`], ...curve.depths.map((depth, index) => [depth, curve.values[index]])]),
+    ...profile.references.flatMap((curve) => [
+      [],
+      [`reference curve of a phantom: ${curve.name}, ${curve.quantity}`],
+      ['depth (mm)', `${curve.quantity} (${curve.unit})`],
+      ...curve.depths.map((depth, index) => [depth, curve.values[index]]),
+    ]),
   ]);
 }
 
-export const profileJson = (profile, { words, regionName }) => JSON.stringify({
-  ...Object.fromEntries(words.map(([name, ...value]) => [name.replaceAll(' ', '_'), value.join(', ')])), ...profile,
-  bands: profile.bands.map((band) => ({ ...band, region_name: regionName(band.region) })),
-}, null, 1);
+export const profileJson = (profile, { words, regionName }) =>
+  JSON.stringify(
+    {
+      ...Object.fromEntries(words.map(([name, ...value]) => [name.replaceAll(' ', '_'), value.join(', ')])),
+      ...profile,
+      bands: profile.bands.map((band) => ({ ...band, region_name: regionName(band.region) })),
+    },
+    null,
+    1,
+  );

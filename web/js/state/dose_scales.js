@@ -12,14 +12,18 @@ export function washKind(plan, { dose: { wash, compare, error } }) {
 }
 
 /** Whether lines of levels are drawn, of the dose shown or dashed of the second. */
-export const hasLines = (plan, { dose: { lines, compare } }) => lines.visible || (['lines', 'difference'].includes(compare.mode) && plan.doses.some(({ id }) => id === compare.id));
+export const hasLines = (plan, { dose: { lines, compare } }) =>
+  lines.visible || (['lines', 'difference'].includes(compare.mode) && plan.doses.some(({ id }) => id === compare.id));
 
 /** A CSS gradient of the scale, as strong as the picture has it beside its opacity. */
 export function gradientOf(kind) {
   const stops = dosePresets.scales[kind];
   const [low, high] = [stops[0].at, stops.at(-1).at];
   const part = (value) => Math.round(((value - low) / (high - low)) * 1000) / 10;
-  const hex = (opacity) => Math.round(opacity * 255).toString(16).padStart(2, '0');
+  const hex = (opacity) =>
+    Math.round(opacity * 255)
+      .toString(16)
+      .padStart(2, '0');
   return `linear-gradient(90deg, ${stops.map(({ at, color, opacity }) => `${color}${hex(opacity)} ${part(at)}%`).join(', ')})`;
 }
 
@@ -40,11 +44,21 @@ export function shownScale(plan, scene, reference, significant) {
   const whole = `${isInBody ? 'in the body ' : ''}where ${first} has at least ${least} % of the reference`;
   if (kind === 'gamma') {
     const of = compare.normalization === 'local' ? ' of the point' : '';
-    return { kind, title: `γ of ${second}`, ends: ['0', '1 passes up to here', '≥ 2'], about: `${tidy(compare.dose_percent)} %${of}, ${tidy(compare.distance_mm)} mm, ${where}`,
-      more: `Gamma index of ${second} against ${first}, ${whole}` };
+    return {
+      kind,
+      title: `γ of ${second}`,
+      ends: ['0', '1 passes up to here', '≥ 2'],
+      about: `${tidy(compare.dose_percent)} %${of}, ${tidy(compare.distance_mm)} mm, ${where}`,
+      more: `Gamma index of ${second} against ${first}, ${whole}`,
+    };
   }
   const isKnown = Number.isFinite(reference);
   const end = isKnown ? significant((reference * compare.span_percent) / 100) : `${tidy(compare.span_percent)} %`;
-  return { kind, title: `${second} − ${first}, ${isKnown ? unitOf(shownDose(plan, scene), quantity) : '% of the reference'}`, ends: [`≤ −${end}`, '0', `≥ +${end}`],
-    about: `to ±${tidy(compare.span_percent)} %, ${where}`, more: `${second} less ${first}, ${whole}, where both have a dose; strongest colours from ±${tidy(compare.span_percent)} % of the reference on` };
+  return {
+    kind,
+    title: `${second} − ${first}, ${isKnown ? unitOf(shownDose(plan, scene), quantity) : '% of the reference'}`,
+    ends: [`≤ −${end}`, '0', `≥ +${end}`],
+    about: `to ±${tidy(compare.span_percent)} %, ${where}`,
+    more: `${second} less ${first}, ${whole}, where both have a dose; strongest colours from ±${tidy(compare.span_percent)} % of the reference on`,
+  };
 }

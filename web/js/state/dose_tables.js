@@ -13,12 +13,20 @@ export function tablePatch(scene, table) {
     const { visible, line, wash, surface, opacity } = before ?? { visible: true, line: true, wash: true, surface: false, opacity: 0.4 };
     return [`level-${index + 1}`, { value, unit: table.unit, color, visible, line, wash, surface, opacity }];
   });
-  const gone = Object.keys(levels).filter((id) => !added.some(([other]) => other === id)).map((id) => [id, null]);
+  const gone = Object.keys(levels)
+    .filter((id) => !added.some(([other]) => other === id))
+    .map((id) => [id, null]);
   return { dose: { levels: Object.fromEntries([...added, ...gone]) } };
 }
 
 /** The table that the levels are those of, by value and colour; null: none. */
 export function tableOf(scene) {
   const all = levelsOf(scene);
-  return levelTables.find(({ unit, levels }) => levels.length === all.length && levels.every(({ value, color }) => all.some((level) => level.value === value && level.unit === unit && level.color === color))) ?? null;
+  return (
+    levelTables.find(
+      ({ unit, levels }) =>
+        levels.length === all.length &&
+        levels.every(({ value, color }) => all.some((level) => level.value === value && level.unit === unit && level.color === color)),
+    ) ?? null
+  );
 }

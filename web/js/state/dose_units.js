@@ -18,11 +18,36 @@ function scaledLimit({ metric, limit }, factor) {
 export function unitPatch({ dose: { quantity, levels = {}, coverage, reference }, constraints = {} }, factor) {
   if (factor === 1) return {};
   const isOfDose = !isFluence(quantity);
-  const changed = (map, is, change) => Object.fromEntries(Object.entries(map).filter(([, value]) => is(value)).map(([id, value]) => [id, change(value)]));
+  const changed = (map, is, change) =>
+    Object.fromEntries(
+      Object.entries(map)
+        .filter(([, value]) => is(value))
+        .map(([id, value]) => [id, change(value)]),
+    );
   const dose = {
-    ...(isOfDose && { levels: changed(levels, ({ unit }) => unit === 'dose', ({ value }) => ({ value: scaled(value, factor) })) }),
-    ...(isOfDose && coverage?.unit === 'dose' && { coverage: changed({ low: coverage.low, high: coverage.high }, (value) => typeof value === 'number', (value) => scaled(value, factor)) }),
+    ...(isOfDose && {
+      levels: changed(
+        levels,
+        ({ unit }) => unit === 'dose',
+        ({ value }) => ({ value: scaled(value, factor) }),
+      ),
+    }),
+    ...(isOfDose &&
+      coverage?.unit === 'dose' && {
+        coverage: changed(
+          { low: coverage.low, high: coverage.high },
+          (value) => typeof value === 'number',
+          (value) => scaled(value, factor),
+        ),
+      }),
     ...(isOfDose && reference?.kind === 'value' && { reference: { value: scaled(reference.value, factor) } }),
   };
-  return { dose, constraints: changed(constraints, (limit) => !isFluence(limit.quantity), (limit) => scaledLimit(limit, factor)) };
+  return {
+    dose,
+    constraints: changed(
+      constraints,
+      (limit) => !isFluence(limit.quantity),
+      (limit) => scaledLimit(limit, factor),
+    ),
+  };
 }

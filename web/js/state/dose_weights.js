@@ -16,17 +16,29 @@ const fromFiles = "from the plan's files"; // core/scene/snapshot.c
  */
 export function tissueFor(preset, { name, is_target: isTarget }) {
   if (isTarget) return preset.tissues[0];
-  const words = name.toLowerCase().split(/[^a-z]+/).filter(Boolean);
+  const words = name
+    .toLowerCase()
+    .split(/[^a-z]+/)
+    .filter(Boolean);
   const isIn = ({ words: starts }) => starts.some((start) => words.some((word) => word.startsWith(start)));
-  return preset.tissues.find((tissue) => tissue.words.length && isIn(tissue)) ?? preset.tissues.find((tissue) => !tissue.words.length) ?? null;
+  return (
+    preset.tissues.find((tissue) => tissue.words.length && isIn(tissue)) ?? preset.tissues.find((tissue) => !tissue.words.length) ?? null
+  );
 }
 
-const numbersOf = (tissue) => ({ ...Object.fromEntries(weightFields.map((field) => [field, tissue[field]])), isoeffective: tissue.isoeffective ?? '' });
+const numbersOf = (tissue) => ({
+  ...Object.fromEntries(weightFields.map((field) => [field, tissue[field]])),
+  isoeffective: tissue.isoeffective ?? '',
+});
 
 /** All regions get their row of the preset. */
 export function presetPatch(plan, scene, preset) {
   const rows = plan.regions.map((region) => [region, tissueFor(preset, region)]);
-  const weights = Object.fromEntries(rows.map(([{ id }, tissue]) => [id, tissue ? numbersOf(tissue) : id in scene.dose.weights ? null : undefined]).filter(([, row]) => row !== undefined));
+  const weights = Object.fromEntries(
+    rows
+      .map(([{ id }, tissue]) => [id, tissue ? numbersOf(tissue) : id in scene.dose.weights ? null : undefined])
+      .filter(([, row]) => row !== undefined),
+  );
   return { dose: { weights, weights_name: preset.name } };
 }
 
@@ -34,8 +46,21 @@ export function presetPatch(plan, scene, preset) {
 function filesPreset(plan) {
   const given = plan.regions.filter(({ tissue }) => tissue && Object.values(tissue).some(Number.isFinite));
   if (!given.length) return null;
-  const rowOf = ({ tissue: t }) => ({ boron_ratio: t.boron_ratio ?? 1, cbe: t.cbe_boron ?? 1, nitrogen: t.rbe_nitrogen ?? 1, fast: t.rbe_fast ?? 1, gamma: t.rbe_gamma ?? 1, other: 1, isoeffective: '' });
-  return { name: fromFiles, source: 'Tissue data that were loaded with the plan', note: '', rows: Object.fromEntries(given.map((region) => [region.id, rowOf(region)])) };
+  const rowOf = ({ tissue: t }) => ({
+    boron_ratio: t.boron_ratio ?? 1,
+    cbe: t.cbe_boron ?? 1,
+    nitrogen: t.rbe_nitrogen ?? 1,
+    fast: t.rbe_fast ?? 1,
+    gamma: t.rbe_gamma ?? 1,
+    other: 1,
+    isoeffective: '',
+  });
+  return {
+    name: fromFiles,
+    source: 'Tissue data that were loaded with the plan',
+    note: '',
+    rows: Object.fromEntries(given.map((region) => [region.id, rowOf(region)])),
+  };
 }
 
 /** What can be chosen: the presets, and the plan's own. */
@@ -48,7 +73,9 @@ export const presetOf = (plan, scene) => presetsFor(plan).find(({ name }) => nam
 
 export function choosePresetPatch(plan, scene, preset) {
   if (!preset.rows) return presetPatch(plan, scene, preset);
-  const gone = Object.keys(scene.dose.weights).filter((id) => !(id in preset.rows)).map((id) => [id, null]);
+  const gone = Object.keys(scene.dose.weights)
+    .filter((id) => !(id in preset.rows))
+    .map((id) => [id, null]);
   return { dose: { weights: Object.fromEntries([...Object.entries(preset.rows), ...gone]), weights_name: preset.name } };
 }
 

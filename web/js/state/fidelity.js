@@ -31,14 +31,22 @@ export function fidelity({ link, renderer, header, staleSince, behindSince, fps,
     return badge('disconnected', seconds ? `Disconnected, trying again in ${seconds} s` : 'Disconnected, trying again');
   }
   if (link.state === 'ended') return badge('disconnected', 'Disconnected', link.reason);
-  if (link.quietSince && now - link.dueSince >= deadMs) return badge('disconnected', 'Disconnected', 'The server has not answered for 5 s. What you change is kept and sent.');
-  if (link.quietSince) return badge('link', `Link? ${Math.floor((now - link.quietSince) / 1000)} s`, 'Nothing was heard from the server for so long. What you change is kept and sent.');
+  if (link.quietSince && now - link.dueSince >= deadMs)
+    return badge('disconnected', 'Disconnected', 'The server has not answered for 5 s. What you change is kept and sent.');
+  if (link.quietSince)
+    return badge(
+      'link',
+      `Link? ${Math.floor((now - link.quietSince) / 1000)} s`,
+      'Nothing was heard from the server for so long. What you change is kept and sent.',
+    );
   if (!header) return null;
-  if (renderer === 'failed' || renderer === 'closed') return badge('stale', 'Stale', 'The plan is not loaded; this is the last picture of it.');
+  if (renderer === 'failed' || renderer === 'closed')
+    return badge('stale', 'Stale', 'The plan is not loaded; this is the last picture of it.');
   if (renderer !== 'ready') return badge('stale', 'Stale', 'The renderer is being started again; this is the last picture it made.');
   if (refusal) return badge('stale', 'Stale', `The view cannot be drawn as it is now: ${refusal}`);
   const since = Math.min(staleSince || Infinity, behindSince || Infinity);
-  if (now - since > staleMs) return badge('stale', `Stale ${Math.floor((now - since) / 1000)} s`, 'The picture does not show the newest change yet.');
+  if (now - since > staleMs)
+    return badge('stale', `Stale ${Math.floor((now - since) / 1000)} s`, 'The picture does not show the newest change yet.');
   if (header.is_still && header.scale_percent === 100 && !header.is_coarse)
     return header.is_lossless ? badge('full', 'Full, lossless still') : badge('full', 'Full');
   const reasons = why(header);

@@ -4,12 +4,25 @@ import { isOn as isDoseOn, shownDose } from './dose.js';
 import { imageName, shownImage } from './plan.js';
 
 /** Relations, the worst first; and the two words that mark what is used all the same. */
-const marks = { patient: 'other patient', frame: 'other frame', apart: 'lies apart', plan: 'other plan', unit: 'other unit', per: 'other “per”', absent: 'plan absent' };
+const marks = {
+  patient: 'other patient',
+  frame: 'other frame',
+  apart: 'lies apart',
+  plan: 'other plan',
+  unit: 'other unit',
+  per: 'other “per”',
+  absent: 'plan absent',
+};
 const order = Object.keys(marks);
 const words = { image: 'Image', regions: 'Regions', dose: 'Dose', beam: 'Beam', tracks: 'Tracks' };
 const lists = { image: 'images', dose: 'doses', beam: 'beams' };
 
-export const reasons = [['registered-elsewhere', 'Registered elsewhere'], ['same-session', 'Same session and couch'], ['compared-on-anatomy', 'Compared on the anatomy'], ['other', 'Other']];
+export const reasons = [
+  ['registered-elsewhere', 'Registered elsewhere'],
+  ['same-session', 'Same session and couch'],
+  ['compared-on-anatomy', 'Compared on the anatomy'],
+  ['other', 'Other'],
+];
 export const reasonName = (id) => reasons.find(([known]) => known === id)?.[1] ?? id;
 export const minLetters = 10;
 
@@ -22,8 +35,12 @@ export const markWords = (relation) => marks[relation] ?? 'does not fit';
 /** Acceptances that do not count any more, or not yet. */
 export const voidRows = (rows, counting) => [...rows.values()].filter(({ kind, id }) => kind === 'acceptance' && !counting.includes(id));
 
-const isOfSource = ({ thing }) => (region) => region.source === undefined || `regions:${region.source ?? 0}` === thing;
-const regionWords = ([first, ...others]) => (!first ? '' : others.length ? `${first.name} and ${others.length} more` : first.name || first.id);
+const isOfSource =
+  ({ thing }) =>
+  (region) =>
+    region.source === undefined || `regions:${region.source ?? 0}` === thing;
+const regionWords = ([first, ...others]) =>
+  !first ? '' : others.length ? `${first.name} and ${others.length} more` : first.name || first.id;
 
 /** "dose:boost" as {kind, id, word, name}. */
 export function partOf(plan, key) {
@@ -31,7 +48,14 @@ export function partOf(plan, key) {
   const regions = kind === 'regions' ? plan.regions.filter((region) => isOfSource({ thing: key })(region)) : [];
   const part = kind === 'regions' ? regions[0] : plan[lists[kind]]?.find((one) => one.id === id);
   const image = kind === 'image' && part && imageName(plan, part);
-  return { key, kind, id, word: words[kind] ?? kind, name: kind === 'regions' ? regionWords(regions) : image || part?.name || (kind === 'tracks' ? '' : id), part: part ?? null };
+  return {
+    key,
+    kind,
+    id,
+    word: words[kind] ?? kind,
+    name: kind === 'regions' ? regionWords(regions) : image || part?.name || (kind === 'tracks' ? '' : id),
+    part: part ?? null,
+  };
 }
 
 /** Dose “Boost”, Regions, MR */
@@ -47,7 +71,7 @@ export const fitOf = (plan, thing, other) => plan?.fits.find((fit) => pairKey(fi
 /** @typedef {{thing: string, with: string, kind: string, id: string, relation: string, reason: string, needs: string, state: 'used'|'not-used'|'by-word', by: object|null}} Use */
 
 function useOf(fit, accepted) {
-  const by = fit.needs === 'acceptance' ? accepted.get(pairKey(fit.thing, fit.with)) ?? null : null;
+  const by = fit.needs === 'acceptance' ? (accepted.get(pairKey(fit.thing, fit.with)) ?? null) : null;
   const [kind, id = ''] = fit.thing.split(/:(.*)/);
   return { ...fit, kind, id, by, state: fit.needs === 'nothing' ? 'used' : by ? 'by-word' : 'not-used' };
 }
@@ -59,17 +83,26 @@ export function usesOf(plan, scene, accepted) {
   if (!plan || !scene) return [];
   const image = `image:${shownImage(plan, scene)?.id}`;
   const dose = `dose:${shownDose(plan, scene)?.id}`;
-  const joined = [...Object.keys(scene.dose.sum), ...(scene.dose.compare.mode === 'none' ? [] : [scene.dose.compare.id])].map((id) => `dose:${id}`);
+  const joined = [...Object.keys(scene.dose.sum), ...(scene.dose.compare.mode === 'none' ? [] : [scene.dose.compare.id])].map(
+    (id) => `dose:${id}`,
+  );
   const isAlone = (fit) => fit.thing === fit.with; // in a plan without images
   const concerns = (fit) => fit.with === image || isAlone(fit) || (fit.with === dose && joined.includes(fit.thing));
-  return plan.fits.filter(concerns).map((fit) => useOf(fit, accepted)).sort(compare);
+  return plan.fits
+    .filter(concerns)
+    .map((fit) => useOf(fit, accepted))
+    .sort(compare);
 }
 
 export const regionsOf = (plan, use) => plan.regions.filter(isOfSource(use));
 
 /** True if the scene shows the part, or would if it fitted. */
 export function isWanted(plan, scene, { kind, id, ...use }) {
-  if (kind === 'dose') return isDoseOn(scene) && (shownDose(plan, scene)?.id === id || id in scene.dose.sum || (scene.dose.compare.mode !== 'none' && scene.dose.compare.id === id));
+  if (kind === 'dose')
+    return (
+      isDoseOn(scene) &&
+      (shownDose(plan, scene)?.id === id || id in scene.dose.sum || (scene.dose.compare.mode !== 'none' && scene.dose.compare.id === id))
+    );
   if (kind === 'beam') return Boolean(scene.beam.looks[id]?.visible);
   if (kind === 'tracks') return Boolean(scene.tracks?.visible);
   if (kind === 'image') return scene.image.blend?.id === id;
@@ -77,13 +110,18 @@ export function isWanted(plan, scene, { kind, id, ...use }) {
 }
 
 /** What the bar asks about: shown, not used, and a person may accept it. */
-export const questionsOf = (plan, scene, uses) => uses.filter((use) => use.state === 'not-used' && use.needs === 'acceptance' && isWanted(plan, scene, use));
+export const questionsOf = (plan, scene, uses) =>
+  uses.filter((use) => use.state === 'not-used' && use.needs === 'acceptance' && isWanted(plan, scene, use));
 /** What is shown by a person's word: each picture and number is marked. */
 export const byWordOf = (plan, scene, uses) => uses.filter((use) => use.state === 'by-word' && isWanted(plan, scene, use));
 
 /** What enters the numbers of dose by a person's word, whether anything of it is drawn or not. */
 export function inNumbersOf(plan, scene, uses) {
-  const isChosen = ({ kind, id }) => kind !== 'dose' || shownDose(plan, scene)?.id === id || id in scene.dose.sum || (scene.dose.compare.mode !== 'none' && scene.dose.compare.id === id);
+  const isChosen = ({ kind, id }) =>
+    kind !== 'dose' ||
+    shownDose(plan, scene)?.id === id ||
+    id in scene.dose.sum ||
+    (scene.dose.compare.mode !== 'none' && scene.dose.compare.id === id);
   return uses.filter((use) => use.state === 'by-word' && ['dose', 'regions'].includes(use.kind) && isChosen(use));
 }
 
@@ -101,13 +139,29 @@ export function leftOffPatch(plan, scene, { kind, id, ...use }) {
   if (kind === 'regions') return { regions: Object.fromEntries(regionsOf(plan, use).map((region) => [region.id, { visible: false }])) };
   if (id in scene.dose.sum) return { dose: { sum: { [id]: null } } };
   if (shownDose(plan, scene)?.id !== id) return { dose: { compare: { mode: 'none' } } };
-  return { dose: { lines: { visible: false }, wash: { visible: false }, surfaces: { visible: false }, coverage: { visible: false }, compare: { mode: 'none' } } };
+  return {
+    dose: {
+      lines: { visible: false },
+      wash: { visible: false },
+      surfaces: { visible: false },
+      coverage: { visible: false },
+      compare: { mode: 'none' },
+    },
+  };
 }
 
 /** The use of what is selected; null: it fits. */
 export function selectedUse(plan, uses, { kind, id }) {
   const region = kind === 'region' && plan.regions.find((one) => one.id === id);
-  return uses.find((use) => use.state !== 'used' && (use.kind === 'regions' ? Boolean(region) && isOfSource(use)(region) : use.kind === (kind === 'track' ? 'tracks' : kind) && (use.kind === 'tracks' || use.id === id))) ?? null;
+  return (
+    uses.find(
+      (use) =>
+        use.state !== 'used' &&
+        (use.kind === 'regions'
+          ? Boolean(region) && isOfSource(use)(region)
+          : use.kind === (kind === 'track' ? 'tracks' : kind) && (use.kind === 'tracks' || use.id === id)),
+    ) ?? null
+  );
 }
 
 /** What is to be selected for a part. @returns {[string, string]} kind and id */
@@ -118,7 +172,14 @@ export function selectionOf(plan, use) {
 
 // ---- sums and comparisons -------------------------------------------------------------------------------------------------
 
-const joins = { patient: 'another patient', frame: 'does not fit', apart: 'does not fit', plan: 'another plan: compare only', unit: 'another unit or kind', absent: 'does not fit' };
+const joins = {
+  patient: 'another patient',
+  frame: 'does not fit',
+  apart: 'does not fit',
+  plan: 'another plan: compare only',
+  unit: 'another unit or kind',
+  absent: 'does not fit',
+};
 
 /**
  * Why a dose cannot be put together with the first one, in a few words and in the server's sentence; null: it can. "per" is no reason here: a factor, the

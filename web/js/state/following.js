@@ -24,7 +24,9 @@ export class Following {
     this.isFollowing = signal(true); // also true for the presenter, whose views are the shared ones
     this.presenter = computed(() => room.members.value.find(({ presenting }) => presenting) ?? null);
     this.isPresenting = computed(() => own()?.presenting === true);
-    this.nFollowers = computed(() => room.members.value.filter((other) => other.id !== room.member.value && other.connected !== false && other.following).length);
+    this.nFollowers = computed(
+      () => room.members.value.filter((other) => other.id !== room.member.value && other.connected !== false && other.following).length,
+    );
     /** presenting | following | own | away: follows a presenter who lost the connection | none: nobody presents */
     this.standing = computed(() => {
       if (this.isPresenting.value) return 'presenting';
@@ -33,7 +35,7 @@ export class Following {
       return this.presenter.value.connected === false ? 'away' : 'following';
     });
     /** A merge patch on the scene for the own views; null while the member follows. */
-    this.override = computed(() => (this.isFollowing.value ? null : this.#lead.document.value.override ?? null));
+    this.override = computed(() => (this.isFollowing.value ? null : (this.#lead.document.value.override ?? null)));
   }
 
   /** All own views have the same override; that of a closed view may be older. */
@@ -72,7 +74,10 @@ export class Following {
     const name = this.presenter.value?.name;
     const words = name ? `Following ${name}.` : 'Back in the shared view.';
     if (n && this.#room.control.may('scene'))
-      this.#room.notify('warn', `${words} What you marked for yourself stays behind.`, 'following', { word: n > 1 ? `Give ${n} marks to the room` : 'Give it to the room', act: () => this.#room.patchScene(patch) });
+      this.#room.notify('warn', `${words} What you marked for yourself stays behind.`, 'following', {
+        word: n > 1 ? `Give ${n} marks to the room` : 'Give it to the room',
+        act: () => this.#room.patchScene(patch),
+      });
     else this.#room.notify('ok', words, 'following');
     return true;
   }
@@ -128,11 +133,17 @@ export class Following {
     if (wasPresenting !== own.presenting) this.hasLostControl = wasPresenting;
     if (own.presenting && !wasPresenting) {
       const isAlone = !members.some(({ id, connected }) => id !== own.id && connected !== false);
-      if (before || !isAlone) this.#room.notify('ok', isAlone ? 'You are alone here, and present now.' : 'You present: the others follow you.', 'following');
+      if (before || !isAlone)
+        this.#room.notify('ok', isAlone ? 'You are alone here, and present now.' : 'You present: the others follow you.', 'following');
       return true;
     }
-    if (wasPresenting && !own.presenting && this.presenter.value) this.#room.notify('warn', `${this.presenter.value.name} presents now. You follow.`, 'following');
-    if (before && !this.presenter.value) this.#room.notify('warn', 'Nobody presents any more. What you see stays.', 'following', { word: 'Take over', act: () => this.present() });
+    if (wasPresenting && !own.presenting && this.presenter.value)
+      this.#room.notify('warn', `${this.presenter.value.name} presents now. You follow.`, 'following');
+    if (before && !this.presenter.value)
+      this.#room.notify('warn', 'Nobody presents any more. What you see stays.', 'following', {
+        word: 'Take over',
+        act: () => this.present(),
+      });
     return false;
   }
 
@@ -180,7 +191,8 @@ export class Following {
     if (!this.isPresenting.value) return void this.#room.returned();
     // what was sent as changes of own views has changed the shared ones: they become what this page shows
     for (const view of this.#room.views)
-      if (view.isOpen.value) this.#tell({ type: 'view.patch', view: view.number, patch: { camera: view.document.value.camera ?? null, override: null } });
+      if (view.isOpen.value)
+        this.#tell({ type: 'view.patch', view: view.number, patch: { camera: view.document.value.camera ?? null, override: null } });
   }
 
   /**
@@ -206,7 +218,8 @@ export class Following {
   #act(follow) {
     const open = this.#room.views.filter((view) => view.isOpen.value);
     const views = open.map((view) => ({ view: view.number, document: view.document.value }));
-    if (this.#tell(follow ? { type: 'follow', follow } : { type: 'follow', follow, views })) for (const view of open) view.awaited.push(follow);
+    if (this.#tell(follow ? { type: 'follow', follow } : { type: 'follow', follow, views }))
+      for (const view of open) view.awaited.push(follow);
   }
 
   #ownDocument(view, plan, override, beam) {
@@ -215,6 +228,14 @@ export class Following {
     const size_px = view.ownSize ?? view.document.value.size_px ?? usualSize;
     view.widening = widening(shared, view.kind, view.document.value.size_px ?? size_px, view.painted.value, size_px);
     const { number, plane } = view.document.value;
-    return { kind: view.kind, ...(number > 1 && { number }), ...(view.kind === 'oblique' && plane && { plane }), size_px, ...(view.kind === 'beam' && { beam: ownBeam(view.document.value.beam, view.painted.value, beam) }), camera: { ...widen(shared, view.kind, view.widening), projection: camera.projection }, override: mergePatch(view.document.value.override ?? {}, override) };
+    return {
+      kind: view.kind,
+      ...(number > 1 && { number }),
+      ...(view.kind === 'oblique' && plane && { plane }),
+      size_px,
+      ...(view.kind === 'beam' && { beam: ownBeam(view.document.value.beam, view.painted.value, beam) }),
+      camera: { ...widen(shared, view.kind, view.widening), projection: camera.projection },
+      override: mergePatch(view.document.value.override ?? {}, override),
+    };
   }
 }

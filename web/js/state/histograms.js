@@ -26,13 +26,19 @@ export class Histograms {
   load(plan, image) {
     const key = `${plan}/${image}`;
     if (!this.#pending.has(key))
-      this.#pending.set(key, this.#ask(plan, image).catch(() => null).then((answer) => {
-        const histogram = isUsable(answer) ? answer : null;
-        this.#known.value = new Map(this.#known.peek()).set(key, histogram);
-        return histogram;
-      }));
+      this.#pending.set(
+        key,
+        this.#ask(plan, image)
+          .catch(() => null)
+          .then((answer) => {
+            const histogram = isUsable(answer) ? answer : null;
+            this.#known.value = new Map(this.#known.peek()).set(key, histogram);
+            return histogram;
+          }),
+      );
     return this.#pending.get(key);
   }
 }
 
-const isUsable = (answer) => Array.isArray(answer?.counts) && answer.counts.length > 0 && Number.isFinite(answer.low) && answer.high > answer.low;
+const isUsable = (answer) =>
+  Array.isArray(answer?.counts) && answer.counts.length > 0 && Number.isFinite(answer.low) && answer.high > answer.low;

@@ -21,7 +21,8 @@ export function isOfOther(plan, scene, part) {
 }
 
 /** The regions without those of another patient: what lists and choices offer. */
-export const ownRegions = (plan, scene) => (plan.patients.length > 1 ? plan.regions.filter((region) => !isOfOther(plan, scene, region)) : plan.regions);
+export const ownRegions = (plan, scene) =>
+  plan.patients.length > 1 ? plan.regions.filter((region) => !isOfOther(plan, scene, region)) : plan.regions;
 
 /** The shown patient in the server's list of identities, which has the plan's order; null where the list is of other files than the plan. */
 export function identityOf(plan, scene, identities) {
@@ -35,9 +36,17 @@ export function identityOf(plan, scene, identities) {
 export function partsOfOthers(plan, scene) {
   const shown = shownPatient(plan, scene);
   if (!shown || plan.patients.length < 2) return [];
-  const lists = [['image', plan.images], ['dose', plan.doses], ['beam', plan.beams], ['region', plan.regions]];
-  return lists.flatMap(([kind, list]) => list.filter(({ patient }) => plan.patients[patient] && plan.patients[patient] !== shown)
-    .map(({ id, name, modality, patient }) => ({ kind, id, name: name || modality || id, masked: plan.patients[patient].masked })));
+  const lists = [
+    ['image', plan.images],
+    ['dose', plan.doses],
+    ['beam', plan.beams],
+    ['region', plan.regions],
+  ];
+  return lists.flatMap(([kind, list]) =>
+    list
+      .filter(({ patient }) => plan.patients[patient] && plan.patients[patient] !== shown)
+      .map(({ id, name, modality, patient }) => ({ kind, id, name: name || modality || id, masked: plan.patients[patient].masked })),
+  );
 }
 
 /** The treatment plan that the shown dose belongs to, else the first; null: none. */
@@ -45,9 +54,13 @@ export function shownTreatmentPlan(plan, scene) {
   return plan?.treatmentPlans[shownDose(plan, scene)?.plan] ?? plan?.treatmentPlans[plan.shownPlan ?? 0] ?? null;
 }
 
-const approvals = { APPROVED: ['Approved', 'ok', 'check'], UNAPPROVED: ['Unapproved', 'warn', 'warning'], REJECTED: ['Rejected', 'err', 'error'] };
+const approvals = {
+  APPROVED: ['Approved', 'ok', 'check'],
+  UNAPPROVED: ['Unapproved', 'warn', 'warning'],
+  REJECTED: ['Rejected', 'err', 'error'],
+};
 /** [word, class, icon] */
 export const approvalOf = (treatment) => approvals[(treatment?.approval ?? '').toUpperCase()] ?? ['approval not stated', 'dim', ''];
 
 /** "20261112" as 2026-11-12. */
-export const dateWords = (date) => (/^\d{8}$/.test(date ?? '') ? `${date.slice(0, 4)}-${date.slice(4, 6)}-${date.slice(6)}` : date ?? '');
+export const dateWords = (date) => (/^\d{8}$/.test(date ?? '') ? `${date.slice(0, 4)}-${date.slice(4, 6)}-${date.slice(6)}` : (date ?? ''));

@@ -7,9 +7,38 @@ const farthest = 1e12; // of a window's centre
 
 /** Colour maps: word, name, what it is, the stops of its gradient (DICOM PS3.6 B.1.1 for hot iron). */
 export const colorMaps = [
-  ['grey', 'Grey', 'Black to white', [[0, '#000000'], [1, '#ffffff']]],
-  ['hot-iron', 'Hot iron', 'Black, red, yellow, white', [[0, '#000000'], [0.5, '#ff0000'], [0.75, '#ffff00'], [1, '#ffffff']]],
-  ['rainbow', 'Rainbow', 'Blue, cyan, green, yellow, red', [[0, '#0000ff'], [0.25, '#00ffff'], [0.5, '#00ff00'], [0.75, '#ffff00'], [1, '#ff0000']]],
+  [
+    'grey',
+    'Grey',
+    'Black to white',
+    [
+      [0, '#000000'],
+      [1, '#ffffff'],
+    ],
+  ],
+  [
+    'hot-iron',
+    'Hot iron',
+    'Black, red, yellow, white',
+    [
+      [0, '#000000'],
+      [0.5, '#ff0000'],
+      [0.75, '#ffff00'],
+      [1, '#ffffff'],
+    ],
+  ],
+  [
+    'rainbow',
+    'Rainbow',
+    'Blue, cyan, green, yellow, red',
+    [
+      [0, '#0000ff'],
+      [0.25, '#00ffff'],
+      [0.5, '#00ff00'],
+      [0.75, '#ffff00'],
+      [1, '#ff0000'],
+    ],
+  ],
 ];
 
 export const isPet = ({ modality }) => modality === 'PET' || modality === 'PT';
@@ -55,10 +84,21 @@ export function blendedImage(plan, scene) {
 }
 
 const hounsfield = [
-  ['1', 'Soft tissue', 40, 400], ['2', 'Lung', -600, 1500], ['3', 'Brain', 40, 80], ['4', 'Bone', 480, 2500],
+  ['1', 'Soft tissue', 40, 400],
+  ['2', 'Lung', -600, 1500],
+  ['3', 'Brain', 40, 80],
+  ['4', 'Bone', 480, 2500],
 ];
-const moreHounsfield = [['Head', 45, 125], ['Spine', 30, 300], ['Abdomen', 40, 350], ['CT bone', 400, 1000]];
-const shares = [['1', '0.1', '99.9'], ['2', '1', '99']]; // percentiles
+const moreHounsfield = [
+  ['Head', 45, 125],
+  ['Spine', 30, 300],
+  ['Abdomen', 40, 350],
+  ['CT bone', 400, 1000],
+];
+const shares = [
+  ['1', '0.1', '99.9'],
+  ['2', '1', '99'],
+]; // percentiles
 const between = (low, high) => ({ center: (low + high) / 2, width: Math.max(high - low, narrowest) });
 
 /**
@@ -74,7 +114,11 @@ export function windowPresets(image, histogram = null) {
   if (isCt(image)) return [...hounsfield.map(preset), full, ...moreHounsfield.map(([name, center, width]) => ({ name, center, width }))];
   const at = histogram?.percentiles ?? {};
   const known = shares.filter(([, low, high]) => at[high] > at[low]);
-  return [...known.map(([key, low, high]) => ({ key, name: `${low}–${high} %`, ...between(at[low], at[high]) })), { key: '3', name: 'As stored', ...image.window }, full];
+  return [
+    ...known.map(([key, low, high]) => ({ key, name: `${low}–${high} %`, ...between(at[low], at[high]) })),
+    { key: '3', name: 'As stored', ...image.window },
+    full,
+  ];
 }
 
 /** Centre and width as they are sent: to a thousandth of the width, 0.1 at most. */
@@ -91,7 +135,8 @@ export function draggedWindow(image, { center, width }, dx, dy) {
   return { center: center - dy * step, width: Math.max(width + dx * step, least) };
 }
 
-export const isSameWindow = (a, b) => Math.abs(a.center - b.center) <= 6e-4 * Math.max(b.width, 1e-12) && Math.abs(a.width - b.width) <= 6e-4 * Math.max(b.width, 1e-12);
+export const isSameWindow = (a, b) =>
+  Math.abs(a.center - b.center) <= 6e-4 * Math.max(b.width, 1e-12) && Math.abs(a.width - b.width) <= 6e-4 * Math.max(b.width, 1e-12);
 
 /** The lower and the upper end of a window, and a window from them; the ends are kept apart. */
 export const endsOf = ({ center, width }) => ({ low: center - width / 2, high: center + width / 2 });

@@ -18,7 +18,9 @@ export class Items {
     this.nPending = signal(0);
     this.notes = computed(() => [...this.rows.value.values()].filter(({ kind }) => kind === 'note'));
     this.nOpen = computed(() => this.notes.value.filter(({ body }) => !body.parent && !body.resolved).length);
-    this.#told = (item) => { this.#untold = [...this.#untold.slice(1 - mostUntold), item]; };
+    this.#told = (item) => {
+      this.#untold = [...this.#untold.slice(1 - mostUntold), item];
+    };
   }
 
   /** Tells of new items of other members, first of those that came before. @param {(item: Item) => void} told @returns {() => void} stops */
@@ -26,7 +28,9 @@ export class Items {
     this.#told = told;
     this.#untold.forEach(told);
     this.#untold = [];
-    return () => { this.#told = () => {}; };
+    return () => {
+      this.#told = () => {};
+    };
   }
 
   /** Writes a new item, or another body of one. Resolves with the row once the server has it; rejects with its problem. @param {Item['kind']} kind @param {object} body @param {{id: string, version: number}|null} of what is changed, in the version that was seen */
@@ -93,9 +97,17 @@ export class Items {
     this.rows.value = new Map(items.map((item) => [item.id, item]));
     for (const command of [...this.#own]) {
       const { message, before } = command;
-      const same = (item) => item.kind === message.kind && Object.entries(message.body).every(([name, value]) => JSON.stringify(value) === JSON.stringify(item.body[name]));
-      const found = message.type === 'item.delete' ? null : message.item ? this.rows.value.get(message.item) : items.find((item) => !before.has(item.id) && item.author === me && same(item));
-      const isDone = message.type === 'item.delete' ? !this.rows.value.has(message.item) : found && found.version > message.version && same(found);
+      const same = (item) =>
+        item.kind === message.kind &&
+        Object.entries(message.body).every(([name, value]) => JSON.stringify(value) === JSON.stringify(item.body[name]));
+      const found =
+        message.type === 'item.delete'
+          ? null
+          : message.item
+            ? this.rows.value.get(message.item)
+            : items.find((item) => !before.has(item.id) && item.author === me && same(item));
+      const isDone =
+        message.type === 'item.delete' ? !this.rows.value.has(message.item) : found && found.version > message.version && same(found);
       if (isDone) {
         this.#keep(this.#own.filter((other) => other !== command));
         command.done(found);

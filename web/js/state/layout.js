@@ -42,7 +42,11 @@ export function layoutId(layout, two) {
   return layout === 'row4' ? '1+3' : layout;
 }
 
-const isCells = (cells, n) => Array.isArray(cells) && cells.length === n && new Set(cells).size === n && cells.every((view) => Number.isInteger(view) && view >= 1 && view <= views.length);
+const isCells = (cells, n) =>
+  Array.isArray(cells) &&
+  cells.length === n &&
+  new Set(cells).size === n &&
+  cells.every((view) => Number.isInteger(view) && view >= 1 && view <= views.length);
 
 export class Layout {
   /** @param {{getItem: Function, setItem: Function}|null} storage null where the browser keeps nothing */
@@ -54,9 +58,16 @@ export class Layout {
     this.isZoomLinked = signal(kept.isZoomLinked === true); // slice panes share mm per pixel and where the crosshair stands
     this.areCamerasLinked = signal(kept.areCamerasLinked === true); // the two 3-D views turn together
     this.isBeamTogether = signal(kept.isBeamTogether !== false); // beam slice and clip plane slide together
-    effect(() => write(storage, {
-      layout: this.layout.value, two: this.two.value, four: this.four.value, isZoomLinked: this.isZoomLinked.value, areCamerasLinked: this.areCamerasLinked.value, isBeamTogether: this.isBeamTogether.value,
-    }));
+    effect(() =>
+      write(storage, {
+        layout: this.layout.value,
+        two: this.two.value,
+        four: this.four.value,
+        isZoomLinked: this.isZoomLinked.value,
+        areCamerasLinked: this.areCamerasLinked.value,
+        isBeamTogether: this.isBeamTogether.value,
+      }),
+    );
   }
 
   /** @param {string} id of `layouts` */

@@ -33,17 +33,25 @@ export function ownPart(patch, member) {
 }
 
 /** Whether a patch changes marks, and nothing else. */
-export const isOfMarks = (patch) => Object.keys(patch).length > 0 && Object.keys(patch).every((kind) => kinds.includes(kind) && isObject(patch[kind]));
+export const isOfMarks = (patch) =>
+  Object.keys(patch).length > 0 && Object.keys(patch).every((kind) => kinds.includes(kind) && isObject(patch[kind]));
 
 /** Whether a patch changes nothing but marks of this member. */
-export const isOwn = (patch, member) => isOfMarks(patch) && Object.values(patch).every((marks) => Object.keys(marks).length > 0 && Object.keys(marks).every((id) => isOf(id, member)));
+export const isOwn = (patch, member) =>
+  isOfMarks(patch) &&
+  Object.values(patch).every((marks) => Object.keys(marks).length > 0 && Object.keys(marks).every((id) => isOf(id, member)));
 
 /** The patch with the author in marks that are new, as the room writes it down. */
 export function authored(patch, scene, name) {
   const signed = { ...patch };
   for (const kind of kinds)
     if (isObject(patch[kind]))
-      signed[kind] = Object.fromEntries(Object.entries(patch[kind]).map(([id, mark]) => [id, isObject(mark) && mark.author === undefined && !scene?.[kind]?.[id] ? { ...mark, author: name } : mark]));
+      signed[kind] = Object.fromEntries(
+        Object.entries(patch[kind]).map(([id, mark]) => [
+          id,
+          isObject(mark) && mark.author === undefined && !scene?.[kind]?.[id] ? { ...mark, author: name } : mark,
+        ]),
+      );
   return signed;
 }
 
@@ -69,7 +77,8 @@ export function adopted(patch, scene, member) {
       if (!/-m\d+$/.test(id) || isOf(id, member) || scene[kind]?.[id]) continue;
       delete patch[kind][id];
       const text = JSON.stringify(mark);
-      if (!Object.values(scene[kind] ?? {}).some((other) => JSON.stringify(other) === text)) patch[kind][ownId(kind, [...Object.keys(scene[kind] ?? {}), ...Object.keys(patch[kind])], member)] = mark;
+      if (!Object.values(scene[kind] ?? {}).some((other) => JSON.stringify(other) === text))
+        patch[kind][ownId(kind, [...Object.keys(scene[kind] ?? {}), ...Object.keys(patch[kind])], member)] = mark;
       if (!Object.keys(patch[kind]).length) delete patch[kind];
     }
   return patch;

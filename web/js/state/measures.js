@@ -37,7 +37,9 @@ export const areaMm2 = ([center, a, b]) => Math.PI * length(cross(subtract(a, ce
 /** Points around an ellipse, the first one not repeated at the end. */
 export function around([center, a, b], n = 72) {
   const [p, q] = [subtract(a, center), subtract(b, center)];
-  return Array.from({ length: n }, (_, at) => add(center, add(scale(p, Math.cos((2 * Math.PI * at) / n)), scale(q, Math.sin((2 * Math.PI * at) / n)))));
+  return Array.from({ length: n }, (_, at) =>
+    add(center, add(scale(p, Math.cos((2 * Math.PI * at) / n)), scale(q, Math.sin((2 * Math.PI * at) / n)))),
+  );
 }
 
 /** The number that a measure is for: mm, degrees, or mm2 of an ellipse; null while points are missing. */
@@ -60,7 +62,19 @@ export function linesOf(kind, points) {
 /** Half of a voxel's extent along a direction. Without an image 0.5 mm. */
 export function halfVoxelMm(image, normal) {
   if (!image) return 0.5;
-  return [0, 1, 2].reduce((sum, column) => sum + Math.abs(dot(image.lpsFromIjk.map((row) => row[column]), normal)), 0) / 2;
+  return (
+    [0, 1, 2].reduce(
+      (sum, column) =>
+        sum +
+        Math.abs(
+          dot(
+            image.lpsFromIjk.map((row) => row[column]),
+            normal,
+          ),
+        ),
+      0,
+    ) / 2
+  );
 }
 
 /** True where all points of a measure are within half a voxel of the plane. */
@@ -91,7 +105,10 @@ export function withPoint(kind, points, index, place) {
   if (index === 0) return [place, add(place, p), add(place, q)];
   const normal = unit(cross(p, q));
   if (!(length(normal) > 0)) return replaced(points, index, place);
-  const other = index === 1 ? scale(unit(cross(normal, subtract(place, center))), length(q)) : scale(unit(cross(normal, p)), Math.max(dot(subtract(place, center), unit(cross(normal, p))), 0.01));
+  const other =
+    index === 1
+      ? scale(unit(cross(normal, subtract(place, center))), length(q))
+      : scale(unit(cross(normal, p)), Math.max(dot(subtract(place, center), unit(cross(normal, p))), 0.01));
   return index === 1 ? [center, place, add(center, other)] : [center, a, add(center, other)];
 }
 

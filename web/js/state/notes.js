@@ -9,16 +9,19 @@ const maxMentions = 16;
 export function threadsOf(rows) {
   const ids = new Set(rows.map(({ id }) => id));
   const isReply = ({ body }) => body.parent !== '' && ids.has(body.parent);
-  return rows.filter((row) => !isReply(row)).map((note, index) => {
-    const replies = rows.filter((row) => isReply(row) && row.body.parent === note.id);
-    return { note, number: index + 1, replies, lastMs: Math.max(...[note, ...replies].map(({ changed_ms: ms }) => ms)) };
-  });
+  return rows
+    .filter((row) => !isReply(row))
+    .map((note, index) => {
+      const replies = rows.filter((row) => isReply(row) && row.body.parent === note.id);
+      return { note, number: index + 1, replies, lastMs: Math.max(...[note, ...replies].map(({ changed_ms: ms }) => ms)) };
+    });
 }
 
 export const isResolved = ({ note }) => note.body.resolved;
 
 /** Whether a text names this member: by id, or by name for who has come back as another member. */
-export const mentions = (row, { id, name }) => row.body.mentions.some((mention) => mention.member === id || mention.name.toLowerCase() === name.toLowerCase());
+export const mentions = (row, { id, name }) =>
+  row.body.mentions.some((mention) => mention.member === id || mention.name.toLowerCase() === name.toLowerCase());
 
 /** @typedef {{text: string, author: string, who: 'all'|'mine'|'mentions', hasResolved: boolean}} NoteFilter author: a name, '' all */
 export const noFilter = { text: '', author: '', who: 'all', hasResolved: false };
@@ -33,7 +36,9 @@ export function filtered(threads, { text, author, who, hasResolved }, me) {
     (thread) => !author || rowsOf(thread).some(({ author_name: name }) => name === author),
     (thread) => who === 'all' || rowsOf(thread).some((row) => (who === 'mine' ? row.author === me.id : mentions(row, me))),
   ];
-  return threads.filter((thread) => passes.every((pass) => pass(thread))).sort((a, b) => isResolved(a) - isResolved(b) || b.lastMs - a.lastMs || b.number - a.number);
+  return threads
+    .filter((thread) => passes.every((pass) => pass(thread)))
+    .sort((a, b) => isResolved(a) - isResolved(b) || b.lastMs - a.lastMs || b.number - a.number);
 }
 
 /** The names of all who wrote, each once. */
@@ -42,7 +47,9 @@ export const authorsOf = (rows) => [...new Set(rows.map(({ author_name: name }) 
 /** What a body says of who is mentioned: members, and who was mentioned before, whose "@name" is in the text. */
 export function mentionsIn(text, members, before = []) {
   const all = [...members.map(({ id, name }) => ({ member: id, name })), ...before];
-  const found = all.filter(({ name }, at) => text.includes(`@${name}`) && all.findIndex((other) => other.member === name || other.name === name) === at);
+  const found = all.filter(
+    ({ name }, at) => text.includes(`@${name}`) && all.findIndex((other) => other.member === name || other.name === name) === at,
+  );
   return found.slice(0, maxMentions);
 }
 
@@ -52,7 +59,9 @@ export function completion(text, caret, members) {
   if (at < 0 || (at > 0 && !/\s|[([]/.test(text[at - 1]))) return null;
   const begun = text.slice(at + 1, caret).toLowerCase();
   if (begun.includes('\n')) return null;
-  const names = [...new Set(members.map(({ name }) => name))].filter((name) => name.toLowerCase().startsWith(begun) && name.toLowerCase() !== begun);
+  const names = [...new Set(members.map(({ name }) => name))].filter(
+    (name) => name.toLowerCase().startsWith(begun) && name.toLowerCase() !== begun,
+  );
   return names.length ? { at, names: names.slice(0, 6) } : null;
 }
 
@@ -61,7 +70,7 @@ export function partsOf(text, mentioned) {
   const names = mentioned.map(({ name }) => `@${name}`).sort((a, b) => b.length - a.length);
   const parts = [];
   let plain = '';
-  for (let at = 0; at < text.length;) {
+  for (let at = 0; at < text.length; ) {
     const name = names.find((other) => text.startsWith(other, at));
     if (name) {
       if (plain) parts.push({ text: plain, isName: false });
@@ -78,7 +87,7 @@ export function partsOf(text, mentioned) {
 /** The point of a note: its own, else the centre of its region; null: it is about the plan. */
 export function pointOf(note, plan) {
   const { anchor } = note.body;
-  return anchor?.point_mm ?? (anchor?.region ? plan?.regions.find(({ id }) => id === anchor.region)?.center_mm ?? null : null);
+  return anchor?.point_mm ?? (anchor?.region ? (plan?.regions.find(({ id }) => id === anchor.region)?.center_mm ?? null) : null);
 }
 
 const fadeMm = 20;
@@ -90,5 +99,7 @@ export const pinStrength = (awayMm, toleranceMm) => (awayMm <= toleranceMm ? 1 :
 export function whenWords(ms, nowMs, locale = undefined) {
   const [then, now] = [new Date(ms), new Date(nowMs)];
   const time = then.toLocaleTimeString(locale, { hour: '2-digit', minute: '2-digit' });
-  return then.toDateString() === now.toDateString() ? time : `${then.toLocaleDateString(locale, { day: 'numeric', month: 'short', ...(then.getFullYear() !== now.getFullYear() && { year: 'numeric' }) })}, ${time}`;
+  return then.toDateString() === now.toDateString()
+    ? time
+    : `${then.toLocaleDateString(locale, { day: 'numeric', month: 'short', ...(then.getFullYear() !== now.getFullYear() && { year: 'numeric' }) })}, ${time}`;
 }

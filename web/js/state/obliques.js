@@ -162,6 +162,8 @@ export function facing(direction) {
   const level = Math.round(tilt);
   if (Math.abs(level) === 90) return level > 0 ? 'superior' : 'inferior';
   const side = Math.round(turn);
-  const words = { 0: 'anterior', 90: 'left', 180: 'posterior', '-180': 'posterior', '-90': 'right' }[side] ?? `${Math.abs(side)}° ${side > 0 ? 'left' : 'right'} of anterior`;
+  const words =
+    { 0: 'anterior', 90: 'left', 180: 'posterior', '-180': 'posterior', '-90': 'right' }[side] ??
+    `${Math.abs(side)}° ${side > 0 ? 'left' : 'right'} of anterior`;
   return level ? `${words}, ${Math.abs(level)}° ${level > 0 ? 'up' : 'down'}` : words;
 }

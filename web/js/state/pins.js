@@ -4,7 +4,8 @@ import { freeNumber, shortId } from './marks.js';
 export const maxPins = 32;
 
 /** The pins with their numbers, in the order in which they were set. */
-export const pinsOf = (scene) => Object.entries(scene?.probes ?? {}).map(([id, pin]) => ({ id, ...pin, label: pin.name || shortId(id, /^pin-/) }));
+export const pinsOf = (scene) =>
+  Object.entries(scene?.probes ?? {}).map(([id, pin]) => ({ id, ...pin, label: pin.name || shortId(id, /^pin-/) }));
 
 const same = (a, b) => a.every((value, axis) => Math.abs(value - b[axis]) < 0.05);
 

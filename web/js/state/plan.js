@@ -63,10 +63,12 @@ function inOrder(regions) {
 
 /** The classes that have segments, and how their lines are drawn. @returns {{id: string, n: number, color?: string, dash?: number[]|null, hasCross?: boolean}[]} */
 function readTracks({ classes = {}, looks = [] } = {}) {
-  return Object.entries(classes).filter(([, n]) => n > 0).map(([id, n]) => {
-    const { color, dash_px: dash, has_cross: hasCross } = looks.find((look) => look.class === id) ?? {};
-    return { id, n, color, dash, hasCross };
-  });
+  return Object.entries(classes)
+    .filter(([, n]) => n > 0)
+    .map(([id, n]) => {
+      const { color, dash_px: dash, has_cross: hasCross } = looks.find((look) => look.class === id) ?? {};
+      return { id, n, color, dash, hasCross };
+    });
 }
 
 /** @param {object} document GET /api/v1/plans/{id} of a loaded plan */
@@ -144,9 +146,10 @@ function voxelCentre({ size, lpsFromIjk, ijkFromLps }, point) {
 export function crosshairPatch(plan, image, point, { isFree = false } = {}) {
   const { low, high } = image?.bounds ?? plan.bounds;
   const rounded = (value, parts) => Math.round(value * parts) / parts || 0; // no -0
-  const position = image?.ijkFromLps && !isFree
-    ? voxelCentre(image, point).map((value) => rounded(value, 1e4))
-    : point.map((value, axis) => rounded(Math.min(Math.max(value, low[axis]), high[axis]), 10));
+  const position =
+    image?.ijkFromLps && !isFree
+      ? voxelCentre(image, point).map((value) => rounded(value, 1e4))
+      : point.map((value, axis) => rounded(Math.min(Math.max(value, low[axis]), high[axis]), 10));
   const [sagittal, coronal, axial] = position.map((position_mm) => ({ position_mm }));
   return { image: { slices: { sagittal, coronal, axial } } };
 }
@@ -171,14 +174,18 @@ export function soloPatch(regions, scene, id) {
 export const isTarget = ({ is_target: is = false }) => is;
 
 /** The patch that shows the regions that pass the test and hides the others. */
-export const showPatch = (regions, test) => ({ regions: Object.fromEntries(regions.map((region) => [region.id, { visible: test(region) }])) });
+export const showPatch = (regions, test) => ({
+  regions: Object.fromEntries(regions.map((region) => [region.id, { visible: test(region) }])),
+});
 
 /** "1 error, 2 warnings"; '' when there is neither. */
 export function troubles({ lines }) {
-  return ['error', 'warning'].flatMap((severity) => {
-    const n = lines.filter((line) => line.severity === severity).length;
-    return n ? [`${n} ${severity}${n > 1 ? 's' : ''}`] : [];
-  }).join(', ');
+  return ['error', 'warning']
+    .flatMap((severity) => {
+      const n = lines.filter((line) => line.severity === severity).length;
+      return n ? [`${n} ${severity}${n > 1 ? 's' : ''}`] : [];
+    })
+    .join(', ');
 }
 
 /** "Neutron high" for the class of tracks "neutron-high". */
@@ -187,7 +194,9 @@ export const className = (id) => `${id[0].toUpperCase()}${id.slice(1).replaceAll
 /** "Gy per fraction, total" for a dose; unknown parts are left out. */
 export function doseWords(dose) {
   const per = dose.per ? ` per ${dose.per.replace(/^per /, '')}` : '';
-  const quantities = dose.components.map(({ quantity, per_ppm: perPpm, boron_ppm: ppm }) => (perPpm ? `${quantity} per ppm` : Number.isFinite(ppm) ? `${quantity} with boron at ${ppm} ppm` : quantity));
+  const quantities = dose.components.map(({ quantity, per_ppm: perPpm, boron_ppm: ppm }) =>
+    perPpm ? `${quantity} per ppm` : Number.isFinite(ppm) ? `${quantity} with boron at ${ppm} ppm` : quantity,
+  );
   return [`${dose.unit || 'no unit'}${per}`, ...quantities].join(', ');
 }
 
@@ -200,6 +209,9 @@ export function frameWords({ frame_of_reference: frame }) {
 /** "gantry 90°, 120 mm" for a beam. */
 export function beamWords(beam) {
   const { delivery: d } = beam;
-  const gantry = d && d.gantry_deg !== null && `gantry ${d.gantry_deg}°${d.gantry_stop_deg !== null && d.gantry_stop_deg !== d.gantry_deg ? ` to ${d.gantry_stop_deg}°` : ''}`;
+  const gantry =
+    d &&
+    d.gantry_deg !== null &&
+    `gantry ${d.gantry_deg}°${d.gantry_stop_deg !== null && d.gantry_stop_deg !== d.gantry_deg ? ` to ${d.gantry_stop_deg}°` : ''}`;
   return [d?.radiation?.toLowerCase(), gantry, beam.aperture_mm && `aperture ${beam.aperture_mm} mm`].filter(Boolean).join(', ');
 }

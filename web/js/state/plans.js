@@ -58,7 +58,12 @@ export class PlansState {
 
   start() {
     this.#list();
-    this.#api.version().then((version) => { this.version.value = version; }, () => {});
+    this.#api.version().then(
+      (version) => {
+        this.version.value = version;
+      },
+      () => {},
+    );
   }
 
   stop() {
@@ -107,7 +112,10 @@ export class PlansState {
   async askToRemove(id) {
     const plan = this.plans.value.find((other) => other.id === id);
     this.deleting.value = { plan, rooms: null };
-    const rooms = await this.#api.rooms().then((answer) => answer.rooms, () => this.rooms.value);
+    const rooms = await this.#api.rooms().then(
+      (answer) => answer.rooms,
+      () => this.rooms.value,
+    );
     if (this.deleting.value?.plan === plan) this.deleting.value = { plan, rooms: rooms.filter((room) => room.plan === id) };
   }
 
@@ -119,7 +127,8 @@ export class PlansState {
       await this.#api.removePlan(id, { keepsRecords, by });
       if (this.chosen.value === id) this.chosen.value = '';
     } catch (error) {
-      if (error.code === 'records' && asked) this.deleting.value = { ...asked, records: error.message }; // asked once more
+      if (error.code === 'records' && asked)
+        this.deleting.value = { ...asked, records: error.message }; // asked once more
       else this.#refuse(id, error.message);
     }
     await this.#list();
@@ -132,7 +141,9 @@ export class PlansState {
       if (job.state === 'done') return job;
       if (job.state === 'cancelled') return null;
       if (job.state === 'failed') throw new Problem(job.problem ?? { detail: 'The plan cannot be loaded.' });
-      await new Promise((resolve) => { this.#clock.setTimeout(resolve, jobMs); });
+      await new Promise((resolve) => {
+        this.#clock.setTimeout(resolve, jobMs);
+      });
       job = await this.#api.job(job.id);
     }
     return null;

@@ -39,7 +39,9 @@ export class Pointers {
       this.isHidden.value = isHidden;
       try {
         storage?.setItem(hiddenKey, isHidden ? 'yes' : 'no');
-      } catch { /* a full storage: kept for this visit */ }
+      } catch {
+        /* a full storage: kept for this visit */
+      }
     };
   }
 

@@ -12,12 +12,13 @@ const mostFigures = 128; // regions whose surfaces are measured
  * @property {object|null} probe the API's answer at the crosshair; null: not known
  */
 
-const dataUrl = (blob) => new Promise((resolve, reject) => {
-  const reader = new FileReader();
-  reader.onload = () => resolve(reader.result);
-  reader.onerror = () => reject(reader.error);
-  reader.readAsDataURL(blob);
-});
+const dataUrl = (blob) =>
+  new Promise((resolve, reject) => {
+    const reader = new FileReader();
+    reader.onload = () => resolve(reader.result);
+    reader.onerror = () => reject(reader.error);
+    reader.readAsDataURL(blob);
+  });
 
 export class Printout {
   #api;
@@ -38,7 +39,9 @@ export class Printout {
     try {
       this.entries.value = JSON.parse(storage.getItem(this.#storageKey)) ?? [];
       this.#nextKey = 1 + Math.max(0, ...this.entries.value.map(({ key }) => key));
-    } catch { /* nothing was kept */ }
+    } catch {
+      /* nothing was kept */
+    }
   }
 
   /** Adds a snapshot of this view, with the values at its crosshair. Throws when there is no picture. */
@@ -86,15 +89,23 @@ export class Printout {
   /** Measures the surfaces of the regions that the snapshots show, as their newest one draws them. */
   async measure(planId, plan) {
     this.stop();
-    const { signal: aborted } = this.#pending = new AbortController();
+    const { signal: aborted } = (this.#pending = new AbortController());
     const wanted = plan.regions.flatMap((region) => {
       const entry = this.entries.value.findLast(({ record }) => isShown(record.scene, region));
       return entry && region.voxels > 0 ? [{ region, query: figureQuery(entry.record.scene, region) }] : [];
     });
-    this.figures.value = wanted.map(({ region, query }, at) => ({ region, method: query.algorithm ?? query.representation, result: null, error: at < mostFigures ? '' : 'not measured' }));
+    this.figures.value = wanted.map(({ region, query }, at) => ({
+      region,
+      method: query.algorithm ?? query.representation,
+      result: null,
+      error: at < mostFigures ? '' : 'not measured',
+    }));
     this.isComplete.value = !wanted.length;
     for (const [at, { region, query }] of wanted.slice(0, mostFigures).entries()) {
-      const answer = await this.#api.surface(planId, region.id, query, aborted).then((result) => ({ result }), (error) => ({ error: error.message }));
+      const answer = await this.#api.surface(planId, region.id, query, aborted).then(
+        (result) => ({ result }),
+        (error) => ({ error: error.message }),
+      );
       if (aborted.aborted) return;
       this.figures.value = this.figures.value.map((row, index) => (index === at ? { ...row, ...answer } : row));
     }

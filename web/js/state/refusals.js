@@ -6,7 +6,11 @@ const most = 400; // answers kept; more than most plans have regions
 /** The visible regions whose representation may be refused, each with the query to ask the server. */
 export function inQuestion(plan, scene) {
   if (!plan || !scene) return [];
-  return plan.regions.filter(({ id, voxels }) => voxels && scene.regions[id]?.visible && scene.regions[id].opacity > 0 && scene.regions[id].representation === 'nurbs')
+  return plan.regions
+    .filter(
+      ({ id, voxels }) =>
+        voxels && scene.regions[id]?.visible && scene.regions[id].opacity > 0 && scene.regions[id].representation === 'nurbs',
+    )
     .map(({ id }) => ({ id, query: shapeQuery(scene, 'nurbs') }));
 }
 
@@ -34,7 +38,9 @@ export class Refusals {
     this.#pending = pending;
     const key = ({ id, query }) => JSON.stringify([plan, id, query]);
     const tell = () => {
-      this.reasons.value = Object.fromEntries(questions.flatMap((question) => (this.#known.get(key(question)) ? [[question.id, this.#known.get(key(question))]] : [])));
+      this.reasons.value = Object.fromEntries(
+        questions.flatMap((question) => (this.#known.get(key(question)) ? [[question.id, this.#known.get(key(question))]] : [])),
+      );
     };
     tell();
     for (const question of questions) {

@@ -63,8 +63,17 @@ export class RoomState {
     this.views = allViews.map(({ kind, ...more }, index) => new ViewState(index + 1, kind, more));
     // Changes made while the connection is lost are kept, and sent when it is back.
     // Before the list of members has come, nobody knows whether a change is the room's or this member's own.
-    this.canChange = computed(() => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null && this.members.value.length > 0);
-    this.#sending = new Sending({ connection, clock, schedule: sendSoon, views: this.views, scene: this.#scene, refused: () => this.#tooLarge() });
+    this.canChange = computed(
+      () => ['open', 'lost'].includes(this.link.value.state) && this.#sharedScene.value !== null && this.members.value.length > 0,
+    );
+    this.#sending = new Sending({
+      connection,
+      clock,
+      schedule: sendSoon,
+      views: this.views,
+      scene: this.#scene,
+      refused: () => this.#tooLarge(),
+    });
     this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
     this.items = new Items((message) => this.#sending.act(message));
     /** Which acceptances count, as the server says; the items of kind acceptance hold the rest. */
@@ -77,7 +86,13 @@ export class RoomState {
     this.following = new Following(this, (message) => this.#sending.act(message));
     this.control = new Control(this, (message) => this.#connection.send(message));
     /** The newest of the messages recording (while one runs), replay and replay.at; null: none. Acts: panels/recordings.js. */
-    this.recording = { running: signal(null), replay: signal(null), at: signal(null), members: signal([]), say: (type, more) => this.#connection.send({ type, ...more }) };
+    this.recording = {
+      running: signal(null),
+      replay: signal(null),
+      at: signal(null),
+      members: signal([]),
+      say: (type, more) => this.#connection.send({ type, ...more }),
+    };
     /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
     this.scene = computed(() => {
       const [scene, override] = [this.#sharedScene.value, this.following.override.value];
@@ -87,13 +102,17 @@ export class RoomState {
     connection.addEventListener('message', (event) => this.#take(event.detail));
     connection.addEventListener('lost', (event) => this.#lose(event.detail.retryMs));
     connection.addEventListener('renewing', () => this.#keepChanges());
-    connection.addEventListener('quiet', (event) => this.#setLink('open', { quietSince: event.detail.since, dueSince: event.detail.dueSince }));
+    connection.addEventListener('quiet', (event) =>
+      this.#setLink('open', { quietSince: event.detail.since, dueSince: event.detail.dueSince }),
+    );
     connection.addEventListener('heard', () => this.#setLink('open'));
-    connection.addEventListener('ended', (event) => batch(() => {
-      const isLost = this.#scene.isPending || this.views.some((view) => view.isOpen.value && view.isPending);
-      this.lostAtEnd.value = this.items.end() || isLost;
-      this.#setLink('ended', event.detail);
-    }));
+    connection.addEventListener('ended', (event) =>
+      batch(() => {
+        const isLost = this.#scene.isPending || this.views.some((view) => view.isOpen.value && view.isPending);
+        this.lostAtEnd.value = this.items.end() || isLost;
+        this.#setLink('ended', event.detail);
+      }),
+    );
   }
 
   /** The room's scene with this member's pending changes, without the override of who is on their own. */
@@ -240,7 +259,12 @@ export class RoomState {
   }
 
   #openView(view) {
-    const input = this.#sending.act({ type: 'view.open', view: view.number, document: this.following.documentToOpen(view), follow: this.following.isFollowing.value });
+    const input = this.#sending.act({
+      type: 'view.open',
+      view: view.number,
+      document: this.following.documentToOpen(view),
+      follow: this.following.isFollowing.value,
+    });
     if (input) view.expect(input, 0, this.#clock.now());
   }
 
@@ -272,22 +296,34 @@ export class RoomState {
         this.items.changed(message, this.member.value);
       },
       saved: () => this.saved.told(message),
-      files: () => { this.files.value = message.changed_ms ? message : null; },
+      files: () => {
+        this.files.value = message.changed_ms ? message : null;
+      },
       members: () => {
         if (Array.isArray(message.members)) this.#membersChanged(message.members);
       },
       'pointer.at': () => this.pointers.moved(message),
       look: () => this.pointers.looked(message),
       control: () => this.control.changed(message),
-      acceptances: () => { this.acceptances.value = { known: message.known, items: message.items }; },
-      recording: () => { this.recording.running.value = message.state === 'running' ? message : null; },
-      replay: () => { this.recording.replay.value = message; },
-      'replay.members': () => { this.recording.members.value = message.members; },
+      acceptances: () => {
+        this.acceptances.value = { known: message.known, items: message.items };
+      },
+      recording: () => {
+        this.recording.running.value = message.state === 'running' ? message : null;
+      },
+      replay: () => {
+        this.recording.replay.value = message;
+      },
+      'replay.members': () => {
+        this.recording.members.value = message.members;
+      },
       'replay.at': () => {
         this.recording.at.value = message;
         if (message.state === 'left') this.recording.replay.value = null;
       },
-      pong: () => { this.pingMs.value = Math.round(this.#clock.now() - message.time_ms); },
+      pong: () => {
+        this.pingMs.value = Math.round(this.#clock.now() - message.time_ms);
+      },
       problem: () => this.#refused(message),
       bye: () => {},
     };
@@ -317,7 +353,8 @@ export class RoomState {
 
   #membersChanged(members) {
     if (this.following.membersChanged(members))
-      for (const view of this.views) if (view.isOpen.value && String(view.document.value.size_px) !== String(view.ownSize)) this.#resize(view);
+      for (const view of this.views)
+        if (view.isOpen.value && String(view.document.value.size_px) !== String(view.ownSize)) this.#resize(view);
     if (this.#sending.isHeld) {
       if (!this.following.isPresenting.value) this.#dropKept();
       this.#sending.release();
@@ -333,13 +370,19 @@ export class RoomState {
   /** Somebody else presents since, or nobody: changes that were kept for the room while the connection was lost are lost. */
   #dropKept() {
     const marks = this.control.may('scene') ? ownPart(this.#scene.queued, this.member.value) : null;
-    const isLost = (this.#scene.isPending && !isOwn(this.#scene.queued ?? {}, this.member.value)) || (this.following.isFollowing.value && this.views.some((view) => view.isPending));
+    const isLost =
+      (this.#scene.isPending && !isOwn(this.#scene.queued ?? {}, this.member.value)) ||
+      (this.following.isFollowing.value && this.views.some((view) => view.isPending));
     this.#scene.reset(this.#scene.base);
     if (marks) this.#scene.queue(marks);
     if (this.following.isFollowing.value) for (const view of this.views) if (view.isPending) view.drop();
     this.#showScene();
     const { presenter } = this.following;
-    if (isLost) this.notify('err', `Your changes since the connection was lost are lost: ${presenter.value ? `${presenter.value.name} presents` : 'you do not present'} now.`);
+    if (isLost)
+      this.notify(
+        'err',
+        `Your changes since the connection was lost are lost: ${presenter.value ? `${presenter.value.name} presents` : 'you do not present'} now.`,
+      );
   }
 
   #loaded(message) {
@@ -362,7 +405,10 @@ export class RoomState {
     // a patch that changes nothing is answered with the revision as it was
     if (revision !== this.revision.value) for (const view of this.views) view.sceneChanged(revision, this.#clock.now(), isSame(view));
     if (!input) return;
-    const expected = this.views.filter(isSame).map((view) => view.release(input)).find(Boolean);
+    const expected = this.views
+      .filter(isSame)
+      .map((view) => view.release(input))
+      .find(Boolean);
     const other = expected && this.views.find((view) => view.isOpen.value && !isSame(view));
     other?.expect(input, expected.at, expected.sentAt);
   }
@@ -393,12 +439,17 @@ export class RoomState {
     if (problem?.type === '/problems/not-presenter' && this.following.isOvertaken(to)) {
       const name = this.following.presenter.value?.name ?? 'Nobody';
       if (to === 'present') this.notify('ok', `${name} has taken over.`, 'following');
-      else if (to === 'scene.patch' || (to === 'view.patch' && this.following.hasLostControl)) this.notify('warn', `${name} presents now: your last change was not made.`, 'following');
+      else if (to === 'scene.patch' || (to === 'view.patch' && this.following.hasLostControl))
+        this.notify('warn', `${name} presents now: your last change was not made.`, 'following');
       return;
     }
     if (to === '' && this.view(view)) this.view(view).refuseToDraw(problem?.detail || 'The server gave no reason.');
     if (to === 'control.request' && problem?.retry_after_ms)
-      return void this.notify('warn', `${this.following.presenter.value?.name ?? 'The presenter'} keeps control for now. Ask again in ${Math.ceil(problem.retry_after_ms / 1000)} s.`, 'following');
+      return void this.notify(
+        'warn',
+        `${this.following.presenter.value?.name ?? 'The presenter'} keeps control for now. Ask again in ${Math.ceil(problem.retry_after_ms / 1000)} s.`,
+        'following',
+      );
     this.notify('err', problem?.detail ? this.control.named(problem.detail) : `The server refused ${to || 'a message'}.`);
   }
 

@@ -2,7 +2,7 @@
 import { computed, signal } from '../../lib/signals-core.js';
 
 const problems = {
-  full: 'The server\'s disk is full: what is changed now is not kept',
+  full: "The server's disk is full: what is changed now is not kept",
   write: 'The server cannot write to its disk: what is changed now is not kept',
 };
 
@@ -18,7 +18,9 @@ export class Saved {
       return state === 'saved' && (this.#isOlder.value || room.isScenePending.value) ? 'saving' : state;
     });
     /** Why nothing is kept now; '': it is. */
-    this.problem = computed(() => (this.#told.value.state === 'failing' ? problems[this.#told.value.problem?.code] ?? problems.write : ''));
+    this.problem = computed(() =>
+      this.#told.value.state === 'failing' ? (problems[this.#told.value.problem?.code] ?? problems.write) : '',
+    );
   }
 
   /** The server tells it after each welcome. */

@@ -15,7 +15,10 @@ const fieldAt = (path) => path.reduce((field, name) => objects[field.object].fin
 for (const kind of made) kind.most = fieldAt(kind.at).max_items;
 
 const inside = (document, path) => path.reduce((value, name) => value?.[name], document);
-const replaced = (document, [name, ...rest], value) => ({ ...document, [name]: rest.length ? replaced(document[name], rest, value) : value });
+const replaced = (document, [name, ...rest], value) => ({
+  ...document,
+  [name]: rest.length ? replaced(document[name], rest, value) : value,
+});
 const counted = (n, [one, many]) => `${n} ${n === 1 ? one : many}`;
 const own = (map, id) => (Object.hasOwn(map, id) ? map[id] : undefined);
 const withoutVisible = ({ visible, ...rest }) => JSON.stringify(rest);

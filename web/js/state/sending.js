@@ -69,7 +69,8 @@ export class Sending {
       const patch = view.take(input);
       if (!patch) continue;
       this.#nextInput += 1;
-      if (this.#connection.send({ type: 'view.patch', view: view.number, patch, input })) view.expect(input, this.#inputAt.get(view.number) ?? 0, now);
+      if (this.#connection.send({ type: 'view.patch', view: view.number, patch, input }))
+        view.expect(input, this.#inputAt.get(view.number) ?? 0, now);
       else this.#takeBack(view, input);
     }
     this.#inputAt.clear();
@@ -79,7 +80,8 @@ export class Sending {
     this.#nextInput += 1;
     const { view, at } = this.#sceneOrigin;
     const origin = this.#views.find(({ number, isOpen }) => number === view && isOpen.value);
-    if (!this.#connection.send({ type: 'scene.patch', patch, ...(origin && { view }), input })) return void this.#takeBack(this.#scene, input);
+    if (!this.#connection.send({ type: 'scene.patch', patch, ...(origin && { view }), input }))
+      return void this.#takeBack(this.#scene, input);
     this.#sceneOrigin = { view: 0, at: 0 };
     origin?.expect(input, at, now);
   }

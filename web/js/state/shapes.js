@@ -20,11 +20,17 @@ export const algorithms = [
 /** The query of the surface call: everything in this scene that decides a region's shape. */
 export function shapeQuery(scene, representation) {
   switch (representation) {
-    case 'surface': return { representation, algorithm: scene.surface.algorithm };
-    case 'outline': return { representation, outline: scene.outline.method === 'marching-squares' ? 'marching-squares' : 'traced' };
-    case 'points': case 'solid': return { representation, inner_boundary: String(scene.points.inner_boundary) };
-    case 'nurbs': return { representation, order: String(scene.nurbs.order), sampling: scene.nurbs.sampling, bins: String(scene.nurbs.bins) };
-    default: return { representation };
+    case 'surface':
+      return { representation, algorithm: scene.surface.algorithm };
+    case 'outline':
+      return { representation, outline: scene.outline.method === 'marching-squares' ? 'marching-squares' : 'traced' };
+    case 'points':
+    case 'solid':
+      return { representation, inner_boundary: String(scene.points.inner_boundary) };
+    case 'nurbs':
+      return { representation, order: String(scene.nurbs.order), sampling: scene.nurbs.sampling, bins: String(scene.nurbs.bins) };
+    default:
+      return { representation };
   }
 }
 
@@ -59,6 +65,22 @@ export function volumeDifference({ volume_mm3: volume, univel_volume_mm3: univel
 
 /** The table of figures; units are in the heading. */
 export function figureRows(rows) {
-  const columns = ['triangles', 'vertices', 'lines', 'points', 'ms', 'draw_ms', 'frames_per_second', 'area_mm2', 'volume_mm3', 'univel_volume_mm3', 'distance_mean_mm', 'distance_max_mm'];
-  return [['region', 'method', ...columns, 'refused'], ...rows.map(({ region, name, result, error }) => [region, name, ...columns.map((column) => result?.[column]), error])];
+  const columns = [
+    'triangles',
+    'vertices',
+    'lines',
+    'points',
+    'ms',
+    'draw_ms',
+    'frames_per_second',
+    'area_mm2',
+    'volume_mm3',
+    'univel_volume_mm3',
+    'distance_mean_mm',
+    'distance_max_mm',
+  ];
+  return [
+    ['region', 'method', ...columns, 'refused'],
+    ...rows.map(({ region, name, result, error }) => [region, name, ...columns.map((column) => result?.[column]), error]),
+  ];
 }

@@ -74,7 +74,8 @@ export function difference(now, wanted) {
  */
 export function restore({ room, ui, undo }, record) {
   const { kind, number, plane, camera, beam } = record.view;
-  const view = room.views.find((other) => other.kind === kind && other.ofKind === number) ?? room.views.find((other) => other.kind === kind);
+  const view =
+    room.views.find((other) => other.kind === kind && other.ofKind === number) ?? room.views.find((other) => other.kind === kind);
   const merge = mergedScene(room.scene.value, record.scene);
   const scene = adopted(difference(room.scene.value, merge.scene), room.scene.value, room.member.value);
   undo?.press();

@@ -17,10 +17,15 @@ class TrackFacts {
     this.play = new TrackPlay(room, clock);
     this.#asker = new Asker(async () => {
       const of = this.#wanted;
-      const tell = (facts) => { this.answer.value = { ...this.answer.peek(), error: '', of, ...facts }; };
+      const tell = (facts) => {
+        this.answer.value = { ...this.answer.peek(), error: '', of, ...facts };
+      };
       // with the tracks of this page's scene, which the server may not have yet
       const view = { override: { ...room.following.override.peek(), tracks: JSON.parse(of) } };
-      await api.ofScene(room.planId.peek(), 'tracks', room.id, view, {}).then((result) => tell({ result }), (error) => tell({ error: error.message }));
+      await api.ofScene(room.planId.peek(), 'tracks', room.id, view, {}).then(
+        (result) => tell({ result }),
+        (error) => tell({ error: error.message }),
+      );
     }, clock);
   }
 

@@ -26,4 +26,5 @@ export const countPatch = (plan, scene, count) => {
 };
 
 /** True if range and energies leave nothing out. A limit that is none is null, or missing until the server has told. */
-export const isWhole = ({ tracks }) => tracks.first === 0 && ['count', 'energy_low_mev', 'energy_high_mev'].every((limit) => (tracks[limit] ?? null) === null);
+export const isWhole = ({ tracks }) =>
+  tracks.first === 0 && ['count', 'energy_low_mev', 'energy_high_mev'].every((limit) => (tracks[limit] ?? null) === null);

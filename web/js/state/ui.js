@@ -44,10 +44,21 @@ export class UiState {
     this.popover = signal(''); // name of the open popover
     this.toasts = signal([]);
     this.now = signal(clock.now()); // updated a few times a second, for ages on badges
-    this.arrangement = computed(() => arrange(this.window.value, {
-      layout: this.panes.layout.value, two: this.panes.two.value, four: this.panes.four.value, isTreeOpen: this.isTreeOpen.value, section: this.section.value, isPinned: this.isPinned.value, sheet: this.sheet.value,
-      drawer: this.isDrawerOpen.value ? (this.isDrawerRight.value ? 'right' : 'bottom') : '', isInspectorOpen: this.isInspectorOpen.value, active: this.active.value, maximised: this.maximised.value,
-    }));
+    this.arrangement = computed(() =>
+      arrange(this.window.value, {
+        layout: this.panes.layout.value,
+        two: this.panes.two.value,
+        four: this.panes.four.value,
+        isTreeOpen: this.isTreeOpen.value,
+        section: this.section.value,
+        isPinned: this.isPinned.value,
+        sheet: this.sheet.value,
+        drawer: this.isDrawerOpen.value ? (this.isDrawerRight.value ? 'right' : 'bottom') : '',
+        isInspectorOpen: this.isInspectorOpen.value,
+        active: this.active.value,
+        maximised: this.maximised.value,
+      }),
+    );
     effect(() => {
       if (this.tool.value !== 'measure') this.draft.value = null;
     });

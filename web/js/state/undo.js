@@ -83,10 +83,13 @@ export class Undo {
   /** Notes a change before it is applied. */
   #record(of, patch, document, isMark) {
     if (this.#isRestoring) return;
-    const changes = leaves(patch, document).filter(([path]) => !ignored.includes(path[0])).map(([path, value]) => {
-      const before = at(document, path);
-      return { of, path, before, after: after(before, value) };
-    }).filter(({ before, after: value }) => !isSame(before, value));
+    const changes = leaves(patch, document)
+      .filter(([path]) => !ignored.includes(path[0]))
+      .map(([path, value]) => {
+        const before = at(document, path);
+        return { of, path, before, after: after(before, value) };
+      })
+      .filter(({ before, after: value }) => !isSame(before, value));
     if (!changes.length) return;
     const now = this.#clock.now();
     const step = this.#stepFor(changes, now, isMark ? 'mark' : this.#isOnOwn ? 'own' : 'room');
@@ -109,7 +112,12 @@ export class Undo {
   #stepFor(changes, now, place) {
     const last = this.#done.at(-1);
     const isSamePress = last?.place === place && this.#gesture !== 0 && last.gesture === this.#gesture;
-    const isSameFields = last?.place === place && !this.#reaches(this.#undone.at(-1)) && now - last.at <= joinMs && changes.length === last.changes.size && changes.every((change) => last.changes.has(keyOf(change)));
+    const isSameFields =
+      last?.place === place &&
+      !this.#reaches(this.#undone.at(-1)) &&
+      now - last.at <= joinMs &&
+      changes.length === last.changes.size &&
+      changes.every((change) => last.changes.has(keyOf(change)));
     if (isSamePress || isSameFields) return last;
     const step = { changes: new Map(), gesture: this.#gesture, at: now, place };
     this.#done = [...this.#done, step].slice(-maxSteps);
@@ -122,15 +130,23 @@ export class Undo {
     let step = null;
     let open = [];
     if (from.at(-1)?.act && this.#reaches(from.at(-1))) return this.#moveAct(from, to, wanted);
-    while (!open.length && !from.at(-1)?.act && this.#reaches(from.at(-1))) { // a step that was refused, or already is as wanted, is passed over
+    while (!open.length && !from.at(-1)?.act && this.#reaches(from.at(-1))) {
+      // a step that was refused, or already is as wanted, is passed over
       step = from.pop();
       open = [...step.changes.values()].filter((change) => !isSame(this.#now(change), change[wanted]));
     }
     const mine = open.filter((change) => isSame(this.#now(change), change[left]));
     if (mine.length) this.#restore(mine, wanted, step.place === 'mark');
-    if (mine.length) to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity, place: step.place });
+    if (mine.length)
+      to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity, place: step.place });
     if (mine.length < open.length)
-      this.#notify('warn', mine.length ? `Only in part ${word}: the rest was changed by somebody else since.` : `Not ${word}: it was changed by somebody else since.`, 'undo');
+      this.#notify(
+        'warn',
+        mine.length
+          ? `Only in part ${word}: the rest was changed by somebody else since.`
+          : `Not ${word}: it was changed by somebody else since.`,
+        'undo',
+      );
     this.#tell();
   }
 
@@ -138,10 +154,13 @@ export class Undo {
   #moveAct(from, to, wanted) {
     const step = from.pop();
     const act = wanted === 'before' ? step.act.undo : step.act.redo;
-    act().then(() => {
-      to.push(step);
-      this.#tell();
-    }, (problem) => this.#notify('warn', problem?.detail || 'The server refused it.', 'undo'));
+    act().then(
+      () => {
+        to.push(step);
+        this.#tell();
+      },
+      (problem) => this.#notify('warn', problem?.detail || 'The server refused it.', 'undo'),
+    );
     this.#tell();
   }
 
@@ -188,7 +207,8 @@ export class Undo {
   }
 
   #tell() {
-    const changes = (step) => (this.#reaches(step) ? (step.act ? [{ of: 'act', path: [step.act.name] }] : [...step.changes.values()]) : null);
+    const changes = (step) =>
+      this.#reaches(step) ? (step.act ? [{ of: 'act', path: [step.act.name] }] : [...step.changes.values()]) : null;
     batch(() => {
       this.next.value = changes(this.#done.at(-1));
       this.nextAgain.value = changes(this.#undone.at(-1));
@@ -207,7 +227,12 @@ export function listenUndo(target, undo) {
   on('pointerup', () => undo.release()); // after the listeners of what was pressed, whose last change belongs to the drag
   on('pointercancel', () => undo.release());
   on('keydown', (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea')) return;
+    if (
+      !(event.ctrlKey || event.metaKey) ||
+      event.altKey ||
+      event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea')
+    )
+      return;
     const key = event.key.toLowerCase();
     if (key === 'y' || (key === 'z' && event.shiftKey)) undo.redo();
     else if (key === 'z') undo.undo();
@@ -220,7 +245,8 @@ export function listenUndo(target, undo) {
 const keyOf = ({ of, path }) => JSON.stringify([of, ...path]);
 
 /** True for a field inside one that the same step has made. */
-const isWithin = (change, other) => change.of === other.of && change.path.length > other.path.length && other.path.every((name, index) => name === change.path[index]);
+const isWithin = (change, other) =>
+  change.of === other.of && change.path.length > other.path.length && other.path.every((name, index) => name === change.path[index]);
 
 /** The fields that a patch sets, a unit as one field, and so what the document does not have yet: undo takes that away whole. [path, value][]. */
 function leaves(patch, document, path = []) {
@@ -229,12 +255,19 @@ function leaves(patch, document, path = []) {
 }
 
 /** The value of a field once a patch has set it; null takes it away. */
-const after = (before, patch) => (patch === null ? undefined : isObject(patch) ? Object.fromEntries(Object.entries({ ...before, ...patch }).filter(([, value]) => value !== null)) : patch);
+const after = (before, patch) =>
+  patch === null
+    ? undefined
+    : isObject(patch)
+      ? Object.fromEntries(Object.entries({ ...before, ...patch }).filter(([, value]) => value !== null))
+      : patch;
 
 /** What sets a field to a value, also where that has fewer fields inside than are there now. */
-const patchTo = (now, wanted) => (isObject(wanted) && isObject(now) ? { ...Object.fromEntries(Object.keys(now).map((name) => [name, null])), ...wanted } : wanted);
+const patchTo = (now, wanted) =>
+  isObject(wanted) && isObject(now) ? { ...Object.fromEntries(Object.keys(now).map((name) => [name, null])), ...wanted } : wanted;
 
-const at = (document, path) => path.reduce((value, name) => (isObject(value) && Object.hasOwn(value, name) ? value[name] : undefined), document) ?? undefined;
+const at = (document, path) =>
+  path.reduce((value, name) => (isObject(value) && Object.hasOwn(value, name) ? value[name] : undefined), document) ?? undefined;
 
 function put(patch, [name, ...rest], value) {
   patch[name] = rest.length ? put(patch[name] ?? {}, rest, value) : value;

@@ -50,8 +50,15 @@ export class UploadsState {
     this.#aborts.set(key, abort);
     this.#change(key, { state: 'sending' });
     try {
-      if (body.size > this.limit()) throw new Error(`${megabytes(body.size)}; the server takes plans of at most ${megabytes(this.limit())}.`);
-      let job = await this.#send({ publicName: publicName.trim(), body, type, signal: abort.signal, onSent: (sent) => this.#change(key, { sent }) });
+      if (body.size > this.limit())
+        throw new Error(`${megabytes(body.size)}; the server takes plans of at most ${megabytes(this.limit())}.`);
+      let job = await this.#send({
+        publicName: publicName.trim(),
+        body,
+        type,
+        signal: abort.signal,
+        onSent: (sent) => this.#change(key, { sent }),
+      });
       while (!this.#isStopped) {
         this.#change(key, { job, sent: body.size, state: 'working' });
         if (job.state === 'done') {
@@ -64,7 +71,9 @@ export class UploadsState {
           return;
         }
         if (job.state === 'failed') throw new Error(job.problem?.detail ?? 'The plan was refused.');
-        await new Promise((resolve) => { this.#clock.setTimeout(resolve, jobMs); });
+        await new Promise((resolve) => {
+          this.#clock.setTimeout(resolve, jobMs);
+        });
         job = await this.#api.job(job.id);
       }
     } catch (error) {

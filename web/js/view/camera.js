@@ -114,7 +114,7 @@ export function zoomSlice(camera, { right, up }, factor, [x, y], sizePx) {
 // ---- framing, and moving several panes together -----------------------------------------------------------------------
 
 const margin = 1.08; // extent of the picture over that of the box
-const corners = ({ low, high }) => [0, 1, 2, 3, 4, 5, 6, 7].map((at) => low.map((value, axis) => (at >> axis & 1 ? high[axis] : value)));
+const corners = ({ low, high }) => [0, 1, 2, 3, 4, 5, 6, 7].map((at) => low.map((value, axis) => ((at >> axis) & 1 ? high[axis] : value)));
 const middleOf = ({ low, high }) => scale(add(low, high), 0.5);
 
 /** Looks at a box from the same side, as near as shows all of it. @param {{low: number[], high: number[]}} box */
@@ -125,15 +125,23 @@ export function fit(camera, box) {
   const offsets = corners(box).map((corner) => subtract(corner, target_mm));
   const across = (offset) => Math.max(Math.abs(dot(offset, right)), Math.abs(dot(offset, up)));
   const away = clamp(Math.max(...offsets.map((offset) => across(offset) / slope - dot(offset, forward))), minDistanceMm, maxDistanceMm);
-  const height_mm = camera.projection === 'parallel' ? clamp(2 * margin * Math.max(...offsets.map(across)), minHeightMm, maxHeightMm) : null;
+  const height_mm =
+    camera.projection === 'parallel' ? clamp(2 * margin * Math.max(...offsets.map(across)), minHeightMm, maxHeightMm) : null;
   return { ...camera, target_mm, position_mm: subtract(target_mm, scale(forward, away)), height_mm };
 }
 
 /** The same of a slice pane. */
 export function fitSlice(camera, { right, up }, box) {
   const target_mm = middleOf(box);
-  const across = corners(box).map((corner) => subtract(corner, target_mm)).map((offset) => Math.max(Math.abs(dot(offset, right)), Math.abs(dot(offset, up))));
-  return { ...camera, position_mm: add(camera.position_mm, subtract(target_mm, camera.target_mm)), target_mm, height_mm: clamp(2 * margin * Math.max(...across), minHeightMm, maxHeightMm) };
+  const across = corners(box)
+    .map((corner) => subtract(corner, target_mm))
+    .map((offset) => Math.max(Math.abs(dot(offset, right)), Math.abs(dot(offset, up))));
+  return {
+    ...camera,
+    position_mm: add(camera.position_mm, subtract(target_mm, camera.target_mm)),
+    target_mm,
+    height_mm: clamp(2 * margin * Math.max(...across), minHeightMm, maxHeightMm),
+  };
 }
 
 const keptInside = 0.45; // of the picture's smaller side: as far from the middle as the crosshair may come

@@ -2,7 +2,14 @@
 // it what has no camera yet: only with the same numbers does the first touch not move the picture.
 import { isInSpace } from './kinds.js';
 
-const nowhere = { position_mm: [0, -1000, 0], target_mm: [0, 0, 0], up: [0, 0, 1], projection: 'perspective', fov_deg: 30, height_mm: null };
+const nowhere = {
+  position_mm: [0, -1000, 0],
+  target_mm: [0, 0, 0],
+  up: [0, 0, 1],
+  projection: 'perspective',
+  fov_deg: 30,
+  height_mm: null,
+};
 
 /** @param {ReturnType<import('../state/plan.js').readPlan>|null} plan null: none is loaded, and nothing is drawn */
 export function homeCamera(plan, kind) {

@@ -1,7 +1,11 @@
 // Orientation letters: the patient's direction at each edge of a picture.
 import { pictureAxes, scale } from './vec.js';
 
-const names = [['L', 'R'], ['P', 'A'], ['S', 'I']];
+const names = [
+  ['L', 'R'],
+  ['P', 'A'],
+  ['S', 'I'],
+];
 const secondFrom = 0.3; // cosine from which on an oblique direction gets a second letter
 
 /** "L", or "AR" for an oblique direction, dominant letter first. @param {number[]} direction unit, LPS */

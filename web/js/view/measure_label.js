@@ -10,7 +10,12 @@ const [edgePx, footPx, figurePx] = [26, 30, 96]; // letters at the edges; scale 
 export function takenIn([width, height], is3d, mark) {
   const half = edgePx / 2;
   const square = (x, y) => ({ x, y, width: edgePx, height: edgePx });
-  const boxes = [square(0, height / 2 - half), square(width - edgePx, height / 2 - half), square(width / 2 - half, 0), { x: 0, y: height - footPx, width, height: footPx }];
+  const boxes = [
+    square(0, height / 2 - half),
+    square(width - edgePx, height / 2 - half),
+    square(width / 2 - half, 0),
+    { x: 0, y: height - footPx, width, height: footPx },
+  ];
   if (is3d) boxes.push({ x: width - figurePx, y: height - figurePx, width: figurePx, height: figurePx });
   if (mark) boxes.push(square(mark.x - half, mark.y - half));
   return boxes;

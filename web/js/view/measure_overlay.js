@@ -20,7 +20,9 @@ export function measureOverlay({ measures, is3d, matrix, box, pane, mark }) {
     return at && { x: box.x + at[0] * box.width, y: box.y + at[1] * box.height };
   };
   const taken = takenIn(pane, is3d, mark);
-  if (!is3d) for (const { x, y } of measures.flatMap(({ points }) => points.map(place)).filter(Boolean)) taken.push({ x: x - handlePx, y: y - handlePx, width: 2 * handlePx, height: 2 * handlePx });
+  if (!is3d)
+    for (const { x, y } of measures.flatMap(({ points }) => points.map(place)).filter(Boolean))
+      taken.push({ x: x - handlePx, y: y - handlePx, width: 2 * handlePx, height: 2 * handlePx });
   return svg`<g class=${is3d ? 'image-measures faint' : 'image-measures'}>${measures.map((measure) => drawn(measure, place, pane, taken, is3d))}</g>`;
 }
 

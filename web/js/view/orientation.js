@@ -20,11 +20,22 @@ const seenFrom = 0.05; // cosine from which on a side is drawn
 export function cubeSides(matrix) {
   const { right, up, forward } = pictureAxes(matrix);
   const onPicture = (point) => [dot(point, right) / 2, -dot(point, up) / 2];
-  return sides.map(({ out, ...side }) => {
-    const [a, b] = [[out[1], out[2], out[0]], [out[2], out[0], out[1]]]; // along the side's edges
-    const corners = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([i, j]) => onPicture(add(out, add(scale(a, i), scale(b, j)))));
-    return { ...side, facing: -dot(out, forward), middle: onPicture(out), corners };
-  }).filter(({ facing }) => facing > seenFrom).sort((a, b) => a.facing - b.facing);
+  return sides
+    .map(({ out, ...side }) => {
+      const [a, b] = [
+        [out[1], out[2], out[0]],
+        [out[2], out[0], out[1]],
+      ]; // along the side's edges
+      const corners = [
+        [1, 1],
+        [-1, 1],
+        [-1, -1],
+        [1, -1],
+      ].map(([i, j]) => onPicture(add(out, add(scale(a, i), scale(b, j)))));
+      return { ...side, facing: -dot(out, forward), middle: onPicture(out), corners };
+    })
+    .filter(({ facing }) => facing > seenFrom)
+    .sort((a, b) => a.facing - b.facing);
 }
 
 const reach = 0.6; // half the length of a patient axis, in sizes of the plan's box

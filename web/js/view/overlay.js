@@ -61,8 +61,10 @@ function cross({ x, y }, box, isOffPlane) {
 
 function marker({ x, y }, box) {
   if (x < box.x || y < box.y || x > box.x + box.width || y > box.y + box.height) return nothing;
-  return svg`<g class="marker">${[0, 1].map((layer) => svg`<g class=${layer ? 'ink' : 'under'}>
-    <circle cx=${x} cy=${y} r="7" />${line(x - 12, y, x - 7, y)}${line(x + 7, y, x + 12, y)}${line(x, y - 12, x, y - 7)}${line(x, y + 7, x, y + 12)}</g>`)}</g>`;
+  return svg`<g class="marker">${[0, 1].map(
+    (layer) => svg`<g class=${layer ? 'ink' : 'under'}>
+    <circle cx=${x} cy=${y} r="7" />${line(x - 12, y, x - 7, y)}${line(x + 7, y, x + 12, y)}${line(x, y - 12, x, y - 7)}${line(x, y + 7, x, y + 12)}</g>`,
+  )}</g>`;
 }
 
 function edgeText(letters, width, height) {
@@ -75,8 +77,10 @@ function edgeText(letters, width, height) {
 
 /** At the ends of the patient's axes, where the box of the plan is not empty. */
 function axesText(matrix, bounds, box) {
-  return svg`<g class="axes">${axisEnds(matrix, bounds).map(({ letter, x, y }) => svg`<text class="halo letter" text-anchor="middle"
-    x=${box.x + x * box.width} y=${box.y + y * box.height + 5}>${letter}</text>`)}</g>`;
+  return svg`<g class="axes">${axisEnds(matrix, bounds).map(
+    ({ letter, x, y }) => svg`<text class="halo letter" text-anchor="middle"
+    x=${box.x + x * box.width} y=${box.y + y * box.height + 5}>${letter}</text>`,
+  )}</g>`;
 }
 
 /** Left of the letter in the middle of the foot. */

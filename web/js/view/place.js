@@ -9,7 +9,9 @@ const [smallPane, narrow] = [400, 140]; // in a pane narrower than the first, a 
 const heights = { padding: 18, name: 18, line: 16, large: 26 }; // as in css/pane.css
 
 /** The area that two boxes share. */
-export const overlap = (a, b) => Math.max(0, Math.min(a.x + a.width, b.x + b.width) - Math.max(a.x, b.x)) * Math.max(0, Math.min(a.y + a.height, b.y + b.height) - Math.max(a.y, b.y));
+export const overlap = (a, b) =>
+  Math.max(0, Math.min(a.x + a.width, b.x + b.width) - Math.max(a.x, b.x)) *
+  Math.max(0, Math.min(a.y + a.height, b.y + b.height) - Math.max(a.y, b.y));
 
 /**
  * @param {{x: number, y: number}} point @param {[number, number]} size of the card @param {[number, number]} pane
@@ -23,8 +25,16 @@ export function placeBeside(point, [width, height], pane, taken, gap) {
   for (const away of [gap, gap * 2, gap * 3]) {
     const columns = [point.x + away, point.x - away - width];
     const rows = [point.y + away, point.y - height / 2, point.y - away - height];
-    const places = [[columns[0], rows[0]], [columns[0], rows[1]], [columns[0], rows[2]], [columns[1], rows[0]], [columns[1], rows[1]], [columns[1], rows[2]],
-      [point.x - width / 2, rows[0]], [point.x - width / 2, rows[2]]];
+    const places = [
+      [columns[0], rows[0]],
+      [columns[0], rows[1]],
+      [columns[0], rows[2]],
+      [columns[1], rows[0]],
+      [columns[1], rows[1]],
+      [columns[1], rows[2]],
+      [point.x - width / 2, rows[0]],
+      [point.x - width / 2, rows[2]],
+    ];
     for (const [left, top] of places) {
       const card = { x: inside(left, width, pane[0]), y: inside(top, height, pane[1]), width, height };
       if (coveredBy(card) === 0) return { x: card.x, y: card.y };

@@ -16,7 +16,11 @@ const slackMm = 1e-3; // a slice in a clip plane is not cut off
  * @param {ArrayLike<number>} matrix clip from LPS @param {number[]} through a point of the slice @param {{x, y, width, height}} box of the picture
  */
 export function heightsOver(plane, matrix, through, box) {
-  const [corner, right, below] = [[0, 0], [1, 0], [0, 1]].map((place) => heightOver(plane, fromPicture(matrix, place, through)));
+  const [corner, right, below] = [
+    [0, 0],
+    [1, 0],
+    [0, 1],
+  ].map((place) => heightOver(plane, fromPicture(matrix, place, through)));
   const [gx, gy] = [(right - corner) / box.width, (below - corner) / box.height];
   return { at: corner - box.x * gx - box.y * gy, gx, gy };
 }
@@ -37,11 +41,18 @@ export function lineOf(heights, box, last = null) {
   const over = [gx / slope, gy / slope];
   const foot = [middle[0] - over[0] * away, middle[1] - over[1] * away];
   let along = [-over[1], over[0]];
-  const isBackwards = last ? along[0] * last[0] + along[1] * last[1] < 0 : Math.abs(along[0]) > Math.abs(along[1]) ? along[0] < 0 : along[1] < 0;
+  const isBackwards = last
+    ? along[0] * last[0] + along[1] * last[1] < 0
+    : Math.abs(along[0]) > Math.abs(along[1])
+      ? along[0] < 0
+      : along[1] < 0;
   if (isBackwards) along = [-along[0], -along[1]];
   const inset = Math.min(endPx, box.width / 4, box.height / 4);
   let [from, to] = [-Infinity, Infinity];
-  for (const [start, step, low, high] of [[foot[0], along[0], box.x + inset, box.x + box.width - inset], [foot[1], along[1], box.y + inset, box.y + box.height - inset]]) {
+  for (const [start, step, low, high] of [
+    [foot[0], along[0], box.x + inset, box.x + box.width - inset],
+    [foot[1], along[1], box.y + inset, box.y + box.height - inset],
+  ]) {
     if (Math.abs(step) < 1e-9) {
       if (start < low - inset || start > high + inset) return null; // along the edge a line stays to be seen, so that it can be taken
       continue;
@@ -64,7 +75,12 @@ export function onLine({ from, to }, part) {
 
 /** The part of the picture that no plane cuts off, as a polygon; [] when nothing is left. @param {object[]} all heights over each plane */
 export function keptPart(all, box) {
-  let polygon = [[box.x, box.y], [box.x + box.width, box.y], [box.x + box.width, box.y + box.height], [box.x, box.y + box.height]];
+  let polygon = [
+    [box.x, box.y],
+    [box.x + box.width, box.y],
+    [box.x + box.width, box.y + box.height],
+    [box.x, box.y + box.height],
+  ];
   for (const heights of all) {
     const next = [];
     for (const [n, corner] of polygon.entries()) {
@@ -84,8 +100,14 @@ export function keptPart(all, box) {
 /** What lies in every slice pane: the letters in the middle of the edges, scale bar and window at the foot; with a legend, that too. */
 export function takenIn([width, height], hasLegend) {
   const around = (x, y) => ({ x: x - letterHalf, y: y - letterHalf, width: 2 * letterHalf, height: 2 * letterHalf });
-  return [around(0, height / 2), around(width, height / 2), around(width / 2, 0), around(width / 2, height),
-    { x: 0, y: height - footPx, width, height: footPx }, ...(hasLegend ? [{ x: 0, y: 0, width: width / 2, height: height / 2 }] : [])];
+  return [
+    around(0, height / 2),
+    around(width, height / 2),
+    around(width / 2, 0),
+    around(width / 2, height),
+    { x: 0, y: height - footPx, width, height: footPx },
+    ...(hasLegend ? [{ x: 0, y: 0, width: width / 2, height: height / 2 }] : []),
+  ];
 }
 
 export const handleBox = ([x, y]) => ({ x: x - handleHalf, y: y - handleHalf, width: 2 * handleHalf, height: 2 * handleHalf });
@@ -97,7 +119,9 @@ export function namePlace(line, words, [width, height], taken) {
   for (const part of [0.86, 0.74, 0.62, 0.26, 0.38])
     for (const side of [1, -1]) {
       const [x, y] = onLine(line, part);
-      const corner = isUpright ? [side > 0 ? x + 8 : x - 8 - size[0], y - size[1] / 2] : [x - size[0] / 2, side > 0 ? y - 6 - size[1] : y + 6];
+      const corner = isUpright
+        ? [side > 0 ? x + 8 : x - 8 - size[0], y - size[1] / 2]
+        : [x - size[0] / 2, side > 0 ? y - 6 - size[1] : y + 6];
       const box = { x: corner[0], y: corner[1], width: size[0], height: size[1] };
       const isInside = box.x >= 4 && box.y >= 4 && box.x + box.width <= width - 4 && box.y + box.height <= height - 4;
       if (isInside && taken.every((other) => overlap(box, other) === 0)) return box;

@@ -84,7 +84,14 @@ export class PointerReader {
     if (!this.#isSecond) this.#settle();
     this.#start = { ...point, shift: event.shiftKey, at: event.timeStamp };
     const isRight = event.button === 2 || (event.button === 0 && event.ctrlKey);
-    this.#mode = event.button === 0 && event.ctrlKey && event.shiftKey ? 'roll' : isRight ? 'zoom' : event.button === 1 || event.shiftKey ? 'pan' : 'primary';
+    this.#mode =
+      event.button === 0 && event.ctrlKey && event.shiftKey
+        ? 'roll'
+        : isRight
+          ? 'zoom'
+          : event.button === 1 || event.shiftKey
+            ? 'pan'
+            : 'primary';
     this.#isStartDue = true;
     if (event.pointerType === 'touch') this.#longTimer = setTimeout(() => this.#long(event.timeStamp), longMs);
     else this.#begin(point);
@@ -109,7 +116,8 @@ export class PointerReader {
     const before = this.#fingers.get(event.pointerId);
     const at = event.timeStamp;
     if (!before) {
-      if (event.pointerType !== 'touch' && !event.buttons) this.#handlers.hover({ ...this.#point(event), shift: event.shiftKey, alt: event.altKey, at });
+      if (event.pointerType !== 'touch' && !event.buttons)
+        this.#handlers.hover({ ...this.#point(event), shift: event.shiftKey, alt: event.altKey, at });
       return;
     }
     const point = this.#point(event);
@@ -127,7 +135,8 @@ export class PointerReader {
     this.#fingers.set(event.pointerId, point);
     this.#movedAt = at;
     if (point.x === before.x && point.y === before.y) return; // as the early one said
-    if (this.#mode !== 'held') this.#handlers.move(this.#mode, { ...point, dx: point.x - before.x, dy: point.y - before.y, alt: event.altKey, at });
+    if (this.#mode !== 'held')
+      this.#handlers.move(this.#mode, { ...point, dx: point.x - before.x, dy: point.y - before.y, alt: event.altKey, at });
   }
 
   #pinch(before, point, other, at) {
@@ -160,7 +169,8 @@ export class PointerReader {
     }
     this.#waiting = { ...point, shift: this.#start.shift, alt: event.altKey };
     const waitMs = doubleMs[event.pointerType] ?? doubleMs.mouse;
-    if (at - this.#start.at > waitMs) this.#settle(); // nobody begins a double click that slowly
+    if (at - this.#start.at > waitMs)
+      this.#settle(); // nobody begins a double click that slowly
     else this.#tapTimer = setTimeout(() => this.#settle(), waitMs);
   }
 

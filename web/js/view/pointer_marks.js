@@ -9,7 +9,8 @@ export const farMm = 50; // beyond this distance from a slice it is not drawn th
 export const inFrontMm = 3; // what is seen nearer to the eye than the point by more than this hides it
 const [leastSize, nearStrength, leastStrength, hiddenStrength, fadedStrength] = [0.5, 0.8, 0.4, 0.45, 0.25];
 const [radiusPx, heightPx, paddingPx, gapPx] = [8, 20, 6, 12];
-const widthOf = (text) => [...text].reduce((sum, char) => sum + (/[mwMW@]/.test(char) ? 11 : /[A-Z0-9…]/.test(char) ? 8 : /[ ilj.,:·']/.test(char) ? 4.5 : 6.6), 0); // of the font, rounded up
+const widthOf = (text) =>
+  [...text].reduce((sum, char) => sum + (/[mwMW@]/.test(char) ? 11 : /[A-Z0-9…]/.test(char) ? 8 : /[ ilj.,:·']/.test(char) ? 4.5 : 6.6), 0); // of the font, rounded up
 const mostChars = 24;
 
 /** How strong a pointer is after it has not moved for so long: 1 to 0. */
@@ -27,7 +28,11 @@ export function lookInSlice(heightMm, halfSliceMm) {
   if (mm <= halfSliceMm) return { size: 1, strength: 1, words: '' };
   if (mm > farMm) return null;
   const part = (mm - halfSliceMm) / Math.max(farMm - halfSliceMm, 1e-9);
-  return { size: 1 - (1 - leastSize) * part, strength: nearStrength - (nearStrength - leastStrength) * part, words: `${mm < 9.95 ? mm.toFixed(1) : Math.round(mm)} mm` };
+  return {
+    size: 1 - (1 - leastSize) * part,
+    strength: nearStrength - (nearStrength - leastStrength) * part,
+    words: `${mm < 9.95 ? mm.toFixed(1) : Math.round(mm)} mm`,
+  };
 }
 
 export const lookInSpace = (isHidden) => ({ size: 1, strength: isHidden ? hiddenStrength : 1, words: isHidden ? 'behind' : '' });
@@ -64,4 +69,5 @@ export function labelled(marks, pane, isInSpace) {
 
 /** Colours of members whose own the server does not tell. */
 const colors = ['#56b4e9', '#e69f00', '#2fc99b', '#f0e442', '#cc79a7', '#ff7f50', '#9aa8ff', '#7fd84f'];
-export const colorOf = ({ id, color }) => (/^#[0-9a-f]{6}$/i.test(color ?? '') ? color : colors[(Number.parseInt(String(id).slice(1), 10) || 0) % colors.length]);
+export const colorOf = ({ id, color }) =>
+  /^#[0-9a-f]{6}$/i.test(color ?? '') ? color : colors[(Number.parseInt(String(id).slice(1), 10) || 0) % colors.length];

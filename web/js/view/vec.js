@@ -53,4 +53,5 @@ const barLengths = [1, 2, 5, 10, 20, 50, 100, 200];
 const longestBarPx = 110;
 
 /** Length of a scale bar: the longest round length that fits. */
-export const barMm = (pxPerMm, roomPx = longestBarPx) => barLengths.filter((mm) => mm * pxPerMm <= Math.min(roomPx, longestBarPx)).at(-1) ?? barLengths[0];
+export const barMm = (pxPerMm, roomPx = longestBarPx) =>
+  barLengths.filter((mm) => mm * pxPerMm <= Math.min(roomPx, longestBarPx)).at(-1) ?? barLengths[0];

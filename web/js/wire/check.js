@@ -56,8 +56,9 @@ const controlPattern = /[\x00-\x1f\x7f]/;
 const readers = {
   bool: (value, field, pointer) => (need(typeof value === 'boolean', value, 'true or false', pointer), value),
   number: (value, field, pointer) => (need(Number.isFinite(value), value, 'a number', pointer), checkRange(value, field, pointer), value),
-  integer: (value, field, pointer) =>
-    (need(Number.isInteger(value), value, 'a whole number', pointer), checkRange(value, field, pointer), value),
+  integer: (value, field, pointer) => (
+    need(Number.isInteger(value), value, 'a whole number', pointer), checkRange(value, field, pointer), value
+  ),
   enum: (value, field, pointer, tables) => {
     need(typeof value === 'string', value, 'a word', pointer);
     const words = tables.enums[field.enum];
@@ -95,18 +96,21 @@ const readers = {
     checkCount(value.length, field, pointer);
     const items = value.map((item, index) => readInner(item, field, `${pointer}/${index}`, tables));
     const key = field.ascending;
-    if (key && items.some((item, index) => index > 0 && item[key] < items[index - 1][key])) throw new WireError('order', pointer, `not in ascending order of ${key}`);
+    if (key && items.some((item, index) => index > 0 && item[key] < items[index - 1][key]))
+      throw new WireError('order', pointer, `not in ascending order of ${key}`);
     return items;
   },
   map: (value, field, pointer, tables) => {
     need(isObject(value), value, 'an object', pointer);
     const entries = Object.entries(value);
     checkCount(entries.length, field, pointer);
-    return Object.fromEntries(entries.map(([name, item]) => {
-      const at = `${pointer}/${escapePointer(name)}`;
-      if (!isId(name)) throw new WireError('pattern', at, 'expected an id of 1 to 63 of a-z, 0-9 and -');
-      return [name, readInner(item, field, at, tables)];
-    }));
+    return Object.fromEntries(
+      entries.map(([name, item]) => {
+        const at = `${pointer}/${escapePointer(name)}`;
+        if (!isId(name)) throw new WireError('pattern', at, 'expected an id of 1 to 63 of a-z, 0-9 and -');
+        return [name, readInner(item, field, at, tables)];
+      }),
+    );
   },
 };
 
@@ -148,7 +152,8 @@ export function readMessage(value, from) {
   if (type === undefined) throw new WireError('required', '/type', 'missing');
   need(typeof type === 'string', type, 'the name of a message', '/type');
   const description = Object.hasOwn(messages, type) ? messages[type] : undefined;
-  if (!description || description.from !== from) throw new WireError('enum', '/type', `no message of the ${from} is called "${type.slice(0, 40)}"`);
+  if (!description || description.from !== from)
+    throw new WireError('enum', '/type', `no message of the ${from} is called "${type.slice(0, 40)}"`);
   return { type, ...readObject(description.fields, value, '', protoTables, 'type') };
 }
 
