@@ -24,7 +24,7 @@ GEN := build/gen
 WEB := build/web
 Q := $(if $(V),,@)
 
-VERSION := 0.1.0
+VERSION := 0.2.0
 PREFIX ?= /usr/local
 SYSCONFDIR ?= /etc
 NODE ?= node
@@ -113,6 +113,9 @@ EXTRA_core_base_image_reduce := -O3
 EXTRA_core_annotate_font := -isystem /usr/include/freetype2
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(1)))
+# What names the version is compiled anew when it changes.
+$(shell mkdir -p $(GEN) && { echo '$(VERSION)' | cmp -s - $(GEN)/.version || echo '$(VERSION)' >$(GEN)/.version; })
+$(call obj,$(shell grep -rl --include='*.c' BEAMROOM_VERSION core server tests)): $(GEN)/.version
 $(B)/obj/%.o: %.cc | $(GEN_STAMP)
 	@mkdir -p $(@D)
 	$(if $(Q),@echo "  CXX $<")
@@ -312,6 +315,7 @@ install: all
 	install -D -m 644 $(B)/beamroomd.service $(DESTDIR)$(PREFIX)/lib/systemd/system/beamroomd.service
 	[ -e $(DESTDIR)$(SYSCONFDIR)/beamroom/beamroomd.conf ] || \
 	    install -m 644 $(B)/beamroomd.conf $(DESTDIR)$(SYSCONFDIR)/beamroom/beamroomd.conf
+	for text in LICENSE THIRD-PARTY.md CHANGELOG.md; do install -D -m 644 $$text $(DESTDIR)$(PREFIX)/share/doc/beamroom/$$text || exit 1; done
 	install -D -m 644 deploy/nginx.conf $(DESTDIR)$(PREFIX)/share/doc/beamroom/nginx.conf
 	install -D -m 644 /usr/share/doc/fonts-dejavu-core/copyright $(DESTDIR)$(PREFIX)/share/doc/beamroom/dejavu-font.copyright
 

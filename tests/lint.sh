@@ -63,6 +63,21 @@ planted_circle() {
     echo "$out"
     return 1
 }
+# And the one for documents: a path that is not there, a package without a row, a version that differs.
+planted_documents() {
+    local folder out fault status=0
+    folder=$(mktemp -d)
+    cp --parents ./*.md Makefile package.json package-lock.json deploy/packages docs/threads.md "$folder"
+    printf '\nSee `core/base/planted.c`, and [a page](planted.md).\n' >>"$folder/docs/threads.md"
+    sed -i 's/^bench="/&planted-dev /' "$folder/deploy/packages"
+    sed -i 's/"version": "[0-9.]*",/"version": "9.9.9",/' "$folder/package.json"
+    out=$("${NODE:-node}" tests/documents.mjs "$folder") && status=1
+    for fault in 'threads.md:.*core/base/planted.c is not there' 'threads.md:.*planted.md leads nowhere' 'no row for planted-dev' 'package.json:1: version 9.9.9'; do
+        grep -q "$fault" <<<"$out" || { echo "not found: $fault"; status=1; }
+    done
+    rm -rf "$folder"
+    return $status
+}
 no_calls() {
     ! grep -nE '(^|[^a-zA-Z0-9_.>])(sprintf|vsprintf|strcpy|strcat|strtok|gets|system|popen|setlocale|alloca|atoi|atof)[[:space:]]*\(' \
         $(sources '*.c' '*.h' '*.cc' '*.hh')
@@ -103,6 +118,8 @@ check "what the gate guards is reached through its doors (tests/doors.txt)" test
 check "a way past the gate is found" planted_door
 check "no folder and no file of a folder is in a circle" tests/circles.sh "${BEAMROOM_BIN:-build/release}"
 check "a circle of folders and one of files are found" planted_circle
+check "documents name what is there: paths, packages with their licences, one version" "${NODE:-node}" tests/documents.mjs
+check "a path, a package and a version that are not are found" planted_documents
 check "no banned calls" no_calls
 check "C is laid out as .clang-format says (clang-format -i FILE)" laid_out
 check "locks stand in core/base alone" locks_in_base

@@ -4,7 +4,7 @@
  *
  * {
  *   version: 1,
- *   program: "Beamroom 0.1.0",
+ *   program: "Beamroom <version>",
  *   plan: {id, name},
  *   date: "2026-07-01T09:30:00Z",
  *   revision,     of the room's scene; 0: no room's
