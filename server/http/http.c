@@ -1,4 +1,4 @@
-/* The HTTP side of the API: libmicrohttpd behind the relay, its requests, and the answers of the net thread. */
+/* The HTTP side of the API: libmicrohttpd behind the front, its requests, and the answers of the net thread. */
 #include "server/http/http.h"
 
 #include <ctype.h>
@@ -15,14 +15,14 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
-#include "server/front/relay.h"
+#include "server/front/front.h"
 #include "server/http/api.h"
 #include "server/http/etag.h"
 #include "server/http/feed.h"
 #include "server/http/files.h"
 #include "server/http/intake.h"
 
-/* Never reached: the relay's limit is lower, also with connections whose end the library has not noticed. */
+/* Never reached: the front's limit is lower, also with connections whose end the library has not noticed. */
 static const unsigned LIBRARY_LIMIT = 1000000;
 
 enum { FEED_BLOCK = 64 << 10 }; /* bytes of an answer without an end that are made at once */
@@ -36,7 +36,7 @@ struct http {
     struct api *api;
     struct files *files;
     struct intake *intake;
-    struct relay *relay;
+    struct front *front;
     struct MHD_Daemon *daemon;
     struct queue *
         answered; /* answered requests, whose connections the HTTP thread resumes: the library allows no other thread */
@@ -51,7 +51,7 @@ struct request {
     struct call *call;
     struct http *http;
     struct MHD_Connection *connection;
-    struct relay_link *link;
+    struct front_link *link;
     bool is_posted, is_answered, is_archive;
     struct request *next_feeding; /* call->feed is set */
     bool is_suspended;            /* the feed has nothing for the screen */
@@ -101,11 +101,11 @@ static ssize_t read_feed(void *context, uint64_t at, char *bytes, size_t size)
     struct request *request = context;
     struct feed *feed = request->call->feed;
     (void)at;
-    if (relay_link_is_gone(request->link))
+    if (front_link_is_gone(request->link))
         return MHD_CONTENT_READER_END_WITH_ERROR;
     if (feed_is_ended(feed) && !feed_is_inside(feed))
         return MHD_CONTENT_READER_END_OF_STREAM;
-    size_t n = feed_read(feed, bytes, size, relay_link_is_free(request->link), clock_now_us());
+    size_t n = feed_read(feed, bytes, size, front_link_is_free(request->link), clock_now_us());
     request->is_suspended = n == 0;
     if (request->is_suspended)
         MHD_suspend_connection(request->connection);
@@ -117,8 +117,8 @@ static void resume_feeds(struct http *http, bool all)
     int64_t now_us = clock_now_us();
     for (struct request *request = http->feeding; request; request = request->next_feeding) {
         const struct feed *feed = request->call->feed;
-        if (!request->is_suspended || !(all || feed_is_ended(feed) || relay_link_is_gone(request->link) ||
-                                        (feed_is_due(feed, now_us) && relay_link_is_free(request->link))))
+        if (!request->is_suspended || !(all || feed_is_ended(feed) || front_link_is_gone(request->link) ||
+                                        (feed_is_due(feed, now_us) && front_link_is_free(request->link))))
             continue;
         request->is_suspended = false;
         MHD_resume_connection(request->connection);
@@ -160,20 +160,20 @@ static enum MHD_Result send_answer(struct MHD_Connection *connection, struct req
     return send_response(connection, (unsigned)call->status, response);
 }
 
-static void wake_reader(void *relay)
+static void wake_reader(void *front)
 {
-    relay_wake(relay);
+    front_wake(front);
 }
 
 /* Called on the thread that completed the answer. */
 static void call_finished(struct call *call)
 {
     struct request *request = call->connection;
-    struct relay *relay = request->http->relay;
+    struct front *front = request->http->front;
     if (!queue_try_put(request->http->answered,
                        request)) /* cannot be: the queue holds more than there are connections */
         abort();
-    relay_wake(relay); /* from here on the request belongs to the HTTP thread */
+    front_wake(front); /* from here on the request belongs to the HTTP thread */
 }
 
 static void run_call(struct net *net, void *argument)
@@ -249,7 +249,7 @@ static enum MHD_Result refuse_body(struct request *request)
     intake_drop(request->archive);
     request->archive = NULL;
     api_count(http->api, problem_status(call->early.type), clock_now_us() - call->started_us);
-    relay_refuse(request->link, &call->early, request->is_archive ? http->max_archive_dropped : RELAY_MAX_DROPPED);
+    front_refuse(request->link, &call->early, request->is_archive ? http->max_archive_dropped : FRONT_MAX_DROPPED);
     return MHD_NO;
 }
 
@@ -297,12 +297,12 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->connection = request;
     call->finished = call_finished;
     call->wake = wake_reader;
-    call->wake_context = http->relay;
+    call->wake_context = http->front;
     call->method = method_of(method);
     call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);
     if (request->link)
-        relay_client(request->link, call->client);
+        front_client(request->link, call->client);
     call->if_match = copy_header(connection, "If-Match");
     call->member = copy_header(connection, "Beamroom-Member");
     call->if_none_match = copy_header(connection, "If-None-Match");
@@ -400,7 +400,7 @@ static void completed(void *context, struct MHD_Connection *connection, void **s
     if (!request)
         return;
     if (code == MHD_REQUEST_TERMINATED_COMPLETED_OK)
-        relay_request_ended(request->link);
+        front_request_ended(request->link);
     intake_drop(request->archive);
     *state = NULL;
     remove_feeding(request);
@@ -419,12 +419,12 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
     struct http *http = context;
     if (code == MHD_CONNECTION_NOTIFY_STARTED)
         *link =
-            relay_find(http->relay, MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd);
+            front_find(http->front, MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd);
     else if (*link)
-        relay_link_closed(*link);
+        front_link_closed(*link);
 }
 
-/* Callbacks of the relay. */
+/* Callbacks of the front. */
 static bool add_to_library(void *context, int socket)
 {
     struct http *http = context;
@@ -465,14 +465,14 @@ struct http *http_create(struct net *net, const struct http_options *options, st
         if (!http->files)
             goto fail;
     }
-    const struct relay_options relay_options = { .hosts = options->hosts,
+    const struct front_options front_options = { .hosts = options->hosts,
                                                  .trusted = options->trusted,
                                                  .n_trusted = options->n_trusted };
-    http->relay = relay_create(&relay_options, err);
-    if (!http->relay)
+    http->front = front_create(&front_options, err);
+    if (!http->front)
         goto fail;
     /* The library's log is off: with each answer it reports that a pair of sockets has no options of TCP. The library's
-     * own limits on connections and time are off: the relay has both, and the library (0.9.75) hangs for ever when its
+     * own limits on connections and time are off: the front has both, and the library (0.9.75) hangs for ever when its
      * limit on connections is reached. */
     http->daemon = MHD_start_daemon(MHD_USE_EPOLL | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
                                     handle, http, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
@@ -485,10 +485,10 @@ struct http *http_create(struct net *net, const struct http_options *options, st
         error_set(err, ERROR_IO, "the HTTP library did not start");
         goto fail;
     }
-    const struct relay_server server = {
+    const struct front_server server = {
         .add = add_to_library, .run = run_library, .poll_fd = polled->epoll_fd, .context = http
     };
-    if (!relay_serve(http->relay, &server, err))
+    if (!front_serve(http->front, &server, err))
         goto fail;
     return http;
 fail:
@@ -505,12 +505,12 @@ void http_destroy(struct http *http)
 {
     if (!http)
         return;
-    relay_stop(http->relay);
+    front_stop(http->front);
     resume_answered(http);
     resume_feeds(http, true);
     if (http->daemon)
         MHD_stop_daemon(http->daemon);
-    relay_destroy(http->relay);
+    front_destroy(http->front);
     gate_destroy(http->posting);
     files_destroy(http->files);
     intake_destroy(http->intake);
@@ -521,15 +521,15 @@ void http_destroy(struct http *http)
 
 void http_add_connection(struct http *http, int socket, const struct address *peer, const struct address *client)
 {
-    relay_add(http->relay, socket, peer, client);
+    front_add(http->front, socket, peer, client);
 }
 
 void http_ping(struct http *http, atomic_bool *beat)
 {
-    relay_ping(http->relay, beat);
+    front_ping(http->front, beat);
 }
 
 void http_hang(struct http *http)
 {
-    relay_hang(http->relay);
+    front_hang(http->front);
 }

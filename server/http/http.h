@@ -1,5 +1,5 @@
 #pragma once
-/* The HTTP server: libmicrohttpd behind the relay, on one thread. The page's files are answered there; calls of the API
+/* The HTTP server: libmicrohttpd behind the front, on one thread. The page's files are answered there; calls of the API
  * are answered on the net thread, while the connection is suspended. */
 #include <stdatomic.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/* The state of the relay and of its links (one link per client connection). Internal to server/front; the relay's
+/* The state of the front and of its links (one link per client connection). Internal to server/front; the front's
  * thread, or after it has ended. */
 #include <pthread.h>
 #include <stdatomic.h>
@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "server/front/body.h"
-#include "server/front/relay.h"
+#include "server/front/front.h"
 
-enum { RELAY_OUT_SIZE = 256 << 10 }; /* bytes of an answer passed on at once */
+enum { FRONT_OUT_SIZE = 256 << 10 }; /* bytes of an answer passed on at once */
 
 enum link_state {
     LINK_HEAD,   /* the head is being received; none of it was passed to the library */
@@ -19,10 +19,10 @@ enum link_state {
     LINK_DEAD    /* freed when the library has closed its end */
 };
 
-struct relay_link {
-    struct relay_link *next, *previous;
-    struct relay_link *next_touched;
-    struct relay *relay;
+struct front_link {
+    struct front_link *next, *previous;
+    struct front_link *next_touched;
+    struct front *front;
     enum link_state state;
     int client, inner, server; /* sockets: the client's, our end and the library's end of the pair; -1: closed */
     struct address peer, counted, asked_by; /* asked_by: of the present request, behind trusted proxies */
@@ -44,35 +44,35 @@ struct relay_link {
     uint64_t window_bytes;
 };
 
-struct relay {
-    struct relay_options options;
-    struct relay_server server;
+struct front {
+    struct front_options options;
+    struct front_server server;
     struct queue *queue;
     int epoll, wake_fd; /* wake_fd: eventfd, written to wake the thread */
     pthread_t thread;
     bool has_thread;
     atomic_bool is_stopping, is_to_hang;
     _Atomic(atomic_bool *) pinged;
-    struct relay_link *links, *touched;
+    struct front_link *links, *touched;
     size_t n_counted, n_lingering;
     bool has_dead;    /* some link may be freed */
     size_t n_refused; /* refused connections since the last line in the log */
     int64_t logged_us;
-    char bytes[RELAY_OUT_SIZE];
+    char bytes[FRONT_OUT_SIZE];
 };
 
 /* Ends epoll's watch before closing: a child process that is being started holds a copy of every descriptor for a
  * moment, so a descriptor that was only closed would go on raising events, with the address of a freed link. */
-static inline void relay_unwatch_and_close(const struct relay *relay, int *fd)
+static inline void front_unwatch_and_close(const struct front *front, int *fd)
 {
     if (*fd >= 0) {
-        (void)epoll_ctl(relay->epoll, EPOLL_CTL_DEL, *fd, NULL); /* fails for a descriptor that was never watched */
+        (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, *fd, NULL); /* fails for a descriptor that was never watched */
         (void)close(*fd);
     }
     *fd = -1;
 }
 
-static inline void relay_close_fd(int *fd)
+static inline void front_close_fd(int *fd)
 {
     if (*fd >= 0)
         (void)close(*fd);

@@ -2,7 +2,7 @@
 /* Advances one link: receives and checks a request, passes it to the library and the answer back, and ends the link. A
  * refused client may still be sending: its bytes are read for a while after the answer, because closing a socket with
  * unread bytes takes the answer back. */
-#include "server/front/relay_link.h"
+#include "server/front/front_link.h"
 
 #include <errno.h>
 #include <linux/sockios.h>
@@ -13,8 +13,8 @@
 #include <sys/socket.h>
 
 #include "core/base/clock.h"
+#include "server/front/front_count.h"
 #include "server/front/head.h"
-#include "server/front/relay_count.h"
 #include "server/wire/refusal.h"
 
 enum {
@@ -25,7 +25,7 @@ enum {
 
 /* ---- ends ------------------------------------------------------------------------------------------------------- */
 
-static void drop_bytes(struct relay_link *link)
+static void drop_bytes(struct front_link *link)
 {
     free(link->in);
     free(link->out);
@@ -34,50 +34,50 @@ static void drop_bytes(struct relay_link *link)
 }
 
 /* Closes the client's side. A request still in the library meets a closed socket. */
-void relay_link_die(struct relay_link *link)
+void front_link_die(struct front_link *link)
 {
     if (link->state == LINK_LINGER)
-        link->relay->n_lingering--;
+        link->front->n_lingering--;
     link->state = LINK_DEAD;
     link->moved_us = clock_now_us();
-    link->relay->has_dead = true;
-    relay_uncount_ended(link);
+    link->front->has_dead = true;
+    front_uncount_ended(link);
     drop_bytes(link);
-    relay_unwatch_and_close(link->relay, &link->client);
-    relay_unwatch_and_close(link->relay, &link->inner);
+    front_unwatch_and_close(link->front, &link->client);
+    front_unwatch_and_close(link->front, &link->inner);
 }
 
-void relay_end_oldest_lingering(struct relay *relay)
+void front_end_oldest_lingering(struct front *front)
 {
-    struct relay_link *oldest = NULL;
-    for (struct relay_link *link = relay->links; link; link = link->next)
+    struct front_link *oldest = NULL;
+    for (struct front_link *link = front->links; link; link = link->next)
         if (link->state == LINK_LINGER)
             oldest = link; /* new links are put in front */
     if (oldest)
-        relay_link_die(oldest);
+        front_link_die(oldest);
 }
 
 /* The answer was sent: closes our direction and drops what the client still sends. */
-static void linger(struct relay_link *link, uint64_t max_dropped)
+static void linger(struct front_link *link, uint64_t max_dropped)
 {
-    relay_uncount_ended(link);
+    front_uncount_ended(link);
     drop_bytes(link);
-    relay_unwatch_and_close(link->relay, &link->inner);
+    front_unwatch_and_close(link->front, &link->inner);
     if (shutdown(link->client, SHUT_WR) != 0 || link->client_ended) {
-        relay_link_die(link);
+        front_link_die(link);
         return;
     }
-    if (link->relay->n_lingering >= RELAY_MAX_LINGERING)
-        relay_end_oldest_lingering(link->relay);
-    link->relay->n_lingering++;
+    if (link->front->n_lingering >= FRONT_MAX_LINGERING)
+        front_end_oldest_lingering(link->front);
+    link->front->n_lingering++;
     link->state = LINK_LINGER;
     link->max_dropped = max_dropped;
     link->n_dropped = 0;
     link->moved_us = clock_now_us();
-    relay_touch(link);
+    front_touch(link);
 }
 
-void relay_link_refuse(struct relay_link *link, const struct problem *problem, uint64_t max_dropped)
+void front_link_refuse(struct front_link *link, const struct problem *problem, uint64_t max_dropped)
 {
     bool has_answer = link->n_out > 0 || (link->n_answered > 0 && link->n_answered != N_CONTINUE);
     if (!has_answer)
@@ -85,7 +85,7 @@ void relay_link_refuse(struct relay_link *link, const struct problem *problem, u
     linger(link, max_dropped);
 }
 
-void relay_link_begin_window(struct relay_link *link)
+void front_link_begin_window(struct front_link *link)
 {
     link->window_us = clock_now_us();
     link->window_bytes = 0;
@@ -98,16 +98,16 @@ static bool would_block(void)
     return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
 }
 
-void relay_link_pass_answer(struct relay_link *link)
+void front_link_pass_answer(struct front_link *link)
 {
-    struct relay *relay = link->relay;
+    struct front *front = link->front;
     for (;;) {
         if (link->n_out > 0) {
             ssize_t n = send(link->client, link->out + link->out_at, link->n_out, MSG_NOSIGNAL | MSG_DONTWAIT);
             if (n < 0 && would_block())
                 return;
             if (n < 0) {
-                relay_link_die(link);
+                front_link_die(link);
                 return;
             }
             link->moved_us = clock_now_us();
@@ -122,7 +122,7 @@ void relay_link_pass_answer(struct relay_link *link)
         }
         if (!link->inner_readable || link->inner < 0)
             return;
-        ssize_t n = recv(link->inner, relay->bytes, sizeof relay->bytes, MSG_DONTWAIT);
+        ssize_t n = recv(link->inner, front->bytes, sizeof front->bytes, MSG_DONTWAIT);
         if (n < 0 && would_block()) {
             link->inner_readable = false;
             return;
@@ -132,12 +132,12 @@ void relay_link_pass_answer(struct relay_link *link)
             link->inner_readable = false;
             return;
         }
-        link->inner_readable = (size_t)n == sizeof relay->bytes || link->inner_hung_up;
+        link->inner_readable = (size_t)n == sizeof front->bytes || link->inner_hung_up;
         link->n_answered += (uint64_t)n;
         link->moved_us = clock_now_us();
-        ssize_t n_sent = send(link->client, relay->bytes, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT);
+        ssize_t n_sent = send(link->client, front->bytes, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT);
         if (n_sent < 0 && !would_block()) {
-            relay_link_die(link);
+            front_link_die(link);
             return;
         }
         n_sent = n_sent < 0 ? 0 : n_sent;
@@ -146,10 +146,10 @@ void relay_link_pass_answer(struct relay_link *link)
             link->n_out = (size_t)(n - n_sent);
             link->out = malloc(link->n_out);
             if (!link->out) {
-                relay_link_die(link);
+                front_link_die(link);
                 return;
             }
-            memcpy(link->out, relay->bytes + n_sent, link->n_out);
+            memcpy(link->out, front->bytes + n_sent, link->n_out);
         }
     }
 }
@@ -157,12 +157,12 @@ void relay_link_pass_answer(struct relay_link *link)
 /* ---- the request ------------------------------------------------------------------------------------------------ */
 
 /* Receives more of the client's bytes. Returns false when there are none now. */
-static bool read_client(struct relay_link *link)
+static bool read_client(struct front_link *link)
 {
     if (!link->client_readable || link->n_in == IN_SIZE)
         return false;
     if (!link->in && !(link->in = malloc(IN_SIZE))) {
-        relay_link_die(link);
+        front_link_die(link);
         return false;
     }
     size_t n_free = IN_SIZE - link->n_in;
@@ -176,7 +176,7 @@ static bool read_client(struct relay_link *link)
         if (n < 0 && would_block())
             return false;
         if (n < 0)
-            relay_link_die(link);
+            front_link_die(link);
         else
             link->client_ended = true;
         return n == 0;
@@ -188,44 +188,44 @@ static bool read_client(struct relay_link *link)
     return true;
 }
 
-static bool watch_inner(struct relay_link *link, int how)
+static bool watch_inner(struct front_link *link, int how)
 {
     struct epoll_event event = { .events =
                                      EPOLLIN | EPOLLRDHUP | EPOLLET | (link->inner_wants_room ? (uint32_t)EPOLLOUT : 0),
                                  .data.u64 = (uint64_t)(uintptr_t)link | 1 };
-    return epoll_ctl(link->relay->epoll, how, link->inner, &event) == 0;
+    return epoll_ctl(link->front->epoll, how, link->inner, &event) == 0;
 }
 
 /* Makes the pair of sockets to the library, before the first request. */
-static bool open_server(struct relay_link *link)
+static bool open_server(struct front_link *link)
 {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0)
         return false;
     link->inner = ends[0];
     if (!watch_inner(link, EPOLL_CTL_ADD)) {
-        relay_close_fd(&link->inner);
+        front_close_fd(&link->inner);
         (void)close(ends[1]);
         return false;
     }
     link->server = ends[1];
-    if (link->relay->server.add(link->relay->server.context, ends[1]))
+    if (link->front->server.add(link->front->server.context, ends[1]))
         return true;
     link->server = -1;
-    relay_unwatch_and_close(link->relay, &link->inner);
+    front_unwatch_and_close(link->front, &link->inner);
     return false;
 }
 
 /* Receives and checks a head. Returns true when the state has changed. */
-static bool step_head(struct relay_link *link)
+static bool step_head(struct front_link *link)
 {
-    struct relay *relay = link->relay;
+    struct front *front = link->front;
     struct head_request request;
     struct problem problem;
     enum head_kind kind = HEAD_INCOMPLETE;
     do {
         if (link->n_in > 0)
-            kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES, relay->options.hosts,
+            kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES, front->options.hosts,
                              &request, &problem);
     } while (kind == HEAD_INCOMPLETE && !link->client_ended && read_client(link));
     if (link->state == LINK_DEAD)
@@ -233,7 +233,7 @@ static bool step_head(struct relay_link *link)
     if (kind == HEAD_INCOMPLETE && !link->client_ended)
         return false;
     if (kind == HEAD_INCOMPLETE && link->n_in == 0) {
-        relay_link_die(link); /* closed between two requests */
+        front_link_die(link); /* closed between two requests */
         return true;
     }
     link->n_answered = 0;
@@ -241,39 +241,39 @@ static bool step_head(struct relay_link *link)
     if (kind == HEAD_INCOMPLETE)
         head_refuse_incomplete(link->in, link->n_in, true, 0, &problem);
     if (kind == HEAD_INCOMPLETE || kind == HEAD_REFUSED) {
-        relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+        front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
         return true;
     }
-    struct address client = address_of_client(&link->peer, relay->options.trusted, relay->options.n_trusted,
+    struct address client = address_of_client(&link->peer, front->options.trusted, front->options.n_trusted,
                                               request.forwarded, request.n_forwarded);
     link->asked_by = client;
-    if (!relay_count(link, &client, &problem)) {
-        relay_log_refusal(relay);
-        relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+    if (!front_count(link, &client, &problem)) {
+        front_log_refusal(front);
+        front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
         return true;
     }
     if (link->inner < 0 && !open_server(link)) {
         problem_set(&problem, PROBLEM_BUSY, "", "", "the server has no descriptors left for this connection");
-        problem.retry_after_ms = RELAY_RETRY_MS;
-        relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+        problem.retry_after_ms = FRONT_RETRY_MS;
+        front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
         return true;
     }
     link->n_forward = request.n_bytes;
     body_begin(&link->body, request.is_chunked, request.length);
     link->state = LINK_BODY;
-    relay_link_begin_window(link);
+    front_link_begin_window(link);
     return true;
 }
 
 /* Passes head and body on. Returns true when the state has changed. */
-static bool step_body(struct relay_link *link)
+static bool step_body(struct front_link *link)
 {
     struct problem problem;
     for (;;) {
         size_t n_taken = 0;
         if (!body_take(&link->body, link->in ? link->in + link->n_forward : "", link->n_in - link->n_forward, &n_taken,
                        &problem)) {
-            relay_link_refuse(link, &problem, RELAY_MAX_DROPPED);
+            front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
             return true;
         }
         link->n_forward += n_taken;
@@ -288,7 +288,7 @@ static bool step_body(struct relay_link *link)
             }
             if (n < 0) { /* the library answered early and reads no more */
                 link->state = LINK_ANSWER;
-                relay_link_begin_window(link);
+                front_link_begin_window(link);
                 return true;
             }
             link->moved_us = clock_now_us();
@@ -304,13 +304,13 @@ static bool step_body(struct relay_link *link)
                 link->in = NULL;
             }
             link->state = LINK_ANSWER;
-            relay_link_begin_window(link);
+            front_link_begin_window(link);
             return true;
         }
         if (link->n_forward > 0)
             continue;
         if (link->client_ended) { /* in the middle of a body: there is no one to answer */
-            relay_link_die(link);
+            front_link_die(link);
             return true;
         }
         if (!read_client(link))
@@ -319,19 +319,19 @@ static bool step_body(struct relay_link *link)
 }
 
 /* The library closed its end: this answer was the last. */
-static void finish(struct relay_link *link)
+static void finish(struct front_link *link)
 {
     char byte;
     bool has_more =
         link->n_in > 0 || !body_is_ended(&link->body) || recv(link->client, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
     if (has_more)
-        linger(link, RELAY_MAX_DROPPED);
+        linger(link, FRONT_MAX_DROPPED);
     else
-        relay_link_die(link);
+        front_link_die(link);
 }
 
 /* Waits for the end of the answer. Returns true when the state has changed. */
-static bool step_answer(struct relay_link *link)
+static bool step_answer(struct front_link *link)
 {
     if (link->n_out > 0 || link->inner_readable)
         return false;
@@ -347,11 +347,11 @@ static bool step_answer(struct relay_link *link)
     return true;
 }
 
-static void step_linger(struct relay_link *link)
+static void step_linger(struct front_link *link)
 {
     size_t n_now = 0;
     while (link->client_readable) {
-        ssize_t n = recv(link->client, link->relay->bytes, sizeof link->relay->bytes, MSG_DONTWAIT);
+        ssize_t n = recv(link->client, link->front->bytes, sizeof link->front->bytes, MSG_DONTWAIT);
         if (n < 0 && would_block()) {
             link->client_readable = false;
             return;
@@ -362,27 +362,27 @@ static void step_linger(struct relay_link *link)
             n_now += (size_t)n;
         }
         if (n <= 0 || link->n_dropped > link->max_dropped) {
-            relay_link_die(link);
+            front_link_die(link);
             return;
         }
         if (n_now >= DROP_SIZE) { /* other links have their turn */
-            relay_touch(link);
+            front_touch(link);
             return;
         }
     }
 }
 
-void relay_link_advance(struct relay_link *link)
+void front_link_advance(struct front_link *link)
 {
     bool has_changed = true;
     while (has_changed && link->state != LINK_DEAD) {
         has_changed = false;
         if (link->is_refused && link->state != LINK_LINGER) {
-            relay_link_refuse(link, &link->problem, link->max_dropped);
+            front_link_refuse(link, &link->problem, link->max_dropped);
             continue;
         }
         if (link->state != LINK_LINGER)
-            relay_link_pass_answer(link);
+            front_link_pass_answer(link);
         switch (link->state) {
         case LINK_HEAD:
             if (link->inner_ended) /* the library closed the connection between two requests */
@@ -405,15 +405,15 @@ void relay_link_advance(struct relay_link *link)
 
 /* ---- the library's side ----------------------------------------------------------------------------------------- */
 
-void relay_link_closed(struct relay_link *link)
+void front_link_closed(struct front_link *link)
 {
     link->server = -1;
-    link->relay->has_dead = true;
+    link->front->has_dead = true;
     if (link->state == LINK_DEAD || link->state == LINK_LINGER)
-        relay_uncount(link);
+        front_uncount(link);
 }
 
-bool relay_link_is_free(const struct relay_link *link)
+bool front_link_is_free(const struct front_link *link)
 {
     int n_inner = 0, n_unsent = 0;
     if (link->state == LINK_DEAD || link->n_out > 0)
@@ -423,25 +423,25 @@ bool relay_link_is_free(const struct relay_link *link)
     return n_inner == 0 && n_unsent == 0;
 }
 
-bool relay_link_is_gone(const struct relay_link *link)
+bool front_link_is_gone(const struct front_link *link)
 {
     return link->state == LINK_DEAD;
 }
 
-void relay_request_ended(struct relay_link *link)
+void front_request_ended(struct front_link *link)
 {
     link->is_request_ended = true;
     link->inner_readable = true;
-    relay_touch(link);
+    front_touch(link);
 }
 
-void relay_refuse(struct relay_link *link, const struct problem *problem, uint64_t max_dropped)
+void front_refuse(struct front_link *link, const struct problem *problem, uint64_t max_dropped)
 {
     if (link->state == LINK_DEAD || link->state == LINK_LINGER)
         return;
     link->is_refused = true;
     link->problem = *problem;
     link->max_dropped = max_dropped;
-    relay_uncount(link);
-    relay_touch(link);
+    front_uncount(link);
+    front_touch(link);
 }
