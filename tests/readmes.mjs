@@ -1,0 +1,91 @@
+// The README.md of each folder, held to the folder: every path it names exists, every source file of the folder is named in it exactly once, and
+// it is short. Prints what is wrong, a line each, and ends with 1 if there is anything.
+//
+//   node tests/readmes.mjs [FOLDER]     the project, or another tree with the same rules
+//
+// Names stand in backquotes, from the README's folder or from the root. A name stands for all files with its stem: `mesh.h` for mesh.c too. A pattern
+// (`dvh_kernels*.c`) stands for what it matches and no other name has. A small folder without a README.md is told of in the one above.
+import { execFileSync } from 'node:child_process';
+import { existsSync, readFileSync, statSync } from 'node:fs';
+import { basename, dirname, extname, join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+const roots = ['core', 'server', 'web', 'proto', 'tests', 'deploy', 'docs'];
+const mostLines = 30;
+const mostSmall = 6; // files of a folder without a README.md
+const sources = /\.(c|h|cc|hh|inc|js|mjs|css|html|sh|py|sql|glsl|frag|vert|md|json|yaml|txt|conf|service|in)$|^[^.]+$|\.[1-8]$/;
+const isPathWord = /[^/]\.(c|h|cc|hh|inc|js|mjs|css|html|sh|py|sql|glsl|frag|vert|md)$/; // other words with a dot may be the name of a format
+/** Data and what is made is told of by the README above it, not file by file. */
+const isData = (path) => /(^|\/)(corpus|fixtures|data|figures|licenses)\//.test(path) || basename(path) === 'README.md';
+
+/** @param {string} top @returns {string[]} its files, as git knows them or will */
+export function filesOf(top) {
+  const text = execFileSync('git', ['ls-files', '-co', '--exclude-standard', '--', ...roots], { cwd: top, encoding: 'utf8', maxBuffer: 1 << 26 });
+  return text.split('\n').filter((path) => path && existsSync(join(top, path))).sort();
+}
+
+const stemOf = (path) => path.slice(0, path.length - extname(path).length);
+const matcher = (pattern) => new RegExp(`^${pattern.replace(/[.+?^$()[\]{}|\\]/g, '\\$&').replaceAll('*', '[^/]*')}$`);
+
+/** The paths and patterns that a README names, with their lines. @returns {{word: string, line: number}[]} */
+const wordsOf = (text) => text.split('\n').flatMap((line, at) => [...line.matchAll(/`([^`\s]+)`|\]\(([^)#:\s]+)\)/g)].map(([, code, link]) => ({ word: code ?? link, line: at + 1 })));
+
+/** @param {string} top of a tree @returns {string[]} what is wrong */
+export function findings(top) {
+  const files = filesOf(top);
+  const readmes = new Set(files.filter((path) => basename(path) === 'README.md'));
+  const own = files.filter((path) => sources.test(basename(path)) && !isData(path));
+  const homeOf = (path) => {
+    for (let folder = dirname(path); folder !== '.'; folder = dirname(folder)) if (readmes.has(`${folder}/README.md`)) return `${folder}/README.md`;
+    return '';
+  };
+  const said = [];
+  const counts = new Map();
+  for (const path of own) counts.set(dirname(path), (counts.get(dirname(path)) ?? 0) + 1);
+  for (const [folder, n] of counts) if (n > mostSmall && !readmes.has(`${folder}/README.md`)) said.push(`${folder}/ has no README.md, and ${n} files`);
+
+  for (const readme of readmes) {
+    const text = readFileSync(join(top, readme), 'utf8');
+    const folder = dirname(readme);
+    const mine = own.filter((path) => homeOf(path) === readme);
+    const nLines = text.trimEnd().split('\n').length;
+    if (nLines > mostLines) said.push(`${readme} has ${nLines} lines; at most ${mostLines}`);
+    const exact = new Map(); // stem to lines
+    const patterns = [];
+    for (const { word, line } of wordsOf(text)) {
+      if (word.includes('*')) {
+        const tests = [join(folder, word), word].map(matcher);
+        const found = files.filter((path) => tests.some((test) => test.test(path)));
+        const looksLikePath = word.includes('/') || isPathWord.test(word);
+        if (!found.length && looksLikePath) said.push(`${readme}:${line} names ${word}, which nothing matches`);
+        const stems = new Set(found.filter((path) => mine.includes(path)).map(stemOf));
+        if (stems.size) patterns.push({ stems, line });
+        continue;
+      }
+      const path = [join(folder, word), word].map((one) => one.replace(/\/$/, '')).find((one) => existsSync(join(top, one)));
+      if (!path) {
+        if (isPathWord.test(word) || (word.includes('/') && roots.some((root) => word.startsWith(`${root}/`)))) said.push(`${readme}:${line} names ${word}, which does not exist`);
+        continue;
+      }
+      if (!statSync(join(top, path)).isFile() || !mine.includes(path)) continue;
+      exact.set(stemOf(path), [...exact.get(stemOf(path)) ?? [], line]);
+    }
+    for (const [stem, lines] of exact) if (lines.length > 1) said.push(`${stem}.* is named ${lines.length} times in ${readme}: lines ${lines.join(', ')}`);
+    const isSaid = new Set();
+    for (const path of mine) {
+      const stem = stemOf(path);
+      if (exact.has(stem) || isSaid.has(stem)) continue;
+      isSaid.add(stem);
+      const n = patterns.filter(({ stems }) => stems.has(stem)).length;
+      if (n === 0) said.push(`${path} is not named in ${readme}`);
+      if (n > 1) said.push(`${path} is matched by ${n} patterns in ${readme}`);
+    }
+  }
+  return said;
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href) {
+  const said = findings(process.argv[2] ?? '.');
+  if (said.length) console.log(said.join('\n'));
+  process.exitCode = said.length ? 1 : 0;
+}
