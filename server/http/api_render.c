@@ -9,8 +9,8 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_pictures.h"
 #include "server/http/api_queries.h"
-#include "server/room/acceptance_body.h"
-#include "server/room/body_check.h"
+#include "server/room/items/acceptance_body.h"
+#include "server/room/state/body_check.h"
 
 struct render_call {
     char plan_id[64];

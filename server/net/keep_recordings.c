@@ -11,7 +11,7 @@
 #include "server/net/bridge.h"
 #include "server/net/net.h"
 #include "server/net/schedule.h"
-#include "server/room/meeting_log.h"
+#include "server/room/log/meeting_log.h"
 #include "server/wire/json.h"
 
 /* ---- to the store ----------------------------------------------------------------------------------------------- */

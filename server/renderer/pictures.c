@@ -136,7 +136,7 @@ static struct pipeline_annotation *make_annotation(const struct snapshot *snapsh
     return annotation;
 }
 
-/* True if the picture is of a draft: server/room/display.c waits for a marked picture by the same rule. */
+/* True if the picture is of a draft: server/room/streams/display.c waits for a marked picture by the same rule. */
 static bool is_of_draft(const struct snapshot *snapshot)
 {
     const struct scene_beam_draft *draft = &snapshot->scene.beam.draft;

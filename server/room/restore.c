@@ -5,10 +5,11 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/room/known.h"
-#include "server/room/links.h"
-#include "server/room/presence.h"
-#include "server/room/stream.h"
+#include "server/room/people/known.h"
+#include "server/room/people/links.h"
+#include "server/room/room.h"
+#include "server/room/state/presence.h"
+#include "server/room/streams/stream.h"
 #include "server/wire/document.h"
 #include "server/wire/json.h"
 

@@ -2,7 +2,7 @@
  * for and whether the plan is another one since. It is read as a state, and played in a room. Invariants: what is
  * refused comes with a sentence; pages are sent JSON and renderers scenes alone; the room that was left can be kept. */
 #include "core/base/log.h"
-#include "server/room/recording.h"
+#include "server/room/log/recording.h"
 #include "server/wire/json_merge.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/kept_plan.h"

@@ -1,5 +1,5 @@
 /* Which pictures a change of the scene reaches, and that only these are requested anew. */
-#include "server/room/reach.h"
+#include "server/room/state/reach.h"
 #include "server/wire/json_merge.h"
 #include "tests/unit/room_set_up.h"
 

@@ -3,10 +3,10 @@
 #include <stdlib.h>
 
 #include "core/base/log.h"
-#include "server/room/meeting_log.h"
-#include "server/room/recording.h"
-#include "server/room/replay.h"
-#include "server/room/room_state.h"
+#include "server/room/log/meeting_log.h"
+#include "server/room/log/recording.h"
+#include "server/room/log/replay.h"
+#include "server/room/state/room_state.h"
 #include "tests/unit/room_fake.h"
 
 /* ---- the world --------------------------------------------------------------------------------------------------- */

@@ -1,5 +1,5 @@
 /* Roles, rights and colours of members. */
-#include "server/room/roles.h"
+#include "server/room/state/roles.h"
 
 #include <math.h>
 

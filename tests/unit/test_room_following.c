@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdarg.h>
 
-#include "server/room/room_state.h"
-#include "server/room/stream.h"
+#include "server/room/state/room_state.h"
+#include "server/room/streams/stream.h"
 #include "server/wire/json_merge.h"
 #include "tests/unit/meeting_model.h"
 #include "tests/unit/room_fake.h"

@@ -2,7 +2,7 @@
 #include "tests/unit/room_set_up.h"
 
 #include "core/base/mem.h"
-#include "server/room/note_body.h"
+#include "server/room/items/note_body.h"
 
 /* Ann presents, Ben and Cem do not; all have said hello. */
 static void enter(void)

@@ -1,5 +1,5 @@
 /* Oblique views of a room: there is a shared one for each plane. */
-#include "server/room/room_state.h"
+#include "server/room/state/room_state.h"
 #include "tests/unit/room_set_up.h"
 
 static void open_oblique(struct fake_page *page, int view, const char *plane, bool follow)

@@ -1,5 +1,5 @@
 /* Pacing: scale and quality of moving pictures. */
-#include "server/room/pace.h"
+#include "server/room/state/pace.h"
 #include "tests/unit/room_set_up.h"
 
 static void software_starts_at_full_size_but_with_coarse_surfaces(void **state)

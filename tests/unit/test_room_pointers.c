@@ -1,7 +1,7 @@
 /* Pointers and "look here": who hears of them, how often, and when they end. */
-#include "server/room/look.h"
-#include "server/room/pointers.h"
-#include "server/room/room_state.h"
+#include "server/room/people/look.h"
+#include "server/room/people/pointers.h"
+#include "server/room/state/room_state.h"
 #include "tests/unit/room_set_up.h"
 
 static void point(struct fake_page *page, int x)

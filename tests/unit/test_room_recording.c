@@ -3,10 +3,10 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
-#include "server/room/meeting_log.h"
-#include "server/room/recorded_parts.h"
-#include "server/room/room_state.h"
-#include "server/room/stream.h"
+#include "server/room/log/meeting_log.h"
+#include "server/room/log/recorded_parts.h"
+#include "server/room/state/room_state.h"
+#include "server/room/streams/stream.h"
 #include "tests/unit/room_fake.h"
 
 enum { N_PEOPLE = 5, N_STEPS = 24000, N_MOMENTS = 300, MAX_BATCHES = 8192, MEETING_MS = 2 * 3600 * 1000 };

@@ -1,7 +1,7 @@
 /* What members are told of the server's disk, and how often. */
 #include "tests/unit/room_set_up.h"
 
-#include "server/room/saved.h"
+#include "server/room/out/saved.h"
 
 static void disk(enum wire_saved_state state, uint32_t revision)
 {

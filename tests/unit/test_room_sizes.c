@@ -2,7 +2,7 @@
  * or compressed again. */
 #include <stdlib.h>
 
-#include "server/room/lag.h"
+#include "server/room/streams/lag.h"
 #include "tests/unit/room_fake.h"
 
 enum { N_PAGES = 12, WIDTH = 1440, HEIGHT = 900 };

@@ -1,6 +1,6 @@
 // Notes of a room as threads: their numbers, their filter, who is mentioned. Pure.
 
-export const maxText = 2000; // characters, server/room/note_body.h
+export const maxText = 2000; // characters, server/room/items/note_body.h
 const maxMentions = 16;
 
 /** @typedef {{note: object, number: number, replies: object[], lastMs: number}} Thread */

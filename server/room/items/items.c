@@ -1,0 +1,291 @@
+/* Checks changes of items, writes their rows, and tells members and the room's owner. */
+#include "server/room/items/items.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+#include "server/room/items/acceptance.h"
+#include "server/room/items/item_list.h"
+#include "server/room/items/item_row.h"
+#include "server/room/items/record_body.h"
+#include "server/room/items/room_items.h"
+#include "server/room/log/recording.h"
+#include "server/room/out/audit.h"
+#include "server/room/people/member.h"
+
+#include "server/room/out/send.h"
+#include "server/room/state/roles.h"
+
+/* ---- rows ------------------------------------------------------------------------------------------------------- */
+
+/* 40 random bits: an id is not used again, so that what a page says late about a deleted item reaches no other one. */
+static void make_id(const struct room *room, char id[16])
+{
+    uint8_t bytes[5];
+    do {
+        ssize_t n;
+        do
+            n = getrandom(bytes, sizeof bytes, 0);
+        while (n < 0 && errno == EINTR);
+        if (n != (ssize_t)sizeof bytes)
+            abort(); /* as a member's secret */
+        (void)snprintf(id, 16, "i-%02x%02x%02x%02x%02x", bytes[0], bytes[1], bytes[2], bytes[3], bytes[4]);
+    } while (items_find(room, id));
+}
+
+static void copy_name(char to[161], const char *from)
+{
+    (void)snprintf(to, 161, "%s", from);
+}
+
+/* ---- changes ---------------------------------------------------------------------------------------------------- */
+
+/* Tells all members; row NULL: the item is deleted. by: a member's id; input: the number of it that this member gave.
+ */
+static void tell_members(struct room *room, const char *id, const char *row, const char *by, uint32_t input)
+{
+    struct message message = { .type = MESSAGE_ITEM, .item = { .item = row ? cJSON_CreateRaw(row) : NULL } };
+    (void)snprintf(message.item.id, sizeof message.item.id, "%s", id);
+    (void)snprintf(message.item.by, sizeof message.item.by, "%s", by);
+    recording_item_changed(room, id);
+    for (int i = 0; i < room->n_members; i++) {
+        const bool is_own = strcmp(room->members[i]->id, by) == 0;
+        message.item.input = is_own ? input : 0; /* the input number is only for its sender */
+        send_to_member(room, room->members[i], &message);
+    }
+    message_finish(&message);
+}
+
+/* Tells the room's owner and all members. */
+static void tell(struct room *room, const char *id, const char *row, const struct member *by, uint32_t input)
+{
+    room->saved.n_item_changes++;
+    if (room->callbacks.item_changed)
+        room->callbacks.item_changed(room->callbacks.context, room, row, id);
+    tell_members(room, id, row, by->id, input);
+}
+
+/* The item that a member may change or delete, which knows it in this version (0: whatever it is). NULL with problem.
+ */
+static struct item *find_to_change(const struct room *room, const struct member *member, const char *id,
+                                   int64_t version, struct problem *problem)
+{
+    struct item *item = items_find(room, id);
+    if (!item) {
+        problem_set(problem, PROBLEM_NOT_FOUND, "/item", "", "there is no item \"%.63s\", or not any more", id);
+        return NULL;
+    }
+    if (!record_may_change(room, item, problem) || !acceptance_may(room, member, item->kind, problem))
+        return NULL;
+    if (item->kind != WIRE_ITEM_KIND_CHECK && item->kind != WIRE_ITEM_KIND_ACCEPTANCE &&
+        strcmp(item->author, member->id) != 0 && member->role != WIRE_MEMBER_ROLE_PRESENTER) {
+        problem_set(problem, PROBLEM_FORBIDDEN, "/item", "",
+                    "this %s is by %.40s: only its author or a member of role presenter changes or deletes it",
+                    item_word(item->kind), item->author_name);
+        return NULL;
+    }
+    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+        if (strcmp(keeping->item.id, id) == 0) {
+            problem_set(problem, PROBLEM_CONFLICT, "/item", "",
+                        "another change of this %s by %.40s is just being kept: try again", item_word(item->kind),
+                        keeping->item.changed_name);
+            return NULL;
+        }
+    if (version && version != item->version) {
+        problem_set(problem, PROBLEM_CONFLICT, "/version", "",
+                    "this %s was changed by %.40s meanwhile: it is at version %u, the change was made for %lld",
+                    item_word(item->kind), item->changed_name, item->version, (long long)version);
+        return NULL;
+    }
+    return item;
+}
+
+/* The item in the list becomes next with this row (taken); before NULL: it is new. */
+static struct item *take(struct room *room, struct item *before, const struct item *next, char *row)
+{
+    struct item *item = before ? before : mem_new(sizeof *item);
+    char *old_row = before ? before->row : NULL;
+    *item = *next;
+    item->next = before ? next->next : NULL;
+    item->row = old_row;
+    items_keep(room, item, row);
+    return item;
+}
+
+static bool write_first(struct room *room, const struct keeping *keeping, const struct member *member,
+                        struct problem *problem)
+{
+    const struct item *item = &keeping->item;
+    struct audit_apart apart = { 0 };
+    char *record = record_of(room, item, problem);
+    const bool has_record = record || !record_is_wanted(item->kind);
+    room->apart = &apart;
+    record_audit(room, item, member, record);
+    acceptance_audit(room, item, member, false);
+    room->apart = NULL;
+    const struct room_item_write write = { .id = item->id,
+                                           .kind = item_word(item->kind),
+                                           .row = item->row,
+                                           .author = item->author,
+                                           .author_name = item->author_name,
+                                           .time_ms = item->changed_ms,
+                                           .record = record,
+                                           .audit = &apart.row };
+    const bool is_begun =
+        has_record && room->callbacks.item_first(room->callbacks.context, room, keeping->number, &write, problem);
+    audit_apart_finish(&apart);
+    free(record);
+    return is_begun;
+}
+
+/* Has the item written, and only then lets it count. next->row is taken. */
+static bool keep_first(struct room *room, const struct item *next, bool is_change, const struct member *member,
+                       uint32_t input, struct problem *problem)
+{
+    struct keeping *keeping = mem_new(sizeof *keeping), **last = &room->keeping;
+    *keeping = (struct keeping){ .number = ++room->n_kept, .item = *next, .is_change = is_change, .input = input };
+    (void)snprintf(keeping->member, sizeof keeping->member, "%s", member->id);
+    if (!write_first(room, keeping, member, problem)) {
+        free(keeping->item.row);
+        free(keeping);
+        return false;
+    }
+    while (*last)
+        last = &(*last)->next;
+    *last = keeping;
+    return true;
+}
+
+void items_forget_keeping(struct room *room)
+{
+    while (room->keeping) {
+        struct keeping *keeping = room->keeping;
+        room->keeping = keeping->next;
+        free(keeping->item.row);
+        free(keeping);
+    }
+}
+
+size_t room_n_items_written(const struct room *room)
+{
+    size_t n = 0;
+    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+        n++;
+    return n;
+}
+
+void room_item_written(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
+{
+    struct keeping **at = &room->keeping, *keeping;
+    room->now_us = now_us;
+    while (*at && (*at)->number != number)
+        at = &(*at)->next;
+    if (!(keeping = *at))
+        return;
+    *at = keeping->next;
+    if (problem) {
+        for (int i = 0; i < room->n_members; i++)
+            if (strcmp(room->members[i]->id, keeping->member) == 0 && room->members[i]->connection)
+                (void)send_problem(room, room->members[i]->connection, "item.put", 0, keeping->input, problem);
+        free(keeping->item.row);
+    } else {
+        struct item *before = keeping->is_change ? items_find(room, keeping->item.id) : NULL;
+        const struct item *item = take(room, before, &keeping->item, keeping->item.row);
+        room->saved.n_item_changes++;
+        tell_members(room, item->id, item->row, keeping->member, keeping->input);
+        if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
+            acceptances_settle(room);
+    }
+    free(keeping);
+    members_close_lost(room);
+}
+
+bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    const struct message_item_put *put = &message->item_put;
+    struct item *before = NULL, next = { .kind = put->kind };
+    if (!record_may_write(room, member, put->kind, problem))
+        return false;
+    if (put->item[0]) {
+        if (put->version == 0)
+            return problem_set(problem, PROBLEM_VALIDATION, "/version", "required",
+                               "a change needs the version that it was made for");
+        before = find_to_change(room, member, put->item, put->version, problem);
+        if (!before)
+            return false;
+        if (before->kind != put->kind)
+            return problem_set(problem, PROBLEM_VALIDATION, "/kind", "enum", "this item is a %s and stays one",
+                               item_word(before->kind));
+        if (!acceptance_may_write(room, member, put->kind, before, problem))
+            return false;
+        next = *before;
+    } else {
+        if (!acceptance_may_write(room, member, put->kind, NULL, problem))
+            return false;
+        make_id(room, next.id);
+        (void)snprintf(next.author, sizeof next.author, "%s", member->id);
+        copy_name(next.author_name, member->name);
+        (void)snprintf(next.author_color, sizeof next.author_color, "#%06x", color_rgb(member->color) & 0xffffffU);
+        next.created_ms = clock_wall_ms(); /* only to be displayed */
+        const char *parent = json_text(put->body, "parent");
+        (void)snprintf(next.parent, sizeof next.parent, "%s", put->kind == WIRE_ITEM_KIND_NOTE && parent ? parent : "");
+    }
+    next.version++;
+    next.changed_ms = before ? clock_wall_ms() : next.created_ms;
+    copy_name(next.changed_name, member->name);
+    room->writer = member;
+    char *body = item_body_text(room, put->kind, put->body, before, false, problem);
+    room->writer = NULL;
+    char *row = body ? item_row_text(&next, body) : NULL;
+    if (body && !row)
+        json_no_memory(problem, "an item");
+    free(body);
+    if (!row || !items_have_place(room, before, strlen(row), problem)) {
+        free(row);
+        return false;
+    }
+    if (room->callbacks.item_first) {
+        next.row = row;
+        return keep_first(room, &next, before != NULL, member, (uint32_t)put->input, problem);
+    }
+    struct item *item = take(room, before, &next, row);
+    record_audit(room, item, member, NULL);
+    acceptance_audit(room, item, member, false);
+    tell(room, item->id, item->row, member, (uint32_t)put->input);
+    if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
+        acceptances_settle(room);
+    return true;
+}
+
+bool items_delete(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    const struct message_item_delete *asked = &message->item_delete;
+    struct item *item = find_to_change(room, member, asked->item, asked->version, problem);
+    if (!item || (room->callbacks.can_write && !room->callbacks.can_write(room->callbacks.context, problem)))
+        return false;
+    for (struct item *reply = room->items, *after; reply; reply = after) {
+        after = reply->next;
+        if (strcmp(reply->parent, item->id) != 0)
+            continue;
+        char id[sizeof reply->id];
+        memcpy(id, reply->id, sizeof id);
+        record_audit_deleted(room, reply, member);
+        items_drop(room, reply);
+        tell(room, id, NULL, member, 0);
+    }
+    const bool was_accepted = item->kind == WIRE_ITEM_KIND_ACCEPTANCE;
+    if (was_accepted)
+        acceptance_audit(room, item, member, true);
+    else
+        record_audit_deleted(room, item, member);
+    items_drop(room, item);
+    tell(room, asked->item, NULL, member, (uint32_t)asked->input);
+    if (was_accepted)
+        acceptances_settle(room);
+    return true;
+}

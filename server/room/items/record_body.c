@@ -1,0 +1,275 @@
+/* Checks what is written of the record of a review: record_body.h. */
+#include "server/room/items/record_body.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "server/auth/digest.h"
+#include "server/room/items/item_list.h"
+#include "server/room/out/audit.h"
+#include "server/room/state/body_check.h"
+#include "server/room/state/roles.h"
+
+static bool is_of_record(enum wire_item_kind kind)
+{
+    return kind == WIRE_ITEM_KIND_CHECK || kind == WIRE_ITEM_KIND_DECISION || kind == WIRE_ITEM_KIND_SIGNATURE;
+}
+
+static bool is_append_only(enum wire_item_kind kind)
+{
+    return kind == WIRE_ITEM_KIND_DECISION || kind == WIRE_ITEM_KIND_SIGNATURE;
+}
+
+static cJSON *body_of(const struct item *item, cJSON **row)
+{
+    *row = json_read(item->row, strlen(item->row), NULL);
+    return cJSON_GetObjectItemCaseSensitive(*row, "body");
+}
+
+/* ---- fields ----------------------------------------------------------------------------------------------------- */
+
+static bool check_word(const cJSON *body, const char *name, const struct field_words *words, struct problem *problem)
+{
+    char where[64], expected[160] = "";
+    const char *word = json_text(body, name);
+    (void)snprintf(where, sizeof where, "/body/%s", name);
+    for (size_t i = 0; i < words->n; i++) {
+        if (word && strcmp(word, words->words[i]) == 0)
+            return true;
+        (void)snprintf(expected + strlen(expected), sizeof expected - strlen(expected), "%s%s", i ? ", " : "",
+                       words->words[i]);
+    }
+    return problem_set(problem, PROBLEM_VALIDATION, where, word ? "enum" : "required", "%s is \"%.40s\", expected %s",
+                       where, word ? word : "", expected);
+}
+
+/* Text that may be empty or left out. */
+static bool check_optional(const cJSON *body, const char *name, size_t most, struct problem *problem)
+{
+    char where[64];
+    const cJSON *value = cJSON_GetObjectItemCaseSensitive(body, name);
+    (void)snprintf(where, sizeof where, "/body/%s", name);
+    return !value || (cJSON_IsString(value) && !value->valuestring[0]) || body_check_text(value, where, most, problem);
+}
+
+static void copy_text(cJSON *to, const cJSON *from, const char *name)
+{
+    const char *text = json_text(from, name);
+    cJSON_AddStringToObject(to, name, text ? text : "");
+}
+
+/* Revision and role: as they were kept, else those of now. */
+static void give_place(const struct room *room, const cJSON *body, bool is_restored, cJSON *read)
+{
+    const char *revision = is_restored ? json_text(body, "plan_revision") : room->plan_revision;
+    const char *role = is_restored ? json_text(body, "role") : NULL;
+    if (!is_restored && room->writer)
+        role = wire_member_role_words.words[room->writer->role];
+    cJSON_AddStringToObject(read, "plan_revision", revision && strlen(revision) <= 64 ? revision : "");
+    cJSON_AddStringToObject(read, "role", role && strlen(role) < 16 ? role : "");
+}
+
+/* corrects: "", or an earlier item of the same kind. */
+static bool check_corrects(const struct room *room, const cJSON *body, enum wire_item_kind kind, bool is_restored,
+                           struct problem *problem)
+{
+    static const char where[] = "/body/corrects";
+    const cJSON *corrects = cJSON_GetObjectItemCaseSensitive(body, "corrects");
+    if (!corrects || (cJSON_IsString(corrects) && !corrects->valuestring[0]))
+        return true;
+    if (!body_check_id(corrects, where, problem))
+        return false;
+    const struct item *item = items_find(room, corrects->valuestring);
+    return is_restored || (item && item->kind == kind) ||
+           problem_set(problem, PROBLEM_VALIDATION, where, "unknown-id", "there is no %s \"%s\" to correct",
+                       wire_item_kind_words.words[kind], corrects->valuestring);
+}
+
+/* ---- kinds ------------------------------------------------------------------------------------------------------ */
+
+static bool is_of_entry(const struct room *room, const struct item *item, const char *entry)
+{
+    if (item->kind != WIRE_ITEM_KIND_CHECK)
+        return false;
+    cJSON *row, *body = body_of(item, &row);
+    const char *found = json_text(body, "entry"), *revision = json_text(body, "plan_revision");
+    const bool is_of = found && revision && strcmp(found, entry) == 0 && strcmp(revision, room->plan_revision) == 0;
+    cJSON_Delete(row);
+    return is_of;
+}
+
+/* Whether another check of the same entry stands under the same revision, or is being kept. */
+static bool entry_is_there(const struct room *room, const char *entry, const struct item *before)
+{
+    for (const struct item *item = room->items; item; item = item->next)
+        if (item != before && is_of_entry(room, item, entry))
+            return true;
+    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+        if (!(before && strcmp(keeping->item.id, before->id) == 0) && is_of_entry(room, &keeping->item, entry))
+            return true;
+    return false;
+}
+
+static bool check_entry(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
+                        struct problem *problem)
+{
+    static const char where[] = "/body/entry";
+    const cJSON *entry = cJSON_GetObjectItemCaseSensitive(body, "entry");
+    const char *id = cJSON_IsString(entry) ? entry->valuestring : "";
+    if (entry && !cJSON_IsString(entry))
+        return body_refuse_type(problem, where, "an id");
+    if (id[0] && !body_check_id(entry, where, problem))
+        return false;
+    if (before) {
+        cJSON *row, *old = body_of(before, &row);
+        const char *was = json_text(old, "entry");
+        const bool is_same = was && strcmp(was, id) == 0;
+        cJSON_Delete(row);
+        if (!is_same)
+            return problem_set(problem, PROBLEM_VALIDATION, where, "enum",
+                               "an entry of the checklist stays what it is");
+    }
+    if (id[0] && !is_restored && entry_is_there(room, id, before))
+        return problem_set(problem, PROBLEM_CONFLICT, where, "",
+                           "somebody has marked this entry of the checklist meanwhile: change that");
+    return true;
+}
+
+cJSON *record_read_check(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
+                         struct problem *problem)
+{
+    static const char *const names[] = { "entry", "text", "state", "comment", "plan_revision", "role", NULL };
+    if (!body_names_are(body, names, "/body", problem) ||
+        !body_check_text(cJSON_GetObjectItemCaseSensitive(body, "text"), "/body/text", RECORD_MAX_ENTRY, problem) ||
+        !check_word(body, "state", &wire_check_state_words, problem) ||
+        !check_optional(body, "comment", RECORD_MAX_TEXT, problem) ||
+        !check_entry(room, body, before, is_restored, problem))
+        return NULL;
+    cJSON *read = cJSON_CreateObject();
+    copy_text(read, body, "entry");
+    copy_text(read, body, "text");
+    copy_text(read, body, "state");
+    copy_text(read, body, "comment");
+    give_place(room, body, is_restored, read);
+    return read;
+}
+
+cJSON *record_read_decision(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
+                            struct problem *problem)
+{
+    static const char *const names[] = { "decision", "text", "corrects", "plan_revision", "role", NULL };
+    (void)before; /* never changed */
+    if (!body_names_are(body, names, "/body", problem) ||
+        !check_word(body, "decision", &wire_decision_words, problem) ||
+        !check_optional(body, "text", RECORD_MAX_TEXT, problem) ||
+        !check_corrects(room, body, WIRE_ITEM_KIND_DECISION, is_restored, problem))
+        return NULL;
+    cJSON *read = cJSON_CreateObject();
+    copy_text(read, body, "decision");
+    copy_text(read, body, "text");
+    copy_text(read, body, "corrects");
+    give_place(room, body, is_restored, read);
+    return read;
+}
+
+cJSON *record_read_signature(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
+                             struct problem *problem)
+{
+    static const char *const names[] = { "name", "meaning", "corrects", "plan_revision", "role", NULL };
+    (void)before; /* never changed */
+    if (!body_names_are(body, names, "/body", problem) ||
+        !body_check_text(cJSON_GetObjectItemCaseSensitive(body, "name"), "/body/name", RECORD_MAX_NAME, problem) ||
+        !check_word(body, "meaning", &wire_meaning_words, problem) ||
+        !check_corrects(room, body, WIRE_ITEM_KIND_SIGNATURE, is_restored, problem))
+        return NULL;
+    cJSON *read = cJSON_CreateObject();
+    copy_text(read, body, "name");
+    copy_text(read, body, "meaning");
+    copy_text(read, body, "corrects");
+    give_place(room, body, is_restored, read);
+    return read;
+}
+
+/* ---- rights ----------------------------------------------------------------------------------------------------- */
+
+bool record_may_write(const struct room *room, const struct member *member, enum wire_item_kind kind,
+                      struct problem *problem)
+{
+    if (!is_of_record(kind))
+        return true;
+    if (kind == WIRE_ITEM_KIND_DECISION && member->role != WIRE_MEMBER_ROLE_PRESENTER)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role",
+                           "only a member of role presenter writes down what was decided");
+    if (!room->plan_revision[0]) {
+        problem_set(problem, PROBLEM_BUSY, "", "",
+                    "the revision of the plan's files is not known yet: GET /api/v1/plans/%s/revision", room->plan_id);
+        problem->retry_after_ms = 1000;
+        return false;
+    }
+    if (is_append_only(kind) && room->files_changed_ms)
+        return problem_set(
+            problem, PROBLEM_CONFLICT, "", "files",
+            "the plan's files have changed on the disk since they were read: nothing is decided or signed "
+            "until they are read anew");
+    return !is_append_only(kind) || audit_has_place(room, problem);
+}
+
+bool record_may_change(const struct room *room, const struct item *item, struct problem *problem)
+{
+    if (is_append_only(item->kind))
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/item", "append-only",
+                           "a %s is never changed or deleted: write another one that corrects it",
+                           wire_item_kind_words.words[item->kind]);
+    if (item->kind != WIRE_ITEM_KIND_CHECK)
+        return true;
+    cJSON *row, *body = body_of(item, &row);
+    const char *revision = json_text(body, "plan_revision");
+    const bool is_of_now = revision && strcmp(revision, room->plan_revision) == 0;
+    cJSON_Delete(row);
+    return is_of_now || problem_set(problem, PROBLEM_FORBIDDEN, "/item", "append-only",
+                                    "this entry stands under an earlier revision of the plan's files, and stays");
+}
+
+/* The act without its words. */
+static struct audit_act act_of(const struct room *room, const struct item *item, const struct member *by)
+{
+    const struct audit_act act = { .by = by,
+                                   .action = wire_item_kind_words.words[item->kind],
+                                   .detail = cJSON_CreateObject(),
+                                   .before = -1,
+                                   .after = room->revision };
+    cJSON_AddStringToObject(act.detail, "item", item->id);
+    cJSON_AddNumberToObject(act.detail, "version", item->version);
+    return act;
+}
+
+void record_audit(struct room *room, const struct item *item, const struct member *by, const char *record)
+{
+    char hex[DIGEST_TEXT];
+    if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE) /* acceptance.h */
+        return;
+    const struct audit_act act = act_of(room, item, by);
+    digest_text(item->row, hex);
+    cJSON_AddStringToObject(act.detail, "sha256", hex);
+    if (is_append_only(item->kind)) {
+        cJSON *row, *body = body_of(item, &row);
+        copy_text(act.detail, body, item->kind == WIRE_ITEM_KIND_DECISION ? "decision" : "meaning");
+        if (item->kind == WIRE_ITEM_KIND_SIGNATURE)
+            copy_text(act.detail, body, "name");
+        copy_text(act.detail, body, "corrects");
+        copy_text(act.detail, body, "plan_revision");
+        cJSON_Delete(row);
+    }
+    if (record) {
+        digest_text(record, hex);
+        cJSON_AddStringToObject(act.detail, "record_sha256", hex);
+    }
+    audit_tell(room, &act);
+}
+
+void record_audit_deleted(struct room *room, const struct item *item, const struct member *by)
+{
+    const struct audit_act act = act_of(room, item, by);
+    cJSON_AddBoolToObject(act.detail, "deleted", true);
+    audit_tell(room, &act);
+}

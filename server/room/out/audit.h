@@ -1,0 +1,44 @@
+#pragma once
+/* What members do that is recorded in the audit (room_callbacks.audited). Acts that are equal in everything but their
+ * time, as when a program repeats what it was refused, are gathered into one row, as are the steps of one gesture,
+ * which change the same fields. Internal to server/room. */
+#include "server/room/state/room_state.h"
+
+struct audit_act {
+    const struct member *by; /* NULL: nobody of the room */
+    const char *action;      /* a word of room.h's list */
+    const char *key;         /* of a gesture: the fields that it changes; NULL: of another act */
+    const char *address;     /* NULL: that of the member */
+    cJSON *detail;           /* taken; NULL: {} */
+    bool is_refused;
+    int64_t before, after; /* revisions of the scene; -1: does not apply */
+};
+
+/* A row that is committed together with an item, instead of by the callback audited. */
+struct audit_apart {
+    struct gathered act;
+    char *detail;          /* owned */
+    struct room_audit row; /* borrows from the two */
+};
+void audit_apart_finish(struct audit_apart *apart);
+
+/* Records it at once, and gathers the repetitions that follow: the same member, name, role, address, action, detail and
+ * result. */
+void audit_tell(struct room *room, const struct audit_act *act);
+/* Records a step of a gesture when that is over: nothing of the same member, action and key came for
+ * ROOM_AUDIT_QUIET_MS, or it has lasted for ROOM_AUDIT_AT_MOST_MS. before is that of the first step, after and detail
+ * those of the last. */
+void audit_gather(struct room *room, const struct audit_act *act);
+/* Records what is gathered of this member; NULL: of everybody. */
+void audit_flush(struct room *room, const struct member *by);
+/* Records what is over; when the next is due, INT64_MAX: nothing is gathered. */
+int64_t audit_tick(struct room *room);
+void audit_free(struct room *room);
+/* False with problem storage: what is recorded cannot be stored now, so it is refused. */
+bool audit_has_place(const struct room *room, struct problem *problem);
+
+/* What a change of the scene, from before to the room's, has for the audit: weights of doses, the beam's draft. by
+ * NULL: a call of nobody in the room. */
+void audit_scene(struct room *room, const cJSON *before, const struct member *by);
+/* Whether there is anything. */
+bool audit_is_of_scene(const cJSON *before, const cJSON *after);

@@ -1,0 +1,108 @@
+/* Tells who has control. */
+#include "server/room/people/control.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "server/room/out/audit.h"
+#include "server/room/out/send.h"
+#include "server/wire/message.h"
+
+/* The ids of those who request control, the oldest request first. */
+static cJSON *requests_list(const struct room *room)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (uint64_t after = 0;;) {
+        const struct member *next = NULL;
+        for (int i = 0; i < room->n_members; i++) {
+            const struct member *member = room->members[i];
+            if (member->request > after && (!next || member->request < next->request))
+                next = member;
+        }
+        if (!next)
+            return list;
+        json_append(list, cJSON_CreateString(next->id));
+        after = next->request;
+    }
+}
+
+static void fill(const struct room *room, struct message *message)
+{
+    *message = (struct message){ .type = MESSAGE_CONTROL };
+    message->control.locked = room->is_locked;
+    message->control.requests = requests_list(room);
+    (void)snprintf(message->control.presenter, sizeof message->control.presenter, "%s",
+                   room->presenter ? room->presenter->id : "");
+}
+
+void control_send(struct room *room, struct member *member)
+{
+    struct message message;
+    fill(room, &message);
+    send_to_member(room, member, &message);
+    message_finish(&message);
+}
+
+static const struct member *find(const struct room *room, const char *id)
+{
+    for (int i = 0; i < room->n_members; i++)
+        if (strcmp(room->members[i]->id, id) == 0)
+            return room->members[i];
+    return NULL;
+}
+
+static void record(struct room *room)
+{
+    const char *act = wire_control_act_words.words[room->control_act.act];
+    const struct audit_act row = { .by = find(room, room->control_act.by),
+                                   .action = "control",
+                                   .detail = cJSON_CreateObject(),
+                                   .before = -1,
+                                   .after = -1 };
+    cJSON_AddStringToObject(row.detail, "act", act);
+    cJSON_AddStringToObject(row.detail, "member", room->control_act.member);
+    audit_tell(room, &row);
+}
+
+void control_tell(struct room *room)
+{
+    struct message message;
+    if (!room->control_is_new)
+        return;
+    fill(room, &message);
+    message.control.act = room->control_act.act;
+    (void)snprintf(message.control.member, sizeof message.control.member, "%s", room->control_act.member);
+    (void)snprintf(message.control.by, sizeof message.control.by, "%s", room->control_act.by);
+    room->control_is_new = false;
+    if (room->control_act.act != WIRE_CONTROL_ACT_NONE)
+        record(room);
+    send_to_all(room, &message);
+    message_finish(&message);
+}
+
+void control_note(struct room *room, enum wire_control_act act, const struct member *member, const struct member *by)
+{
+    room->control_is_new = true;
+    room->control_act.act = act;
+    (void)snprintf(room->control_act.member, sizeof room->control_act.member, "%s", member ? member->id : "");
+    (void)snprintf(room->control_act.by, sizeof room->control_act.by, "%s", by ? by->id : "");
+}
+
+void control_pass(struct room *room, struct member *member)
+{
+    if (room->presenter == member)
+        return;
+    room->presenter = member;
+    room->is_locked = false;
+    for (int i = 0; i < room->n_members; i++)
+        if (!member || room->members[i] == member)
+            room->members[i]->request = 0;
+    control_note(room, member ? WIRE_CONTROL_ACT_TAKEN : WIRE_CONTROL_ACT_LEFT, member, member);
+}
+
+void control_left(struct room *room, struct member *member)
+{
+    if (member->request)
+        control_note(room, WIRE_CONTROL_ACT_WITHDRAWN, member, member);
+    member->request = 0;
+}

@@ -1,0 +1,15 @@
+#pragma once
+/* Who has control of a room, who requests it, whether it is locked; the control message that tells it. Who presents is
+ * room->presenter. Internal to server/room. */
+#include "server/room/state/room_state.h"
+
+/* Makes the member the presenter, NULL: nobody. A lock ends, and the member's request; with nobody, all requests. */
+void control_pass(struct room *room, struct member *member);
+/* To be told with the next control message. */
+void control_note(struct room *room, enum wire_control_act act, const struct member *member, const struct member *by);
+/* The member's connection was lost: its request ends. */
+void control_left(struct room *room, struct member *member);
+/* Tells all members how things stand, if that has changed since the last time. */
+void control_tell(struct room *room);
+/* Tells one member how things stand. */
+void control_send(struct room *room, struct member *member);

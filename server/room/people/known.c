@@ -1,0 +1,97 @@
+/* The list of members that left. */
+#include "server/room/people/known.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "server/room/state/roles.h"
+
+void known_write(const struct member *member, struct room_kept_member *kept)
+{
+    *kept = (struct room_kept_member){ 0 };
+    (void)snprintf(kept->id, sizeof kept->id, "%s", member->id);
+    (void)snprintf(kept->name, sizeof kept->name, "%s", member->name);
+    (void)snprintf(kept->color, sizeof kept->color, "#%06x", (unsigned)color_rgb(member->color) & 0xffffff);
+    (void)snprintf(kept->role, sizeof kept->role, "%s", wire_member_role_words.words[member->role]);
+    memcpy(kept->secret_hash, member->secret_hash, sizeof kept->secret_hash);
+}
+
+void known_read(const struct room_kept_member *kept, struct member *member)
+{
+    (void)snprintf(member->id, sizeof member->id, "%s", kept->id);
+    (void)snprintf(member->name, sizeof member->name, "%.160s", kept->name);
+    member->number = (uint32_t)strtoul(kept->id + (kept->id[0] == 'm'), NULL, 10);
+    memcpy(member->secret_hash, kept->secret_hash, sizeof member->secret_hash);
+    member->role = WIRE_MEMBER_ROLE_REVIEWER; /* of a member from before there were roles */
+    for (size_t i = 0; i < wire_member_role_words.n; i++)
+        if (strcmp(kept->role, wire_member_role_words.words[i]) == 0)
+            member->role = (enum wire_member_role)i;
+    for (int i = 0; i < ROLES_N_COLORS; i++) {
+        char color[8];
+        (void)snprintf(color, sizeof color, "#%06x", (unsigned)color_rgb(i) & 0xffffff);
+        if (strcmp(kept->color, color) == 0)
+            member->color = i;
+    }
+}
+
+static void known_remove(struct room *room, int index)
+{
+    room->n_known--;
+    memmove(&room->known[index], &room->known[index + 1], (size_t)(room->n_known - index) * sizeof room->known[0]);
+}
+
+/* Presenters are forgotten last: once none is known, the next stranger in the empty room becomes one. */
+static int first_to_forget(const struct room *room)
+{
+    int first = 0;
+    while (first < room->n_known &&
+           strcmp(room->known[first].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) == 0)
+        first++;
+    return first < room->n_known ? first : 0;
+}
+
+void known_add(struct room *room, const struct room_kept_member *kept)
+{
+    if (!room->known)
+        room->known = mem_array(ROOM_MAX_KNOWN, sizeof room->known[0], 1 << 20, NULL);
+    if (!room->known)
+        return; /* then it cannot come back as the same */
+    if (room->n_known == ROOM_MAX_KNOWN)
+        known_remove(room, first_to_forget(room));
+    room->known[room->n_known] = *kept;
+    room->known[room->n_known++].has_left = true;
+}
+
+void known_add_member(struct room *room, const struct member *member)
+{
+    struct room_kept_member kept;
+    known_write(member, &kept);
+    known_add(room, &kept);
+}
+
+/* -1: there is none. */
+static int find(const struct room *room, const char *id, const char *secret)
+{
+    for (int i = 0; i < room->n_known && id[0]; i++)
+        if (strcmp(room->known[i].id, id) == 0 && secret_matches(secret, room->known[i].secret_hash))
+            return i;
+    return -1;
+}
+
+bool known_has(const struct room *room, const char *id, const char *secret)
+{
+    return find(room, id, secret) >= 0;
+}
+
+struct member *known_back(struct room *room, const char *id, const char *secret)
+{
+    const int index = find(room, id, secret);
+    if (index < 0)
+        return NULL;
+    struct member *member = mem_new(sizeof *member);
+    known_read(&room->known[index], member);
+    known_remove(room, index);
+    return member;
+}

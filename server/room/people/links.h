@@ -1,0 +1,11 @@
+#pragma once
+/* Links that let new members in with a role: room_link_create, and finding one for a hello. Internal to server/room. */
+#include "server/room/state/room_state.h"
+
+/* Finds the link that the token opens for this person. Returns NULL, or the sentence why it opens nothing. */
+const char *link_find(struct room *room, const char *token, const char *person, struct link **found);
+/* The member came in by it. */
+void link_used(struct room *room, struct link *link, const struct member *member, const char *person);
+/* To what is kept and back. False: no memory. */
+bool links_write(const struct room *room, struct room_kept *kept);
+void links_read(struct room *room, const struct room_kept *kept);

@@ -1,0 +1,242 @@
+/* Lets members in and out. */
+#include "server/room/people/member.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/mem.h"
+#include "server/room/items/acceptance.h"
+#include "server/room/items/record_body.h"
+#include "server/room/log/recording.h"
+#include "server/room/log/replay.h"
+#include "server/room/out/audit.h"
+#include "server/room/out/saved.h"
+#include "server/room/out/send.h"
+#include "server/room/people/control.h"
+#include "server/room/people/known.h"
+#include "server/room/people/links.h"
+#include "server/room/people/look.h"
+#include "server/room/people/pointers.h"
+#include "server/room/people/presenter.h"
+#include "server/room/state/member_list.h"
+#include "server/room/state/presence.h"
+#include "server/room/state/roles.h"
+#include "server/room/state/secret.h"
+#include "server/room/views/marks.h"
+#include "server/room/views/member_view.h"
+
+static const char replaced[] = "this member has come back on another connection";
+static const char room_is_full[] = "the room is full";
+static const char old_page[] = "the page speaks another protocol version: reload it";
+static const char unrecorded[] = "what happens here is recorded, and the server's disk takes no more records now";
+enum { FULL_RETRY_MS = 30000, UNRECORDED_RETRY_MS = 10000 };
+
+static void member_free(struct room *room, int index)
+{
+    struct member *member = room->members[index];
+    views_close(room, member);
+    if (member_presents(room, member))
+        room->presenter = NULL;
+    free(member);
+    room->members[index] = room->members[--room->n_members];
+}
+
+void members_free(struct room *room)
+{
+    while (room->n_members)
+        member_free(room, room->n_members - 1);
+}
+
+int64_t members_forget(struct room *room)
+{
+    const int64_t kept_us = ROOM_MEMBER_KEPT_S * INT64_C(1000000);
+    int64_t again_us = INT64_MAX;
+    bool has_changed = false;
+    for (int i = room->n_members - 1; i >= 0; i--) {
+        const struct member *member = room->members[i];
+        if (member->connection)
+            continue;
+        int64_t due_us = member->away_us + kept_us;
+        if (room->now_us >= due_us) {
+            known_add_member(room, member);
+            member_free(room, i);
+            has_changed = true;
+        } else if (due_us < again_us) {
+            again_us = due_us;
+        }
+    }
+    if (has_changed)
+        send_members(room);
+    return again_us;
+}
+
+void members_close_lost(struct room *room)
+{
+    if (!room->has_lost)
+        return;
+    for (int i = 0; i < room->n_members; i++) /* saying who is there may lose others */
+        if (room->members[i]->is_lost) {
+            member_disconnected(room, room->members[i], room->now_us);
+            i = -1;
+        }
+    room->has_lost = false;
+}
+
+void member_disconnected(struct room *room, struct member *member, int64_t heard_us)
+{
+    member->is_lost = false;
+    views_close(room, member);
+    member->connection = NULL;
+    member->away_us = heard_us;
+    control_left(room, member);
+    audit_flush(room, member);
+    presence_left(room, member);
+    audit_tell(room, &(struct audit_act){ .by = member, .action = "leave", .before = -1, .after = -1 });
+    (void)presenter_settle(room);
+    send_members(room);
+    pointer_end(room, member);
+    look_end(room, member);
+}
+
+static bool name_is_taken(const struct room *room, const char *name)
+{
+    for (int i = 0; i < room->n_members; i++)
+        if (strcmp(room->members[i]->name, name) == 0)
+            return true;
+    return false;
+}
+
+/* Makes room for one more member by dropping the one away longest, who does not present. Returns false when there is
+ * none. */
+static bool make_place(struct room *room)
+{
+    if (room->n_members < room->max_members)
+        return true;
+    int longest = -1;
+    for (int i = 0; i < room->n_members; i++)
+        if (!room->members[i]->connection && !member_presents(room, room->members[i]) &&
+            (longest < 0 || room->members[i]->away_us < room->members[longest]->away_us))
+            longest = i;
+    if (longest < 0)
+        return false;
+    known_add_member(room, room->members[longest]);
+    member_free(room, longest);
+    return true;
+}
+
+static struct member *member_create(struct room *room, const char *name, enum wire_member_role role)
+{
+    struct member *member = mem_new(sizeof *member);
+    member->number = room->n_named = marks_next_number(room);
+    (void)snprintf(member->id, sizeof member->id, "m%u", member->number);
+    (void)snprintf(member->name, sizeof member->name, "%s", name);
+    for (int number = 1; member->name[0] == 0 || (name[0] == 0 && name_is_taken(room, member->name)); number++)
+        (void)snprintf(member->name, sizeof member->name, "Reviewer %d", number);
+    secret_make(member->secret);
+    member->role = role;
+    member->color = color_of_newcomer(room);
+    secret_hash(member->secret, member->secret_hash);
+    room->members[room->n_members++] = member;
+    return member;
+}
+
+/* as: "new", "back", or "link" for a new one who came by a link. */
+static void record_entry(struct room *room, const struct member *member, const char *as)
+{
+    const struct audit_act row = {
+        .by = member, .action = "open", .detail = cJSON_CreateObject(), .before = -1, .after = room->revision
+    };
+    cJSON_AddStringToObject(row.detail, "as", as);
+    audit_tell(room, &row);
+}
+
+static const char *address_of(const struct room *room, void *connection)
+{
+    return room->callbacks.address ? room->callbacks.address(room->callbacks.context, connection) : "";
+}
+
+static void refuse_link(struct room *room, void *connection, const char *name, const char *refusal)
+{
+    const struct audit_act row = { .action = "refused",
+                                   .address = address_of(room, connection),
+                                   .detail = cJSON_CreateObject(),
+                                   .is_refused = true,
+                                   .before = -1,
+                                   .after = -1 };
+    cJSON_AddStringToObject(row.detail, "what", "hello");
+    cJSON_AddStringToObject(row.detail, "name", name);
+    cJSON_AddStringToObject(row.detail, "why", refusal);
+    audit_tell(room, &row);
+    send_bye(room, connection, -1, refusal);
+}
+
+bool member_hello(struct room *room, void *connection, const struct message_hello *hello)
+{
+    if (hello->protocol != WIRE_PROTOCOL) {
+        send_bye(room, connection, -1, old_page);
+        return false;
+    }
+    struct member *member = NULL;
+    for (int i = 0; i < room->n_members && hello->member[0]; i++)
+        if (strcmp(room->members[i]->id, hello->member) == 0 &&
+            secret_matches(hello->secret, room->members[i]->secret_hash))
+            member = room->members[i];
+    enum wire_member_role role = role_of_newcomer(room);
+    struct link *link = NULL;
+    const char *refusal = NULL;
+    const bool is_known = member || known_has(room, hello->member, hello->secret); /* whatever became of their link */
+    if (!is_known && hello->link[0] && (refusal = link_find(room, hello->link, hello->person, &link)) != NULL) {
+        refuse_link(room, connection, hello->name, refusal);
+        return false;
+    }
+    if (!audit_has_place(room, NULL)) {
+        send_bye(room, connection, UNRECORDED_RETRY_MS, unrecorded);
+        return false;
+    }
+    const char *as = link ? "link" : "new";
+    if (member) {
+        as = "back";
+        void *old = member->connection; /* half-open: the page notices a lost connection before the server does */
+        member->is_lost = false;
+        member->connection = NULL;
+        views_close(room, member);
+        if (old)
+            send_bye(room, old, -1, replaced);
+    } else if (make_place(room)) {
+        member = known_back(room, hello->member, hello->secret);
+        as = member ? "back" : as;
+        if (member)
+            room->members[room->n_members++] = member;
+        else
+            member = member_create(room, hello->name, link ? link->role : role);
+        (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
+        if (link)
+            link_used(room, link, member, hello->person);
+    } else {
+        send_bye(room, connection, FULL_RETRY_MS, room_is_full);
+        return false;
+    }
+    if (hello->name[0])
+        (void)snprintf(member->name, sizeof member->name, "%s", hello->name);
+    if (!member->secret[0]) /* it came back with the secret of which only the hash was kept */
+        (void)snprintf(member->secret, sizeof member->secret, "%.32s", hello->secret);
+    (void)snprintf(member->person, sizeof member->person, "%s", hello->person);
+    member->connection = connection;
+    (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
+    record_entry(room, member, as);
+    presence_entered(room, member);
+    send_welcome(room, member);
+    acceptances_tell(room, member);
+    send_renderer_state(room, member);
+    control_send(room, member);
+    saved_show(room, member);
+    files_show(room, member);
+    (void)presenter_settle(room);
+    send_members_to_newcomer(room, member);
+    pointers_show(room, member);
+    look_show(room, member);
+    recording_show(room, member);
+    replay_show(room, member);
+    return true;
+}

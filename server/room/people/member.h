@@ -1,0 +1,13 @@
+#pragma once
+/* Members: entering with hello, coming back with the secret, leaving. Internal to server/room. */
+#include "server/room/state/room_state.h"
+#include "server/wire/message.h"
+
+/* Makes the connection a member; returns false when it was refused with bye. */
+bool member_hello(struct room *room, void *connection, const struct message_hello *hello);
+void member_disconnected(struct room *room, struct member *member, int64_t heard_us); /* away since heard_us */
+/* Drops members that have been away for ROOM_MEMBER_KEPT_S. Returns when the next one is due. */
+int64_t members_forget(struct room *room);
+void members_free(struct room *room);
+/* Closes the views of members whose connection was closed for want of memory. */
+void members_close_lost(struct room *room);

@@ -1,0 +1,11 @@
+#pragma once
+/* Who was in the room and when, as stays of members. Internal to server/room. */
+#include "server/room/state/room_state.h"
+
+void presence_entered(struct room *room, const struct member *member);
+void presence_left(struct room *room, const struct member *member);
+/* [{member, name, role, entered_ms, left_ms, here}], the first first; left_ms null: still here, or the server ended. */
+NODISCARD cJSON *presence_list(const struct room *room);
+/* The text that is kept, for free(); NULL: no memory. Reading takes the rows that are whole. */
+NODISCARD char *presence_write(const struct room *room);
+void presence_read(struct room *room, const char *text);

@@ -1,0 +1,53 @@
+/* Checks roles against rights, and chooses roles and colours of new members. */
+#include "server/room/state/roles.h"
+
+#include <string.h>
+
+/* On the page's darkest and lightest panels (--bg0, --bg5) and under dark letters (--ink) each has a contrast of at
+ * least 4.5:1, and no two are nearer than 25 in CIE Lab; tests/unit/test_roles.c computes both. */
+static const uint32_t colors[ROLES_N_COLORS] = { 0x56b4e9, 0xe69f00, 0x2fd08f, 0xff7fd1, 0xf0e442, 0xaa93ff,
+                                                 0xff8a65, 0x40d8dc, 0x9ccc3c, 0xc9a27c, 0xd5dbe3, 0xff7389 };
+
+bool role_has_right(enum wire_member_role role, enum wire_right right)
+{
+    return (wire_role_rights[role] >> right & 1U) != 0;
+}
+
+bool role_check(enum wire_member_role role, enum wire_right right, struct problem *problem)
+{
+    static const char *const acts[] = {
+        [WIRE_RIGHT_LOOK] = "look",
+        [WIRE_RIGHT_POINT] = "point",
+        [WIRE_RIGHT_NOTE] = "write notes and bookmarks",
+        [WIRE_RIGHT_SCENE] = "present or change what the room shows",
+        [WIRE_RIGHT_CONTROL] = "lock control, make links or close the room",
+    };
+    if (role_has_right(role, right))
+        return true;
+    return problem_set(problem, PROBLEM_FORBIDDEN, "", "role", "the role of %s does not include to %s",
+                       wire_member_role_words.words[role], acts[right]);
+}
+
+enum wire_member_role role_of_newcomer(const struct room *room)
+{
+    bool is_first = room->n_members == 0;
+    for (int i = 0; is_first && i < room->n_known; i++)
+        is_first = strcmp(room->known[i].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) != 0;
+    return is_first ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_REVIEWER;
+}
+
+int color_of_newcomer(const struct room *room)
+{
+    int n_of[ROLES_N_COLORS] = { 0 }, best = 0;
+    for (int i = 0; i < room->n_members; i++)
+        n_of[room->members[i]->color]++;
+    for (int i = 1; i < ROLES_N_COLORS; i++)
+        if (n_of[i] < n_of[best])
+            best = i;
+    return best;
+}
+
+uint32_t color_rgb(int color)
+{
+    return colors[color];
+}

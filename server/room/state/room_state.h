@@ -1,0 +1,274 @@
+#pragma once
+/* The state of a room, its members, their views, and the streams that serve them; shared by the files of server/room.
+ * Internal to server/room; one thread. */
+#include "server/auth/secret.h"
+#include "server/room/state/pace.h"
+#include "server/room/state/room_types.h"
+#include "server/room/state/secret.h"
+#include "wire_gen.h"
+
+enum {
+    MAX_WAITING_INPUTS =
+        32, /* inputs of one view that no sent picture shows yet; beyond these, inputs are reported together */
+    RETRY_US = 100000, /* pause after a failed picture; doubled each time */
+    RETRY_AT_MOST_US = 4000000,
+    /* In a room of more members, the list of members goes out at most once in so many microseconds for each of them:
+     * everybody is sent a row for everybody, so 200 people who enter at once would make gigabytes of lists. */
+    FEW_MEMBERS = 24,
+    MEMBERS_EVERY_US = 2000,
+};
+
+struct request {      /* for one picture, outstanding */
+    uint64_t number;  /* 0: free */
+    uint64_t version; /* of the stream, when it was requested */
+    int64_t requested_us;
+    bool is_still;
+    int n_outstanding; /* requests of the stream then, this one included */
+};
+
+struct stream {
+    struct stream *next;
+    cJSON *view;         /* the view document */
+    cJSON *scene;        /* the scene with the view's override; NULL: the room's scene */
+    bool scene_is_stale; /* scene is made anew before the next request */
+    bool is_shared;
+    int kind;
+    char mover[64];         /* shared: id of the presenter who moved it last; "": nobody has yet */
+    uint64_t version;       /* counts changes of what the picture shows */
+    uint64_t scene_version; /* version after the newest change of the scene that reached it */
+    bool is_reached;        /* by the newest change of the scene */
+    uint64_t requested_version,
+        still_requested_version; /* newest version requested, of either kind, and as a still; 0: none */
+    uint64_t refused_version;    /* newest version that cannot be drawn; 0: none */
+    struct problem refusal;      /* why it cannot */
+    int64_t changed_us;          /* when version last went up */
+    int64_t behind_us; /* since when latest is not of version and no newer one came; 0: latest is of version */
+    int64_t acted_us;  /* when a member last acted in a view of it; 0: never */
+    int64_t retry_us;  /* nothing is requested before */
+    int n_failed;      /* pictures that failed in a row */
+    struct request requests[2];
+    struct room_picture *latest;
+    uint64_t latest_number, latest_version; /* latest's request, and the version it shows; 0: none */
+    bool latest_is_still;
+    struct pace pace;
+    struct member_view *viewers;       /* the views that show it */
+    struct member_view *least_lagging; /* of them, the one whose lag_excess_us is least; NULL: not known */
+    struct room_display *displays;
+    bool is_of_display; /* made for a display: no member has shown it, and it is not kept */
+    struct {            /* the message view as it was written last: most viewers are sent the same text */
+        char *text;     /* NULL: none, or the view has changed since */
+        int index;
+        bool is_following, is_late;
+        char by[64];
+    } told;
+};
+
+struct member_view {                                   /* a pane of a member; its number is its index + 1 */
+    struct stream *stream;                             /* NULL: closed */
+    struct member *member;                             /* whose it is, while it is open */
+    struct member_view *next_viewer, *previous_viewer; /* of the same stream */
+    bool is_following, was_open;
+    int size_px[2]; /* this member's own, as sent last; a shared view has the presenter's, and is
+                       sent in the size class that this one needs */
+    uint32_t sent_sequence, shown_sequence; /* they differ by at most ROOM_MAX_UNSHOWN */
+    struct {
+        int64_t sent_us;
+        bool is_still;
+    } sent[ROOM_MAX_UNSHOWN]; /* by sequence % ROOM_MAX_UNSHOWN */
+    uint64_t sent_number;     /* request number of the newest picture sent */
+    uint16_t sent_width_px;   /* of that picture as sent, perhaps reduced */
+    int64_t lag_least_us,
+        lag_excess_us; /* time from sending to acknowledgement: the least seen, and the newest beyond it; 0: none yet */
+    struct {
+        uint64_t version; /* a picture of at least this version shows it */
+        uint32_t input;
+    } waiting[MAX_WAITING_INPUTS];
+    int n_waiting;
+    uint32_t input; /* newest input that a sent picture shows */
+    cJSON *missing; /* what the newest picture sent leaves out, as last sent to the member; NULL: nothing */
+    bool has_moved; /* the presenter moved the shared view: the view message goes out before the next frame */
+    char moved_by[64];
+};
+
+struct pointing { /* where a member points */
+    bool is_on;
+    bool is_due; /* it has changed since it was passed on */
+    int view;    /* 0: none */
+    struct vec3 point_mm;
+    int64_t moved_us, passed_us;
+};
+
+struct look {        /* the request to look at a point */
+    uint32_t number; /* of the newest; 0: there was none yet */
+    bool is_on, is_due;
+    char by[64];
+    struct vec3 point_mm;
+    int64_t since_us, told_us;
+};
+
+struct member {
+    char id[64], name[161], secret[SECRET_TEXT]; /* secret "": only its hash is known until it comes back */
+    unsigned char secret_hash[SECRET_HASH_BYTES];
+    char person[257];
+    char address[46]; /* of its connection, also when that has ended; "": not known */
+    enum wire_member_role role;
+    int color;        /* color_rgb(color) */
+    void *connection; /* NULL: away */
+    bool is_lost; /* a message to it found no memory and its connection was closed; its views are still to be closed */
+    int64_t away_us; /* when the connection was lost */
+    uint32_t number; /* counts members from 1, never the same twice */
+    struct pointing pointing;
+    uint32_t came_to;   /* number of the look this member has come to; 0: none */
+    uint64_t request;   /* for control: the larger, the later; 0: none */
+    int64_t refused_us; /* when the last one was refused; 0: none was */
+    enum wire_member_lag lag;
+    int64_t lag_until_us;                 /* it is told at least until then */
+    struct member_view views[ROOM_WATCH]; /* the last one is that of watch */
+    int active;                           /* number of the view in which it works; 0: not known */
+    bool has_told_active;                 /* by a message of its own */
+    uint64_t n_bytes;                     /* of the pictures sent in its views, without that of watch */
+    struct {                              /* the small picture of the presenter */
+        bool is_wanted;
+        bool is_late;      /* as it was told */
+        int64_t behind_us; /* since when what was sent is not the newest state and nothing newer was sent; 0: it is */
+        uint64_t n_bytes;  /* of the member when the newest one was sent */
+    } watch;
+};
+
+static inline bool view_is_watch(const struct member_view *view)
+{
+    return view->member && view == &view->member->views[ROOM_WATCH - 1];
+}
+
+struct item { /* a note, a reply or a bookmark */
+    struct item *next;
+    char id[16];
+    enum wire_item_kind kind;
+    uint32_t version;
+    char author[64], author_name[161], author_color[8]; /* author_color: "#rrggbb" */
+    char changed_name[161];                             /* who changed it last */
+    int64_t created_ms, changed_ms;                     /* since 1970, UTC */
+    char parent[16];                                    /* of a reply: the note's id; "": none */
+    char *row;                                          /* all of this with the body, as JSON */
+};
+
+struct keeping { /* an item that is being written, and counts afterwards */
+    struct keeping *next;
+    uint64_t number;
+    struct item item; /* what it will be; row: owned */
+    bool is_change;   /* of an item in the list */
+    char member[64];  /* who gave it */
+    uint32_t input;
+};
+
+struct gathered { /* acts for the audit that are one row */
+    char action[24], key[64], member[64], name[161], address[46];
+    enum wire_member_role role;
+    bool is_refused;
+    cJSON *detail; /* of the last */
+    int64_t before, after;
+    int64_t first_us, last_us;
+    int64_t since_ms, newest_ms; /* since 1970: of the first act that no row was made for yet, and of the last */
+    unsigned n;                  /* acts that no row was made for yet */
+};
+
+struct presence { /* one stay of a member */
+    char member[64], name[161];
+    enum wire_member_role role;
+    int64_t entered_ms, left_ms; /* since 1970; left_ms 0: still here, or the server ended */
+};
+
+struct link { /* lets new members in */
+    unsigned char token_hash[SECRET_HASH_BYTES];
+    char person[257]; /* who has used it, if it is for one */
+    enum wire_member_role role;
+    int64_t expires_us, expires_ms; /* the same moment on the room's clock and on the wall's */
+    bool is_one_use, is_used;
+};
+
+/* Parts of a room that a recording looks at, beside those of enum room_part. */
+enum { RECORDED_POINTERS = 64, RECORDED_ITEMS = 128 };
+
+struct recorder;
+struct replay;
+
+struct room {
+    char id[64], plan_id[64];
+    struct room_callbacks callbacks;
+    int max_members;
+    int64_t now_us; /* the time last passed in */
+    int64_t created_at_s;
+
+    enum wire_renderer_state state;
+    char phase[160];
+    double percent;
+    struct problem problem;           /* when failed */
+    cJSON *plan, *defaults, *scene;   /* NULL before the plan is ready */
+    cJSON *begins_with, *first_views; /* the bookmark that the room was made from, and its views; NULL: none */
+    cJSON *begun;                     /* what was opened of it, without the scene; NULL before the plan is ready */
+    cJSON *restored;                  /* the scene as it was kept, until the plan is ready; else NULL */
+    uint32_t revision;
+    bool is_changed; /* the scene was changed since the room was made */
+    char gl[200];
+    bool is_software;
+
+    struct member *members[ROOM_MAX_MEMBERS];
+    int n_members;
+    int spoke;                /* index of the one that member_who_speaks found last */
+    bool has_lost;            /* some is_lost */
+    struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
+    int64_t files_changed_ms, files_read_ms; /* room_files */
+    char end_reason[200];                    /* "": the room is closed */
+    char plan_revision[65];                  /* of the plan's files; "": not known */
+    const struct member *writer;             /* while the body of an item is read: who writes it */
+    struct presence *presences;              /* who was here, the first first; room for ROOM_MAX_PRESENCE */
+    int n_presences;
+    unsigned n_presences_dropped;
+    const struct member *caller;  /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */
+    const char *caller_address;   /* and from where; NULL: no call */
+    uint32_t n_named;             /* members ever made, for ids */
+    struct item *items;           /* oldest first */
+    size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */
+    struct keeping *keeping;      /* the oldest first */
+    uint64_t n_kept;              /* numbers of keeping that were given out */
+    struct audit_apart *apart;    /* audit.h; NULL: rows go to the room's owner */
+    struct {
+        cJSON *list, *ids; /* of those that count: for the renderer, and the items' ids; NULL: not known, or none */
+        char revision[65]; /* of the files that the present renderer has loaded; "": not known */
+        bool is_known;     /* as members were told last: revision is */
+    } acceptances;
+    struct look look;
+    struct gathered gathered[ROOM_MAX_GATHERED];
+    int n_gathered;                 /* the oldest first */
+    struct room_kept_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
+    int n_known;
+    bool is_locked; /* control is given only, not taken */
+    uint64_t n_control_requests;
+    struct {
+        enum wire_control_act act;
+        char member[64], by[64];
+    } control_act;
+    bool control_is_new; /* not told yet */
+    struct {
+        struct room_saved told; /* as all were told last */
+        int64_t told_us;
+        int64_t news_us; /* since when it is another; 0: it is not */
+        uint64_t n_item_changes, n_items_told;
+        bool is_owed; /* somebody who has come was told something else than all */
+    } saved;
+    struct link links[ROOM_MAX_LINKS];
+    int n_links;
+    struct room_recording recordings[ROOM_MAX_RECORDINGS]; /* the oldest first */
+    int n_recordings;
+    double recording_speed;    /* > 0 */
+    struct recorder *recorder; /* NULL: no recording runs */
+    unsigned unrecorded;       /* parts that have changed since the recorder looked */
+    struct replay *replay;     /* NULL: the room plays none */
+    bool has_links;            /* there was one; then those who are no members may do less: room_call_may */
+    struct stream *streams;
+    struct stream
+        *main; /* of them: what watch and displays show; of the last presenter when there is none; NULL: none */
+    int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
+    uint64_t n_requests;
+    struct room_counters counters;
+};

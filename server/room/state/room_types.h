@@ -1,0 +1,215 @@
+#pragma once
+/* What a room and its owner tell each other: limits, rows, requests and pictures, and the callbacks. Included by
+ * room.h. */
+#include <stdatomic.h>
+#include <stdint.h>
+
+#include "core/base/image_reduce.h"
+#include "server/wire/document.h"
+#include "server/wire/frame_header.h"
+#include "wire_gen.h"
+
+enum {
+    ROOM_MAX_MEMBERS = 200,
+    ROOM_MAX_VIEWS = 8,
+    ROOM_WATCH = ROOM_MAX_VIEWS + 1, /* number of the small picture of the presenter in frames and messages */
+    ROOM_MAX_UNSHOWN = 2,
+    ROOM_STILL_AFTER_MS = 150,
+    ROOM_MEMBER_KEPT_S = 300,
+    ROOM_PRESENTER_KEPT_S = 30,     /* how long a presenter without a connection still presents */
+    ROOM_MAX_ITEMS = 1000,          /* notes, replies and bookmarks together */
+    ROOM_MAX_ITEM_BYTES = 61440,    /* of the body of a bookmark, as JSON; a note may have less (note_body.h) */
+    ROOM_MAX_ITEM_FRAME = 2048,     /* of a row without its body */
+    ROOM_MAX_ITEMS_BYTES = 2 << 20, /* of all rows; they are in every welcome */
+    ROOM_MAX_KNOWN = 256, /* members that left and can come back as the same; beyond, the first but presenters cannot */
+    ROOM_REQUEST_AGAIN_S = 10, /* after a refusal, before control can be requested again */
+    ROOM_MAX_LINKS = 32,       /* valid at once */
+    ROOM_LINK_MIN_S = 60,
+    ROOM_LINK_MAX_S = 30 * 24 * 3600,
+    ROOM_MAX_PRESENCE = 1000,      /* stays of members that are kept; of more, the first are counted only */
+    ROOM_SAME_STAY_MS = 60000,     /* who comes back within this goes on with the same stay */
+    ROOM_MAX_AUDIT_DETAIL = 1024,  /* bytes of the detail of a row for the audit; of a longer one only the length */
+    ROOM_MAX_GATHERED = 32,        /* acts that are being gathered into a row each; the oldest is then recorded */
+    ROOM_AUDIT_QUIET_MS = 1000,    /* acts further apart are rows of their own */
+    ROOM_AUDIT_AT_MOST_MS = 30000, /* no row gathers acts of a longer time */
+    ROOM_MAX_RECORDINGS = 16,      /* of one room, that are kept */
+    ROOM_MAX_RECORDING_BYTES = 64 << 20, /* of one; two hours of a busy meeting take 30 MiB: recording.h */
+    ROOM_MAX_RECORDING_EVENTS = 500000,
+    ROOM_MAX_RECORDING_S = 12 * 3600,
+    ROOM_RECORDING_EMPTY_S = 60, /* nobody there for so long ends it */
+    ROOM_MAX_MARKS = 500,        /* of one recording */
+    ROOM_MAX_DISPLAYS = 8,
+    ROOM_DISPLAY_RETRY_MS = 5000
+};
+
+struct room;
+struct log_batch; /* meeting_log.h */
+
+/* A recording of a meeting in the room: its facts. The events are on disk alone. */
+struct room_recording {
+    char id[32], by[64], by_name[161]; /* by: the member who began it */
+    char plan_mark[20];                /* of the plan's document then: the same for the same document */
+    char plan_revision[65];            /* of its files then; "": not known */
+    int64_t started_ms, length_ms;     /* since 1970; of the meeting */
+    uint32_t n_batches, n_events;
+    uint64_t n_bytes;
+    enum wire_recording_state state;
+    cJSON *marks; /* [[t_ms, kind, name]] of the message replay */
+};
+
+/* A request for one picture. A stream is served by one render: a member's own view, or the shared view of one kind, and
+ * of one plane if oblique, for all who follow it. The room never has more than two requests of a stream outstanding. */
+struct room_render {
+    uint64_t request;   /* never the same twice; comes back with the picture */
+    const cJSON *view;  /* complete view document */
+    const cJSON *scene; /* complete scene to show when the view has an override, else NULL: the room's */
+    uint32_t scene_revision;
+    int scale_percent, quality;
+    bool is_still, full_color, coarse; /* coarse: coarse surfaces are good enough */
+    bool is_acted;                     /* of the view in which a member acts: its pictures go first */
+    bool is_reduced[IMAGE_N_REDUCED];  /* the reduced pictures that are wanted beside it (size_class.h) */
+    bool is_marked;                    /* also with the words for a draft, if the scene has one */
+    const char *member;                /* id of the member whose own view it is; NULL: a shared view */
+};
+
+/* A picture that was drawn; reference-counted, as all followers are sent the same. Unchanged once it is given to the
+ * room; held and dropped by any thread. */
+struct room_picture {
+    struct frame_header header; /* view, sequence, input_id, flags SHARED are filled per member by the room */
+    uint8_t *bytes;
+    size_t n_bytes;
+    cJSON *missing; /* {n, regions: [{region, reason}]}: the regions that it leaves out because they cannot be drawn;
+                       NULL: none */
+    struct room_picture *reduced[IMAGE_N_REDUCED]; /* owned: the same of a half and of a quarter of the size, without
+                                                      missing; NULL: not made */
+    struct room_picture *marked; /* owned: the same, of the whole size, with the words for a draft; NULL: not made */
+    atomic_int references;
+};
+
+/* A row for the audit. Texts are borrowed. Actions: note, bookmark, check (an item was put or deleted), open, leave (a
+ * member enters, or its connection ends), link (one was used), link-made, control, weights (of a dose), draft-made,
+ * draft-changed, draft-reset (of the beam), decision, signature, acceptance, withdrawal (of parts that do not fit, used
+ * together by a person's word), recording (of the meeting: running, stopped, cut, ..., deleted), export (something was
+ * given away as a file), refused (a message or call lacked the right), deleted (the room). */
+struct room_audit {
+    int64_t time_ms; /* since 1970, of the newest act */
+    const char *action;
+    const char *member, *name, *role; /* "": nobody of the room */
+    const char *address;              /* from which it was done; "": not known */
+    const char *detail; /* a JSON object; where acts were gathered, with times, their number, and since_ms, the time of
+                           the oldest. Of an item it has sha256, of its row as it is kept */
+    const char *result; /* "done" or "refused" */
+    int64_t before, after; /* revisions of the scene; -1: does not apply */
+};
+
+struct room_saved {
+    enum wire_saved_state state;
+    uint32_t revision; /* of the scene on disk */
+    bool is_full;      /* failing: for want of space */
+};
+
+/* An item that is to be on disk before it counts. All borrowed. */
+struct room_item_write {
+    const char *id, *kind, *row; /* row: as in item_changed */
+    const char *author, *author_name;
+    int64_t time_ms;
+    const char
+        *record; /* of a decision or signature: the record of the room at this moment, JSON; NULL: of another kind */
+    const struct room_audit *audit; /* the row that is committed with it */
+};
+
+struct room_callbacks {
+    /* requests a picture; answered later by room_picture_came or room_picture_failed with the same request number */
+    void (*render)(void *context, struct room *room, const struct room_render *request);
+    /* the picture is no longer wanted: it need not be drawn, and is not answered */
+    void (*forget)(void *context, struct room *room, uint64_t request);
+    /* the room's scene changed, or the renderer is new: it must have the scene before the next render */
+    void (*scene_changed)(void *context, struct room *room, const cJSON *scene, uint32_t revision);
+    /* a text message for one connection; text is borrowed */
+    void (*send_text)(void *context, void *connection, const char *text);
+    /* the same; a text with the same key that waits for the connection is replaced by this one */
+    void (*send_latest)(void *context, void *connection, uint32_t key, const char *text);
+    /* a frame for one connection, with its header; keeping the picture takes room_picture_hold */
+    void (*send_frame)(void *context, void *connection, const struct frame_header *header,
+                       struct room_picture *picture);
+    /* close when all that was sent has gone out; room_connection_closed may follow but need not */
+    void (*close)(void *context, void *connection);
+    /* An item is new or was changed: row is the whole of it as JSON, borrowed. row NULL: it was deleted. A store keeps
+     * the newest row of each id and gives it back with room_restore_item. NULL: nobody keeps items. */
+    void (*item_changed)(void *context, struct room *room, const char *row, const char *id);
+    /* An item is new or was changed, and counts only once it is on disk with its row for the audit: answered by
+     * room_item_written with this number, later. False with problem: it cannot be written now. NULL: nobody keeps
+     * items, and they count at once, with item_changed. */
+    bool (*item_first)(void *context, struct room *room, uint64_t number, const struct room_item_write *write,
+                       struct problem *problem);
+    /* False with problem: nothing can be written now, so nothing is accepted that must last. NULL: always true. */
+    bool (*can_write)(void *context, struct problem *problem);
+    void *context;
+    /* NULL, or: parts of the room (enum room_part) that are to be kept have changed; called often */
+    void (*kept_changed)(void *context, struct room *room, unsigned parts);
+    /* The address of the client at this connection, "": not known. NULL: no address is known. */
+    const char *(*address)(void *context, void *connection);
+    /* A row for the audit, to be committed with what else of the room is written, or before. NULL: there is no audit.
+     */
+    void (*audited)(void *context, struct room *room, const struct room_audit *row);
+    /* False: so many rows wait for the disk that the room refuses what would need another. NULL: always true. */
+    bool (*audit_has_place)(void *context);
+    /* NULL: rooms are not kept; or: what of the room is on disk at this moment */
+    void (*is_saved)(void *context, const struct room *room, struct room_saved *saved);
+    /* The facts of a recording have changed, and, unless batch is NULL, this is to be added to it, under the number
+     * n_batches - 1. Takes batch->text. NULL: there are no recordings. */
+    void (*recorded)(void *context, struct room *room, const struct room_recording *recording, struct log_batch *batch);
+    void (*recording_deleted)(void *context, struct room *room, const char *id);
+    /* The room plays: the batches of the recording from the last one that begins with a state at or before t_ms, up to
+     * the next such one, are to be read; answered by room_replay_came, later. False with problem: not now. */
+    bool (*replay_read)(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms,
+                        struct problem *problem);
+};
+
+/* What of a room is kept on disk. */
+enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4, ROOM_LINKS = 8, ROOM_PRESENCE = 16 };
+enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS | ROOM_PRESENCE };
+
+struct room_kept_member {
+    char id[64], name[164], color[8], role[16];
+    unsigned char secret_hash[32]; /* of server/auth/secret.h */
+    bool has_left;                 /* it is not in the list of members, but may come back */
+};
+
+struct room_kept_link {
+    unsigned char token_hash[32]; /* as secret_hash */
+    char role[16], person[257];   /* person: who used it, if it is for one use */
+    int64_t expires_ms;           /* since 1970 */
+    bool is_one_use, is_used;
+};
+
+struct room_kept {
+    int64_t created_at_s;
+    uint32_t revision, n_named;
+    char presenter[64];               /* "": nobody */
+    char *scene, *views;              /* JSON; NULL: not asked for, or the plan was never loaded */
+    char *presence;                   /* JSON: who was here; NULL: not asked for, or unknown */
+    struct room_kept_member *members; /* NULL: not asked for */
+    size_t n_members;
+    bool has_links;               /* there is or was one */
+    struct room_kept_link *links; /* NULL: not asked for */
+    size_t n_links;
+};
+
+struct room_limits {
+    int max_members;        /* at most ROOM_MAX_MEMBERS */
+    double recording_speed; /* how many times as fast the clock of recordings and replays runs; 0: once */
+};
+
+/* Counters for /metrics. */
+struct room_counters {
+    uint64_t pictures_requested, frames_sent, frame_bytes, frames_skipped, messages_refused, stills_sent;
+};
+
+struct room_picture *room_picture_hold(struct room_picture *picture);
+void room_picture_drop(struct room_picture *picture);
+
+NODISCARD cJSON *room_members(const struct room *room);
+size_t room_n_connected(const struct room *room);
+/* True once a member has entered, a link was made, or the scene was changed. */
+bool room_was_used(const struct room *room);

@@ -1,0 +1,39 @@
+#pragma once
+/* Displays: screens that show a shared view and are no members. A display is a viewer of the stream without credit: it
+ * is sent the pictures that the members who look are sent, and nothing is drawn for it beside them. Only where nobody
+ * else looks, or none of those who look takes pictures, are pictures requested for displays. Internal to server/room.
+ * room_display_add and room_display_remove (room.h) are in display_join.c. */
+#include "server/room/state/room_state.h"
+#include "server/room/streams/room_pictures.h"
+
+struct room_display {
+    struct room_display *next; /* of the same stream */
+    struct room *room;
+    struct stream *stream;
+    struct room_display_callbacks callbacks;
+    bool is_late; /* as the display was told */
+    bool is_main; /* it shows the room's main view */
+};
+
+/* How soon to look again whether a display has taken its picture: it makes no event. */
+enum { DISPLAY_AGAIN_US = 50000 };
+/* A picture is late when for so long it has not shown the newest state, and no newer one came. */
+enum { DISPLAY_LATE_US = 1000000 };
+
+/* True if a picture may be requested for the stream's displays: one of them has taken its picture, and no member who
+ * looks was sent one in the last DISPLAY_ALONE_US. n_coming: requests of the stream outstanding. */
+bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_t now_us);
+/* When all members who look will have stalled, if they take no more pictures; INT64_MIN: nobody looks. */
+int64_t display_alone_us(const struct stream *stream);
+/* Gives the stream's latest picture to its displays. Of a scene with a draft they are given pictures with words for it
+ * alone: nothing else says so on a screen. */
+void displays_send(const struct room *room, const struct stream *stream);
+/* The display shows this stream from now on. Returns false when the picture that is there or on its way was requested
+ * without the words for a draft: it is to be requested again. */
+NODISCARD bool display_show(const struct room *room, struct room_display *display, struct stream *stream);
+/* Tells displays whether their picture is late; when the next may be. */
+int64_t displays_tick(struct room *room);
+/* The room's main view is another one: the displays that show it go over. */
+void displays_follow(struct room *room);
+/* Ends them: the stream does. */
+void displays_end(struct stream *stream);

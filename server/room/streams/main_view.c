@@ -1,0 +1,63 @@
+/* Chooses the main view of a room. */
+#include "server/room/streams/main_view.h"
+
+#include <string.h>
+
+#include "server/wire/json.h"
+
+void main_view_acted(struct member *member, int number)
+{
+    if (!member->has_told_active)
+        member->active = number;
+}
+
+void main_view_patched(struct member *member, int number, const cJSON *patch)
+{
+    bool is_act = false;
+    for (const cJSON *field = patch->child; field; field = field->next)
+        is_act = is_act || strcmp(field->string, "size_px") != 0;
+    if (!patch->child) {
+        member->active = number;
+        member->has_told_active = true;
+    } else if (is_act) {
+        main_view_acted(member, number);
+    }
+}
+
+static struct stream *shared_of(const struct member *member, int number)
+{
+    struct stream *stream = number > 0 ? member->views[number - 1].stream : NULL;
+    return stream && stream->is_shared ? stream : NULL;
+}
+
+static struct stream *shown_by(const struct member *presenter)
+{
+    struct stream *stream = shared_of(presenter, presenter->active);
+    for (int number = 1; !stream && number <= ROOM_MAX_VIEWS; number++)
+        stream = shared_of(presenter, number);
+    return stream;
+}
+
+/* The 3-D view with the lowest number, else any. */
+static struct stream *any_shared(const struct room *room)
+{
+    struct stream *best = NULL;
+    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+        if (!stream->is_shared || stream->is_of_display)
+            continue;
+        const bool is_space = stream->kind == SCENE_KIND_3D, best_is = best && best->kind == SCENE_KIND_3D;
+        if (!best || (is_space && !best_is) ||
+            (is_space == best_is && json_number(stream->view, "number", 1) < json_number(best->view, "number", 1)))
+            best = stream;
+    }
+    return best;
+}
+
+void main_view_settle(struct room *room)
+{
+    struct stream *shown = room->presenter ? shown_by(room->presenter) : NULL;
+    if (shown)
+        room->main = shown;
+    if (!room->main)
+        room->main = any_shared(room);
+}

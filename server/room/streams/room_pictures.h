@@ -1,0 +1,29 @@
+#pragma once
+/* Pictures that were drawn for a room, and its displays. Included by room.h. */
+#include "server/room/state/room_types.h"
+
+/* Answers to render. A picture that is no longer wanted (the renderer was restarted, the view closed) is dropped. */
+void room_picture_came(struct room *room, uint64_t request, struct room_picture *picture,
+                       int64_t now_us); /* takes picture */
+void room_picture_failed(struct room *room, uint64_t request, const struct problem *problem, int64_t now_us);
+
+/* Displays: screens that show a shared view and are no members. view: its kind; NULL: the room's main view, whichever
+ * that is at the time. Of several views of the kind, the presenter's first, else that with the lowest number; one that
+ * nobody has shown yet begins as for a member. A display neither keeps a room awake nor counts as its use. NULL with
+ * problem: limit, validation, not-found. */
+struct room_display;
+struct room_display_callbacks {
+    /* a newer picture, of a view of this kind (a constant word); keeping it takes room_picture_hold */
+    void (*picture)(void *context, struct room_picture *picture, const char *kind);
+    bool (*has_room)(void *context); /* the screen has taken the last one */
+    /* The picture does not show what the room shows now: the newest state is slow to be drawn, or cannot be. False at
+     * first, and again when it does. */
+    void (*late)(void *context, bool is_late);
+    void (*ended)(void *context); /* with the room: the display is gone */
+    void *context;
+};
+NODISCARD struct room_display *room_display_add(struct room *room, const char *view,
+                                                const struct room_display_callbacks *callbacks, int64_t now_us,
+                                                struct problem *problem);
+void room_display_remove(struct room_display *display);
+const char *room_display_kind(const struct room_display *display); /* a word of the view's field kind */

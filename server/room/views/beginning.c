@@ -1,0 +1,124 @@
+/* Begins rooms with what a bookmark shows, and finds bookmarks: beginning.h, room.h. */
+#include "server/room/views/beginning.h"
+
+#include <string.h>
+
+#include "server/room/items/bookmark_body.h"
+#include "server/room/streams/stream.h"
+#include "server/room/views/room_bookmarks.h"
+
+/* ---- bookmarks of a room ---------------------------------------------------------------------------------------- */
+
+cJSON *room_bookmark(const struct room *room, const char *id, uint32_t *version)
+{
+    for (const struct item *item = room->items; item; item = item->next)
+        if (item->kind == WIRE_ITEM_KIND_BOOKMARK && strcmp(item->id, id) == 0) {
+            *version = item->version;
+            return bookmark_body_of(item);
+        }
+    return NULL;
+}
+
+cJSON *room_bookmark_of_token(const struct room *room, const char *token)
+{
+    for (const struct item *item = room->items; item; item = item->next) {
+        if (item->kind != WIRE_ITEM_KIND_BOOKMARK || !strstr(item->row, token))
+            continue; /* before the row is parsed: there may be many */
+        cJSON *body = bookmark_body_of(item);
+        if (bookmark_has_token(body, token))
+            return body;
+        cJSON_Delete(body);
+    }
+    return NULL;
+}
+
+cJSON *room_bookmark_open(const struct room *room, const cJSON *body, struct problem *problem)
+{
+    if (room->plan)
+        return bookmark_open(body, room->plan, room->defaults, problem);
+    problem_set(problem, PROBLEM_BUSY, "", "", "the plan of this room is not loaded yet");
+    problem->retry_after_ms = 500;
+    return NULL;
+}
+
+/* ---- a room that begins with one -------------------------------------------------------------------------------- */
+
+bool room_begin_with(struct room *room, const cJSON *body, struct problem *problem)
+{
+    cJSON *copy = cJSON_Duplicate(body, true), *views = copy ? bookmark_views(copy) : NULL;
+    if (!views) {
+        cJSON_Delete(copy);
+        return json_no_memory(problem, "a bookmark");
+    }
+    beginning_free(room);
+    room->begins_with = copy;
+    room->first_views = views;
+    return true;
+}
+
+void beginning_free(struct room *room)
+{
+    cJSON_Delete(room->begins_with);
+    cJSON_Delete(room->first_views);
+    cJSON_Delete(room->begun);
+    room->begins_with = room->first_views = room->begun = NULL;
+}
+
+cJSON *beginning_scene(struct room *room, const cJSON *plan, const cJSON *defaults)
+{
+    if (!room->begins_with)
+        return cJSON_Duplicate(defaults, true);
+    cJSON *begun = bookmark_open(room->begins_with, plan, defaults, NULL);
+    if (!begun)
+        return NULL;
+    cJSON_Delete(room->begun);
+    room->begun = begun;
+    return cJSON_DetachItemFromObjectCaseSensitive(begun, "scene");
+}
+
+static bool has_camera(const cJSON *document)
+{
+    const cJSON *camera = cJSON_GetObjectItemCaseSensitive(document, "camera");
+    static const char *const fields[] = { "position_mm", "target_mm", "up", "height_mm" };
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+        const cJSON *field = cJSON_GetObjectItemCaseSensitive(camera, fields[i]);
+        if (field && !cJSON_IsNull(field))
+            return true;
+    }
+    return false;
+}
+
+cJSON *beginning_view(const struct room *room, cJSON *document)
+{
+    const cJSON *entry;
+    cJSON_ArrayForEach(entry, room->first_views)
+    {
+        const cJSON *saved = cJSON_GetObjectItemCaseSensitive(entry, "document");
+        if (!views_are_alike(saved, document) || has_camera(document))
+            continue;
+        cJSON *patch = cJSON_CreateObject();
+        json_add(patch, "camera", cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(saved, "camera"), true));
+        json_add(patch, "beam", cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(saved, "beam"), true));
+        cJSON *view = view_document_patch(document, patch, NULL);
+        cJSON_Delete(patch);
+        if (!view)
+            return document; /* no memory: the home camera */
+        cJSON_Delete(document);
+        return view;
+    }
+    return document;
+}
+
+cJSON *room_beginning(const struct room *room)
+{
+    static const char *const shown[] = { "name", "layout", "views", "report", "n_report" };
+    if (!room->begins_with)
+        return NULL;
+    cJSON *answer = cJSON_CreateObject();
+    for (size_t i = 0; i < sizeof shown / sizeof shown[0]; i++) {
+        const cJSON *item = cJSON_GetObjectItemCaseSensitive(room->begun ? room->begun : room->begins_with, shown[i]);
+        if (item)
+            json_add(answer, shown[i], cJSON_Duplicate(item, true));
+    }
+    return answer;
+}
