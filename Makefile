@@ -172,11 +172,14 @@ run:
 	    --web $(WEB) $(ARGS)
 
 # ---- test programs: one a file; unit and render with cmocka, bench prints JSON lines ---------------------------------------
-# What is not named test_* or bench_* in these folders is shared help.
+# What is not named test_* or bench_* in these folders is shared help. In tests/unit a program stands in the folder of what it tests; all are built
+# side by side, so no two have one name.
 define c_programs
-$(1)_HELP := $(filter-out tests/$(1)/$(2)_%,$(call c_files,tests/$(1)))
-$(1)_BIN := $(patsubst tests/$(1)/%.c,$(B)/$(1)/%,$(filter tests/$(1)/$(2)_%,$(call c_files,tests/$(1))))
-$(B)/$(1)/%: $(B)/obj/tests/$(1)/%.o $$(call obj,$$($(1)_HELP)) $(B)/libserver.a $(B)/libwire.a $(B)/libcore.a
+$(1)_SRC := $(foreach file,$(call c_files,tests/$(1)),$(if $(filter $(2)_%,$(notdir $(file))),$(file)))
+$(1)_HELP := $$(filter-out $$($(1)_SRC),$(call c_files,tests/$(1)))
+$(1)_BIN := $$(patsubst %.c,$(B)/$(1)/%,$$(notdir $$($(1)_SRC)))
+$$(foreach file,$$($(1)_SRC),$$(eval $(B)/$(1)/$$(basename $$(notdir $$(file))): $$(call obj,$$(file))))
+$$($(1)_BIN): $$(call obj,$$($(1)_HELP)) $(B)/libserver.a $(B)/libwire.a $(B)/libcore.a
 	@mkdir -p $$(@D)
 	$$(Q)$$(CC) $$(LDFLAGS) $$(TEST_LDFLAGS) -o $$@ $$(filter %.o,$$^) $$(filter %.a,$$^) $$(CORE_LIBS) $$(SERVER_LIBS) $(3)
 .PHONY: $(1)-programs $(1)-objects
@@ -185,7 +188,7 @@ $(1)-objects: $$(call obj,$$(call c_files,tests/$(1)))
 endef
 $(eval $(call c_programs,unit,test,-lcmocka))
 $(B)/unit/test_renderer: | $(B)/beamroom-render
-$(B)/obj/tests/unit/test_fields.o: | $(TRIAL_STAMP)
+$(B)/obj/tests/unit/server/wire/test_fields.o: | $(TRIAL_STAMP)
 $(B)/unit/test_fields: $(call obj,$(GEN)/trial.c $(GEN)/trial_gen.c)
 $(unit_BIN): $(call obj,server/renderer/confine.c server/renderer/seccomp.c)
 $(eval $(call c_programs,render,test,-lcmocka))

@@ -12,7 +12,7 @@ const char *const shape_query_names[] = { "representation", "algorithm", "normal
                                           "format",         "frames",    NULL };
 
 /* Words of parameters that are not fields of the scene. The scene's own words are in the order of core's enums;
- * tests/unit/test_shape_query.c checks that. */
+ * tests/unit/server/wire/test_shape_query.c checks that. */
 static const struct field_words flags = { (const char *const[]){ "false", "true" }, 2 },
                                 formats = { (const char *const[]){ "json", "stl", "ply", "glb" }, 4 };
 /* The scene's methods that trace univels: its words without the last, "surface". */

@@ -220,7 +220,7 @@ test('a region without weights has no curve, coverage or limit, with the reason'
     constraints: { a: { region: 'brain', quantity: 'isoeffective', metric: 'max', side: 'at-most', limit: 1 } },
   };
   const { json } = await ask('dvh', override, '&regions=brain,tumour&bins=4');
-  const reason = 'no parameters of the isoeffective dose for brain'; // "no weights for" of a weighted one: tests/unit/test_dose_histogram.c
+  const reason = 'no parameters of the isoeffective dose for brain'; // "no weights for" of a weighted one: tests/unit/core/derive/test_dose_histogram.c
   assert.deepEqual(
     json.curves.map(({ region }) => region),
     ['tumour'],

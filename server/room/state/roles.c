@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* On the page's darkest and lightest panels (--bg0, --bg5) and under dark letters (--ink) each has a contrast of at
- * least 4.5:1, and no two are nearer than 25 in CIE Lab; tests/unit/test_roles.c computes both. */
+ * least 4.5:1, and no two are nearer than 25 in CIE Lab; tests/unit/server/room/test_roles.c computes both. */
 static const uint32_t colors[ROLES_N_COLORS] = { 0x56b4e9, 0xe69f00, 0x2fd08f, 0xff7fd1, 0xf0e442, 0xaa93ff,
                                                  0xff8a65, 0x40d8dc, 0x9ccc3c, 0xc9a27c, 0xd5dbe3, 0xff7389 };
 
