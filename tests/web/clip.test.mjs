@@ -254,8 +254,8 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
       await comes((now) => along(before, now.image.obliques['plane-2'].origin_mm), 3, 0.01);
       const { origin_mm: origin } = (await scene()).image.obliques['plane-2'];
       assert.ok(Math.abs(Math.hypot(...origin.map((value, axis) => value - before[axis])) - 3) < 0.01, 'along the normal and nowhere else');
-      await page.mouse.click(x + 30, y + 20);
       const { slices } = (await scene()).image;
+      await page.mouse.click(x + 30, y + 20);
       await comes((now) => now.image.slices.sagittal.position_mm !== slices.sagittal.position_mm, true);
       const { sagittal, coronal, axial } = (await scene()).image.slices;
       const point = [sagittal.position_mm, coronal.position_mm, axial.position_mm];
