@@ -16,7 +16,7 @@ struct api_display { /* a screen that looks at a room */
     bool holds_plan;
 };
 
-static void put_picture(void *context, struct room_picture *picture, const char *kind)
+static void put_picture(void *context, struct frame *picture, const char *kind)
 {
     const struct api_display *display = context;
     feed_put(display->feed, picture, kind);

@@ -30,14 +30,14 @@ struct feed {
 };
 
 struct letter {
-    struct room_picture *picture;
+    struct frame *picture;
     const char *kind; /* of its view */
 };
 
 static void drop(void *letter)
 {
     if (letter)
-        room_picture_drop(((struct letter *)letter)->picture);
+        frame_unref(((struct letter *)letter)->picture);
     free(letter);
 }
 
@@ -67,10 +67,10 @@ static void side_left(struct feed *feed)
 
 /* ---- the writer ------------------------------------------------------------------------------------------------- */
 
-void feed_put(struct feed *feed, struct room_picture *picture, const char *kind)
+void feed_put(struct feed *feed, struct frame *picture, const char *kind)
 {
     struct letter *letter = mem_new(sizeof *letter);
-    *letter = (struct letter){ room_picture_hold(picture), kind };
+    *letter = (struct letter){ frame_ref(picture), kind };
     atomic_store(&feed->is_full, true); /* before the letter: the reader clears it when it has taken one */
     mailbox_put(feed->box, letter);
     feed->wake(feed->context);
@@ -106,7 +106,7 @@ static int write_matrix(char *text, size_t size, const float matrix[16])
 
 static void begin_part(struct feed *feed, int64_t now_us)
 {
-    const struct room_picture *picture = feed->letter->picture;
+    const struct frame *picture = feed->letter->picture;
     const struct frame_header *header = &picture->header;
     char matrix[16 * 24], missing[MISSING_MAX_REGIONS * 66 + 32];
     (void)write_matrix(matrix, sizeof matrix, header->clip_from_lps_mm);
@@ -129,7 +129,7 @@ static void begin_part(struct feed *feed, int64_t now_us)
 
 static void copy(const struct feed *feed, char *bytes, size_t n)
 {
-    const struct room_picture *picture = feed->letter ? feed->letter->picture : NULL;
+    const struct frame *picture = feed->letter ? feed->letter->picture : NULL;
     const struct {
         const void *bytes;
         size_t n;

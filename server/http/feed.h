@@ -17,7 +17,7 @@ struct feed *feed_create(void (*wake)(void *context), void *context);
 
 /* The writer's: */
 /* Holds picture; kind: that of its view, a constant word. */
-void feed_put(struct feed *feed, struct room_picture *picture, const char *kind);
+void feed_put(struct feed *feed, struct frame *picture, const char *kind);
 bool feed_has_room(const struct feed *feed);     /* the last picture was taken */
 void feed_late(struct feed *feed, bool is_late); /* what is shown is not the newest state */
 void feed_end(struct feed *feed);                /* the writer leaves: there will be nothing more */

@@ -48,29 +48,29 @@ static bool read_frame(const struct picture_request *request, const struct packe
 }
 
 /* A further picture with this header, whose n bytes are copied. NULL: there is none, or no memory for it. */
-static struct room_picture *further_picture(struct frame_header header, const uint8_t *bytes, size_t n)
+static struct frame *further_picture(struct frame_header header, const uint8_t *bytes, size_t n)
 {
     uint8_t *copy = n ? malloc(n) : NULL;
     if (!copy)
         return NULL;
     memcpy(copy, bytes, n);
-    struct room_picture *picture = mem_new(sizeof *picture);
-    *picture = (struct room_picture){ .header = header, .bytes = copy, .n_bytes = n, .references = 1 };
+    struct frame *picture = mem_new(sizeof *picture);
+    *picture = (struct frame){ .header = header, .bytes = copy, .n_bytes = n, .references = 1 };
     picture->header.payload_bytes = (uint32_t)n;
     return picture;
 }
 
 /* Takes the blob of a frame that read_frame has read. */
-static struct room_picture *take_picture(struct packet *answer, const struct frame_header *header)
+static struct frame *take_picture(struct packet *answer, const struct frame_header *header)
 {
     const size_t n[IMAGE_N_REDUCED] = { (size_t)answer->frame.half_bytes, (size_t)answer->frame.quarter_bytes };
     const uint8_t *at = answer->blob + header->payload_bytes;
-    struct room_picture *picture = mem_new(sizeof *picture);
-    *picture = (struct room_picture){ .header = *header,
-                                      .bytes = answer->blob,
-                                      .n_bytes = header->payload_bytes,
-                                      .references = 1,
-                                      .missing = missing_read(answer->json) };
+    struct frame *picture = mem_new(sizeof *picture);
+    *picture = (struct frame){ .header = *header,
+                               .bytes = answer->blob,
+                               .n_bytes = header->payload_bytes,
+                               .references = 1,
+                               .missing = missing_read(answer->json) };
     for (int i = 0; i < IMAGE_N_REDUCED; at += n[i++])
         picture->reduced[i] = further_picture(frame_header_reduced(header, image_divisor(i)), at, n[i]);
     picture->marked = further_picture(*header, at, (size_t)answer->frame.marked_bytes);

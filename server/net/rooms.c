@@ -44,10 +44,13 @@ static void send_latest(void *context, void *connection, uint32_t key, const cha
     ws_send_latest(connection, key, text);
 }
 
-static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
+_Static_assert((int)WS_SLOTS == (int)ROOM_WATCH,
+               "a slot for each view, the last one for the small picture of the presenter");
+
+static void send_frame(void *context, void *connection, const struct frame_header *header, struct frame *frame)
 {
     (void)context;
-    ws_send_frame(connection, header, picture);
+    ws_send_frame(connection, header, frame);
 }
 
 static void close_connection(void *context, void *connection)

@@ -15,7 +15,8 @@
 
 enum {
     LOG_EVERY_US = 10000000,
-    MOST_AT_ONCE = 16 << 10 /* bytes of texts that are begun to be sent together */
+    MOST_AT_ONCE = 16 << 10, /* bytes of texts that are begun to be sent together */
+    LAST_SLOT = WS_SLOTS - 1
 };
 
 /* ---- queues ----------------------------------------------------------------------------------------------------- */
@@ -62,9 +63,9 @@ void out_queue_clear(struct queue_out *queue)
 
 void out_drop_frames(struct ws_connection *connection)
 {
-    for (int i = 0; i < ROOM_WATCH; i++) {
-        room_picture_drop(connection->slots[i].picture);
-        connection->slots[i].picture = NULL;
+    for (int i = 0; i < WS_SLOTS; i++) {
+        frame_unref(connection->slots[i].frame);
+        connection->slots[i].frame = NULL;
     }
 }
 
@@ -209,13 +210,13 @@ void ws_bye(struct ws_connection *connection, enum ws_close_code code, const cha
 
 /* ---- sending ---------------------------------------------------------------------------------------------------- */
 
-void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct room_picture *picture)
+void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct frame *frame)
 {
-    if (connection->state != STATE_OPEN || header->view < 1 || header->view > ROOM_WATCH)
+    if (connection->state != STATE_OPEN || header->view < 1 || header->view > WS_SLOTS)
         return;
     struct frame_slot *slot = &connection->slots[header->view - 1];
-    room_picture_drop(slot->picture);
-    slot->picture = room_picture_hold(picture);
+    frame_unref(slot->frame);
+    slot->frame = frame_ref(frame);
     frame_header_write(header, slot->header);
     mark(connection);
 }
@@ -239,14 +240,14 @@ static void begin_message(struct sending *sending, struct message_out *message)
 static void begin_frame(struct sending *sending, struct frame_slot *slot)
 {
     struct sending_part *part = add_part(sending);
-    part->picture = slot->picture;
-    part->body = slot->picture->bytes;
-    part->n_body = slot->picture->n_bytes;
+    part->frame = slot->frame;
+    part->body = slot->frame->bytes;
+    part->n_body = slot->frame->n_bytes;
     part->n_head = ws_write_head(part->head, WS_BINARY, FRAME_HEADER_BYTES + part->n_body);
     memcpy(part->head + part->n_head, slot->header, FRAME_HEADER_BYTES);
     part->n_head += FRAME_HEADER_BYTES;
     part->slot = slot;
-    slot->picture = NULL;
+    slot->frame = NULL;
 }
 
 /* Pongs before messages, messages before the close. */
@@ -286,16 +287,16 @@ static bool begin_next(struct ws_connection *connection)
         sending->parts[sending->n - 1].is_latest = true;
         return true;
     }
-    for (int i = 0; i < ROOM_MAX_VIEWS; i++) {
-        int at = (connection->next_slot + i) % ROOM_MAX_VIEWS;
-        if (!connection->slots[at].picture)
+    for (int i = 0; i < LAST_SLOT; i++) {
+        int at = (connection->next_slot + i) % LAST_SLOT;
+        if (!connection->slots[at].frame)
             continue;
         connection->next_slot = at + 1;
         begin_frame(sending, &connection->slots[at]);
         return true;
     }
-    if (connection->slots[ROOM_WATCH - 1].picture) /* after the member's own views */
-        begin_frame(sending, &connection->slots[ROOM_WATCH - 1]);
+    if (connection->slots[LAST_SLOT].frame)
+        begin_frame(sending, &connection->slots[LAST_SLOT]);
     return sending->n > 0;
 }
 
@@ -306,7 +307,7 @@ static void put_back(struct ws_connection *connection)
     struct sending_part *last = &sending->parts[sending->n - 1];
     struct queue_out *latest = &connection->latest;
     if (last->slot) {
-        last->slot->picture = last->picture;
+        last->slot->frame = last->frame;
         connection->next_slot = (int)(last->slot - connection->slots);
         sending->n--;
     } else if (last->is_latest) {
@@ -329,8 +330,8 @@ static bool has_more(const struct ws_connection *connection)
 {
     bool has = is_sending(connection) || connection->pongs.first || connection->texts.first || connection->close ||
                (connection->state == STATE_OPEN && connection->latest.first);
-    for (int i = 0; i < ROOM_WATCH; i++)
-        has = has || connection->slots[i].picture;
+    for (int i = 0; i < WS_SLOTS; i++)
+        has = has || connection->slots[i].frame;
     return has;
 }
 
@@ -339,7 +340,7 @@ void out_drop_sending(struct ws_connection *connection)
     struct sending *sending = &connection->sending;
     for (int i = 0; i < sending->n; i++) {
         free(sending->parts[i].message);
-        room_picture_drop(sending->parts[i].picture);
+        frame_unref(sending->parts[i].frame);
     }
     sending->n = 0;
     sending->n_done = 0;

@@ -19,6 +19,7 @@
 #include "server/wire/refusal.h"
 #include "server/ws/accept.h"
 #include "server/ws/out.h"
+#include "wire_gen.h"
 
 enum {
     SEND_BUFFER = 128 << 10, /* the kernel's: a frame in it can no longer be replaced by a newer one */

@@ -1,10 +1,10 @@
 #pragma once
 /* WebSocket connections on sockets from the acceptor: the answer to the handshake, Origin, limits, the order of what is
  * sent, and how a connection ends. RFC 6455 is implemented here (parser.h parses it, loop.h waits). Knows messages,
- * frames and ids of rooms, but not the messages' contents. Net thread, but for ws_wake. */
+ * frames and the ids of rooms, but neither rooms nor the messages' contents. Net thread, but for ws_wake. */
 #include <stdint.h>
 
-#include "server/room/room.h"
+#include "server/wire/frame.h"
 #include "server/wire/handshake.h"
 #include "server/ws/parser.h"
 #include "server/ws/rate.h"
@@ -20,6 +20,7 @@ enum {
     WS_MAX_CONNECTIONS = 2000,
     WS_MAX_HEAD = 16 << 10, /* bytes of a handshake; the acceptor's limit is lower */
     WS_RETRY_MS = 5000,     /* told to clients that are refused for a limit */
+    WS_SLOTS = 9,           /* views of one connection that frames are sent of */
 };
 
 /* Limits of one connection. A page sends at most two messages for each picture of each of its views: 8 views at 60
@@ -83,8 +84,9 @@ void ws_send_text(struct ws_connection *connection, const char *text);
 /* Replaces a waiting text with the same key of which nothing was sent. Texts of ws_send_text go first. */
 void ws_send_latest(struct ws_connection *connection, uint32_t key, const char *text);
 void ws_send_message(struct ws_connection *connection, enum ws_opcode kind, const void *bytes, size_t n);
-/* Replaces a waiting frame of the same view of which nothing was sent. */
-void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct room_picture *picture);
+/* Replaces a waiting frame of the same view (1 to WS_SLOTS) of which nothing was sent. Views take turns, but for the
+ * last one, whose frame goes only when no other waits. header goes before the frame's bytes, in place of its own. */
+void ws_send_frame(struct ws_connection *connection, const struct frame_header *header, struct frame *frame);
 void ws_close(struct ws_connection *connection, enum ws_close_code code); /* sends waiting messages first */
 /* Sends a bye with the reason, and closes; retry_ms < 0: the page is not to come back. */
 void ws_bye(struct ws_connection *connection, enum ws_close_code code, const char *reason, int retry_ms);

@@ -24,7 +24,7 @@ struct queue_out {
 
 struct frame_slot { /* the newest frame of a view, not begun to be sent */
     uint8_t header[FRAME_HEADER_BYTES];
-    struct room_picture *picture; /* NULL: empty */
+    struct frame *frame; /* NULL: empty */
 };
 
 enum { OUT_AT_ONCE = 4 }; /* messages that one call sends */
@@ -34,10 +34,10 @@ struct sending_part {
     size_t n_head;
     const uint8_t *body;
     size_t n_body;
-    struct message_out *message;  /* owner of the body, ... */
-    struct room_picture *picture; /* ... or this one */
-    struct frame_slot *slot;      /* where the picture waited; NULL: it is a message */
-    bool is_latest;               /* the message waited in latest */
+    struct message_out *message; /* owner of the body, ... */
+    struct frame *frame;         /* ... or this one */
+    struct frame_slot *slot;     /* where the frame waited; NULL: it is a message */
+    bool is_latest;              /* the message waited in latest */
 };
 
 struct sending { /* messages that are partly sent: nothing else may be sent before their rest */
@@ -68,7 +68,7 @@ struct ws_connection { /* lives as long as its socket */
     size_t n_dropped;
     struct queue_out pongs, texts, latest; /* latest: at most one message of each key */
     struct message_out *close;             /* sent after pongs and texts, instead of latest */
-    struct frame_slot slots[ROOM_WATCH];
+    struct frame_slot slots[WS_SLOTS];
     int next_slot;
     struct sending sending;
     bool is_armed;  /* out_write is called when the socket takes more */

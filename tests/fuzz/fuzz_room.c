@@ -60,7 +60,7 @@ static void send_latest(void *context, void *connection, uint32_t key, const cha
     send_text(context, connection, text);
 }
 
-static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
+static void send_frame(void *context, void *connection, const struct frame_header *header, struct frame *picture)
 {
     struct page *page = connection;
     (void)context;
@@ -87,11 +87,11 @@ static void answer(struct room *room, bool has_failed, int64_t now_us)
         room_picture_failed(room, request, &problem, now_us);
         return;
     }
-    struct room_picture *picture = mem_new(sizeof *picture);
-    *picture = (struct room_picture){ .header = { .codec = 1, .render_us = (uint32_t)(request * 7919 % 90000) },
-                                      .bytes = mem_new(8),
-                                      .n_bytes = 8,
-                                      .references = 1 };
+    struct frame *picture = mem_new(sizeof *picture);
+    *picture = (struct frame){ .header = { .codec = 1, .render_us = (uint32_t)(request * 7919 % 90000) },
+                               .bytes = mem_new(8),
+                               .n_bytes = 8,
+                               .references = 1 };
     room_picture_came(room, request, picture, now_us);
 }
 

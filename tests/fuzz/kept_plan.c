@@ -57,7 +57,7 @@ static void send_latest(void *context, void *connection, uint32_t key, const cha
     send_text(context, connection, text);
 }
 
-static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
+static void send_frame(void *context, void *connection, const struct frame_header *header, struct frame *picture)
 {
     (void)context;
     (void)connection;

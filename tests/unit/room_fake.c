@@ -69,7 +69,7 @@ static void send_latest(void *context, void *connection, uint32_t key, const cha
         page->n_read = page->n_texts;
 }
 
-static void send_frame(void *context, void *connection, const struct frame_header *header, struct room_picture *picture)
+static void send_frame(void *context, void *connection, const struct frame_header *header, struct frame *picture)
 {
     struct fake_page *page = connection;
     (void)context;
@@ -278,12 +278,12 @@ static int side_px(const struct fake_request *request, int i)
 }
 
 /* As the renderer makes them; of 100 / 2 or 100 / 4 bytes. */
-static void add_reduced(struct room_picture *picture, const struct fake_request *request)
+static void add_reduced(struct frame *picture, const struct fake_request *request)
 {
     for (int i = 0; i < IMAGE_N_REDUCED; i++) {
         if (!request->is_reduced[i])
             continue;
-        struct room_picture *reduced = mem_new(sizeof *reduced);
+        struct frame *reduced = mem_new(sizeof *reduced);
         reduced->references = 1;
         reduced->n_bytes = 100 / (size_t)image_divisor(i);
         reduced->bytes = mem_new(reduced->n_bytes);
@@ -299,7 +299,7 @@ void fake_draw_slow(struct fake_room *fake, struct fake_request *request, uint32
     assert_non_null(request);
     assert_false(request->is_answered);
     request->is_answered = true;
-    struct room_picture *picture = mem_new(sizeof *picture);
+    struct frame *picture = mem_new(sizeof *picture);
     picture->references = 1;
     picture->n_bytes = 100;
     picture->bytes = mem_new(100);

@@ -47,7 +47,7 @@ struct stream {
     int64_t retry_us;  /* nothing is requested before */
     int n_failed;      /* pictures that failed in a row */
     struct request requests[2];
-    struct room_picture *latest;
+    struct frame *latest;
     uint64_t latest_number, latest_version; /* latest's request, and the version it shows; 0: none */
     bool latest_is_still;
     struct pace pace;

@@ -1,12 +1,10 @@
 #pragma once
 /* What a room and its owner tell each other: limits, rows, requests and pictures, and the callbacks. Included by
  * room.h. */
-#include <stdatomic.h>
 #include <stdint.h>
 
-#include "core/base/image_reduce.h"
 #include "server/wire/document.h"
-#include "server/wire/frame_header.h"
+#include "server/wire/frame.h"
 #include "wire_gen.h"
 
 enum {
@@ -72,20 +70,6 @@ struct room_render {
     const char *member;                /* id of the member whose own view it is; NULL: a shared view */
 };
 
-/* A picture that was drawn; reference-counted, as all followers are sent the same. Unchanged once it is given to the
- * room; held and dropped by any thread. */
-struct room_picture {
-    struct frame_header header; /* view, sequence, input_id, flags SHARED are filled per member by the room */
-    uint8_t *bytes;
-    size_t n_bytes;
-    cJSON *missing; /* {n, regions: [{region, reason}]}: the regions that it leaves out because they cannot be drawn;
-                       NULL: none */
-    struct room_picture *reduced[IMAGE_N_REDUCED]; /* owned: the same of a half and of a quarter of the size, without
-                                                      missing; NULL: not made */
-    struct room_picture *marked; /* owned: the same, of the whole size, with the words for a draft; NULL: not made */
-    atomic_int references;
-};
-
 /* A row for the audit. Texts are borrowed. Actions: note, bookmark, check (an item was put or deleted), open, leave (a
  * member enters, or its connection ends), link (one was used), link-made, control, weights (of a dose), draft-made,
  * draft-changed, draft-reset (of the beam), decision, signature, acceptance, withdrawal (of parts that do not fit, used
@@ -129,9 +113,8 @@ struct room_callbacks {
     void (*send_text)(void *context, void *connection, const char *text);
     /* the same; a text with the same key that waits for the connection is replaced by this one */
     void (*send_latest)(void *context, void *connection, uint32_t key, const char *text);
-    /* a frame for one connection, with its header; keeping the picture takes room_picture_hold */
-    void (*send_frame)(void *context, void *connection, const struct frame_header *header,
-                       struct room_picture *picture);
+    /* a frame for one connection, with its header; keeping the picture takes frame_ref */
+    void (*send_frame)(void *context, void *connection, const struct frame_header *header, struct frame *picture);
     /* close when all that was sent has gone out; room_connection_closed may follow but need not */
     void (*close)(void *context, void *connection);
     /* An item is new or was changed: row is the whole of it as JSON, borrowed. row NULL: it was deleted. A store keeps
@@ -205,9 +188,6 @@ struct room_limits {
 struct room_counters {
     uint64_t pictures_requested, frames_sent, frame_bytes, frames_skipped, messages_refused, stills_sent;
 };
-
-struct room_picture *room_picture_hold(struct room_picture *picture);
-void room_picture_drop(struct room_picture *picture);
 
 NODISCARD cJSON *room_members(const struct room *room);
 size_t room_n_connected(const struct room *room);

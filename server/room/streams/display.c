@@ -40,21 +40,21 @@ static bool shows_draft(const struct room *room, const struct stream *stream)
 
 /* The stream's latest picture as screens are given it; NULL: there is none yet, or it shows a draft without saying so.
  */
-static struct room_picture *picture_for_displays(const struct room *room, const struct stream *stream)
+static struct frame *picture_for_displays(const struct room *room, const struct stream *stream)
 {
     if (stream->latest && stream->latest->marked)
         return stream->latest->marked;
     return shows_draft(room, stream) ? NULL : stream->latest;
 }
 
-static void give(const struct room_display *display, struct room_picture *picture)
+static void give(const struct room_display *display, struct frame *picture)
 {
     display->callbacks.picture(display->callbacks.context, picture, scene_kind_words.words[display->stream->kind]);
 }
 
 void displays_send(const struct room *room, const struct stream *stream)
 {
-    struct room_picture *picture = stream->displays ? picture_for_displays(room, stream) : NULL;
+    struct frame *picture = stream->displays ? picture_for_displays(room, stream) : NULL;
     for (const struct room_display *display = stream->displays; picture && display; display = display->next)
         give(display, picture);
 }
@@ -64,7 +64,7 @@ bool display_show(const struct room *room, struct room_display *display, struct 
     display->next = stream->displays;
     display->stream = stream;
     stream->displays = display;
-    struct room_picture *picture = picture_for_displays(room, stream);
+    struct frame *picture = picture_for_displays(room, stream);
     if (picture)
         give(display, picture);
     return picture || !shows_draft(room, stream);

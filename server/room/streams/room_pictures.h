@@ -3,8 +3,7 @@
 #include "server/room/state/room_types.h"
 
 /* Answers to render. A picture that is no longer wanted (the renderer was restarted, the view closed) is dropped. */
-void room_picture_came(struct room *room, uint64_t request, struct room_picture *picture,
-                       int64_t now_us); /* takes picture */
+void room_picture_came(struct room *room, uint64_t request, struct frame *picture, int64_t now_us); /* takes picture */
 void room_picture_failed(struct room *room, uint64_t request, const struct problem *problem, int64_t now_us);
 
 /* Displays: screens that show a shared view and are no members. view: its kind; NULL: the room's main view, whichever
@@ -13,8 +12,8 @@ void room_picture_failed(struct room *room, uint64_t request, const struct probl
  * problem: limit, validation, not-found. */
 struct room_display;
 struct room_display_callbacks {
-    /* a newer picture, of a view of this kind (a constant word); keeping it takes room_picture_hold */
-    void (*picture)(void *context, struct room_picture *picture, const char *kind);
+    /* a newer picture, of a view of this kind (a constant word); keeping it takes frame_ref */
+    void (*picture)(void *context, struct frame *picture, const char *kind);
     bool (*has_room)(void *context); /* the screen has taken the last one */
     /* The picture does not show what the room shows now: the newest state is slow to be drawn, or cannot be. False at
      * first, and again when it does. */

@@ -32,11 +32,11 @@ void size_classes_needed(const struct room *room, const struct stream *stream, i
                 is_reduced[i] = true;
 }
 
-struct room_picture *size_class_picture(const struct room *room, const struct member_view *view,
-                                        struct room_picture *picture, bool is_still)
+struct frame *size_class_picture(const struct room *room, const struct member_view *view, struct frame *picture,
+                                 bool is_still)
 {
     const int divisor = divisor_of(room, view, picture->header.width_px, picture->header.height_px, is_still);
-    struct room_picture *smallest = picture;
+    struct frame *smallest = picture;
     for (int i = 0; i < IMAGE_N_REDUCED && image_divisor(i) <= divisor; i++)
         if (picture->reduced[i])
             smallest = picture->reduced[i];

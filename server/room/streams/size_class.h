@@ -23,5 +23,5 @@
 void size_classes_needed(const struct room *room, const struct stream *stream, int scale_percent, bool is_still,
                          bool is_reduced[IMAGE_N_REDUCED]);
 /* The picture of the view's class; a larger one where that was not made. Borrowed from picture. */
-struct room_picture *size_class_picture(const struct room *room, const struct member_view *view,
-                                        struct room_picture *picture, bool is_still);
+struct frame *size_class_picture(const struct room *room, const struct member_view *view, struct frame *picture,
+                                 bool is_still);

@@ -157,7 +157,7 @@ void stream_destroy(struct room *room, struct stream *stream)
     *at = stream->next;
     if (room->main == stream)
         room->main = NULL;
-    room_picture_drop(stream->latest);
+    frame_unref(stream->latest);
     send_view_forget(stream);
     cJSON_Delete(stream->view);
     cJSON_Delete(stream->scene);
@@ -398,7 +398,7 @@ void stream_send_picture(struct room *room, struct member *member, struct member
         return;
     if (is_refused(stream)) /* texts overtake pictures, and viewers take a picture as the end of a refusal */
         return;
-    struct room_picture *picture = size_class_picture(room, view, stream->latest, stream->latest_is_still);
+    struct frame *picture = size_class_picture(room, view, stream->latest, stream->latest_is_still);
     if (view->sent_number == stream->latest_number && view->sent_width_px >= picture->header.width_px &&
         !shows_waiting_input(stream, view))
         return;
@@ -509,13 +509,13 @@ static bool newer_is_coming(const struct stream *stream, uint64_t version)
            (stream->requests[1].number && stream->requests[1].version > version);
 }
 
-void room_picture_came(struct room *room, uint64_t number, struct room_picture *picture, int64_t now_us)
+void room_picture_came(struct room *room, uint64_t number, struct frame *picture, int64_t now_us)
 {
     struct request request;
     room->now_us = now_us;
     struct stream *stream = remove_request(room, number, &request);
     if (!stream) {
-        room_picture_drop(picture);
+        frame_unref(picture);
         return;
     }
     stream->n_failed = 0;
@@ -527,7 +527,7 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
     bool is_overtaken = request.is_still && newer_is_coming(stream, request.version);
     is_overtaken |= request.version < stream->refused_version; /* viewers take a picture as the end of a refusal */
     if (is_newer(stream, &request) && !is_overtaken) {
-        room_picture_drop(stream->latest);
+        frame_unref(stream->latest);
         stream->latest = picture;
         stream->latest_number = request.number;
         stream->latest_version = request.version;
@@ -535,7 +535,7 @@ void room_picture_came(struct room *room, uint64_t number, struct room_picture *
         stream->behind_us = request.version < stream->version ? now_us : 0;
         send_to_subscribers(room, stream);
     } else {
-        room_picture_drop(picture);
+        frame_unref(picture);
     }
     (void)streams_request_due(room);
 }

@@ -7,7 +7,7 @@ struct screen {
     const char *kind; /* of the newest picture */
 };
 
-static void take_picture(void *context, struct room_picture *picture, const char *kind)
+static void take_picture(void *context, struct frame *picture, const char *kind)
 {
     ((struct screen *)context)->n_bytes = picture->n_bytes;
     ((struct screen *)context)->n_pictures++;

@@ -236,7 +236,7 @@ static void a_class_that_could_not_be_made_is_replaced_by_a_larger_one(void **st
     assert_ptr_equal(pages[8].last_bytes, pages[4].last_bytes);
 }
 
-static void take_picture(void *context, struct room_picture *picture, const char *kind)
+static void take_picture(void *context, struct frame *picture, const char *kind)
 {
     (void)kind;
     *(int *)context = picture->header.width_px;

@@ -7,6 +7,7 @@
 #include "core/base/mem.h"
 #include "tests/check.h"
 #include "tests/unit/ws_client.h"
+#include "wire_gen.h"
 
 static struct ws *ws;
 static struct ws_connection *connection;
@@ -204,8 +205,8 @@ static void a_newer_frame_replaces_one_that_has_not_gone_out(void **state)
     (void)state;
     uint32_t before = 0, n_frames = 0, newest = 0;
     for (uint32_t sequence = 1; sequence <= 40; sequence++) { /* nobody reads */
-        struct room_picture *picture = mem_new(sizeof *picture);
-        *picture = (struct room_picture){ .bytes = mem_new(100000), .n_bytes = 100000, .references = 1 };
+        struct frame *picture = mem_new(sizeof *picture);
+        *picture = (struct frame){ .bytes = mem_new(100000), .n_bytes = 100000, .references = 1 };
         struct frame_header header = { .codec = 1,
                                        .scale_percent = 100,
                                        .view = 1,
@@ -214,7 +215,7 @@ static void a_newer_frame_replaces_one_that_has_not_gone_out(void **state)
                                        .height_px = 1,
                                        .payload_bytes = 100000 };
         ws_send_frame(connection, &header, picture);
-        room_picture_drop(picture); /* the connection holds its own */
+        frame_unref(picture); /* the connection holds its own */
         serve_a_while();
     }
     size_t n = drain(bytes, sizeof bytes);
