@@ -104,6 +104,21 @@ scripts_parse() {
 }
 json_parses() { "${NODE:-node}" tests/api/strict_json.mjs $(sources '*.json' | grep -v '/fixtures/bad/') build/gen/openapi.json; }
 laid_out() { sources '*.c' '*.h' '*.cc' '*.hh' '*.inc' | on_all_cores -n 50 clang-format --dry-run -Werror; }
+biome() { node_modules/.bin/biome "$@"; }
+scripts_and_styles() { biome check --error-on-warnings; }
+planted_script() {
+    local folder out
+    folder=$(mktemp -d)
+    mkdir -p "$folder/web/js" "$folder/web/css"
+    cp biome.jsonc "$folder"
+    printf 'export const count = missing\n' >"$folder/web/js/planted.js"
+    printf 'a {\n  colour: red;\n}\n' >"$folder/web/css/planted.css"
+    out=$(biome=$PWD/node_modules/.bin/biome && cd "$folder" && "$biome" check --reporter=github 2>&1)
+    rm -rf "$folder"
+    grep -q noUndeclaredVariables <<<"$out" && grep -q noUnknownProperty <<<"$out" && grep -q 'title=format,file=[^,]*planted.js' <<<"$out" && return 0
+    echo "$out"
+    return 1
+}
 no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json; }
 
 copy=$(mktemp -d)
@@ -122,6 +137,8 @@ check "documents name what is there: paths, packages with their licences, one ve
 check "a path, a package and a version that are not are found" planted_documents
 check "no banned calls" no_calls
 check "C is laid out as .clang-format says (clang-format -i FILE)" laid_out
+check "JavaScript and CSS are laid out and free of mistakes as biome.jsonc says (npx biome check --write FILE)" scripts_and_styles
+check "a name that nobody declares, an unknown property of CSS and a line out of layout are found" planted_script
 check "locks stand in core/base alone" locks_in_base
 check "no value-changing float flags" no_flags
 check "each header compiles alone, once" headers_stand_alone

@@ -26,8 +26,7 @@ export function sceneHeader(description, prefix = 'scene') {
   return text;
 }
 
-/** The struct of one element of a list or map, and the path from an element to the object in it. */
-const elementOf = (field, prefix) => (field.type === 'map' ? `${prefix}_${field.object}_entry` : `${prefix}_${field.object}`);
+/** The path from an element of a list or map to the object in it. */
 const valueOf = (field) => (field.type === 'map' ? '.value' : '');
 
 function finishBody(object, prefix, objects) {

@@ -151,7 +151,7 @@ test('a beam that is placed has the gap, the point and the angles asked for', as
 });
 
 test("a ring that is asked about is no aperture: the plan's and a draft's own stay what they are", async () => {
-  const said = ({ aperture_mm, aperture }) => [aperture_mm, aperture && aperture.diameter_mm, aperture && aperture.is_ring];
+  const said = ({ aperture_mm, aperture }) => [aperture_mm, aperture?.diameter_mm, aperture?.is_ring];
   assert.deepEqual(said(await ask('beam', { aperture_mm: 40 })), [planned.aperture_mm, 40, true]);
   assert.deepEqual(said(await ask('beam', { aperture_mm: planned.aperture_mm })), [planned.aperture_mm, planned.aperture_mm, false]);
   assert.deepEqual(said(await ask('beam')), [planned.aperture_mm, planned.aperture_mm, false]);

@@ -112,13 +112,13 @@ describe('beamroom info', () => {
     const { status, stdout, stderr } = beamroom('info', plan);
     assert.equal(status, 0, stderr);
     assert.match(stdout, /^Phantom: .*\[phantom, made up\]$/m);
-    assert.match(stdout, /^  ct +CT +96 x 96 x 64 +2\.667 x 2\.667 x 3\.2 mm +LPS +-1000 to 20\d\d HU$/m);
+    assert.match(stdout, /^ {2}ct +CT +96 x 96 x 64 +2\.667 x 2\.667 x 3\.2 mm +LPS +-1000 to 20\d\d HU$/m);
     assert.match(stdout, /^5 regions, inside each other as the plan says/m);
-    assert.match(stdout, /^  scalp .*\n    cranium .*\n      brain .*\n        target .*\n          tumour /m);
+    assert.match(stdout, /^ {2}scalp .*\n {4}cranium .*\n {6}brain .*\n {8}target .*\n {10}tumour /m);
     assert.match(stdout, /^Dose goorley, Gy per minute at 1e10 n\/cm2\/s, with a mask/m);
-    assert.match(stdout, /^  boron +per ppm +41 x 57 x 49 +4 x 4 x 4 mm +LPS/m);
+    assert.match(stdout, /^ {2}boron +per ppm +41 x 57 x 49 +4 x 4 x 4 mm +LPS/m);
     assert.match(stdout, /from \(0\.0, 0\.0, 88\.0\) to \(0\.0, 0\.0, 10\.0\), aperture 100 mm$/m);
-    assert.match(stdout, /^  beam-line +1$/m);
+    assert.match(stdout, /^ {2}beam-line +1$/m);
     for (const line of stdout.split('\n')) assert.ok([...line].length <= 100, line);
   });
 

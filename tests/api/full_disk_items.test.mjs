@@ -39,7 +39,7 @@ test('on a full disk no item, decision, signature, saved view or link is accepte
     t.skip(disk.missing);
     return;
   }
-  let daemon = await startDaemon({ data: disk.data, args: ['--stub'] });
+  const daemon = await startDaemon({ data: disk.data, args: ['--stub'] });
   const clients = [];
   try {
     const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id,

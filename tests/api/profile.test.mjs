@@ -7,12 +7,12 @@ import { call, demo, openPlan, realData, startDaemon } from './daemon.mjs';
 
 const head = realData && join(realData, 'sera-head');
 const skip = head && existsSync(head) ? false : 'no real plans on this machine';
-let daemon, api, plan;
+let daemon, api;
 
 before(async () => {
   daemon = await startDaemon({ plans: skip ? [demo] : [demo, head] });
   api = `${daemon.url}/api/v1`;
-  plan = await openPlan(daemon.url, 'phantom');
+  await openPlan(daemon.url, 'phantom');
 });
 after(() => daemon?.stop());
 

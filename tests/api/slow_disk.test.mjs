@@ -6,7 +6,7 @@ import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { call, sleep, startDaemon, until } from './daemon.mjs';
+import { call, sleep, startDaemon } from './daemon.mjs';
 import { Client } from './ws_client.mjs';
 
 const helloMs = 5000; // WS_HELLO_WITHIN_S: the daemon does not wait longer for a hello

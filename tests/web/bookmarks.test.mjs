@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
 import { axe as findings } from './axe.mjs';
-import { full, later, missing, once, shoot, startWorld } from './browser.mjs';
+import { full, later, missing, shoot, startWorld } from './browser.mjs';
 
 describe('saved views', { skip: missing && `${missing} is not there` }, () => {
   let world;

@@ -1,6 +1,6 @@
 // Plots of dose: drawer, table twins, files, limits, print. Numbers come from doses with a closed form (dose_stub.mjs).
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
+import { after, before, describe } from 'node:test';
 import { call } from '../api/daemon.mjs';
 import { axe } from './axe.mjs';
 import { bytesOf, full, later, missing, once, shoot, startWorld } from './browser.mjs';

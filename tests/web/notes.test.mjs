@@ -24,7 +24,6 @@ const enter = async (name, options) => {
 };
 const notes = async () => (await call(`${world.daemon.url}/api/v1/rooms/${room}/notes`)).json.notes;
 const note = (page, text) => page.locator('.notes > li').filter({ hasText: text });
-const crosshair = (page) => page.locator('.status').getByText(/^L /).textContent();
 const openTab = (page) => page.getByRole('tab', { name: /^Notes/ }).click();
 
 test('two people write notes, answer at once, find, jump, resolve, and find all of it after a reload', { skip: missing }, async () => {

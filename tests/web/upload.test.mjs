@@ -88,7 +88,7 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
       two.waitForEvent('download'),
       note.getByRole('button', { name: 'Save its notes as a file' }).click(),
     ]);
-    assert.match((await bytesOf(file)).toString(), /^Notes of the room \S+ on .*\n\n1\. Reviewer 1, .*\n   Look at the rim again\n$/);
+    assert.match((await bytesOf(file)).toString(), /^Notes of the room \S+ on .*\n\n1\. Reviewer 1, .*\n {3}Look at the rim again\n$/);
     await note.locator('a', { hasText: 'All plans' }).click();
     await two.locator('.plans').waitFor();
     assert.deepEqual(await uploaded(), []);

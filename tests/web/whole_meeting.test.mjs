@@ -7,9 +7,9 @@ import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { call, renderersOf, startDaemon, until } from '../api/daemon.mjs';
 import { onDisk } from '../api/on_disk.mjs';
-import { bytesOf, full, header, missing, newer, shoot, startWorld } from './browser.mjs';
-import { action, chip, enter, matrix, openRoster, row, says, showsAs, toast, turn } from './people.mjs';
-import { axialPoint, boxOf, mark, near, pointAt, project } from './places.mjs';
+import { bytesOf, full, missing, newer, shoot, startWorld } from './browser.mjs';
+import { action, enter, matrix, openRoster, row, says, showsAs, toast, turn } from './people.mjs';
+import { axialPoint, mark, near, pointAt, project } from './places.mjs';
 
 const wide = { viewport: { width: 1440, height: 900 } },
   small = { viewport: { width: 1100, height: 760 } };

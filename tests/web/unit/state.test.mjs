@@ -1,7 +1,7 @@
 // Own changes and other people's: what the page shows, with a connection and a clock that are fakes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { FakeConnection, roomWorld, scene, welcome } from './fake_room.mjs';
+import { FakeConnection, roomWorld, welcome } from './fake_room.mjs';
 import { load } from './page.mjs';
 
 const { Replica } = await load('state/replica.js');

@@ -11,7 +11,6 @@ import { beamFoot } from './beam_foot.js';
 import { showInstead, spaceInstead } from './beam_later.js';
 import { ringHandle, ringNumbers } from './beam_ring.js';
 import { millimetres } from './format.js';
-import { icon } from './icons.js';
 
 const wheelZoom = 1.12;
 const keyZoom = 1.15;

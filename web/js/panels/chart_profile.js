@@ -13,7 +13,6 @@ import { icon } from './icons.js';
 import { variables } from './mount.js';
 
 const resultOf = ({ curves }) => curves.profile.value.result;
-const unitOf = (world) => unitText(resultOf(world)?.unit ?? '');
 const mm = (depth) => `${number(depth, 1)} mm`;
 const phantomWords = "Reference curves were measured or computed in a phantom: they are not this patient's dose.";
 

@@ -1,6 +1,6 @@
 // The table ‘What fits what’ of the Plan tab, and the parts of other patients.
 import { html, nothing } from '../../lib/lit-html.js';
-import { fitOf, partOf } from '../state/fits.js';
+import { partOf } from '../state/fits.js';
 import { partsOfOthers, patientOf, shownPatient } from '../state/identity.js';
 import { shownImage } from '../state/plan.js';
 import { icon } from './icons.js';

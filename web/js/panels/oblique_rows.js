@@ -16,7 +16,7 @@ export function obliqueNote(world) {
 }
 
 export function obliqueRows(world) {
-  const { room, ui } = world;
+  const { room } = world;
   const isDisabled = !room.canChange.value;
   const rows = Object.entries(obliquesOf(world));
   return html`${repeat(

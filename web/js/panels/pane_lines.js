@@ -1,17 +1,7 @@
 // In a slice pane: the lines in which clip planes and oblique planes cut the slice, and the handles that move and turn them.
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
-import {
-  clipName,
-  clipPlane,
-  clipRow,
-  clipWords,
-  enabledClips,
-  keepsWords,
-  movedClip,
-  positionOfClip,
-  rangeOfClip,
-} from '../state/clip.js';
+import { clipName, clipRow, clipWords, enabledClips, keepsWords, movedClip, positionOfClip, rangeOfClip } from '../state/clip.js';
 import {
   angleBetween,
   heightOver,

@@ -64,7 +64,7 @@ export class BeamFacts {
     }, this.#clock);
     const stop = effect(() => {
       const wanted = key.value;
-      const isPending = this.#room.isScenePending.value;
+      void this.#room.isScenePending.value; // runs again when the daemon has confirmed the scene
       if (wanted === settled) return;
       const before = this.answer.peek();
       if (!wanted) {

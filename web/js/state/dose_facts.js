@@ -103,7 +103,7 @@ export class DoseFacts {
     }, clock);
     const stop = effect(() => {
       const wanted = key();
-      const isPending = this.#room.isScenePending.value;
+      void this.#room.isScenePending.value; // runs again when the daemon has confirmed the scene
       if (!wanted || wanted === settled) return;
       const before = answer.peek();
       if (!before.isOld) answer.value = { ...before, isOld: true };

@@ -59,7 +59,7 @@ function leastCovered(point, [width, height], pane, coveredBy) {
 /** The words with the size of their card in a pane of this width; in a narrow one the position takes two lines. */
 export function cardOf(shown, paneWidth, isHeld) {
   const width = Math.min(paneWidth < smallPane ? narrow : widest, paneWidth - 2 * marginPx);
-  const lines = width < widest ? shown.lines.flatMap((line) => line.split(/  (?=S )/)) : shown.lines;
+  const lines = width < widest ? shown.lines.flatMap((line) => line.split(/ {2}(?=S )/)) : shown.lines;
   const height = heights.padding + heights.name + lines.length * heights.line + (shown.value ? (isHeld ? heights.large : heights.line) : 0);
   return { ...shown, lines, width, height };
 }

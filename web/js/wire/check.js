@@ -161,7 +161,7 @@ export function readMessage(value, from) {
 export function readServerMessage(value) {
   need(isObject(value), value, 'an object', '');
   const description = Object.hasOwn(messages, value.type) ? messages[value.type] : undefined;
-  if (!description || description.from !== 'server') return null;
+  if (description?.from !== 'server') return null;
   const known = description.fields.filter((field) => Object.hasOwn(value, field.name)).map((field) => [field.name, value[field.name]]);
   return readMessage({ type: value.type, ...Object.fromEntries(known) }, 'server');
 }
