@@ -1,11 +1,13 @@
 // Holds the documents to the project: node tests/documents.mjs [FOLDER]
 //   THIRD-PARTY.md has a row for each package of deploy/packages and package.json, and none for others; of npm's with the licence they state
 //   the version stands in the Makefile, and everywhere else as there
+//   README.md has at most 6,000 bytes and names the browsers of deploy/promised.mjs
 //   every path that README.md, CONTRIBUTING.md, THIRD-PARTY.md and docs/**/*.md name exists
 // Prints one line a fault, "FILE:LINE: SENTENCE", and exits with 1 if there is one.
 import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
-import { dirname, join, normalize } from 'node:path';
+import { dirname, join, normalize, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
 
 const root = process.argv[2] ?? '.';
 const read = (name) => readFileSync(join(root, name), 'utf8');
@@ -57,6 +59,15 @@ function versions() {
   for (const name of files.filter((file) => file.startsWith('deploy/'))) if (/Beamroom \d+\.\d+\.\d+/.test(read(name))) faults.push(`${name}:1: names a version, which stands in the Makefile alone`);
 }
 
+async function readme() {
+  const text = read('README.md');
+  const { browsers } = await import(pathToFileURL(resolve(root, 'deploy/promised.mjs')));
+  if (Buffer.byteLength(text) > 6000) faults.push(`README.md:1: ${Buffer.byteLength(text)} bytes; at most 6,000`);
+  for (const [name, version] of Object.entries(browsers)) {
+    if (!new RegExp(`\\b${name}\\b[^\\d,]* ${version.replaceAll('.', '\\.')}\\b`, 'i').test(text)) faults.push(`README.md:1: does not promise ${name} ${version} as deploy/promised.mjs does`);
+  }
+}
+
 const tops = new Set(files.map((name) => name.split('/')[0]));
 const isSource = /\.(c|h|cc|hh|inc|frag|vert|glsl|js|mjs|css|sh)$/;
 /** Whether a word in `...` names a path of the project: its first part is a file or folder at the top, or it ends as our sources do. */
@@ -77,7 +88,7 @@ function paths() {
     for (const match of text.matchAll(/`([^`\n]+)`/g)) {
       const word = match[1].replace(/:\d+$/, '');
       if (!isPath(word) || word.startsWith('build/') || word.startsWith('node_modules/')) continue;
-      const found = name === 'README.md' || name === 'docs/where.md' ? exists(word.split('/').at(-1) || word) : exists(word);
+      const found = name === 'docs/where.md' ? exists(word.split('/').at(-1) || word) : exists(word);
       if (!found) faults.push(`${name}:${lineOf(text, match.index)}: ${match[1]} is not there`);
     }
     for (const match of text.matchAll(/\]\(([^)\s#]+)(?:#[^)]*)?\)/g)) {
@@ -90,6 +101,7 @@ function paths() {
 
 thirdParty();
 versions();
+await readme();
 paths();
 for (const fault of faults) console.log(fault);
 process.exitCode = faults.length ? 1 : 0;
