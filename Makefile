@@ -1,7 +1,7 @@
 # All that is made goes to build/<variant>/; what is the same for every variant to build/gen (generated code), build/web
 # (the page) and build/demo (the demo plan).
 #   make            the programs and the page               make run     install what is missing, build, demo plan, serve
-#   make test       every kind of test (tests/README.md)    make test-deep  the long ones: sanitizers, clang, fuzzing
+#   make test       every kind of test (docs/testing.md)    make test-deep  the long ones: sanitizers, clang, fuzzing
 #   make check      the quick ones for work: lint, units of C and of the page, in about a minute
 #   make install PREFIX=/usr/local DESTDIR=
 #   make test-unit test-render test-faults test-api test-web test-install test-long  one suite

@@ -12,7 +12,6 @@ import { pathToFileURL } from 'node:url';
 
 const roots = ['core', 'server', 'web', 'proto', 'tests', 'deploy', 'docs'];
 const mostLines = 30;
-const mostSmall = 6; // files of a folder without a README.md
 const sources = /\.(c|h|cc|hh|inc|js|mjs|css|html|sh|py|sql|glsl|frag|vert|md|json|yaml|txt|conf|service|in)$|^[^.]+$|\.[1-8]$/;
 const isPathWord = /[^/]\.(c|h|cc|hh|inc|js|mjs|css|html|sh|py|sql|glsl|frag|vert|md)$/; // other words with a dot may be the name of a format
 /** Data and what is made is told of by the README above it, not file by file. */
@@ -24,7 +23,12 @@ export function filesOf(top) {
   return text.split('\n').filter((path) => path && existsSync(join(top, path))).sort();
 }
 
-const stemOf = (path) => path.slice(0, path.length - extname(path).length);
+/** Files that are told of together: of C, and of shaders, those with one stem. */
+const kinds = [['.c', '.h', '.cc', '.hh', '.inc'], ['.glsl', '.vert', '.frag']];
+const stemOf = (path) => {
+  const kind = kinds.find((extensions) => extensions.includes(extname(path)));
+  return kind ? path.slice(0, path.length - extname(path).length) + kind[0] : path;
+};
 const matcher = (pattern) => new RegExp(`^${pattern.replace(/[.+?^$()[\]{}|\\]/g, '\\$&').replaceAll('*', '[^/]*')}$`);
 
 /** The paths and patterns that a README names, with their lines. @returns {{word: string, line: number}[]} */
@@ -40,9 +44,7 @@ export function findings(top) {
     return '';
   };
   const said = [];
-  const counts = new Map();
-  for (const path of own) counts.set(dirname(path), (counts.get(dirname(path)) ?? 0) + 1);
-  for (const [folder, n] of counts) if (n > mostSmall && !readmes.has(`${folder}/README.md`)) said.push(`${folder}/ has no README.md, and ${n} files`);
+  for (const path of own) if (!homeOf(path)) said.push(`${path}: no folder above it has a README.md`);
 
   for (const readme of readmes) {
     const text = readFileSync(join(top, readme), 'utf8');
@@ -70,15 +72,14 @@ export function findings(top) {
       if (!statSync(join(top, path)).isFile() || !mine.includes(path)) continue;
       exact.set(stemOf(path), [...exact.get(stemOf(path)) ?? [], line]);
     }
-    for (const [stem, lines] of exact) if (lines.length > 1) said.push(`${stem}.* is named ${lines.length} times in ${readme}: lines ${lines.join(', ')}`);
-    const isSaid = new Set();
-    for (const path of mine) {
-      const stem = stemOf(path);
-      if (exact.has(stem) || isSaid.has(stem)) continue;
-      isSaid.add(stem);
-      const n = patterns.filter(({ stems }) => stems.has(stem)).length;
-      if (n === 0) said.push(`${path} is not named in ${readme}`);
-      if (n > 1) said.push(`${path} is matched by ${n} patterns in ${readme}`);
+    for (const [stem, lines] of exact) if (lines.length > 1) said.push(`${stem} is named ${lines.length} times in ${readme}: lines ${lines.join(', ')}`);
+    const times = (path) => (exact.has(stemOf(path)) ? 1 : patterns.filter(({ stems }) => stems.has(stemOf(path))).length);
+    for (const sub of new Set(mine.map((path) => dirname(path)))) {
+      const here = mine.filter((path) => dirname(path) === sub);
+      const unnamed = here.filter((path) => times(path) === 0);
+      if (sub !== folder && unnamed.length === here.length && here.length > 1) said.push(`${sub}/ has no README.md, and ${readme} names none of its ${here.length} files`);
+      else said.push(...unnamed.map((path) => `${path} is not named in ${readme}`));
+      said.push(...here.filter((path) => times(path) > 1).map((path) => `${path} is matched by ${times(path)} patterns in ${readme}`));
     }
   }
   return said;

@@ -1,5 +1,5 @@
 // A daemon is killed at random moments while a room is edited: what was told to be saved is there after the restart, everything else is
-// there as it was or as it was to be, and nothing is torn. KILLS: how often (tests/README.md). --stub: grey pictures.
+// there as it was or as it was to be, and nothing is torn. KILLS: how often (docs/testing.md). --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
