@@ -29,7 +29,7 @@ const stemOf = (path) => {
   const kind = kinds.find((extensions) => extensions.includes(extname(path)));
   return kind ? path.slice(0, path.length - extname(path).length) + kind[0] : path;
 };
-const matcher = (pattern) => new RegExp(`^${pattern.replace(/[.+?^$()[\]{}|\\]/g, '\\$&').replaceAll('*', '[^/]*')}$`);
+const matcher = (pattern) => new RegExp(`^${pattern.replace(/[.+?^$()[\]{}|\\]/g, '\\$&').replace(/\*\*\/|\*/g, (stars) => (stars === '*' ? '[^/]*' : '(.*/)?'))}$`);
 
 /** The paths and patterns that a README names, with their lines. @returns {{word: string, line: number}[]} */
 const wordsOf = (text) => text.split('\n').flatMap((line, at) => [...line.matchAll(/`([^`\s]+)`|\]\(([^)#:\s]+)\)/g)].map(([, code, link]) => ({ word: code ?? link, line: at + 1 })));
@@ -44,7 +44,7 @@ export function findings(top) {
     return '';
   };
   const said = [];
-  for (const path of own) if (!homeOf(path)) said.push(`${path}: no folder above it has a README.md`);
+  for (const folder of new Set(own.filter((path) => !homeOf(path)).map(dirname))) said.push(`${folder}/ has no README.md, nor has a folder above it`);
 
   for (const readme of readmes) {
     const text = readFileSync(join(top, readme), 'utf8');
