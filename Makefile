@@ -5,7 +5,8 @@
 #   make check      the quick ones for work: lint, units of C and of the page, in about a minute
 #   make install PREFIX=/usr/local DESTDIR=
 #   make test-unit test-render test-faults test-api test-web test-install test-long  one suite
-#   make bench  lint  fuzz  cover  clean
+#   make bench  lint  fuzz  cover  clean  guide-pictures
+#   make where WORDS="isodose level"  which file to change; without words the whole index, build/where.md
 # Variables: CC=gcc|clang  SAN=address,undefined|thread  WERROR=1  V=1  FUZZ_SECONDS=60
 #   run: PLANS="folder ..." further folders of plans, ARGS="--listen 127.0.0.1:9000 ..." further flags of beamroomd
 #   EXTRA_<path_with_underscores>  further flags for one source file
@@ -282,6 +283,14 @@ test:
 test-deep:
 	@deploy/packages build run test
 	@tests/all.sh deep
+
+# ---- documents: to change X, look in Y; the pictures of the user's guide ----------------------------------------------------------
+.PHONY: where guide-pictures
+where:
+	@mkdir -p build
+	@$(NODE) docs/where.mjs $(if $(WORDS),- $(WORDS),build/where.md && echo build/where.md)
+guide-pictures: all demo
+	$(Q)$(NODE) docs/guide/pictures.mjs $(TOURS)
 
 # ---- fuzzing: a variant of its own, every source instrumented ------------------------------------------------------------------
 .PHONY: fuzz

@@ -19,20 +19,49 @@ const isData = (path) => /(^|\/)(corpus|fixtures|data|figures|licenses)\//.test(
 
 /** @param {string} top @returns {string[]} its files, as git knows them or will */
 export function filesOf(top) {
-  const text = execFileSync('git', ['ls-files', '-co', '--exclude-standard', '--', ...roots], { cwd: top, encoding: 'utf8', maxBuffer: 1 << 26 });
-  return text.split('\n').filter((path) => path && existsSync(join(top, path))).sort();
+  const text = execFileSync('git', ['ls-files', '-co', '--exclude-standard', '--', ...roots], {
+    cwd: top,
+    encoding: 'utf8',
+    maxBuffer: 1 << 26,
+  });
+  return text
+    .split('\n')
+    .filter((path) => path && existsSync(join(top, path)))
+    .sort();
 }
 
 /** Files that are told of together: of C, and of shaders, those with one stem. */
-const kinds = [['.c', '.h', '.cc', '.hh', '.inc'], ['.glsl', '.vert', '.frag']];
+const kinds = [
+  ['.c', '.h', '.cc', '.hh', '.inc'],
+  ['.glsl', '.vert', '.frag'],
+];
 const stemOf = (path) => {
   const kind = kinds.find((extensions) => extensions.includes(extname(path)));
   return kind ? path.slice(0, path.length - extname(path).length) + kind[0] : path;
 };
-const matcher = (pattern) => new RegExp(`^${pattern.replace(/[.+?^$()[\]{}|\\]/g, '\\$&').replace(/\*\*\/|\*/g, (stars) => (stars === '*' ? '[^/]*' : '(.*/)?'))}$`);
+const matcher = (pattern) =>
+  new RegExp(`^${pattern.replace(/[.+?^$()[\]{}|\\]/g, '\\$&').replace(/\*\*\/|\*/g, (stars) => (stars === '*' ? '[^/]*' : '(.*/)?'))}$`);
 
 /** The paths and patterns that a README names, with their lines. @returns {{word: string, line: number}[]} */
-const wordsOf = (text) => text.split('\n').flatMap((line, at) => [...line.matchAll(/`([^`\s]+)`|\]\(([^)#:\s]+)\)/g)].map(([, code, link]) => ({ word: code ?? link, line: at + 1 })));
+const wordsOf = (text) =>
+  text
+    .split('\n')
+    .flatMap((line, at) =>
+      [...line.matchAll(/`([^`\s]+)`|\]\(([^)#:\s]+)\)/g)].map(([, code, link]) => ({ word: code ?? link, line: at + 1 })),
+    );
+
+/** What a README's name stands for. @returns {string[]|null} paths; null for a word that is no path */
+function pathsOf(top, files, folder, word) {
+  if (word.includes('*')) {
+    const tests = [join(folder, word), word].map(matcher);
+    return files.filter((path) => tests.some((test) => test.test(path)));
+  }
+  const path = [join(folder, word), word].map((one) => one.replace(/\/$/, '')).find((one) => existsSync(join(top, one)));
+  return path ? [path] : null;
+}
+
+/** The paths that stand in a part of a README. */
+export const namedIn = (top, files, readme, text) => wordsOf(text).flatMap(({ word }) => pathsOf(top, files, dirname(readme), word) ?? []);
 
 /** @param {string} top of a tree @returns {string[]} what is wrong */
 export function findings(top) {
@@ -40,11 +69,13 @@ export function findings(top) {
   const readmes = new Set(files.filter((path) => basename(path) === 'README.md'));
   const own = files.filter((path) => sources.test(basename(path)) && !isData(path));
   const homeOf = (path) => {
-    for (let folder = dirname(path); folder !== '.'; folder = dirname(folder)) if (readmes.has(`${folder}/README.md`)) return `${folder}/README.md`;
+    for (let folder = dirname(path); folder !== '.'; folder = dirname(folder))
+      if (readmes.has(`${folder}/README.md`)) return `${folder}/README.md`;
     return '';
   };
   const said = [];
-  for (const folder of new Set(own.filter((path) => !homeOf(path)).map(dirname))) said.push(`${folder}/ has no README.md, nor has a folder above it`);
+  for (const folder of new Set(own.filter((path) => !homeOf(path)).map(dirname)))
+    said.push(`${folder}/ has no README.md, nor has a folder above it`);
 
   for (const readme of readmes) {
     const text = readFileSync(join(top, readme), 'utf8');
@@ -55,29 +86,31 @@ export function findings(top) {
     const exact = new Map(); // stem to lines
     const patterns = [];
     for (const { word, line } of wordsOf(text)) {
+      const found = pathsOf(top, files, folder, word);
       if (word.includes('*')) {
-        const tests = [join(folder, word), word].map(matcher);
-        const found = files.filter((path) => tests.some((test) => test.test(path)));
-        const looksLikePath = word.includes('/') || isPathWord.test(word);
-        if (!found.length && looksLikePath) said.push(`${readme}:${line} names ${word}, which nothing matches`);
+        if (!found.length && (word.includes('/') || isPathWord.test(word)))
+          said.push(`${readme}:${line} names ${word}, which nothing matches`);
         const stems = new Set(found.filter((path) => mine.includes(path)).map(stemOf));
         if (stems.size) patterns.push({ stems, line });
         continue;
       }
-      const path = [join(folder, word), word].map((one) => one.replace(/\/$/, '')).find((one) => existsSync(join(top, one)));
+      const [path] = found ?? [];
       if (!path) {
-        if (isPathWord.test(word) || (word.includes('/') && roots.some((root) => word.startsWith(`${root}/`)))) said.push(`${readme}:${line} names ${word}, which does not exist`);
+        if (isPathWord.test(word) || (word.includes('/') && roots.some((root) => word.startsWith(`${root}/`))))
+          said.push(`${readme}:${line} names ${word}, which does not exist`);
         continue;
       }
       if (!statSync(join(top, path)).isFile() || !mine.includes(path)) continue;
-      exact.set(stemOf(path), [...exact.get(stemOf(path)) ?? [], line]);
+      exact.set(stemOf(path), [...(exact.get(stemOf(path)) ?? []), line]);
     }
-    for (const [stem, lines] of exact) if (lines.length > 1) said.push(`${stem} is named ${lines.length} times in ${readme}: lines ${lines.join(', ')}`);
+    for (const [stem, lines] of exact)
+      if (lines.length > 1) said.push(`${stem} is named ${lines.length} times in ${readme}: lines ${lines.join(', ')}`);
     const times = (path) => (exact.has(stemOf(path)) ? 1 : patterns.filter(({ stems }) => stems.has(stemOf(path))).length);
     for (const sub of new Set(mine.map((path) => dirname(path)))) {
       const here = mine.filter((path) => dirname(path) === sub);
       const unnamed = here.filter((path) => times(path) === 0);
-      if (sub !== folder && unnamed.length === here.length && here.length > 1) said.push(`${sub}/ has no README.md, and ${readme} names none of its ${here.length} files`);
+      if (sub !== folder && unnamed.length === here.length && here.length > 1)
+        said.push(`${sub}/ has no README.md, and ${readme} names none of its ${here.length} files`);
       else said.push(...unnamed.map((path) => `${path} is not named in ${readme}`));
       said.push(...here.filter((path) => times(path) > 1).map((path) => `${path} is matched by ${times(path)} patterns in ${readme}`));
     }
