@@ -264,7 +264,7 @@ static void add_listed(struct annotations *annotations, const char *before, bool
                    is_first ? before : "", words);
 }
 
-/* What the clip planes do not cut though it is drawn. */
+/* Lists drawn things that the clip planes do not cut. */
 static void add_exempt(struct annotations *annotations, const struct snapshot *snapshot)
 {
     enum { MAX_NAMED = 8 };

@@ -87,7 +87,7 @@ static void add_weights(struct annotations *annotations, const struct snapshot *
                        tissue->name[0] ? tissue->name : tissue->id);
 }
 
-/* What a total lacks. */
+/* Says which quantities a total lacks. */
 static void add_doubts(struct annotations *annotations, uint32_t missing)
 {
     for (int quantity = 0; quantity < DOSE_N_QUANTITIES; quantity++)
@@ -107,7 +107,7 @@ static void add_reference(struct annotations *annotations, const struct dose_sca
     (void)snprintf(text, ANNOTATION_TEXT_SIZE, "100 %% = %s %s, %s", value, scale->field->unit, scale->words);
 }
 
-/* What the wash shows: levels, or instead of them a comparison or the statistical error (draw_wash_shown). */
+/* Kinds of wash: levels, or instead of them a comparison or the statistical error (draw_wash_shown). */
 enum wash_kind { WASH_NONE, WASH_LEVELS, WASH_ERROR, WASH_DIFFERENCE, WASH_GAMMA };
 
 static enum wash_kind wash_kind(const struct scene_dose_style *style, bool is_compared)

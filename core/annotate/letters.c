@@ -1,7 +1,7 @@
 /* Orientation letters from directions. */
 #include "core/annotate/letters.h"
 
-/* From this cosine on an oblique direction gets a second letter. */
+/* Smallest cosine for which an oblique direction gets a second letter. */
 #define SECOND_FROM 0.3
 
 void letters_of_direction(struct vec3 direction, char letters[3])

@@ -104,7 +104,7 @@ void words_image(char text[WORDS_SIZE], const struct plan *plan, size_t index)
     (void)snprintf(text, WORDS_SIZE, "%s%s%s", name, has_modality ? ", " : "", has_modality ? image->modality : "");
 }
 
-/* As many digits as tell the greys of a narrow window apart; the page has the same rule. */
+/* Digits that tell the greys of a narrow window apart; the page has the same rule. */
 static int window_digits(double width)
 {
     const int most = 20;

@@ -20,7 +20,7 @@ void mem_keep_reserve(void);
  *           ERROR_MEMORY */
 NODISCARD void *mem_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
 
-/* As mem_array, for arrays of megabytes, but NOT zeroed. Uses huge pages where the system has them, because the page
+/* Like mem_array, for arrays of megabytes, but NOT zeroed. Uses huge pages where the system has them, because the page
  * faults of a fresh array can take longer than filling it. */
 NODISCARD void *mem_large_array(size_t n, size_t size, uint64_t limit_bytes, struct error *err);
 

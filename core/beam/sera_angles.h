@@ -15,7 +15,7 @@ struct sera_angles {
 };
 /* entry and target, patient LPS in mm, are at least BEAM_MIN_LENGTH_MM (core/beam/beam.h) apart. */
 struct sera_angles sera_angles_of(struct vec3 entry_lps_mm, struct vec3 target_lps_mm);
-/* From the target to where the beam comes from; of unit length, patient LPS. Any finite angles. */
+/* Unit vector from the target towards the source, patient LPS. Any finite angles. */
 struct vec3 sera_angles_towards_source(double phi_deg, double theta_deg);
 struct vec3 sera_angles_target_lps_mm(const struct sera_angles *angles);
 struct vec3 sera_angles_entry_lps_mm(const struct sera_angles *angles);

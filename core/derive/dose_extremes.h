@@ -6,7 +6,7 @@ struct dose_extremes {
     struct derive_result base;
     double body_high; /* largest value at a univel's centre in any region that the choice does not leave out; without
                          one at a voxel of the field; NAN: there is no value */
-    /* By region index, over the univels with the region's own label that have a value; NAN without one. */
+    /* Indexed by region: over the univels with its own label that have a value; NAN without one. */
     double high[REGION_MAX], mean[REGION_MAX];
 };
 

@@ -64,7 +64,7 @@ struct dose_field {
  * thread  any; the first builds, on all cores */
 NODISCARD struct dose_field *dose_field_get(struct derive *derive, const struct dose_choice *choice, struct error *err);
 
-/* The same field, but its rows are combined only where they are needed: a slider that moves asks for a new field with
+/* Like dose_field_get, but rows are combined only where they are needed: a slider that moves asks for a new field with
  * each picture. The voxels of rows are undefined, and low and high of rows 0, until dose_field_need_... returned for a
  * part that holds the points that are read, or dose_field_get for all; then they stay. Any number of threads may ask
  * for, and read, parts of one field. rows[r] is there where univels of row r read it, and up to a univel around them:
@@ -83,5 +83,5 @@ uint8_t dose_field_row(const struct dose_field *field, struct vec3 point_lps_mm)
  * 0.1 % unless its grid is too large to be refined so far. False: there is none. Every picture, histogram and read-out
  * agrees with this. */
 bool dose_field_value(const struct dose_field *field, struct vec3 point_lps_mm, double *value);
-/* The same with the weights of one row, wherever the point lies; of a field from dose_field_get. */
+/* Like dose_field_value, with the weights of one row wherever the point lies. field: from dose_field_get. */
 bool dose_field_value_in(const struct dose_field *field, uint8_t row, struct vec3 point_lps_mm, double *value);

@@ -37,7 +37,7 @@ struct dose_filling {
     size_t n_rows;
     struct dose_bricks *near; /* a reference; NULL: rows[0] holds everywhere */
     uint32_t n_bricks[3];
-    /* By brick, a bit for each row: some thread combines it or has; it is combined. */
+    /* Indexed by brick, a bit for each row. claimed: a thread combines it or has; done: it is combined. */
     _Atomic uint32_t *claimed, *done;
     atomic_bool is_completing; /* a thread is in dose_filling_complete, or was */
     atomic_bool is_complete;   /* all rows of all bricks are done, and measured */
@@ -202,7 +202,7 @@ static void read_run(const struct summand *summand, const struct grid *grid, uin
     }
 }
 
-/* What is combined by a call. */
+/* The work of one call. */
 struct need {
     struct dose_filling *filling;
     bool is_all;       /* all rows, also in bricks without a univel that reads them */

@@ -125,7 +125,7 @@ size_t dose_plane_n_bytes(const struct dose_plane *plane)
     return (size_t)plane->lattice.size[0] * plane->lattice.size[1] * (plane->rows ? 5 : 4);
 }
 
-/* What is traced. */
+/* Context of the tracing. */
 struct trace {
     const struct dose_plane *plane;
     const struct dose_field *field;
@@ -142,7 +142,7 @@ static bool is_above_at(const struct trace *trace, double u, double v, double le
     return sample(field->rows[row], at.x, at.y, at.z, trace->plane->lattice.is_by_slice) >= level;
 }
 
-/* By halving: a step of the lattice is at most a few univels. */
+/* Finds the jump by halving: a step of the lattice is at most a few univels. */
 static double find_jump(const void *context, size_t a, size_t b, double level)
 {
     enum { HALVINGS = 12 };

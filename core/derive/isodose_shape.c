@@ -365,8 +365,8 @@ static struct isodose_shape *shape_get(struct derive *derive, const struct isodo
     return (struct isodose_shape *)derive_get(derive, &recipe.base, NULL, err);
 }
 
-/* By how much a coarse surface on univels is reduced from the start: to interpolate a dose at tens of millions of
- * univels takes longer than a moving picture may. */
+/* Reduction with which a coarse surface on univels starts: interpolating a dose at tens of millions of univels takes
+ * longer than a moving picture may. */
 static uint32_t univel_reduction(const struct plan *plan, const struct isodose_choice *choice)
 {
     const struct grid *grid = choice->grid == ISODOSE_ON_UNIVELS ? univel_grid(plan) : NULL;

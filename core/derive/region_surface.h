@@ -5,11 +5,11 @@
 
 enum { REGION_SURFACE_MAX_REDUCTION = MASK_MAX_FACTOR };
 
-/* From the region's mask (mask_from_region), with vertex normals and all facts but the distances. errors as
- * surface_make */
+/* Builds the surface from the region's mask (mask_from_region), with vertex normals and all facts but the distances.
+ * errors as surface_make */
 NODISCARD struct shape *region_surface_build(const struct mask *mask, enum surface_algorithm algorithm, int n_threads,
                                              struct shape_facts *facts, struct error *err);
-/* From the mask reduced (mask_reduce): along its shortest voxel edge `reduction` voxels become one (2 or more), along
- * longer edges as many as make it no longer than that. Runs on the calling thread alone. */
+/* Builds the surface from the reduced mask (mask_reduce): along its shortest voxel edge `reduction` voxels become one
+ * (2 or more), along longer edges as many as make it no longer than that. Runs on the calling thread alone. */
 NODISCARD struct shape *region_surface_build_coarse(const struct mask *full, enum surface_algorithm algorithm,
                                                     uint32_t reduction, struct shape_facts *facts, struct error *err);

@@ -38,7 +38,7 @@ NODISCARD bool derive_shape_distance(const struct derive *derive, const struct s
  * each shape that the calling thread builds, and stops when it returns false; NULL: never stops. */
 void derive_build_shapes(struct derive *derive, const struct shape_want *wants, size_t n, bool (*go_on)(void *context),
                          void *context);
-/* The same for surfaces of regions, the largest region first. */
+/* Builds the surfaces of regions likewise, the largest region first. */
 void derive_build_surfaces(struct derive *derive, const struct subject *subjects, size_t n,
                            enum surface_algorithm algorithm, enum surface_detail detail, bool (*go_on)(void *context),
                            void *context);

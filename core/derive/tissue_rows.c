@@ -12,7 +12,7 @@ struct tissue_recipe {
     uint8_t row_of_region[REGION_MAX];
 };
 
-/* What a label of a layer says. Greater places win. */
+/* The row that a label of a layer stands for. The greater rank wins. */
 struct place {
     uint32_t rank; /* 0: no region with weights */
     uint8_t row;

@@ -31,6 +31,6 @@ struct volume_leaps {
     uint8_t *leap;
 };
 
-/* The same by the values that are seen; n <= VOLUME_MAX_RANGES. errors ERROR_MEMORY */
+/* Distances to bricks with values that are seen; n <= VOLUME_MAX_RANGES. errors ERROR_MEMORY */
 NODISCARD struct volume_leaps *volume_leaps_get(struct derive *derive, size_t image, const struct volume_range *ranges,
                                                 size_t n, struct error *err);

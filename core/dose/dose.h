@@ -44,7 +44,7 @@ enum dose_frame {
 const char *dose_frame_word(enum dose_frame frame); /* "same", "unknown", "differs" */
 bool dose_frame_from_word(const char *word, enum dose_frame *frame);
 
-/* What a file states of the dose in a region, beside the dose: the planning program's own figures. */
+/* The planning program's own figures of the dose in a region, stated beside the dose. */
 enum { DOSE_MAX_STATED = 64, DOSE_STATED_NAME_SIZE = 128 };
 struct dose_stated {
     char region[DOSE_STATED_NAME_SIZE]; /* name of the region in the files; "" while only its number is known */
@@ -66,7 +66,7 @@ struct dose {
     /* Indexed by quantity; 0: unknown. */
     double reference[DOSE_N_QUANTITIES]; /* the file's own 100 % */
     double body_high[DOSE_N_QUANTITIES]; /* largest value inside any region of the plan */
-    /* Of the only component, a total or weighted total. */
+    /* Figures of the only component, a total or weighted total. */
     struct dose_stated stated[DOSE_MAX_STATED];
     size_t n_stated;
 };

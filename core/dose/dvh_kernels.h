@@ -7,7 +7,7 @@
 
 enum { DVH_LANES = 8, DVH_PADDING = 2 * DVH_LANES };
 
-/* From univels along a row to positions along a row of dose voxels. Arrays are padded to whole vectors. */
+/* Maps univels along a row to positions along a row of dose voxels. Arrays are padded to whole vectors. */
 struct dvh_axis {
     int32_t *at;    /* [n] voxel at or before it */
     float *between; /* [n] from that voxel to the next, 0..1 but not 1; NaN: outside of the grid */

@@ -25,5 +25,5 @@ size_t dvh_sampler_scratch(const struct dvh_sampler *sampler);
  * for the row and DVH_PADDING. */
 void dvh_sampler_row(const struct dvh_sampler *sampler, const float *dose, uint32_t j, uint32_t k, uint32_t from,
                      uint32_t to, float *scratch, float *out);
-/* The same at one point of the label grid's index space. */
+/* The value at one point of the label grid's index space. */
 float dvh_sampler_point(const struct dvh_sampler *sampler, const float *dose, struct vec3 ijk);

@@ -20,7 +20,7 @@ enum {
 };
 _Static_assert(DVH_OCTAVE_BINS == 1 << (23 - DVH_KEY_SHIFT), "a bin is a value of the upper bits");
 
-/* What one thread counts. */
+/* Counts of one thread. */
 struct counter {
     uint32_t *keys;                                        /* [n_slots][N_KEYS + 1]; the last: without a value */
     struct dvh_sums sums[MAX_SLOTS], part_sums[MAX_SLOTS]; /* of whole univels; of parts of univels */

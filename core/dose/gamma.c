@@ -196,7 +196,7 @@ static bool list_cubes(struct search *search, struct error *err)
     return true;
 }
 
-/* What one voxel is compared with, its smallest index so far and where that is. */
+/* Search for one voxel's gamma index: the voxel, the smallest index so far, and its place. */
 struct point {
     struct vec3 at_ijk; /* in index space of the second dose */
     double value, per_difference;
@@ -221,8 +221,8 @@ static bool note(struct point *point, double difference, struct vec3 away)
     return true;
 }
 
-/* From the best place on: where D2 is c + g . q around it, the smallest of (c + g . q)^2 + q^2 is at
- * q = -c g / (1 + g^2). */
+/* Descends from the best place: where D2 is c + g . q around it, the smallest of (c + g . q)^2 + q^2 is at q = -c g /
+ * (1 + g^2). */
 static void descend(const struct search *search, struct point *point)
 {
     const double step = 1.0 / 32;

@@ -44,8 +44,8 @@ void isoeffective_init(struct isoeffective *prepared, const struct isoeffective_
 double isoeffective_dose(const struct isoeffective *prepared, double boron_gy, double nitrogen_gy, double fast_gy,
                          double gamma_gy);
 
-/* The same for n points. Component i of a point is components[i][point] * factors[i], in the order boron, nitrogen,
- * fast, gamma; NULL: no such component, 0 Gy. */
+/* Like isoeffective_dose, for n points. Component i of a point is components[i][point] * factors[i], in the order
+ * boron, nitrogen, fast, gamma; NULL: no such component, 0 Gy. */
 void isoeffective_doses(const struct isoeffective *prepared, const float *const components[4], const double factors[4],
                         size_t n, float *doses);
 

@@ -46,7 +46,7 @@ bool dose_depends_on_tissue(const struct dose *dose, enum dose_shown shown, enum
     return is_boron_per_ppm(dose) && (quantity == DOSE_BORON || dose_is_summed(dose, shown, quantity));
 }
 
-/* From what the file holds to the dose at the concentration in the tissue. */
+/* Factor from the file's value to the dose at the concentration in the tissue. */
 static double physical_factor(const struct dose_component *component, const struct tissue_weights *weights,
                               double blood_ppm)
 {

@@ -10,7 +10,7 @@ struct tissue_weights {
     double nitrogen, fast, gamma, other; /* weights (RBE) of these doses */
 };
 
-/* What a value is: a quantity of the files, or one that is computed from several. */
+/* Origin of a shown value: a quantity of the files, or one that is computed from several. */
 enum dose_shown {
     DOSE_SHOWN_QUANTITY, /* of dose_quantity; a total that the dose lacks is the sum of its components */
     DOSE_SHOWN_WEIGHTED,

@@ -8,7 +8,7 @@
 
 enum { DOSE_WORDS_REST_SIZE = 128 };
 
-/* What a text says. */
+/* Meaning of a text. */
 struct dose_words {
     bool has_quantity;           /* exactly one component, or the total, is named */
     enum dose_quantity quantity; /* valid with has_quantity */

@@ -25,7 +25,7 @@ struct nifti_header {
  *            ERROR_LIMIT */
 NODISCARD bool nifti_parse_header(const uint8_t *head, size_t size, const char *name, struct nifti_header *header,
                                   struct report *report, struct error *err);
-/* The same from the file's own bytes, packed or not. */
+/* Like nifti_parse_header, from the file's own bytes, packed or not. */
 NODISCARD bool nifti_peek(const struct bytes *file, const char *name, struct nifti_header *header,
                           struct report *report, struct error *err);
 

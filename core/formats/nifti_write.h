@@ -10,7 +10,7 @@
  *   thread       any; volume is shared and frozen
  *   source       the NIfTI-1 header, nifti1.h of the NIfTI Data Format Working Group, 2007 */
 NODISCARD bool nifti_write(const char *path, const struct volume *volume, const char *description, struct error *err);
-/* The same, but as NIfTI-2, which has 64-bit numbers, when NIfTI-1 would move a corner by more than 1e-7 mm or change
- * the values. */
+/* Like nifti_write, but as NIfTI-2, which has 64-bit numbers, when NIfTI-1 would move a corner by more than 1e-7 mm or
+ * change the values. */
 NODISCARD bool nifti_write_exact(const char *path, const struct volume *volume, const char *description,
                                  struct error *err);

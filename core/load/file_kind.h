@@ -1,5 +1,5 @@
 #pragma once
-/* What a file that is not read most likely is, in words, for the report. */
+/* Names the likely kind of a file that is not read, for the report. */
 #include "core/formats/folder.h"
 
 /* "a surface mesh", "an MCNP mesh tally", "a text", ...: by its name, else by its first bytes. */

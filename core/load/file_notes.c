@@ -42,7 +42,7 @@ static bool add(struct notes *notes, const char *path, const char *as, size_t n_
     return true;
 }
 
-/* The same with a path that does not last. */
+/* Like add, with a path that does not last. */
 static bool add_copy(struct notes *notes, const char *path, const char *as, struct error *err)
 {
     if (!path[0])
@@ -145,7 +145,7 @@ static bool add_known(struct notes *notes, struct error *err)
     return is_added;
 }
 
-/* By path; what says most of a file first. */
+/* Orders by path; the entry that says most of a file comes first. */
 static int compare_known(const void *a, const void *b)
 {
     const struct known *one = a, *other = b;

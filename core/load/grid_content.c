@@ -22,7 +22,7 @@ static int label_of(double value)
     return fabs(value - whole) <= 1e-3 && whole >= 0 && whole <= MOST_LABEL ? (int)whole : -1;
 }
 
-/* What was counted so far. */
+/* Counts so far. */
 struct counting {
     const struct volume *volume;
     uint8_t *is_seen; /* [MOST_LABEL + 1] */

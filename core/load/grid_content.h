@@ -1,5 +1,5 @@
 #pragma once
-/* What the values of a grid can be: labels of regions, or the grey values of an image. */
+/* Tells whether a grid holds labels of regions or the grey values of an image. */
 #include "core/volume/volume.h"
 
 struct grid_content {

@@ -1,6 +1,5 @@
 #pragma once
-/* What the report says of patients, treatment plans and structure sets. Patients are named masked: the report is shown
- * to everybody. */
+/* Reports patients, treatment plans and structure sets. Patients are named masked: the report is shown to everybody. */
 #include "core/load/loading.h"
 
 /* Adds the lines. Call it once all parts are in the plan. */

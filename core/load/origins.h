@@ -8,7 +8,7 @@ void origins_begin(struct loading *loading);
 
 /* The origin of one file that was read: of no patient and without a frame of reference if it is not DICOM. */
 struct part_origin origin_of_reading(const struct loading *loading, const struct part_reading *reading);
-/* The same for a structure set's region with a frame of reference of its own; "" takes the file's. */
+/* Like origin_of_reading, for a structure set's region with a frame of reference of its own; "" takes the file's. */
 struct part_origin origin_of_roi(const struct loading *loading, const struct part_reading *reading,
                                  const char *frame_uid);
 

@@ -21,7 +21,7 @@ enum part_format {
 /* The format by the ending of the name. A folder counts as DICOM. A file without a known ending counts as DICOM when
  * its first bytes say so, and a .csv as tracks when its header names their columns. */
 enum part_format part_format_of(const struct folder *folder, const char *name);
-/* The same, and the reason in err when a file whose first bytes are asked for cannot be read. */
+/* Like part_format_of, with the reason in err when a file whose first bytes are asked for cannot be read. */
 enum part_format part_format_read(const struct folder *folder, const char *name, struct error *err);
 bool part_is_sera_dose(enum part_format format);       /* a file that holds several quantities */
 const char *part_format_word(enum part_format format); /* "NIfTI", "DICOM", ... */

@@ -27,7 +27,7 @@ extern const double phantom_depths_mm[PHANTOM_N_DEPTHS]; /* below the scalp, on 
  * 1 on the axis. The edge widths are our own, near those of the BMRR 8 cm depth-radius table distributed with SERA. */
 double phantom_dose(const struct phantom_component *component, double depth_mm, double radius_mm);
 
-/* The same at a patient point; depth is measured downward from the scalp above it. 0 outside the head. */
+/* The dose at a patient point; depth is measured downward from the scalp above it. 0 outside the head. */
 double phantom_dose_at(const struct phantom_component *component, struct vec3 point_lps_mm);
 
 /* A grid of 4 mm cells over the head. Every depth of the table is the centre of a cell on the axis, the first one 2

@@ -53,7 +53,8 @@ static void make_frame(struct search *search)
     memcpy(search->frame.depth, depth, sizeof depth);
 }
 
-/* As tracks are drawn: a view in perspective begins shortly before its near plane, and a beam's-eye view at the eye. */
+/* Nearest depth at which tracks are drawn: a view in perspective begins shortly before its near plane, and a beam's-eye
+ * view at the eye. */
 static double nearest_depth_mm(const struct search *search)
 {
     if (!search->camera.is_parallel)

@@ -1,7 +1,7 @@
 /* Follows a ray through a volume. */
 #include "core/pick/pick_volume.h"
 
-/* As the table of the picture has it: an opacity of 1 would be an absorption without end. */
+/* Limit of opacity, as in the picture's table: an opacity of 1 would absorb without end. */
 static const double most_opacity = 0.999;
 /* Steps along the axis whose voxels a ray passes fastest, in voxels. */
 static const double step_voxels = 0.25;
@@ -32,7 +32,7 @@ static bool value_at(const struct volume_ray *ray, double t_mm, double *value)
     return isfinite(*value) && *value >= ray->style->volume.cull_below;
 }
 
-/* Of the method ray: part of the light per mm, natural. */
+/* Absorption of the method ray per mm, natural: light exp(-a d) passes d mm. */
 static double absorption(const struct scene_volume_style *style, double value)
 {
     const struct scene_transfer_point *points = style->points;

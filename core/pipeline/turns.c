@@ -78,7 +78,7 @@ bool turns_may_interrupt(const struct turns_item *drawn, const struct turns_item
     return newcomer->source != drawn->source || (drawn->is_still && goes_before(newcomer, drawn));
 }
 
-/* What each active source has of an advantage. */
+/* Share of an advantage that each active source gets, in us. */
 static int64_t advantage(const struct turns *turns, int64_t us)
 {
     return turns->n_active > TURNS_FEW_SOURCES ? us * TURNS_FEW_SOURCES / turns->n_active : us;

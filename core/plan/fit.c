@@ -195,7 +195,7 @@ static bool is_apart(const struct plan *plan, struct fit_part thing, struct fit_
     return false;
 }
 
-/* What plan.json says of a part's frame: it is the image's, or it is not. */
+/* True if plan.json states that a part's frame is the image's (is_same), or that it is not. */
 static bool is_stated(const struct plan *plan, struct fit_part part, bool is_same)
 {
     const struct part_origin *origin = origin_of(plan, part);

@@ -46,15 +46,15 @@ struct fit {
     uint32_t reasons;           /* bits 1 << enum fit_relation of all that hold, from FIT_ABSENT on */
 };
 struct fit fit_of(const struct plan *plan, struct fit_part thing, struct fit_part with);
-/* Of a part of a plan without an image that is used: whose it is, and of a dose whether it meets the regions. The pair
- * is the part with itself. */
+/* For a part of a plan of which no image is used: whose it is, and for a dose whether it meets the regions. The pair is
+ * the part with itself. */
 struct fit fit_alone(const struct plan *plan, struct fit_part thing);
-/* What the whole pair needs: never, if one of its reasons is never accepted. */
+/* Need of the whole pair: never, if one of its reasons is never accepted. */
 enum fit_needs fit_pair_needs(const struct fit *fit);
 /* One sentence, or two: thing, verb, the other part, colon, the fact, then what it may mean. */
 void fit_sentence(const struct plan *plan, struct fit_part thing, struct fit_part with, enum fit_relation relation,
                   char why[FIT_WHY_SIZE]);
-/* The same of a pair that is used though it does not fit. */
+/* The sentence for a pair that is used though it does not fit. */
 void fit_accepted_sentence(const struct plan *plan, struct fit_part thing, struct fit_part with,
                            enum fit_relation relation, char why[FIT_WHY_SIZE]);
 
@@ -71,6 +71,6 @@ bool fit_part_read(const struct plan *plan, const char *text, struct fit_part *p
 /* The factor that brings a value from one unit to another: Gy, cGy and mGy. False: they do not convert, or one is
  * unknown. */
 bool fit_unit_factor(const char *from, const char *to, double *factor);
-/* What a dose is per, in one spelling: "plan" of "PLAN", "per plan" and "the whole plan". */
+/* The unit of count that a dose is per, in one spelling: "plan" of "PLAN", "per plan" and "the whole plan". */
 enum { FIT_PER_SIZE = 80 };
 const char *fit_per(const struct dose *dose, char word[FIT_PER_SIZE]);

@@ -44,7 +44,7 @@ struct plan_registration {
     int patient;
 };
 
-/* Of one image, dose, beam, set of tracks, or source of regions (a structure set, segmentation or label map). */
+/* Origin of one image, dose, beam, set of tracks, or source of regions (a structure set, segmentation or label map). */
 struct part_origin {
     int patient;        /* index in the plan's patients; -1: the files do not say */
     int treatment_plan; /* index in the plan's treatment plans that it belongs to or refers to; -1: none, or not here */

@@ -13,7 +13,7 @@ static double layer_cm3(const struct region_set *set, uint32_t layer)
     return sum;
 }
 
-/* Of a region and those inside it on its layer. */
+/* Volume of a region and those inside it on its layer. */
 static double whole_cm3(const struct region_set *set, size_t region)
 {
     double sum = 0;

@@ -53,7 +53,7 @@ static bool holds(const struct region_set *set, size_t outer, size_t inner)
     return 2 * n_held >= n;
 }
 
-/* What a region inside does to the population: nothing, or it is added or taken away. */
+/* True if a region inside changes the population: it is added to a whole one, taken from an own one. */
 static bool counts(const struct region_set *set, size_t region, size_t inner, enum region_population population)
 {
     bool is_same_layer = set->regions[inner].layer == set->regions[region].layer;

@@ -10,7 +10,7 @@ enum region_population {
 
 /* "own univels, without regions inside", "whole region" */
 const char *population_words(enum region_population population);
-/* What a set's regions usually stand for: POPULATION_OWN where all share one layer, so that each univel has one label;
+/* The usual population of a set's regions: POPULATION_OWN where all share one layer, so that each univel has one label;
  * POPULATION_WHOLE where they lie over each other. */
 enum region_population population_usual(const struct region_set *set);
 

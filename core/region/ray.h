@@ -27,7 +27,7 @@ struct ray_band {
 NODISCARD bool ray_bands(const struct region_set *set, const struct ray *ray, struct ray_band **bands, size_t *n,
                          struct error *err);
 
-/* The same along the whole line through a point, both ways; without label layers, or beside all of them, none. The skin
- * is where the first band begins. */
+/* Like ray_bands, along the whole line through a point, both ways; without label layers, or beside all of them, none.
+ * The skin is where the first band begins. */
 NODISCARD bool ray_bands_all(const struct region_set *set, struct vec3 from_lps_mm, struct vec3 direction,
                              struct ray_band **bands, size_t *n, struct error *err);

@@ -24,10 +24,10 @@ NODISCARD bool beam_place_angles(const struct beam_shown *beam, double phi_deg, 
 /* Keeps the direction. gap_mm is a number. */
 NODISCARD bool beam_place_gap(const struct region_set *regions, const struct beam_shown *beam, double gap_mm,
                               struct vec3 *entry_lps_mm, struct error *err);
-/* From the side on which the point lies, through it to the target. */
+/* Places the beam on the point's side, through the point to the target. */
 NODISCARD bool beam_place_through(const struct region_set *regions, const struct beam_shown *beam,
                                   struct vec3 point_lps_mm, double gap_mm, struct vec3 *entry_lps_mm,
                                   struct error *err);
-/* In the direction of the least depth (core/region/shortest.h). Takes up to a second. */
+/* Places the beam in the direction of the least depth (core/region/shortest.h). Takes up to a second. */
 NODISCARD bool beam_place_shortest(const struct region_set *regions, const struct beam_shown *beam, double gap_mm,
                                    struct vec3 *entry_lps_mm, struct error *err);

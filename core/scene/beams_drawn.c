@@ -165,7 +165,7 @@ static void make_round(const struct beam_shown *shown, struct beam_opening *open
     close_polygon(opening, 0);
 }
 
-/* From the collimator's axes of a planned beam to the plane across the beam shown, which may be its draft. */
+/* Maps the collimator's axes of a planned beam to the plane across the beam shown, which may be its draft. */
 struct placing {
     struct plane from, to; /* beam_plane of both */
     const struct beam_delivery *delivery;

@@ -26,7 +26,7 @@ struct beam_drawn {
 #define BEAMS_LEAD 0.5
 #define BEAMS_FARTHEST 2.0
 
-/* What looks hold, and a draft with its planned beam. */
+/* Room for the beams of all looks, a draft and its planned beam. */
 enum { BEAMS_DRAWN_MAX = 64 + 2 };
 /* Fills the beams in the order of the plan, then a draft; returns how many. Kind and ring of the view count: its own
  * beam's line and opening are left out by the caller (beam_line_is_drawn, beam_opening_is_drawn). */

@@ -73,7 +73,7 @@ static double pane_height_mm(const struct box3 *box, enum scene_kind kind, const
     return fmax(home_margin * fmax(box_extent(size, plane->right), box_extent(size, plane->up)), 0.1);
 }
 
-/* From the target to the eye of the 3-D home camera; of unit length. */
+/* Unit vector from the target to the eye of the 3-D home camera. */
 static struct vec3 home_direction(void)
 {
     double turn = home_turn_deg * MATH_PI / 180, rise = home_rise_deg * MATH_PI / 180;
@@ -96,7 +96,7 @@ static double distance_to_see_mm(const struct box3 *box, struct vec3 point, stru
     return fmax(distance, 1);
 }
 
-/* Of the eye of the 3-D home camera from the box's centre, along home_direction. */
+/* Distance from the box's centre to the eye of the 3-D home camera. */
 static double home_distance_mm(const struct box3 *box, double fov_deg)
 {
     struct vec3 back = home_direction();

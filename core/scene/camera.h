@@ -34,7 +34,8 @@ static inline bool camera_is_of_pane(enum scene_kind kind)
  *   beam  of a beam's-eye view; NULL: it is a 3-D view. Else unused */
 void camera_of_view(const struct plan *plan, const struct view *view, const struct plane *pane,
                     const struct beam_shown *beam, struct camera *camera);
-/* The same of a picture that shows more than the plan's bounds: near and far enclose this box too; it may be empty. */
+/* Like camera_of_view, for a picture that shows more than the plan's bounds: near and far enclose this box too; it may
+ * be empty. */
 void camera_of_view_beyond(const struct plan *plan, const struct view *view, const struct plane *pane,
                            const struct beam_shown *beam, const struct box3 *beyond, struct camera *camera);
 /* True if the view's camera can be used: position != target, up not along the line of sight. field: on failure the JSON

@@ -7,7 +7,7 @@
 #include "core/scene/snapshot.h"
 #include "dose_presets.h" /* generated from proto/dose_presets.json */
 
-/* By the quantity of a scene; the two that are computed have no quantity of the files. */
+/* Indexed by the scene's quantity; the two that are computed have no quantity of the files. */
 static const struct {
     const char *word;
     enum dose_shown shown;

@@ -1,5 +1,5 @@
 #pragma once
-/* What a scene shows of a dose, as the recipe of its field; and whether it may be drawn. Any thread. */
+/* Turns a scene's choice of dose into the recipe of its field, and says whether it may be drawn. Any thread. */
 #include "core/derive/dose_field.h"
 #include "core/region/population.h"
 #include "core/scene/fit_use.h"
@@ -27,16 +27,16 @@ struct fit_use dose_part_use(const struct snapshot *snapshot, size_t dose, doubl
 struct fit_use dose_compared_use(const struct snapshot *snapshot, size_t second);
 int dose_index_of(const struct plan *plan, const char *id); /* -1: none */
 
-/* The same with the weights of one tissue, whatever the scene's dose.tissue says: of the region with that id; "": each
- * tissue's own. For the figures of regions, which no choice of how a dose is drawn may change. */
+/* Like dose_choice_of, with the weights of one tissue, whatever the scene's dose.tissue says: of the region with that
+ * id; "": each tissue's own. For the figures of regions, which no choice of how a dose is drawn may change. */
 NODISCARD bool dose_choice_in(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
                               const char *tissue, struct dose_choice *choice, struct error *why);
 /* Which univels count in a scene's figures of regions. */
 enum region_population scene_population(const struct plan *plan, const struct scene *scene);
 /* False: no such word; "" and "usual" are what is usual for the plan. */
 bool population_from_word(const struct plan *plan, const char *word, enum region_population *population);
-/* Whose weights count in a choice of that tissue: "each region's own weights", "weights of brain"; NULL: the quantity
- * depends on no weights. */
+/* Names the weights that count in a choice of that tissue: "each region's own weights", "weights of brain"; NULL: the
+ * quantity depends on no weights. */
 const char *dose_basis_words(const struct plan *plan, const struct dose_choice *choice, const char *tissue,
                              char words[96]);
 

@@ -1,5 +1,5 @@
 #pragma once
-/* What a scene asks of a region's coverage by its dose, as the recipe of a result. Any thread. */
+/* Turns a scene's question about a region's coverage by its dose into the recipe of a result. Any thread. */
 #include "core/derive/dose_coverage.h"
 #include "core/scene/dose_scale.h"
 

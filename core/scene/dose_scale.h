@@ -17,8 +17,8 @@ bool dose_scale_of(const struct snapshot *snapshot, struct dose_scale *scale);
  * ERROR_MEMORY
  */
 NODISCARD bool dose_scale_is_whole(const struct dose_scale *scale, struct error *err);
-/* The same with a field that is combined where it is read (dose_field_begin); all of it for a reference that is
- * measured in regions. */
+/* Like dose_scale_of, with a field that is combined where it is read (dose_field_begin); all of it for a reference that
+ * is measured in regions. */
 bool dose_scale_begin(const struct snapshot *snapshot, struct dose_scale *scale);
 void dose_scale_finish(struct dose_scale *scale);
 

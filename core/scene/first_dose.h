@@ -1,5 +1,5 @@
 #pragma once
-/* What a new room shows of the plan's first dose, once it is switched on. */
+/* The style of the plan's first dose in a new room, once it is switched on. */
 #include "core/plan/plan.h"
 #include "scene.h" /* generated from proto/scene.json */
 

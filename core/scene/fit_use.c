@@ -71,7 +71,7 @@ static struct fit_use use_of(const struct scene_fits *fits, struct fit_part thin
     return use;
 }
 
-/* Of two uses of one part the one that hinders; else the one by a person's word; else the worse relation. */
+/* Returns of two uses of one part the one that hinders, else the one by a person's word, else the worse relation. */
 static struct fit_use worse_of(struct fit_use a, struct fit_use b)
 {
     static const int ranks[] = { [FIT_USED] = 0, [FIT_USED_BY_WORD] = 1, [FIT_NOT_USED] = 2 };

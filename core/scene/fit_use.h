@@ -31,7 +31,7 @@ static inline bool fit_is_used(const struct fit_use *use)
     return use->state != FIT_NOT_USED;
 }
 
-/* What a scene uses. */
+/* The parts of a plan that a scene uses. */
 struct scene_fits {
     const struct plan *plan; /* borrowed */
     struct acceptances acceptances;
@@ -57,8 +57,8 @@ static inline const struct fit_use *region_use(const struct scene_fits *fits, si
     return &fits->regions[fit_part_of_region(fits->plan, region).index];
 }
 
-/* What a dose is per when it counts so many times: a whole number above 1 of a dose per fraction makes it one of the
- * whole plan. */
+/* The unit of count that a dose is per once it is multiplied by factor: a whole number above 1 of a dose per fraction
+ * makes it one of the whole plan. */
 const char *dose_per_counted(const struct dose *dose, double factor, char word[FIT_PER_SIZE]);
 /* How two doses are put together. */
 enum dose_join {

@@ -1,4 +1,4 @@
-/* What a snapshot uses of what the plan has at a point. */
+/* Reads the plan at a point, with the parts that a snapshot uses. */
 #include "core/scene/scene_probe.h"
 
 void scene_probe(const struct snapshot *snapshot, struct vec3 point_lps_mm, struct plan_probe *probe)

@@ -44,7 +44,8 @@ struct snapshot {
  *   errors  ERROR_NOT_FOUND, ERROR_RANGE */
 NODISCARD struct snapshot *snapshot_create(struct derive *derived, struct scene *scene, struct view *view,
                                            uint32_t scene_revision, char field[128], struct error *err);
-/* The same with parts that people accepted (copied; NULL: none). Regions that are not used are not visible. */
+/* Like snapshot_create, with parts that people accepted (copied; NULL: none). Regions that are not used are not
+ * visible. */
 NODISCARD struct snapshot *snapshot_create_accepted(struct derive *derived, struct scene *scene, struct view *view,
                                                     const struct acceptances *acceptances, uint32_t scene_revision,
                                                     char field[128], struct error *err);

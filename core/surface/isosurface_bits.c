@@ -16,7 +16,7 @@
 
 enum { MAX_BRICKS_A_ROW = VOLUME_MAX_SIDE / ISO_BRICK_I };
 
-/* What the bits of a brick are. */
+/* States of a brick's bits. */
 enum brick_state { BRICK_OUTSIDE, BRICK_INSIDE, BRICK_EMPTY, BRICK_MIXED, BRICK_MIXED_WITH_GAPS };
 
 struct bits_job {

@@ -18,7 +18,7 @@ bool iso_bits_place(struct iso_bits *bits, double iso);
 /* Makes both grids' bits and the rows of the first. Errors: ERROR_MEMORY. */
 NODISCARD bool iso_bits_make(struct iso_bits *bits, int n_parts, struct error *err);
 void iso_bits_finish(struct iso_bits *bits);
-/* The same bits as a mask of the whole field. Errors: ERROR_MEMORY. */
+/* Returns the bits as a mask of the whole field. Errors: ERROR_MEMORY. */
 NODISCARD struct mask *iso_bits_mask(struct iso_bits *bits, int n_parts, struct error *err);
 
 /* If some voxels have no value (isosurface_gaps.c): the crossed edges of a word of row y, z that are vertices, and its

@@ -31,8 +31,9 @@ INLINED void write_triangles(const struct marching_rows *grid, const struct row 
 }
 
 #if defined(__x86_64__)
-/* The same with the running numbers in one register. Always writes the five triangles that a cell can have; the next
- * cell overwrites the surplus. `end`: end of this thread's triangles, which the last writes must not cross. */
+/* Like write_triangles, with the running numbers in one register. Always writes the five triangles that a cell can
+ * have; the next cell overwrites the surplus. `end`: end of this thread's triangles, which the last writes must not
+ * cross. */
 FAST static void write_triangles_avx2(const struct marching_rows *grid, const struct row *row,
                                       const struct around *rows, const uint32_t *end)
 {

@@ -27,6 +27,6 @@ enum { SHAPE_MAX_TRIANGLES = 40000000, SHAPE_MAX_POINTS = 10000000, SHAPE_MAX_SE
  *   thread   any */
 NODISCARD struct shape *shape_make(const struct shape_key *key, const struct region_set *set, size_t region,
                                    int n_threads, struct error *err);
-/* The same from the mask of the region: mask_from_region_own with has_inner_boundary, else mask_from_region. */
+/* Like shape_make, from the mask of the region: mask_from_region_own with has_inner_boundary, else mask_from_region. */
 NODISCARD struct shape *shape_make_from_mask(const struct shape_key *key, const struct mask *mask, int n_threads,
                                              struct error *err);

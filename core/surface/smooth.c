@@ -82,7 +82,7 @@ static inline unsigned class_of_link(const struct marching_point *a, const struc
     return (unsigned)is_across << (unsigned)has_terrace; /* a class as above */
 }
 
-/* The same from start positions between slices, with weighted links. */
+/* Makes the first step from start positions between slices, with weighted links. */
 INLINED void first_step_along(const struct smooth_job *job, const struct smooth_pass *pass, size_t from, size_t end,
                               int axis)
 {

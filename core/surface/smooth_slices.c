@@ -30,7 +30,8 @@
 /* Heights in slices: that of a cap of unknown height, and the greatest one. */
 static const float flat_height = 0.5f, most_height = 0.9f;
 
-/* Of a cap that is steeper at its contour, only the rim is not flat: the shape of a disc is good enough. */
+/* Height in slices, as a disc, from which only the rim of a cap is not flat: the shape of a disc is good enough there.
+ */
 static const float steep_height = 3;
 
 enum { MAX_ROUNDS = 60 };
@@ -44,7 +45,7 @@ struct cap {
     size_t from, end; /* its vertices in the queue */
 };
 
-/* From a vertex of a terrace to the contours. */
+/* Nearest contours of a vertex of a terrace. */
 struct reach {
     uint32_t contour[2]; /* nearest vertex of the contour of the slice below and of that above, or NOWHERE */
     float mm2[2];        /* square of its distance */

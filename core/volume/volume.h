@@ -57,10 +57,10 @@ struct volume {
 /* Creates a volume with all voxels 0, slope 1, offset 0. One reference, the caller's. Errors: ERROR_RANGE, ERROR_LIMIT
  * (VOLUME_MAX_BYTES), ERROR_MEMORY. */
 NODISCARD struct volume *volume_create(const struct grid *grid, enum voxel_type type, struct error *err);
-/* The same with uninitialized voxels, for a caller who writes them all. Large volumes use huge pages where
+/* Like volume_create, with uninitialized voxels, for a caller who writes them all. Large volumes use huge pages where
  * available. */
 NODISCARD struct volume *volume_create_unset(const struct grid *grid, enum voxel_type type, struct error *err);
-/* The same with voxels allocated by malloc; takes them over. */
+/* Like volume_create, with voxels allocated by malloc; takes them over. */
 struct volume *volume_take(const struct grid *grid, enum voxel_type type, void *voxels);
 struct volume *volume_ref(const struct volume *volume);
 void volume_unref(const struct volume *volume);

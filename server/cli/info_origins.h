@@ -1,5 +1,5 @@
 #pragma once
-/* What `beamroom info` prints of patients and treatment plans. */
+/* Prints patients and treatment plans for `beamroom info`. */
 #include <stdbool.h>
 
 #include "core/plan/plan.h"

@@ -1,4 +1,4 @@
-/* From the options of `beamroom render` about beams and tracks to merge patches on scene and view. */
+/* Turns the options of `beamroom render` about beams and tracks into merge patches on scene and view. */
 #include "server/cli/render_beam.h"
 
 #include <string.h>

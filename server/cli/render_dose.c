@@ -1,4 +1,4 @@
-/* From the options of `beamroom render` about dose to a merge patch on a scene. */
+/* Turns the options of `beamroom render` about dose into a merge patch on a scene. */
 #include "server/cli/render_dose.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* From the short options of `beamroom render` to a merge patch on a scene. */
+/* Turns the short options of `beamroom render` into a merge patch on a scene. */
 #include "server/cli/render_show.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* What the short options of `beamroom render` have in common: words, numbers and points of the command line, members of
+/* Parts that the short options of `beamroom render` share: words, numbers and points of the command line, members of
  * JSON objects. */
 #include <stdbool.h>
 

@@ -5,7 +5,7 @@
 
 /* Prints text with '?' for control characters and broken UTF-8, padded with blanks to at least width letters. */
 void text_print(FILE *out, const char *text, int width);
-/* The same, broken at blanks into lines of at most width letters, each after indent blanks. */
+/* Prints the text broken at blanks into lines of at most width letters, each after indent blanks. */
 void text_print_wrapped(FILE *out, const char *text, int indent, int width);
 /* Prints a whole number with a blank between groups of three digits, right-aligned in width. */
 void text_print_count(FILE *out, unsigned long long count, int width);

@@ -19,8 +19,8 @@ enum {
 struct silence_limits {
     int ping_ms;   /* a renderer that sends nothing for this long is sent a ping */
     int silent_ms; /* a process that does not answer a ping for this long is ended */
-    /* The same while an answer is awaited (process_await). The renderer is ended this early only when its main thread
-     * is stopped, or asleep without reading; a main thread that waits for a processor or a disk keeps silent_ms. */
+    /* Limits while an answer is awaited (process_await). The renderer is ended this early only when its main thread is
+     * stopped, or asleep without reading; a main thread that waits for a processor or a disk keeps silent_ms. */
     int awaited_ping_ms, awaited_silent_ms;
 };
 

@@ -35,7 +35,7 @@ struct head_request {
 
 /* bytes: all that has come so far. hosts: names of this server; a request to another host is refused. */
 NODISCARD enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts, struct problem *problem);
-/* The same; fills in request when the head is whole and not refused. */
+/* Like head_look; fills in request when the head is whole and not refused. */
 NODISCARD enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts, struct head_request *request,
                                    struct problem *problem);
 /* The handshake in bytes for which head_read returned HEAD_WEBSOCKET. */

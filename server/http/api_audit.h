@@ -7,6 +7,6 @@ NODISCARD bool api_audit_has_place(const struct api *api, struct problem *proble
 /* Adds the header Audit-Head to what is given away: number and hash of the newest row on the disk, for
  * beamroomd --verify-audit --audit-head. */
 void api_audit_add_head(const struct api *api, struct call *call);
-/* From now on the call is recorded as an export once it is answered with success. Handlers call it before they answer,
+/* Marks the call as an export, which is recorded once it is answered with success. Handlers call it before they answer,
  * and may call it again. False: what would be recorded cannot be stored now, and the call was answered with storage. */
 NODISCARD bool api_audit_export(struct api *api, struct call *call, const char *what);

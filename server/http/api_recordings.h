@@ -1,5 +1,5 @@
 #pragma once
-/* What the route of new rooms needs of recordings. Internal to server/http; net thread. */
+/* Recordings for the route of new rooms. Internal to server/http; net thread. */
 #include "server/http/api.h"
 #include "server/http/call.h"
 

@@ -15,7 +15,7 @@ void asleep_wake(struct net *net, const char *room_id,
 void asleep_tell(struct net *net, const char *room_id, const struct problem *problem);
 /* The room that this answer of the store is about; NULL: it was deleted meanwhile. */
 struct asleep_room *asleep_of_answer(const struct net *net, const struct store_answer *answer);
-/* The same for the room that has a bookmark with this token. */
+/* Like asleep_wake, for the room that has a bookmark with this token. */
 void asleep_wake_saved(struct net *net, const char *token,
                        void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
 /* The waiter for that whose answer this is; NULL: none. */

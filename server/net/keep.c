@@ -1,4 +1,4 @@
-/* From rooms to rows and back. */
+/* Turns rooms into rows and back. */
 #include "server/net/keep.h"
 
 #include <stdio.h>
@@ -52,7 +52,7 @@ static void copy_text(char *to, size_t size, const char *from)
     (void)snprintf(to, size, "%s", from ? from : "");
 }
 
-/* What is searched for in the database stands in columns beside the whole row. */
+/* Copies the fields that the database searches for into columns beside the whole row. */
 static void read_columns(const char *row, struct store_item *item)
 {
     cJSON *json = json_read(row, strlen(row), NULL);
@@ -399,7 +399,7 @@ static void write_room(struct net *net, struct net_room *room)
     (void)room_scene(room->room, &room->keep.writing);
 }
 
-/* Of what is to be written, only shared views have changed. */
+/* True if of all that is to be written only shared views have changed. */
 static bool only_views(const struct net_room *room)
 {
     return room->keep.changed == ROOM_VIEWS && !room->keep.n_items && !room->keep.n_audit && !room->keep.n_recordings;

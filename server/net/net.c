@@ -70,7 +70,7 @@ static void schedule_all(struct net *net)
         schedule_room(net->rooms[i]);
 }
 
-/* What is due of rooms, and what is to be kept of them. */
+/* Handles what is due in rooms, and writes what is to be kept of them. */
 static void handle_due(struct net *net)
 {
     if (!schedule_is_due(net))
@@ -87,7 +87,7 @@ static int64_t calm_tick_us(struct net *net, int64_t now_us)
     return rest_us > CALM_TICK_US ? rest_us : CALM_TICK_US;
 }
 
-/* What came may have begun something that depends on time. */
+/* Brings the fleet's next tick forward, as an event may have started a timer. */
 static void tick_within(struct net *net, int64_t within_us)
 {
     const int64_t at_us = clock_now_us() + within_us;

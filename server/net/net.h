@@ -70,12 +70,12 @@ void net_list_plans(struct net *net, void (*done)(void *context), void *context)
 bool net_room_is_asleep(const struct net *net, const char *room_id);
 void net_room_wake(struct net *net, const char *room_id,
                    void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
-/* The same for the room that has the bookmark with this token; not-found when there is none. */
+/* Like net_room_wake, for the room that has the bookmark with this token; not-found when there is none. */
 void net_saved_wake(struct net *net, const char *token,
                     void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
-/* Reads a part of a recording: the batches from the last one with a state at or before t_ms on, up to the next such
- * one, at next_ms. done is called once, later; n 0: they cannot be read, and problem says why. False with problem: the
- * disk has too much to do, and done is not called. */
+/* Reads one segment of a recording: from the last batch that begins with a state at or before t_ms up to the next such
+ * batch, at next_ms. done is called once, later; n 0: they cannot be read, and problem says why. False with problem:
+ * the disk has too much to do, and done is not called. */
 typedef void net_part_read(void *context, const char *const *texts, size_t n, int64_t next_ms,
                            const struct problem *problem);
 NODISCARD bool net_recording_read(struct net *net, const char *room, const char *recording, int64_t t_ms,
@@ -96,7 +96,7 @@ NODISCARD bool net_can_write(struct net *net, struct problem *problem);
 struct room *net_replay_create(struct net *net, const struct room *of_room, const char *recording,
                                struct problem *problem);
 size_t net_n_asleep(const struct net *net);
-/* As room_document, without members; the one last used is at 0. */
+/* Like room_document, without members; the one last used is at 0. */
 NODISCARD cJSON *net_asleep_document(const struct net *net, size_t index);
 /* False with problem busy: the database could not be opened since the start, so a room that is not found may be there.
  */

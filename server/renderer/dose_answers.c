@@ -126,7 +126,7 @@ static void add_levels(cJSON *json, const struct snapshot *snapshot, const struc
     }
 }
 
-/* What every read-out of a dose says beside its numbers. snapshot->dose >= 0. */
+/* Adds the basis that every read-out of a dose states beside its numbers. snapshot->dose >= 0. */
 void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale)
 {
     const struct dose *dose = &snapshot->plan->doses[snapshot->dose];
@@ -316,7 +316,8 @@ static double error_share(const struct dose_component *component, struct vec3 po
                : NAN;
 }
 
-/* Of the shown value; errors of a sum's components count as independent, and one without an error makes it unknown. */
+/* Error of the shown value as a share of it. A sum's components count as independent; one without an error makes it
+ * unknown. */
 static double shown_error_share(const struct snapshot *snapshot, struct vec3 point,
                                 const struct scene_tissue_weights *weights)
 {

@@ -5,7 +5,7 @@
 
 void dose_add_number(cJSON *json, const char *name, double value);   /* null for what is not finite */
 void dose_add_text(cJSON *json, const char *name, const char *text); /* null for NULL */
-/* What every read-out of the snapshot's dose says beside its numbers; snapshot->dose >= 0. */
+/* Adds the basis that every read-out of the snapshot's dose states beside its numbers; snapshot->dose >= 0. */
 void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale);
 /* accepted: {by, words}, or null. */
 void dose_add_accepted(cJSON *json, const struct fit_use *use);
@@ -22,14 +22,14 @@ struct dose_asked {
 /* Returns false with why: it is not used, or it has no such quantity or no weights. */
 NODISCARD bool dose_asked_of(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
                              struct dose_asked *asked, struct error *why);
-/* The same with the weights of one tissue (dose_choice_in), whatever the scene's says. */
+/* Like dose_asked_of, with the weights of one tissue (dose_choice_in), whatever the scene's says. */
 NODISCARD bool dose_asked_in(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
                              const char *tissue, struct dose_asked *asked, struct error *why);
 /* The snapshot with another quantity of its dose, or its own (word NULL or ""). Borrows all of the snapshot's; freed
  * with free(). NULL with problem: no such quantity. */
 NODISCARD struct snapshot *dose_snapshot_of(const struct snapshot *snapshot, const char *word, struct problem *problem);
-/* The same with the weights of one tissue, "" for each region's own, in place of the scene's dose.tissue: for figures
- * of regions. */
+/* Like dose_snapshot_of, with the weights of one tissue, "" for each region's own, in place of the scene's dose.tissue:
+ * for figures of regions. */
 NODISCARD struct snapshot *dose_snapshot_in(const struct snapshot *snapshot, const char *word, const char *tissue,
                                             struct problem *problem);
 /* {basis, population} of figures of regions. */

@@ -194,7 +194,7 @@ static void add_conformity(cJSON *json, const struct asking *asking, const struc
     }
 }
 
-/* What the dose's file states of the region, in the curve's quantity; null where it does not. */
+/* The figures that the dose's file states of the region, in the curve's quantity; null where it states none. */
 static cJSON *stated_object(const struct asking *asking, const struct curve *curve)
 {
     const struct dose *dose = &asking->snapshot->plan->doses[curve->dose->dose];
@@ -469,11 +469,10 @@ static cJSON *answer(struct asking *asking, struct problem *problem)
     return table;
 }
 
-/* What the dose's own answer says beside its numbers; {method, without_curves: [{dose, region, reason}], body_cm3,
- * curves: [{region, dose, quantity, unit, basis, population, n_univels, volume_cm3, missing_cm3, is_partial, min, mean,
- * max, metrics: {WORD: value}, least: {min, mean, max, metrics}, most, stated,
- * conformity: [{level, value, isodose_cm3, covered_cm3, paddick, rtog}], bin_from, bin_width, counts_cm3}]}; or a table
- * of the curves as text/csv */
+/* Answers the dose's basis and {method, without_curves: [{dose, region, reason}], body_cm3, curves: [{region, dose,
+ * quantity, unit, basis, population, n_univels, volume_cm3, missing_cm3, is_partial, min, mean, max, metrics: {WORD:
+ * value}, least: {min, mean, max, metrics}, most, stated, conformity: [{level, value, isodose_cm3, covered_cm3,
+ * paddick, rtog}], bin_from, bin_width, counts_cm3}]}; or a table of the curves as text/csv */
 cJSON *answer_dvh(struct question *question, struct derive *derived, struct problem *problem)
 {
     struct asking asking = { .packet = &question->packet.dvh };

@@ -65,8 +65,8 @@ static void add_method(cJSON *json, const struct scene_dose_compare *asked, bool
     cJSON_AddStringToObject(json, "method", text);
 }
 
-/* What the dose's own answer says beside its numbers, and {weights, second, dose_percent, distance_mm, normalization,
- * threshold, voxels, passed, pass_percent, mean, max, left_out, histogram, difference, method, comparison_reason} */
+/* Answers the dose's basis and {weights, second, dose_percent, distance_mm, normalization, threshold, voxels, passed,
+ * pass_percent, mean, max, left_out, histogram, difference, method, comparison_reason} */
 cJSON *answer_gamma(struct question *question, struct derive *derived, struct problem *problem)
 {
     const struct snapshot *snapshot = question->snapshot;

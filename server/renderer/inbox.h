@@ -41,7 +41,7 @@ void inbox_destroy(struct inbox *inbox);
 int inbox_wake_fd(const struct inbox *inbox); /* readable when an event may be there */
 /* Copies event; takes what it owns. Any thread; waits while the inbox is full. */
 void inbox_put(struct inbox *inbox, const struct inbox_event *event);
-/* The same, but the event is dropped when many are waiting; only for events that own nothing. */
+/* Like inbox_put, but drops the event when many are waiting; only for events that own nothing. */
 void inbox_offer(struct inbox *inbox, const struct inbox_event *event);
 struct inbox_event *inbox_take(struct inbox *inbox); /* NULL when there is none; clears wake_fd then */
 void inbox_event_destroy(struct inbox_event *event);

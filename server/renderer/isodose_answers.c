@@ -46,8 +46,8 @@ static void add_facts(cJSON *json, const struct isodose_shape *made)
     dose_add_number(json, "ms", made ? facts.build_ms : NAN);
 }
 
-/* What the dose's own answer says beside its numbers, and {level, value, grid, algorithm, triangles, vertices,
- * area_mm2, volume_mm3, ms, level_reason}; of a file {format} and its bytes. */
+/* Answers the dose's basis and {level, value, grid, algorithm, triangles, vertices, area_mm2, volume_mm3, ms,
+ * level_reason}; of a file {format} and its bytes. */
 cJSON *answer_isodose(struct question *question, struct derive *derived, struct problem *problem)
 {
     const struct snapshot *snapshot = question->snapshot;

@@ -67,8 +67,8 @@ static void add_coverage(cJSON *json, const struct snapshot *snapshot, const str
         derive_result_unref(&coverage->base);
 }
 
-/* What the dose's own answer says beside its numbers; {region, low, high (in the unit), volume_cm3, share, region_cm3,
- * missing_cm3, coverage_reason, method} */
+/* Answers the dose's basis and {region, low, high (in the unit), volume_cm3, share, region_cm3, missing_cm3,
+ * coverage_reason, method} */
 cJSON *answer_coverage(struct question *question, struct derive *derived, struct problem *problem)
 {
     struct dose_scale scale;
@@ -164,8 +164,8 @@ static void add_verdict(cJSON *json, const struct snapshot *snapshot, const stru
     dvh_finish(&dvh);
 }
 
-/* What the dose's own answer says beside its numbers; {method, constraints: [{id, region, quantity, metric, side,
- * limit, tissue, basis, population, value, least, most, unit, met, reason, volume_cm3, missing_cm3}]} */
+/* Answers the dose's basis and {method, constraints: [{id, region, quantity, metric, side, limit, tissue, basis,
+ * population, value, least, most, unit, met, reason, volume_cm3, missing_cm3}]} */
 cJSON *answer_constraints(struct question *question, struct derive *derived, struct problem *problem)
 {
     const struct snapshot *snapshot = question->snapshot;

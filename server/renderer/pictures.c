@@ -113,7 +113,8 @@ void pictures_shapes_built(struct pictures *pictures, struct waiting_request *wa
     submit(pictures, waiting);
 }
 
-/* Whose turn a picture takes. Two sources with the same number would share one: nothing worse. FNV-1a, 64 bits */
+/* Number of the source whose turn a picture takes. Two sources with one number would share a turn, nothing worse.
+ * FNV-1a, 64 bits */
 static uint64_t source_number(const char *source)
 {
     uint64_t number = UINT64_C(14695981039346656037);

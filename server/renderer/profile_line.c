@@ -26,7 +26,7 @@ static bool has_regions(const struct region_set *regions, size_t layer)
     return false;
 }
 
-/* From the beam's entry through its target to where the dose's grid or the regions that are used end. */
+/* Follows the beam from its entry through its target to where the dose's grid or the used regions end. */
 static bool follow_beam(const struct region_set *regions, const struct beam *beam, const struct dose *dose,
                         struct profile_line *line, struct problem *problem)
 {

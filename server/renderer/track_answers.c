@@ -33,7 +33,7 @@ static bool add_region(cJSON *json, const char *name, const struct snapshot *sna
     return probe.n_regions > 0;
 }
 
-/* What is counted in one pass over all segments. */
+/* Counts of one pass over all segments. */
 struct track_counts {
     size_t n_shown, n_with_energy, n_lost;
     double energy_low_mev, energy_high_mev;

@@ -202,7 +202,7 @@ static bool handle_second_hello(struct room *room, struct member *member, const 
     return problem_set(problem, PROBLEM_VALIDATION, "/type", "duplicate", "hello was said already, as %s", member->id);
 }
 
-/* From message to handler. A handler returns false with a problem when it applied nothing of the message. */
+/* The handler of each message. It returns false with a problem when it applied nothing of the message. */
 static const struct {
     enum message_type type;
     bool (*handle)(struct room *room, struct member *member, const struct message *message, struct problem *problem);

@@ -12,7 +12,7 @@
 struct room *room_create(const char *id, const char *plan_id, const struct room_callbacks *callbacks,
                          const struct room_limits *limits);
 void room_destroy(struct room *room); /* says bye to every connection first */
-/* What bye says is the reason of the end, in a sentence without its dot; else "the room is closed". */
+/* Sets the reason that bye gives, a sentence without its dot; else "the room is closed". */
 void room_end_because(struct room *room, const char *reason);
 /* Decisions and signatures in the room. */
 size_t room_n_decided(const struct room *room);
@@ -37,7 +37,8 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
  * one for each frame and member. */
 int64_t room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us);
 void room_connection_closed(struct room *room, void *connection, int64_t now_us);
-/* The same of a connection that was last heard of at heard_us: the member counts as away since then. */
+/* Like room_connection_closed, for a connection that was last heard of at heard_us: the member counts as away since
+ * then. */
 void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us);
 bool room_has_member(const struct room *room, void *connection); /* it has said hello */
 
@@ -55,7 +56,7 @@ NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, const cha
                                 int64_t now_us, struct problem *problem);
 /* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */
 NODISCARD cJSON *room_document(const struct room *room);
-/* The same of a room that is not in memory: without members, and with asleep true. */
+/* Like room_document, for a sleeping room: without members, and with asleep true. */
 NODISCARD cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision,
                                   enum wire_renderer_state renderer, int64_t created_at_s);
 /* Whether a call over HTTP has the right in this room. member: "ID SECRET" of the member who makes it; NULL: of nobody

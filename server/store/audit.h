@@ -18,7 +18,7 @@ bool audit_has_row(sqlite3 *db, const struct audit_head *row); /* with this numb
 /* Adds rows inside a transaction of the caller's. Each is a JSON object without n, which becomes its first field:
  * {"n":17,"time_ms":...}. */
 NODISCARD bool audit_append(sqlite3 *db, char *const *rows, size_t n, struct error *err);
-/* What the hash of a row with this text is, after a row with the hash `before`. */
+/* Hash of a row with this text, after a row with the hash `before`. */
 void audit_hash(const char before[STORE_AUDIT_HASH], const char *text, char hash[STORE_AUDIT_HASH]);
 /* SHA-256 of a text. */
 void audit_digest(const char *text, char hash[STORE_AUDIT_HASH]);

@@ -7,6 +7,6 @@
 
 /* Adds the records of this write. Errors: those of sql_fail. */
 NODISCARD bool records_write(sqlite3 *db, const struct store_room *room, struct error *err);
-/* As store_read_records. n records, the caller's; NULL: ERROR_NOT_FOUND (of one), ERROR_MEMORY, those of sql_fail. */
+/* Like store_read_records. n records, the caller's; NULL: ERROR_NOT_FOUND (of one), ERROR_MEMORY, those of sql_fail. */
 NODISCARD struct store_record *records_read(sqlite3 *db, const char *id, const char *before, size_t *n,
                                             struct error *err);

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 
-/* From the last failure of db, and `what` was being done. Returns false.
+/* Sets err from the last failure of db, while `what` was being done. Returns false.
  *   codes  ERROR_LIMIT   no space: worth another try
  *          ERROR_IO      the disk, a lock or memory: worth another try
  *          ERROR_FORMAT  the file is damaged

@@ -1,5 +1,5 @@
 #pragma once
-/* What is kept of a room, as plain data: texts of JSON are opaque here. Thread: any. */
+/* Stored rows of a room, as plain data: texts of JSON are opaque here. Thread: any. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -34,8 +34,8 @@ struct store_item { /* a note or a bookmark */
     char *body;                              /* JSON; NULL in a write: the item is deleted */
 };
 
-/* What was shown and said when something was decided or signed. It stands in a table of its own, to which is only
- * added, and outlives room and plan. */
+/* Record of a decision or signature with all that was shown and said then. Its table only grows, and outlives room and
+ * plan. */
 struct store_record {
     char id[64], room[64], plan[64], kind[16], author[64], author_name[164]; /* id: the item's */
     int64_t time_ms;                                                         /* since 1970 */

@@ -33,7 +33,7 @@ enum {
  * token may be absent. */
 NODISCARD bool bookmark_check(const cJSON *body, struct problem *problem);
 
-/* What a bookmark shows of this plan: {name, version, scene: complete, views: [{view, document: complete}], layout,
+/* Applies a bookmark to this plan: {name, version, scene: complete, views: [{view, document: complete}], layout,
  * report: [{pointer, code, detail}], n_report}. The pointers of the report are of the bookmark; code is that of a
  * validation problem, or "version" for a bookmark of a newer version. body passed bookmark_check. defaults: the plan's
  * default scene. NULL with problem when there is no memory. In time that grows with the document. */

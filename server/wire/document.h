@@ -13,7 +13,8 @@ NODISCARD cJSON *scene_document_patch(const cJSON *plan, const cJSON *defaults, 
                                       const cJSON *patch, struct problem *problem);
 /* current for a plan that was loaded again and may have changed: patch_renew of patch.h. NULL: no memory. */
 NODISCARD cJSON *scene_document_renew(const cJSON *plan, const cJSON *defaults, const cJSON *current);
-/* As scene_document_patch, for a view; current NULL: a new view. The override is checked by scene_document_for_view. */
+/* Like scene_document_patch, for a view; current NULL: a new view. The override is checked by scene_document_for_view.
+ */
 NODISCARD cJSON *view_document_patch(const cJSON *current, const cJSON *patch, struct problem *problem);
 /* The scene that a view shows: scene with the view's override applied, checked as a patch on the scene; the pointer of
  * a problem then begins with /override. */

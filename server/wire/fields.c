@@ -1,4 +1,4 @@
-/* What a struct owns by its field table, and what an id looks like: fields.h. Reading and writing have files of their
+/* Frees the fields that a struct owns by its table, and checks ids: fields.h. Reading and writing have files of their
  * own. */
 #include "server/wire/fields.h"
 

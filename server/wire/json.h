@@ -16,11 +16,11 @@ NODISCARD cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
  * for it, or when on this thread, since the last json_print or json_no_memory, there was none for a part of some
  * document: so a caller that adds part to part need not check each, and no half document is sent. */
 NODISCARD char *json_print(const cJSON *json);
-/* The same for a program that can do nothing else: aborts where there is no memory. */
+/* Like json_print, for a program that can do nothing else: aborts without memory. */
 NODISCARD char *json_write(const cJSON *json);
 /* Fills problem with PROBLEM_INTERNAL: no memory for `what`. Returns false. */
 bool json_no_memory(struct problem *problem, const char *what);
-/* As cJSON_AddItemToObject and cJSON_AddItemToArray, but value (taken) is freed where it cannot be added. */
+/* Like cJSON_AddItemToObject and cJSON_AddItemToArray, but frees value (taken) where it cannot be added. */
 void json_add(cJSON *object, const char *name, cJSON *value);
 void json_append(cJSON *array, cJSON *value);
 

@@ -159,7 +159,7 @@ static cJSON *told_of(const cJSON *before, const cJSON *after, const cJSON *patc
 {
     if (!after)
         return cJSON_CreateNull();
-    /* Of equal names in a patch each was applied; a page that is told both takes only the last. */
+    /* Each of equal names in a patch was applied; a page that is told both takes only the last. */
     if (!cJSON_IsObject(before) || !cJSON_IsObject(after) || !cJSON_IsObject(patch) || json_has_equal_names(patch))
         return difference(before, after);
     cJSON *told = cJSON_CreateObject();

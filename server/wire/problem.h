@@ -8,8 +8,8 @@
 
 struct problem {
     enum problem_type type;
-    /* Of forbidden: role, or "". For a validation problem: type, range, enum, unknown-field, required, duplicate,
-     * length, pattern, count, order or unknown-id; "" for other types. */
+    /* forbidden: role, or "". validation: type, range, enum, unknown-field, required, duplicate, length, pattern,
+     * count, order or unknown-id; "" for other types. */
     char code[32];
     char pointer[160];  /* RFC 6901: "/image/window/width"; "" the whole document */
     char detail[320];   /* a sentence: what was found, what was expected */
@@ -21,12 +21,12 @@ bool problem_set(struct problem *problem, enum problem_type type, const char *po
                  const char *format, ...) PRINTF_LIKE(5, 6);
 /* Puts prefix in front of the pointer, for a document that was checked alone and is a part of a larger one. */
 void problem_below(struct problem *problem, const char *prefix);
-/* From an error of core. HTTP status by its code: not-found 404; range, format, unsupported 422; limit 429; cancelled
- * 409; gl, state, memory 503; else 500. Returns false. */
+/* Fills problem from an error of core. HTTP status by its code: not-found 404; range, format, unsupported 422; limit
+ * 429; cancelled 409; gl, state, memory 503; else 500. Returns false. */
 bool problem_from_error(struct problem *problem, const struct error *err);
 int problem_status(enum problem_type type);       /* HTTP status; 500 for an unknown type */
 const char *problem_word(enum problem_type type); /* "validation"; "internal" for an unknown type */
 /* {type: "/problems/validation", title, status, detail, pointer?, code?, retry_after_ms?} */
 NODISCARD cJSON *problem_to_json(const struct problem *problem);
-/* From such an object, which is not trusted. False when it is malformed: problem is then of type internal. */
+/* Reads such an object, which is not trusted. False when it is malformed: problem is then of type internal. */
 bool problem_from_json(const cJSON *json, struct problem *problem);

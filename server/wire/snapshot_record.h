@@ -1,5 +1,5 @@
 #pragma once
-/* What an annotated PNG carries beside its pixels, so that the picture can be made again: JSON in its iTXt chunk of the
+/* Record in an annotated PNG beside its pixels, so that the picture can be made again: JSON in its iTXt chunk of the
  * keyword "beamroom".
  *
  * {
@@ -17,5 +17,6 @@
 
 enum { SNAPSHOT_RECORD_VERSION = 1 };
 #define SNAPSHOT_RECORD_KEYWORD "beamroom"
-/* As text, for free(). view: the complete document that the snapshot's view was read from. NULL: no memory. */
+/* Returns the record as text, for free(). view: the complete document that the snapshot's view was read from. NULL: no
+ * memory. */
 NODISCARD char *snapshot_record(const struct snapshot *snapshot, const cJSON *view, int64_t unix_s);

@@ -33,7 +33,7 @@ bool dicom_has(const struct dicom_item *item, uint32_t tag); /* the element is p
  * character. Control characters become blanks, bytes without a meaning in the character set "<0x8E>". Returns false
  * and "" if the element is absent or empty. */
 bool dicom_text(const struct dicom_item *item, uint32_t tag, char *out, size_t size);
-/* The same for value number index (from 0) of a multi-valued element. */
+/* Like dicom_text, for value number index (from 0) of a multi-valued element. */
 bool dicom_text_at(const struct dicom_item *item, uint32_t tag, size_t index, char *out, size_t size);
 /* True if a text that was read so far has bytes without a meaning in its character set. */
 bool dicom_text_is_broken(const struct dicom_file *file);

@@ -54,7 +54,7 @@ template <typename F, typename R> R guarded(R on_throw, F run) noexcept
     }
 }
 
-// The same for a function that reports errors: an exception becomes an error that names the file.
+// Like guarded, for a function that reports errors: an exception becomes an error that names the file.
 template <typename F> bool guarded_call(const char *name, error *err, F run) noexcept
 {
     try {

@@ -27,7 +27,7 @@ void uvh_finish(struct uvh *uvh);
 NODISCARD bool uvh_parse(const uint8_t *data, size_t size, const char *name, struct uvh *uvh, struct report *report,
                          struct error *err);
 
-/* As uvh_parse, but the length of one unit is the one the plan gives; 0: the header's own. */
+/* Like uvh_parse, but one unit has the length that the plan gives; 0: the header's own. */
 NODISCARD bool uvh_parse_in(const uint8_t *data, size_t size, const char *name, double given_mm, struct uvh *uvh,
                             struct report *report, struct error *err);
 

@@ -33,7 +33,7 @@ void gl_draw_polygon(const struct gl_frame *frame, const struct grid *grid, cons
 /* errors of all: ERROR_GL, those of draw_cache_grid */
 NODISCARD bool gl_draw_shapes(const struct gl_frame *frame, const struct draw *draws, size_t n, struct error *err);
 NODISCARD bool gl_draw_image(const struct gl_frame *frame, const struct draw *draw, struct error *err);
-/* The same without the image's wash. Stencil and depth rules are the caller's. */
+/* Like gl_draw_image, without the image's wash. Stencil and depth rules are the caller's. */
 NODISCARD bool gl_draw_bare_image(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 NODISCARD bool gl_draw_labels(const struct gl_frame *frame, const struct draw *draw, struct error *err);
 /* DRAW_WASH. */
@@ -53,7 +53,7 @@ void gl_set_grey(const struct gl *gl, GLint scale, GLint ends, const struct gl_g
                  bool is_low_white);
 /* Binds a table of one or two rows of colours by level to the unit; NULL: greys. */
 void gl_bind_colors(const struct gl_frame *frame, int unit, const uint32_t *first, const uint32_t *second);
-/* From 0..1 over one grid's outer faces to patient points. */
+/* Maps 0..1 over a grid's outer faces to patient points. */
 struct affine gl_lps_from_faces(const struct grid *grid);
 /* errors also ERROR_MEMORY */
 NODISCARD bool gl_draw_tracks(const struct gl_frame *frame, const struct draw *draw, struct error *err);

@@ -22,7 +22,7 @@ void gl_draw_polygon(const struct gl_frame *frame, const struct grid *grid, cons
     gl->DrawArrays(GL_TRIANGLE_FAN, 0, polygon->n);
 }
 
-/* From 0..1 over one grid's outer faces to the same of another grid. */
+/* Maps 0..1 over the outer faces of `from` to 0..1 over those of `to`. */
 static void place_matrix(const struct grid *to, const struct grid *from, float out[16])
 {
     struct affine lps = from->lps_mm_from_ijk, ijk = to->ijk_from_lps_mm;

@@ -234,7 +234,7 @@ static void cross_rows(const struct soft_cap_edge *edge, const struct soft_band 
     }
 }
 
-/* From toggles to the bits of what is inside. */
+/* Replaces a row's toggles by bits of the pixels inside: their running xor. */
 static void fill_row(uint64_t *words, size_t n_words)
 {
     uint64_t carry = 0;

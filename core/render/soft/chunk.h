@@ -95,7 +95,7 @@ void soft_cut_polygon(const struct soft_item *item, const uint32_t *vertices, in
 bool soft_cut_segment(const struct soft_item *item, const uint32_t vertices[2], struct vec3 ends_lps_mm[2]);
 NODISCARD bool soft_keep_triangle(struct soft_chunk *chunk, const struct soft_vertex triangle[3], int width,
                                   int height);
-/* From low, left and above, to high; with the depth and colour of low. */
+/* Adds the rectangle with the corners low (left, top) and high; depth and colour are those of low. */
 NODISCARD bool soft_keep_rectangle(struct soft_chunk *chunk, const struct soft_vertex *low,
                                    const struct soft_vertex *high, int width, int height);
 /* Clips the polygon at the near plane and at the rasteriser's range. shade: of the whole polygon; NULL: the corners'.

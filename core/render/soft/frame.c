@@ -17,7 +17,7 @@ static void put(float out[3], struct vec3 v)
     out[2] = (float)v.z;
 }
 
-/* From the camera: without colour. */
+/* The projection of the camera; colours stay 0. */
 static struct soft_lighting make_projection(const struct soft_frame *frame)
 {
     const struct camera *camera = frame->scope->camera;
@@ -80,7 +80,7 @@ static const struct soft_wash *add_volume_wash(struct soft_frame *frame, const s
     return added;
 }
 
-/* What a draw lays over its shape; NULL: nothing. */
+/* Adds the paint that a draw lays over its shape. Returns NULL if it lays none. */
 static const struct soft_paint *add_paint(struct soft_frame *frame, const struct draw *draw)
 {
     const struct draw_texture *texture = &draw->shape.texture;

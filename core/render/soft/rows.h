@@ -9,6 +9,6 @@ void soft_rows_write(const struct soft_frame *frame, const struct soft_kernels *
 /* Keeps the depths of the band's pixels in the list: those of opaque shapes, then, negative, those of planes before
  * them. */
 void soft_rows_keep_depth(const struct soft_frame *frame, const struct soft_band *band, bool has_planes);
-/* Of the volume too: where it is nearer and has absorbed half of the light, at the band's pixels. */
+/* Keeps also the depths of the volume, where it is nearer and has absorbed half of the light. */
 void soft_rows_keep_volume_depth(const struct soft_frame *frame, const struct soft_kernels *kernels,
                                  const struct soft_band *band);

@@ -316,7 +316,7 @@ void soft_track_chunks_finish(struct soft_track_chunks *chunks)
     free(chunks->chunks);
 }
 
-/* By band and by whether they are tall: a counting sort, as bins.c has. */
+/* Sorts the lines by band, then flat before tall: a counting sort, as in bins.c. */
 static bool sort_lines(struct soft_track_chunk *chunk, const struct soft_track_scratch *scratch, int n_bands)
 {
     size_t n_starts = 2 * (size_t)n_bands + 1;

@@ -109,7 +109,7 @@ static void set_slices(struct soft_volume *volume, const struct camera *camera, 
     volume->first_depth = low + 0.5 * volume->part_depth;
 }
 
-/* From places in samples to places in pixels. */
+/* Converts a linear form over samples to one over pixels. */
 static void scale_places(struct soft_linear *linear, int samples)
 {
     linear->right *= samples;

@@ -66,7 +66,8 @@ void soft_volume_init_image(struct soft_volume *volume, const struct volume *ima
 NODISCARD bool soft_volume_init(struct soft_volume *volume, const struct draw *draw, const struct draw_scope *scope,
                                 int width, int height, int samples, struct error *err);
 void soft_volume_finish(struct soft_volume *volume);
-/* The same volume with a ray for each pixel of the picture, that of its first sample. Borrows from `volume`. */
+/* Fills per_pixel: the volume with one ray for each pixel of the picture, that of its first sample. Borrows from
+ * `volume`. */
 void soft_volume_per_pixel(const struct soft_volume *volume, struct soft_volume *per_pixel);
 
 struct soft_wash;

@@ -27,7 +27,7 @@ struct soft_wash {
 };
 
 struct soft_volume;
-/* What is laid over the samples of a shape. */
+/* A paint over the samples of a shape: a wash or an image. */
 struct soft_paint {
     const struct soft_wash *wash;    /* NULL: the image is shown */
     const struct soft_volume *image; /* voxels, type, values and colours count */
@@ -38,10 +38,10 @@ struct soft_paint {
 /* The wash of samples on a plane; width, height: of the picture, in samples. */
 void soft_wash_on_plane(struct soft_wash *wash, const struct draw_wash *draw, const struct plane *plane_lps,
                         const struct mat4 *clip_from_lps_mm, int width, int height);
-/* Of samples of shapes, by their depths. */
+/* Makes the wash of shape samples, located by their depths. */
 void soft_wash_on_shapes(struct soft_wash *wash, const struct draw_wash *draw, const struct camera *camera, int width,
                          int height);
-/* Of samples of an image shown as a volume. */
+/* Makes the wash of samples of an image shown as a volume. */
 void soft_wash_in_image(struct soft_wash *wash, const struct draw_wash *draw, const struct grid *image);
-/* Of samples of shapes in a grid, by their depths. */
+/* Places of shape samples in a grid, from their depths. */
 struct soft_places soft_places_of_shapes(const struct grid *grid, const struct camera *camera, int width, int height);

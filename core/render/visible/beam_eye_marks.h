@@ -21,8 +21,8 @@ struct beam_eye_marks {
     double size_px[2];
     bool has_crosshair;
     double ring_mm; /* diameter; 0: none */
-    /* Of a beam's-eye view of a draft: the entry of the planned beam, and the ring of its aperture around it, which a
-     * planned beam without a round one has as large as ring_mm. 0: no ring */
+    /* For a beam's-eye view of a draft: the planned beam's entry, and the diameter of its aperture's ring: ring_mm if
+     * that aperture is not round. 0: no ring */
     bool has_planned;
     double planned_mm;
     struct paint_point planned_entry;

@@ -1,5 +1,5 @@
 #pragma once
-/* What a beam is drawn as: its line, arrow head and cross, and the wall of its opening. Knows no scene and no pixels.
+/* Shapes of a drawn beam: its line, arrow head and cross, and the wall of its opening. Knows no scene and no pixels.
  * Any thread. */
 #include "core/render/visible/cut.h"
 #include "core/scene/beams_drawn.h"

@@ -9,7 +9,7 @@
 #include "core/derive/shape_slabs.h"
 #include "core/render/visible/kept.h"
 
-/* Of what is kept: 48 MiB of lines. */
+/* Limits of the cache: 48 MiB of lines. */
 enum { MAX_ENTRIES = 1024, MAX_LINES = 1 << 20 };
 /* Below so many triangles looking at all of them takes no time. */
 enum { MIN_INDEXED_TRIANGLES = 4096 };

@@ -5,7 +5,7 @@
 
 #define BYTE(x) ((x) < 0 ? 0 : (x) > 255 ? 255 : (x))
 #define RGB(r, g, b) ((uint32_t)BYTE(r) | (uint32_t)BYTE(g) << 8 | (uint32_t)BYTE(b) << 16 | 0xff000000u)
-/* By the standard's tables the last level is white, not 255, 254, 252. */
+/* The standard's tables end in white, not in 255, 254, 252. */
 #define HOT_IRON(i) RGB((i) < 128 ? 2 * (i) : 255, (i) == 255 ? 255 : 2 * ((i)-128), (i) == 255 ? 255 : 4 * ((i)-192))
 #define RAINBOW(i) RGB(4 * (i)-510, (i) < 128 ? 4 * (i) : 1020 - 4 * (i), 510 - 4 * (i))
 

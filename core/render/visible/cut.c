@@ -335,7 +335,7 @@ static bool cut_triangle(const float *const p[3], const float at[3], float posit
     return cut_polygon(corners, 3, (double)position, lines, err);
 }
 
-/* Of a plane across a patient axis one coordinate decides, and slabs leave out most triangles. */
+/* Cuts along a plane across a patient axis: one coordinate decides, and slabs leave out most triangles. */
 static bool cut_across(const struct mesh *mesh, const struct mesh_slabs *slabs, const struct cut_plane *plane, int axis,
                        struct cut_lines *lines, struct error *err)
 {

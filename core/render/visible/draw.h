@@ -82,7 +82,7 @@ struct draw_image {
     const struct draw_wash *wash; /* over the finished colour; the list's; NULL: none */
 };
 
-/* What colours the triangles of a shape (`texture` of proto/scene.json), at the very point of the surface that a sample
+/* Colours the triangles of a shape (`texture` of proto/scene.json) at the very point of the surface that a sample
  * shows; other shapes have none.
  *
  * Image: the shape is lit as if it were white, and each channel multiplied with that of the image's colour there,
@@ -148,9 +148,9 @@ enum { DRAW_VOLUME_TABLE = 1024 };
 #define DRAW_VOLUME_FLAT 0.8
 struct draw_volume {
     enum scene_volume_method method;
-    /* Of the method ray: colour 0..1 and absorption per mm (natural: light exp(-a d) passes d mm), not premultiplied,
-     * at DRAW_VOLUME_TABLE values from low to low + width, both included; constant beyond. Of a value the nearest entry
-     * counts. The list's; NULL with other methods. */
+    /* For the method ray: colour 0..1 and absorption per mm (natural: light exp(-a d) passes d mm), not premultiplied,
+     * at DRAW_VOLUME_TABLE values from low to low + width, both included; constant beyond. A value takes the nearest
+     * entry. The list's; NULL with other methods. */
     const float (*table)[4];
     double low, width;
     double cull;             /* in the image's unit; smaller values are not drawn; -infinity: all are */

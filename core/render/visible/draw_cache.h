@@ -1,5 +1,5 @@
 #pragma once
-/* What a back end makes of shapes, grids and tracks to draw them, kept from picture to picture: within a budget of
+/* Caches the drawables that a back end makes of shapes, grids and tracks, from picture to picture: within a budget of
  * memory the least recently used is dropped first, nothing while a picture uses it, nothing outlives its plan. One
  * policy for all back ends, which only make and free their own kind of drawable. */
 #include "core/derive/shapes.h"

@@ -9,7 +9,7 @@
 #include "core/render/visible/draw_planes.h"
 #include "core/render/visible/draw_wash.h"
 
-/* Of the region's colour in a cap that mixes it with the image. */
+/* Share of the region's colour in a cap that mixes it with the image. */
 static const double region_tint = 0.35;
 static const double outline_width_px = 1.3;
 

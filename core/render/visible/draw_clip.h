@@ -6,7 +6,7 @@
 struct clip_set draw_clip_set(const struct snapshot *snapshot, bool is_clipped);
 /* Leaves out the planes that cut nothing of a box off. False: one of them cuts all of it off. */
 bool draw_clip_box(struct clip_set *set, const struct box3 *box);
-/* The same for the part of a plane that lies within a grid's outer faces. False also where no part does. */
+/* Like draw_clip_box, for the part of a plane within a grid's outer faces. False also if there is no such part. */
 bool draw_clip_slice(struct clip_set *set, const struct plane *plane, const struct grid *grid);
 /* True if some plane of the set cuts. */
 bool draw_clip_cuts(const struct clip_set *set);

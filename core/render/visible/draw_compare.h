@@ -13,6 +13,6 @@ bool draw_compare_is_asked(const struct scene_dose_style *style);
 bool draw_compare_fill(struct draw_wash *wash, const struct snapshot *snapshot, const struct dose_scale *scale,
                        struct error *err);
 
-/* The same for a wash of the statistical error, in the place of the dose's own: from pale yellow at 0 to dark red from
- * 20 % on. */
+/* Like draw_compare_fill, for a wash of the statistical error in place of the dose's own: from pale yellow at 0 to dark
+ * red from 20 % on. */
 bool draw_error_fill(struct draw_wash *wash, const struct snapshot *snapshot, struct error *err);

@@ -1,4 +1,4 @@
-/* From a snapshot to the draw list of its picture. */
+/* Makes the draw list of a snapshot's picture. */
 #include "core/render/visible/draw_list.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 #pragma once
-/* From a snapshot to the draw list of its picture: the one place that decides what is drawn and in which order. */
+/* Makes the draw list of a snapshot's picture: the one place that decides what is drawn and in which order. */
 #include "core/render/visible/back_end.h"
 #include "core/render/visible/draw.h"
 

@@ -142,7 +142,7 @@ static bool rank_regions(const struct draw_scope *scope, bool is_opaque, struct 
     return true;
 }
 
-/* What colours a region's triangles. */
+/* The texture of a region's triangles. */
 static struct draw_texture texture_of(struct draw_list *list, const struct snapshot *snapshot,
                                       const struct ranked *rank)
 {

@@ -15,7 +15,8 @@ static const double steps[][2] = { [SCENE_VOLUME_METHOD_RAY] = { 1, 1 },
                                    [SCENE_VOLUME_METHOD_SLICES] = { 1, 1 },
                                    [SCENE_VOLUME_METHOD_MIP] = { 1, 2 },
                                    [SCENE_VOLUME_METHOD_AVERAGE] = { 2, 4 } };
-/* As part of the values between which the transfer function changes, per mm. Noise is less, a surface is more. */
+/* Gradient from which a sample is lit, per mm, as a fraction of the value range over which the transfer function
+ * changes. Noise is below it, a surface above. */
 static const double least_gradient = 0.03;
 
 static double channel(const struct scene_transfer_point *point, int c)

@@ -23,7 +23,7 @@ enum { DRAW_WASH_MAX_KNOTS = 40 };
 struct draw_wash {
     const struct volume *rows[DOSE_MAX_ROWS]; /* F32, slope 1, offset 0, all on one grid */
     size_t n_rows;
-    /* What dose_field_need_... is called for before rows are read; NULL: all of them is there, as it always is for a
+    /* Needs a call of dose_field_need_... before rows are read; NULL: the rows are complete, as they always are for a
      * back end without reads_dose_in_parts */
     const struct dose_field *field;
     const struct volume *tissue; /* U8, on its own grid; or NULL */
@@ -39,7 +39,7 @@ struct draw_wash {
 /* The list's wash of its snapshot, made at the first call; NULL: none is shown. It is kept until the list is destroyed.
  */
 const struct draw_wash *draw_wash_shown(struct draw_list *list, const struct snapshot *snapshot);
-/* The same for a region's surface, which runs along the borders of its univels: with the region's own row everywhere.
+/* The wash of a region's surface, which runs along the borders of its univels: it has the region's own row everywhere.
  * NULL: none is shown, or no weights hold in the region. */
 const struct draw_wash *draw_wash_of_region(struct draw_list *list, const struct snapshot *snapshot, size_t region);
 void draw_wash_release(struct draw_list *list);

@@ -9,7 +9,7 @@
 #include "core/base/mem.h"
 #include "core/render/visible/kept.h"
 
-/* Of what is kept: samples and lines of so many planes, and bytes. */
+/* Limits of the cache: planes with their samples and lines, and bytes. */
 enum { MAX_ENTRIES = 24, MAX_BYTES = 64 << 20 };
 /* More is sampled on each side, as part of the window, for pictures that are panned. */
 static const double roomy = 0.1;

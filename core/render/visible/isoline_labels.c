@@ -60,7 +60,7 @@ static bool add_level(struct lines_px *all, const struct isolines *traced, const
     return true;
 }
 
-/* From lattice coordinates to pixels of the full-size picture. */
+/* Maps lattice coordinates to pixels of the full-size picture. */
 static struct mat4 pixels_of(const struct snapshot *snapshot, const struct camera *camera, const struct affine *map)
 {
     double width = snapshot->view.size_px[0], height = snapshot->view.size_px[1];

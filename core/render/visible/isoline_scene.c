@@ -1,4 +1,4 @@
-/* From a snapshot to the doses, values and lattices of its isodose lines. */
+/* Finds the doses, values and lattices of a snapshot's isodose lines. */
 #include "core/render/visible/isoline_scene.h"
 
 #include <math.h>
@@ -78,7 +78,7 @@ void isoline_scene_finish(struct isoline_scene *lines)
 
 /* ---- lattices --------------------------------------------------------------------------------------------------- */
 
-/* Of all lines together: 4 bytes each. */
+/* Limit for all lines together, 4 bytes each. */
 #define MAX_SAMPLES 4e6
 
 struct isoline_window isoline_window_of_pane(const struct plane *plane, const struct camera *camera)
@@ -117,7 +117,7 @@ static bool find_axes(const struct grid *grid, const struct plane *plane, int ax
     return n == 2 && axes[2] >= 0;
 }
 
-/* What is left of low .. high along an axis. */
+/* An interval along an axis, in lattice coordinates. */
 struct extent {
     double low, high;
 };

@@ -42,7 +42,7 @@ struct isoline_lattice {
 struct isoline_window {
     double low_mm[2], high_mm[2];
 };
-/* What a picture of a pane shows of its plane. */
+/* The window that a pane's picture shows of its plane. */
 struct isoline_window isoline_window_of_pane(const struct plane *plane, const struct camera *camera);
 /* All of the plane. */
 struct isoline_window isoline_window_of_plane(void);

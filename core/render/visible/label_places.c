@@ -21,7 +21,7 @@ struct occupancy {
     int width, height;
 };
 
-/* What all labels have in common. */
+/* The style that all labels share. */
 struct style {
     double size_px[2]; /* of the picture */
     double height_px;  /* of a label */

@@ -4,7 +4,7 @@
 #include "core/base/image.h"
 #include "core/scene/camera.h"
 
-/* What lies farther away than this part of the plan's diagonal darkens nothing. */
+/* Reach of the darkening, as a part of the plan's diagonal. */
 #define OCCLUSION_RADIUS_PART 0.06
 /* The colour of a point that sees no light from around is multiplied by this. */
 #define OCCLUSION_DARKEST 0.45

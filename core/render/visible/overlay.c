@@ -23,7 +23,7 @@ static const double halo_px = 1;
 
 enum lines_of { LINES_OF_OUTLINE, LINES_OF_BORDER, LINES_OF_SHAPE };
 
-/* From a pane's patient coordinates to pixels: x = p . x + x[3]. A parallel view has no division. */
+/* Maps a pane's patient coordinates to pixels: x = p . x + x[3]. A parallel view has no division. */
 struct pane_pixels {
     double x[4], y[4];
 };
@@ -238,7 +238,7 @@ static void stroke_into(struct paint *paint, const struct cut_lines *lines, cons
                    width_px);
 }
 
-/* Of a slice pane. */
+/* Strokes lines of a slice pane. */
 static void stroke(const struct target *target, const struct cut_lines *lines, double width_px)
 {
     const struct pane_pixels pixels = pane_pixels(target);
@@ -268,7 +268,7 @@ static void keep_strokes(struct target *target, const struct entry *entry, struc
     target->n_kept_bytes += paint_strokes_bytes(kept->strokes);
 }
 
-/* As stroke(), of lines that are kept: painted in the same place again, they are kept as pixels from then on. */
+/* Like stroke(), for cached lines: once painted twice in the same place, they are kept as pixels. */
 static void stroke_entry(struct target *target, struct entry *entry, enum stroke_of of, double width_px)
 {
     struct stroked *kept = &entry->stroked[of];

@@ -55,8 +55,8 @@ float *shading_normals(const struct mesh *mesh, int n_passes, struct error *err)
     return now;
 }
 
-/* As wide as the terraces of a surface with a slope of 1 voxel in 12. The triangles of a reduced surface are larger, so
- * fewer passes reach as far. */
+/* Passes that reach across the terraces of a surface with a slope of 1 voxel in 12. A reduced surface has larger
+ * triangles, so fewer passes reach as far. */
 enum { FULL_PASSES = 12 };
 
 int shading_passes(uint32_t reduction)

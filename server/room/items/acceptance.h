@@ -6,13 +6,13 @@
 
 enum { ACCEPTANCE_MAX_BYTES = 4096 }; /* of a body */
 
-/* As note_body_read. Read are also fact, plan_revision and role, which the server adds. */
+/* Like note_body_read. Also reads fact, plan_revision and role, which the server adds. */
 NODISCARD cJSON *acceptance_read(const struct room *room, const cJSON *body, const struct item *before,
                                  bool is_restored, struct problem *problem);
 /* Whether this member may make or withdraw an acceptance now; true for other kinds. */
 bool acceptance_may(const struct room *room, const struct member *member, enum wire_item_kind kind,
                     struct problem *problem);
-/* The same, for an item that is to be made anew (before NULL) or changed; an acceptance is never changed. */
+/* Like acceptance_may, for an item that is to be made anew (before NULL) or changed; an acceptance is never changed. */
 bool acceptance_may_write(const struct room *room, const struct member *member, enum wire_item_kind kind,
                           const struct item *before, struct problem *problem);
 /* Making and withdrawing are recorded in the audit; nothing for other kinds. */

@@ -1,7 +1,7 @@
 #pragma once
-/* What a person writes who has two parts of a plan used together though they do not fit: {thing, with, reason, words}.
- * thing and with are "KIND:ID". Checks it against the pairs that the plan's document lists in fits, which the renderer
- * decides (core/plan/fit.h). Knows nothing of rooms; server/http checks the same of a call. */
+/* Body of an acceptance, by which a person has two parts of a plan used together though they do not fit: {thing, with,
+ * reason, words}. thing and with are "KIND:ID". Checks it against the pairs that the plan's document lists in fits,
+ * which the renderer decides (core/plan/fit.h). Knows nothing of rooms; server/http checks the same of a call. */
 #include "server/wire/json.h"
 #include "server/wire/problem.h"
 

@@ -37,7 +37,7 @@ static bool give_token(const struct item *before, cJSON *read, struct problem *p
     return true;
 }
 
-/* What a page may leave out of a new bookmark. */
+/* Adds the fields that a page may leave out of a new bookmark. */
 static void give_form(cJSON *read)
 {
     if (!cJSON_HasObjectItem(read, "format"))

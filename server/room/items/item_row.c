@@ -1,4 +1,4 @@
-/* From items to the texts of their rows and back: item_row.h. */
+/* Turns items into the texts of their rows and back: item_row.h. */
 #include "server/room/items/item_row.h"
 
 #include <stdio.h>
@@ -15,7 +15,8 @@
 
 /* ---- kinds ------------------------------------------------------------------------------------------------------ */
 
-/* From kind to what its body may be. read: the body, checked and complete, as a new document, as note_body_read. */
+/* Limits and readers of bodies, by kind. read returns the body, checked and complete, as a new document, like
+ * note_body_read. */
 static const struct {
     size_t max_bytes;
     cJSON *(*read)(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,

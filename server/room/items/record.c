@@ -73,7 +73,7 @@ bool record_is_wanted(enum wire_item_kind kind)
     return kind == WIRE_ITEM_KIND_DECISION || kind == WIRE_ITEM_KIND_SIGNATURE;
 }
 
-/* What is on the server's disk. */
+/* State of the room on the server's disk. */
 static cJSON *describe_saved(const struct room *room)
 {
     struct room_saved saved = { .state = WIRE_SAVED_STATE_UNKEPT };

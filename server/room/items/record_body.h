@@ -12,7 +12,7 @@ enum {
     RECORD_MAX_BYTES = 16384
 };
 
-/* As note_body_read. A check: {entry, text, state, comment}, entry "" for one that members added; a decision:
+/* Like note_body_read. A check: {entry, text, state, comment}, entry "" for one that members added; a decision:
  * {decision, text, corrects}; a signature: {name, meaning, corrects}. Read are also plan_revision and role, which the
  * server adds. */
 NODISCARD cJSON *record_read_check(const struct room *room, const cJSON *body, const struct item *before,

@@ -41,15 +41,15 @@ struct meeting_log *meeting_log_create(void);
 void meeting_log_destroy(struct meeting_log *log);
 /* At t_ms, which never goes back, the document of this id is this one (taken); NULL: there is none any more. */
 void meeting_log_put(struct meeting_log *log, int64_t t_ms, enum log_part part, const char *id, cJSON *document);
-/* The same for all documents of the part: entries (taken) is an object of them in any order; NULL: there was no
- * memory for it, and all stays as it is. */
+/* Like meeting_log_put, for all documents of the part: entries (taken) is an object of them in any order; NULL: there
+ * was no memory for it, and all stays as it is. */
 void meeting_log_put_all(struct meeting_log *log, int64_t t_ms, enum log_part part, cJSON *entries);
 /* The events since the last call. False: there are none, or there was no memory; then the next batch begins with a
  * state, and what was between is lost. */
 NODISCARD bool meeting_log_take(struct meeting_log *log, int64_t t_ms, struct log_batch *batch);
 /* The next batch begins with a state: what was written is lost. */
 void meeting_log_restart(struct meeting_log *log);
-/* What was put, as a state; borrowed. */
+/* The documents that were put, as a state; borrowed. */
 const cJSON *meeting_log_state(const struct meeting_log *log);
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */

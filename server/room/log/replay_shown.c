@@ -1,4 +1,4 @@
-/* From the documents of a meeting log to scene, views, items, pointers and members. */
+/* Turns the documents of a meeting log into scene, views, items, pointers and members. */
 #include "server/room/log/replay_shown.h"
 
 #include <stdio.h>

@@ -13,9 +13,9 @@ void room_restore_recording(struct room *room, struct room_recording *recording)
 void room_recording_finish(struct room_recording *recording); /* frees what it owns */
 /* Ends the recording that runs: the server stops, or the room falls asleep. */
 void room_recording_cut(struct room *room, int64_t now_us);
-/* What was on disk is lost: the recording that runs goes on with a complete state. */
+/* The recording on disk was lost: the one that runs goes on with a complete state. */
 void room_recording_restart(struct room *room);
-/* What the room of a recording was at t_ms: {t_ms, revision, scene, views: [{document, by}], pointers: [{member, view,
+/* State of a recorded room at t_ms: {t_ms, revision, scene, views: [{document, by}], pointers: [{member, view,
  * point_mm}], items, members, presenter}. texts: the batches from the last one that begins with a state at or before
  * t_ms on. NULL with problem. */
 NODISCARD cJSON *room_recorded_state(const char *const *texts, size_t n, int64_t t_ms, struct problem *problem);
@@ -24,7 +24,7 @@ NODISCARD cJSON *room_recorded_state(const char *const *texts, size_t n, int64_t
  * marks and notes of its members are nobody's here, as members of this room have later numbers. */
 void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named, const struct room_recording *recording,
                        int64_t now_us);
-/* What replay_read asked for: n texts, and the time of the state behind them (INT64_MAX: there is none). n 0: they
+/* The answer to replay_read: n texts, and the time of the state behind them (INT64_MAX: there is none). n 0: they
  * cannot be read, and problem says why. */
 void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,
                       const struct problem *problem, int64_t now_us);

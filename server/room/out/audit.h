@@ -1,5 +1,5 @@
 #pragma once
-/* What members do that is recorded in the audit (room_callbacks.audited). Acts that are equal in everything but their
+/* Acts of members that are recorded in the audit (room_callbacks.audited). Acts that are equal in everything but their
  * time, as when a program repeats what it was refused, are gathered into one row, as are the steps of one gesture,
  * which change the same fields. Internal to server/room. */
 #include "server/room/state/room_state.h"
@@ -37,8 +37,8 @@ void audit_free(struct room *room);
 /* False with problem storage: what is recorded cannot be stored now, so it is refused. */
 bool audit_has_place(const struct room *room, struct problem *problem);
 
-/* What a change of the scene, from before to the room's, has for the audit: weights of doses, the beam's draft. by
- * NULL: a call of nobody in the room. */
+/* Audits a change of the scene, from before to the room's: weights of doses, the beam's draft. by NULL: a call of
+ * nobody in the room. */
 void audit_scene(struct room *room, const cJSON *before, const struct member *by);
 /* Whether there is anything. */
 bool audit_is_of_scene(const cJSON *before, const cJSON *after);

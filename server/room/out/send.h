@@ -7,7 +7,7 @@
 void send_to_member(struct room *room, struct member *member, const struct message *message);
 /* False: there was no memory for it, and the connection was closed. */
 bool send_to_connection(struct room *room, void *connection, const struct message *message);
-/* Of the messages with one key a slow receiver is sent the newest only. */
+/* Sends a slow receiver only the newest of the messages with one key. */
 void send_latest(struct room *room, struct member *member, uint32_t key, const struct message *message);
 void send_latest_to_others(struct room *room, const struct member *but, uint32_t key, const struct message *message);
 void send_to_all(struct room *room, const struct message *message);
@@ -15,7 +15,7 @@ void send_to_all(struct room *room, const struct message *message);
 void send_welcome(struct room *room, struct member *member);
 /* To all; in a large room soon, when the list went out just before (MEMBERS_EVERY_US). */
 void send_members(struct room *room);
-/* The same, but to the newcomer at once. */
+/* Like send_members, but to the newcomer at once. */
 void send_members_to_newcomer(struct room *room, struct member *newcomer);
 int64_t send_members_due(struct room *room); /* sends a list that is due; returns when one is due, INT64_MAX: none */
 void send_renderer_state(struct room *room, struct member *member); /* member NULL: to all */

@@ -1,6 +1,6 @@
 #pragma once
-/* Who has control of a room, who requests it, whether it is locked; the control message that tells it. Who presents is
- * room->presenter. Internal to server/room. */
+/* Control of a room: its holder (room->presenter), the members who request it, its lock, and the control message.
+ * Internal to server/room. */
 #include "server/room/state/room_state.h"
 
 /* Makes the member the presenter, NULL: nobody. A lock ends, and the member's request; with nobody, all requests. */

@@ -68,7 +68,7 @@ const char *link_find(struct room *room, const char *token, const char *person, 
     return NULL;
 }
 
-/* Of the token only eight digits of its hash: they tell links apart and let nobody in. */
+/* Writes eight digits of the token's hash: they tell links apart and let nobody in. */
 static void write_mark(const unsigned char hash[SECRET_HASH_BYTES], char mark[9])
 {
     (void)snprintf(mark, 9, "%02x%02x%02x%02x", hash[0], hash[1], hash[2], hash[3]);

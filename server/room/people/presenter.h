@@ -1,5 +1,5 @@
 #pragma once
-/* Who presents: the member whose views are the room's and who may change its scene. The handlers of present and
+/* The presenter: the member whose views are the room's and who may change its scene. The handlers of present and
  * show.everyone. Internal to server/room. */
 #include "server/room/state/room_state.h"
 #include "server/wire/message.h"

@@ -40,7 +40,7 @@ static size_t n_characters(const char *text)
     return n;
 }
 
-/* Of 1 to `most` characters, not all of them white; lines may break. */
+/* Checks a text of 1 to `most` characters, not all of them white; lines may break. */
 bool body_check_text(const cJSON *json, const char *where, size_t most, struct problem *problem)
 {
     if (!json)

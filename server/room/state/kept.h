@@ -1,5 +1,5 @@
 #pragma once
-/* What of a room is to be kept. Internal to server/room. */
+/* Notes which parts of a room are to be written to disk. Internal to server/room. */
 #include "server/room/state/room_state.h"
 
 /* Something that is kept has changed. parts: of enum room_part */

@@ -5,7 +5,8 @@
 
 /* The member that uses this connection; NULL: it has not said hello. */
 struct member *member_of_connection(const struct room *room, const void *connection);
-/* The same, quicker where members speak in about the same order each time: acknowledgements do. */
+/* Like member_of_connection, quicker where members speak in about the same order each time, as with acknowledgements.
+ */
 struct member *member_who_speaks(struct room *room, const void *connection);
 bool member_presents(const struct room *room, const struct member *member);
 /* True if one of its views shows a shared view, and the member does not present. */

@@ -1,5 +1,5 @@
 #pragma once
-/* Who was in the room and when, as stays of members. Internal to server/room. */
+/* Stays of members: names and times of those who were in the room. Internal to server/room. */
 #include "server/room/state/room_state.h"
 
 void presence_entered(struct room *room, const struct member *member);

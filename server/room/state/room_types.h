@@ -1,5 +1,5 @@
 #pragma once
-/* What a room and its owner tell each other: limits, rows, requests and pictures, and the callbacks. Included by
+/* The interface between a room and its owner: limits, rows, requests and pictures, and the callbacks. Included by
  * room.h. */
 #include <stdint.h>
 
@@ -149,7 +149,7 @@ struct room_callbacks {
                         struct problem *problem);
 };
 
-/* What of a room is kept on disk. */
+/* Parts of a room that are kept on disk. */
 enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4, ROOM_LINKS = 8, ROOM_PRESENCE = 16 };
 enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS | ROOM_PRESENCE };
 

@@ -5,7 +5,8 @@
 
 /* The member acts in its view of this number. */
 void main_view_acted(struct member *member, int number);
-/* The same by a patch on the view: of size_px alone it is no act; an empty one tells it, and patches count no more. */
+/* The member patched the view. A patch of size_px alone is no act. An empty patch reports an act; later patches then
+ * count no more. */
 void main_view_patched(struct member *member, int number, const cJSON *patch);
 /* Chooses room->main: the presenter's view in which they acted last, as long as it is open, else the first open one.
  * While the presenter is away, or there is none, it stays what it was. */

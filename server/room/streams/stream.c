@@ -44,7 +44,7 @@ static void stream_changed(struct room *room, struct stream *stream)
         stream->behind_us = room->now_us;
 }
 
-/* The same of a change of the scene. */
+/* Like stream_changed, for a change of the scene. */
 static void stream_reached(struct room *room, struct stream *stream)
 {
     stream_changed(room, stream);

@@ -9,5 +9,5 @@ bool watch_set(struct room *room, struct member *member, const struct message *m
 void watches_follow(struct room *room);
 /* Sends the member the picture whose turn has come, and tells whether it is late; returns when it is due again. */
 int64_t watch_tick(struct room *room, struct member *member);
-/* The same for all members. */
+/* Like watch_tick, for all members. */
 int64_t watches_tick(struct room *room);

@@ -1,6 +1,6 @@
 #pragma once
-/* What a room that was made from a bookmark begins with: its scene, once the plan is loaded, and the cameras of its
- * shared views. Internal to server/room; what others use (room_begin_with, room_beginning) stands in room.h. */
+/* Beginning of a room that was made from a bookmark: its scene, once the plan is loaded, and the cameras of its shared
+ * views. Internal to server/room; what others use (room_begin_with, room_beginning) stands in room.h. */
 #include "server/room/state/room_state.h"
 
 /* The first scene of the room, the caller's: defaults where it began with nothing. NULL: no memory. */

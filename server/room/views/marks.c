@@ -1,4 +1,4 @@
-/* Who changes which marks of the scene, and who is written down as their author. */
+/* Checks which marks of the scene a member changes, and writes their author down. */
 #include "server/room/views/marks.h"
 
 #include <stdio.h>

@@ -107,8 +107,8 @@ static void set_shared_view(struct room *room, struct member *presenter, const s
         note_mover(stream, view, presenter);
 }
 
-/* What a member makes of a document to show the shared view of its kind: the document itself when the presenter makes
- * the view; of others kind and size. Takes document; NULL with problem when there is no memory. */
+/* The document with which a member shows the shared view of its kind: the whole document from the presenter, kind and
+ * size from others. Takes document; NULL with problem when there is no memory. */
 static cJSON *document_to_share(const struct room *room, const struct member *member, cJSON *document,
                                 struct problem *problem)
 {
@@ -212,7 +212,7 @@ bool member_view_open(struct room *room, struct member *member, const struct mes
     return true;
 }
 
-/* Of a shared view a follower changes nothing; the size is for leaving. */
+/* A follower may patch only the size of a shared view: it counts once they leave it. */
 static bool patch_of_follower(struct room *room, struct member_view *view, const cJSON *patch, const cJSON *document,
                               struct problem *problem)
 {

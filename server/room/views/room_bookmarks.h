@@ -5,8 +5,8 @@
 /* Bookmarks. The body of one by its id or by the token of its permalink, the caller's; NULL: there is none. */
 NODISCARD cJSON *room_bookmark(const struct room *room, const char *id, uint32_t *version);
 NODISCARD cJSON *room_bookmark_of_token(const struct room *room, const char *token);
-/* What a bookmark shows of the room's plan: bookmark_open of server/wire/bookmark.h. NULL with problem: the plan is not
- * loaded, or there is no memory. */
+/* The state of the room's plan that a bookmark shows: bookmark_open of server/wire/bookmark.h. NULL with problem: the
+ * plan is not loaded, or there is no memory. */
 NODISCARD cJSON *room_bookmark_open(const struct room *room, const cJSON *body, struct problem *problem);
 /* The room begins with what a bookmark of its plan shows, instead of with the plan's own scene and home cameras. Before
  * its first member. False with problem: no memory. */

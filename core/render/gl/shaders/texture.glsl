@@ -1,4 +1,4 @@
-// What colours the triangles of a shape (struct draw_texture in core/render/visible/draw.h). Needs wash.glsl, linear.glsl.
+// Colours the triangles of a shape (struct draw_texture in core/render/visible/draw.h). Needs wash.glsl, linear.glsl.
 uniform int is_washed; // else the image colours it
 uniform sampler3D source;
 uniform mat4 source_from_lps; // to 0 .. 1 over the image's outer faces

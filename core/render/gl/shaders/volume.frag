@@ -135,7 +135,7 @@ vec3 find_half(float first, float end, float h, float light) {
     return vec3(end, end, light);
 }
 
-// The same to 1 / 64 of an interval h of the picture, as normals come from the depths of neighbouring pixels.
+// The distance of half light to 1 / 64 of an interval h of the picture: normals come from depths of neighbouring pixels.
 float half_light(float entry, float end, float h) {
     vec3 found = find_half(entry, end, h / 4.0, 1.0);
     if (found.x >= end) return end;
