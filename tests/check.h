@@ -1,5 +1,5 @@
 #pragma once
-/* What every cmocka test includes: the library with its prerequisites, and comparisons of doubles. */
+/* Header of every cmocka test: the library with its prerequisites, and comparisons of doubles. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,7 +40,7 @@
                          found_[1], found_[2], expected_[0], expected_[1], expected_[2], (double)(tolerance)); \
     } while (0)
 
-/* What this program and its ended children have used of processors, s: a limit on it holds on a busy machine too. */
+/* Processor time of this program and its ended children, s: a limit on it holds on a busy machine too. */
 static inline double cpu_s(void)
 {
     double sum_s = 0;

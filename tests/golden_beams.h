@@ -375,7 +375,7 @@ static inline double golden_support(struct vec3 centre, struct vec3 half_mm, str
     return vec3_dot(vec3_sub(centre, from), v) + half_mm.x * fabs(v.x) + half_mm.y * fabs(v.y) + half_mm.z * fabs(v.z);
 }
 
-/* From the target back to where every corner of the plan's box, enlarged by 1.08, is within the opening angle.
+/* Distance back from the target at which every corner of the plan's box, enlarged by 1.08, is within the opening angle.
  * d, right, up: of unit length. */
 static inline double golden_home_mm(const struct golden_beam *g, struct vec3 centre, struct vec3 half_mm, struct vec3 d,
                                     struct vec3 right, struct vec3 up)

@@ -239,7 +239,7 @@ int pthread_getattr_np(pthread_t thread, pthread_attr_t *attributes)
 
 /* ---- memory ------------------------------------------------------------------------------------------------------- */
 
-/* What gives memory in the end; dlsym may take some itself, so these are not looked up. */
+/* The allocator below; dlsym may allocate itself, so its functions are not looked up. */
 #ifdef FAULTS_ADDRESS
 #define BELOW(name) __interceptor_##name
 #else

@@ -17,7 +17,7 @@ enum fault_kind {
 };
 extern const char *const fault_words[FAULT_N_KINDS];
 
-/* From now on calls are counted; the n-th of the kind fails (n >= 1), and with is_lasting every later one too. */
+/* Starts counting calls; the n-th of the kind fails (n >= 1), and with is_lasting every later one too. */
 void faults_arm(enum fault_kind kind, size_t n, bool is_lasting);
 /* Between them no call is counted and none fails: for what a test itself does. On one thread; may be nested. */
 void faults_pause(void);

@@ -48,7 +48,7 @@ static void world_end(struct room_world *world)
     free(world);
 }
 
-/* What the page heard, without what is random; that it was refused or sent away is a clear answer. */
+/* Adds the messages that the page received, without random values; a refusal or a bye is a clear answer. */
 static void add_page(struct outcome *outcome, const struct fake_page *page)
 {
     for (size_t i = 0; i < page->n_texts; i++) {

@@ -192,7 +192,7 @@ static void store_plan(void *context, struct outcome *outcome)
     }
 }
 
-/* From the cache or, where that fails, from the folder: the same plan. */
+/* Opens the plan from the cache or, where that fails, from the folder: it is the same. */
 static void open_kept(void *context, struct outcome *outcome)
 {
     const struct kept *kept = context;

@@ -33,7 +33,7 @@ enum { MS_A_WALK = 400, MS_A_WALK_WHOLE = 20000 };
 
 static int n_failed;
 
-/* What a child that walks tells the parent. */
+/* Progress of a walking child, shared with the parent. */
 struct progress {
     atomic_size_t n;      /* that it is at */
     atomic_bool is_ended; /* a run had no fault left */
@@ -152,7 +152,7 @@ static const char *judge(const struct walking *walking, const struct outcome *ou
     return NULL;
 }
 
-/* What a thread of the run that nobody waits for still gives back is waited for. */
+/* Waits until threads of the run that nobody joins have given back all they hold. */
 static void settle(const struct walking *walking)
 {
     for (int i = 0; i < SETTLE_MS &&

@@ -7,7 +7,7 @@
 #include "server/wire/problem.h"
 #include "tests/faults/faults.h"
 
-/* What one run came to. */
+/* Outcome of one run. */
 struct outcome {
     bool is_done;
     uint64_t digest; /* of the result, when done: outcome_add */

@@ -14,7 +14,7 @@ enum { MAX_MEMBERS = 300, MAX_LINKS = 40 };
 static struct room_kept_member members[MAX_MEMBERS];
 static struct room_kept_link links[MAX_LINKS];
 
-/* What is in front of the next blank, cut to the size. */
+/* Takes the word before the next blank, cut to the size. */
 static const char *take_word(const char *at, char *to, size_t size)
 {
     const size_t n = strcspn(at, " ");

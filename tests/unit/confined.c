@@ -62,7 +62,7 @@ static bool kernel_has(const char *needed)
 
 enum { NOT_BEGUN = 77 };
 
-/* What the attempt gave in a confined child. */
+/* Returns the result of the attempt in a confined child. */
 static int confined(struct places *at, bool is_bare, int (*attempt)(const struct places *at))
 {
     int pair[2];

@@ -8,7 +8,7 @@ enum { CHD_TEXT_SIZE = 1 << 16, CHD_COLS = 3, CHD_ROWS = 2 };
 
 extern const char *const chd_sera_mc[9], *const chd_sera_plan[9]; /* the names of columns, in each writer's order */
 
-/* What a set says; the defaults are seraMC's. */
+/* Contents of a set; the defaults are seraMC's. */
 struct made_chd {
     const char *version, *const *names;
     double fov;

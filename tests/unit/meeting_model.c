@@ -33,7 +33,7 @@ static int smaller(const int size_px[2])
     return size_px[0] < size_px[1] ? size_px[0] : size_px[1];
 }
 
-/* What a person who leaves goes on from. */
+/* The view with which a person who leaves goes on. */
 static struct shown copy_for(const struct meeting *meeting, const struct pane *pane)
 {
     struct shown own = meeting->shared[pane->kind].shown;

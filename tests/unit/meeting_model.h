@@ -42,7 +42,7 @@ void meeting_start(struct meeting *meeting, double opacity);
 struct shown plain_view(const int size_px[2]);
 /* An open pane that does not follow. */
 struct pane own_pane(int kind, struct shown shown);
-/* What the pane shows, to be changed. */
+/* The view that the pane shows, to be changed. */
 struct shown *shown_in(struct meeting *meeting, struct pane *pane);
 bool meeting_follows(const struct meeting *meeting, int who);
 

@@ -6,7 +6,7 @@ bool report_has(const struct report *report, const char *code);
 /* The sentence of the first line with the code; "" without one. */
 const char *report_said(const struct report *report, const char *code);
 struct plan *plan_of_folder(const char *folder, struct error *err);
-/* Of the real data; NULL when they are not there. */
+/* A plan of the real data; NULL when they are not there. */
 struct plan *plan_of_data(const char *name);
 /* Fails where there is no such region. */
 const struct region *region_of(const struct plan *plan, const char *id);

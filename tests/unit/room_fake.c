@@ -277,7 +277,7 @@ static int side_px(const struct fake_request *request, int i)
     return (int)lround(cJSON_GetArrayItem(size, i)->valuedouble * request->scale_percent / 100);
 }
 
-/* As the renderer makes them; of 100 / 2 or 100 / 4 bytes. */
+/* Adds reduced pictures as the renderer does; of 100 / 2 or 100 / 4 bytes. */
 static void add_reduced(struct frame *picture, const struct fake_request *request)
 {
     for (int i = 0; i < IMAGE_N_REDUCED; i++) {

@@ -48,7 +48,7 @@ void fake_room_start(struct fake_room *fake, int max_members); /* the plan is no
 void fake_room_end(struct fake_room *fake);
 /* A plan with an image "ct" and the regions "scalp" (opacity 0.4) and "brain". */
 void fake_plan_ready(struct fake_room *fake, bool is_software);
-/* The same without "scalp", as after its files were changed. */
+/* Like fake_plan_ready, for a plan without "scalp", as after its files were changed. */
 void fake_other_plan_ready(struct fake_room *fake);
 void fake_page_end(struct fake_page *page);
 

@@ -1,6 +1,5 @@
 #pragma once
-/* What a test of a room begins with: a fake room for three whose plan is ready, and four pages that have said nothing.
- */
+/* Set-up of a test of a room: a fake room for three whose plan is ready, and four pages that have said nothing. */
 #include "tests/unit/room_fake.h"
 
 extern struct fake_room fake;

@@ -4,8 +4,8 @@
 #include "core/region/mask.h"
 #include "tests/check.h"
 
-/* Who adds a field to a plan is stopped here until it is compared below: a conversion or a cache that loses it would
- * not be noticed. */
+/* A new field of a plan does not compile here until it is compared below: else nobody would notice a conversion or a
+ * cache that loses it. */
 #define IS_COMPARED_UP_TO(type, bytes) \
     _Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), "compare the new field of " #type)
 IS_COMPARED_UP_TO(struct plan, 1242696);

@@ -6,5 +6,5 @@
  * is_from_cache, shapes) and where its parts come from (assert_same_origins). Voxels by value; matrices, and what is
  * measured from them, within mm; a layer by what it holds of its regions, wherever it stands in the list. */
 void assert_same_plan(const struct plan *found, const struct plan *expected, double mm);
-/* The same for patients, treatment plans, registrations and the origin of each part; a converted plan has none. */
+/* Asserts equal patients, treatment plans, registrations and the origin of each part; a converted plan has none. */
 void assert_same_origins(const struct plan *found, const struct plan *expected);

@@ -41,7 +41,7 @@ void ws_client_flush(struct ws_client *client, size_t n_chop);
 void ws_client_send(struct ws_client *client, unsigned first, const void *payload, size_t n); /* add and flush */
 /* Waits for a frame; false: the server ended instead. Fails the test when neither comes within 60 s. */
 bool ws_client_next(struct ws_client *client, struct ws_answer *answer);
-/* The same, and the test fails unless it is this one. */
+/* Like ws_client_next; the test fails unless it is this frame. */
 void ws_client_expect(struct ws_client *client, unsigned first, const void *payload, size_t n);
 /* The next frame is a close with this code (0: without one), and then the server ends. */
 void ws_client_expect_end(struct ws_client *client, unsigned code);

@@ -58,7 +58,8 @@ static void each_pixel_is_the_mean_of_its_block_whatever_the_sides(void **state)
     expect_means(1441, 7, 4);
 }
 
-/* By hand: (10 + 21) / 2 = 15.5 is 16; the block of four 0, 0, 1, 1 has 0.5, which is 1; 0, 0, 0, 1 has 0.25: 0. */
+/* Calculated by hand: (10 + 21) / 2 = 15.5 is 16; the block of four 0, 0, 1, 1 has 0.5, which is 1; 0, 0, 0, 1 has
+ * 0.25: 0. */
 static void halves_are_rounded_up(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What a beam crosses: bands along its axis, univels in its aperture. */
+/* The way of a beam: bands along its axis, univels in its aperture. */
 #include "core/beam/sera_angles.h"
 #include "core/region/cylinder.h"
 #include "core/region/ray.h"

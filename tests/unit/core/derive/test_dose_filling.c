@@ -82,7 +82,7 @@ static struct dose_choice choice_of(double blood_ppm)
     return choice;
 }
 
-/* By hand, at a voxel; not a number under the mask. */
+/* The sum at a voxel, calculated here; not a number where the mask is 0. */
 static double sum_at(const struct plan *plan, double ppm, size_t row, const uint32_t at[3])
 {
     const struct dose *dose = &plan->doses[0];

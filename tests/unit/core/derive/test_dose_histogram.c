@@ -198,7 +198,7 @@ static void masks_that_share_no_univel_but_lie_in_each_other_are_whole_together(
     plan_and_derived_destroy(plan);
 }
 
-/* What is changed in how the dose is drawn, at random. */
+/* Changes at random how the dose is drawn. */
 static void draw_anyhow(struct scene *scene)
 {
     struct scene_dose_style *dose = &scene->dose;

@@ -158,9 +158,9 @@ static double ramp(struct vec3 p)
     return 1000 + vec3_dot(gradient, p);
 }
 
-/* Of a value that is linear in the point, the mean is that at the centre, and the variance ((g.a)^2 + (g.b)^2) / 4 for
- * half axes a and b: of a gradient g along the half axis a the standard deviation is |g| a / 2. Sampling counts a rim
- * of half a step in or out: 0.25 mm of 6 and more. */
+/* If a value is linear in the point, the mean is that at the centre, and the variance ((g.a)^2 + (g.b)^2) / 4 for half
+ * axes a and b: of a gradient g along the half axis a the standard deviation is |g| a / 2. Sampling counts a rim of
+ * half a step in or out: 0.25 mm of 6 and more. */
 static void a_linear_image_has_the_closed_forms_mean_and_deviation(void **state)
 {
     (void)state;

@@ -7,7 +7,7 @@
 #include "tests/unit/data_folder.h"
 #include "tests/unit/oracle.h"
 
-/* What the script printed, for the caller to free; NULL: no nibabel here. */
+/* Returns the script's output, for the caller to free; NULL: no nibabel here. */
 static char *ask(char *const *arguments)
 {
     enum { MOST = 1 << 18 };

@@ -1,5 +1,4 @@
-/* What stands at the edge of what a plan may hold comes back from its conversion, and what goes wrong on the way leaves
- * nothing. */
+/* Values at the limits of a plan come back from its conversion, and a conversion that fails leaves nothing. */
 #include <dirent.h>
 #include <signal.h>
 #include <stdio.h>
@@ -333,7 +332,7 @@ static void a_disk_that_takes_no_more_leaves_nothing_and_is_said(void **state)
     folder_remove(folder);
 }
 
-/* What no reader would take is not written: here a beam without a length. */
+/* A plan that no reader would take is not written: here with a beam without a length. */
 static void a_plan_that_would_not_open_again_is_not_written(void **state)
 {
     (void)state;

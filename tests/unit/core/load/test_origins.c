@@ -1,4 +1,4 @@
-/* What a plan knows of where its parts come from: patients, frames of reference, treatment plans, structure sets. */
+/* Origins of a plan's parts: patients, frames of reference, treatment plans, structure sets. */
 #include "core/load/cache.h"
 #include "core/load/load.h"
 #include "tests/check.h"

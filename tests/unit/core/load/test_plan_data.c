@@ -14,7 +14,7 @@
 #include "tests/unit/oracle.h"
 #include "tests/unit/same_plan.h"
 
-/* What is expected of a folder; reason NULL: it opens with these. */
+/* Expectations of a folder; reason NULL: it opens with these numbers. */
 struct expected {
     const char *name, *reason;
     size_t n_images, n_regions, n_doses, n_beams;
@@ -178,7 +178,7 @@ static void structure_sets_fill_the_voxels_of_the_reference_masks(void **state)
     plan_destroy(plan);
 }
 
-/* By hand, from the file: a body of 35.4 l and a ball of a tumour of radius 20 mm (33.5 cm3), as its maker's program
+/* Counted from the file: a body of 35.4 l and a ball of a tumour of radius 20 mm (33.5 cm3), as its maker's program
  * describes it. */
 static void the_lung_phantom_has_its_three_regions(void **state)
 {

@@ -128,7 +128,7 @@ static long peak_kib(const char *folder)
     return strtol(answer, NULL, 10);
 }
 
-/* What the refusal says the plan would take, MiB. */
+/* Memory that the plan would take according to the refusal, MiB. */
 static double estimated_mib(const char *folder, const char *largest)
 {
     struct error err = { 0 };

@@ -184,7 +184,7 @@ static struct interval ball_interval(const struct line *line, double radius)
     return (struct interval){ middle - half, middle + half, -1, -1 };
 }
 
-/* What is expected of one region: at most a wall and a cap. */
+/* Expected hits of one region: at most a wall and a cap. */
 struct expected {
     double wall_mm, cap_mm; /* from the eye; 0: none */
 };

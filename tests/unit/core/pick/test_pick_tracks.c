@@ -175,7 +175,8 @@ static void of_lines_that_cross_under_the_pixel_the_nearest_to_the_eye_is_taken(
     finish(plan, snapshot);
 }
 
-/* From 100 mm behind the eye to the origin: in the picture a point at the middle, in front of the eye only. */
+/* The segment runs from 100 mm behind the eye to the origin; in the picture only its part in front of the eye counts.
+ */
 static void a_segment_that_begins_behind_the_eye_is_found_in_front_of_it(void **state)
 {
     (void)state;

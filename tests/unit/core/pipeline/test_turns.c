@@ -1,4 +1,4 @@
-/* Whose picture is next: costs are made up, and nothing runs. */
+/* Turns of sources: costs are made up, and nothing runs. */
 #include "core/pipeline/turns.h"
 #include "tests/check.h"
 

@@ -167,7 +167,7 @@ static void a_round_opening_is_a_circle_and_a_cylinder(void **state)
     plan_destroy(plan);
 }
 
-/* From above, gantry at 0: the collimator's x runs to the patient's left, its y to the head. */
+/* The beam comes from above, gantry at 0: the collimator's x runs to the patient's left, its y to the head. */
 static void an_opening_of_jaws_widens_from_the_source_through_the_isocentre(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What a scene may name: only what the plan has. */
+/* A scene may only name things that the plan has. */
 #include "core/plan/plan_bounds.h"
 #include "core/scene/snapshot.h"
 #include "tests/check.h"
@@ -56,7 +56,7 @@ static void images_and_doses_are_found_by_their_id_and_the_first_without_one(voi
     plan_and_derived_destroy(plan);
 }
 
-/* What lies below is left out in space, as air; where low values are white they are no air, but HU are HU. */
+/* Values below cull_below are left out in space, as air. Inverted images have no such limit, unless they are in HU. */
 static void a_new_room_leaves_out_air_and_not_what_is_white(void **state)
 {
     (void)state;

@@ -215,8 +215,8 @@ static bool in_ellipsoid(double x, double y, int z)
     return pow((x - 24) / 20, 2) + pow((y - 18) / 14, 2) + pow((z - 9) / 8.0, 2) <= 1;
 }
 
-/* As in the thesis's figure of the three orders: the higher the order, the smoother the surface and the farther from
- * the data. */
+/* The thesis shows this in its figure of the three orders: the higher the order, the smoother the surface and the
+ * farther from the data. */
 static void the_higher_the_order_the_further_from_the_region(void **state)
 {
     (void)state;

@@ -62,7 +62,7 @@ static struct deviation deviation_of(const struct mesh *mesh, const struct ellip
     return (struct deviation){ sqrt(angles / area), sqrt(distances / area), sqrt(shown / (double)mesh->n_vertices) };
 }
 
-/* The same for VTK's discrete surface with its windowed sinc filter; false without VTK. */
+/* The deviation of VTK's discrete surface with its windowed sinc filter; false without VTK. */
 static bool deviation_of_vtk(const struct mask *mask, const struct ellipsoid *body, struct deviation *deviation)
 {
     char path[] = "/tmp/beamroom-test-XXXXXX", words[16][32], out[256], *rest;
@@ -143,7 +143,7 @@ static void no_stair_steps_however_thick_the_slices(void **state)
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------- */
 
-/* The same triangles as marching cubes, and each vertex moved along one axis only, at most as far as allowed. */
+/* Asserts the triangles of marching cubes, with each vertex moved along one axis only, at most as far as allowed. */
 static void assert_within_bounds(const struct mask *mask, const struct mesh *smooth, const struct mesh *cubes)
 {
     const struct vec3 *edges = mask->lps_mm_from_ijk.columns;

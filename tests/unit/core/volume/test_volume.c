@@ -104,7 +104,7 @@ static void a_grid_that_reaches_out_of_the_room_is_refused_with_its_corner(void 
     assert_non_null(strstr(err.text, "L 10001 P 0 S 0 mm; expected within 10000 mm"));
 }
 
-/* Of a grid with steps that no binary number has, every centre is a rounding error beside a whole index. */
+/* If no binary number equals the grid's steps, every centre is a rounding error beside a whole index. */
 static void a_voxel_s_centre_has_its_value_whatever_lies_beside_it(void **state)
 {
     (void)state;

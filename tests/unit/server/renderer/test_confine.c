@@ -1,5 +1,4 @@
-/* What a renderer can no longer do once it is confined: to files, the network, processes. The calls of the kernel:
- * test_confine_calls.c. */
+/* Limits of a confined renderer: files, the network, processes. The calls of the kernel: test_confine_calls.c. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>

@@ -152,7 +152,7 @@ static void no_capability_is_left_to_root_either(void **state)
     confined_check("", try_capabilities);
 }
 
-/* What libraries and drivers do all day. */
+/* Everyday calls of libraries and drivers. */
 static int try_needed(const struct places *at)
 {
     char folder[128], from[160], to[160];

@@ -423,7 +423,7 @@ static void start(struct program *program, const char *name)
     program->output = ends[0];
 }
 
-/* What it said, and its exit status. */
+/* Reads its output, and returns its exit status. */
 static int finish(struct program *program, char said[4096])
 {
     size_t length = 0;

@@ -85,7 +85,7 @@ static void what_is_drawn_in_3d_only_reaches_3d_and_measures_reach_nothing(void 
     assert_string_equal(reached("{\"measures\":{\"m\":{\"kind\":\"angle\"}}}"), "");
 }
 
-/* What a patch reaches after another one. */
+/* The reach of a patch after another one. */
 static const char *reached_after(const char *first, const char *patch_text)
 {
     static char kept[1024];

@@ -1,5 +1,4 @@
-/* What a recording may be at most: when it is full everybody is told, the meeting goes on, and what was recorded plays.
- */
+/* Limits of a recording: when it is full everybody is told, the meeting goes on, and the recorded part plays. */
 #include <stdlib.h>
 
 #include "core/base/log.h"

@@ -14,14 +14,14 @@
 static struct fake_room fake;
 static struct fake_page page;
 
-/* What the replay has asked the disk for. */
+/* Request of the replay to the disk. */
 static struct {
     bool is_busy;
     int64_t t_ms; /* -1: nothing */
     size_t n;
 } asked;
 
-/* What the disk has. */
+/* Batches on the disk. */
 static const char *const *disk;
 
 static bool is_asked(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms,
@@ -51,7 +51,7 @@ static cJSON *read_first(const char *text)
     return events;
 }
 
-/* As a store reads. */
+/* Answers like a store. */
 static void answer(void)
 {
     const char *texts[16];
@@ -91,7 +91,7 @@ static int set_up(void **state)
     return 0;
 }
 
-/* Of ten seconds, with these batches. */
+/* Begins a replay of ten seconds with these batches. */
 static void begin(const char *const *batches)
 {
     const struct room_recording facts = { .id = "rec-1", .length_ms = 10000, .state = WIRE_RECORDING_STATE_STOPPED };
@@ -134,7 +134,7 @@ static const char *state_told(void)
     return word;
 }
 
-/* What is shown after going to this time. */
+/* Returns the name that is shown after a seek to this time. */
 static const char *shown_at(int t_ms)
 {
     seek(t_ms);

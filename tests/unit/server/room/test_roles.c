@@ -93,7 +93,7 @@ static double luminance(uint32_t rgb)
     return 0.2126 * linear(rgb, 16) + 0.7152 * linear(rgb, 8) + 0.0722 * linear(rgb, 0);
 }
 
-/* Of WCAG 2.2. */
+/* Contrast ratio of WCAG 2.2. */
 static double contrast(uint32_t a, uint32_t b)
 {
     double first = luminance(a) + 0.05, second = luminance(b) + 0.05;

@@ -242,7 +242,7 @@ static void the_record_lists_them_with_fact_words_and_person(void **state)
 
 static struct fake_room other;
 
-/* The same room after a restart: from what is kept of it. */
+/* Restores the room from its kept state, as after a restart. */
 static void wake_in(struct fake_room *woken)
 {
     struct room_kept kept;

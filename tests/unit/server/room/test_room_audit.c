@@ -1,5 +1,5 @@
-/* What a room records, what it gathers into one row, and what it refuses while nothing can be recorded. Ann enters
- * first, with the role of presenter. */
+/* Audit of a room: its rows, acts gathered into one row, and refusals while nothing can be recorded. Ann enters first,
+ * with the role of presenter. */
 #include "server/auth/digest.h"
 #include "tests/unit/room_set_up.h"
 

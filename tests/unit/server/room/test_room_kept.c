@@ -1,4 +1,4 @@
-/* What is kept of a room makes another one that lets the same people in with the same rights. */
+/* A room's kept state makes another one that lets the same people in with the same rights. */
 #include <time.h>
 
 #include "server/auth/secret.h"

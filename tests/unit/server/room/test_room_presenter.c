@@ -1,4 +1,5 @@
-/* Who presents, and what leaving, returning, taking over and calling back do. At random: test_room_following.c. */
+/* The presenter, and the effects of leaving, returning, taking over and calling back. At random: test_room_following.c.
+ */
 #include "tests/unit/room_set_up.h"
 
 static const char leave[] = "{\"type\":\"follow\",\"follow\":false}",

@@ -1,4 +1,4 @@
-/* What members are told of the server's disk, and how often. */
+/* Messages to members about the server's disk, and how often they come. */
 #include "tests/unit/room_set_up.h"
 
 #include "server/room/out/saved.h"

@@ -100,7 +100,7 @@ static void who_follows_adds_marks_under_ids_and_a_name_of_their_own(void **stat
     assert_string_equal(author_of("probes", "old"), "");
 }
 
-/* As those of a picture from another room that the presenter shows. */
+/* Such marks come with a picture from another room that the presenter shows. */
 static void nobody_who_comes_gets_the_number_that_a_mark_ends_with(void **state)
 {
     (void)state;

@@ -111,7 +111,7 @@ static void a_deleted_room_leaves_its_rows(void **state)
     assert_int_equal(store_file_number(world.path, "SELECT count(*) FROM audit"), 3);
 }
 
-/* What SQLite says of a statement. */
+/* SQLite's message for a statement. */
 static const char *refusal(const char *sql)
 {
     static char text[200];
@@ -135,7 +135,7 @@ static void the_database_refuses_changes_and_deletion(void **state)
     assert_string_equal(refusal("INSERT INTO audit VALUES(9, '{}', '')"), "rows of the audit are added at its end");
 }
 
-/* What the check says after the database was changed behind its back; head as in store_verify_audit. */
+/* The check's message after the database was changed behind its back; head as in store_verify_audit. */
 static const char *after(const char *sql, const char *head)
 {
     static struct error err;

@@ -149,7 +149,7 @@ static struct store_answer *open_version_5(void)
     return store_world_await(&world, STORE_OPENED);
 }
 
-/* Of three parts the last is removed: what is left is read, a time behind it is an error, and the check names it. */
+/* The last of three parts is removed: the others are read, a time behind them is an error, and the check names it. */
 static void a_recording_without_its_end_says_so(void **state)
 {
     (void)state;

@@ -343,7 +343,7 @@ static void of_equal_names_in_a_patch_each_is_applied_after_the_one_before(void 
     cJSON_Delete(defaults);
 }
 
-/* What a reader of JSON that keeps the last of equal names (JSON.parse) makes of a patch. */
+/* A patch as read by a reader of JSON that keeps the last of equal names (JSON.parse). */
 static cJSON *as_read_by_a_page(const cJSON *patch)
 {
     if (!cJSON_IsObject(patch))

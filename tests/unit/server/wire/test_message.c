@@ -138,7 +138,7 @@ static void a_text_that_names_nul_is_refused_and_a_backslash_before_u0000_is_not
     cJSON_Delete(json);
 }
 
-/* What the short way of message_read takes and what it leaves to the general reader: the same comes out. */
+/* The short way of message_read and the general reader give the same result. */
 static void an_acknowledgement_is_read_alike_however_it_is_written(void **state)
 {
     static const struct {

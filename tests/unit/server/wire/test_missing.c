@@ -1,4 +1,4 @@
-/* What a renderer, which is not trusted, says that a picture leaves out. */
+/* Parts that a picture leaves out, as told by a renderer, which is not trusted. */
 #include "server/wire/missing.h"
 #include "tests/check.h"
 

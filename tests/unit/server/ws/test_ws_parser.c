@@ -15,7 +15,7 @@ static struct ws_event read_all(struct ws_parser *parser, const uint8_t *bytes, 
     return event;
 }
 
-/* What these bytes alone give. */
+/* The event that these bytes alone give. */
 static struct ws_event read_one(const uint8_t *bytes, size_t n)
 {
     struct ws_parser parser;

@@ -1,5 +1,5 @@
-/* What goes with a plan of SERA's: tables of doses over depth and radius, and preferences. Published tables are those
- * of the SERA package; their figures are quoted from it and from notes made when the original programs ran. */
+/* Companions of a plan of SERA's: tables of doses over depth and radius, and preferences. Published tables are those of
+ * the SERA package; their figures are quoted from it and from notes made when the original programs ran. */
 #include "core/formats/sera/sera_rsc.h"
 #include "core/formats/sera/sera_table.h"
 #include "core/load/load.h"

@@ -70,7 +70,7 @@ static void columns_axes_and_scale_are_those_of_the_program(void **state)
         struct error err;
         assert_true(read_text(&text, &doses, &report, &err));
         assert_int_equal(report.n_lines, 0);
-        /* By hand: neutron 3.6e6 * 0.75 / 8 = 337500; gammas made: sum of column 5 is 28 + 8 * 0.004 = 28.032;
+        /* Calculated by hand: neutron 3.6e6 0.75 / 8 = 337500; gammas made: sum of column 5 is 28 + 8 * 0.004 = 28.032;
          * photon 3.6e6 * (0.75 * 28.032 + 0.25) / 3600 / 8 = 2659.25. Cell 6 of the file is x 1, y 1, z 0. */
         static const double column[RST_N_DOSES] = { 0.003, 0.005, 0.001, 0, 0.011, 0.006, 0.007, 0.008 };
         for (size_t d = 0; d < RST_N_DOSES; d++) {
@@ -299,7 +299,7 @@ static void sera_s_own_dose_has_the_figures_published_with_it(void **state)
     /* along the beam line the thermal fluence peaks at 4.25e11 (the notes); fast neutrons are most outside the head */
     assert_near(dose->body_high[DOSE_THERMAL_FLUENCE], 4.25e11, 0.05);
     assert_true(dose->body_high[DOSE_FAST] < 0.8 * dose->components[2].values->high);
-    /* What seraPlan prints for that point (head1-seraplan.edit); it interpolates otherwise, 0.5 to 4 % away. */
+    /* Values that seraPlan prints for that point (head1-seraplan.edit); it interpolates otherwise, 0.5 to 4 % away. */
     static const struct {
         enum dose_quantity quantity;
         double value;

@@ -141,8 +141,8 @@ static void expect_draws(const struct draw_list *list, const enum draw_kind *kin
 
 /* ---- order ------------------------------------------------------------------------------------------------------ */
 
-/* From the front: opaque ones nearest first, planes, translucent ones farthest first; "back" lies inside the opaque
- * "around" in the second picture and cannot be seen. */
+/* Order of draws seen from the front: opaque ones nearest first, planes, translucent ones farthest first; "back" lies
+ * inside the opaque "around" in the second picture and cannot be seen. */
 static void draws_are_ordered_by_pass_and_distance(void **state)
 {
     (void)state;

@@ -52,7 +52,8 @@ static void an_opacity_of_one_counts_as_0_999(void **state)
     assert_close(exp(-entry(points, 1, 5)[3]), 0.001, 1e-6);
 }
 
-/* Of 64 x 64 pixels: mean 1/2 and a quarter in each quarter of the interval, as of evenly spread numbers. */
+/* Over 64 x 64 pixels the mean is 1/2, and each quarter of the interval holds a quarter, as with evenly spread numbers.
+ */
 static void rays_take_their_values_evenly_spread_over_the_interval(void **state)
 {
     (void)state;

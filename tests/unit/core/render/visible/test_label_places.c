@@ -20,7 +20,7 @@ static bool holds(const struct label_place *place, double x, double y)
            fabs(-dx * sin(turn) + dy * cos(turn)) <= place->height_px / 2;
 }
 
-/* By the pixels in both, four to a pixel. */
+/* True if some sample lies in both, four samples to a pixel. */
 static bool share_pixels(const struct label_place *a, const struct label_place *b)
 {
     double reach = a->width_px + a->height_px;
