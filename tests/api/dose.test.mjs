@@ -31,7 +31,7 @@ const probe = async (plan, room, [x, y, z]) => (await call(`${api}/plans/${plan}
 const near = (value, expected, share, what) =>
   assert.ok(Math.abs(value - expected) <= share * Math.abs(expected), `${what}: ${value}, expected ${expected}`);
 
-/** What the components and their weights add up to, with the weights that the answer states. */
+/** Sum of the components with the weights that the answer states. */
 function summed({ components, weights }) {
   const of = (quantity) => components.find((component) => component.quantity === quantity)?.value ?? 0;
   return (

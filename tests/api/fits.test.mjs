@@ -1,4 +1,4 @@
-// What does not fit is not used: a part of another patient, frame of reference, treatment plan, unit, ... changes not one pixel and not one
+// Parts that do not fit are not used: a part of another patient, frame of reference, treatment plan, unit, ... changes not one pixel and not one
 // number on any path, whatever a scene asks of it. The expected side is the same folder without that part.
 import assert from 'node:assert/strict';
 import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
@@ -13,7 +13,7 @@ const anna = { id: 'A-1001', name: 'Alpha^Anna', birthDate: '19610412' },
 const elsewhere = { ...anna, frame: '1.2.49', study: '1.2.39' };
 const second = { uid: '1.2.82', file: 'dose-b.dcm', description: 'B', plan: '1.2.71' };
 
-/** What stands beside the plan, by the folder's name: each puts its files. */
+/** Parts beside the plan, by the folder's name: each puts its files. */
 const beside = {
   alone: () => {},
   same: (folder) => putDose(folder, anna, second),

@@ -1,4 +1,4 @@
-// Who a patient is is told by one answer alone, at the server's own machine; everything else has the masked form. Made-up DICOM; nobody's data.
+// One answer alone tells a patient's identity, at the server's own machine; everything else has the masked form. Made-up DICOM; nobody's data.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';

@@ -12,7 +12,7 @@ const nKills = Number(process.env.KILLS ?? (process.env.LONG_TESTS ? 25 : 3));
 const mostMs = 1300; // of edits before a kill: rooms are written every 200 ms
 const mostItems = 40;
 
-/** What the room must be, by what was sent and what the server has told. */
+/** Model of the room, from all that was sent and all that the server has told. */
 class Model {
   sent = new Map(); // text of a note: its version; each text is sent once
   items = new Map(); // id: {version, text, isBusy}, as the server told them last
@@ -104,7 +104,7 @@ async function enter(daemon, room, hello, heard) {
   return Object.assign(client, { first });
 }
 
-/** As the page does: what the server has no time for now is tried again. */
+/** Enters again as the page does: it tries again while the server has no time. */
 async function comeBack(daemon, { room, identity }) {
   for (let n = 1; ; n++) {
     const client = await enter(daemon, room, identity, (message) => model.heard(message));

@@ -1,4 +1,4 @@
-// Who comes late, or back after the daemon was killed, has everything within 2 s: measured with as many items as a room takes. --stub: grey pictures.
+// Members who come late, or back after the daemon was killed, have everything within 2 s: measured with as many items as a room takes. --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -43,7 +43,7 @@ async function enter(room, hello = {}) {
   if (first.type === 'welcome') first.role = (await client.message('members')).members.find(({ id }) => id === first.member).role;
   return Object.assign(first, { client });
 }
-/** As time would: while no daemon runs, every link of this role expires. */
+/** Lets every link of this role expire while no daemon runs, as time would. */
 const expire = (role) =>
   execFileSync('python3', [
     '-c',

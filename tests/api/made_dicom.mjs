@@ -48,7 +48,7 @@ const refer = (tag, sopClass, uid) =>
 export const dicomFile = (elements) =>
   Buffer.concat([Buffer.alloc(128), Buffer.from('DICM'), element(0x00020010, 'UI', '1.2.840.10008.1.2.1'), dataSet(elements)]);
 
-/** Who an object belongs to. owner: {id, name, birthDate, study, frame} */
+/** Elements that say whose an object is. owner: {id, name, birthDate, study, frame} */
 const owned = (owner, sopClass, uid, modality, series) => [
   [0x00080005, 'CS', 'ISO_IR 192'],
   [0x00080016, 'UI', classes + sopClass],

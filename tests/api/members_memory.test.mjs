@@ -1,4 +1,4 @@
-// What a member of a room costs the daemon in memory.
+// Memory that a member of a room takes of the daemon.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

@@ -1,4 +1,4 @@
-// What the database of a daemon says, as another process sees it.
+// Contents of a daemon's database, as another process sees them.
 import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
 

@@ -28,7 +28,7 @@ async function give(client, message) {
 }
 const put = (client, kind, body, of = {}) => give(client, { type: 'item.put', kind, body, ...of });
 
-/** By the definition in proto/http.json, with node's own SHA-256. */
+/** The revision by its definition in proto/http.json, with node's own SHA-256. */
 const filesOf = (at) =>
   readdirSync(at, { withFileTypes: true })
     .filter(({ name }) => !name.startsWith('.'))
@@ -210,7 +210,7 @@ test('it is there after the daemon was killed, with who was there', async () => 
   assert.ok(after.present[1].left_ms >= after.present[1].entered_ms);
 });
 
-/** What does not fit a JSON schema, of the words that proto/record.json uses. */
+/** Faults of a value against a JSON schema with the words that proto/record.json uses. */
 function faults(schema, value, at = '') {
   const types = [schema.type ?? []].flat();
   const type = value === null ? 'null' : Array.isArray(value) ? 'array' : Number.isInteger(value) ? 'integer' : typeof value;

@@ -1,4 +1,4 @@
-// What a scene names of its plan: a name the plan does not have is refused wherever a scene can be written, before anything of it counts.
+// Names of a plan's parts in a scene: a name that the plan does not have is refused wherever a scene can be written, before anything of it counts.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, describe, test } from 'node:test';

@@ -1,4 +1,4 @@
-// What a daemon at rest wakes up. --stub: grey pictures. The long run has more rooms, and members in them.
+// Wake-ups of a daemon at rest. --stub: grey pictures. The long run has more rooms, and members in them.
 import { readFileSync, readdirSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import assert from 'node:assert/strict';

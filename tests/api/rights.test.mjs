@@ -1,4 +1,4 @@
-// Who may do what in a room: every message from the page and every route of a room, by every role. What they are and which
+// Rights in a room: every message from the page and every route of a room, by every role. What they are and which
 // right each needs comes from proto/; which role has which right stands here.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

@@ -1,4 +1,4 @@
-// As many rooms on one plan as the daemon allows.
+// The most rooms on one plan that the daemon allows.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { call, openPlan, startDaemon, until } from './daemon.mjs';

@@ -1,4 +1,4 @@
-// What members are told of the server's disk: saved when it is on disk and not before, and a full disk while it is full. --stub: grey pictures.
+// Messages to members about the server's disk: saved when it is on disk and not before, and a full disk while it is full. --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -91,7 +91,7 @@ export class Client {
     return client;
   }
 
-  /** The same, without waiting for an answer. */
+  /** Like enter, without waiting for an answer. */
   static async hello(url, room, hello = {}) {
     const client = await Client.open(url, `/api/v1/rooms/${room}/ws`);
     client.send({ type: 'hello', protocol: 2, ...hello });

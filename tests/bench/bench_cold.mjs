@@ -1,4 +1,4 @@
-// What a planner waits for who opens a patient for the first time: the request to open, to the first picture, of a DICOM folder with 200
+// Wait of a planner who opens a patient for the first time: from the request to open to the first picture of a DICOM folder with 200
 // slices of 512 x 512, 12 regions as contours and a dose, from a daemon that has just started. Files are in the system's cache.
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, rmSync } from 'node:fs';

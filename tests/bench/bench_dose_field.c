@@ -127,7 +127,7 @@ static double read_ms(void)
     return (double)(clock_now_us() - began_us) / 1e3;
 }
 
-/* What is read of a field. */
+/* Parts of a field that are read. */
 enum what { ALL, ALL_TISSUES, READ, AXIAL, CORONAL, SAGITTAL };
 
 static double combine_ms(enum what what, int step)

@@ -1,4 +1,4 @@
-// What a script waits for: the first picture of the demo plan from a daemon that has just started, pictures of a plan that is
+// Waits of a script: the first picture of the demo plan from a daemon that has just started, pictures of a plan that is
 // open, and what daemon and renderer hold in memory and use while nobody asks for anything.
 import { readFileSync, readdirSync } from 'node:fs';
 import { call, openPlan, sleep, startDaemon } from '../api/daemon.mjs';

@@ -1,4 +1,4 @@
-// What a person feels: Chromium shows the demo plan's five surfaces in a 1024 x 768 picture, a mouse orbits it for some seconds.
+// Delays that a person feels: Chromium shows the demo plan's five surfaces in a 1024 x 768 picture, a mouse orbits it for some seconds.
 // Input to paint: from the pointer event to the paint of the first picture that shows it, measured by the page itself (js/hooks.js).
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -40,7 +40,7 @@ static void stop(const struct error *err)
     exit(1);
 }
 
-/* What cuts the head in a picture, with caps. */
+/* Planes that cut the head in a picture, with caps. */
 enum cut { CUT_NONE, CUT_SLICE, CUT_THREE, CUT_DRAGGED, CUT_OPENED, CUT_OCCLUDED };
 
 /* CUT_SLICE: an axial plane with the slice in it. CUT_THREE: axial, coronal and sagittal plane through the brain, all
@@ -159,8 +159,8 @@ static void bench_encoding(const char *name, struct encode_options options)
     encoder_destroy(encoder);
 }
 
-/* What followers with small windows add to a picture of 1440 x 900: each size class reduced and compressed, beside the
- * whole picture drawn and compressed. divisor 1: the whole one. */
+/* Cost that followers with small windows add to a picture of 1440 x 900: each size class reduced and compressed, beside
+ * the whole picture drawn and compressed. divisor 1: the whole one. */
 static void bench_class(const char *name, const struct image *image, double draw_ms, int divisor,
                         struct encode_options options)
 {

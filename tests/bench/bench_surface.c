@@ -157,7 +157,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of one of the numbers in times, by its offset there. */
+/* Spread of one of the numbers in times, by its offset there. */
 struct spread {
     double median, fastest;
 };

@@ -113,7 +113,7 @@ static double draw_ms(int step, bool is_alone, bool is_still)
     return ms;
 }
 
-/* Of all threads of this program. */
+/* Processor time of all threads of this program. */
 static double processor_ms(void)
 {
     struct rusage usage;

@@ -37,7 +37,7 @@ static double ellipsoid(struct vec3 p, struct vec3 centre, struct vec3 half)
     return (r - 1) * fmin(half.x, fmin(half.y, half.z)); /* roughly the distance in mm; negative inside */
 }
 
-/* From what is outside to what is inside a distance, over three voxels. */
+/* Blends from the value outside a distance to the one inside, over three voxels. */
 static double into(double outside, double inside, double distance_mm)
 {
     double part = fmin(fmax(0.5 - distance_mm / (3 * spacing_mm), 0), 1);
@@ -79,7 +79,7 @@ static double head_hu(struct vec3 p)
     return hu;
 }
 
-/* Of mean 0 and deviation 1, roughly; the same on every machine. */
+/* Noise of about mean 0 and deviation 1; the same on every machine. */
 static double noise(uint32_t *state)
 {
     double sum = 0;
@@ -231,7 +231,7 @@ static void bench(struct derive *derived, const char *what, const struct way *wa
     fflush(stdout);
 }
 
-/* What a new image costs once, and a new transfer function. */
+/* Cost of a new image, once, and of a new transfer function. */
 static void bench_bricks(struct derive *derived, const char *what)
 {
     struct error err = { 0 };

@@ -29,7 +29,7 @@ function command(file) {
   }
 }
 
-/** What is wrong with a result, or nothing. */
+/** The fault of a result, '' for none. */
 function complaint(result) {
   if (typeof result.name !== 'string' || typeof result.unit !== 'string') return 'name and unit must be words';
   if (!Number.isFinite(result.value)) return 'value must be a number';

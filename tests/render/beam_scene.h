@@ -16,7 +16,7 @@ struct plan *beam_plan_sideways(double aperture_mm);
 /* The beam alone, in BEAM_SCENE_RGB: regions are invisible; translucency is plain. */
 struct scene beam_scene(const struct plan *plan);
 
-/* Of a picture whose middle is the origin, seen from the front. */
+/* Pixels of a point, in a picture from the front with the origin in its middle. */
 int column_of(double x_mm);
 int row_of(double z_mm);
 

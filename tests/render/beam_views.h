@@ -7,7 +7,7 @@ static inline struct vec3 along(struct vec3 from, struct vec3 direction, double 
     return vec3_add(from, vec3_scale(direction, mm));
 }
 
-/* From a length before the target to it. */
+/* Sets the plan's beam, from a length before the target to it. */
 static inline void set_beam(struct plan *plan, struct vec3 target, struct vec3 direction, double length_mm)
 {
     plan->n_beams = 1;

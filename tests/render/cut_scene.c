@@ -109,7 +109,8 @@ static struct vec3 at(const struct ray *ray, double t)
     return vec3_add(ray->from, vec3_scale(ray->along, t));
 }
 
-/* What a ray meets first: a solid's surface from outside, from inside where a cut opens it, or a cap. */
+/* Returns the first thing that a ray meets: a solid's surface from outside, from inside where a cut opens it, or a cap.
+ */
 static int meets(const struct cut_scene *cut, const struct snapshot *snapshot, const struct ray *ray)
 {
     double nearest = 1, in[CUT_MAX_SOLIDS], out[CUT_MAX_SOLIDS];

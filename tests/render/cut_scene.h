@@ -29,7 +29,7 @@ struct cut_scene cut_scene_create_on(const struct grid *grid, const struct solid
                                      enum scene_representation representation, enum scene_algorithm algorithm);
 void cut_scene_destroy(struct cut_scene *cut);
 
-/* What is seen in a pixel. Colours are told apart by hue. */
+/* The thing seen in a pixel. Colours are told apart by hue. */
 enum { SEEN_BACKGROUND = -1, SEEN_CAP = -2, SEEN_DARK_CAP = -3, SEEN_OTHER = -4 }; /* else the number of a solid */
 
 struct cut_counts {
@@ -41,7 +41,7 @@ struct cut_counts {
  * one thing for it to be compared: what the solids' surfaces may be off. */
 struct cut_counts cut_scene_compare(const struct cut_scene *cut, struct view view, double margin_px, bool is_still);
 
-/* From a fixed sequence: uniform in 0 .. 1, directions uniform on the sphere. */
+/* Numbers of a fixed sequence: uniform in 0 .. 1, directions uniform on the sphere. */
 double cut_random(void);
 struct vec3 cut_random_direction(void);
 /* A view into space from a direction, parallel or in perspective from 160 mm. */

@@ -16,9 +16,9 @@ extern struct renderer *shots_renderer; /* the back end under test */
 
 /* Runs the tests on every back end that works here; returns main's exit status. */
 int shots_run(const char *name, const struct CMUnitTest *tests, size_t n_tests);
-/* The same, Mesa's software driver once: behind OSMesa it is the same as behind EGL. */
+/* Like shots_run, with Mesa's software driver once: behind OSMesa it is the same as behind EGL. */
 int shots_run_drivers(const char *name, const struct CMUnitTest *tests, size_t n_tests);
-/* The same on our own rasteriser alone: of what the OpenGL back ends do not draw yet. */
+/* Like shots_run, on our own rasteriser alone: for things that the OpenGL back ends do not draw yet. */
 int shots_run_soft(const char *name, const struct CMUnitTest *tests, size_t n_tests);
 
 /* A scene with the plan's own colours, all regions opaque, no slices in space. */

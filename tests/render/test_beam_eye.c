@@ -354,7 +354,7 @@ static size_t n_coloured(const struct image *image)
     return n;
 }
 
-/* Of the ball, a slice through its middle, its volume, the axes and a dose's grid nothing is seen from beyond it. */
+/* Nothing of the ball, a slice through its middle, its volume, the axes and a dose's grid is seen from beyond it. */
 static void what_lies_behind_the_eye_is_drawn_in_no_projection(void **state)
 {
     (void)state;

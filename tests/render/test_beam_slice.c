@@ -25,7 +25,7 @@ static void set_beam(struct plan *plan, struct vec3 direction)
     };
 }
 
-/* By hand: through the point, square to the beam. */
+/* The expected plane: through the point, square to the beam. */
 static struct plane slice_plane(struct vec3 direction, double beyond_target_mm)
 {
     struct beam_shown axes = { .direction = direction,

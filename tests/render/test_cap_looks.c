@@ -1,4 +1,4 @@
-/* What a cap shows: the image, colours and outlines of regions; and which representations have one. */
+/* Contents of caps: the image, colours and outlines of regions; and which representations have one. */
 #include "tests/render/cut_scene.h"
 
 static const struct solid one_box[] = { { .is_box = true, .half_mm = { 12, 17, 9 }, .rgb = 0xff3030 } };

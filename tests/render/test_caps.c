@@ -3,8 +3,8 @@
 #include "tests/made_ragged.h"
 #include "tests/render/cut_scene.h"
 
-/* As in test_clip.c: boxes of univels are exact; balls are as round as the surface of their voxels, which 0.35 mm (1.6
- * pixels) covers. */
+/* Margins of test_clip.c: boxes of univels are exact; balls are as round as the surface of their voxels, which 0.35 mm
+ * (1.6 pixels) covers. */
 static const double box_margin_px = 0.1, ball_margin_px = 1.6;
 static const struct solid one_box[] = { { .is_box = true, .half_mm = { 12, 17, 9 }, .rgb = 0xff3030 } };
 static const struct solid one_ball[] = { { .radius_mm = 21, .rgb = 0xff3030 } };

@@ -179,7 +179,7 @@ static void slices_are_cut_where_the_plane_is(void **state)
     cut_scene_destroy(&cut);
 }
 
-/* What is cut off has no part in a picture of what is left: the cut of a translucent shell lets the background
+/* A part that is cut off does not count in the picture of the rest: the cut of a translucent shell lets the background
  * through. */
 static void a_translucent_shell_is_cut_too(void **state)
 {

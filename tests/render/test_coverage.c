@@ -20,7 +20,7 @@ static void mark(struct scene *scene)
                                                          .color_rgb = mark_rgb };
 }
 
-/* By the univel that holds the point. */
+/* Judges by the univel that holds the point. */
 static bool is_within(const struct plan *plan, struct vec3 p)
 {
     const struct grid *grid = &plan->regions.layers[0]->grid;

@@ -54,8 +54,8 @@ static void a_box_is_not_changed(void **state)
     shots_forget(plan);
 }
 
-/* Of a point of the floor at distance d from a wall that is higher than the radius R, the wall's points within R reach
- * up to the sine sqrt(1 - (u / cos a)^2) at azimuth a, u = d / R. The mean of its square over all azimuths is
+/* Light at a point of the floor at distance d from a wall that is higher than the radius R: the wall's points within R
+ * reach up to the sine sqrt(1 - (u / cos a)^2) at azimuth a, u = d / R. The mean of its square over all azimuths is
  * (acos u - u sqrt(1 - u^2)) / pi. */
 static double light_before_wall(double u)
 {
@@ -147,7 +147,7 @@ static struct image *volume_still(struct plan *plan, struct view view, enum scen
     return take(plan, opaque_scene(plan, interpolation), view, is_occluded, SHOTS_WIDTH);
 }
 
-/* By how much a row is darker: the mean over 16 pixels in the middle, which have all patterns. */
+/* Factor by which a row is darker: the mean over 16 pixels in the middle, which have all patterns. */
 static double mean_factor(const struct image *with, const struct image *without, int y)
 {
     double sum[2] = { 0 };

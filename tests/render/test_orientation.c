@@ -17,7 +17,7 @@ static double mark_label(struct vec3 p)
     return is_near(p, LEFT_MM, 0, 0) ? 1 : is_near(p, 0, -FRONT_MM, 0) ? 2 : is_near(p, 0, 0, TOP_MM) ? 3 : 0;
 }
 
-/* The same marks as grey values: 0 elsewhere */
+/* The marks as grey values; -1000 elsewhere */
 static double mark_value(struct vec3 p)
 {
     return is_near(p, LEFT_MM, 0, 0)     ? 1000
@@ -212,8 +212,8 @@ static void an_axial_slice_in_space_seen_from_above_has_the_left_on_screen_left(
     plan_and_derived_destroy(plan);
 }
 
-/* From the front L and S run right and up, P away from the viewer; the box is 80 mm wide and 80 high, so the ends are
- * 48 mm from the middle, and from 40 mm on the lines are plain. */
+/* Seen from the front L and S run right and up, P away from the viewer; the box is 80 mm wide and 80 high, so the ends
+ * are 48 mm from the middle, and from 40 mm on the lines are plain. */
 static void patient_axes_are_lines_through_the_middle_of_the_plan(void **state)
 {
     (void)state;

@@ -264,8 +264,8 @@ static double ball_and_block(struct vec3 p)
     return block(vec3(p.x - 12, p.y, p.z)) > 0 ? 2 : sphere(p);
 }
 
-/* What stays where it is, is not painted anew: a picture is the same with lines that are kept and without, whatever was
- * drawn between. The renderer forgets the plan for the other picture. */
+/* Lines that stay in place are not painted anew: a picture is the same with kept lines and without, whatever was drawn
+ * between. The renderer forgets the plan for the other picture. */
 static void kept_lines_make_the_same_picture(void **state)
 {
     (void)state;

@@ -4,7 +4,7 @@
 
 enum { N_TRACKS = 1500 };
 
-/* Of all classes, in and around the ball, some from far away. */
+/* Makes tracks of all classes, in and around the ball, some from far away. */
 static struct plan *make_many(void)
 {
     struct plan *plan = tracks_plan();

@@ -1,4 +1,4 @@
-/* What cuts and hides particle tracks: clip planes, caps, surfaces, slices. */
+/* Cuts and covers of particle tracks: clip planes, caps, surfaces, slices. */
 #include "tests/render/track_scene.h"
 
 /* ---- what cuts and hides them ----------------------------------------------------------------------------------- */

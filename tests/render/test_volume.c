@@ -139,7 +139,7 @@ static void without_points_nothing_is_drawn(void **state)
     shots_forget(plan);
 }
 
-/* Of a ray along L, 20 mm of 40 are left. */
+/* A ray along L has values over 20 of its 40 mm. */
 static void what_is_not_a_number_absorbs_nothing(void **state)
 {
     (void)state;

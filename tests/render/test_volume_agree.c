@@ -96,7 +96,7 @@ static bool is_drawn(const uint8_t *pixel)
     return memcmp(pixel, shots_background, 3) != 0;
 }
 
-/* Of the pixels that one of the two shows something in, dB; n: how many these are. */
+/* Peak signal-to-noise ratio over the pixels in which one of the two shows something, dB; n: number of these. */
 static double psnr_db(const struct image *a, const struct image *b, size_t *n)
 {
     double squares = 0;

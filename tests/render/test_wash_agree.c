@@ -13,7 +13,7 @@ struct look {
     enum scene_volume_method method;
 };
 
-/* Of the total every 8 Gy, of the weighted dose every 3. */
+/* Sets a level every 8 Gy of the total, every 3 of the weighted dose. */
 static void set_levels(struct scene *scene, bool is_weighted)
 {
     static const uint32_t colors[] = { 0x2040ff, 0x20c0e0, 0x30d040, 0xf0e020, 0xff8010, 0xff2020 };

@@ -46,7 +46,7 @@ static void show_as_univels(struct scene *scene, enum scene_texture texture, dou
 
 /* ---- surfaces --------------------------------------------------------------------------------------------------- */
 
-/* Of a translucent box the colours are compared where they are known: the picture's share is that of its opacity. */
+/* Colours of a translucent box are compared where they are known: the box's share of the picture is its opacity. */
 static void the_surface_of_univels_has_the_dose_of_its_points(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 #pragma once
-/* What the tests of tracks share: a plan with a ball of 28 mm and no tracks yet, and pictures of its tracks. */
+/* Help shared by the tests of tracks: a plan with a ball of 28 mm and no tracks yet, and pictures of its tracks. */
 #include "tests/render/shots.h"
 
 #define TRACKS_PX_PER_MM 4.0

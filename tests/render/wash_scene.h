@@ -17,7 +17,7 @@ struct plan *wash_plan(const struct grid *dose_grid, const struct wash_field *fi
 bool wash_is_in_box(struct vec3 p);
 static const struct vec3 wash_box_mm = { 24, 20, 22 };
 
-/* From a fixed sequence: 0 .. 1. */
+/* A number of a fixed sequence: 0 .. 1. */
 double wash_random(void);
 /* A grid that holds about 50 mm in each direction: anisotropic, turned, its middle anywhere within 3 mm of the origin;
  * every other one is sheared, every third one left-handed. */
@@ -33,7 +33,7 @@ struct scene wash_scene(const struct plan *plan, bool is_smooth, double opacity)
 bool wash_value(const struct grid *grid, const struct wash_field *field, bool is_per_slice, struct vec3 p,
                 double *value, bool *is_sure);
 
-/* What a pixel shows: the patient point, or false if it is not compared. */
+/* Patient points that pixels show; false for pixels that are not compared. */
 struct wash_places {
     bool (*point)(const struct wash_places *places, int x, int y, struct vec3 *p);
     struct camera camera;
