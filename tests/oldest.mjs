@@ -123,7 +123,7 @@ const findings = [
 ];
 for (const { path, ...finding } of findings) console.log(say(path, finding));
 
-// What is planted has to be found.
+// Planted functions have to be found.
 const planted = [
   scriptFindings('const a = [2, 1].toSorted();', everything, browsers, own),
   scriptFindings('Object.groupBy([], String);', builtins, node, own),

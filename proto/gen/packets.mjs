@@ -1,4 +1,4 @@
-// From proto/packets.json: packets_gen.h and packets_gen.c (structs, field tables and limits of every packet between
+// Generates from proto/packets.json: packets_gen.h and packets_gen.c (structs, field tables and limits of every packet between
 // daemon and renderer), the section of the reference page, and the HTTP routes of the questions.
 import { declaration, enumDeclaration, lower, member, notice, objectInitializer, textBytes, upper } from './names.mjs';
 

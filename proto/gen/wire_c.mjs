@@ -15,7 +15,7 @@ export function tablesHeader(description, prefix) {
 }
 
 const rightsHeader = `
-/* By role: 1 << right for each right that it has. */
+/* Rights of each role: 1 << right for each one that it has. */
 extern const unsigned wire_role_rights[];
 /* The routes of rooms, each with its right; the last one has no method. */
 struct wire_room_route {
