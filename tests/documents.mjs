@@ -13,10 +13,18 @@ const root = process.argv[2] ?? '.';
 const read = (name) => readFileSync(join(root, name), 'utf8');
 const json = (name) => JSON.parse(read(name));
 const isGit = existsSync(join(root, '.git'));
-const listed = isGit ? execFileSync('git', ['-C', root, 'ls-files', '-co', '--exclude-standard'], { encoding: 'utf8', maxBuffer: 1 << 26 })
+const listed = isGit
+  ? execFileSync('git', ['-C', root, 'ls-files', '-co', '--exclude-standard'], { encoding: 'utf8', maxBuffer: 1 << 26 })
   : execFileSync('find', ['.', '-type', 'f', '-printf', '%P\\n'], { cwd: root, encoding: 'utf8', maxBuffer: 1 << 26 });
 const files = listed.split('\n').filter((name) => name && existsSync(join(root, name)));
-const folders = new Set(files.flatMap((name) => name.split('/').slice(0, -1).map((_, i, parts) => parts.slice(0, i + 1).join('/'))));
+const folders = new Set(
+  files.flatMap((name) =>
+    name
+      .split('/')
+      .slice(0, -1)
+      .map((_, i, parts) => parts.slice(0, i + 1).join('/')),
+  ),
+);
 const faults = [];
 const lineOf = (text, index) => text.slice(0, index).split('\n').length;
 
@@ -41,7 +49,8 @@ function thirdParty() {
   for (const name of needed) if (!named.has(name)) faults.push(`THIRD-PARTY.md:1: no row for ${name}`);
   for (const { name, line, cells } of rows) {
     if (!needed.has(name)) faults.push(`THIRD-PARTY.md:${line}: ${name} stands neither in deploy/packages nor in package.json`);
-    if (Object.hasOwn(dependencies, name) && !cells.includes(dependencies[name])) faults.push(`THIRD-PARTY.md:${line}: ${name} is version ${dependencies[name]}`);
+    if (Object.hasOwn(dependencies, name) && !cells.includes(dependencies[name]))
+      faults.push(`THIRD-PARTY.md:${line}: ${name} is version ${dependencies[name]}`);
     const stated = join(root, 'node_modules', name, 'package.json');
     if (!Object.hasOwn(npm, name) || !existsSync(stated)) continue;
     const { license } = JSON.parse(readFileSync(stated, 'utf8'));
@@ -51,12 +60,23 @@ function thirdParty() {
 
 function versions() {
   const version = /^VERSION := (\S+)$/m.exec(read('Makefile'))?.[1];
-  const own = json('package.json'), lock = json('package-lock.json');
-  const places = { 'package.json': own.version, 'package-lock.json': lock.version, 'package-lock.json, packages': lock.packages[''].version,
-    'CHANGELOG.md': /^## (\d+\.\d+\.\d+)/m.exec(read('CHANGELOG.md'))?.[1] };
-  for (const [place, said] of Object.entries(places)) if (said !== version) faults.push(`${place}:1: version ${said}; the Makefile has ${version}`);
-  for (const [place, said] of [['package.json', own.license], ['package-lock.json', lock.packages[''].license]]) if (said !== 'Apache-2.0') faults.push(`${place}:1: licence ${said}`);
-  for (const name of files.filter((file) => file.startsWith('deploy/'))) if (/Beamroom \d+\.\d+\.\d+/.test(read(name))) faults.push(`${name}:1: names a version, which stands in the Makefile alone`);
+  const own = json('package.json'),
+    lock = json('package-lock.json');
+  const places = {
+    'package.json': own.version,
+    'package-lock.json': lock.version,
+    'package-lock.json, packages': lock.packages[''].version,
+    'CHANGELOG.md': /^## (\d+\.\d+\.\d+)/m.exec(read('CHANGELOG.md'))?.[1],
+  };
+  for (const [place, said] of Object.entries(places))
+    if (said !== version) faults.push(`${place}:1: version ${said}; the Makefile has ${version}`);
+  for (const [place, said] of [
+    ['package.json', own.license],
+    ['package-lock.json', lock.packages[''].license],
+  ])
+    if (said !== 'Apache-2.0') faults.push(`${place}:1: licence ${said}`);
+  for (const name of files.filter((file) => file.startsWith('deploy/')))
+    if (/Beamroom \d+\.\d+\.\d+/.test(read(name))) faults.push(`${name}:1: names a version, which stands in the Makefile alone`);
 }
 
 async function readme() {
@@ -64,20 +84,33 @@ async function readme() {
   const { browsers } = await import(pathToFileURL(resolve(root, 'deploy/promised.mjs')));
   if (Buffer.byteLength(text) > 6000) faults.push(`README.md:1: ${Buffer.byteLength(text)} bytes; at most 6,000`);
   for (const [name, version] of Object.entries(browsers)) {
-    if (!new RegExp(`\\b${name}\\b[^\\d,]* ${version.replaceAll('.', '\\.')}\\b`, 'i').test(text)) faults.push(`README.md:1: does not promise ${name} ${version} as deploy/promised.mjs does`);
+    if (!new RegExp(`\\b${name}\\b[^\\d,]* ${version.replaceAll('.', '\\.')}\\b`, 'i').test(text))
+      faults.push(`README.md:1: does not promise ${name} ${version} as deploy/promised.mjs does`);
   }
 }
 
 const tops = new Set(files.map((name) => name.split('/')[0]));
 const isSource = /\.(c|h|cc|hh|inc|frag|vert|glsl|js|mjs|css|sh)$/;
 /** Whether a word in `...` names a path of the project: its first part is a file or folder at the top, or it ends as our sources do. */
-const isPath = (word) => /^[\w.*<>/-]+$/.test(word) && !word.startsWith('/') && !word.startsWith('.c') && !/(^|\/)x\.test\.mjs$/.test(word) &&
+const isPath = (word) =>
+  /^[\w.*<>/-]+$/.test(word) &&
+  !word.startsWith('/') &&
+  !word.startsWith('.c') &&
+  !/(^|\/)x\.test\.mjs$/.test(word) &&
   ((word.includes('/') && tops.has(word.split('/')[0])) || isSource.test(word));
-const pattern = (word) => new RegExp(`(^|/)${word.replace(/[.]/g, '\\.').replace(/\*\*/g, '.+').replace(/\*/g, '[^/]*').replace(/<[^>]*>/g, '[^/]+')}$`);
+const pattern = (word) =>
+  new RegExp(
+    `(^|/)${word
+      .replace(/[.]/g, '\\.')
+      .replace(/\*\*/g, '.+')
+      .replace(/\*/g, '[^/]*')
+      .replace(/<[^>]*>/g, '[^/]+')}$`,
+  );
 /** Names in full must be there from the top; a file's bare name, or a name with *, anywhere. */
 function exists(word) {
   const name = word.replace(/\/$/, '');
-  if (/[*<]/.test(name) || !name.includes('/')) return files.some((file) => pattern(name).test(file)) || [...folders].some((folder) => pattern(name).test(folder));
+  if (/[*<]/.test(name) || !name.includes('/'))
+    return files.some((file) => pattern(name).test(file)) || [...folders].some((folder) => pattern(name).test(folder));
   return files.includes(name) || folders.has(name);
 }
 
@@ -94,7 +127,8 @@ function paths() {
     for (const match of text.matchAll(/\]\(([^)\s#]+)(?:#[^)]*)?\)/g)) {
       if (/^[a-z]+:/.test(match[1])) continue;
       const target = normalize(join(dirname(name), match[1])).replace(/\/$/, '');
-      if (!files.includes(target) && !folders.has(target)) faults.push(`${name}:${lineOf(text, match.index)}: the link to ${match[1]} leads nowhere`);
+      if (!files.includes(target) && !folders.has(target))
+        faults.push(`${name}:${lineOf(text, match.index)}: the link to ${match[1]} leads nowhere`);
     }
   }
 }
