@@ -254,7 +254,7 @@ LONG_NODE := tests/api/kills.test.mjs tests/api/replayed_meeting.test.mjs tests/
 ALONE_NODE := tests/api/burst.test.mjs tests/api/fair.test.mjs
 # All of them from one queue: what is left of one suite runs beside the next. On a page three things wait for each other, so few of these run at once.
 API_NODE := $(filter-out $(DEEP_NODE) $(ALONE_NODE),$(sort $(wildcard tests/api/*.test.mjs tests/api/*/*.test.mjs)))
-PAGE_UNITS := $(sort $(wildcard tests/web/unit/*.test.mjs))
+PAGE_UNITS := $(sort $(shell find tests/web/unit -name '*.test.mjs'))
 .PHONY: test-queue check
 test-queue: all demo $(unit_BIN) $(render_BIN) $(faults_BIN)
 	$(Q)tests/run_node.sh api-alone $(ALONE_NODE); alone=$$?; \
@@ -270,7 +270,7 @@ test-api: all demo
 	TEST_CONCURRENCY=$(TWICE) tests/run_node.sh api $(API_NODE) && [ $$alone = 0 ]
 # A page waits for its daemon about half of the time.
 test-web: all demo
-	$(Q)TEST_CONCURRENCY=$$(($(PARALLEL) + 1)) tests/run_node.sh web $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs tests/web/*/*.test.mjs)))
+	$(Q)TEST_CONCURRENCY=$$(($(PARALLEL) + 1)) tests/run_node.sh web $(filter-out $(DEEP_NODE),$(sort $(wildcard tests/web/*.test.mjs)) $(PAGE_UNITS))
 test-long: all demo
 	$(Q)LONG_TESTS=$(LONG_TESTS) TEST_CONCURRENCY=$(PARALLEL) SUITE_SECONDS=2400 tests/run_node.sh long $(DEEP_NODE) $(LONG_NODE)
 test-install: all demo

@@ -1,6 +1,6 @@
 #pragma once
 /* Orientation letters: the patient's direction at each edge of a picture. The rule of the page's
- * web/js/view/letters.js; tests/data/edge_letters.json holds both to it. */
+ * web/js/pane/letters.js; tests/data/edge_letters.json holds both to it. */
 #include "core/math/vec.h"
 
 /* "L", or "AR" for an oblique direction, dominant letter first: L R, P A, S I. direction: unit, patient LPS. */

@@ -1,6 +1,6 @@
 #pragma once
 /* The patient axes in a 3-D view: lines through the middle of the plan's box, with letters at their ends. The page
- * draws the letters itself (web/js/view/orientation.js). */
+ * draws the letters itself (web/js/pane/orientation.js). */
 #include "core/plan/plan.h"
 
 /* Half the length of an axis, in sizes of the box along it: the ends stand out of the box. */

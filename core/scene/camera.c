@@ -8,7 +8,7 @@
 
 /* Extent of the home picture over that of the plan. */
 static const double home_margin = 1.08;
-/* The home camera of 3-D looks from the front, turned towards the patient's left, from above. web/js/view/home.js has
+/* The home camera of 3-D looks from the front, turned towards the patient's left, from above. web/js/room/home.js has
  * the same numbers. */
 static const double home_turn_deg = 30, home_rise_deg = 12;
 

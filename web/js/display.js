@@ -1,9 +1,9 @@
 // The page of a display: shows the stream of a room's view, and says at once when it is not what the room shows now.
 import { Problem, makeApi } from './net/api.js';
 import { Parts, pictureHeader } from './net/parts.js';
-import { edgeLetters } from './view/letters.js';
-import { Painter } from './view/painter.js';
-import { keepTextVisible } from './view/visible_text.js';
+import { edgeLetters } from './pane/letters.js';
+import { Painter } from './pane/painter.js';
+import { keepTextVisible } from './parts/visible_text.js';
 import { isId } from './wire/check.js';
 
 keepTextVisible(document.documentElement);

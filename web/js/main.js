@@ -3,12 +3,12 @@ import { Connection } from './net/connection.js';
 import { makeApi } from './net/api.js';
 import { sendPlan } from './net/upload.js';
 import { Hooks } from './hooks.js';
-import { roomPage } from './panels/room_page.js';
-import { OwnName } from './state/own_name.js';
-import { Thumbnails } from './state/thumbnails.js';
-import { Redraw } from './panels/redraw.js';
-import { Decoder } from './view/decoder.js';
-import { keepTextVisible } from './view/visible_text.js';
+import { roomPage } from './shell/room_page.js';
+import { OwnName } from './room/own_name.js';
+import { Thumbnails } from './features/start/thumbnails.js';
+import { Redraw } from './parts/redraw.js';
+import { Decoder } from './pane/decoder.js';
+import { keepTextVisible } from './parts/visible_text.js';
 import { isId } from './wire/check.js';
 
 keepTextVisible(document.documentElement);
@@ -29,7 +29,7 @@ const clock = {
 };
 const redraw = new Redraw((callback) => requestAnimationFrame(callback), clock);
 const { decode } = new Decoder({
-  makeWorker: () => new Worker('js/view/decode_worker.js'),
+  makeWorker: () => new Worker('js/pane/decode_worker.js'),
   decodeHere: (picture, type) => createImageBitmap(new Blob([picture], { type })),
 });
 const hooks = new Hooks(clock);
@@ -119,11 +119,11 @@ async function route() {
     });
   else if (place === 'p' && isId(id)) {
     const n = nRoutes;
-    const { permalinkPage } = await import('./panels/permalink.js');
+    const { permalinkPage } = await import('./features/bookmarks/permalink.js');
     if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => location.replace(address(room, of)) }); // going back does not make another room
   } else {
     const n = nRoutes;
-    const { startPage } = await import('./panels/start_page.js'); // a file of its own: who opens a room by its link does not load it
+    const { startPage } = await import('./features/start/start_page.js'); // a file of its own: who opens a room by its link does not load it
     if (n === nRoutes) leave = startPage(host, { api, clock, enter, send, ownName, thumbnails });
   }
 }

@@ -1,7 +1,7 @@
 // A room over a connection and a clock that are fakes.
 import { load } from './page.mjs';
 
-const { RoomState } = await load('state/room.js');
+const { RoomState } = await load('room/room.js');
 
 export class FakeConnection extends EventTarget {
   sent = [];

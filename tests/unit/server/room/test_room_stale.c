@@ -1,5 +1,5 @@
 /* Whether a page knows from the messages and headers which of its pictures show the newest scene: random changes,
- * reloads and layouts, with a model of the page that keeps what web/js/state/view.js keeps. */
+ * reloads and layouts, with a model of the page that keeps what web/js/room/view.js keeps. */
 #include "tests/unit/room_set_up.h"
 
 enum { N_PAGES = 3, N_VIEWS = 3, N_STEPS = 80, N_RUNS = 40 };

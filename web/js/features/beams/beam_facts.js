@@ -1,0 +1,94 @@
+// Asks the server about a beam: entry, depths, angles, what lies in its aperture. One question at a time, and the newest scene next, so that
+// numbers follow a drag by at most one answer and an older answer never replaces a newer one.
+import { computed, effect, signal } from '../../../lib/signals-core.js';
+import { Asker } from '../../parts/asker.js';
+import { mergePatch } from '../../wire/merge.js';
+import { isComparing, isDraftOn } from './beam_ui.js';
+
+const none = { result: null, error: '', isOld: false };
+const known = new WeakMap(); // room -> Map of beam id -> BeamFacts
+
+/** The facts of one beam of the plan; '': of the one that the scene chooses, or of its draft. Asked for while somebody reads them. */
+export function beamFacts({ room, api, clock }, id = '') {
+  if (!known.has(room)) known.set(room, new Map());
+  const all = known.get(room);
+  if (!all.has(id)) all.set(id, new BeamFacts(room, api, clock, id));
+  return all.get(id);
+}
+
+export class BeamFacts {
+  #room;
+  #api;
+  #clock;
+  #id;
+  #stop = () => {};
+
+  constructor(room, api, clock, id) {
+    this.#room = room;
+    this.#api = api;
+    this.#clock = clock;
+    this.#id = id;
+    /** {result, error, isOld}: isOld: of what was before, while the newer answer is still to come */
+    this.answer = signal(none, { watched: () => this.#start(), unwatched: () => this.#stop() });
+  }
+
+  /** Diameter of the ring of a beam's-eye view that is on the screen, mm; null: the beam's own. */
+  #ring() {
+    const view = this.#room.views.find(({ kind, isOpen, document }) => kind === 'beam' && isOpen.value && document.value.beam?.aperture_mm);
+    return view?.document.value.beam.aperture_mm ?? null;
+  }
+
+  /** Everything that the answer depends on. */
+  #key() {
+    const { plan, scene, renderer, planId } = this.#room;
+    if (renderer.value.state !== 'ready' || !plan.value || !scene.value?.beam) return '';
+    const { id, draft } = scene.value.beam;
+    const drafted = isDraftOn(this.#room) ? draft.line : null;
+    if (!this.#id && !drafted && !plan.value.beams.length) return '';
+    return JSON.stringify([planId.value, this.#id ? null : [id, drafted], this.#ring()]);
+  }
+
+  #start() {
+    const key = computed(() => this.#key());
+    let settled = '';
+    const asker = new Asker(async () => {
+      const wanted = key.value;
+      const isSettled = !this.#room.isScenePending.peek();
+      if (!wanted) return;
+      const told = await this.#ask(JSON.parse(wanted)[2]).then(
+        (result) => ({ result, error: '' }),
+        (error) => ({ result: null, error: error.message }),
+      );
+      if (key.value) this.answer.value = { ...told, isOld: !isSettled || key.value !== wanted };
+      if (isSettled) settled = wanted;
+    }, this.#clock);
+    const stop = effect(() => {
+      const wanted = key.value;
+      void this.#room.isScenePending.value; // runs again when the daemon has confirmed the scene
+      if (wanted === settled) return;
+      const before = this.answer.peek();
+      if (!wanted) {
+        if (before.result || before.error) this.answer.value = none;
+        settled = '';
+      } else {
+        if (!before.isOld) this.answer.value = { ...before, isOld: true };
+        asker.want();
+      }
+    });
+    this.#stop = () => {
+      stop();
+      asker.stop();
+    };
+  }
+
+  /** For a member on their own with their override, so that the answer is of the scene that they see; of the draft, also while the planned beam is
+   *  looked at. */
+  #ask(ring) {
+    const override = this.#room.following.override.peek();
+    const shown = isComparing(this.#room) ? mergePatch(override ?? {}, { beam: { draft: { shows_planned: false } } }) : override;
+    return this.#api.ofScene(this.#room.planId.peek(), 'beam', this.#room.id, shown ? { override: shown } : {}, {
+      ...(this.#id ? { beam: this.#id } : {}),
+      ...(ring ? { aperture_mm: ring } : {}),
+    });
+  }
+}

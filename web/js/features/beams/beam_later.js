@@ -1,0 +1,70 @@
+// Panes along a beam, as far as every page has them: which pane shows the beam's eye, and what a pane shows whose beam has gone.
+import { effect } from '../../../lib/signals-core.js';
+import { beamShown } from '../../room/beam_line.js';
+import { beamSliceView, beamView } from '../../room/layout.js';
+import { isOfBeam, isTurnable } from '../../room/kinds.js';
+
+/** The 3-D view that takes the place of the beam's eye: the one that stood there, else one that no pane shows. */
+export function spaceInstead({ room, ui }) {
+  const free = room.views.filter(({ kind, number }) => isTurnable(kind) && !ui.visible.value.includes(number)).map(({ number }) => number);
+  return free.includes(ui.beforeBeam) || !free.length ? ui.beforeBeam : free[0];
+}
+
+/** Shows it there, and gives it the focus that its pane may have had. */
+export function showInstead(ui, from, to) {
+  ui.showInPlaceOf(from, to);
+  queueMicrotask(() => document.querySelector(`#picture-${to}`)?.focus({ preventScroll: true }));
+}
+
+/** Key B: a 3-D pane, the active one if it is one, becomes the beam's eye, and that 3-D again. */
+export function toggleBeamEye(room, ui) {
+  if (ui.visible.value.includes(beamView)) return void showInstead(ui, beamView, spaceInstead({ room, ui }));
+  if (!beamShown(room.plan.value, room.scene.value)) return void ui.notify('ok', 'This plan has no beam.', 'beam');
+  const from = [ui.active.value, ...ui.visible.value].find((number) => isTurnable(room.view(number).kind)) ?? ui.active.value;
+  if (isTurnable(room.view(from).kind)) ui.beforeBeam = from;
+  showInstead(ui, from, beamView);
+}
+
+/** Keys [ and ] in panes of other kinds move what they show of the beam slice: it and, where they slide together, the clip plane. */
+async function slideBeam(room, ui, mm, at) {
+  const { slidPatch, rangeAlong } = await import('./beam_along.js');
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const beam = beamShown(plan, scene);
+  if (beam)
+    room.patchScene(
+      slidPatch(scene, 'slice', ui.panes.isBeamTogether.value, scene.beam.slice.along_mm + mm, rangeAlong(plan, scene, beam, [])),
+      { view: ui.active.value, at },
+    );
+}
+
+/** True while something of that is shown. */
+const isBeamCut = ({ views, scene: { value: scene } }) =>
+  scene?.beam && (scene.beam.slice.visible || scene.clip.beam.enabled || views[beamSliceView - 1].isOpen.value);
+
+/** What one of these keys does; null: another key, or nothing to move. */
+export function beamKey(room, ui, { code, shiftKey }, at) {
+  const by = { BracketLeft: -1, BracketRight: 1 }[code];
+  return by && isBeamCut(room) ? () => slideBeam(room, ui, by * (shiftKey ? 10 : 1), at) : null;
+}
+
+/** Panes of a beam that there is not any more, or not in this plan, show something else, and the page says so. @returns {() => void} stops */
+export function leaveBeam({ room, ui }) {
+  return effect(() => {
+    const shown = ui.visible.value.filter((number) => isOfBeam(room.view(number).kind));
+    const [plan, scene] = [room.plan.value, room.scene.value];
+    if (!shown.length || !plan || !scene?.beam || beamShown(plan, scene)) return;
+    queueMicrotask(() => {
+      for (const number of shown) {
+        const free = room.views.find((other) => !isOfBeam(other.kind) && !ui.visible.peek().includes(other.number));
+        ui.showInPlaceOf(number, number === beamSliceView && free ? free.number : spaceInstead({ room, ui }));
+      }
+      ui.notify(
+        'ok',
+        plan.beams.length
+          ? 'The beam of this pane is gone: it shows something else now.'
+          : 'There is no beam: the pane shows something else now.',
+        'beam',
+      );
+    });
+  });
+}

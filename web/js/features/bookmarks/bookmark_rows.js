@@ -1,0 +1,158 @@
+// Saved views: rows of the tree, Selection, the bar while they are presented.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { repeat } from '../../../lib/directives/repeat.js';
+import { Bookmarks, bookmarksOf } from './bookmarks.js';
+import { toldOfMerge } from '../../room/saved_merge.js';
+import { icon } from '../../parts/icons.js';
+import { name, treeRow } from '../../parts/tree_row.js';
+
+export { bookmarkBlock } from './bookmark_block.js';
+
+const known = new WeakMap();
+
+/** Of this page's room; its keys work from the first call on. @returns {Bookmarks} */
+export function bookmarksIn(world) {
+  if (!known.has(world)) known.set(world, new Bookmarks(world));
+  return known.get(world);
+}
+
+/** Runs what talks to the server, and says why it failed. */
+export async function attempt({ ui }, run, done = '') {
+  try {
+    const result = await run();
+    if (done) ui.notify('ok', done, 'saved');
+    return result;
+  } catch (error) {
+    ui.notify('err', error.message ?? error.detail ?? 'The server refused it.', 'saved'); // an Error, or a problem of the server
+    return null;
+  }
+}
+
+/** What of a saved view could not be shown, in a sentence; '' when it is whole. */
+const lost = ({ report, n_report: all }) =>
+  all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}.` : '';
+
+function told(world, opened, isQuiet = false) {
+  if (!opened) return;
+  const isReported = opened.n_report > 0;
+  const why = [lost(opened), toldOfMerge(opened.merge)].filter(Boolean).join(' ');
+  const who = world.room.following.isPresenting.value ? '' : ' In your own view.';
+  if (why)
+    world.ui.notify(
+      'warn',
+      `“${opened.name}”: ${why}`,
+      'saved',
+      isReported ? { word: 'All', act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) } : null,
+    );
+  else if (who && !isQuiet)
+    world.ui.notify('ok', `“${opened.name}”.${who}`, 'saved', {
+      word: 'Return',
+      keys: 'Esc or F',
+      act: () => world.room.following.return(),
+    });
+}
+
+/** Shows a saved view: the presenter to everybody, anybody else to themselves. */
+export const show = async (world, row) => told(world, await attempt(world, () => bookmarksIn(world).show(row)));
+
+/** An image of a saved view; a frame with its sign until it is drawn. */
+export function pictureOf(world, row) {
+  const url = bookmarksIn(world).picture(row);
+  return html`<span class="bookmark-picture">${url ? html`<img src=${url} alt="">` : icon('bookmark')}</span>`;
+}
+
+export function bookmarkRows(world) {
+  const { room } = world;
+  const { shown } = bookmarksIn(world);
+  return repeat(
+    bookmarksOf(room),
+    ({ id }) => id,
+    (row) => {
+      const { name: words } = row.body;
+      const isShown = shown.value === row.id;
+      const toggle = () => void show(world, row);
+      const about = room.following.isPresenting.value ? 'Show to everybody' : 'Show in your own view';
+      return treeRow(
+        world,
+        {
+          kind: 'bookmark',
+          id: row.id,
+          words: [words],
+          more: [...(isShown ? ['shown last'] : [])],
+          title: `${words}, saved by ${row.author_name}`,
+          toggle,
+        },
+        html`
+      ${pictureOf(world, row)}${name(words)}<button class="eye bookmark-show" tabindex="-1" aria-label=${`Show ${words}`} title=${about} ?disabled=${!room.canChange.value}
+        @click=${(event) => {
+          event.stopPropagation();
+          toggle();
+        }}>${icon('eye')}</button>`,
+      );
+    },
+  );
+}
+
+// ---- presenting ---------------------------------------------------------------------------------------------------------
+
+let playing = null; // the world whose saved views the keys go through
+
+function onKey(event) {
+  const by = { PageDown: 1, PageUp: -1 }[event.key];
+  if (!by || event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea, select')) return;
+  event.preventDefault();
+  event.stopPropagation(); // a pane would go ten slices on
+  void step(playing, by);
+}
+
+export async function play(world, row = null) {
+  endPlaying();
+  playing = world;
+  addEventListener('keydown', onKey, true);
+  told(world, await attempt(world, () => bookmarksIn(world).play(row)), true);
+}
+
+function endPlaying() {
+  removeEventListener('keydown', onKey, true);
+  if (playing) bookmarksIn(playing).end();
+  playing = null;
+}
+
+/** The page leaves the room. */
+export function leave(world) {
+  if (playing === world) endPlaying();
+  bookmarksIn(world).stop();
+}
+
+const step = async (world, by) => told(world, await attempt(world, () => bookmarksIn(world).step(by)), true);
+
+export function playBar(world) {
+  const bookmarks = bookmarksIn(world);
+  if (!bookmarks.isPlaying.value) return nothing;
+  const { room } = world;
+  const rows = bookmarksOf(room);
+  const at = bookmarks.position(rows);
+  const who = room.following.isPresenting.value ? 'everybody sees it' : 'in your own view';
+  return html`<div class="bookmark-bar" role="group" aria-label="Saved views as a presentation">
+    <button class="icon-button" aria-label="View before" title="Page up" ?disabled=${at <= 0} @click=${() => void step(world, -1)}>${icon('chevronLeft')}</button>
+    <p role="status"><b>${at < 0 ? `– of ${rows.length}` : `${at + 1} of ${rows.length}`}</b> <span class="clipped">${rows[at]?.body.name ?? ''}</span> <span class="dim">${who}</span></p>
+    <button class="icon-button" aria-label="Next view" title="Page down" ?disabled=${at >= rows.length - 1} @click=${() => void step(world, 1)}>${icon('chevronRight')}</button>
+    <button class="icon-button" aria-label="End the presentation" title="End" @click=${endPlaying}>${icon('close')}</button></div>`;
+}
+
+// ---- a room that was made from one --------------------------------------------------------------------------------------
+
+/** The server has given the room its scene and cameras; panes are this page's own. */
+export async function begin(world) {
+  const { room, api } = world;
+  const { saved } = (await attempt(world, () => api.room(room.id))) ?? {};
+  if (!saved) return;
+  const why = saved.n_report ? lost(saved) : '';
+  bookmarksIn(world).begin(saved);
+  world.ui.notify(
+    why ? 'warn' : 'ok',
+    `“${saved.name}” in a new room of its own.${why ? ` ${why}` : ''}`,
+    'saved',
+    why ? { word: 'All', act: () => world.ui.choose('bookmark', 'begun') } : null,
+  );
+}

@@ -1,0 +1,47 @@
+// The page of a permalink: makes a new room from a saved view and goes there, or says why it cannot.
+import { html } from '../../../lib/lit-html.js';
+import { signal } from '../../../lib/signals-core.js';
+import { beginWith } from './bookmark_lazy.js';
+import { icon } from '../../parts/icons.js';
+import { styled } from '../../parts/lazy.js';
+import { mount } from '../../parts/mount.js';
+
+/**
+ * @param {HTMLElement} host @param {string} token @param {object} world {api, enter: goes to the room in place of this page}
+ * @returns {() => void} leaves the page
+ */
+export function permalinkPage(host, token, { api, enter }) {
+  const problem = signal(null);
+  let isLeft = false;
+  const open = async () => {
+    problem.value = null;
+    try {
+      const room = await api.makeRoomOfSaved(token);
+      if (isLeft) return;
+      beginWith(room.id);
+      enter(room.id, room.plan);
+    } catch (error) {
+      problem.value = error;
+    }
+  };
+  void styled('js/features/bookmarks/bookmark.css').catch(() => {});
+  const unmount = mount(
+    host,
+    () =>
+      html`<main class="permalink">${problem.value ? refused(problem.value, open) : html`<p class="empty" role="status">Opening the saved view …</p>`}</main>`,
+  );
+  document.title = 'Saved view – Beamroom';
+  void open();
+  return () => {
+    isLeft = true;
+    unmount();
+    document.title = 'Beamroom';
+  };
+}
+
+function refused(problem, again) {
+  const isGone = problem.type === '/problems/not-found';
+  return html`<section class="card" role="alert">${icon(isGone ? 'bookmark' : 'error', 20)}<div><h1>${isGone ? 'Nothing is saved under this link' : 'The saved view cannot be opened now'}</h1>
+    <p>${isGone ? 'It was deleted, or the link is not complete. Who sent it can make a new one.' : problem.message}</p>
+    <div class="buttons">${isGone ? '' : html`<button class="primary" @click=${again}>Try again</button>`}<a class="button" href="#/">All plans</a></div></div></section>`;
+}

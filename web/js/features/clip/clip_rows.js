@@ -1,0 +1,120 @@
+// The clip planes in the tree: a row for each with its switch, the side it keeps, its position and its cap; below them what caps show. Keys C and K.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { live } from '../../../lib/directives/live.js';
+import {
+  allThroughCrosshair,
+  capWords,
+  clipName,
+  clipsOf,
+  enabledClips,
+  movedClip,
+  positionOfClip,
+  switchedClip,
+  toggledCaps,
+  toggledClips,
+} from './clip.js';
+import { number } from '../../parts/format.js';
+import { icon } from '../../parts/icons.js';
+import { eye, name, treeRow } from '../../parts/tree_row.js';
+
+const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
+const tenths = (value) => Math.round(value * 10) / 10 || 0;
+
+/** "S −64.9 mm", "12.0 mm" along a beam. */
+export const clipPosition = (row, position) => `${row.letter ? `${row.letter} ` : ''}${number(position, 1)} mm`;
+
+export const hasClips = (plan) => plan.images.length + plan.regions.length;
+
+/** "2 on"; '' while nothing is cut. */
+export function clipNote({ room }) {
+  const n = enabledClips(room.plan.value, room.scene.value).length;
+  return n ? `${n} on` : 'off';
+}
+
+export function clipRows(world) {
+  const { room } = world;
+  if (!room.scene.value?.clip) return nothing;
+  return html`${clipsOf(room.plan.value).map((row) => planeRow(world, row))}${capsRow(world)}${actionRows(world)}`;
+}
+
+function planeRow(world, row) {
+  const { room, ui } = world;
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const { id } = row;
+  const { enabled: isOn, cap } = scene.clip[id];
+  const isDisabled = !room.canChange.value;
+  const words = clipName(id);
+  const position = tenths(positionOfClip(plan, scene, id));
+  const change = (patch, event) => room.patchScene(patch, how(ui, event));
+  const toggle = (event) => change(switchedClip(plan, scene, id, !isOn), event);
+  const move = (mm, event) => Number.isFinite(mm) && change(movedClip(plan, scene, id, mm), event);
+  const still = (event) => event.stopPropagation();
+  const text = clipPosition(row, position);
+  return treeRow(
+    world,
+    {
+      kind: 'clip',
+      id,
+      words: [words, text],
+      more: [cap ? 'with cap' : 'without cap'],
+      title: `${words}: ${text}`,
+      isOn,
+      toggle,
+      step: (by, event) => move(position + by, event),
+    },
+    html`
+    ${eye(isOn, `Clip plane ${words}`, isOn ? 'Do not cut here' : 'Cut here; at first through the crosshair', isDisabled, toggle)}${name(words)}
+    <span class="field clip-field" data-letter=${row.letter} @click=${still}><input type="number" step="any" tabindex="-1" .value=${live(position.toFixed(1))}
+      aria-label=${`Position of ${words} in mm`} ?disabled=${isDisabled} @change=${(event) => move(event.target.valueAsNumber, event)}></span>
+    <button class="clip-cap" tabindex="-1" aria-pressed=${cap} aria-label=${`Cap of ${words}`} title=${cap ? 'The cut is closed with a cap; leave it open' : 'Close the cut with a cap'} ?disabled=${isDisabled}
+      @click=${(event) => {
+        event.stopPropagation();
+        change({ clip: { [id]: { cap: !cap } } }, event);
+      }}>${icon('image')}</button>`,
+  );
+}
+
+/** What caps show: chosen as a plane is, and then in Selection. */
+function capsRow(world) {
+  const words = capWords(world.room.scene.value.clip.cap);
+  return treeRow(
+    world,
+    { kind: 'clip', id: 'caps', words: ['Caps show', words], title: `Caps show ${words}` },
+    html`${icon('image')}${name('Caps show')} <span class="tail clipped">${words}</span>`,
+  );
+}
+
+/** What acts on all planes: as key C does, and to the crosshair. */
+function actionRows({ room, ui }) {
+  const nOn = enabledClips(room.plan.value, room.scene.value).length;
+  const toggle = (event) => toggleClips(room, ui, event.timeStamp);
+  const move = (event) => room.patchScene(allThroughCrosshair(room.plan.value, room.scene.value), how(ui, event));
+  return html`${actionRow(room, ui, 'switch', 'clip', nOn ? 'All off' : 'On again', !nOn && !ui.clips.length, toggle)}${actionRow(room, ui, 'crosshair', 'crosshair', 'All to crosshair', !nOn, move)}`;
+}
+
+function actionRow(room, ui, id, picture, words, isOff, act) {
+  const isDisabled = isOff || !room.canChange.value;
+  const key = `clip:${id}`;
+  const run = (event) => !isDisabled && act(event);
+  return html`<li class=${`row clip-all${ui.row.value === key ? ' current' : ''}`} role="treeitem" id=${`row-${key}`} data-key=${key} aria-level="2" aria-selected="false" aria-disabled=${isDisabled}
+    aria-label=${words} @click=${(event) => {
+      ui.row.value = key;
+      run(event);
+    }} @row-toggle=${(event) => run(event.detail)}><button tabindex="-1" ?disabled=${isDisabled}>${icon(picture)}${words}</button></li>`;
+}
+
+// ---- keys of a pane -----------------------------------------------------------------------------------------------------
+
+/** Key C: all clip planes off, or on again as they were. */
+export function toggleClips(room, ui, at) {
+  const { patch, remembered } = toggledClips(room.plan.value, room.scene.value, ui.clips);
+  ui.clips = remembered;
+  room.patchScene(patch, { view: ui.active.value, at });
+}
+
+/** Key K: the caps of all clip planes that cut. */
+export function toggleCaps(room, ui, at) {
+  const patch = toggledCaps(room.plan.value, room.scene.value);
+  if (patch) room.patchScene(patch, { view: ui.active.value, at });
+  else ui.notify('ok', 'No clip plane cuts, so there is nothing to cap.', 'clip');
+}

@@ -1,0 +1,74 @@
+// An isodose level in Selection, and the tables of levels to begin with.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { live } from '../../../lib/directives/live.js';
+import { convertedLevel, levelPatch, maxLevels } from './level_list.js';
+import { levelTables, tableOf, tablePatch } from './dose_tables.js';
+import { addLevel, levelContext, levelParts, levelWords, otherText } from './dose_levels.js';
+import { checkbox, numberField, segment } from '../../parts/fields.js';
+import { icon } from '../../parts/icons.js';
+
+const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
+
+export function tableSelect({ room, ui }, { tabindex }) {
+  const scene = room.scene.value;
+  const now = tableOf(scene);
+  const change = (event) => {
+    const table = levelTables.find(({ name }) => name === event.target.value);
+    if (table) room.patchScene(tablePatch(scene, table), how(ui, event));
+  };
+  return html`<select class="dose-select" aria-label="Table of levels" title=${now ? `Levels: ${now.name}, ${now.source}` : 'Tables of levels'} tabindex=${tabindex} ?disabled=${!room.canChange.value} @change=${change}>
+    <option value="" ?selected=${!now} .selected=${live(!now)} disabled>Presets</option>
+    ${levelTables.map(({ name, source }) => html`<option value=${name} title=${source} ?selected=${now?.name === name} .selected=${live(now?.name === name)}>${name}</option>`)}</select>`;
+}
+
+/** A level in Selection: everything about it. */
+export function levelBlock(world, isDisabled, changeScene) {
+  const { scene, reference, unit } = levelContext(world);
+  const { ui } = world;
+  const { id } = ui.selection.value;
+  const level = scene.dose.levels[id];
+  if (!level) return html`<p class="empty">This level is gone.</p>`;
+  const change = (patch, event) => changeScene(levelPatch(id, patch), event);
+  const turn = (to, event) => {
+    const converted = convertedLevel(level, to, reference);
+    change(converted ?? { unit: to }, event);
+  };
+  const remove = (event) => {
+    changeScene(levelPatch(id, null), event);
+    ui.choose('dosing', 'levels');
+  };
+  const other = level.unit === 'percent' ? `${otherText(level, reference)} ${unit}` : `${otherText(level, reference)} % of the reference`;
+  return html`<section class="block"><h3>${icon('dose')} Level ${levelWords(level, unit)} <span class="dim">${other}</span></h3>
+    <dl><dt>Value</dt><dd class="dose-pair">${numberField('Value of the level', Number(level.value.toPrecision(6)), '', isDisabled, (value, event) => value >= 0 && change({ value }, event))}
+        ${segment(
+          'Unit of the level',
+          [
+            ['percent', '%'],
+            ['dose', unit],
+          ],
+          level.unit,
+          isDisabled,
+          turn,
+        )}</dd>
+      <dt>Colour</dt><dd><input type="color" class="dose-swatch" .value=${live(level.color)} aria-label="Colour" ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}></dd>
+      <dt>Opacity of surface</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(level.opacity * 100)))} aria-label="Opacity of the surface" ?disabled=${isDisabled}
+        @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(level.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd></dl>
+    <div class="checks">${checkbox('Shown', level.visible, isDisabled, (visible, event) => change({ visible }, event))}
+      ${levelParts.map(([part, , about]) => checkbox(about, level[part], isDisabled, (on, event) => change({ [part]: on }, event)))}</div>
+    <div class="buttons"><button ?disabled=${isDisabled || Object.keys(scene.dose.levels).length >= maxLevels} @click=${(event) => addLevel(world, event)}>${icon('plus')}Level</button>
+      <button ?disabled=${isDisabled} @click=${remove}>${icon('trash')}Remove</button></div></section>
+    ${hint(scene, level)}`;
+}
+
+/** Why the level may be on and yet not be seen. */
+function hint(scene, level) {
+  const { lines, wash, surfaces } = scene.dose;
+  const off = [
+    [level.line, lines, 'lines'],
+    [level.wash, wash, 'the wash'],
+    [level.surface, surfaces, 'surfaces'],
+  ]
+    .filter(([on, part]) => on && !part.visible)
+    .map(([, , words]) => words);
+  return level.visible && off.length ? html`<p class="note dose-hint">Switched off for all levels: ${off.join(', ')}.</p>` : nothing;
+}

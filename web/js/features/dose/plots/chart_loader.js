@@ -1,0 +1,26 @@
+// The plots of dose, loaded when they are first wanted: their code, their style and uPlot are no part of what a first visit loads.
+import { Lazy, styled } from '../../../parts/lazy.js';
+
+export class ChartLoader {
+  #parts;
+
+  constructor(world) {
+    this.#parts = new Lazy(async () =>
+      (await Promise.all([import('./charts.js'), styled('lib/uplot.css'), styled('js/features/dose/plots/chart.css')]))[0].makeCharts(
+        world,
+      ),
+    );
+  }
+
+  /** One part of the plots as a template. @param {'drawer'|'sheet'|'limits'|'printed'} name */
+  draw(name) {
+    return this.#parts.draw((parts) => parts[name]());
+  }
+
+  stop() {
+    this.#parts.loaded.peek()?.stop();
+  }
+}
+
+/** True for a plan that has doses to plot. */
+export const hasCharts = (plan) => (plan?.doses.length ?? 0) > 0;

@@ -1,0 +1,44 @@
+// Histograms of the plan's images, for percentiles and for the editor of the transfer function: each is asked for once, when it is first needed.
+import { signal } from '../../../lib/signals-core.js';
+
+/** @typedef {{low: number, high: number, counts: number[], percentiles: Record<string, number>}} Histogram */
+
+export class Histograms {
+  #ask;
+  #pending = new Map(); // plan and image -> Promise<Histogram|null>
+  /** By plan and image: what came; null: the server has none. */
+  #known = signal(new Map());
+
+  /** @param {(plan: string, image: string) => Promise<Histogram>} ask */
+  constructor(ask) {
+    this.#ask = ask;
+  }
+
+  /** The histogram as far as it is known, and asks for it when it is not. Read in an effect, it is told when it comes. @returns {Histogram|null} */
+  of(plan, image) {
+    const key = `${plan}/${image}`;
+    const known = this.#known.value.get(key);
+    if (known === undefined) this.load(plan, image);
+    return known ?? null;
+  }
+
+  /** @returns {Promise<Histogram|null>} null: there is none */
+  load(plan, image) {
+    const key = `${plan}/${image}`;
+    if (!this.#pending.has(key))
+      this.#pending.set(
+        key,
+        this.#ask(plan, image)
+          .catch(() => null)
+          .then((answer) => {
+            const histogram = isUsable(answer) ? answer : null;
+            this.#known.value = new Map(this.#known.peek()).set(key, histogram);
+            return histogram;
+          }),
+      );
+    return this.#pending.get(key);
+  }
+}
+
+const isUsable = (answer) =>
+  Array.isArray(answer?.counts) && answer.counts.length > 0 && Number.isFinite(answer.low) && answer.high > answer.low;

@@ -1,0 +1,60 @@
+// The image as a volume in the 3-D picture: its Selection in the inspector.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { classMap } from '../../../lib/directives/class-map.js';
+import { cullsNothing, usualCull } from './image_look.js';
+import { shownImage } from '../../room/plan.js';
+import { isSamePoints, visiblePatch } from './transfer.js';
+import { presetPoints, presetsOfImage } from './volume_presets.js';
+import { checkbox, numberField, segment } from '../../parts/fields.js';
+import { icon } from '../../parts/icons.js';
+import { transferEditor } from './transfer_editor.js';
+import { methods } from './volume_row.js';
+
+const [fewest, most] = [2, 1024]; // slices: proto/scene.json
+
+export function volumeBlock(world, isDisabled, changeScene) {
+  const { room } = world;
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const image = shownImage(plan, scene);
+  const volume = scene.image.volume;
+  if (!image) return nothing;
+  const change = (patch, event) => changeScene({ image: { volume: patch } }, event);
+  return html`<section class="block"><h3>${icon('cube')} Volume <span class="dim">of ${image.name || image.modality}, in 3-D</span></h3>
+      <div class="checks">${checkbox('Visible', volume.visible, isDisabled, (isOn, event) => changeScene(visiblePatch(plan, room.scene.value, isOn), event))}
+        ${checkbox('Cut by clip planes', volume.clipped, isDisabled, (clipped, event) => change({ clipped }, event))}</div>
+      <div class="shown-as"><span class="dim">Drawn by</span>${segment('Method of the volume', methods, volume.method, isDisabled, (method, event) => change({ method }, event))}</div>
+      <dl class="image-rows">${volume.method === 'slices' ? html`<dt>Slices</dt><dd>${numberField('Number of slices', volume.steps, '', isDisabled, (value, event) => change({ steps: Math.min(Math.max(Math.round(value), fewest), most) }, event))}</dd>` : nothing}
+        <dt>Between voxels</dt><dd>${segment(
+          'Volume between voxels',
+          [
+            ['linear', 'Linear'],
+            ['nearest', 'Nearest'],
+          ],
+          volume.interpolation,
+          isDisabled,
+          (interpolation, event) => change({ interpolation }, event),
+        )}</dd></dl>
+      ${cullRow(image, scene, volume, isDisabled, change)}</section>
+    ${volume.method === 'ray' ? rayBlock(world, image, isDisabled, change) : nothing}`;
+}
+
+function cullRow(image, scene, volume, isDisabled, change) {
+  const isOn = volume.cull_below > cullsNothing;
+  return html`<div class="checks cull">${checkbox('Leave out below', isOn, isDisabled, (on, event) => change({ cull_below: on ? usualCull(image, scene.image.window) : cullsNothing }, event), 'Lower values are not drawn, by any method')}
+    ${isOn ? numberField('Leave out of the volume below', Number(volume.cull_below.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ cull_below }, event)) : nothing}</div>`;
+}
+
+/** What only the method ray has: light, and the transfer function. */
+function rayBlock(world, image, isDisabled, change) {
+  const { window, volume } = world.room.scene.value.image;
+  return html`<section class="block"><h3>Transfer function <span class="dim">of ${image.modality}</span></h3>
+    <div class="buttons looks image-presets" role="group" aria-label="Presets of the transfer function">${presetsOfImage(image).map(
+      (preset) => {
+        const points = presetPoints(preset, window);
+        const isOn = isSamePoints(volume.points, points);
+        return html`<button class=${classMap({ on: isOn })} aria-pressed=${isOn} ?disabled=${isDisabled} @click=${(event) => change({ points }, event)}>${preset.name}</button>`;
+      },
+    )}</div>
+    ${transferEditor(world, image, isDisabled, change)}
+    <div class="checks">${checkbox('Shaded', volume.shaded, isDisabled, (shaded, event) => change({ shaded }, event), 'Lit by the direction in which the value changes')}</div></section>`;
+}

@@ -1,0 +1,81 @@
+// The card of the patient: shows the full identity to this person alone, for a while. It is kept in this module and nowhere else.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { signal } from '../../../lib/signals-core.js';
+import { identityOf, shownPatient } from '../../room/identity.js';
+import { icon } from '../../parts/icons.js';
+
+const shownMs = 15 * 60 * 1000;
+const hiddenMs = 5 * 60 * 1000;
+
+/** {room: whose page, patient: of its plan, name, id, birth}; null: masked. */
+const identity = signal(null);
+const state = signal({ error: '', isAsked: false });
+let timer = null;
+let hiddenTimer = null;
+
+/** The patient's name as people write it: "Virtanen^Aino" is VIRTANEN, Aino. */
+export function nameWords(name) {
+  const [group] = name.split('=');
+  const [family, given, middle] = group.split('^');
+  return [family?.toUpperCase(), [given, middle].filter(Boolean).join(' ')].filter(Boolean).join(', ');
+}
+
+function hide() {
+  clearTimeout(timer);
+  clearTimeout(hiddenTimer);
+  identity.value = null;
+}
+
+/** A page that nobody has looked at for five minutes may be looked at by somebody else. */
+document.addEventListener('visibilitychange', () => {
+  clearTimeout(hiddenTimer);
+  if (document.hidden && identity.peek()) hiddenTimer = setTimeout(hide, hiddenMs);
+});
+addEventListener('hashchange', hide);
+
+/** What this person may read at this moment; null: nothing, the identity is masked. */
+export function shownIdentity({ room }) {
+  const patient = shownPatient(room.plan.value, room.scene.value);
+  const known = identity.value;
+  return known && patient && known.room === room && known.patient === patient ? known : null;
+}
+
+async function show({ room, api }) {
+  const asked = room.plan.peek();
+  state.value = { error: '', isAsked: true };
+  try {
+    const { patients } = await api.call('GET', `plans/${encodeURIComponent(room.planId.peek())}/identity`);
+    const [plan, scene] = [room.plan.peek(), room.scene.peek()];
+    const found = plan === asked ? identityOf(plan, scene, patients) : null;
+    hide();
+    if (found) {
+      identity.value = {
+        room,
+        patient: shownPatient(plan, scene),
+        name: nameWords(found.name ?? ''),
+        id: found.id ?? '',
+        birth: found.birth_date ?? '',
+      };
+      timer = setTimeout(hide, shownMs);
+    }
+    state.value = {
+      error: found ? '' : 'The files have changed since this page opened them. Open the plan again to read whose it is.',
+      isAsked: false,
+    };
+  } catch (problem) {
+    state.value = { error: problem.message, isAsked: false };
+  }
+}
+
+export function patientCard(world) {
+  const known = shownIdentity(world);
+  const { error, isAsked } = state.value;
+  return html`<div class="popover patient-card"><h3>Patient</h3>
+    ${
+      known
+        ? html`<p><b>${known.name}</b></p><dl><dt>Id</dt><dd>${known.id || 'not given'}</dd><dt>Born</dt><dd>${known.birth || 'not given'}</dd></dl><div class="buttons"><button @click=${hide}>${icon('eyeOff')}<span>Mask it again</span></button></div>`
+        : html`<p class="note">Masked, as for everybody.</p><div class="buttons"><button class="primary" ?disabled=${isAsked} @click=${() => show(world)}>${icon('eye')}<span>Show to me</span></button></div>`
+    }
+    ${error ? html`<p class="note err" role="alert">${error}</p>` : nothing}
+    <p class="note">To you alone, until you leave the room, at most 15 min. The audit keeps who, when and from where.</p></div>`;
+}

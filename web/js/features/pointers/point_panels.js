@@ -1,0 +1,14 @@
+// Pointing, loaded when somebody else is in the room.
+import { startLook } from './look_here.js';
+import { startMarks } from './point_marks.js';
+import { startPointing } from './point_gesture.js';
+import { startWatch } from '../watch/watch_lazy.js';
+
+export { askToLook, pointMenu } from './look_here.js';
+
+/** @param {object} world {room, ui, api, clock, panes, storage, connection, decode} @returns {() => void} stops */
+export function start(world) {
+  world.room.pointers.hide = world.room.pointers.keepIn(world.storage);
+  const stops = [startMarks(world), startPointing(world), startLook(world), startWatch(world)];
+  return () => stops.forEach((stop) => stop());
+}

@@ -1,0 +1,66 @@
+// Rooms that exist and the own name, on the start page.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { repeat } from '../../../lib/directives/repeat.js';
+import { maxName } from '../../room/own_name.js';
+import { present } from '../../room/plans.js';
+import { nameSome } from '../regions/refusals.js';
+import { count } from '../../parts/format.js';
+import { icon } from '../../parts/icons.js';
+import { initials } from '../../pane/pane.js';
+
+/** "Dr A, Dr B and 2 more"; "nobody in it now" */
+export const whoIn = (room) =>
+  nameSome(
+    present(room).map(({ name }) => name),
+    4,
+  ) || 'nobody in it now';
+
+export function roomsList(state, enter) {
+  const rooms = [...state.rooms.value].sort((a, b) => present(b).length - present(a).length || b.created_at.localeCompare(a.created_at));
+  if (!rooms.length) return nothing;
+  const nameOf = (id) => state.plans.value?.find((plan) => plan.id === id)?.name ?? id;
+  return html`<section class="rooms" aria-labelledby="rooms-head"><div class="list-head"><h2 id="rooms-head">Rooms</h2><span class="dim">${count(rooms.length, 'room')}</span></div>
+    <ul>${repeat(
+      rooms,
+      ({ id }) => id,
+      (room) => {
+        const members = present(room);
+        return html`<li class="room-row" data-room=${room.id}><span class="avatars" aria-hidden="true">${members.slice(0, 3).map(({ name }, index) => html`<span class=${`avatar small tint-${index % 4}`}>${initials(name)}</span>`)}${members.length ? nothing : icon('people')}</span>
+      <span class="title"><b>${nameOf(room.plan)}</b><code>${room.id}</code></span><span class="who">${whoIn(room)}</span>
+      <button aria-label=${`Join ${room.id}: ${nameOf(room.plan)}, ${whoIn(room)}`} @click=${() => enter(room.id, room.plan)}>Join</button></li>`;
+      },
+    )}</ul></section>`;
+}
+
+const field = (ownName, id, buttons) => {
+  const keep = (event) => {
+    event.preventDefault();
+    ownName.set(new FormData(event.target).get('name'));
+  };
+  return html`<form class="own-name" @submit=${keep}><label for=${id}>Your name, as others in a room see it</label>
+    <input id=${id} name="name" maxlength=${maxName} autocomplete="name" .value=${ownName.value.value}>${buttons}</form>`;
+};
+
+/** Asks for the name once; any answer ends it. */
+export const askName = (ownName) =>
+  ownName.isAsked.value
+    ? field(
+        ownName,
+        'first-name',
+        html`<button>Save name</button><button type="button" class="ghost" @click=${() => ownName.set('')}>Not now</button>`,
+      )
+    : nothing;
+
+/** The name in the banner, and the way to change it. */
+export function nameButton(state, ownName) {
+  if (ownName.isAsked.value) return nothing;
+  const name = ownName.value.value;
+  const close = (event) => {
+    if (event.type === 'submit' || event.key === 'Escape') state.isNaming.value = false;
+  };
+  return html`<span class="anchor"><button class="ghost" aria-expanded=${state.isNaming.value} title="Change your name" @click=${() => {
+    state.isNaming.value = !state.isNaming.value;
+  }}>
+      ${name ? html`<span class="avatar own small" aria-hidden="true">${initials(name)}</span>` : icon('people')}<span>${name || 'Your name'}</span></button>
+    ${state.isNaming.value ? html`<div class="popover" @submit=${close} @keydown=${close}>${field(ownName, 'change-name', html`<button class="primary">Save name</button>`)}</div>` : nothing}</span>`;
+}

@@ -1,0 +1,128 @@
+// The start page: the plans of this server, their state, and the way into a room.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { effect } from '../../../lib/signals-core.js';
+import { reportSummary } from '../../room/plan.js';
+import { PlansState } from '../../room/plans.js';
+import { UploadsState } from './uploads.js';
+import { isId } from '../../wire/check.js';
+import { brand } from '../../shell/banner.js';
+import { deleteDialog, watchDialog } from './delete_dialog.js';
+import { count, seconds } from '../../parts/format.js';
+import { icon } from '../../parts/icons.js';
+import { askName, nameButton, roomsList } from './lobby.js';
+import { mount } from '../../parts/mount.js';
+import { planList, refusalOf } from './plan_list.js';
+import { reportLines } from '../../parts/report.js';
+import { openDroppedSnapshot } from '../report/snapshots.js';
+import { dropZone, listenDrops } from './upload.js';
+
+/** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, thumbnails} @returns {() => void} leaves the page */
+export function startPage(host, world) {
+  const state = new PlansState({ ...world, seen: (plans) => void world.thumbnails.update(plans) });
+  const uploads = new UploadsState({
+    ...world,
+    arrived: (plan) => state.arrived(plan).then(() => reveal(host, plan)),
+    limit: () => state.version.value?.max_upload_bytes ?? Infinity,
+  });
+  const unmount = mount(host, () => page(state, uploads, world));
+  const unwatch = watchDialog(host, state);
+  const unlisten = listenDrops(uploads, (file) => openDroppedSnapshot(world.api, file, world.enter));
+  let newest = 0;
+  const unscroll = effect(() => {
+    // scrolls to a newly chosen upload, which asks for its name
+    const { key = 0 } = uploads.rows.value.at(-1) ?? {};
+    if (key > newest)
+      queueMicrotask(() => {
+        const row = host.querySelector(`[data-upload="${key}"]`);
+        row?.scrollIntoView({ block: 'center' });
+        row?.querySelector('input[name="name"]')?.focus({ preventScroll: true });
+      });
+    newest = Math.max(newest, key);
+  });
+  state.start();
+  return () => {
+    state.stop();
+    uploads.stop();
+    unlisten();
+    unwatch();
+    unscroll();
+    unmount();
+  };
+}
+
+const reveal = (host, plan) => host.querySelector(`[data-plan="${CSS.escape(plan)}"]`)?.scrollIntoView({ block: 'nearest' });
+
+const page = (state, uploads, { enter, ownName, thumbnails }) => html`<div class="start">
+  <header class="banner">${brand()}<span class="grow"></span>
+    <label class="search">${icon('search')}<input type="search" placeholder="Find a plan" aria-label="Find a plan" .value=${state.search.value} @input=${(
+      event,
+    ) => {
+      state.search.value = event.target.value;
+    }}></label>
+    ${join(state, enter)}${nameButton(state, ownName)}</header>
+  <main>${notices(state)}${askName(ownName)}${roomsList(state, enter)}${planList(state, uploads, thumbnails)}</main>
+  <aside class="load-report" aria-label="Load report and upload"><div class="found">${report(state)}</div>${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
+  <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">Research use. Not for diagnosis or treatment decisions.</b></footer>${deleteDialog(state, ownName)}</div>`;
+
+/** What concerns the server and not one plan. */
+const notices = (
+  state,
+) => html`${state.error.value ? html`<div class="notice bad" role="alert">${icon('error')}<div><b>${state.error.value}</b><p>Trying again every few seconds.</p></div></div>` : nothing}
+  ${
+    state.notice.value
+      ? html`<div class="notice" role="alert">${icon('warning')}<div><b>The server is full</b><p>${state.notice.value[0].toUpperCase()}${state.notice.value.slice(1)}. Try again when a room has ended.</p></div>
+    <button class="icon-button small" aria-label="Dismiss" @click=${() => {
+      state.notice.value = '';
+    }}>${icon('close', 12)}</button></div>`
+      : nothing
+  }`;
+
+function join(state, enter) {
+  const go = (event) => {
+    event.preventDefault();
+    const field = event.target.elements.room;
+    // a whole link is accepted as well as the id in it
+    const [id, plan = ''] = field.value.trim().split('#/rooms/').at(-1).split('/');
+    field.setCustomValidity(isId(id) ? '' : 'A room is named by letters a to z, digits and -.');
+    if (field.reportValidity()) enter(id, isId(plan) ? plan : '');
+  };
+  return html`<span class="anchor"><button aria-expanded=${state.isJoining.value} @click=${() => {
+    state.isJoining.value = !state.isJoining.value;
+  }}>${icon('people')}<span>Join a room</span></button>
+    ${
+      state.isJoining.value
+        ? html`<form class="popover invite" @submit=${go} @keydown=${(event) => {
+            if (event.key === 'Escape') state.isJoining.value = false;
+          }}>
+      <label for="join-id">Room id or link</label><div class="pair"><input id="join-id" name="room" autocomplete="off" @input=${(event) => event.target.setCustomValidity('')}><button class="primary">Join</button></div></form>`
+        : nothing
+    }</span>`;
+}
+
+function report(state) {
+  const plan = state.plans.value?.find((other) => other.id === state.chosen.value);
+  if (!plan) return html`<header><h2>Load report</h2></header><p class="empty">Choose a plan to see what was noticed while loading it.</p>`;
+  const found = state.report.value?.plan === plan.id ? state.report.value : null;
+  const refusal = refusalOf(state, plan);
+  return html`<header><h2>Load report</h2><code>${plan.id}</code></header>
+    ${found ? html`<p class="note">${reportSummary(found)}${found.loadMs === null ? '' : `, loaded in ${seconds(found.loadMs)}`}</p>` : nothing}
+    ${plan.note ? html`<p class="plan-note">${plan.note}</p>` : nothing}
+    ${
+      found
+        ? reportLines(found)
+        : refusal
+          ? html`<ul class="report"><li><span class="err">${icon('error')}</span><div><p><b class="err">Refused</b></p><p>${refusal}</p><p class="place">Nothing was loaded.</p></div></li></ul>`
+          : html`<p class="empty">The plan is not loaded. Open it to see what was noticed.</p>`
+    }`;
+}
+
+function serverStatus(state) {
+  if (state.error.value)
+    return html`<span class="badge disconnected">${icon('disconnected', 12)}<span>Server does not answer</span></span>`;
+  const version = state.version.value;
+  if (!version) return nothing;
+  const gl = version.gl;
+  const n = (state.plans.value ?? []).filter((plan) => plan.state === 'ready').length;
+  return html`<span class="badge live">${icon('ready', 12)}<span>Server ready</span></span><span>${count(n, 'renderer')} in use</span>
+    <span class="dim wide">${[gl?.back_end, gl?.renderer].filter(Boolean).join(', ')}</span><span class="dim wide">Beamroom ${version.version}</span>`;
+}

@@ -1,0 +1,101 @@
+// The orientation figure of a 3-D pane, whose sides are buttons, and the menu of its camera.
+import { html, nothing, svg } from '../../lib/lit-html.js';
+import { repeat } from '../../lib/directives/repeat.js';
+import { isTarget } from '../room/plan.js';
+import { isTurnable } from '../room/kinds.js';
+import { cubeSides, sides } from './orientation.js';
+import { checkbox, segment } from '../parts/fields.js';
+import { icon } from '../parts/icons.js';
+
+const edgePx = 36;
+const buttonFrom = 0.3; // cosine; a side that is seen more from its edge is too narrow to be hit
+const letterFrom = 0.25;
+const leastPx = [180, 200]; // of the pane, to have room for the figure
+
+/** @param {object} world {room, ui} @param {import('./pane_actions.js').PaneActions} actions of the pane @param {number[]} size of the pane, px */
+export function orientation({ room, ui }, actions, size) {
+  const { view } = actions;
+  const header = view.painted.value;
+  if (!isTurnable(view.kind) || !header || size[0] < leastPx[0] || size[1] < leastPx[1]) return nothing;
+  const name = `camera-${view.number}`;
+  const isOpen = ui.popover.value === name;
+  const seen = cubeSides(header.clip_from_lps_mm);
+  const isTouch = ui.isTouch.value;
+  const isDisabled = !room.canChange.value;
+  const picture = html`<svg class="view-cube" viewBox="-36 -36 72 72" role=${isTouch ? nothing : 'group'} aria-label=${isTouch ? nothing : `Look from, ${view.name}`} aria-hidden=${isTouch ? 'true' : nothing}>
+    ${repeat(
+      seen,
+      ({ letter }) => letter,
+      (side) => face(side, isTouch || isDisabled ? null : (event) => actions.lookFrom(side.name, event.timeStamp)),
+    )}</svg>`;
+  return html`<div class="view-figure">
+    ${isTouch ? nothing : picture}
+    <span class="anchor"><button class=${isTouch ? 'view-all touch' : 'view-all'} title="Look from, fit, roll, projection" aria-haspopup="dialog" aria-expanded=${isOpen} @click=${() => ui.toggle(name)}>${isTouch ? picture : icon('camera3d')}<span class="hidden">Camera of ${view.name}</span></button>
+    ${isOpen ? menu({ room, ui }, actions, isDisabled) : nothing}</span></div>`;
+}
+
+function face({ letter, name, facing, middle, corners }, act) {
+  const isButton = act && facing >= buttonFrom;
+  const onKey = (event) => {
+    if (event.key !== 'Enter' && event.key !== ' ') return;
+    event.preventDefault();
+    act(event);
+  };
+  const at = (point) => point.map((part) => (part * edgePx).toFixed(2)).join();
+  return svg`<g class=${isButton ? 'side button' : 'side'} role=${isButton ? 'button' : nothing} tabindex=${isButton ? 0 : nothing} aria-label=${isButton ? `Look from ${name}` : nothing}
+    @click=${isButton ? act : nothing} @keydown=${isButton ? onKey : nothing}>
+    <polygon points=${corners.map(at).join(' ')} />
+    ${facing >= letterFrom ? svg`<text text-anchor="middle" x=${middle[0] * edgePx} y=${middle[1] * edgePx + 4.5}>${letter}</text>` : nothing}</g>`;
+}
+
+function menu({ room, ui }, actions, isDisabled) {
+  const { cameras } = actions;
+  const act = (run) => (event) => run(event.timeStamp);
+  const hasTwo = room.views.filter(({ kind, isOpen }) => isTurnable(kind) && isOpen.value).length > 1;
+  const scene = room.scene.value;
+  const { view } = actions;
+  const link = (isOn, event) => {
+    ui.panes.areCamerasLinked.value = isOn;
+    if (isOn) cameras.link(event.timeStamp);
+  };
+  return html`<div class="popover view-menu" role="dialog" aria-label="Camera">
+    <div class="view-sides" role="group" aria-label="Look from">${sides.map(
+      ({ letter, name }) => html`<button ?disabled=${isDisabled} aria-label=${`Look from ${name}`} title=${`Look from ${name}`}
+      @click=${act((at) => cameras.lookFrom(name, at))}>${letter}</button>`,
+    )}</div>
+    <div class="view-acts">
+      <button ?disabled=${isDisabled} title="Fit to the selected region or measure (G)" @click=${act((at) => cameras.fit(at))}>Fit</button>
+      <button ?disabled=${isDisabled} title="Reset this view (R)" @click=${act((at) => cameras.reset(at))}>Reset</button>
+      <button ?disabled=${isDisabled} title="Roll to the left by 5° (,)" aria-label="Roll to the left" @click=${act((at) => cameras.roll(5, at))}>${icon('rollLeft')}</button>
+      <button ?disabled=${isDisabled} title="Roll to the right by 5° (.)" aria-label="Roll to the right" @click=${act((at) => cameras.roll(-5, at))}>${icon('rollRight')}</button></div>
+    ${segment(
+      'Projection',
+      [
+        ['perspective', 'Perspective'],
+        ['parallel', 'Parallel'],
+      ],
+      cameras.value.projection,
+      isDisabled,
+      (id, event) => cameras.setProjection(id, event.timeStamp),
+    )}
+    <div class="checks">${scene?.axes ? checkbox('Patient axes', scene.axes.visible, isDisabled, (visible, event) => room.patchScene({ axes: { visible } }, { view: actions.view.number, at: event.timeStamp }), 'Lines through the middle of the plan, for everybody') : nothing}
+      ${view.ofKind > 1 ? onlyTargets(room, view, isDisabled) : nothing}
+      ${checkbox('Link the 3-D cameras', ui.panes.areCamerasLinked.value, false, link, hasTwo ? 'The two 3-D panes turn together' : 'For two 3-D panes: put 3-D 2 into a pane by its name')}</div></div>`;
+}
+
+/** A second 3-D picture beside the first: the same scene, without what lies around the targets. */
+function onlyTargets(room, view, isDisabled) {
+  const regions = room.plan.value?.regions ?? [];
+  if (!regions.some(isTarget)) return nothing;
+  const hidden = Object.fromEntries(regions.map((region) => [region.id, { visible: isTarget(region) }]));
+  return checkbox(
+    'Only targets here',
+    hasOwnRegions(view),
+    isDisabled,
+    (isOn, event) => room.patchView(view.number, { override: { regions: isOn ? hidden : null } }, { at: event.timeStamp }),
+    'In this picture alone, for everybody who sees it',
+  );
+}
+
+/** True if the view shows other regions than the scene. */
+export const hasOwnRegions = (view) => Boolean(view.document.value.override?.regions) && view.ofKind > 1;

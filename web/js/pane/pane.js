@@ -1,0 +1,356 @@
+// One pane: header, picture with its overlay, slice slider.
+import { html, nothing } from '../../lib/lit-html.js';
+import { classMap } from '../../lib/directives/class-map.js';
+import { live } from '../../lib/directives/live.js';
+import { computed, effect, signal } from '../../lib/signals-core.js';
+import { fidelity } from '../room/fidelity.js';
+import { heightOver, positionOf, reachOf, stepAcross } from '../room/obliques.js';
+import { crosshair, isLowWhite, shownImage } from '../room/plan.js';
+import { nameSome } from '../features/regions/refusals.js';
+import { describe } from '../room/camera.js';
+import { isInSpace, isTilted, isTurnable } from '../room/kinds.js';
+import { letters } from './letters.js';
+import { overlay } from './overlay.js';
+import { Painter } from './painter.js';
+import { PointerReader } from './pointer.js';
+import { ofFits } from '../features/fits/fit_later.js';
+import { millimetres, number, windowText } from '../parts/format.js';
+import { ofDose, ofDrawnDose } from '../features/dose/dose_later.js';
+import { icon } from '../parts/icons.js';
+import { mount, variables } from '../parts/mount.js';
+import { ofNotes } from '../features/notes/notes_lazy.js';
+import { hasOwnRegions, orientation } from './orientation_menu.js';
+import { PaneActions, fitBox } from './pane_actions.js';
+import { paneKind } from './pane_kind.js';
+import { PaneLines } from '../features/planes/pane_lines.js';
+import { followMark } from '../shell/room_chip.js';
+import { readOut, spoken } from './read_out.js';
+import { ofTracks } from '../features/tracks/track_lazy.js';
+import { imageLegend } from '../features/image/window_fields.js';
+
+const resizeMs = 120;
+const maxSide = 4096;
+const lowPane = 300; // px; lower slice panes show legends only while they are active
+
+export class Pane {
+  #room;
+  #ui;
+  #view;
+  #refused;
+  #probed;
+  #doses;
+  #size = signal([0, 0]);
+  #resizeTimer = 0;
+  #stops = [];
+  #lastCaption = '';
+
+  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted} */
+  constructor(host, { room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted }, view) {
+    this.#room = room;
+    this.#ui = ui;
+    this.#view = view;
+    this.#refused = refused;
+    this.#probed = probed;
+    this.#doses = doses;
+    this.host = host;
+    this.actions = new PaneActions(room, ui, api, view.number, { histograms, ellipses });
+    this.lines = new PaneLines(room, ui, view, () => this.place);
+    this.badge = computed(() =>
+      fidelity({
+        link: room.link.value,
+        renderer: room.renderer.value.state,
+        header: view.painted.value,
+        staleSince: view.staleSince.value,
+        behindSince: view.behindSince.value,
+        fps: view.fps.value,
+        now: ui.now.value,
+        refusal: view.refusal.value,
+      }),
+    );
+    this.#stops.push(mount(host, () => this.#draw(), redraw));
+    this.#stops.push(mount(host.querySelector(`#caption-${view.number}`), () => html`${this.#caption()}`, redraw));
+    const body = host.querySelector('.picture');
+    this.painter = new Painter(host.querySelector('canvas'), {
+      decode,
+      schedule: (callback) => redraw.schedulePicture(host, callback),
+      onPainted: (header, isDrawn) => {
+        if (isDrawn) redraw.painted(host);
+        onPainted(header, isDrawn);
+      },
+    });
+    const pointer = new PointerReader(body, this.actions);
+    this.#stops.push(...this.#readOut(body.querySelector('.pointed')));
+    body.addEventListener('keydown', (event) => {
+      if (this.actions.key(event)) event.preventDefault();
+    });
+    const observer = new ResizeObserver(() => this.#measure(body));
+    observer.observe(body);
+    this.#measure(body);
+    this.#stops.push(
+      () => pointer.stop(),
+      () => observer.disconnect(),
+      () => this.painter.stop(),
+    );
+  }
+
+  /** The card at the pointer: drawn apart from the pane, and gone with the picture that it is about. */
+  #readOut(host) {
+    const { pointed } = this.actions;
+    const onKey = ({ key }) => key === 'Escape' && pointed.hide();
+    addEventListener('keydown', onKey);
+    return [
+      () => removeEventListener('keydown', onKey),
+      mount(host, () => readOut({ room: this.#room, pointed }, host)),
+      effect(() => {
+        const header = this.#view.painted.value;
+        if (header) pointed.picture(`${header.scene_revision} ${header.clip_from_lps_mm}`);
+      }),
+      effect(() => {
+        if (this.#ui.active.value !== this.#view.number) pointed.hide();
+      }),
+      () => pointed.hide(),
+    ];
+  }
+
+  stop() {
+    clearTimeout(this.#resizeTimer);
+    for (const stop of this.#stops) stop();
+  }
+
+  /** Opens, resizes or closes the server's view when the pane is shown, resized or hidden. */
+  #measure(body) {
+    const { width, height } = body.getBoundingClientRect();
+    this.#size.value = [width, height];
+    clearTimeout(this.#resizeTimer);
+    if (!this.#view.isOpen.value) this.#ask();
+    else this.#resizeTimer = setTimeout(() => this.#ask(), resizeMs);
+  }
+
+  #ask() {
+    const [width, height] = this.#size.value;
+    if (width < 2 || height < 2) return void this.#room.hideView(this.#view.number);
+    const ratio = Math.min(globalThis.devicePixelRatio || 1, 2);
+    const pixels = (side) => Math.min(Math.max(Math.round(side * ratio), 16), maxSide);
+    this.#room.showView(this.#view.number, [pixels(width), pixels(height)]);
+  }
+
+  get #box() {
+    const header = this.#view.painted.value;
+    const pane = this.#size.value;
+    return header && pane[0] > 1 ? fitBox(pane, [header.width_px, header.height_px]) : { x: 0, y: 0, width: pane[0], height: pane[1] };
+  }
+
+  /** The picture on the screen, its place in the pane, the pane's size. */
+  get place() {
+    return { header: this.#view.painted.value, box: this.#box, pane: this.#size.value };
+  }
+
+  #draw() {
+    const { name, number: n } = this.#view;
+    const isMaximised = this.#ui.maximised.value === n;
+    this.actions.box = this.#box;
+    const { lines, handles } = this.lines.draw();
+    const tools = this.actions.tools.draw(this.place);
+    return html`
+      <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
+        ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${tools.where ?? this.#whereInHead()}</span>${ofFits(this.#room)?.wordMark({ room: this.#room }) ?? nothing}${tools.head ?? nothing}<span class="grow"></span>
+        ${followMark(this.#room)}${this.#badgeButton()}
+        <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
+          title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${name}`}>
+          ${icon(isMaximised ? 'restore' : 'maximise')}</button>
+      </header>
+      <div class="pane-body">
+        <div class=${classMap({ picture: true, stale: this.badge.value?.state === 'stale', lost: this.badge.value?.state === 'disconnected' })}
+          tabindex="0" role="group" aria-label=${`${name} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
+          @focus=${() => {
+            this.#ui.active.value = n;
+          }}>
+          <canvas width="16" height="16"></canvas>
+          ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}${tools.overlay}</svg>${handles}${this.#notePins()}${tools.handles}
+          <svg class="overlay pointers" aria-hidden="true"></svg><div class="pointed"></div>
+          ${this.#cover()}
+        </div>
+        ${this.#legend()}
+        ${orientation({ room: this.#room, ui: this.#ui }, this.actions, this.#size.value)}
+        ${tools.slider ?? this.#slider()}
+      </div>${tools.foot ?? nothing}
+      <p class="hidden" id=${`caption-${n}`} aria-live="polite"></p>`;
+  }
+
+  #where() {
+    const { kind } = this.#view;
+    const scene = this.#room.scene.value;
+    if (!scene || !this.#room.plan.value) return '';
+    if (kind === 'beam') return 'camera locked to beam';
+    if (kind === 'beam-slice') return `${millimetres(scene.beam.slice.along_mm)} from entry`;
+    if (isInSpace(kind)) {
+      const camera = this.#view.document.value && this.actions.camera;
+      return hasOwnRegions(this.#view) ? `${describe(camera)}, only targets` : describe(camera);
+    }
+    const { plane } = this.actions;
+    return `${letters(plane.normal)} ${millimetres(positionOf(plane))}`;
+  }
+
+  /** The same with the parts marked that a narrow pane leaves out. */
+  #whereInHead() {
+    const where = this.#where();
+    const at = isTurnable(this.#view.kind) ? where.indexOf(', ') + 2 : 0;
+    const to = where.endsWith(' mm') ? where.length - 3 : where.length;
+    return html`<span class="roomy">${where.slice(0, at)}</span>${where.slice(at, to)}<span class="roomy">${where.slice(to)}</span>`;
+  }
+
+  #badgeButton() {
+    const badge = this.badge.value;
+    if (!badge) return nothing;
+    const name = `badge-${this.#view.number}`;
+    return html`<span class="anchor"><button class=${`badge ${badge.state}`} data-badge=${badge.state} ?disabled=${!badge.why}
+        aria-expanded=${this.#ui.popover.value === name} @click=${() => this.#ui.toggle(name)}>${icon(badge.state, 12)}<span>${badge.text}</span></button>
+      ${badge.why && this.#ui.popover.value === name ? html`<div class="popover badge-why" role="status"><b class=${badge.state}>${icon(badge.state, 12)} ${badge.text}</b><p>${badge.why}</p></div>` : nothing}</span>`;
+  }
+
+  #overlay() {
+    const view = this.#view;
+    const header = view.painted.value;
+    const scene = this.#room.scene.value;
+    const pane = this.#size.value;
+    if (!header || !scene || pane[0] < 2) return nothing;
+    const box = this.#box;
+    const plan = this.#room.plan.value;
+    const image = shownImage(plan, scene);
+    const plane = isInSpace(view.kind) ? null : this.actions.plane;
+    const tolerance = plane && stepAcross(plane.normal, image?.stepMm ?? [1, 1, 1]) / 2;
+    return html`${this.actions.measures.overlay({ header, box, pane })}${ofDrawnDose(this.#room)?.lineLabels({ doses: this.#doses, view, host: this.host, header, box })}${ofDrawnDose(this.#room)?.pinMarks({ scene, plane, tolerance, header, box, pane })}${plane ? nothing : ofTracks(this.#room)?.chosenTrack({ room: this.#room, ui: this.#ui }, { header, box })}${overlay(
+      {
+        kind: view.kind,
+        header,
+        box,
+        pane,
+        isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
+        axes: scene.axes?.visible ? plan?.bounds : null,
+        point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
+        pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
+        windowText: image
+          ? windowText(scene.image.window, image.unit, isLowWhite(image, scene))
+          : plan?.regions.length
+            ? 'No image: regions'
+            : '',
+      },
+    )}`;
+  }
+
+  #notePins() {
+    const notes = ofNotes(this.#room);
+    const { scene, plan } = this.#room;
+    if (!notes || !scene.value) return nothing;
+    const plane = isInSpace(this.#view.kind) ? null : this.actions.plane;
+    const tolerance = plane && stepAcross(plane.normal, shownImage(plan.value, scene.value)?.stepMm ?? [1, 1, 1]) / 2;
+    return notes.notePins(
+      { room: this.#room, ui: this.#ui },
+      { header: this.#view.painted.value, box: this.#box, pane: this.#size.value, plane, tolerance },
+    );
+  }
+
+  #cover() {
+    const { state, phase, percent, problem } = this.#room.renderer.value;
+    if (state === 'failed' || state === 'closed')
+      return html`<div class="cover"><div class="refusal">${icon('error')}<div><b>The plan cannot be shown.</b><p>${problem?.detail ?? 'The renderer gave no reason.'}</p></div></div></div>`;
+    if (state === 'restarting' && problem)
+      return html`<div class="cover"><div class="refusal" role="status">${icon('warning')}<div><b>No new picture yet.</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
+    const { value: refusal } = this.#view.refusal;
+    if (refusal && state === 'ready')
+      return html`<div class="cover"><div class="refusal" role="status">${icon('error')}<div><b>This view cannot be drawn.</b><p>${refusal}</p>
+        <p class="place">${this.#view.painted.value ? 'The picture behind is the last that could be. ' : ''}It is drawn again after the next change.</p></div></div></div>`;
+    if (this.#view.painted.value) return this.#emptyWords();
+    if (state === 'ready') return this.#emptyWords();
+    return html`<div class="cover"><div class="loading" role="progressbar" aria-valuenow=${Math.round(percent)} aria-valuemin="0" aria-valuemax="100">
+      <span>${phase || (state === 'starting' ? 'Starting the renderer' : 'Loading')}</span><b>${number(percent)} %</b>
+      <i class="bar" ${variables({ '--fill': `${percent}%` })}></i></div></div>`;
+  }
+
+  #emptyWords() {
+    const plan = this.#room.plan.value;
+    if (!plan || plan.images.length || plan.regions.length) return nothing;
+    return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to ${isInSpace(this.#view.kind) ? 'draw' : 'cut through'}.</p></div>`;
+  }
+
+  /** The legend: regions that are missing from the picture, and the colours of the segmentation check. */
+  #legend() {
+    const scene = this.#room.scene.value;
+    const plan = this.#room.plan.value;
+    if (!scene || !plan || !this.#view.painted.value) return nothing;
+    const isLow = this.#size.value[1] < lowPane;
+    if (isLow && !isInSpace(this.#view.kind) && this.#ui.active.value !== this.#view.number) return nothing;
+    const check =
+      !isInSpace(this.#view.kind) && scene.check.visible && plan.regions.length
+        ? html`<ul class="legend" aria-label="Colours of the check">
+        <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>`
+        : nothing;
+    const reasons = isInSpace(this.#view.kind) ? this.#refused.value : this.#view.missing.value.reasons;
+    const missing = plan.regions.filter(({ id }) => reasons[id]);
+    const images = isInSpace(this.#view.kind) ? nothing : imageLegend({ room: this.#room }, this.#view.number);
+    const dose = ofDrawnDose(this.#room)?.doseLegend(
+      { room: this.#room, ui: this.#ui, doses: this.#doses },
+      this.#view,
+      this.#size.value,
+      missing.length > 0 || check !== nothing,
+    );
+    return html`${images}${dose}${missing.length ? this.#missing(scene, missing, reasons, check) : check}`;
+  }
+
+  #missing(scene, missing, reasons, check) {
+    const words = !isInSpace(this.#view.kind)
+      ? 'Not checked'
+      : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs')
+        ? 'Not shown as NURBS'
+        : 'Not drawn';
+    const nUnnamed = Math.max(0, this.#view.missing.value.n - missing.length);
+    const show = () => {
+      this.#ui.choose('region', missing[0].id);
+    };
+    return html`${check}<div class="legend missing" role="status"><span class="warn">${icon('warning', 12)}</span><p>${words}: ${nameSome([...missing.map(({ name }) => name), ...Array(nUnnamed).fill('others')])}</p>
+      <button title=${reasons[missing[0].id]} aria-label=${`Why ${missing[0].name} is not shown`} @click=${show}>Why?</button></div>`;
+  }
+
+  #slider() {
+    const { kind } = this.#view;
+    const { scene, plan } = this.#room;
+    if (isInSpace(kind)) return nothing;
+    if (!scene.value || !plan.value) return html`<div class="slice-slider"></div>`; // its place, so that the picture keeps its size
+    const { plane } = this.actions;
+    const letter = letters(plane.normal);
+    const image = shownImage(plan.value, scene.value);
+    const { low, high } = reachOf(plane.normal, image?.bounds ?? plan.value.bounds);
+    const position = positionOf(plane);
+    return html`<label class="slice-slider" title="Slice (wheel, arrow keys)"><input type="range" aria-label=${`${this.#view.name} slice, ${letter} in mm`}
+      min=${low} max=${high} step="0.1" .value=${live(String(position))} ?disabled=${!this.#room.canChange.value}
+      aria-valuetext=${`${letter} ${millimetres(position)}`}
+      @input=${(event) => this.actions.setSlice(event.target.valueAsNumber, event.timeStamp)}
+      @keydown=${(event) => this.#sliderKey(event)}></label>`;
+  }
+
+  #sliderKey(event) {
+    const steps = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 }[event.key];
+    if (!steps) return;
+    event.preventDefault();
+    this.actions.stepSlice(steps, event.timeStamp);
+  }
+
+  /** "Axial, S −64.9 mm, brain, CT 38 HU": announced once picture and values are there, not thirty times a second. */
+  #caption() {
+    const { result, isOld } = this.#probed.value;
+    if (!this.#view.painted.value?.is_still || isOld) return this.#lastCaption;
+    const facts =
+      this.#ui.active.value === this.#view.number && result
+        ? [...spoken(result, this.#room.plan.value, this.#room.scene.value), ofDose(this.#room)?.doseHere({ doses: this.#doses })]
+        : [];
+    this.#lastCaption = [this.#view.name, this.#where(), ...facts].filter(Boolean).join(', ');
+    return this.#lastCaption;
+  }
+}
+
+/** "R1" for "Reviewer 1", "AL" for "Ada Lovelace". */
+export function initials(name) {
+  const words = name.trim().split(/\s+/);
+  const letters = words.length > 1 ? words[0][0] + words.at(-1)[0] : words[0].slice(0, 2);
+  return letters.toUpperCase();
+}

@@ -1,0 +1,70 @@
+// What takes pointer and keys of a pane before the pane does, and draws into it: the chosen tool when it is one that is loaded later, as "Move beam", and
+// what panes along a beam have (beam_panes.js).
+import { isOfBeam } from '../room/kinds.js';
+import { Lazy, styled } from '../parts/lazy.js';
+
+/**
+ * Each event is as in pointer.js; a handler that returns true has used it, and the pane does nothing.
+ * @typedef {object} PaneHandler
+ * @property {(mode: string, at: object) => boolean} [start] @property {(mode: string, move: object) => boolean} [move] @property {() => boolean} [end] also of a drag that was not taken
+ * @property {(tap: object) => boolean} [tap] @property {(tap: object) => boolean} [doubleTap] @property {(press: object) => boolean} [longPress] @property {(hover: object) => boolean} [hover]
+ * @property {(wheel: object) => boolean} [wheel] @property {(pinch: object) => boolean} [pinch]
+ * @property {(event: KeyboardEvent, at: number) => (() => void)|null} [key] what the key does
+ * @property {(at: number) => boolean} [reset] @property {(steps: number, at: number) => boolean} [stepSlice] @property {(mm: number, at: number) => boolean} [setSlice]
+ * @property {(place: {header: object|null, box: object, pane: number[]}) => {where?: string, head?: unknown, overlay?: unknown, handles?: unknown, slider?: unknown, foot?: unknown}} [draw]
+ *   overlay: SVG above the picture, CSS px of the pane; handles: HTML above that; header: of the picture on the screen
+ */
+
+const makers = new Map();
+const beams = new Lazy(
+  async () => (await Promise.all([import('../features/beams/beam_panes.js'), styled('js/features/beams/beam.css')]))[0],
+);
+
+/**
+ * Adds a tool: while ui.tool is its name, it takes part in panes of every kind.
+ * @param {string} name @param {(pane: {room, ui, api, view, actions: import('./pane_actions.js').PaneActions}) => PaneHandler} make called once for each pane
+ */
+export const addTool = (name, make) => makers.set(name, make);
+
+export class PaneTools {
+  #pane;
+  #made = new Map();
+
+  /** @param {object} pane {room, ui, api, view, actions} */
+  constructor(pane) {
+    this.#pane = pane;
+  }
+
+  #of(name, make) {
+    if (make && !this.#made.has(name)) this.#made.set(name, make(this.#pane));
+    return this.#made.get(name);
+  }
+
+  /** The handlers, first the one that is asked first. Read in an effect, it is told when one comes. @returns {PaneHandler[]} */
+  get #handlers() {
+    const { ui, view } = this.#pane;
+    const tool = ui.tool.value;
+    const kind = isOfBeam(view.kind) && beams.loaded.value?.makePane;
+    return [this.#of(tool, makers.get(tool)), this.#of('kind', kind || null)].filter(Boolean);
+  }
+
+  /** Offers an event. Returns whether it was used; in a view whose camera is locked it always is until that is loaded. */
+  take(name, ...args) {
+    return this.#handlers.some((handler) => handler[name]?.(...args)) || (this.#pane.view.kind === 'beam' && !beams.loaded.peek());
+  }
+
+  key(event, at) {
+    for (const handler of this.#handlers) {
+      const act = handler.key?.(event, at);
+      if (act) return act;
+    }
+    return null;
+  }
+
+  /** What they draw into the pane. */
+  draw(place) {
+    if (isOfBeam(this.#pane.view.kind) && this.#pane.view.isOpen.value) beams.load();
+    const drawn = this.#handlers.map((handler) => handler.draw?.(place) ?? {});
+    return { ...Object.assign({}, ...drawn), overlay: drawn.map(({ overlay }) => overlay), handles: drawn.map(({ handles }) => handles) };
+  }
+}

@@ -1,0 +1,173 @@
+// The dose that a scene shows: its quantities, its basis in words, the patches that change it. Pure.
+import { number, unitText } from '../parts/format.js';
+import { unitFactor, unitPatch } from './dose_units.js';
+
+const names = {
+  weighted: 'Weighted total',
+  total: 'Physical total',
+  boron: 'Boron',
+  nitrogen: 'Nitrogen',
+  fast: 'Fast neutron',
+  gamma: 'Gamma',
+  other: 'Other recoils',
+  'blood-boron': 'Blood boron',
+  'weighted-total': 'Weighted total of the file',
+  isoeffective: 'Photon-isoeffective',
+  'fast-fluence': 'Fast fluence',
+  'epithermal-fluence': 'Epithermal fluence',
+  'thermal-fluence': 'Thermal fluence',
+};
+/** What physical and weighted totals are summed from; a complete dose has the first four. */
+const summands = ['boron', 'nitrogen', 'fast', 'gamma', 'other'];
+const sums = ['weighted', 'total', 'isoeffective'];
+
+export const quantityName = (quantity) => names[quantity] ?? quantity;
+export const isFluence = (quantity) => quantity.endsWith('fluence');
+
+/** The dose that the scene shows; null: the plan has none. */
+export const shownDose = (plan, scene) => plan?.doses.find(({ id }) => id === scene?.dose.id) ?? plan?.doses[0] ?? null;
+export const doseName = (dose) => dose.name || dose.id;
+const componentOf = (dose, quantity) => dose.components.find((part) => part.quantity === quantity);
+const hasSummands = (dose) => dose.components.some(({ quantity }) => summands.includes(quantity));
+
+/** What can be shown of a dose, in the order of the list: sums only where there is something to sum. */
+export function quantitiesOf(dose) {
+  const has = (quantity) =>
+    quantity === 'weighted' || quantity === 'isoeffective'
+      ? hasSummands(dose)
+      : quantity === 'total'
+        ? hasSummands(dose) || Boolean(componentOf(dose, 'total'))
+        : Boolean(componentOf(dose, quantity));
+  return Object.keys(names).filter(has);
+}
+
+/** What a sum of this dose lacks: ["nitrogen"]. */
+export function missingOf(dose, quantity) {
+  if (!sums.includes(quantity) || (quantity === 'total' && componentOf(dose, 'total'))) return [];
+  return summands.slice(0, 4).filter((part) => !componentOf(dose, part));
+}
+
+/** "without nitrogen, fast neutrons"; '' when nothing is missing. */
+export const missingWords = (missing) =>
+  missing.length ? `without ${missing.map((quantity) => quantityName(quantity).toLowerCase()).join(', ')}` : '';
+
+/** The unit of a quantity of a dose, for people. */
+export function unitOf(dose, quantity) {
+  const unit = unitText(
+    componentOf(dose, quantity)?.unit ?? dose.components.find((part) => summands.includes(part.quantity))?.unit ?? dose.unit,
+  );
+  const [, gray] = /^(\w*Gy)/.exec(unit) ?? [];
+  if (quantity === 'weighted' && gray) return `${gray}(w)`;
+  return quantity === 'isoeffective' ? 'Gy(IsoE)' : unit;
+}
+
+/** True if the value depends on the boron in blood. */
+export const dependsOnBlood = (dose, quantity) =>
+  dose.components.some(
+    (part) =>
+      part.per_ppm &&
+      (part.quantity === quantity ||
+        (sums.includes(quantity) && part.quantity === 'boron' && !(quantity === 'total' && componentOf(dose, 'total')))),
+  );
+/** True if biological weights are in it. */
+export const isWeighted = (quantity) => quantity === 'weighted';
+
+/** The quantity that a dose is shown with: the one until now if it has it. */
+export function quantityFor(scene, dose) {
+  const all = quantitiesOf(dose);
+  const { quantity, weights } = scene.dose;
+  if (all.includes(quantity)) return quantity;
+  if (dose.components.some((part) => part.per_ppm) && Object.keys(weights).length) return 'weighted';
+  return ['total', 'weighted-total'].find((other) => componentOf(dose, other)) ?? all[0];
+}
+
+/** The doses of a sum, the shown one first. */
+export const summedDoses = (plan, scene) => {
+  const shown = shownDose(plan, scene);
+  return [shown, ...plan.doses.filter((dose) => dose !== shown && dose.id in scene.dose.sum)].filter(Boolean);
+};
+/** True if anything of the dose is switched on. */
+export const isOn = ({ dose }) =>
+  dose.wash.visible || dose.lines.visible || dose.surfaces.visible || dose.coverage.visible || dose.compare.mode !== 'none';
+
+// ---- patches ------------------------------------------------------------------------------------------------------------
+
+/** Shows another dose, with a quantity that it has. What stands in a unit of dose keeps its worth: a level of 30 Gy is not 30 cGy then. */
+export function choosePatch(plan, scene, dose) {
+  const patch = unitPatch(scene, unitFactor(shownDose(plan, scene)?.unit, dose.unit));
+  return {
+    ...patch,
+    dose: {
+      ...patch.dose,
+      id: dose.id,
+      quantity: quantityFor(scene, dose),
+      ...(dose.id in scene.dose.sum && { sum: { [dose.id]: null } }),
+    },
+  };
+}
+
+/** Switches lines, wash and surfaces off, or wash and lines on. */
+export function toggledPatch(plan, scene, dose, isShown) {
+  const { lines, wash, surfaces } = scene.dose;
+  const isAny = isShown && (lines.visible || wash.visible || surfaces.visible);
+  const chosen = choosePatch(plan, scene, dose);
+  return {
+    ...chosen,
+    dose: {
+      ...chosen.dose,
+      ...(isAny
+        ? { lines: { visible: false }, wash: { visible: false }, surfaces: { visible: false } }
+        : { lines: { visible: true }, wash: { visible: true } }),
+    },
+  };
+}
+
+// ---- words --------------------------------------------------------------------------------------------------------------
+
+const regionName = (plan, id) =>
+  plan.regions.find((region) => region.id === id)?.name ?? plan.regions.find(({ is_target: is }) => is)?.name ?? 'region';
+
+/** "brain max", "body max", "prescription": what 100 % is, in a few words. */
+export function referenceWords(plan, { kind, region }) {
+  return {
+    body: () => 'body max',
+    point: () => 'value at point',
+    'region-max': () => `${regionName(plan, region)} max`,
+    'region-mean': () => `${regionName(plan, region)} mean`,
+    value: () => 'prescription',
+    file: () => "file's reference",
+  }[kind]();
+}
+
+/** " per fraction"; with a factor " for 30 × fraction". */
+function perWords(per, factor) {
+  const words = unitText(per.replace(/^per /, ''));
+  if (factor === 1) return words ? ` per ${words}` : '';
+  return ` for ${number(factor, factor % 1 ? 2 : 0)} × ${words || "the file's"}`;
+}
+
+/** "Gy(w) per 250 kW-min · blood 15 ppm · weights: BPA example · isodose as brain": what stands behind every number of dose. */
+export function basisParts(plan, scene) {
+  const dose = shownDose(plan, scene);
+  if (!dose) return null;
+  const { quantity, factor, blood_ppm: ppm, weights_name: set, tissue } = scene.dose;
+  const parts = summedDoses(plan, scene);
+  const missing = [...new Set(parts.flatMap((part) => missingOf(part, quantity)))];
+  return {
+    unit: unitOf(dose, quantity),
+    rest: [
+      perWords(dose.per, factor),
+      quantity === 'weighted' ? '' : quantityName(quantity).toLowerCase(),
+      dependsOnBlood(dose, quantity) ? `blood ${number(ppm, ppm % 1 ? 1 : 0)} ppm` : '',
+      isWeighted(quantity) ? `weights: ${set || 'edited'}` : '',
+      tissue && (isWeighted(quantity) || dependsOnBlood(dose, quantity)) ? `isodose as ${regionName(plan, tissue)}` : '',
+      parts.length > 1 ? `sum of ${parts.length} doses` : '',
+      missingWords(missing),
+    ],
+  };
+}
+
+export function basisWords(plan, scene) {
+  const parts = basisParts(plan, scene);
+  return parts ? [`${parts.unit}${parts.rest[0]}`, ...parts.rest.slice(1)].filter(Boolean).join(' · ') : '';
+}

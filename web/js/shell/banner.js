@@ -1,0 +1,73 @@
+// The banner of a room: name of the plan, its warnings, members, invitation, help.
+import { html, nothing } from '../../lib/lit-html.js';
+import { troubles } from '../room/plan.js';
+import { ofDose } from '../features/dose/dose_later.js';
+import { icon } from '../parts/icons.js';
+import { Lazy, styled } from '../parts/lazy.js';
+import { variables } from '../parts/mount.js';
+import { initials } from '../pane/pane.js';
+import { approval, patientButton } from '../features/patient/patient.js';
+import { roomChip } from './room_chip.js';
+import { roving } from '../parts/roving.js';
+import { stripEnd } from './tools.js';
+
+export const brand = () =>
+  html`<a class="brand" href="#/" title="All plans" aria-label="Beamroom, all plans">${icon('logo', 20)}<b>Beamroom</b></a>`;
+
+const invite = new Lazy(async () => (await Promise.all([import('./invite.js'), styled('js/shell/invite.css')]))[0]);
+
+async function copyLink(ui) {
+  const field = document.querySelector('#invite-link');
+  field.select();
+  try {
+    // a page not served securely has no clipboard; the link is selected and can be copied by hand
+    await navigator.clipboard.writeText(location.href);
+    ui.popover.value = '';
+    ui.notify('ok', 'Link copied. Who has it can join this room.');
+  } catch {
+    ui.notify('warn', 'Press Ctrl+C to copy the selected link.');
+  }
+}
+
+/** Counts the errors and warnings of loading, and opens the report. */
+function warnings({ room, ui }) {
+  const report = room.plan.value?.report;
+  const words = report && troubles(report);
+  if (!words) return nothing;
+  const isError = report.lines.some(({ severity }) => severity === 'error');
+  return html`<button class="chip" title="Open the load report" aria-label=${`${words}: open the load report`} @click=${() => ui.showTab('plan')}><span class=${`pill ${isError ? 'err' : 'warn'}`}>${icon(isError ? 'error' : 'warning')}<span>${words}</span></span></button>`;
+}
+
+export function banner(world) {
+  const { room, ui } = world;
+  const plan = room.plan.value;
+  const you = room.member.value;
+  const isTouch = ui.isTouch.value;
+  const members = room.members.value.filter((member) => member.connected !== false);
+  const own = members.find((member) => member.id === you);
+  const others = members.filter((member) => member.id !== you);
+  return html`${brand()}<i class="rule"></i>${patientButton(world)}
+    <div class="plan-name"><h1 title=${plan?.name ?? ''}><span>${plan?.name ?? room.planId.value}</span></h1>
+      <span class="dim plan-id">Plan <code>${room.planId.value}</code></span>${ofDose(room)?.doseBasis(world, 'below')}</div>
+    ${approval(world)}${ofDose(room)?.doseBasis(world, 'aside')}
+    ${warnings(world)}
+    <span class="grow"></span>
+    ${
+      own
+        ? html`<div class="you" title=${`${own.name} (you)`}><span class="avatar own">${initials(own.name)}</span><span class="you-words"><b>${own.name} (you)</b>
+      <span class="dim">${others.length ? `${others.length} more in this room` : 'alone in this room'}</span></span></div>`
+        : nothing
+    }
+    <div class="members" role="group" aria-label="Members">${others.slice(0, 6).map((member) => html`<span class="avatar member" ${variables({ '--member': member.color ?? '#929ba6' })} title=${member.name}>${initials(member.name)}</span>`)}
+      ${others.length > 6 ? html`<span class="dim">+${others.length - 6}</span>` : nothing}</div>
+    ${roomChip(world, 'banner')}
+    ${isTouch ? html`<div class="strip-end" role="toolbar" aria-label="This picture" @keydown=${roving}>${stripEnd(world)}</div>` : nothing}
+    <span class="anchor"><button class="invite-button" @click=${() => ui.toggle('invite')} aria-label="Invite" aria-expanded=${ui.popover.value === 'invite'}>${icon('invite')}<span>Invite</span></button>
+      ${
+        ui.popover.value === 'invite'
+          ? html`<div class="popover invite"><label for="invite-link">Link to this room <code>${room.id}</code></label>
+        <div class="pair"><input id="invite-link" readonly .value=${location.href}><button class="primary" @click=${() => copyLink(ui)}>Copy</button></div>${room.control.may('control') ? invite.draw((loaded) => loaded.inviteForm(world)) : nothing}</div>`
+          : nothing
+      }</span>
+    <button class="icon-button" title="Keys and mouse (?)" aria-label="Help" aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
+}

@@ -1,0 +1,46 @@
+// The notice that a room has ended or does not exist, with ways on: a room on the same plan, the list of plans.
+import { html, nothing } from '../../lib/lit-html.js';
+import { effect } from '../../lib/signals-core.js';
+import { classMap } from '../../lib/directives/class-map.js';
+import { icon } from '../parts/icons.js';
+import { whoIn } from '../features/start/lobby.js';
+
+const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : 'The server gave no reason.');
+
+/** The notes are in this page alone by now, when the room was deleted. */
+async function saveNotes(world) {
+  const { room } = world;
+  const [{ notesText }, { exportFile }] = await Promise.all([import('../features/notes/notes_file.js'), import('../room/exports.js')]);
+  const text = notesText({ id: room.id, planId: room.planId.peek(), plan: room.plan.peek(), rows: room.items.notes.peek() });
+  await exportFile(world, 'notes', `${room.planId.peek()}-notes.txt`, text, 'text/plain');
+}
+
+/** After a room that this tab was in, the last pictures stay visible. */
+export function ended(world) {
+  const { room, after } = world;
+  if (room.link.value.state !== 'ended') return nothing;
+  const wasIn = room.member.value !== '';
+  const plan = after.plan.value;
+  const rooms = after.rooms.value.slice(0, 3);
+  return html`<section class=${classMap({ card: true, ended: true, unknown: !wasIn })} role="alert">${icon('disconnected')}
+    <div>${wasIn ? html`<b>You are no longer in this room</b>` : html`<h1>${room.link.value.isRefused ? 'You cannot enter this room' : 'There is no room at this address'}</h1>`}<p>${sentence(room.link.value.reason)}</p>
+      ${after.isPlanGone.value ? html`<p>Its plan is no longer on this server.</p>` : nothing}
+      ${after.error.value ? html`<p class="err">${icon('error')} ${after.error.value}</p>` : nothing}
+      ${wasIn && room.lostAtEnd.value ? html`<p class="err">${icon('error')} Your last changes did not reach it.</p>` : nothing}
+      <div class="buttons">${wasIn && room.items.notes.value.length ? html`<button @click=${() => void saveNotes(world)}>Save its notes as a file</button>` : nothing}${rooms.map((other) => html`<button @click=${() => after.join(other)}>Join ${other.id}: ${whoIn(other)}</button>`)}
+        ${plan ? html`<button class="primary" ?disabled=${after.isBusy.value} @click=${() => after.reopen()}>Open ${plan.name} in a new room</button>` : nothing}
+        <a class="button" href="#/">All plans</a></div></div></section>`;
+}
+
+/** Looks for ways on as soon as the room has ended. @param {string} plan as far as the address knows it @returns {() => void} stops */
+export function watchEnd(host, room, after, plan) {
+  const stop = effect(() => {
+    if (room.link.value.state !== 'ended') return;
+    host.querySelector('.room').classList.toggle('unknown', room.member.peek() === '');
+    queueMicrotask(() => void after.look(room.planId.peek() || plan)); // outside of the effect: what it reads must not start it again
+  });
+  return () => {
+    stop();
+    after.stop();
+  };
+}

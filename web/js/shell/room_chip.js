@@ -1,0 +1,91 @@
+// The room chip: who presents, whether this member follows or is on their own, and what can be done about it.
+import { html, nothing } from '../../lib/lit-html.js';
+import { effect, untracked } from '../../lib/signals-core.js';
+import { dayTime } from '../parts/format.js';
+import { icon } from '../parts/icons.js';
+import { known, Lazy, styled } from '../parts/lazy.js';
+
+const marks = { presenting: 'people', following: 'people', own: 'person', away: 'phase', none: 'warning' };
+
+function words({ following, control, recording }) {
+  const { started_ms, plan_changed } = recording.replay.value ?? {};
+  const trouble = recording.at.value?.state === 'failed' ? 'unreadable here' : plan_changed && 'plan changed'; // the popover says when the meeting was
+  const replay = started_ms && (trouble ? `Replay, ${trouble}` : `Replay ${dayTime(started_ms)}`);
+  const name = following.presenter.value?.name ?? '';
+  const n = following.nFollowers.value;
+  switch (following.standing.value) {
+    case 'presenting':
+      return { text: control.isLocked.value ? 'Presenting, locked' : 'Presenting', more: n ? `· ${n} follow${n === 1 ? 's' : ''}` : '' };
+    case 'own':
+      return {
+        text: replay ?? 'On my own',
+        act: { word: 'Return', keys: 'F', about: name ? `Return to ${name}` : 'Return to the shared view', do: () => following.return() },
+      };
+    case 'away':
+      return { text: `${name} is away` };
+    case 'none':
+      return {
+        text: replay ?? 'No presenter',
+        act: !replay &&
+          control.may('scene') && { word: 'Take over', about: "Take over: your view becomes the room's", do: () => following.present() },
+      };
+    default:
+      return { text: replay ?? (name ? `Following ${name}` : 'Following') };
+  }
+}
+
+/** The members, what can be done about control, and the own name: no part of what a first visit loads. */
+const roster = new Lazy(async () => (await Promise.all([import('./roster.js'), styled('js/shell/roster.css')]))[0]);
+
+/** Above the toasts: who requests control, for the presenter. */
+export const requestLines = (world) => {
+  const { following, control } = world.room;
+  return following.isPresenting.value && control.requests.value.length ? known(roster)?.requestLines(world) : null;
+};
+
+const places = ['strip', 'banner'];
+const topic = 'following'; // one message about who one is here and whom one follows: two would lie over the letters of a pane
+const chipOf = (place) => `room-${place}`;
+
+/** Opens the chip's popover with the focus in the field of the own name. */
+async function askName(ui) {
+  await roster.load();
+  ui.popover.value = chipOf(places[Number(ui.isTouch.value)]);
+  queueMicrotask(() => document.querySelector('#room-name')?.focus()); // after it is drawn
+}
+
+/** Tells a person without a name, who finds others in the room, under which name they are there: once, and without asking anything of them. */
+export function offerName({ room, ui, ownName }) {
+  let isDone = !ownName.isAsked.peek();
+  return effect(() => {
+    const members = room.members.value;
+    if (isDone || !members.length) return;
+    isDone = true;
+    if (members.some(({ id, connected }) => id !== room.member.value && connected !== false))
+      untracked(() => ui.notify('ok', `You are ${room.identity.name} here.`, topic, { word: 'Give your name', act: () => askName(ui) }));
+  });
+}
+
+/** @param {object} world {room, ui, ownName} @param {'strip'|'banner'} place each has its own chip, one of which the style sheet hides */
+export function roomChip(world, place) {
+  const { room, ui } = world;
+  if (!room.members.value.length) return nothing;
+  const name = chipOf(place);
+  const isOpen = ui.popover.value === name;
+  const { text, more, act } = words(room);
+  const keep = (event) => event.stopPropagation(); // the arrow keys of the tool bar stay out of the chip
+  return html`<span class="anchor room-chip in-${place}" role="group" aria-label="Room" data-standing=${room.following.standing.value} ?data-replay=${room.recording.replay.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
+    <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title="Who is in this room" @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
+      ${room.recording.running.value ? html`<b class="chip-recorded">● Recorded</b>` : nothing}
+      <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
+    ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
+    ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label="Members of this room">${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;
+}
+
+/** In the header of each pane: whether it shows the shared view or an own one. Nothing for a member who is alone. */
+export function followMark(room) {
+  const isOwn = !room.following.isFollowing.value;
+  if (!isOwn && room.members.value.filter(({ connected }) => connected !== false).length < 2) return nothing;
+  const about = isOwn ? 'Own view' : room.following.isPresenting.value ? 'Shared view: the others see it' : 'Shared view';
+  return html`<span class="follow-mark" role="img" data-own=${isOwn} title=${about} aria-label=${about}>${icon(isOwn ? 'person' : 'people', 12)}</span>`;
+}

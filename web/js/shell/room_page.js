@@ -1,0 +1,376 @@
+// The room page: panes with the panels around them, connected to the room's state.
+import { html, nothing } from '../../lib/lit-html.js';
+import { computed, effect, signal } from '../../lib/signals-core.js';
+import { AfterRoom } from '../room/after_room.js';
+import { Comparison } from '../features/regions/comparison.js';
+import { DoseFacts } from '../features/dose/dose_facts.js';
+import { Ellipses } from '../features/measures/ellipses.js';
+import { Histograms } from '../features/image/histograms.js';
+import { crosshair } from '../room/plan.js';
+import { Refusals, inQuestion } from '../features/regions/refusals.js';
+import { shapeQuery } from '../features/regions/shapes.js';
+import { views } from '../room/layout.js';
+import { RoomState } from '../room/room.js';
+import { Printout } from '../features/report/report_pages.js';
+import { UiState } from '../room/ui.js';
+import { Undo, listenUndo } from '../room/undo.js';
+import { banner } from './banner.js';
+import { leaveBeam } from '../features/beams/beam_later.js';
+import { draftBar } from '../features/beams/beam_lazy.js';
+import { leaveBookmarks, playBar, resumeBookmark } from '../features/bookmarks/bookmark_lazy.js';
+import { ChartLoader } from '../features/dose/plots/chart_loader.js';
+import { ended, watchEnd } from './ended.js';
+import { filesBar } from './files_bar.js';
+import { ofFits } from '../features/fits/fit_later.js';
+import { coverPage, help, toasts } from './float.js';
+import { inspector, selected } from './inspector.js';
+import { soon } from '../net/soon.js';
+import { mount } from '../parts/mount.js';
+import { watchNotes } from '../features/notes/notes_lazy.js';
+import { Pane } from '../pane/pane.js';
+import { giveOblique } from '../pane/pane_kind.js';
+import { paneSwitch } from './pane_switch.js';
+import { startPointers } from '../features/pointers/point_lazy.js';
+import { listenSnapshots, otherPlanDialog, resumeSnapshot } from '../features/report/snapshots.js';
+import { offerName, requestLines } from './room_chip.js';
+import { savedLine } from './saved.js';
+import { sectionOfKind } from './sections.js';
+import { status } from './status.js';
+import { toolStrip } from './tools.js';
+import { tree } from './tree.js';
+
+const probeMs = 60;
+const tickMs = 250;
+const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
+
+const drawer = (world) => (world.ui.arrangement.value.drawer ? world.charts.draw('drawer') : nothing);
+const floating = (world) =>
+  html`${help(world)}${selected.loaded.value?.figuresDialog(world) ?? nothing}${ended(world)}${otherPlanDialog(world)}${world.printoutDialog.value?.(world) ?? nothing}`;
+
+const frame = () => html`<div class="room">
+  <a class="skip" href="#picture-1">To the panes</a>
+  <header class="banner"></header><aside class="tree" aria-label="Plan"></aside>
+  <section class="strip" aria-label="Tools"></section>
+  <main><div class="switch"></div><div class="dose-bars"></div><div class="panes">${views.map(({ kind }, index) => html`<section class="pane" data-view=${index + 1} data-kind=${kind}></section>`)}</div><section class="chart-drawer" aria-label="Plots of dose"></section><div class="toasts"></div></main>
+  <aside class="inspector" aria-label="Inspector"></aside><footer class="status"></footer><div class="floating"></div></div>`;
+
+/**
+ * @param {HTMLElement} host @param {string} id of the room
+ * @param {object} world {api, connect, clock, redraw, decode, hooks, enter, ownName, storage: of the browser, isBack: this tab was in the room before,
+ *   plan: the room's, as far as the address knows it}
+ * @returns {() => void} leaves the room
+ */
+export function roomPage(
+  host,
+  id,
+  { api, connect, clock, redraw, decode, hooks, enter, ownName, storage = null, isBack = false, plan = '' },
+) {
+  const stops = [mount(host, frame)];
+  const part = (name) => host.querySelector(name);
+  const ui = new UiState(clock, storage);
+  const connection = connect(id);
+  const room = new RoomState(id, { connection, clock, schedule: redraw.schedule, sendSoon: soon(clock), notify: ui.notify });
+  const undo = new Undo(room, { clock, notify: ui.notify });
+  const probed = signal({ result: null, error: '', isOld: false });
+  const shaped = signal({ region: '', representation: '', result: null, error: '' });
+  const comparison = new Comparison(api, signal([]));
+  const refusals = new Refusals(api, signal({}));
+  const histograms = new Histograms(api.histogram);
+  const ellipses = new Ellipses(api.ellipse, clock);
+
+  const doses = new DoseFacts(room, api);
+  const refused = computed(() => ({ ...refusals.reasons.value, ...room.view(1).missing.value.reasons }));
+
+  const onPainted = (header, isDrawn) => {
+    const answered = room.frameShown(header, isDrawn);
+    hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
+  };
+  stops.push(
+    redraw.watch(globalThis),
+    loadBeforeClicks(),
+    adapt(ui),
+    effect(() => layOut(host.querySelector('.room'), ui)),
+  ); // before the panes measure themselves: views open at their sizes
+  const panes = room.views.map(
+    (view) =>
+      new Pane(
+        part(`[data-view="${view.number}"]`),
+        { room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted },
+        view,
+      ),
+  );
+  connection.addEventListener('frame', ({ detail }) => {
+    room.frameCame(detail.header);
+    panes[detail.header.view - 1]?.painter.offer(detail);
+  });
+
+  const after = new AfterRoom({ api, clock, enter });
+  const world = {
+    after,
+    room,
+    ui,
+    api,
+    clock,
+    connection,
+    decode,
+    storage,
+    ownName,
+    undo,
+    probed,
+    shaped,
+    refused,
+    comparison,
+    histograms,
+    ellipses,
+    doses,
+    panes: () => panes,
+    printout: new Printout(id, api, globalThis.sessionStorage),
+    otherPlan: signal(null),
+    printoutDialog: signal(null),
+  };
+  world.charts = new ChartLoader(world);
+  stops.push(() => world.charts.stop());
+  for (const [name, draw] of [
+    ['.banner', banner],
+    ['.tree', tree],
+    ['.strip', toolStrip],
+    ['.switch', paneSwitch],
+    [
+      '.dose-bars',
+      () =>
+        html`${filesBar(world)}${ofFits(room)?.otherPatientsBar(world)}${ofFits(room)?.fitBar(world)}${draftBar(world)}${playBar(world)}`,
+    ],
+    ['.chart-drawer', drawer],
+    ['.inspector', inspector],
+    ['.status', status],
+    ['.toasts', (shown) => html`${savedLine(shown)}${requestLines(shown)}${toasts(shown)}`],
+    ['.floating', floating],
+  ])
+    stops.push(mount(part(name), () => draw(world), redraw));
+  if (!isBack) stops.push(offerName(world));
+  stops.push(
+    effect(() => describeTitle(room)),
+    reveal(host, ui),
+    probe(room, api, probed, clock),
+    doses.start(clock),
+  );
+  stops.push(
+    listenKeys(ui, room),
+    listenUndo(globalThis, undo),
+    shape(room, ui, api, shaped),
+    compare(room, ui, comparison),
+    refuse(room, refusals),
+    moveFocus(host, ui),
+    watchEnd(host, room, after, plan),
+    giveOblique(world),
+    watchNotes(world),
+    leaveBeam(world),
+    startPointers(world),
+    listenSnapshots(world),
+    resumeSnapshot(world),
+    resumeBookmark(world),
+    () => leaveBookmarks(world),
+    coverPage(host, ui),
+  );
+
+  const tick = setInterval(() => {
+    ui.now.value = clock.now();
+  }, tickMs);
+  hooks.enter(room, panes);
+  connection.open();
+  return () => {
+    clearInterval(tick);
+    connection.close();
+    for (const pane of panes) pane.stop();
+    for (const stop of stops.reverse()) stop();
+    document.title = 'Beamroom';
+  };
+}
+
+/** Gives the style sheets the arrangement. */
+function layOut(element, ui) {
+  const { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout, visible } = ui.arrangement.value;
+  Object.assign(element.dataset, { size, tree: place, overlay, inspector: at, sheet, drawer: charts, layout });
+  const panes = [...element.querySelectorAll('.pane')];
+  const cells = [...ui.panes[layout === '2x1' || layout === '1x2' ? 'two' : 'four'].value];
+  const order = [...cells, ...views.map((_, index) => index + 1).filter((n) => !cells.includes(n))].map((n) =>
+    panes.find((pane) => Number(pane.dataset.view) === n),
+  );
+  const focused = document.activeElement;
+  if (order.some((pane, index) => pane !== panes[index])) panes[0].parentElement.append(...order); // Tab goes through them as they stand
+  for (const pane of panes) {
+    const n = Number(pane.dataset.view);
+    pane.hidden = !visible.includes(n);
+    pane.classList.toggle('active', ui.active.value === n);
+  }
+  if (focused !== document.activeElement && !focused.closest('[hidden]')) focused.focus({ preventScroll: true }); // an element that is moved loses it
+}
+
+/** Scrolls the tree to what was selected, wherever it was clicked. */
+function reveal(host, ui) {
+  return effect(() => {
+    const { kind } = ui.selection.value;
+    if (sectionOfKind[kind]) queueMicrotask(() => host.querySelector('.tree .row.selected')?.scrollIntoView({ block: 'nearest' }));
+  });
+}
+
+function describeTitle(room) {
+  document.title = [room.plan.value?.name ?? room.planId.value, 'Beamroom'].filter(Boolean).join(' – ');
+}
+
+/** Requests the values at the crosshair whenever it has moved; only the newest answer is used. */
+function probe(room, api, probed, clock) {
+  let timer = 0;
+  let pending = null;
+  const place = computed(() => {
+    const scene = room.scene.value;
+    return scene && room.plan.value ? crosshair(scene).join(' ') : '';
+  });
+  const ask = async () => {
+    pending?.abort();
+    pending = new AbortController();
+    const { signal: aborted } = pending;
+    try {
+      const result = await api.probe(room.planId.value, place.peek().split(' ').map(Number), aborted);
+      if (!aborted.aborted) probed.value = { result, error: '', isOld: false };
+    } catch (error) {
+      if (!aborted.aborted) probed.value = { result: null, error: error.message, isOld: false };
+    }
+  };
+  const stop = effect(() => {
+    const isReady = room.renderer.value.state === 'ready';
+    if (!place.value || !isReady) return;
+    probed.value = { ...probed.peek(), isOld: true };
+    clock.clearTimeout(timer);
+    timer = clock.setTimeout(ask, probeMs);
+  });
+  return () => {
+    stop();
+    clock.clearTimeout(timer);
+    pending?.abort();
+  };
+}
+
+/** Requests the figures of the chosen region's shape whenever another region or another shape is chosen. */
+function shape(room, ui, api, shaped) {
+  let pending = null;
+  const wanted = computed(() => {
+    const scene = room.scene.value;
+    const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
+    const representation = region && scene?.regions[region.id]?.representation;
+    const isReady = room.renderer.value.state === 'ready' && Boolean(representation) && region.voxels > 0;
+    return isReady ? JSON.stringify([region.id, representation, shapeQuery(scene, representation)]) : '';
+  });
+  const stop = effect(() => {
+    pending?.abort();
+    if (!wanted.value) return;
+    const [region, representation, query] = JSON.parse(wanted.value);
+    const { signal: aborted } = (pending = new AbortController());
+    shaped.value = { region: '', representation: '', result: null, error: '' };
+    const tell = (answer) => {
+      if (!aborted.aborted) shaped.value = { region, representation, result: null, error: '', ...answer };
+    };
+    api.surface(room.planId.peek(), region, query, aborted).then(
+      (result) => tell({ result }),
+      (error) => tell({ error: error.message }),
+    );
+  });
+  return () => {
+    stop();
+    pending?.abort();
+  };
+}
+
+/** Finds the regions that cannot be drawn whenever other regions are shown, or in another way. */
+function refuse(room, refusals) {
+  const questions = computed(() =>
+    room.renderer.value.state === 'ready' ? JSON.stringify(inQuestion(room.plan.value, room.scene.value)) : '',
+  );
+  const stop = effect(() => {
+    if (questions.value) refusals.ask(room.planId.peek(), JSON.parse(questions.value));
+  });
+  return () => {
+    stop();
+    refusals.stop();
+  };
+}
+
+/** Starts the comparison when its dialog opens or, while it is open, another region is chosen. */
+function compare(room, ui, comparison) {
+  const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
+  const stop = effect(() => {
+    const id = of.value;
+    const region = room.plan.peek()?.regions.find((other) => other.id === id);
+    if (region) comparison.start(room.planId.peek(), region, room.scene.peek());
+    else comparison.stop();
+  });
+  return () => {
+    stop();
+    comparison.stop();
+  };
+}
+
+/** The inspector's Selection is loaded when somebody begins to use the page: it is there before the first click. */
+function loadBeforeClicks() {
+  const abort = new AbortController();
+  const load = () => {
+    abort.abort();
+    selected.load();
+  };
+  for (const event of ['pointerover', 'keydown', 'touchstart']) addEventListener(event, load, { signal: abort.signal, passive: true });
+  return () => abort.abort();
+}
+
+/** Tells the state the size of the window and whether fingers use it; folds an inspector for which there is no room. */
+function adapt(ui) {
+  const coarse = matchMedia('(pointer: coarse)');
+  const set = () => {
+    const before = ui.window.peek();
+    const { clientWidth: width, clientHeight: height } = document.documentElement; // innerWidth is larger where a telephone shows more than the page
+    ui.window.value = { width, height, isCoarse: coarse.matches };
+    if (before.width >= inspectorFrom !== width >= inspectorFrom) ui.isInspectorOpen.value = width >= inspectorFrom;
+  };
+  set();
+  addEventListener('resize', set);
+  coarse.addEventListener('change', set);
+  return () => {
+    removeEventListener('resize', set);
+    coarse.removeEventListener('change', set);
+  };
+}
+
+/** Moves the focus into a dialog that opens, and back afterwards to the element that opened it. */
+function moveFocus(host, ui) {
+  let opener = null;
+  const isDialog = computed(() => ['help', 'figures', 'printout', 'other-plan'].includes(ui.popover.value));
+  return effect(() => {
+    const isOpen = isDialog.value;
+    if (!isOpen && !opener) return;
+    if (isOpen) opener = document.activeElement;
+    queueMicrotask(() => {
+      // after it is drawn
+      const dialog = host.querySelector('[role="dialog"]');
+      if (isOpen) return void dialog?.focus();
+      if (document.activeElement === document.body) opener?.focus();
+      opener = null;
+    });
+  });
+}
+
+function listenKeys(ui, room) {
+  const onKey = (event) => {
+    const isTyping = event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea');
+    if (event.key === 'Escape') ui.escape(() => room.pointers.stop() || room.following.return());
+    else if (event.key === '?' && !isTyping) ui.toggle('help');
+  };
+  const onPress = (event) => {
+    if (ui.popover.value && !['help', 'figures', 'printout', 'other-plan'].includes(ui.popover.value) && !event.target.closest('.anchor'))
+      ui.popover.value = '';
+  };
+  addEventListener('keydown', onKey);
+  addEventListener('pointerdown', onPress);
+  return () => {
+    removeEventListener('keydown', onKey);
+    removeEventListener('pointerdown', onPress);
+  };
+}

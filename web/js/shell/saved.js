@@ -1,0 +1,24 @@
+// What of the room is on the server's disk, in the status bar; while nothing can be written, a line over the panes as well.
+import { html, nothing } from '../../lib/lit-html.js';
+import { icon } from '../parts/icons.js';
+
+const words = {
+  saved: ['Saved', "The scene, notes and saved views are on the server's disk."],
+  saving: ['Saving…', "The newest change is not on the server's disk yet."],
+  failing: ['Not saved', "What is changed now is not on the server's disk; it is tried again and again."],
+  unkept: ['Not kept', 'This server keeps no rooms: all of this ends with the room.'],
+};
+
+export function savedMark({ saved, link }) {
+  const [word, about] = words[saved.state.value] ?? [];
+  return word && link.value.state === 'open'
+    ? html`<span class=${`pace ${saved.problem.value ? 'err' : 'dim'}`} id="saved" data-saved=${saved.state.value} title=${about}>${word}</span>`
+    : nothing;
+}
+
+export function savedLine({ room: { saved } }) {
+  const problem = saved.problem.value;
+  return problem
+    ? html`<div class="toast" id="saved-problem" role="alert"><span class="err">${icon('error')}</span><span>${problem}</span></div>`
+    : nothing;
+}

@@ -1,0 +1,122 @@
+// The words for what undo and redo would change.
+import { shownImage } from '../room/plan.js';
+import { number, significant, windowText } from '../parts/format.js';
+
+const words = {
+  'image.id': 'image',
+  'image.window': 'window',
+  'image.low_values': 'greys of low values',
+  'image.interpolation': 'values between voxels',
+  'image.color_map': 'colours',
+  'image.looks': 'window of another image',
+  'image.clipped': 'clipping of slices',
+  'clip.cap': 'what caps show',
+};
+const volumeWords = {
+  visible: 'visibility of the volume',
+  points: 'transfer function',
+  cull_below: 'threshold of the volume',
+  steps: 'slices of the volume',
+};
+const blendWords = { id: 'second image', opacity: 'opacity of the second image' };
+const regionWords = { visible: 'visibility', clipped: 'clipping', color: 'colour', representation: 'form' };
+const units = { _mm: 'mm', _px: 'px', _deg: '°' };
+
+const doseWords = {
+  id: 'dose shown',
+  quantity: 'quantity of dose',
+  grid: 'grid of the dose',
+  factor: 'factor of the dose',
+  sum: 'sum of doses',
+  population: 'univels of regions',
+  tissue: 'weights of isodoses',
+  blood_ppm: 'boron in blood',
+  weights: 'weights',
+  weights_name: 'weights',
+  error: 'statistical error',
+  interpolation: 'values between dose voxels',
+  reference: 'reference of dose',
+  levels: 'isodose levels',
+  wash: 'wash',
+  lines: 'isodose lines',
+  surfaces: 'isodose surfaces',
+  coverage: 'coverage',
+  compare: 'comparison of doses',
+};
+
+const beamWords = {
+  id: 'chosen beam',
+  looks: 'look of a beam',
+  opacity: 'opacity of openings',
+  slice: 'beam slice',
+  draft: 'draft beam',
+  kept: 'kept draft',
+};
+
+const unitOf = (name) => Object.keys(units).find((ending) => name.endsWith(ending));
+const unique = (list) => [...new Set(list)];
+
+/** "opacity of brain", "window", "camera of 3-D", "crosshair", "visibility of 4 regions". @param {import('../room/undo.js').Change[]} changes */
+export function stepName(changes, room) {
+  if (changes[0]?.of === 'act') return changes[0].path[0];
+  if (changes.some(({ path }) => path.join('.') === 'image.id')) return 'image shown'; // its window and colours went with it
+  const views = changes.filter(({ of }) => of !== 'scene');
+  const [regions, rest] = [true, false].map((isRegion) =>
+    changes.filter(({ of, path }) => of === 'scene' && (path[0] === 'regions') === isRegion),
+  );
+  const names = [];
+  if (regions.length) {
+    const ids = unique(regions.map(({ path }) => path[1]));
+    const fields = unique(regions.map(({ path }) => regionWords[path[2]] ?? path[2]?.replaceAll('_', ' ')));
+    const who = ids.length > 1 ? `${ids.length} regions` : (room.plan.value?.regions.find(({ id }) => id === ids[0])?.name ?? ids[0]);
+    names.push(`${fields.length > 2 ? 'style' : fields.join(' and ')} of ${who}`);
+  }
+  names.push(...unique(rest.map(fieldName)));
+  const panes = unique(views.map(({ of }) => room.view(of).name)).map((name) => (name.startsWith('3-D') ? name : name.toLowerCase()));
+  const what = { plane: 'plane', override: 'regions', beam: views[0]?.path[1] === 'aperture_mm' ? 'ring' : 'place' };
+  if (panes.length)
+    names.push(
+      `${views.every(({ path }) => path[0] === views[0].path[0]) ? (what[views[0].path[0]] ?? 'camera') : 'camera'} of ${panes.join(', ')}`,
+    );
+  return names.length > 2 ? `${names[0]} and ${names.length - 1} more` : names.join(' and ');
+}
+
+function fieldName({ path }) {
+  const [group, name, ...inner] = path;
+  if (group === 'image' && name === 'obliques') return 'oblique plane';
+  if (group === 'axes') return 'patient axes';
+  if (group === 'clip' && name !== 'cap') return `clip ${name.replace('_', ' ')}`;
+  if (group === 'image' && name === 'volume' && inner[0] === 'clipped') return 'clipping of the volume';
+  if (group === 'image' && name === 'slices') return inner.at(-1) === 'position_mm' ? 'crosshair' : 'slices in 3-D';
+  if (group === 'image' && name === 'volume') return volumeWords[inner[0]] ?? 'volume';
+  if (group === 'image' && name === 'blend') return blendWords[inner[0]] ?? 'second image';
+  if (group === 'constraints') return 'limit of dose';
+  if (group === 'dose') return doseWords[name] ?? 'dose';
+  if (group === 'beam') return beamWords[name] ?? 'beam';
+  if (group === 'tracks') return 'particle tracks';
+  if (group === 'probes') return 'pinned probe';
+  if (group === 'measures')
+    return inner.length ? `${inner[0] === 'points' ? 'points' : inner[0] === 'visible' ? 'visibility' : inner[0]} of a measure` : 'measure';
+  const known = words[`${group}.${name}`];
+  if (known) return known;
+  const ending = unitOf(name ?? '');
+  return [group, ...(name ? [ending ? name.slice(0, -ending.length) : name] : [])].join(' ').replaceAll('_', ' ');
+}
+
+/** "100 %", "2 px", "C 40 W 400": the value that a step of one field goes to; '' where a value would say little. */
+function valueText(change, wanted, room) {
+  const value = change[wanted];
+  const name = change.path.at(-1);
+  if (name === 'window' && value) return windowText(value, shownImage(room.plan.value, room.scene.value)?.unit);
+  if (typeof value !== 'number' || name === 'position_mm') return '';
+  if (name === 'opacity') return `${number(value * 100)} %`;
+  const unit = units[unitOf(name)];
+  return unit ? `${significant(value)} ${unit}` : significant(value);
+}
+
+/** "Undo: opacity of brain, to 100 % (Ctrl+Z)" */
+export function stepTitle(verb, keys, changes, wanted, room) {
+  if (!changes) return `${verb} (${keys})`;
+  const value = changes.length === 1 ? valueText(changes[0], wanted, room) : '';
+  return `${verb}: ${stepName(changes, room)}${value ? `, to ${value}` : ''} (${keys})`;
+}
