@@ -122,6 +122,22 @@ planted_script() {
     echo "$out"
     return 1
 }
+page_layers() { "${NODE:-node}" tests/page_layers.mjs; }
+planted_import() {
+    local folder out
+    folder=$(mktemp -d)
+    mkdir -p "$folder/web/js/features/clip" "$folder/web/js/features/beams" "$folder/web/js/room"
+    echo 'export const beams = 1;' >"$folder/web/js/features/beams/beams.js"
+    printf "import { beams } from '../beams/beams.js';\nexport { beams };\n" >"$folder/web/js/features/clip/clip.js"
+    printf "export const later = () => import('../features/beams/beams.js');\n" >"$folder/web/js/room/room.js"
+    out=$("${NODE:-node}" tests/page_layers.mjs "$folder")
+    rm -rf "$folder"
+    grep -q '^web/js/features/clip/clip.js:1: features/clip may not import features/beams' <<<"$out" &&
+        grep -q '^web/js/room/room.js:1: room may not import features/beams' <<<"$out" && return 0
+    echo "two planted imports; the check said:"
+    echo "$out"
+    return 1
+}
 no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json; }
 
 copy=$(mktemp -d)
@@ -142,6 +158,8 @@ check "no banned calls" no_calls
 check "C is laid out as .clang-format says (clang-format -i FILE)" laid_out
 check "JavaScript and CSS are laid out and free of mistakes as biome.jsonc says (npx biome check --write FILE)" scripts_and_styles
 check "a name that nobody declares, an unknown property of CSS and a line out of layout are found" planted_script
+check "the page's imports follow tests/page_layers.txt" page_layers
+check "an import from one feature to another, and one upwards, are found" planted_import
 check "locks stand in core/base alone" locks_in_base
 check "no value-changing float flags" no_flags
 check "each header compiles alone, once" headers_stand_alone
