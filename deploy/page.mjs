@@ -7,7 +7,7 @@
 // The files in page/ carry a hash of their contents in their names, so the daemon lets browsers keep them for ever.
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { createHash } from 'node:crypto';
-import { basename, join } from 'node:path';
+import { basename, dirname, join } from 'node:path';
 import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
 import { build } from 'esbuild';
 import { browsers } from './promised.mjs';
@@ -39,7 +39,10 @@ async function joinModules(entry) {
     .digest('hex')
     .slice(0, 8)
     .toUpperCase();
-  const finalName = (name) => name.replace(/-[A-Z0-9]{8}\.js$/, `-${hash}.js`);
+  const plain = (name) => name.replace(/-[A-Z0-9]{8}\.js$/, '');
+  const isTwice = (name) => [...parts.keys()].filter((other) => plain(other) === plain(name)).length > 1;
+  /** With its folder where two modules of different folders have one name. */
+  const finalName = (name) => `${isTwice(name) ? `${basename(dirname(parts.get(name).entryPoint))}_` : ''}${plain(name)}-${hash}.js`;
 
   /** A part after all that it imports at once. */
   const withImports = (name) => [

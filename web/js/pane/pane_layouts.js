@@ -4,7 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { beamShown } from '../room/beam_line.js';
 import { layoutId, layouts } from '../room/layout.js';
 import { isInSpace, isTurnable } from '../room/kinds.js';
-import { presetMenu } from '../features/beams/beam_presets_later.js';
+import { presetMenu } from '../features/beams/preset_menu.js';
 import { checkbox } from '../parts/fields.js';
 import { icon } from '../parts/icons.js';
 

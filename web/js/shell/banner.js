@@ -1,7 +1,7 @@
 // The banner of a room: name of the plan, its warnings, members, invitation, help.
 import { html, nothing } from '../../lib/lit-html.js';
 import { troubles } from '../room/plan.js';
-import { ofDose } from '../features/dose/dose_later.js';
+import { ofDose } from '../features/dose/feature.js';
 import { icon } from '../parts/icons.js';
 import { Lazy, styled } from '../parts/lazy.js';
 import { variables } from '../parts/mount.js';

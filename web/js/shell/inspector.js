@@ -4,10 +4,10 @@ import { repeat } from '../../lib/directives/repeat.js';
 import { hasCharts } from '../features/dose/plots/chart_loader.js';
 import { icon } from '../parts/icons.js';
 import { Lazy } from '../parts/lazy.js';
-import { drawNotes } from '../features/notes/notes_lazy.js';
+import { drawNotes } from '../features/notes/feature.js';
 import { planTab } from './plan_tab.js';
 import { probe } from './probe.js';
-import { drawRecord } from '../features/record/record_lazy.js';
+import { drawRecord } from '../features/record/feature.js';
 import { roving } from '../parts/roving.js';
 
 export const selected = new Lazy(() => import('./selection.js'));

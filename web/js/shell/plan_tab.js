@@ -1,7 +1,7 @@
 // The inspector's Plan: its parts, and the report of loading.
 import { html, nothing } from '../../lib/lit-html.js';
 import { reportSummary } from '../room/plan.js';
-import { ofFits } from '../features/fits/fit_later.js';
+import { ofFits } from '../features/fits/feature.js';
 import { number, seconds } from '../parts/format.js';
 import { patientBlock } from '../features/patient/patient.js';
 import { reportLines } from '../parts/report.js';

@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { crosshair, shownImage } from '../room/plan.js';
-import { ofDose, ofDrawnDose, pinHere } from '../features/dose/dose_later.js';
+import { ofDose, ofDrawnDose, pinHere } from '../features/dose/feature.js';
 import { number, significant } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 

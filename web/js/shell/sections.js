@@ -1,20 +1,20 @@
 // The sections of the tree: a row of the table for each. A section without rows is not shown; to add one, add a row.
 import { html } from '../../lib/lit-html.js';
-import { blendedImage } from '../features/image/image_look.js';
+import { blendedImage } from '../room/image_look.js';
 import { isOfOther, ownRegions, partsOfOthers } from '../room/identity.js';
 import { shownImage } from '../room/plan.js';
-import { bookmarkNote, bookmarkRows, hasBookmarks } from '../features/bookmarks/bookmark_lazy.js';
-import { hasBeams, ofBeams } from '../features/beams/beam_lazy.js';
+import { bookmarkNote, bookmarkRows, hasBookmarks } from '../features/bookmarks/feature.js';
+import { hasBeams, ofBeams } from '../features/beams/feature.js';
 import { clipNote, clipRows, hasClips } from '../features/clip/clip_rows.js';
-import { ofDose } from '../features/dose/dose_later.js';
-import { ofFits } from '../features/fits/fit_later.js';
+import { ofDose } from '../features/dose/feature.js';
+import { ofFits } from '../features/fits/feature.js';
 import { count, number, windowText } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { imageName, showImage } from '../features/image/image_shown.js';
 import { hasMeasures, measureRows } from '../features/measures/measure_rows.js';
 import { obliqueNote, obliqueRows } from '../features/planes/oblique_rows.js';
 import { regionRows } from '../features/regions/region_rows.js';
-import { ofTracks } from '../features/tracks/track_lazy.js';
+import { ofTracks } from '../features/tracks/feature.js';
 import { eye, name, treeRow } from '../parts/tree_row.js';
 import { volumeRow } from '../features/image/volume_row.js';
 

@@ -1,18 +1,18 @@
 // The inspector's Selection: what was clicked last, wherever it was. A row of the table for each kind.
 import { html, nothing } from '../../lib/lit-html.js';
-import { drawBeam } from '../features/beams/beam_lazy.js';
-import { drawBookmark } from '../features/bookmarks/bookmark_lazy.js';
+import { drawBeam } from '../features/beams/feature.js';
+import { drawBookmark } from '../features/bookmarks/feature.js';
 import { clipBlock } from '../features/clip/clip_plane.js';
 import { doseBlock, levelBlock } from '../features/dose/dose_block.js';
 import { drawingBlocks } from '../features/regions/drawing.js';
-import { ofFits } from '../features/fits/fit_later.js';
+import { ofFits } from '../features/fits/feature.js';
 import { icon } from '../parts/icons.js';
 import { imageBlock } from '../features/image/image.js';
 import { measureBlock, measuresBlock } from '../features/measures/measure.js';
 import { pictureBlock } from '../features/image/picture.js';
 import { obliqueBlock } from '../features/planes/oblique_plane.js';
 import { regionBlock } from '../features/regions/region.js';
-import { drawTracks } from '../features/tracks/track_lazy.js';
+import { drawTracks } from '../features/tracks/feature.js';
 import { volumeBlock } from '../features/image/volume.js';
 
 export { figuresDialog } from '../features/regions/figures.js'; // which a region's block opens

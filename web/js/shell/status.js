@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { worst } from '../room/fidelity.js';
 import { crosshair } from '../room/plan.js';
-import { ofDose } from '../features/dose/dose_later.js';
+import { ofDose } from '../features/dose/feature.js';
 import { number } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { savedMark } from './saved.js';

@@ -2,7 +2,7 @@
 import { chosenBeam, choosePatch, keptDraft, keptPatch, maxKept, newDraft, plannedPatch, redrafted } from './beams.js';
 import { endCompare } from './beam_ui.js';
 import { beamView } from '../../room/layout.js';
-import { toggleBeamEye } from './beam_later.js';
+import { toggleBeamEye } from './beam_view.js';
 
 /** The planned beam is looked at no longer, and the scene is changed. make: the patch, of the scene as it is then */
 export function changeBeam({ room, ui }, make, event, view = ui.active.value) {

@@ -8,7 +8,7 @@ import { beamShown } from '../../room/beam_line.js';
 import { stepAcross } from '../../room/obliques.js';
 import { shownImage } from '../../room/plan.js';
 import { beamFoot } from './beam_foot.js';
-import { showInstead, spaceInstead } from './beam_later.js';
+import { showInstead, spaceInstead } from './beam_view.js';
 import { ringHandle, ringNumbers } from './beam_ring.js';
 import { millimetres } from '../../parts/format.js';
 

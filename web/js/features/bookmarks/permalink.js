@@ -1,7 +1,7 @@
 // The page of a permalink: makes a new room from a saved view and goes there, or says why it cannot.
 import { html } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
-import { beginWith } from './bookmark_lazy.js';
+import { beginWith } from './feature.js';
 import { icon } from '../../parts/icons.js';
 import { styled } from '../../parts/lazy.js';
 import { mount } from '../../parts/mount.js';

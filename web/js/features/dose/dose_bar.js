@@ -1,7 +1,7 @@
 // The basis of all dose numbers, in the banner.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { basisParts } from '../../room/dose.js';
-import { ofFits } from '../fits/fit_later.js';
+import { ofFits } from '../fits/feature.js';
 
 /** "Gy(w) per 250 kW-min · blood 15 ppm · weights: BPA example · isodose as brain" */
 export function doseBasis({ room }, place) {

@@ -6,7 +6,7 @@ import { gradientOf, hasLines, shownScale, washKind } from './dose_scales.js';
 import { isTarget } from '../../room/plan.js';
 import { isInSpace } from '../../room/kinds.js';
 import { toPicture } from '../../parts/vec.js';
-import { ofFits } from '../fits/fit_later.js';
+import { ofFits } from '../fits/feature.js';
 import { number, significant } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { variables } from '../../parts/mount.js';

@@ -23,7 +23,7 @@ import { levelActions, levelRows } from './dose_levels.js';
 import { referenceSelect, tissueSelect } from './dose_reference.js';
 import { typed } from '../../parts/fields.js';
 import { listed, number } from '../../parts/format.js';
-import { ofFits } from '../fits/fit_later.js';
+import { ofFits } from '../fits/feature.js';
 import { icon } from '../../parts/icons.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
 

@@ -1,7 +1,7 @@
 // The inspector's Selection of an image: its window and colours, and a second image blended over the one shown.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { live } from '../../../lib/directives/live.js';
-import { blendedImage, lookPatch } from './image_look.js';
+import { blendedImage, lookPatch } from '../../room/image_look.js';
 import { isLowWhite, shownImage } from '../../room/plan.js';
 import { numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';

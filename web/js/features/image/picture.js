@@ -1,7 +1,7 @@
 // Parts of the inspector's Selection: the 3-D picture, and the slices in it.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { live } from '../../../lib/directives/live.js';
-import { cullsNothing, usualCull } from './image_look.js';
+import { cullsNothing, usualCull } from '../../room/image_look.js';
 import { shownImage } from '../../room/plan.js';
 import { numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';

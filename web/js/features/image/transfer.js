@@ -1,6 +1,6 @@
 // A transfer function as its editor changes it: points by ascending value, each with a colour and an opacity per millimetre. Pure.
 import { mergePatch } from '../../wire/merge.js';
-import { cullsNothing, isCt, lookOf, showPatch } from './image_look.js';
+import { cullsNothing, isCt, lookOf, showPatch } from '../../room/image_look.js';
 import { replaced } from '../../parts/lists.js';
 import { shownImage } from '../../room/plan.js';
 import { presetPoints, presetsOfImage } from './volume_presets.js';

@@ -1,7 +1,7 @@
 // The image as a volume in the 3-D picture: its Selection in the inspector.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
-import { cullsNothing, usualCull } from './image_look.js';
+import { cullsNothing, usualCull } from '../../room/image_look.js';
 import { shownImage } from '../../room/plan.js';
 import { isSamePoints, visiblePatch } from './transfer.js';
 import { presetPoints, presetsOfImage } from './volume_presets.js';

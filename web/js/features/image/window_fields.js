@@ -13,7 +13,7 @@ import {
   roundedWindow,
   windowFrom,
   windowPresets,
-} from './image_look.js';
+} from '../../room/image_look.js';
 import { isLowWhite, shownImage } from '../../room/plan.js';
 import { numberField, segment } from '../../parts/fields.js';
 import { significant, unitText } from '../../parts/format.js';

@@ -9,7 +9,7 @@ import { position } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { beginWith, focusField, leftOver, noteEditor } from './note_editor.js';
 import { byline, mayChange, mayWrite, meIn, words } from './note_words.js';
-import { noteHere } from './notes_lazy.js';
+import { noteHere } from './feature.js';
 
 const filter = signal(noFilter);
 const editing = signal(''); // id of the row that is being changed

@@ -9,7 +9,7 @@ import { volumeDifference } from '../regions/shapes.js';
 import { draftBelongs, draftWords } from '../beams/beam_words.js';
 import { hasCharts } from '../dose/plots/chart_loader.js';
 import { printable } from '../../room/exports.js';
-import { ofFits } from '../fits/fit_later.js';
+import { ofFits } from '../fits/feature.js';
 import { count, number, signed, significant, unitText } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { measureName, valueText } from '../measures/measure_words.js';

@@ -4,7 +4,7 @@ import { live } from '../../../lib/directives/live.js';
 import { className } from '../../room/plan.js';
 import { classPatch, isShownClass, isWhole } from './tracks.js';
 import { number } from '../../parts/format.js';
-import { toggleTracks } from './track_lazy.js';
+import { toggleTracks } from './feature.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });

@@ -10,7 +10,7 @@ globalThis.document = {
   querySelector: () => null,
   head: { append() {} },
 };
-const { fitBar, fitBlock, numberMark, usedRows, usedSheet, wordMark } = await load('features/fits/fit_panels.js');
+const { fitBar, fitBlock, numberMark, usedRows, usedSheet, wordMark } = await load('features/fits/later.js');
 const { nothing } = await load('../lib/lit-html.js');
 const { pairKey } = await load('room/accepted.js');
 

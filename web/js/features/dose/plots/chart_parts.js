@@ -2,7 +2,7 @@
 import { html, nothing } from '../../../../lib/lit-html.js';
 import { classMap } from '../../../../lib/directives/class-map.js';
 import { exportFile } from '../../../room/exports.js';
-import { ofFits } from '../../fits/fit_later.js';
+import { ofFits } from '../../fits/feature.js';
 import { icon } from '../../../parts/icons.js';
 
 /** @param {'dvh'|'profile'} id @param {{csv: () => string, json: () => string}|null} files null: there is nothing to save */

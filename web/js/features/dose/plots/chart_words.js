@@ -1,5 +1,5 @@
 // Words of plots of dose, the same in drawer, tables, files and print.
-import { ofFits } from '../../fits/fit_later.js';
+import { ofFits } from '../../fits/feature.js';
 import { significant, unitText } from '../../../parts/format.js';
 
 const names = { weighted: 'weighted total', 'weighted-total': 'weighted total of the file', isoeffective: 'photon-isoeffective' };

@@ -2,7 +2,7 @@
 import { startLook } from './look_here.js';
 import { startMarks } from './point_marks.js';
 import { startPointing } from './point_gesture.js';
-import { startWatch } from '../watch/watch_lazy.js';
+import { startWatch } from '../watch/start_watch.js';
 
 export { askToLook, pointMenu } from './look_here.js';
 

@@ -1,10 +1,10 @@
 // The panels of dose: no part of what a first visit loads, as the start page and many plans do without.
 import { known, Lazy } from '../../parts/lazy.js';
 
-const panels = new Lazy(() => import('./dose_panels.js'));
-const drawn = new Lazy(() => import('./dose_drawn.js'));
+const panels = new Lazy(() => import('./later_rows.js'));
+const drawn = new Lazy(() => import('./later_drawn.js'));
 
-/** What dose_panels.js exports; null for a plan without doses, and until it is loaded. */
+/** What later_rows.js exports; null for a plan without doses, and until it is loaded. */
 export const ofDose = (room) => (room.plan.value?.doses.length ? known(panels) : null);
 
 /** Pins the values at the crosshair. */
@@ -13,7 +13,7 @@ export async function pinHere(world, at) {
   drawn.loaded.peek()?.pinHere(world, at);
 }
 
-/** What dose_drawn.js exports; null while nothing of a dose is switched on and nothing is pinned, and until it is loaded. */
+/** What later_drawn.js exports; null while nothing of a dose is switched on and nothing is pinned, and until it is loaded. */
 export function ofDrawnDose(room) {
   const scene = room.scene.value;
   if (!room.plan.value?.doses.length || !scene?.dose) return null;

@@ -7,7 +7,7 @@ import { known, Lazy } from '../../parts/lazy.js';
 import { variables } from '../../parts/mount.js';
 import { name } from '../../parts/tree_row.js';
 
-const presets = new Lazy(() => import('./beam_presets.js'));
+const presets = new Lazy(() => import('./preset_items.js'));
 const isOpen = signal(false); // the rows of the tree
 
 /** The presets in a menu, where the plan has a beam or a dose. @param {(run: () => void) => (event: Event) => void} act what a click does */

@@ -1,13 +1,13 @@
 // Window and level of the shown image, as a pane's drag and keys change them.
-import { draggedWindow, isCt, roundedWindow, windowPresets } from './image_look.js';
-import { shownImage } from '../../room/plan.js';
+import { draggedWindow, isCt, roundedWindow, windowPresets } from '../room/image_look.js';
+import { shownImage } from '../room/plan.js';
 
 export class PaneWindow {
   #room;
   #number;
   #histograms;
 
-  /** @param {import('../../room/room.js').RoomState} room @param {import('./histograms.js').Histograms} histograms @param {number} number of the view */
+  /** @param {import('../room/room.js').RoomState} room @param {import('../features/image/histograms.js').Histograms} histograms @param {number} number of the view */
   constructor(room, histograms, number) {
     this.#room = room;
     this.#histograms = histograms;

@@ -1,5 +1,5 @@
 // How an image is shown: window, colour map, presets by modality; showing another image; a second image blended over it. Pure.
-import { shownImage } from '../../room/plan.js';
+import { shownImage } from './plan.js';
 
 export const cullsNothing = -1e12; // proto/scene.json
 const narrowest = 1e-15;

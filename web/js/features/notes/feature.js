@@ -3,7 +3,7 @@ import { effect, untracked } from '../../../lib/signals-core.js';
 import { crosshair } from '../../room/plan.js';
 import { known, Lazy, styled } from '../../parts/lazy.js';
 
-const notes = new Lazy(async () => (await Promise.all([import('./notes.js'), styled('js/features/notes/notes.css')]))[0]);
+const notes = new Lazy(async () => (await Promise.all([import('./later.js'), styled('js/features/notes/notes.css')]))[0]);
 
 /** The inspector's Notes. */
 export const drawNotes = (world) => notes.draw(({ notesTab }) => notesTab(world));

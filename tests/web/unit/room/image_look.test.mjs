@@ -1,7 +1,7 @@
 // How an image is shown: presets, windows, another image with its own look, a second image.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { load } from '../../page.mjs';
+import { load } from '../page.mjs';
 
 const {
   blendedImage,
@@ -15,7 +15,7 @@ const {
   usualCull,
   windowFrom,
   windowPresets,
-} = await load('features/image/image_look.js');
+} = await load('room/image_look.js');
 const { Histograms } = await load('features/image/histograms.js');
 const { mergePatch } = await load('wire/merge.js');
 

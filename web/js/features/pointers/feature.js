@@ -5,7 +5,7 @@ import { effect } from '../../../lib/signals-core.js';
 import { icon } from '../../parts/icons.js';
 import { Lazy, styled } from '../../parts/lazy.js';
 
-const panels = new Lazy(async () => (await Promise.all([import('./point_panels.js'), styled('js/features/pointers/point.css')]))[0]);
+const panels = new Lazy(async () => (await Promise.all([import('./later.js'), styled('js/features/pointers/point.css')]))[0]);
 
 /** @param {object} world {room, ui, api, clock, panes, storage} @returns {() => void} stops */
 export function startPointers(world) {

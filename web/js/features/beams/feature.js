@@ -2,7 +2,7 @@
 import { known, Lazy, styled } from '../../parts/lazy.js';
 
 const rows = new Lazy(() => import('./beam_rows.js'));
-const panels = new Lazy(async () => (await Promise.all([import('./beam_panels.js'), styled('js/features/beams/beam_draft.css')]))[0]);
+const panels = new Lazy(async () => (await Promise.all([import('./later_editing.js'), styled('js/features/beams/beam_draft.css')]))[0]);
 
 /** True where beams can be shown or drafted. */
 export const hasBeams = (plan) => plan.beams.length + plan.curves.length + plan.images.length + plan.regions.length;
@@ -10,7 +10,7 @@ export const hasBeams = (plan) => plan.beams.length + plan.curves.length + plan.
 /** What beam_rows.js exports; null for a plan without anything, and until it is loaded. */
 export const ofBeams = ({ plan, scene }) => (plan.value && scene.value?.beam && hasBeams(plan.value) ? known(rows) : null);
 
-/** What beam_panels.js exports, drawn in Selection. */
+/** What later_editing.js exports, drawn in Selection. */
 export const drawBeam = (use) => panels.draw(use);
 
 /** Above the panes while a beam is drafted. */

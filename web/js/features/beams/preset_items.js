@@ -1,7 +1,7 @@
 // Presets of beam, dose and volume as a menu and as rows of the tree: each one click, one step of undo, and words that say what it has changed.
 import { html } from '../../../lib/lit-html.js';
 import { applyPreset, presetsOf } from './beam_combinations.js';
-import { presetItem } from './beam_presets_later.js';
+import { presetItem } from './preset_menu.js';
 import { icon } from '../../parts/icons.js';
 import { name as nameOf } from '../../parts/tree_row.js';
 
