@@ -193,6 +193,8 @@ $(B)/obj/tests/unit/server/wire/test_fields.o: | $(TRIAL_STAMP)
 $(B)/unit/test_fields: $(call obj,$(GEN)/trial.c $(GEN)/trial_gen.c)
 $(unit_BIN): $(call obj,server/renderer/confine.c server/renderer/seccomp.c)
 $(eval $(call c_programs,render,test,-lcmocka))
+# tests/same.sh records every picture of these (tests/render/recorded.c)
+$(render_BIN): private LDFLAGS += -Wl,--wrap=render_snapshot,--wrap=render_end
 $(B)/render/test_resample: $(call obj,$(addprefix tests/unit/,data_folder.c oracle.c))
 $(eval $(call c_programs,bench,bench,))
 $(eval $(call c_programs,faults,test,-lcmocka))
