@@ -238,7 +238,7 @@ static void report_state(struct net_room *entry, const struct fleet_plan *plan)
         problem = &closed;
         break;
     }
-    room_renderer_state(entry->room, state, plan->phase, plan->percent, problem);
+    room_renderer_state(entry->room, state, plan->phase, plan->percent, problem, clock_now_us());
 }
 
 void bridge_tell_revision(struct net_room *entry)
@@ -261,7 +261,7 @@ void bridge_report_plan(struct net_room *entry)
         /* its folder was removed while nobody held it, or while the daemon did not run */
         problem_set(&gone, PROBLEM_NOT_FOUND, "", "", "the plan of this room is gone");
         entry->state = FLEET_UNREADABLE;
-        room_renderer_state(entry->room, WIRE_RENDERER_STATE_FAILED, "", 0, &gone);
+        room_renderer_state(entry->room, WIRE_RENDERER_STATE_FAILED, "", 0, &gone, clock_now_us());
         return;
     }
     room_plan_revision(entry->room, plan.revision);

@@ -64,10 +64,10 @@ void net_list_plans(struct net *net, void (*done)(void *context), void *context)
 
 /* ---- time ------------------------------------------------------------------------------------------------------- */
 
-static void schedule_all(struct net *net)
+static void settle_all(struct net *net)
 {
     for (size_t i = 0; i < net->n_rooms; i++)
-        schedule_room(net->rooms[i]);
+        schedule_settle(net->rooms[i]);
 }
 
 /* Handles what is due in rooms, and writes what is to be kept of them. */
@@ -156,7 +156,7 @@ static void let_in(void *context, const char *id, const struct problem *problem)
         for (const struct early_text *text = visitor->early; text && visitor->room; text = text->next)
             room_text_came(room->room, visitor->connection, text->text, text->n, clock_now_us());
         free_early(visitor);
-        schedule_room(room);
+        schedule_settle(room);
     }
 }
 
@@ -338,7 +338,7 @@ static void woken(void *context)
     if (run_tasks(net)) { /* a task may have changed any room */
         leave_calm(net);
         keep_write_due(net, false);
-        schedule_all(net);
+        settle_all(net);
     }
 }
 

@@ -55,7 +55,7 @@ struct net_room { /* a room and what the net thread keeps beside it */
     enum fleet_state state;
     char phase[200];
     double percent;
-    int64_t wake_us;        /* when room_tick is due */
+    int64_t wake_us;        /* when room_settle is due */
     int64_t empty_since_us; /* 0: a member is connected */
     struct {
         unsigned changed;          /* parts (enum room_part) that are to be written */

@@ -235,7 +235,7 @@ struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *
         return NULL;
     }
     bridge_report_plan(room);
-    schedule_room(room);
+    schedule_settle(room);
     return room->room;
 }
 
@@ -384,7 +384,7 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
         struct net_room *room = add_room(net, facts.id, facts.plan);
         keep_restore(room, answer->room);
         bridge_report_plan(room);
-        schedule_room(room);
+        schedule_settle(room);
     }
     asleep_tell(net, facts.id, problem.type == PROBLEM_NONE ? NULL : &problem);
     if (token[0])

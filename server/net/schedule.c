@@ -1,4 +1,4 @@
-/* Ticks rooms and sets the net thread's next wake-up. */
+/* Settles rooms and sets the net thread's next wake-up. */
 #include "server/net/schedule.h"
 
 #include "core/base/clock.h"
@@ -17,13 +17,18 @@ void schedule_wake(struct net *net)
 
 void schedule_room(struct net_room *room)
 {
-    int64_t now_us = clock_now_us();
-    room->wake_us = room_tick(room->room, now_us);
+    room->wake_us = room_due_us(room->room);
     schedule_at(room->net, room->wake_us);
     if (room_n_connected(room->room))
         room->empty_since_us = 0;
     else if (room->empty_since_us == 0)
-        room->empty_since_us = now_us;
+        room->empty_since_us = clock_now_us();
+}
+
+void schedule_settle(struct net_room *room)
+{
+    (void)room_settle(room->room, clock_now_us());
+    schedule_room(room);
 }
 
 void schedule_room_at(struct net_room *room, int64_t time_us)
@@ -44,7 +49,7 @@ void schedule_due_rooms(struct net *net)
     net->due_us = INT64_MAX;
     for (size_t i = 0; i < net->n_rooms; i++)
         if (net->rooms[i]->wake_us <= now_us)
-            schedule_room(net->rooms[i]);
+            schedule_settle(net->rooms[i]);
         else
             schedule_at(net, net->rooms[i]->wake_us);
 }

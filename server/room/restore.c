@@ -5,6 +5,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/room/entry.h"
 #include "server/room/people/known.h"
 #include "server/room/people/links.h"
 #include "server/room/room.h"
@@ -137,7 +138,7 @@ static void read_members(struct room *room, const struct room_kept *kept)
 
 void room_restore(struct room *room, const struct room_kept *kept, int64_t now_us)
 {
-    room->now_us = now_us;
+    room_enter(room, now_us);
     room->created_at_s = kept->created_at_s;
     room->revision = kept->revision;
     room->n_named = kept->n_named > room->n_named ? kept->n_named : room->n_named; /* items were restored before */

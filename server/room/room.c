@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "core/base/mem.h"
+#include "server/room/entry.h"
 #include "server/room/items/acceptance.h"
 #include "server/room/items/item_list.h"
 #include "server/room/items/items.h"
@@ -100,6 +101,34 @@ const char *room_plan_id(const struct room *room)
     return room->plan_id;
 }
 
+void room_end_because(struct room *room, const char *reason)
+{
+    (void)snprintf(room->end_reason, sizeof room->end_reason, "%s", reason);
+}
+
+uint32_t room_n_named(const struct room *room)
+{
+    return room->n_named;
+}
+
+size_t room_n_decided(const struct room *room)
+{
+    size_t n = 0;
+    for (const struct item *item = room->items; item; item = item->next)
+        n += record_is_wanted(item->kind);
+    return n;
+}
+
+void room_count(const struct room *room, struct room_counters *sum)
+{
+    sum->pictures_requested += room->counters.pictures_requested;
+    sum->frames_sent += room->counters.frames_sent;
+    sum->frame_bytes += room->counters.frame_bytes;
+    sum->frames_skipped += room->counters.frames_skipped;
+    sum->messages_refused += room->counters.messages_refused;
+    sum->stills_sent += room->counters.stills_sent;
+}
+
 /* ---- the renderer ----------------------------------------------------------------------------------------------- */
 
 /* Takes over copies of the plan's documents. Keeps the scene over a restart, without ids that the plan does not have
@@ -143,11 +172,11 @@ static void set_state(struct room *room, enum wire_renderer_state state, const c
 bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
                      bool is_software, int64_t now_us)
 {
-    room->now_us = now_us;
+    room_enter(room, now_us);
     if (!replace_plan(room, plan_document, default_scene)) {
         struct problem problem = { 0 };
         (void)json_no_memory(&problem, "the plan in this room");
-        room_renderer_state(room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem);
+        room_renderer_state(room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem, now_us);
         return false;
     }
     (void)snprintf(room->gl, sizeof room->gl, "%s", gl ? gl : "");
@@ -164,13 +193,14 @@ bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
     send_renderer_state(room, NULL);
     room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     replay_plan_ready(room);
-    (void)streams_request_due(room);
+    room_leave(room);
     return true;
 }
 
 void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
-                         const struct problem *problem)
+                         const struct problem *problem, int64_t now_us)
 {
+    room_enter(room, now_us);
     bool was_ready = room->state == WIRE_RENDERER_STATE_READY;
     set_state(room, state, phase, percent, problem);
     if (state != WIRE_RENDERER_STATE_READY) {
@@ -180,7 +210,26 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
         streams_changed(room, false);
     }
     send_renderer_state(room, NULL);
-    (void)streams_request_due(room);
+    room_leave(room);
+}
+
+void room_plan_revision(struct room *room, const char *revision)
+{
+    (void)snprintf(room->plan_revision, sizeof room->plan_revision, "%s", revision);
+}
+
+bool room_wants_revision(const struct room *room)
+{
+    return room_replays(room) || recording_wants_revision(room) || acceptances_want_revision(room);
+}
+
+void room_revision_came(struct room *room, const char *revision, int64_t now_us)
+{
+    room_enter(room, now_us);
+    recording_revision_came(room, revision);
+    acceptances_revision(room, revision);
+    replay_revision_came(room, revision);
+    room_leave(room);
 }
 
 /* ---- messages --------------------------------------------------------------------------------------------------- */
@@ -236,14 +285,6 @@ static const struct {
     { MESSAGE_PING, handle_ping },
 };
 
-/* Displays and small pictures show the main view that there is now. */
-static void show_main(struct room *room)
-{
-    main_view_settle(room);
-    displays_follow(room);
-    watches_follow(room);
-}
-
 static void whole_number(const cJSON *json, const char *name, double most, int64_t *value)
 {
     double number = json_number(json, name, 0);
@@ -288,17 +329,73 @@ static bool refuse(struct room *room, void *connection, const char *text, size_t
     return send_problem(room, connection, to, view, input, problem);
 }
 
-int64_t room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us)
+/* ---- what follows ----------------------------------------------------------------------------------------------- */
+
+/* What follows from a change, and what is due with time, in this order: who is there and who presents comes before what
+ * is shown to whom, and that before the pictures. Each does what is due and returns when it is due again; INT64_MAX:
+ * only another entry can make it due. */
+static const struct {
+    int64_t (*settle)(struct room *room);
+    bool is_at_once; /* after each message; the others once for all messages that have come together */
+} following[] = {
+    { pointers_settle, false },     { look_settle, false },        { saved_settle, false },
+    { replay_settle, false },       { displays_settle, false },    { members_settle_lost, true },
+    { members_settle, false },      { control_settle, true },      { main_view_settle, true },
+    { displays_follow, true },      { watches_follow, true },      { watches_settle, false },
+    { members_settle_away, false }, { streams_request_due, true }, { presenter_due_us, false },
+    { send_members_due, false },    { recording_settle, false },   { audit_settle, false },
+};
+
+static int64_t settle(struct room *room, bool only_at_once)
+{
+    int64_t due_us = INT64_MAX;
+    for (size_t i = 0; i < sizeof following / sizeof following[0]; i++) {
+        const int64_t us = following[i].is_at_once || !only_at_once ? following[i].settle(room) : INT64_MAX;
+        due_us = us < due_us ? us : due_us;
+    }
+    return due_us;
+}
+
+void room_enter(struct room *room, int64_t now_us)
+{
+    room->now_us = now_us;
+}
+
+void room_leave(struct room *room)
+{
+    room->due_us = settle(room, false);
+}
+
+int64_t room_settle(struct room *room, int64_t now_us)
+{
+    room_enter(room, now_us);
+    room_leave(room);
+    return room->due_us;
+}
+
+int64_t room_due_us(const struct room *room)
+{
+    return room->due_us;
+}
+
+/* After an acknowledgement, which lets the next picture be requested, or one be sent that may be late: no more. There
+ * is one for each frame and member. */
+static int64_t settle_shown(struct room *room, struct member *member)
+{
+    const int64_t watch_us = watch_settle(room, member), request_us = streams_request_due(room),
+                  late_us = room->now_us + LAG_AFTER_US, next_us = watch_us < late_us ? watch_us : late_us;
+    return request_us < next_us ? request_us : next_us;
+}
+
+/* What the text says. Returns true for an acknowledgement that was taken. */
+static bool take_text(struct room *room, struct member *member, void *connection, const char *text, size_t n)
 {
     struct message message;
     struct problem problem = { 0 };
-    room->now_us = now_us;
-    struct member *member = member_who_speaks(room, connection);
     if (!message_read(text, n, true, &message, &problem)) {
         if (refuse(room, connection, text, n, &problem) && !member)
             send_bye(room, connection, -1, hello_first);
-        members_close_lost(room);
-        return now_us;
+        return false;
     }
     if (!member && message.type == MESSAGE_HELLO) {
         (void)member_hello(room, connection, &message.hello);
@@ -315,29 +412,30 @@ int64_t room_text_came(struct room *room, void *connection, const char *text, si
             if (handlers[i].type == message.type && !handlers[i].handle(room, member, &message, &problem))
                 (void)refuse(room, connection, text, n, &problem);
     }
-    /* An acknowledgement lets the next picture be requested, or one be sent that may be late: no more. */
-    const bool is_shown = message.type == MESSAGE_FRAME_SHOWN && problem.type == PROBLEM_NONE && !room->has_lost;
+    const bool is_shown = message.type == MESSAGE_FRAME_SHOWN && problem.type == PROBLEM_NONE;
     message_finish(&message);
-    control_tell(room);
-    members_close_lost(room);
-    int64_t watch_us = INT64_MAX;
+    return is_shown && member;
+}
+
+int64_t room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us)
+{
+    room_enter(room, now_us);
+    struct member *member = member_who_speaks(room, connection);
+    const bool is_shown = take_text(room, member, connection, text, n) && !room->has_lost;
+    const int64_t due_us = is_shown ? settle_shown(room, member) : now_us;
     if (!is_shown)
-        show_main(room);
-    else if (member)
-        watch_us = watch_tick(room, member);
-    const int64_t request_us = streams_request_due(room), late_us = now_us + LAG_AFTER_US,
-                  next_us = watch_us < late_us ? watch_us : late_us;
-    return !is_shown ? now_us : request_us < next_us ? request_us : next_us;
+        (void)settle(room, true);
+    room->due_us = due_us < room->due_us ? due_us : room->due_us;
+    return due_us;
 }
 
 void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us)
 {
-    room->now_us = now_us;
+    room_enter(room, now_us);
     struct member *member = member_of_connection(room, connection);
     if (member)
         member_disconnected(room, member, heard_us < now_us ? heard_us : now_us);
-    control_tell(room);
-    show_main(room);
+    room_leave(room);
 }
 
 void room_connection_closed(struct room *room, void *connection, int64_t now_us)
@@ -348,200 +446,4 @@ void room_connection_closed(struct room *room, void *connection, int64_t now_us)
 bool room_has_member(const struct room *room, void *connection)
 {
     return member_of_connection(room, connection) != NULL;
-}
-
-int64_t room_tick(struct room *room, int64_t now_us)
-{
-    room->now_us = now_us;
-    const int64_t pointers_us = pointers_tick(room), look_us = look_tick(room), saved_us = saved_tick(room),
-                  replay_us = replay_tick(room), displays_us = displays_tick(room);
-    members_close_lost(room);
-    bool has_changed = presenter_settle(room);
-    int64_t lags_us = lags_settle(room, &has_changed);
-    if (has_changed)
-        send_members(room);
-    control_tell(room);
-    show_main(room);
-    const int64_t due_us[] = { watches_tick(room),
-                               members_forget(room),
-                               streams_request_due(room),
-                               presenter_due_us(room),
-                               send_members_due(room),
-                               pointers_us,
-                               look_us,
-                               saved_us,
-                               replay_us,
-                               displays_us,
-                               recording_tick(room),
-                               lags_us,
-                               audit_tick(room) };
-    int64_t least_us = INT64_MAX;
-    for (size_t i = 0; i < sizeof due_us / sizeof due_us[0]; i++)
-        least_us = due_us[i] < least_us ? due_us[i] : least_us;
-    return least_us;
-}
-
-/* ---- for HTTP --------------------------------------------------------------------------------------------------- */
-
-/* The member who makes a call: member as in room_call_may. NULL: nobody of the room. */
-static struct member *find_caller(const struct room *room, const char *member)
-{
-    char id[64];
-    const size_t n = member ? strcspn(member, " ") : 0;
-    (void)snprintf(id, sizeof id, "%.*s", (int)(n < sizeof id ? n : 0), member ? member : "");
-    for (int i = 0; i < room->n_members && member && member[n] == ' '; i++)
-        if (strcmp(room->members[i]->id, id) == 0 && secret_matches(member + n + 1, room->members[i]->secret_hash))
-            return room->members[i];
-    return NULL;
-}
-
-const char *room_caller_name(const struct room *room, const char *member)
-{
-    const struct member *caller = find_caller(room, member);
-    return caller ? caller->name : "";
-}
-
-void room_end_because(struct room *room, const char *reason)
-{
-    (void)snprintf(room->end_reason, sizeof room->end_reason, "%s", reason);
-}
-
-size_t room_n_decided(const struct room *room)
-{
-    size_t n = 0;
-    for (const struct item *item = room->items; item; item = item->next)
-        n += record_is_wanted(item->kind);
-    return n;
-}
-
-uint32_t room_n_named(const struct room *room)
-{
-    return room->n_named;
-}
-
-const cJSON *room_scene(const struct room *room, uint32_t *revision)
-{
-    if (revision)
-        *revision = room->revision;
-    return room->scene;
-}
-
-cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem)
-{
-    return scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
-}
-
-bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, const char *address, int64_t now_us,
-                      struct problem *problem)
-{
-    room->now_us = now_us;
-    if (!replay_allows(room, MESSAGE_SCENE_PATCH, problem))
-        return false;
-    room->caller = find_caller(room, caller);
-    room->caller_address = address;
-    const bool ok = scene_apply_patch(room, patch, NULL, 0, problem);
-    room->caller_address = NULL;
-    room->caller = NULL;
-    if (!ok)
-        return false;
-    (void)streams_request_due(room);
-    return true;
-}
-
-void room_audit_call(struct room *room, const char *member, const char *address, const char *action, cJSON *detail,
-                     bool is_refused, int64_t now_us)
-{
-    if (strcmp(action, "export") == 0 && room->plan_revision[0])
-        cJSON_AddStringToObject(detail, "plan_revision", room->plan_revision);
-    const struct audit_act act = { .by = find_caller(room, member),
-                                   .action = action,
-                                   .address = address,
-                                   .detail = detail,
-                                   .is_refused = is_refused,
-                                   .before = -1,
-                                   .after = room->revision };
-    room->now_us = now_us;
-    audit_tell(room, &act);
-}
-
-void room_plan_revision(struct room *room, const char *revision)
-{
-    (void)snprintf(room->plan_revision, sizeof room->plan_revision, "%s", revision);
-}
-
-bool room_wants_revision(const struct room *room)
-{
-    return room_replays(room) || recording_wants_revision(room) || acceptances_want_revision(room);
-}
-
-void room_revision_came(struct room *room, const char *revision, int64_t now_us)
-{
-    room->now_us = now_us;
-    recording_revision_came(room, revision);
-    acceptances_revision(room, revision);
-    replay_revision_came(room, revision);
-}
-
-void room_audit_flush(struct room *room, int64_t now_us)
-{
-    room->now_us = now_us;
-    audit_flush(room, NULL);
-}
-
-bool room_call_may(const struct room *room, const char *member, enum wire_right right, struct problem *problem)
-{
-    const struct member *caller = find_caller(room, member);
-    if (caller) {
-        if (right == WIRE_RIGHT_SCENE && role_has_right(caller->role, right) && !member_presents(room, caller))
-            return refuse_not_presenter(room, problem, "change the scene");
-        return role_check(caller->role, right, problem);
-    }
-    if (member)
-        return problem_set(problem, PROBLEM_FORBIDDEN, "", "member",
-                           "Beamroom-Member names no member of this room, or not with its secret");
-    if (room->has_links && (right == WIRE_RIGHT_SCENE || !role_has_right(WIRE_MEMBER_ROLE_REVIEWER, right)))
-        return problem_set(problem, PROBLEM_FORBIDDEN, "", "role",
-                           "this room has links, so only its members may do this: send Beamroom-Member");
-    return true;
-}
-
-static cJSON *make_document(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,
-                            int64_t created_at_s, bool is_asleep, cJSON *members)
-{
-    char created[32];
-    struct tm utc;
-    time_t seconds = (time_t)created_at_s;
-    gmtime_r(&seconds, &utc);
-    (void)strftime(created, sizeof created, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "id", id);
-    cJSON_AddStringToObject(json, "plan", plan_id);
-    cJSON_AddNumberToObject(json, "revision", revision);
-    cJSON_AddStringToObject(json, "renderer", wire_renderer_state_words.words[renderer]);
-    cJSON_AddStringToObject(json, "created_at", created);
-    cJSON_AddBoolToObject(json, "asleep", is_asleep);
-    json_add(json, "members", members);
-    return json;
-}
-
-cJSON *room_document(const struct room *room)
-{
-    return make_document(room->id, room->plan_id, room->revision, room->state, room->created_at_s, false,
-                         room_members(room));
-}
-
-cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,
-                        int64_t created_at_s)
-{
-    return make_document(id, plan_id, revision, renderer, created_at_s, true, cJSON_CreateArray());
-}
-
-void room_count(const struct room *room, struct room_counters *sum)
-{
-    sum->pictures_requested += room->counters.pictures_requested;
-    sum->frames_sent += room->counters.frames_sent;
-    sum->frame_bytes += room->counters.frame_bytes;
-    sum->frames_skipped += room->counters.frames_skipped;
-    sum->messages_refused += room->counters.messages_refused;
-    sum->stills_sent += room->counters.stills_sent;
 }

@@ -5,7 +5,7 @@
 #include "server/room/log/room_recordings.h"
 #include "server/room/people/room_links.h"
 #include "server/room/state/room_types.h"
-#include "server/room/streams/room_pictures.h"
+#include "server/room/streams/room_displays.h"
 #include "server/room/views/room_bookmarks.h"
 
 /* id: URL-safe, random, not guessable. The plan and its default scene come with room_plan_ready. */
@@ -30,11 +30,11 @@ const char *room_plan_id(const struct room *room);
 bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
                      bool is_software, int64_t now_us);
 void room_renderer_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
-                         const struct problem *problem);
+                         const struct problem *problem, int64_t now_us);
 
 /* Connections: opaque pointers of the caller's. A connection becomes a member with hello. */
-/* Returns when room_tick is due because of the text: at once, but for the acknowledgement of a frame, of which there is
- * one for each frame and member. */
+/* Returns when room_settle is due because of the text: at once, but for the acknowledgement of a frame, of which there
+ * is one for each frame and member. It is to be called once for all texts that have come together. */
 int64_t room_text_came(struct room *room, void *connection, const char *text, size_t n, int64_t now_us);
 void room_connection_closed(struct room *room, void *connection, int64_t now_us);
 /* Like room_connection_closed, for a connection that was last heard of at heard_us: the member counts as away since
@@ -42,9 +42,23 @@ void room_connection_closed(struct room *room, void *connection, int64_t now_us)
 void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us);
 bool room_has_member(const struct room *room, void *connection); /* it has said hello */
 
-/* Time-driven work: stills, dropping members that are away. Returns when it is due again; INT64_MAX: only after another
- * call. */
-int64_t room_tick(struct room *room, int64_t now_us);
+/* Does what follows from all that came, and what is due with time: stills, dropping members that are away ... Each
+ * entry but room_text_came ends with it. Returns when it is due again; INT64_MAX: only after another call. */
+int64_t room_settle(struct room *room, int64_t now_us);
+/* The same time, as it was found last. */
+int64_t room_due_us(const struct room *room);
+
+/* Answers to render. A picture that is no longer wanted (the renderer was restarted, the view closed) is dropped. */
+void room_picture_came(struct room *room, uint64_t request, struct frame *picture, int64_t now_us); /* takes picture */
+void room_picture_failed(struct room *room, uint64_t request, const struct problem *problem, int64_t now_us);
+NODISCARD struct room_display *room_display_add(struct room *room, const char *view,
+                                                const struct room_display_callbacks *callbacks, int64_t now_us,
+                                                struct problem *problem);
+void room_display_remove(struct room_display *display);
+
+/* Answers item_first. problem NULL: the item is on disk, so it counts and all members are told. Else it will never be
+ * written, and who gave it is told why. */
+void room_item_written(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us);
 
 /* The shared scene, for HTTP: NULL before the plan is ready. */
 const cJSON *room_scene(const struct room *room, uint32_t *revision);
@@ -64,6 +78,9 @@ NODISCARD cJSON *room_document_of(const char *id, const char *plan_id, uint32_t 
  * present. False with problem forbidden or not-presenter. */
 NODISCARD bool room_call_may(const struct room *room, const char *member, enum wire_right right,
                              struct problem *problem);
+/* Makes a link; token gets 32 digits and a final zero. False with problem limit. */
+NODISCARD bool room_link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
+                                int64_t now_us, char token[33], struct problem *problem);
 /* Records what a call over HTTP does in this room; member as in room_call_may; address: the client's, "": not known.
  * detail is taken. */
 void room_audit_call(struct room *room, const char *member, const char *address, const char *action, cJSON *detail,
@@ -80,6 +97,21 @@ void room_kept_finish(struct room_kept *kept);
 /* Makes a room that was just created what it was when it was kept; its members are away. The scene counts once the plan
  * is ready, as after a restart of the renderer. What is not readable in kept is left out, and said in the log. */
 void room_restore(struct room *room, const struct room_kept *kept, int64_t now_us);
+
+/* [{id, state, started_ms, length_ms, by, by_name, n_events, n_bytes, marks}], the oldest first; NULL: no memory. */
+NODISCARD cJSON *room_recordings(struct room *room, int64_t now_us);
+/* Ends it first where it runs. False: there is none. */
+NODISCARD bool room_recording_delete(struct room *room, const char *id, int64_t now_us);
+/* Ends the recording that runs: the server stops, or the room falls asleep. */
+void room_recording_cut(struct room *room, int64_t now_us);
+/* The room plays this recording of another room from its beginning. Before its first member. n_named: of that room;
+ * marks and notes of its members are nobody's here, as members of this room have later numbers. */
+void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named, const struct room_recording *recording,
+                       int64_t now_us);
+/* The answer to replay_read: n texts, and the time of the state behind them (INT64_MAX: there is none). n 0: they
+ * cannot be read, and problem says why. */
+void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,
+                      const struct problem *problem, int64_t now_us);
 
 /* How many members the room has ever had. */
 uint32_t room_n_named(const struct room *room);

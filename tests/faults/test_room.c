@@ -90,7 +90,7 @@ static void join(void *context, struct outcome *outcome)
         room_text_came(room, &world->page, open, sizeof open - 1, world->fake.now_us);
     if (!world->other.is_closed) /* who was there first presents */
         room_text_came(room, &world->other, patch, sizeof patch - 1, world->fake.now_us);
-    (void)room_tick(room, world->fake.now_us);
+    (void)room_settle(room, world->fake.now_us);
     faults_pause();
     const cJSON *scene = room_scene(room, &after), *regions = cJSON_GetObjectItem(scene, "regions");
     opacity = json_number(cJSON_GetObjectItem(regions, "scalp"), "opacity", 0.4);
@@ -157,7 +157,7 @@ static void leave(void *context, struct outcome *outcome)
     room_connection_closed(room, &world->other, now_us);
     now_us += ROOM_PRESENTER_KEPT_S * INT64_C(1000000);
     for (int i = 0; i < 2; i++) /* a second time where there was no memory */
-        now_us = room_tick(room, now_us) < INT64_MAX ? now_us + 200000 : now_us;
+        now_us = room_settle(room, now_us) < INT64_MAX ? now_us + 200000 : now_us;
     faults_pause();
     outcome->is_done = true;
     struct outcome heard = { 0 }; /* how often it is told the state on the way is no matter */

@@ -145,7 +145,7 @@ static void use(struct room *room, const cJSON *items, int64_t now_us)
         cJSON_Delete(body);
     }
     room_text_came(room, &page, hello, sizeof hello - 1, now_us);
-    REQUIRE(room_tick(room, now_us) > now_us);
+    REQUIRE(room_settle(room, now_us) > now_us);
 }
 
 static bool is_same_text(const char *a, const char *b)

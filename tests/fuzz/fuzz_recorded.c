@@ -65,7 +65,7 @@ static void play(const char *const *texts, size_t n, int64_t t_ms, bool is_chang
     for (size_t i = 0; i < sizeof said / sizeof said[0]; i++) {
         say(room, &page, said[i], now_us);
         for (int tick = 0; tick < 4; tick++) {
-            REQUIRE(room_tick(room, now_us) > now_us);
+            REQUIRE(room_settle(room, now_us) > now_us);
             if (n_asked) {
                 struct problem problem = { .type = PROBLEM_STORAGE, .detail = "nothing is there" };
                 n_asked = 0;

@@ -124,9 +124,9 @@ static void play_line(struct room *room, const char *line, size_t n, int64_t *no
     case 't': *now_us += n > 1 ? (int64_t)(unsigned char)line[1] * 1000 : 20000; break;
     case 'T': /* longer than a presenter without a connection presents */
         *now_us += (ROOM_PRESENTER_KEPT_S + 1) * INT64_C(1000000);
-        (void)room_tick(room, *now_us);
+        (void)room_settle(room, *now_us);
         break;
-    case 'r': room_renderer_state(room, WIRE_RENDERER_STATE_RESTARTING, "again", 10, NULL); break;
+    case 'r': room_renderer_state(room, WIRE_RENDERER_STATE_RESTARTING, "again", 10, NULL, *now_us); break;
     case 'p': kept_plan_ready(room, *now_us); break;
     case 'x': {
         struct page *page = &pages[n > 1 && line[1] == '1'];
@@ -176,7 +176,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
         }
         if (end > at)
             play_line(room, (const char *)data + at, end - at, &now_us);
-        int64_t again_us = room_tick(room, now_us);
+        int64_t again_us = room_settle(room, now_us);
         REQUIRE(again_us > now_us);
         check_presenter(room);
     }

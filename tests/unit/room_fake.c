@@ -156,7 +156,7 @@ void fake_page_end(struct fake_page *page)
 
 static void tick(struct fake_room *fake)
 {
-    fake->again_us = room_tick(fake->room, fake->now_us);
+    fake->again_us = room_settle(fake->room, fake->now_us);
 }
 
 /* A plan document and default scene of a plan with these regions. */

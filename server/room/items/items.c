@@ -16,7 +16,6 @@
 #include "server/room/items/room_items.h"
 #include "server/room/log/recording.h"
 #include "server/room/out/audit.h"
-#include "server/room/people/member.h"
 
 #include "server/room/out/send.h"
 #include "server/room/state/roles.h"
@@ -179,10 +178,9 @@ size_t room_n_items_written(const struct room *room)
     return n;
 }
 
-void room_item_written(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
+void items_written(struct room *room, uint64_t number, const struct problem *problem)
 {
     struct keeping **at = &room->keeping, *keeping;
-    room->now_us = now_us;
     while (*at && (*at)->number != number)
         at = &(*at)->next;
     if (!(keeping = *at))
@@ -202,7 +200,6 @@ void room_item_written(struct room *room, uint64_t number, const struct problem 
             acceptances_settle(room);
     }
     free(keeping);
-    members_close_lost(room);
 }
 
 bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem)

@@ -7,5 +7,6 @@
 
 /* The handlers of item.put and item.delete. */
 bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-void items_forget_keeping(struct room *room); /* with the room */
+void items_written(struct room *room, uint64_t number, const struct problem *problem); /* room_item_written */
+void items_forget_keeping(struct room *room);                                          /* with the room */
 bool items_delete(struct room *room, struct member *member, const struct message *message, struct problem *problem);

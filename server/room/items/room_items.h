@@ -11,9 +11,6 @@ NODISCARD cJSON *room_items(const struct room *room, enum wire_item_kind kind);
  * or beyond a limit: the others can still be restored. */
 NODISCARD bool room_restore_item(struct room *room, const char *row, size_t n, struct problem *problem);
 
-/* Answers item_first. problem NULL: the item is on disk, so it counts and all members are told. Else it will never be
- * written, and who gave it is told why. */
-void room_item_written(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us);
 /* Items whose writing was asked for and is not answered. */
 size_t room_n_items_written(const struct room *room);
 

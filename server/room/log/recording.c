@@ -54,9 +54,8 @@ static int64_t recorded_ms(const struct room *room, const struct recorder *recor
     return (int64_t)((double)(room->now_us - recorder->start_us) * room->recording_speed / 1000);
 }
 
-cJSON *room_recordings(struct room *room, int64_t now_us)
+cJSON *recordings_list(const struct room *room)
 {
-    room->now_us = now_us;
     cJSON *list = cJSON_CreateArray();
     for (int i = 0; i < room->n_recordings; i++) {
         const struct room_recording *facts = &room->recordings[i];
@@ -283,7 +282,7 @@ static bool write_all(struct room *room)
     return room->recorder != NULL;
 }
 
-int64_t recording_tick(struct room *room)
+int64_t recording_settle(struct room *room)
 {
     struct recorder *recorder = room->recorder;
     if (!recorder)
@@ -394,9 +393,8 @@ bool recording_stop(struct room *room, struct member *member, const struct messa
     return true;
 }
 
-bool room_recording_delete(struct room *room, const char *id, int64_t now_us)
+bool recording_delete(struct room *room, const char *id)
 {
-    room->now_us = now_us;
     int index = 0;
     while (index < room->n_recordings && strcmp(room->recordings[index].id, id) != 0)
         index++;
@@ -438,18 +436,15 @@ void room_recording_restart(struct room *room)
     room->recorder->has_events = true;
 }
 
-void room_recording_cut(struct room *room, int64_t now_us)
+void recording_cut(struct room *room)
 {
-    if (!room->recorder)
-        return;
-    room->now_us = now_us;
-    if (write_all(room))
+    if (room->recorder && write_all(room))
         end(room, WIRE_RECORDING_STATE_CUT, NULL);
 }
 
 void recordings_finish(struct room *room)
 {
-    room_recording_cut(room, room->now_us);
+    recording_cut(room);
     for (int i = 0; i < room->n_recordings; i++)
         room_recording_finish(&room->recordings[i]);
     room->n_recordings = 0;

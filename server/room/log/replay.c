@@ -271,12 +271,10 @@ static bool fits(const struct replay *replay, const cJSON *events, int64_t next_
     return true;
 }
 
-void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,
-                      const struct problem *problem, int64_t now_us)
+void replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms, const struct problem *problem)
 {
     struct replay *replay = room->replay;
     struct problem found = problem ? *problem : (struct problem){ 0 };
-    room->now_us = now_us;
     if (!replay)
         return;
     replay->is_reading = false;
@@ -304,7 +302,7 @@ static int64_t due_us(const struct replay *replay, double t_ms)
     return replay->since_us + (wait_us > 0 ? (int64_t)wait_us + 1 : 0);
 }
 
-int64_t replay_tick(struct room *room)
+int64_t replay_settle(struct room *room)
 {
     struct replay *replay = room->replay;
     if (!replay)
@@ -352,7 +350,7 @@ static bool refuse_ordinary(struct problem *problem)
 static bool moved(struct room *room)
 {
     room->replay->shown_us = 0; /* at once */
-    (void)replay_tick(room);
+    (void)replay_settle(room);
     tell_time(room, NULL);
     return true;
 }
@@ -464,11 +462,10 @@ void replay_plan_ready(struct room *room)
     replay->shown = NULL;
     replay->shown_us = 0;
     tell_what(room, NULL);
-    (void)replay_tick(room);
+    (void)replay_settle(room);
 }
 
-void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named, const struct room_recording *recording,
-                       int64_t now_us)
+void replay_begin(struct room *room, const char *of_room, uint32_t n_named, const struct room_recording *recording)
 {
     struct replay *replay = mem_new(sizeof *replay);
     *replay = (struct replay){
@@ -476,7 +473,6 @@ void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named,
     };
     (void)snprintf(replay->of_room, sizeof replay->of_room, "%s", of_room);
     replay->facts.marks = recording->marks ? cJSON_Duplicate(recording->marks, true) : NULL;
-    room->now_us = now_us;
     room->n_named = n_named;
     room->replay = replay;
     if (room->scene)

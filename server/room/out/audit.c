@@ -206,7 +206,7 @@ void audit_flush(struct room *room, const struct member *by)
             i++;
 }
 
-int64_t audit_tick(struct room *room)
+int64_t audit_settle(struct room *room)
 {
     int64_t due_us = INT64_MAX;
     for (int i = 0; i < room->n_gathered;) {

@@ -32,7 +32,7 @@ void audit_gather(struct room *room, const struct audit_act *act);
 /* Records what is gathered of this member; NULL: of everybody. */
 void audit_flush(struct room *room, const struct member *by);
 /* Records what is over; when the next is due, INT64_MAX: nothing is gathered. */
-int64_t audit_tick(struct room *room);
+int64_t audit_settle(struct room *room);
 void audit_free(struct room *room);
 /* False with problem storage: what is recorded cannot be stored now, so it is refused. */
 bool audit_has_place(const struct room *room, struct problem *problem);

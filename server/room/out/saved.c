@@ -52,7 +52,7 @@ static bool is_news(const struct room *room, const struct room_saved *saved)
     return saved->state == WIRE_SAVED_STATE_SAVED && room->saved.n_items_told != room->saved.n_item_changes;
 }
 
-int64_t saved_tick(struct room *room)
+int64_t saved_settle(struct room *room)
 {
     const struct room_saved saved = now_saved(room);
     if (saved.state == WIRE_SAVED_STATE_UNKEPT || !is_news(room, &saved)) {

@@ -7,4 +7,4 @@ enum { SAVED_EVERY_MS = 1000 }; /* between two messages; a disk that fails, or w
 /* Tells a member who has just come. */
 void saved_show(struct room *room, struct member *member);
 /* Tells all what is due. Returns when it is due again. */
-int64_t saved_tick(struct room *room);
+int64_t saved_settle(struct room *room);

@@ -64,11 +64,11 @@ static void record(struct room *room)
     audit_tell(room, &row);
 }
 
-void control_tell(struct room *room)
+int64_t control_settle(struct room *room)
 {
     struct message message;
     if (!room->control_is_new)
-        return;
+        return INT64_MAX;
     fill(room, &message);
     message.control.act = room->control_act.act;
     (void)snprintf(message.control.member, sizeof message.control.member, "%s", room->control_act.member);
@@ -78,6 +78,7 @@ void control_tell(struct room *room)
         record(room);
     send_to_all(room, &message);
     message_finish(&message);
+    return INT64_MAX;
 }
 
 void control_note(struct room *room, enum wire_control_act act, const struct member *member, const struct member *by)

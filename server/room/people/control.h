@@ -9,7 +9,7 @@ void control_pass(struct room *room, struct member *member);
 void control_note(struct room *room, enum wire_control_act act, const struct member *member, const struct member *by);
 /* The member's connection was lost: its request ends. */
 void control_left(struct room *room, struct member *member);
-/* Tells all members how things stand, if that has changed since the last time. */
-void control_tell(struct room *room);
+/* Tells all members how things stand, if that has changed since the last time. Returns INT64_MAX. */
+int64_t control_settle(struct room *room);
 /* Tells one member how things stand. */
 void control_send(struct room *room, struct member *member);

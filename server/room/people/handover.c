@@ -21,7 +21,7 @@ static bool pass_on(struct room *room, struct member *member, enum wire_control_
     const uint64_t request = member->request;
     control_pass(room, member);
     control_note(room, act, member, act == WIRE_CONTROL_ACT_GIVEN ? before : member);
-    control_tell(room); /* first: the page takes the views that follow as those it presents */
+    (void)control_settle(room); /* first: the page takes the views that follow as those it presents */
     if (!views_follow(room, member, input, problem)) {
         room->presenter = before;
         room->is_locked = was_locked;

@@ -30,11 +30,10 @@ static void forget(struct room *room)
     room->n_links = n;
 }
 
-bool room_link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use, int64_t now_us,
-                      char token[33], struct problem *problem)
+bool link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use, char token[33],
+                 struct problem *problem)
 {
     assert(expires_s >= ROOM_LINK_MIN_S && expires_s <= ROOM_LINK_MAX_S);
-    room->now_us = now_us;
     if (room->n_links == ROOM_MAX_LINKS)
         forget(room); /* not before, so that who comes late is told why */
     if (room->n_links == ROOM_MAX_LINKS)
@@ -42,7 +41,7 @@ bool room_link_create(struct room *room, enum wire_member_role role, int64_t exp
                            room->n_links);
     struct link *link = &room->links[room->n_links++];
     *link = (struct link){ .role = role,
-                           .expires_us = now_us + expires_s * INT64_C(1000000),
+                           .expires_us = room->now_us + expires_s * INT64_C(1000000),
                            .expires_ms = clock_wall_ms() + expires_s * 1000,
                            .is_one_use = is_one_use };
     secret_make(token);

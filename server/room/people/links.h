@@ -1,7 +1,10 @@
 #pragma once
-/* Links that let new members in with a role: room_link_create, and finding one for a hello. Internal to server/room. */
+/* Links that let new members in with a role: making one, and finding one for a hello. Internal to server/room. */
 #include "server/room/state/room_state.h"
 
+/* Makes one: room_link_create. */
+NODISCARD bool link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
+                           char token[33], struct problem *problem);
 /* Finds the link that the token opens for this person. Returns NULL, or the sentence why it opens nothing. */
 const char *link_find(struct room *room, const char *token, const char *person, struct link **found);
 /* The member came in by it. */

@@ -48,7 +48,7 @@ bool look_here(struct room *room, struct member *member, const struct message *m
     look->point_mm = message->look_here.point_mm;
     look->since_us = room->now_us;
     look->is_on = look->is_due = true;
-    (void)look_tick(room);
+    (void)look_settle(room);
     return true;
 }
 
@@ -61,7 +61,7 @@ bool look_come(struct room *room, struct member *member, const struct message *m
         return true;
     member->came_to = look->number;
     look->is_due = true;
-    (void)look_tick(room);
+    (void)look_settle(room);
     return true;
 }
 
@@ -84,7 +84,7 @@ void look_show(struct room *room, struct member *member)
     message_finish(&message);
 }
 
-int64_t look_tick(struct room *room)
+int64_t look_settle(struct room *room)
 {
     struct look *look = &room->look;
     if (look->is_on && room->now_us >= look->since_us + kept_us)

@@ -16,4 +16,4 @@ void look_end(struct room *room, const struct member *member);
 /* Sends the request that stands, if any, to a member who has just come. */
 void look_show(struct room *room, struct member *member);
 /* Sends what is due, and ends the request after its time. Returns when it is due again. */
-int64_t look_tick(struct room *room);
+int64_t look_settle(struct room *room);

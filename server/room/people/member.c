@@ -23,6 +23,7 @@
 #include "server/room/state/presence.h"
 #include "server/room/state/roles.h"
 #include "server/room/state/secret.h"
+#include "server/room/streams/lag.h"
 #include "server/room/views/marks.h"
 #include "server/room/views/member_view.h"
 
@@ -48,7 +49,7 @@ void members_free(struct room *room)
         member_free(room, room->n_members - 1);
 }
 
-int64_t members_forget(struct room *room)
+int64_t members_settle_away(struct room *room)
 {
     const int64_t kept_us = ROOM_MEMBER_KEPT_S * INT64_C(1000000);
     int64_t again_us = INT64_MAX;
@@ -71,16 +72,26 @@ int64_t members_forget(struct room *room)
     return again_us;
 }
 
-void members_close_lost(struct room *room)
+int64_t members_settle_lost(struct room *room)
 {
     if (!room->has_lost)
-        return;
+        return INT64_MAX;
     for (int i = 0; i < room->n_members; i++) /* saying who is there may lose others */
         if (room->members[i]->is_lost) {
             member_disconnected(room, room->members[i], room->now_us);
             i = -1;
         }
     room->has_lost = false;
+    return INT64_MAX;
+}
+
+int64_t members_settle(struct room *room)
+{
+    bool has_changed = presenter_settle(room);
+    const int64_t lag_us = lags_settle(room, &has_changed);
+    if (has_changed)
+        send_members(room);
+    return lag_us;
 }
 
 void member_disconnected(struct room *room, struct member *member, int64_t heard_us)

@@ -7,7 +7,9 @@
 bool member_hello(struct room *room, void *connection, const struct message_hello *hello);
 void member_disconnected(struct room *room, struct member *member, int64_t heard_us); /* away since heard_us */
 /* Drops members that have been away for ROOM_MEMBER_KEPT_S. Returns when the next one is due. */
-int64_t members_forget(struct room *room);
+int64_t members_settle_away(struct room *room);
 void members_free(struct room *room);
-/* Closes the views of members whose connection was closed for want of memory. */
-void members_close_lost(struct room *room);
+/* Closes the views of members whose connection was closed for want of memory. Returns INT64_MAX. */
+int64_t members_settle_lost(struct room *room);
+/* Who presents, and who lags: where that is news, all are sent the list. Returns when a lag may change next. */
+int64_t members_settle(struct room *room);

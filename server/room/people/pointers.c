@@ -54,7 +54,7 @@ bool pointer_move(struct room *room, struct member *member, const struct message
     pointing->moved_us = room->now_us;
     pointing->is_due = true;
     room->unrecorded |= RECORDED_POINTERS;
-    (void)pointers_tick(room);
+    (void)pointers_settle(room);
     return true;
 }
 
@@ -80,7 +80,7 @@ void pointers_show(struct room *room, struct member *member)
     }
 }
 
-int64_t pointers_tick(struct room *room)
+int64_t pointers_settle(struct room *room)
 {
     const int64_t pause_us = every_us(room);
     int64_t again_us = INT64_MAX;

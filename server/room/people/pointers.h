@@ -16,4 +16,4 @@ void pointer_end(struct room *room, struct member *member);
 /* Sends all pointers to a member who has just come. */
 void pointers_show(struct room *room, struct member *member);
 /* Passes on what is due and ends what does not move. Returns when it is due again. */
-int64_t pointers_tick(struct room *room);
+int64_t pointers_settle(struct room *room);

@@ -107,7 +107,7 @@ bool presenter_settle(struct room *room)
     return room->presenter != before;
 }
 
-int64_t presenter_due_us(const struct room *room)
+int64_t presenter_due_us(struct room *room)
 {
     const struct member *presenter = room->presenter;
     if (room->replay)

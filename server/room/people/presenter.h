@@ -18,4 +18,4 @@ bool presenter_take_over(struct room *room, struct member *member, uint32_t inpu
  * the presenter changed: the list of members is to be sent. */
 bool presenter_settle(struct room *room);
 /* When presenter_settle is due without another event; INT64_MAX: not at all. */
-int64_t presenter_due_us(const struct room *room);
+int64_t presenter_due_us(struct room *room);

@@ -196,7 +196,8 @@ struct room {
     char id[64], plan_id[64];
     struct room_callbacks callbacks;
     int max_members;
-    int64_t now_us; /* the time last passed in */
+    int64_t now_us; /* the time last passed in: room_enter */
+    int64_t due_us; /* when room_settle is due */
     int64_t created_at_s;
 
     enum wire_renderer_state state;

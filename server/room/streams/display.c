@@ -79,7 +79,7 @@ static void tell_late(const struct stream *stream, bool is_late)
         }
 }
 
-int64_t displays_tick(struct room *room)
+int64_t displays_settle(struct room *room)
 {
     int64_t due_us = INT64_MAX;
     for (const struct stream *stream = room->streams; stream; stream = stream->next) {

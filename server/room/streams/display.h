@@ -2,9 +2,9 @@
 /* Displays: screens that show a shared view and are no members. A display is a viewer of the stream without credit: it
  * is sent the pictures that the members who look are sent, and nothing is drawn for it beside them. Only where nobody
  * else looks, or none of those who look takes pictures, are pictures requested for displays. Internal to server/room.
- * room_display_add and room_display_remove (room.h) are in display_join.c. */
+ * display_add, display_remove and displays_follow are in display_join.c. */
 #include "server/room/state/room_state.h"
-#include "server/room/streams/room_pictures.h"
+#include "server/room/streams/room_displays.h"
 
 struct room_display {
     struct room_display *next; /* of the same stream */
@@ -14,6 +14,11 @@ struct room_display {
     bool is_late; /* as the display was told */
     bool is_main; /* it shows the room's main view */
 };
+
+/* As room_display_add. */
+NODISCARD struct room_display *display_add(struct room *room, const char *view,
+                                           const struct room_display_callbacks *callbacks, struct problem *problem);
+struct room *display_remove(struct room_display *display); /* returns its room */
 
 /* How soon to look again whether a display has taken its picture: it makes no event. */
 enum { DISPLAY_AGAIN_US = 50000 };
@@ -32,8 +37,8 @@ void displays_send(const struct room *room, const struct stream *stream);
  * without the words for a draft: it is to be requested again. */
 NODISCARD bool display_show(const struct room *room, struct room_display *display, struct stream *stream);
 /* Tells displays whether their picture is late; when the next may be. */
-int64_t displays_tick(struct room *room);
-/* The room's main view is another one: the displays that show it go over. */
-void displays_follow(struct room *room);
+int64_t displays_settle(struct room *room);
+/* The room's main view is another one: the displays that show it go over. Returns INT64_MAX. */
+int64_t displays_follow(struct room *room);
 /* Ends them: the stream does. */
 void displays_end(struct stream *stream);

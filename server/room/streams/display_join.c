@@ -1,4 +1,4 @@
-/* Adds displays to the room's shared streams and removes them: room.h. */
+/* Adds displays to the room's shared streams and removes them. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,7 +46,7 @@ static void show(struct room *room, struct room_display *display, struct stream 
         stream_again(room, stream);
 }
 
-void displays_follow(struct room *room)
+int64_t displays_follow(struct room *room)
 {
     struct stream *stream = room->streams;
     while (room->main && stream) {
@@ -60,6 +60,7 @@ void displays_follow(struct room *room)
         stream_left(room, stream);
         stream = room->streams; /* that one may be gone */
     }
+    return INT64_MAX;
 }
 
 /* A stream that no member has shown: what the room began with, or the home camera. The first member to show the view
@@ -103,11 +104,9 @@ static struct stream *choose(struct room *room, const char *word, struct problem
     return stream ? stream : make_shared(room, kind, problem);
 }
 
-struct room_display *room_display_add(struct room *room, const char *view,
-                                      const struct room_display_callbacks *callbacks, int64_t now_us,
-                                      struct problem *problem)
+struct room_display *display_add(struct room *room, const char *view, const struct room_display_callbacks *callbacks,
+                                 struct problem *problem)
 {
-    room->now_us = now_us;
     int n = 0;
     for (const struct stream *stream = room->streams; stream; stream = stream->next)
         for (const struct room_display *display = stream->displays; display; display = display->next)
@@ -124,7 +123,6 @@ struct room_display *room_display_add(struct room *room, const char *view,
     struct room_display *display = mem_new(sizeof *display);
     *display = (struct room_display){ .room = room, .callbacks = *callbacks, .is_main = !view };
     show(room, display, stream);
-    (void)streams_request_due(room);
     return display;
 }
 
@@ -133,13 +131,15 @@ const char *room_display_kind(const struct room_display *display)
     return scene_kind_words.words[display->stream->kind];
 }
 
-void room_display_remove(struct room_display *display)
+struct room *display_remove(struct room_display *display)
 {
+    struct room *room = display->room;
     struct stream *stream = display->stream;
     struct room_display **at = &stream->displays;
     while (*at != display)
         at = &(*at)->next;
     *at = display->next;
-    stream_left(display->room, stream);
+    stream_left(room, stream);
     free(display);
+    return room;
 }

@@ -53,11 +53,12 @@ static struct stream *any_shared(const struct room *room)
     return best;
 }
 
-void main_view_settle(struct room *room)
+int64_t main_view_settle(struct room *room)
 {
     struct stream *shown = room->presenter ? shown_by(room->presenter) : NULL;
     if (shown)
         room->main = shown;
     if (!room->main)
         room->main = any_shared(room);
+    return INT64_MAX;
 }

@@ -9,5 +9,5 @@ void main_view_acted(struct member *member, int number);
  * count no more. */
 void main_view_patched(struct member *member, int number, const cJSON *patch);
 /* Chooses room->main: the presenter's view in which they acted last, as long as it is open, else the first open one.
- * While the presenter is away, or there is none, it stays what it was. */
-void main_view_settle(struct room *room);
+ * While the presenter is away, or there is none, it stays what it was. Returns INT64_MAX. */
+int64_t main_view_settle(struct room *room);

@@ -11,7 +11,6 @@
 #include "server/room/state/kept.h"
 #include "server/room/state/reach.h"
 #include "server/room/streams/display.h"
-#include "server/room/streams/room_pictures.h"
 #include "server/room/streams/size_class.h"
 #include "server/room/streams/watch.h"
 #include "server/wire/json_merge.h"
@@ -509,10 +508,10 @@ static bool newer_is_coming(const struct stream *stream, uint64_t version)
            (stream->requests[1].number && stream->requests[1].version > version);
 }
 
-void room_picture_came(struct room *room, uint64_t number, struct frame *picture, int64_t now_us)
+void streams_picture_came(struct room *room, uint64_t number, struct frame *picture)
 {
     struct request request;
-    room->now_us = now_us;
+    const int64_t now_us = room->now_us;
     struct stream *stream = remove_request(room, number, &request);
     if (!stream) {
         frame_unref(picture);
@@ -537,7 +536,6 @@ void room_picture_came(struct room *room, uint64_t number, struct frame *picture
     } else {
         frame_unref(picture);
     }
-    (void)streams_request_due(room);
 }
 
 void stream_send_refusal(struct room *room, struct member *member, const struct member_view *view)
@@ -568,10 +566,9 @@ static void refuse_version(struct room *room, struct stream *stream, uint64_t ve
             (void)send_problem(room, view->member->connection, "", view - view->member->views + 1, 0, problem);
 }
 
-void room_picture_failed(struct room *room, uint64_t number, const struct problem *problem, int64_t now_us)
+void streams_picture_failed(struct room *room, uint64_t number, const struct problem *problem)
 {
     struct request request;
-    room->now_us = now_us;
     struct stream *stream = remove_request(room, number, &request);
     if (!stream)
         return;
@@ -585,7 +582,7 @@ void room_picture_failed(struct room *room, uint64_t number, const struct proble
     const int most = problem && problem->type == PROBLEM_BUSY ? 2 : 6;
     int64_t wait_us = RETRY_US << (stream->n_failed < most ? stream->n_failed : most);
     stream->n_failed++;
-    stream->retry_us = now_us + (wait_us < RETRY_AT_MOST_US ? wait_us : RETRY_AT_MOST_US);
+    stream->retry_us = room->now_us + (wait_us < RETRY_AT_MOST_US ? wait_us : RETRY_AT_MOST_US);
     if (request.is_still && stream->still_requested_version == request.version)
         stream->still_requested_version = 0;
     bool other_will_do = (stream->requests[0].number && stream->requests[0].version >= request.version) ||

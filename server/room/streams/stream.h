@@ -31,6 +31,9 @@ void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *
 /* Forgets outstanding requests without a word to the renderer: it is gone. */
 void streams_forget_requests(struct room *room);
 void streams_restart_pace(struct room *room);
+/* The answers to a request; room_picture_came and room_picture_failed. */
+void streams_picture_came(struct room *room, uint64_t number, struct frame *picture); /* takes picture */
+void streams_picture_failed(struct room *room, uint64_t number, const struct problem *problem);
 /* Sends the latest picture to the view, if it is new there, the view has credit and can be drawn as it is now. */
 void stream_send_picture(struct room *room, struct member *member, struct member_view *view);
 /* Sends the problem to a member who opened a view of a stream that cannot be drawn. */

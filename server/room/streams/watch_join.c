@@ -53,7 +53,7 @@ static void show(struct room *room, struct member *member, struct stream *stream
     tell(room, member);
 }
 
-void watches_follow(struct room *room)
+int64_t watches_follow(struct room *room)
 {
     for (int i = 0; i < room->n_members; i++) {
         struct member *member = room->members[i];
@@ -61,6 +61,7 @@ void watches_follow(struct room *room)
         if (view_of(member)->stream != stream)
             show(room, member, stream);
     }
+    return INT64_MAX;
 }
 
 /* When something is due for it that no event brings. */
@@ -79,7 +80,7 @@ static int64_t due_us(const struct room *room, const struct member *member, cons
     return due;
 }
 
-int64_t watch_tick(struct room *room, struct member *member)
+int64_t watch_settle(struct room *room, struct member *member)
 {
     struct member_view *view = view_of(member);
     if (!view->stream)
@@ -97,11 +98,11 @@ int64_t watch_tick(struct room *room, struct member *member)
     return due_us(room, member, view);
 }
 
-int64_t watches_tick(struct room *room)
+int64_t watches_settle(struct room *room)
 {
     int64_t again_us = INT64_MAX;
     for (int i = 0; i < room->n_members; i++) {
-        const int64_t member_us = watch_tick(room, room->members[i]);
+        const int64_t member_us = watch_settle(room, room->members[i]);
         again_us = member_us < again_us ? member_us : again_us;
     }
     return again_us;

@@ -5,9 +5,10 @@
 
 /* The handler of the message watch. */
 bool watch_set(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-/* After whatever may have changed who presents, or the main view: those who watch go over to it, or see none. */
-void watches_follow(struct room *room);
+/* After whatever may have changed who presents, or the main view: those who watch go over to it, or see none.
+ * Returns INT64_MAX. */
+int64_t watches_follow(struct room *room);
 /* Sends the member the picture whose turn has come, and tells whether it is late; returns when it is due again. */
-int64_t watch_tick(struct room *room, struct member *member);
-/* Like watch_tick, for all members. */
-int64_t watches_tick(struct room *room);
+int64_t watch_settle(struct room *room, struct member *member);
+/* Like watch_settle, for all members. */
+int64_t watches_settle(struct room *room);

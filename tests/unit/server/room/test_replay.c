@@ -76,7 +76,7 @@ static void answer(void)
         }
         asked.t_ms = -1;
         room_replay_came(fake.room, texts, n, next_ms, NULL, fake.now_us);
-        fake.again_us = room_tick(fake.room, fake.now_us);
+        fake.again_us = room_settle(fake.room, fake.now_us);
     }
 }
 
@@ -240,7 +240,7 @@ static size_t n_reads_in(int64_t ms, const char *text, int64_t next_ms)
             assert_true(turn < 4);
             asked.t_ms = -1;
             room_replay_came(fake.room, &text, text ? 1 : 0, next_ms, NULL, fake.now_us);
-            fake.again_us = room_tick(fake.room, fake.now_us);
+            fake.again_us = room_settle(fake.room, fake.now_us);
         }
     return asked.n - n_before;
 }

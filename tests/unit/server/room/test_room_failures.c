@@ -60,7 +60,7 @@ static void fail_with(struct fake_request *request, enum problem_type type, int 
     problem.retry_after_ms = retry_after_ms;
     request->is_answered = true;
     room_picture_failed(fake.room, request->request, &problem, fake.now_us);
-    fake.again_us = room_tick(fake.room, fake.now_us);
+    fake.again_us = room_settle(fake.room, fake.now_us);
 }
 
 static void a_picture_beyond_a_limit_is_told_once_and_requested_again_only_after_a_change(void **state)
@@ -173,7 +173,7 @@ static void a_new_renderer_is_told_the_scene_and_draws_everything_anew(void **st
     settle_one();
     fake_turn(&fake, &ann, 8, 21);
     struct fake_request *lost = fake_newest(&fake);
-    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL);
+    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL, fake.now_us);
     cJSON *said = fake_heard(&ann, "renderer");
     assert_string_equal(json_text(said, "state"), "restarting");
     cJSON_Delete(said);

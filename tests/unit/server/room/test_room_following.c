@@ -354,7 +354,7 @@ static void lose_link(int who)
     room_connection_closed(fake.room, &person->page, fake.now_us);
     forget_page(person);
     meeting_lose(&meeting, who, (double)fake.now_us);
-    fake.again_us = room_tick(fake.room, fake.now_us);
+    fake.again_us = room_settle(fake.room, fake.now_us);
 }
 
 static void any_size(int size_px[2])

@@ -169,7 +169,7 @@ static void calls_of_nobody_may_less_in_a_woken_room_that_had_links(void **state
 static void leave_for_long(struct fake_page *page)
 {
     room_connection_closed(fake.room, page, fake.now_us);
-    fake.again_us = room_tick(fake.room, fake.now_us);
+    fake.again_us = room_settle(fake.room, fake.now_us);
     fake_pass(&fake, ROOM_MEMBER_KEPT_S * 1000 + 1000);
 }
 

@@ -122,7 +122,7 @@ static void a_member_who_is_away_is_kept_five_minutes(void **state)
     fake_hello(&fake, &ben);
     room_connection_closed(fake.room, &ann, fake.now_us);
     fake_pass(&fake, 0);
-    fake.again_us = room_tick(fake.room, fake.now_us);
+    fake.again_us = room_settle(fake.room, fake.now_us);
     cJSON *members = room_members(fake.room);
     assert_int_equal(cJSON_GetArraySize(members), 2);
     cJSON_Delete(members);

@@ -58,7 +58,7 @@ static void open_axial(struct fake_page *page, int width, int height)
 
 static void tick(void)
 {
-    fake.again_us = room_tick(fake.room, fake.now_us);
+    fake.again_us = room_settle(fake.room, fake.now_us);
 }
 
 static void lose(struct fake_page *page)

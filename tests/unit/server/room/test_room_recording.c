@@ -126,7 +126,7 @@ static void answer(void)
         asked_ms = -1;
         room_replay_came(replay.room, texts, n, next_ms, NULL, replay.now_us);
         fake_pass(&replay, 0);
-        replay.again_us = room_tick(replay.room, replay.now_us);
+        replay.again_us = room_settle(replay.room, replay.now_us);
     }
 }
 
@@ -175,7 +175,7 @@ static void says(int who, const char *format, ...)
     int n = vsnprintf(text, sizeof text, format, args);
     va_end(args);
     room_text_came(meeting.room, &people[who], text, (size_t)n, meeting.now_us);
-    meeting.again_us = room_tick(meeting.room, meeting.now_us);
+    meeting.again_us = room_settle(meeting.room, meeting.now_us);
 }
 
 static void enters(int who)
@@ -195,7 +195,7 @@ static void leaves(int who)
 {
     room_connection_closed(meeting.room, &people[who], meeting.now_us);
     people[who].is_here = false;
-    meeting.again_us = room_tick(meeting.room, meeting.now_us);
+    meeting.again_us = room_settle(meeting.room, meeting.now_us);
 }
 
 static int presenter(void)

@@ -6,7 +6,7 @@
 static void disk(enum wire_saved_state state, uint32_t revision)
 {
     fake.saved = (struct room_saved){ .state = state, .revision = revision };
-    fake.again_us = room_tick(fake.room, fake.now_us);
+    fake.again_us = room_settle(fake.room, fake.now_us);
 }
 
 /* State and revision of the newest message, as "saved 3"; "": none came. */
@@ -137,7 +137,7 @@ static void a_full_disk_is_told_at_once_and_so_is_its_end(void **state)
     fake_pass(&fake, 10);
     fake.saved.is_full = true;
     fake.saved.state = WIRE_SAVED_STATE_FAILING;
-    fake.again_us = room_tick(fake.room, fake.now_us);
+    fake.again_us = room_settle(fake.room, fake.now_us);
     assert_string_equal(told(&ann), "failing 2");
     assert_string_equal(code(&ann), "full");
     put_note(); /* the room goes on */

@@ -167,7 +167,7 @@ static void before_the_plan_is_loaded_views_wait_and_the_scene_cannot_change(voi
     fake_room_start(&early, 3);
     struct fake_page page = { 0 };
     fake_join(&early, &page, false);
-    room_renderer_state(early.room, WIRE_RENDERER_STATE_LOADING, "reading the image", 40, NULL);
+    room_renderer_state(early.room, WIRE_RENDERER_STATE_LOADING, "reading the image", 40, NULL, early.now_us);
     assert_string_equal(heard(&page, "renderer", "phase"), "reading the image");
     fake_say(&early, &page, "{\"type\":\"scene.patch\",\"patch\":{}}");
     assert_string_equal(refused(&page), "503 ");
@@ -232,7 +232,7 @@ static void after_a_restart_with_another_plan_nothing_names_what_is_gone(void **
         &fake, &ann,
         "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.3}},\"check\":{\"region\":\"scalp\"}}}");
     settle_one();
-    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL);
+    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, NULL, 0, NULL, fake.now_us);
     /* during a restart patches are checked against the old plan */
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"check\":{\"region\":\"liver\"}}}");
     assert_string_equal(refused(&ann), "422 /check/region");
@@ -255,7 +255,7 @@ static void a_plan_that_cannot_be_loaded_says_why(void **state)
     (void)state;
     fake_hello(&fake, &ann);
     problem_set(&problem, PROBLEM_PLAN_UNREADABLE, "", "", "labels.nii.gz ends after 12 of 8388608 bytes");
-    room_renderer_state(fake.room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem);
+    room_renderer_state(fake.room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem, fake.now_us);
     cJSON *said = fake_heard(&ann, "renderer");
     assert_string_equal(json_text(said, "state"), "failed");
     assert_string_equal(json_text(cJSON_GetObjectItem(said, "problem"), "detail"), problem.detail);

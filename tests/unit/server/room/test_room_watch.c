@@ -322,7 +322,7 @@ static void it_is_said_to_be_late_after_a_second_and_comes_again_from_a_new_rend
     assert_string_equal(told(&ben), "3d");
     fake_pass(&fake, 200);
     assert_string_equal(told(&ben), "3d late");
-    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, "crashed", 0, NULL);
+    room_renderer_state(fake.room, WIRE_RENDERER_STATE_RESTARTING, "crashed", 0, NULL, fake.now_us);
     fake_plan_ready(&fake, true);
     const size_t n = n_frames(&ben, WATCH);
     draw_all();

@@ -1,10 +1,6 @@
 #pragma once
-/* Pictures that were drawn for a room, and its displays. Included by room.h. */
+/* The displays of a room. Included by room.h. */
 #include "server/room/state/room_types.h"
-
-/* Answers to render. A picture that is no longer wanted (the renderer was restarted, the view closed) is dropped. */
-void room_picture_came(struct room *room, uint64_t request, struct frame *picture, int64_t now_us); /* takes picture */
-void room_picture_failed(struct room *room, uint64_t request, const struct problem *problem, int64_t now_us);
 
 /* Displays: screens that show a shared view and are no members. view: its kind; NULL: the room's main view, whichever
  * that is at the time. Of several views of the kind, the presenter's first, else that with the lowest number; one that
@@ -21,8 +17,4 @@ struct room_display_callbacks {
     void (*ended)(void *context); /* with the room: the display is gone */
     void *context;
 };
-NODISCARD struct room_display *room_display_add(struct room *room, const char *view,
-                                                const struct room_display_callbacks *callbacks, int64_t now_us,
-                                                struct problem *problem);
-void room_display_remove(struct room_display *display);
 const char *room_display_kind(const struct room_display *display); /* a word of the view's field kind */

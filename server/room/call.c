@@ -1,0 +1,130 @@
+/* Answers calls over HTTP: what they may do in a room, its documents, the scene. */
+#include "server/room/entry.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "server/room/log/replay.h"
+#include "server/room/out/audit.h"
+#include "server/room/state/member_list.h"
+#include "server/room/state/roles.h"
+#include "server/room/views/shared_scene.h"
+#include "server/wire/json.h"
+#include "server/wire/message.h"
+
+/* The member who makes a call: member as in room_call_may. NULL: nobody of the room. */
+static struct member *find_caller(const struct room *room, const char *member)
+{
+    char id[64];
+    const size_t n = member ? strcspn(member, " ") : 0;
+    (void)snprintf(id, sizeof id, "%.*s", (int)(n < sizeof id ? n : 0), member ? member : "");
+    for (int i = 0; i < room->n_members && member && member[n] == ' '; i++)
+        if (strcmp(room->members[i]->id, id) == 0 && secret_matches(member + n + 1, room->members[i]->secret_hash))
+            return room->members[i];
+    return NULL;
+}
+
+const char *room_caller_name(const struct room *room, const char *member)
+{
+    const struct member *caller = find_caller(room, member);
+    return caller ? caller->name : "";
+}
+
+const cJSON *room_scene(const struct room *room, uint32_t *revision)
+{
+    if (revision)
+        *revision = room->revision;
+    return room->scene;
+}
+
+cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem)
+{
+    return scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
+}
+
+bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, const char *address, int64_t now_us,
+                      struct problem *problem)
+{
+    room_enter(room, now_us);
+    if (!replay_allows(room, MESSAGE_SCENE_PATCH, problem))
+        return false;
+    room->caller = find_caller(room, caller);
+    room->caller_address = address;
+    const bool ok = scene_apply_patch(room, patch, NULL, 0, problem);
+    room->caller_address = NULL;
+    room->caller = NULL;
+    room_leave(room);
+    return ok;
+}
+
+void room_audit_call(struct room *room, const char *member, const char *address, const char *action, cJSON *detail,
+                     bool is_refused, int64_t now_us)
+{
+    if (strcmp(action, "export") == 0 && room->plan_revision[0])
+        cJSON_AddStringToObject(detail, "plan_revision", room->plan_revision);
+    const struct audit_act act = { .by = find_caller(room, member),
+                                   .action = action,
+                                   .address = address,
+                                   .detail = detail,
+                                   .is_refused = is_refused,
+                                   .before = -1,
+                                   .after = room->revision };
+    room_enter(room, now_us);
+    audit_tell(room, &act);
+    room_leave(room);
+}
+
+bool room_call_may(const struct room *room, const char *member, enum wire_right right, struct problem *problem)
+{
+    const struct member *caller = find_caller(room, member);
+    if (caller) {
+        if (right == WIRE_RIGHT_SCENE && role_has_right(caller->role, right) && !member_presents(room, caller))
+            return refuse_not_presenter(room, problem, "change the scene");
+        return role_check(caller->role, right, problem);
+    }
+    if (member)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "member",
+                           "Beamroom-Member names no member of this room, or not with its secret");
+    if (room->has_links && (right == WIRE_RIGHT_SCENE || !role_has_right(WIRE_MEMBER_ROLE_REVIEWER, right)))
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "role",
+                           "this room has links, so only its members may do this: send Beamroom-Member");
+    return true;
+}
+
+static cJSON *make_document(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,
+                            int64_t created_at_s, bool is_asleep, cJSON *members)
+{
+    char created[32];
+    struct tm utc;
+    time_t seconds = (time_t)created_at_s;
+    gmtime_r(&seconds, &utc);
+    (void)strftime(created, sizeof created, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "id", id);
+    cJSON_AddStringToObject(json, "plan", plan_id);
+    cJSON_AddNumberToObject(json, "revision", revision);
+    cJSON_AddStringToObject(json, "renderer", wire_renderer_state_words.words[renderer]);
+    cJSON_AddStringToObject(json, "created_at", created);
+    cJSON_AddBoolToObject(json, "asleep", is_asleep);
+    json_add(json, "members", members);
+    return json;
+}
+
+cJSON *room_document(const struct room *room)
+{
+    return make_document(room->id, room->plan_id, room->revision, room->state, room->created_at_s, false,
+                         room_members(room));
+}
+
+cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,
+                        int64_t created_at_s)
+{
+    return make_document(id, plan_id, revision, renderer, created_at_s, true, cJSON_CreateArray());
+}
+
+void room_audit_flush(struct room *room, int64_t now_us)
+{
+    room_enter(room, now_us);
+    audit_flush(room, NULL);
+}
