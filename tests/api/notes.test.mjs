@@ -47,6 +47,7 @@ test('notes and bookmarks are in their lists, and in the welcome of who comes la
   ben.send({ type: 'item.put', item: made.id, version: 1, kind: 'note', body: { ...made.item.body, resolved: true } });
   ann.send({ type: 'item.put', item: made.id, version: 7, kind: 'note', body: made.item.body, input: 6 });
   assert.equal((await ann.message('problem', ({ input }) => input === 6)).problem.type, '/problems/conflict');
+  await ben.message('item', ({ item }) => item?.version === 2); // until it is on disk, nobody else's change is taken
   ben.send({ type: 'item.delete', item: made.id });
   await cem.message('item', ({ id, item }) => id === made.id && item === null);
   assert.deepEqual((await call(`${api}/rooms/${room}/notes`)).json, { notes: [] });
