@@ -27,7 +27,7 @@ check "the compressed page" sh -c "ls '$root'/usr/share/beamroom/web/page/main-*
 check "the unit names the installed program" grep -q '^ExecStart=/usr/bin/beamroomd ' "$root/usr/lib/systemd/system/beamroomd.service"
 check "nothing is left to fill in" sh -c "! grep -rE '@[A-Z]+@' '$root/usr/lib' '$root/etc'"
 every_key() { # the sample configuration and --help name the same settings
-    diff <("$root/usr/bin/beamroomd" --help | sed -nE 's/^ +--([a-z-]+) .*/\1/p' | grep -vE '^(config|version|help|backup|verify-audit|audit-head|stub|hang|recording-speed)$' | sort -u) \
+    diff <("$root/usr/bin/beamroomd" --help | sed -nE 's/^ +--([a-z-]+) .*/\1/p' | grep -vE '^(config|version|help|backup|verify-audit|audit-head|stub|recording-speed)$' | sort -u) \
         <(sed -nE 's/^(# )?([a-z-]+) = .*/\2/p' "$root/etc/beamroom/beamroomd.conf" | sort -u)
 }
 check "the sample configuration has every key" every_key

@@ -6,17 +6,15 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/daemon/acceptor.h"
 #include "server/daemon/notify.h"
-#include "server/http/http.h"
+#include "server/front/front.h"
 #include "server/net/net.h"
 
-enum { NET, HTTP, ACCEPTOR, N_THREADS };
+enum { NET, FRONT, N_THREADS };
 
 struct heartbeat {
     struct net *net;
-    struct http *http;
-    struct acceptor *acceptor;
+    struct front *front;
     atomic_bool has_moved[N_THREADS]; /* since the last round began */
     bool is_late;                     /* a late thread was logged in the last round */
 };
@@ -32,16 +30,14 @@ static void begin_round(struct heartbeat *heartbeat)
     for (int i = 0; i < N_THREADS; i++)
         atomic_store(&heartbeat->has_moved[i], false);
     net_post(heartbeat->net, mark, &heartbeat->has_moved[NET]);
-    http_ping(heartbeat->http, &heartbeat->has_moved[HTTP]);
-    acceptor_ping(heartbeat->acceptor, &heartbeat->has_moved[ACCEPTOR]);
+    front_ping(heartbeat->front, &heartbeat->has_moved[FRONT]);
 }
 
-struct heartbeat *heartbeat_create(struct net *net, struct http *http, struct acceptor *acceptor)
+struct heartbeat *heartbeat_create(struct net *net, struct front *front)
 {
     struct heartbeat *heartbeat = mem_new(sizeof *heartbeat);
     heartbeat->net = net;
-    heartbeat->http = http;
-    heartbeat->acceptor = acceptor;
+    heartbeat->front = front;
     if (notify_watchdog_us() > 0)
         begin_round(heartbeat);
     return heartbeat;
@@ -60,7 +56,7 @@ int64_t heartbeat_wait_us(const struct heartbeat *heartbeat)
 
 void heartbeat_beat(struct heartbeat *heartbeat)
 {
-    static const char *const names[N_THREADS] = { "net", "http", "acceptor" };
+    static const char *const names[N_THREADS] = { "net", "front" };
     bool have_all_moved = true;
     for (int i = 0; i < N_THREADS; i++) {
         bool has_moved = atomic_load(&heartbeat->has_moved[i]);

@@ -5,15 +5,14 @@
 #include <stdint.h>
 
 struct net;
-struct http;
-struct acceptor;
+struct front;
 
 enum { HEARTBEAT_PARTS = 4 }; /* rounds within the manager's time limit */
 
 struct heartbeat;
 
-/* net, http and acceptor outlive it. */
-struct heartbeat *heartbeat_create(struct net *net, struct http *http, struct acceptor *acceptor);
+/* net and front outlive it. */
+struct heartbeat *heartbeat_create(struct net *net, struct front *front);
 /* After all threads have ended. */
 void heartbeat_destroy(struct heartbeat *heartbeat);
 /* Time until the next heartbeat_beat; -1: there is no watchdog. */

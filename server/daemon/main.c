@@ -1,4 +1,4 @@
-/* beamroomd's main: reads the settings, starts net, HTTP and acceptor in this order, waits for a signal, and stops them
+/* beamroomd's main: reads the settings, starts net, front and HTTP in this order, waits for a signal, and stops them
  * in the reverse order. */
 #define _GNU_SOURCE
 #include <errno.h>
@@ -14,13 +14,13 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/standard_files.h"
-#include "server/daemon/acceptor.h"
 #include "server/daemon/data_lock.h"
 #include "server/daemon/heartbeat.h"
 #include "server/daemon/notify.h"
 #include "server/daemon/options.h"
 #include "server/daemon/privilege.h"
 #include "server/daemon/stop.h"
+#include "server/front/front.h"
 #include "server/front/hosts.h"
 #include "server/http/http.h"
 #include "server/net/net.h"
@@ -158,27 +158,6 @@ static void raise_descriptors(void)
                  (unsigned long long)now.rlim_cur, N_DESCRIPTORS);
 }
 
-static void hang_net(struct net *net, void *argument)
-{
-    (void)net;
-    (void)argument;
-    for (;;)
-        (void)pause();
-}
-
-/* For tests: lets one of the threads hang. */
-static void let_hang(const char *thread, struct net *net, struct http *http, struct acceptor *acceptor)
-{
-    if (strcmp(thread, "net") == 0)
-        net_post(net, hang_net, NULL);
-    else if (strcmp(thread, "http") == 0)
-        http_hang(http);
-    else if (strcmp(thread, "acceptor") == 0)
-        acceptor_hang(acceptor);
-    else
-        log_warn("hang is \"%.40s\", expected net, http or acceptor", thread);
-}
-
 /* Waits until the plan folders have been listed, so that "ready" means that all plans can be found. Returns false when
  * a signal came before. */
 static bool wait_for_plans(const struct net *net)
@@ -239,6 +218,13 @@ static bool is_loopback(const char *listen)
     return address_read(listen, strlen(listen), &address) && address_is_loopback(&address);
 }
 
+/* Hands a WebSocket from the front to the net thread. */
+static void adopt(void *net, int socket, const struct handshake *handshake, void (*ended)(void *argument),
+                  void *argument)
+{
+    net_adopt(net, socket, handshake, ended, argument);
+}
+
 /* Serves until a signal comes. */
 static bool serve(const struct options *options, struct error *err)
 {
@@ -272,41 +258,37 @@ static bool serve(const struct options *options, struct error *err)
                                                .upload_folder = upload_folder,
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
-                                               .hosts = hosts,
-                                               .trusted = options->trusted_proxies,
-                                               .n_trusted = options->n_trusted_proxies,
                                                .is_alone = options->n_public_names == 0 && is_loopback(listen) };
     struct net *net = net_create(&net_options, err);
-    struct http *http = net ? http_create(net, &http_options, err) : NULL;
-    const struct acceptor_options acceptor_options = { .listen = listen,
-                                                       .net = net,
-                                                       .http = http,
-                                                       .hosts = hosts,
-                                                       .trusted = options->trusted_proxies,
-                                                       .n_trusted = options->n_trusted_proxies };
-    struct acceptor *acceptor = http ? acceptor_create(&acceptor_options, err) : NULL;
+    const struct front_options front_options = { .listen = listen,
+                                                 .hosts = hosts,
+                                                 .trusted = options->trusted_proxies,
+                                                 .n_trusted = options->n_trusted_proxies,
+                                                 .adopt = adopt,
+                                                 .context = net };
+    struct front *front = net ? front_create(&front_options, err) : NULL;
+    struct http *http = front ? http_create(net, front, &http_options, err) : NULL;
     struct heartbeat *heartbeat = NULL;
-    bool ok = acceptor != NULL;
-    if (acceptor) {
+    const bool ok = http != NULL;
+    if (ok) {
         if (wait_for_plans(net)) {
-            printf("ready %s\n", acceptor_url(acceptor));
+            printf("ready %s\n", front_url(front));
             (void)fflush(stdout);
-            log_info("serving on %s", acceptor_url(acceptor));
+            log_info("serving on %s", front_url(front));
             notify_send("READY=1");
-            if (options->hang)
-                let_hang(options->hang, net, http, acceptor);
-            heartbeat = heartbeat_create(net, http, acceptor);
+            heartbeat = heartbeat_create(net, front);
             while (!stop_wait(heartbeat_wait_us(heartbeat)))
                 heartbeat_beat(heartbeat);
         }
         notify_send("STOPPING=1");
     }
-    acceptor_stop(acceptor);
-    if (http)
+    if (http) {
+        front_close(front);
         http_stop_posting(http);
+    }
     net_destroy(net);
     http_destroy(http);
-    acceptor_destroy(acceptor);
+    front_destroy(front);
     heartbeat_destroy(heartbeat);
     hosts_destroy(hosts);
     return ok;

@@ -72,8 +72,6 @@ static const struct setting settings[] = {
     { "stub", NULL, "draw grey pictures instead of using GL; for tests", KIND_FLAG, AT(stub_renderer), 0, 0 },
     { "recording-speed", "N", "the clock of recordings and replays runs N times as fast; for tests and rehearsals",
       KIND_COUNT, AT(recording_speed), 1, 1000 },
-    { "hang", "THREAD", "let the thread net, http or acceptor hang once it serves; for tests", KIND_TEXT, AT(hang), 0,
-      0 },
 };
 enum { N_SETTINGS = sizeof settings / sizeof settings[0] };
 
@@ -259,7 +257,6 @@ void options_finish(struct options *options)
     free(options->renderer_path);
     free(options->allowed_origin);
     free(options->user);
-    free(options->hang);
     free(options->backup);
     free(options->verify_audit);
     free(options->audit_head);

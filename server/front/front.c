@@ -1,6 +1,8 @@
 #define _GNU_SOURCE
-/* The HTTP thread: takes connections from the acceptor, passes epoll's events to the links, runs the library, ends
- * links that are late, and frees a link when both of its sides have ended. */
+/* The front's thread: accepts connections, passes epoll's events to the links, runs the library, ends links that are
+ * late, and frees a link when both of its sides have ended. */
+#include "server/front/front.h"
+
 #include <errno.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -12,22 +14,28 @@
 #include <sys/socket.h>
 
 #include "core/base/clock.h"
+#include "core/base/gate.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
 #include "server/front/front_count.h"
 #include "server/front/front_link.h"
 #include "server/front/head.h"
+#include "server/front/listener.h"
 #include "server/wire/refusal.h"
 
-enum { TICK_MS = 500 };
-
-struct new_connection { /* a connection from the acceptor that the thread has not taken yet */
-    int socket;
-    struct address peer, client;
+enum {
+    TICK_MS = 500,
+    MAX_AT_ONCE = 256,     /* connections accepted before other events are handled, among them the heartbeat */
+    NO_DESCRIPTORS_MS = 50 /* without descriptors nothing is accepted for so long, while other connections close */
 };
 
-static char wake_tag, server_tag; /* their addresses mark the events of wake_fd and of the library */
+struct taken { /* a socket of front_take that the thread has not taken yet */
+    int socket;
+    struct address peer;
+};
+
+static char wake_tag, library_tag, listener_tag; /* their addresses mark the events of these descriptors */
 
 /* ---- the set of links ------------------------------------------------------------------------------------------- */
 
@@ -48,59 +56,136 @@ struct front_link *front_find(struct front *front, int socket)
 
 /* ---- the thread ------------------------------------------------------------------------------------------------- */
 
-static void add_link(struct front *front, const struct new_connection *connection)
+static struct front_link *create_link(struct front *front, int socket, const struct address *peer)
 {
-    struct problem problem;
     struct front_link *link = mem_new(sizeof *link);
-    int on = 1;
     *link = (struct front_link){ .next = front->links,
                                  .front = front,
-                                 .client = connection->socket,
+                                 .state = LINK_DEAD,
+                                 .client = socket,
                                  .inner = -1,
                                  .server = -1,
-                                 .peer = connection->peer,
+                                 .peer = *peer,
+                                 .is_first = true,
                                  .client_readable = true };
     link->head_us = link->moved_us = clock_now_us();
     body_begin(&link->body, false, 0);
     if (front->links)
         front->links->previous = link;
     front->links = link;
-    (void)setsockopt(connection->socket, IPPROTO_TCP, TCP_NODELAY, &on,
-                     sizeof on); /* answers are written in few large pieces */
+    front_set_state(link, LINK_HEAD);
+    return link;
+}
+
+static void refuse_waiting(struct front_link *link)
+{
+    struct problem problem; /* the oldest waiting ones reach their time limit soon */
+    problem_set(&problem, PROBLEM_LIMIT, "", "",
+                "too many connections that have not said what they want: at most %d in all, %d from one address",
+                FRONT_MAX_WAITING, FRONT_MAX_WAITING_PER_ADDRESS);
+    problem.retry_after_ms = FRONT_HEAD_MS;
+    front_link_refuse(link, &problem, FRONT_MAX_DROPPED_FIRST);
+}
+
+/* A connection whose head is whole already waits for nothing: in a burst the places of those that wait are for slow
+ * ones. */
+static void begin_link(struct front *front, int socket, const struct address *peer)
+{
+    const bool may_wait = front_may_wait(front, peer);
+    struct front_link *link = create_link(front, socket, peer);
+    int on = 1;
+    (void)setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on); /* answers are written in few large pieces */
+    front_link_advance(link);
+    if (link->state == LINK_HEAD && link->is_first && !may_wait)
+        refuse_waiting(link);
+    /* Edge-triggered: bytes that are peeked at stay in the socket, and only new ones may raise an event. Bytes that
+     * came since the first look raise one at once. */
     struct epoll_event event = { .events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET,
                                  .data.u64 = (uint64_t)(uintptr_t)link };
-    if (epoll_ctl(front->epoll, EPOLL_CTL_ADD, connection->socket, &event) != 0) {
+    if (link->state != LINK_DEAD && epoll_ctl(front->epoll, EPOLL_CTL_ADD, socket, &event) != 0)
         front_link_die(link);
-    } else if (!front_count(link, &connection->client, &problem)) {
-        (void)refusal_drain(link->client, HEAD_MAX_BYTES);
-        front_log_refusal(front);
-        front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
-    } else {
-        front_link_advance(link);
+}
+
+static bool watch(struct front *front, int fd, void *tag)
+{
+    struct epoll_event event = { .events = EPOLLIN, .data.u64 = (uint64_t)(uintptr_t)tag };
+    return fd >= 0 && epoll_ctl(front->epoll, EPOLL_CTL_ADD, fd, &event) == 0;
+}
+
+/* The listener is level-triggered: connections left in the system's queue raise another event. */
+static void accept_some(struct front *front)
+{
+    for (int i = 0; i < MAX_AT_ONCE && !atomic_load(&front->is_closed); i++) {
+        struct sockaddr_storage address = { 0 };
+        socklen_t n_address = sizeof address;
+        int socket = accept4(front->listener, (struct sockaddr *)&address, &n_address, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        if (socket >= 0) {
+            struct address peer = address_of_peer(&address);
+            begin_link(front, socket, &peer);
+        } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
+            log_warn("front: %s", strerror(errno));
+            (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, front->listener, NULL);
+            front->accept_us = clock_now_us() + NO_DESCRIPTORS_MS * INT64_C(1000);
+            return;
+        } else if (errno != EINTR && errno != ECONNABORTED) {
+            return;
+        }
     }
 }
 
-static void add_queued(struct front *front)
+/* Accepts again after descriptors ran out. */
+static void accept_again(struct front *front, int64_t now_us)
 {
-    for (struct new_connection *connection; (connection = queue_try_take(front->queue)); free(connection))
-        add_link(front, connection);
+    if (front->accept_us && now_us >= front->accept_us && front->listener >= 0)
+        front->accept_us =
+            watch(front, front->listener, &listener_tag) ? 0 : now_us + NO_DESCRIPTORS_MS * INT64_C(1000);
+}
+
+static void take_queued(struct front *front)
+{
+    for (struct taken *taken; (taken = queue_try_take(front->taken)); free(taken)) {
+        if (atomic_load(&front->is_closed))
+            (void)close(taken->socket);
+        else
+            begin_link(front, taken->socket, &taken->peer);
+    }
+}
+
+/* After front_close: stops listening, ends the connections whose first head is not whole. */
+static void close_door(struct front *front)
+{
+    front_unwatch_and_close(front, &front->listener);
+    front->accept_us = 0;
+    for (struct front_link *link = front->links; link; link = link->next)
+        if (link->state == LINK_HEAD && link->is_first)
+            front_link_die(link);
+}
+
+static void handle_wake(struct front *front)
+{
+    uint64_t n;
+    if (read(front->wake_fd, &n, sizeof n) == sizeof n)
+        take_queued(front);
+    atomic_bool *pinged = atomic_exchange(&front->pinged, NULL);
+    if (pinged)
+        atomic_store(pinged, true);
+    if (atomic_load(&front->is_closed) && front->listener >= 0)
+        close_door(front);
 }
 
 /* One event of epoll. Its link may have died by an earlier event of the same round; links are freed after the round. */
 static void handle_event(struct front *front, const struct epoll_event *event)
 {
-    if (event->data.u64 == (uint64_t)(uintptr_t)&wake_tag) {
-        uint64_t n;
-        if (read(front->wake_fd, &n, sizeof n) == sizeof n)
-            add_queued(front);
-        while (atomic_load(&front->is_to_hang))
-            (void)pause();
-        atomic_bool *pinged = atomic_exchange(&front->pinged, NULL);
-        if (pinged)
-            atomic_store(pinged, true);
+    const uint64_t tag = event->data.u64;
+    if (tag == (uint64_t)(uintptr_t)&wake_tag) {
+        handle_wake(front);
         return;
     }
-    if (event->data.u64 == (uint64_t)(uintptr_t)&server_tag)
+    if (tag == (uint64_t)(uintptr_t)&listener_tag) {
+        accept_some(front);
+        return;
+    }
+    if (tag == (uint64_t)(uintptr_t)&library_tag)
         return; /* run is called after the events */
     struct front_link *link = (struct front_link *)(uintptr_t)(event->data.u64 & ~UINT64_C(1));
     if (link->state == LINK_DEAD)
@@ -114,6 +199,7 @@ static void handle_event(struct front *front, const struct epoll_event *event)
             return;
         }
         link->client_readable = link->client_readable || (event->events & (EPOLLIN | EPOLLRDHUP));
+        link->client_hung_up = link->client_hung_up || (event->events & EPOLLRDHUP);
     }
     front_link_advance(link);
 }
@@ -157,32 +243,37 @@ static void check_answer(struct front_link *link, int64_t now_us)
     }
 }
 
-static void check_times(struct front *front, int64_t now_us)
+static void check_head(struct front_link *link, int64_t now_us)
+{
+    const bool is_late = (link->is_first || link->n_head > 0) && now_us - link->head_us > FRONT_HEAD_MS * INT64_C(1000);
+    if (is_late && link->n_head > 0)
+        front_link_refuse_late(link);
+    else if (is_late || now_us - link->moved_us > FRONT_IDLE_MS * INT64_C(1000))
+        front_link_die(link); /* without a byte no answer is expected: browsers open connections in advance */
+}
+
+static void check_body(struct front_link *link, int64_t now_us)
 {
     struct problem problem;
+    if (now_us - link->moved_us <= FRONT_IDLE_MS * INT64_C(1000) && !is_window_missed(link, now_us))
+        return;
+    problem_set(&problem, PROBLEM_TOO_SLOW, "", "",
+                "too little of the request's body came; expected are %d bytes in every %d s", FRONT_WINDOW_BYTES,
+                FRONT_WINDOW_MS / 1000);
+    front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
+}
+
+static void check_times(struct front *front, int64_t now_us)
+{
     for (struct front_link *link = front->links; link; link = link->next) {
-        int64_t still_ms = (now_us - link->moved_us) / 1000;
-        bool is_late = false;
         switch (link->state) {
-        case LINK_HEAD:
-            if (link->n_in > 0 && now_us - link->head_us > FRONT_HEAD_MS * INT64_C(1000)) {
-                head_refuse_incomplete(link->in, link->n_in, false, FRONT_HEAD_MS, &problem);
-                link->n_answered = 0;
-                front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
-            } else {
-                is_late = still_ms > FRONT_IDLE_MS;
-            }
-            break;
-        case LINK_BODY:
-            if (still_ms > FRONT_IDLE_MS || is_window_missed(link, now_us)) {
-                problem_set(&problem, PROBLEM_TOO_SLOW, "", "",
-                            "too little of the request's body came; expected are %d bytes in every %d s",
-                            FRONT_WINDOW_BYTES, FRONT_WINDOW_MS / 1000);
-                front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
-            }
-            break;
+        case LINK_HEAD: check_head(link, now_us); break;
+        case LINK_BODY: check_body(link, now_us); break;
         case LINK_ANSWER: check_answer(link, now_us); break;
-        case LINK_LINGER: is_late = still_ms > FRONT_LINGER_SILENT_MS; break;
+        case LINK_LINGER:
+            if (now_us >= link->linger_us || now_us - link->moved_us > FRONT_LINGER_SILENT_MS * INT64_C(1000))
+                front_link_die(link);
+            break;
         case LINK_DEAD:
             if (!link->is_started) { /* the library had no memory for the connection and closed its end without a report
                                       */
@@ -192,8 +283,6 @@ static void check_times(struct front *front, int64_t now_us)
             }
             break;
         }
-        if (is_late)
-            front_link_die(link);
     }
 }
 
@@ -220,26 +309,37 @@ static void free_dead(struct front *front)
     }
 }
 
+static int wait_ms(const struct front *front, bool has_more)
+{
+    if (has_more || front->touched)
+        return 0;
+    if (front->accept_us)
+        return NO_DESCRIPTORS_MS;
+    return front->links ? TICK_MS : -1;
+}
+
 static void *work(void *argument)
 {
     struct front *front = argument;
     int64_t tick_us = clock_now_us();
     bool has_more = false;
+    (void)pthread_setname_np(pthread_self(), "front");
     while (!atomic_load(&front->is_stopping)) {
         struct epoll_event events[128];
-        int n = epoll_wait(front->epoll, events, 128, has_more || front->touched ? 0 : front->links ? TICK_MS : -1);
+        int n = epoll_wait(front->epoll, events, 128, wait_ms(front, has_more));
         for (int i = 0; i < n; i++)
             handle_event(front, &events[i]);
-        has_more = front->server.run(front->server.context);
+        has_more = front->library.run(front->library.context);
         handle_touched(front);
         int64_t now_us = clock_now_us();
+        accept_again(front, now_us);
         if (now_us - tick_us >= TICK_MS * INT64_C(1000)) {
             tick_us = now_us;
             check_times(front, now_us);
         }
         free_dead(front);
     }
-    (void)front->server.run(front->server.context); /* answers that came meanwhile */
+    (void)front->library.run(front->library.context); /* answers that came meanwhile */
     for (struct front_link *link = front->links; link; link = link->next)
         if (link->state == LINK_ANSWER) {
             link->inner_readable = true;
@@ -248,42 +348,45 @@ static void *work(void *argument)
     return NULL;
 }
 
-static void connection_drop(void *item)
-{
-    struct new_connection *connection = item;
-    (void)close(connection->socket);
-    free(connection);
-}
+/* ---- start and stop --------------------------------------------------------------------------------------------- */
 
-static bool watch(struct front *front, int fd, void *tag)
+static void taken_drop(void *item)
 {
-    struct epoll_event event = { .events = EPOLLIN, .data.u64 = (uint64_t)(uintptr_t)tag };
-    return fd >= 0 && epoll_ctl(front->epoll, EPOLL_CTL_ADD, fd, &event) == 0;
+    struct taken *taken = item;
+    (void)close(taken->socket);
+    free(taken);
 }
 
 struct front *front_create(const struct front_options *options, struct error *err)
 {
     struct front *front = mem_new(sizeof *front);
     front->options = *options;
+    atomic_init(&front->is_closed, false);
     atomic_init(&front->is_stopping, false);
-    atomic_init(&front->is_to_hang, false);
     atomic_init(&front->pinged, NULL);
-    front->queue = queue_create(FRONT_MAX_QUEUED, connection_drop);
+    websocket_count_init(&front->websockets);
+    front->taken = queue_create(FRONT_MAX_TAKEN, taken_drop);
+    front->adopting = gate_create();
+    front->listener = -1;
     front->epoll = epoll_create1(EPOLL_CLOEXEC);
     front->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (front->epoll < 0 || !watch(front, front->wake_fd, &wake_tag)) {
-        error_set(err, ERROR_IO, "the HTTP thread has no descriptors: %s", strerror(errno));
+        error_set(err, ERROR_IO, "the front's thread has no descriptors: %s", strerror(errno));
         front_destroy(front);
         return NULL;
     }
     return front;
 }
 
-bool front_serve(struct front *front, const struct front_server *server, struct error *err)
+bool front_serve(struct front *front, const struct front_library *library, struct error *err)
 {
-    front->server = *server;
-    if (!watch(front, server->poll_fd, &server_tag) || pthread_create(&front->thread, NULL, work, front) != 0)
-        return error_set(err, ERROR_IO, "the HTTP thread did not start: %s", strerror(errno));
+    front->library = *library;
+    front->listener = listener_open(front->options.listen, front->url, err);
+    if (front->listener < 0)
+        return false;
+    if (!watch(front, library->poll_fd, &library_tag) || !watch(front, front->listener, &listener_tag) ||
+        pthread_create(&front->thread, NULL, work, front) != 0)
+        return error_set(err, ERROR_IO, "the front's thread did not start: %s", strerror(errno));
     front->has_thread = true;
     return true;
 }
@@ -292,7 +395,14 @@ void front_wake(struct front *front)
 {
     uint64_t one = 1;
     if (write(front->wake_fd, &one, sizeof one) != sizeof one)
-        log_debug("http: the thread is woken already"); /* the counter is full: the thread is about to run */
+        log_debug("front: the thread is woken already"); /* the counter is full: the thread is about to run */
+}
+
+void front_close(struct front *front)
+{
+    atomic_store(&front->is_closed, true);
+    front_wake(front);
+    gate_close(front->adopting);
 }
 
 void front_stop(struct front *front)
@@ -305,6 +415,7 @@ void front_stop(struct front *front)
         (void)pthread_join(front->thread, NULL);
         front->has_thread = false;
     }
+    front_close_fd(&front->listener);
     for (struct front_link *link = front->links; link; link = link->next)
         if (link->state != LINK_DEAD)
             front_link_die(link);
@@ -317,7 +428,8 @@ void front_destroy(struct front *front)
     front_stop(front);
     front_close_fd(&front->epoll);
     front_close_fd(&front->wake_fd);
-    queue_destroy(front->queue);
+    queue_destroy(front->taken);
+    gate_destroy(front->adopting);
     for (struct front_link *link = front->links, *next; link; link = next) {
         next = link->next;
         free(link);
@@ -325,31 +437,30 @@ void front_destroy(struct front *front)
     free(front);
 }
 
-void front_add(struct front *front, int socket, const struct address *peer, const struct address *client)
+const char *front_url(const struct front *front)
 {
-    struct new_connection *connection = mem_new(sizeof *connection);
-    *connection = (struct new_connection){ socket, *peer, *client };
-    if (queue_try_put(front->queue, connection)) {
+    return front->url;
+}
+
+void front_take(struct front *front, int socket, const struct address *peer)
+{
+    struct taken *taken = mem_new(sizeof *taken);
+    *taken = (struct taken){ socket, *peer };
+    if (queue_try_put(front->taken, taken)) {
         front_wake(front);
         return;
     }
     struct problem problem;
     problem_set(&problem, PROBLEM_LIMIT, "", "", "%d connections wait to be taken over already; at most so many do",
-                FRONT_MAX_QUEUED);
+                FRONT_MAX_TAKEN);
     problem.retry_after_ms = FRONT_RETRY_MS;
     (void)refusal_drain(socket, HEAD_MAX_BYTES);
     refusal_send(socket, &problem);
-    connection_drop(connection);
+    taken_drop(taken);
 }
 
 void front_ping(struct front *front, atomic_bool *beat)
 {
     atomic_store(&front->pinged, beat);
-    front_wake(front);
-}
-
-void front_hang(struct front *front)
-{
-    atomic_store(&front->is_to_hang, true);
     front_wake(front);
 }

@@ -1,66 +1,94 @@
 #pragma once
-/* The HTTP thread, between the clients' sockets and the HTTP library. The library parses requests leniently and fails
- * badly at its limits; so the front checks the head of every request, finds the end of its body, counts connections,
- * and passes one request after the other to the library through a pair of sockets. The answer is passed back as it
- * comes. A refused request never reaches the library. Knows nothing of libmicrohttpd, of files and of the API. */
+/* The front door: accepts connections, checks the head of every request, and hands a WebSocket handshake with its
+ * socket to the net thread and any other request to the HTTP library. The library parses requests leniently and fails
+ * badly at its limits; so the front finds the end of each body, counts connections, and passes one request after the
+ * other to the library through a pair of sockets. The answer is passed back as it comes. A refused request reaches
+ * neither side. Runs on a thread of its own, on which the library runs, too. Knows nothing of libmicrohttpd, of files,
+ * of the API and of rooms. */
 #include <stdatomic.h>
 
 #include "server/front/address.h"
 #include "server/front/hosts.h"
+#include "server/wire/handshake.h"
 #include "server/wire/problem.h"
 
 enum {
+    /* Connections whose first head is not whole, in all and from one address (trusted proxies excepted). One more is
+     * refused, unless its head is there when it is accepted. */
+    FRONT_MAX_WAITING = 256,
+    FRONT_MAX_WAITING_PER_ADDRESS = 64,
+    /* HTTP connections, in all and from one address; see address_counted. */
     FRONT_MAX_CONNECTIONS = 500,
-    FRONT_MAX_PER_ADDRESS = 200, /* of these; see address_counted */
-    FRONT_RETRY_MS = 5000,
+    FRONT_MAX_PER_ADDRESS = 200,
+    /* WebSockets, in all (less than WS_MAX_CONNECTIONS, the limit of server/ws) and from one address. */
+    FRONT_MAX_WEBSOCKETS = 1500,
+    FRONT_MAX_WEBSOCKETS_PER_ADDRESS = 200,
+    FRONT_MAX_TAKEN = 512, /* sockets given to front_take that the thread has not taken yet */
+    FRONT_RETRY_MS = 5000, /* told to clients that are refused for a limit */
+
+    FRONT_HEAD_MS = 5000,     /* to a whole head: from accepting the connection, later from the head's first byte */
     FRONT_IDLE_MS = 60000,    /* without a byte either way, unless a request waits for its answer */
     FRONT_ANSWER_MS = 120000, /* from a request's last byte to the first of its answer: requests to renderers time out
                                  after 30 s */
-    FRONT_WINDOW_MS = 60000,  /* in each window ... */
-    FRONT_WINDOW_BYTES = 64 << 10, /* ... bytes of a body must come, or of an answer be taken: a kilobyte a second */
-    FRONT_HEAD_MS = 5000,          /* from the first byte of a head to its last */
-    FRONT_MAX_QUEUED = 512,        /* connections from the acceptor that the thread has not taken yet */
-    FRONT_MAX_LINGERING =
-        64, /* refused connections whose last bytes are read: they count no longer; one more ends the oldest */
-    FRONT_LINGER_SILENT_MS = 2000, /* a lingering connection without a byte for this long is closed */
-    FRONT_MAX_DROPPED =
-        64 << 20 /* bytes of a refused request that are read, so that its sender comes to read the answer */
+    /* In each window so many bytes of a body must come, or of an answer be taken: a kilobyte a second. */
+    FRONT_WINDOW_MS = 60000,
+    FRONT_WINDOW_BYTES = 64 << 10,
+
+    /* A refused connection lingers: its bytes are read and dropped so that its sender comes to read the answer. */
+    FRONT_MAX_LINGERING = 64, /* after a whole head; one more ends the oldest */
+    FRONT_MAX_DROPPED = 64 << 20,
+    FRONT_LINGER_SILENT_MS = 2000,   /* without a byte; then the connection is closed */
+    FRONT_MAX_LINGERING_FIRST = 256, /* refused before their first head was whole; one more is closed at once */
+    FRONT_MAX_DROPPED_FIRST = 1 << 20,
+    FRONT_LINGER_FIRST_MS = 1000 /* in all */
 };
 
 struct front;
 struct front_link; /* a client's connection */
 
+struct front_options {
+    const char *listen;        /* "127.0.0.1:8080", "[::1]:0"; a numeric address, port 0 lets the system choose */
+    const struct hosts *hosts; /* outlives the front, like all pointers here */
+    const struct address_range *trusted; /* proxies whose X-Forwarded-For is believed */
+    size_t n_trusted;
+    /* Takes the socket of a WebSocket, which begins with this handshake: nothing of it has been read. Calls
+     * ended(argument) once when the WebSocket is gone; any thread, at the latest before front_destroy. Called on the
+     * front's thread, not after front_close. */
+    void (*adopt)(void *context, int socket, const struct handshake *handshake, void (*ended)(void *argument),
+                  void *argument);
+    void *context;
+};
+
 /* The HTTP library. Called on the front's thread. */
-struct front_server {
-    bool (*add)(
-        void *context,
-        int socket); /* Takes a connection, whose first request follows. false: it cannot, and has closed socket. */
+struct front_library {
+    /* Takes a connection, whose first request follows. false: it cannot, and has closed socket. */
+    bool (*add)(void *context, int socket);
     bool (*run)(void *context); /* handles received bytes, never waits; true: there is more to do at once */
     int poll_fd;                /* readable when run has something to do */
     void *context;
 };
 
-struct front_options {
-    const struct hosts *hosts;           /* outlives the front */
-    const struct address_range *trusted; /* proxies; outlives the front */
-    size_t n_trusted;
-};
-
-/* front_serve starts the thread, with the library to serve. errors ERROR_IO */
+/* Creates a front that does not listen yet. errors ERROR_IO */
 NODISCARD struct front *front_create(const struct front_options *options, struct error *err);
-NODISCARD bool front_serve(struct front *front, const struct front_server *server, struct error *err);
-/* Ends the thread, after answers that are there were passed on as far as clients take them at once, and closes every
- * connection. The library may report the end of its connections until front_destroy. NULL is allowed. */
+/* Starts to listen, and starts the thread. errors ERROR_FORMAT, ERROR_RANGE, ERROR_IO */
+NODISCARD bool front_serve(struct front *front, const struct front_library *library, struct error *err);
+/* Stopping, in this order. front_close: no connection is accepted any more, and when it returns no WebSocket is handed
+ * on; requests of connections that are open are served. front_stop: ends the thread, after answers that are there were
+ * passed on as far as clients take them at once, and closes every connection; the library may report the end of its
+ * connections until front_destroy. NULL is allowed. */
+void front_close(struct front *front);
 void front_stop(struct front *front);
 void front_destroy(struct front *front);
+/* "http://127.0.0.1:8080", with the port that the system chose; after front_serve. */
+const char *front_url(const struct front *front);
 
-/* Takes an accepted socket whose first head has come and was not refused; refuses it when there are too many. client:
- * the address that the first request is counted for. The acceptor's thread. */
-void front_add(struct front *front, int socket, const struct address *peer, const struct address *client);
+/* Takes a connected stream socket that did not come by the listener, as if it were accepted from this address: one end
+ * of a pair behind which TLS is decrypted. Nothing of the stream has been read. Refuses it with 429 when too many wait
+ * to be taken; closes it after front_close. Any thread, from front_serve on. */
+void front_take(struct front *front, int socket, const struct address *peer);
 void front_wake(struct front *front); /* any thread: has run called soon */
-/* Has the front's thread set *beat. Any thread; one call at a time. */
+/* Has the thread set *beat. Any thread; one call at a time. */
 void front_ping(struct front *front, atomic_bool *beat);
-void front_hang(struct front *front); /* for tests: the thread hangs */
 
 /* For the library's side, on the front's thread: */
 /* The connection that was added with this socket; NULL: none. Valid until front_link_closed, which the library must
@@ -69,8 +97,7 @@ struct front_link *front_find(struct front *front, int socket);
 /* The address of the client of the present request, behind trusted proxies; "": not known. */
 void front_client(const struct front_link *link, char text[ADDRESS_TEXT]);
 void front_link_closed(struct front_link *link); /* the library closed its end */
-/* Whether all bytes of the answer so far are on their way to the client. False: some wait for the client to take them.
- */
+/* True if all bytes of the answer so far are on their way to the client; false: some wait for the client. */
 bool front_link_is_free(const struct front_link *link);
 bool front_link_is_gone(const struct front_link *link); /* the client's side has ended */
 void front_request_ended(struct front_link *link);      /* the answer was written completely */

@@ -1,8 +1,53 @@
-/* Counts connections per client and in all, and keeps the list of links to advance. */
+/* Counts connections by state, per client and in all, and keeps the list of links to advance. */
 #include "server/front/front_count.h"
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
+
+/* The number of links in the state of this one, where there is a limit; NULL: there is none. */
+static size_t *counter_of(const struct front_link *link)
+{
+    struct front *front = link->front;
+    if (link->state == LINK_HEAD && link->is_first)
+        return &front->n_waiting;
+    if (link->state == LINK_LINGER)
+        return link->is_first ? &front->n_lingering_first : &front->n_lingering;
+    return NULL;
+}
+
+void front_set_state(struct front_link *link, enum link_state state)
+{
+    size_t *counter = counter_of(link);
+    if (counter)
+        --*counter;
+    link->state = state;
+    counter = counter_of(link);
+    if (counter)
+        ++*counter;
+}
+
+void front_end_waiting(struct front_link *link)
+{
+    link->front->n_waiting -= link->is_first;
+    link->is_first = false;
+}
+
+bool front_may_wait(const struct front *front, const struct address *peer)
+{
+    const struct address counted = address_counted(peer);
+    size_t n_same = 0;
+    if (front->n_waiting >= FRONT_MAX_WAITING)
+        return false;
+    if (address_is_in(peer, front->options.trusted, front->options.n_trusted))
+        return true;
+    for (const struct front_link *link = front->links; link; link = link->next) {
+        if (link->state != LINK_HEAD || !link->is_first)
+            continue;
+        struct address other = address_counted(&link->peer);
+        n_same += address_is_equal(&other, &counted);
+    }
+    return n_same < FRONT_MAX_WAITING_PER_ADDRESS;
+}
 
 static size_t count_address(const struct front *front, const struct address *counted)
 {

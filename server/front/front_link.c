@@ -1,7 +1,7 @@
 #define _GNU_SOURCE
-/* Advances one link: receives and checks a request, passes it to the library and the answer back, and ends the link. A
- * refused client may still be sending: its bytes are read for a while after the answer, because closing a socket with
- * unread bytes takes the answer back. */
+/* Advances one link: receives and checks a request, hands a WebSocket on, passes another request to the library and the
+ * answer back, and ends the link. A refused client may still be sending: its bytes are read for a while after the
+ * answer, because closing a socket with unread bytes takes the answer back. */
 #include "server/front/front_link.h"
 
 #include <errno.h>
@@ -13,6 +13,7 @@
 #include <sys/socket.h>
 
 #include "core/base/clock.h"
+#include "core/base/gate.h"
 #include "server/front/front_count.h"
 #include "server/front/head.h"
 #include "server/wire/refusal.h"
@@ -36,9 +37,7 @@ static void drop_bytes(struct front_link *link)
 /* Closes the client's side. A request still in the library meets a closed socket. */
 void front_link_die(struct front_link *link)
 {
-    if (link->state == LINK_LINGER)
-        link->front->n_lingering--;
-    link->state = LINK_DEAD;
+    front_set_state(link, LINK_DEAD);
     link->moved_us = clock_now_us();
     link->front->has_dead = true;
     front_uncount_ended(link);
@@ -47,11 +46,11 @@ void front_link_die(struct front_link *link)
     front_unwatch_and_close(link->front, &link->inner);
 }
 
-void front_end_oldest_lingering(struct front *front)
+static void end_oldest_lingering(struct front *front)
 {
     struct front_link *oldest = NULL;
     for (struct front_link *link = front->links; link; link = link->next)
-        if (link->state == LINK_LINGER)
+        if (link->state == LINK_LINGER && !link->is_first)
             oldest = link; /* new links are put in front */
     if (oldest)
         front_link_die(oldest);
@@ -60,20 +59,24 @@ void front_end_oldest_lingering(struct front *front)
 /* The answer was sent: closes our direction and drops what the client still sends. */
 static void linger(struct front_link *link, uint64_t max_dropped)
 {
+    struct front *front = link->front;
+    bool goes_on = refusal_drain(link->client, HEAD_MAX_BYTES); /* the link may be ended before its turn comes */
     front_uncount_ended(link);
     drop_bytes(link);
-    front_unwatch_and_close(link->front, &link->inner);
-    if (shutdown(link->client, SHUT_WR) != 0 || link->client_ended) {
+    front_unwatch_and_close(front, &link->inner);
+    if (shutdown(link->client, SHUT_WR) != 0 || link->client_ended || !goes_on ||
+        (link->is_first && front->n_lingering_first >= FRONT_MAX_LINGERING_FIRST)) {
         front_link_die(link);
         return;
     }
-    if (link->front->n_lingering >= FRONT_MAX_LINGERING)
-        front_end_oldest_lingering(link->front);
-    link->front->n_lingering++;
-    link->state = LINK_LINGER;
-    link->max_dropped = max_dropped;
+    if (!link->is_first && front->n_lingering >= FRONT_MAX_LINGERING)
+        end_oldest_lingering(front);
+    front_set_state(link, LINK_LINGER);
+    link->max_dropped = link->is_first ? FRONT_MAX_DROPPED_FIRST : max_dropped;
     link->n_dropped = 0;
     link->moved_us = clock_now_us();
+    link->linger_us = link->is_first ? link->moved_us + FRONT_LINGER_FIRST_MS * INT64_C(1000) : INT64_MAX;
+    link->client_readable = true;
     front_touch(link);
 }
 
@@ -181,9 +184,8 @@ static bool read_client(struct front_link *link)
             link->client_ended = true;
         return n == 0;
     }
+    link->client_readable = (size_t)n == n_free || link->client_hung_up; /* else epoll reports what comes next */
     link->moved_us = clock_now_us();
-    if (link->n_in == 0)
-        link->head_us = link->moved_us;
     link->n_in += (size_t)n;
     return true;
 }
@@ -209,11 +211,108 @@ static bool open_server(struct front_link *link)
         return false;
     }
     link->server = ends[1];
-    if (link->front->server.add(link->front->server.context, ends[1]))
+    if (link->front->library.add(link->front->library.context, ends[1]))
         return true;
     link->server = -1;
     front_unwatch_and_close(link->front, &link->inner);
     return false;
+}
+
+/* n: bytes of the head that have come so far. */
+static void note_head(struct front_link *link, size_t n)
+{
+    if (n <= link->n_head)
+        return;
+    link->moved_us = clock_now_us();
+    if (link->n_head == 0 && !link->is_first)
+        link->head_us = link->moved_us;
+    link->n_head = n;
+}
+
+/* Looks at a head in the socket, where its bytes stay: a WebSocket is handed on with all of them. */
+static enum head_kind peek_head(struct front_link *link, struct head_request *request, struct problem *problem)
+{
+    struct front *front = link->front;
+    if (!link->client_readable)
+        return HEAD_INCOMPLETE;
+    ssize_t n = recv(link->client, front->bytes, HEAD_MAX_BYTES, MSG_PEEK | MSG_DONTWAIT);
+    if (n <= 0) {
+        link->client_readable = false;
+        link->client_ended = n == 0;
+        if (n < 0 && !would_block())
+            front_link_die(link);
+        return HEAD_INCOMPLETE;
+    }
+    note_head(link, (size_t)n);
+    enum head_kind kind = head_read(front->bytes, (size_t)n, front->options.hosts, request, problem);
+    if (kind == HEAD_INCOMPLETE) { /* epoll reports bytes that come after those */
+        link->client_readable = false;
+        link->client_ended = link->client_hung_up;
+    }
+    return kind;
+}
+
+/* Reads a head that was sent before the answer to the request in front of it: its first bytes came with that one. */
+static enum head_kind read_head(struct front_link *link, struct head_request *request, struct problem *problem)
+{
+    enum head_kind kind;
+    do {
+        note_head(link, link->n_in);
+        kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES,
+                         link->front->options.hosts, request, problem);
+    } while (kind == HEAD_INCOMPLETE && !link->client_ended && read_client(link));
+    /* The WebSocket's side would miss the bytes that were read: the library refuses it. */
+    return kind == HEAD_WEBSOCKET ? HEAD_HTTP : kind;
+}
+
+/* Hands a WebSocket to its side, or refuses it. */
+static void hand_on(struct front_link *link, struct handshake *handshake, const struct address *client)
+{
+    struct front *front = link->front;
+    struct problem problem;
+    struct websocket_place *place = NULL;
+    if (gate_enter(front->adopting)) {
+        place = websocket_count_add(&front->websockets, client, &problem);
+        if (place) {
+            (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, link->client, NULL); /* fails where the head came at once */
+            address_write(client, handshake->client);
+            front->options.adopt(front->options.context, link->client, handshake, websocket_count_ended, place);
+            link->client = -1;
+        }
+        gate_leave(front->adopting);
+    } else {
+        problem_set(&problem, PROBLEM_BUSY, "", "", "the server is being stopped");
+        problem.retry_after_ms = FRONT_RETRY_MS;
+    }
+    if (place)
+        front_link_die(link);
+    else
+        front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
+}
+
+/* Begins to pass a request to the library. False with problem: it cannot be served. */
+static bool begin_request(struct front_link *link, const struct head_request *request, const struct address *client,
+                          struct problem *problem)
+{
+    if (!front_count(link, client, problem)) {
+        front_log_refusal(link->front);
+        return false;
+    }
+    if (link->inner < 0 && !open_server(link)) {
+        problem_set(problem, PROBLEM_BUSY, "", "", "the server has no descriptors left for this connection");
+        problem->retry_after_ms = FRONT_RETRY_MS;
+        return false;
+    }
+    link->asked_by = *client;
+    link->n_forward = request->n_bytes;
+    body_begin(&link->body, request->is_chunked, request->length);
+    front_set_state(link, LINK_BODY);
+    front_link_begin_window(link);
+    if (link->n_in == 0) /* only peeked at */
+        (void)read_client(link);
+    if (link->n_in < link->n_forward)
+        front_link_die(link);
+    return true;
 }
 
 /* Receives and checks a head. Returns true when the state has changed. */
@@ -222,46 +321,31 @@ static bool step_head(struct front_link *link)
     struct front *front = link->front;
     struct head_request request;
     struct problem problem;
-    enum head_kind kind = HEAD_INCOMPLETE;
-    do {
-        if (link->n_in > 0)
-            kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES, front->options.hosts,
-                             &request, &problem);
-    } while (kind == HEAD_INCOMPLETE && !link->client_ended && read_client(link));
+    const bool is_behind = link->n_in > 0;
+    enum head_kind kind = is_behind ? read_head(link, &request, &problem) : peek_head(link, &request, &problem);
     if (link->state == LINK_DEAD)
         return true;
     if (kind == HEAD_INCOMPLETE && !link->client_ended)
         return false;
-    if (kind == HEAD_INCOMPLETE && link->n_in == 0) {
-        front_link_die(link); /* closed between two requests */
+    if (kind == HEAD_INCOMPLETE && link->n_head == 0) {
+        front_link_die(link); /* closed before a request */
         return true;
     }
     link->n_answered = 0;
     link->is_request_ended = false;
     if (kind == HEAD_INCOMPLETE)
-        head_refuse_incomplete(link->in, link->n_in, true, 0, &problem);
+        head_refuse_incomplete(is_behind ? link->in : front->bytes, link->n_head, true, 0, &problem);
     if (kind == HEAD_INCOMPLETE || kind == HEAD_REFUSED) {
         front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
         return true;
     }
+    front_end_waiting(link);
     struct address client = address_of_client(&link->peer, front->options.trusted, front->options.n_trusted,
                                               request.forwarded, request.n_forwarded);
-    link->asked_by = client;
-    if (!front_count(link, &client, &problem)) {
-        front_log_refusal(front);
+    if (kind == HEAD_WEBSOCKET)
+        hand_on(link, &request.handshake, &client);
+    else if (!begin_request(link, &request, &client, &problem))
         front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
-        return true;
-    }
-    if (link->inner < 0 && !open_server(link)) {
-        problem_set(&problem, PROBLEM_BUSY, "", "", "the server has no descriptors left for this connection");
-        problem.retry_after_ms = FRONT_RETRY_MS;
-        front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
-        return true;
-    }
-    link->n_forward = request.n_bytes;
-    body_begin(&link->body, request.is_chunked, request.length);
-    link->state = LINK_BODY;
-    front_link_begin_window(link);
     return true;
 }
 
@@ -287,7 +371,7 @@ static bool step_body(struct front_link *link)
                 return false;
             }
             if (n < 0) { /* the library answered early and reads no more */
-                link->state = LINK_ANSWER;
+                front_set_state(link, LINK_ANSWER);
                 front_link_begin_window(link);
                 return true;
             }
@@ -303,7 +387,7 @@ static bool step_body(struct front_link *link)
                 free(link->in);
                 link->in = NULL;
             }
-            link->state = LINK_ANSWER;
+            front_set_state(link, LINK_ANSWER);
             front_link_begin_window(link);
             return true;
         }
@@ -342,8 +426,9 @@ static bool step_answer(struct front_link *link)
     if (!link->is_request_ended || !body_is_ended(&link->body))
         return false;
     link->is_request_ended = false;
-    link->state = LINK_HEAD;
+    front_set_state(link, LINK_HEAD);
     link->head_us = link->moved_us = clock_now_us();
+    link->n_head = 0;
     return true;
 }
 
@@ -370,6 +455,21 @@ static void step_linger(struct front_link *link)
             return;
         }
     }
+}
+
+void front_link_refuse_late(struct front_link *link)
+{
+    struct front *front = link->front;
+    struct problem problem;
+    const char *bytes = link->in;
+    if (link->n_in == 0) {
+        ssize_t n = recv(link->client, front->bytes, HEAD_MAX_BYTES, MSG_PEEK | MSG_DONTWAIT);
+        link->n_head = n > 0 ? (size_t)n : 0;
+        bytes = front->bytes;
+    }
+    head_refuse_incomplete(bytes, link->n_head, false, FRONT_HEAD_MS, &problem);
+    link->n_answered = 0;
+    front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
 }
 
 void front_link_advance(struct front_link *link)

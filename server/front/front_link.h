@@ -8,7 +8,8 @@ void front_link_advance(struct front_link *link);
 void front_link_pass_answer(struct front_link *link);
 /* Ends the link with an answer, if none has begun; reads and drops up to max_dropped bytes more. */
 void front_link_refuse(struct front_link *link, const struct problem *problem, uint64_t max_dropped);
+/* Refuses a head that is not whole in its time. */
+void front_link_refuse_late(struct front_link *link);
 /* Ends the link at once; the thread frees it when the library has closed its end, too. */
 void front_link_die(struct front_link *link);
-void front_end_oldest_lingering(struct front *front);
 void front_link_begin_window(struct front_link *link);

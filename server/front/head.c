@@ -333,6 +333,25 @@ static uint64_t number_of(struct text digits)
     return number;
 }
 
+static void copy(char *out, size_t size, struct text text)
+{
+    size_t n = text.n < size ? text.n : 0; /* what does not fit is left out as a whole */
+    if (n)
+        memcpy(out, text.at, n);
+    out[n] = 0;
+}
+
+static void fill_handshake(struct handshake *handshake, const struct head *head, struct text room, size_t n_head)
+{
+    *handshake = (struct handshake){ .n_head = n_head };
+    copy(handshake->room_id, sizeof handshake->room_id, room);
+    if (!id_is_valid(handshake->room_id)) /* ids need no percent-encoding, so none is decoded */
+        handshake->room_id[0] = 0;
+    copy(handshake->key, sizeof handshake->key, head->fields.key);
+    copy(handshake->host, sizeof handshake->host, head->fields.host);
+    copy(handshake->origin, sizeof handshake->origin, head->fields.origin);
+}
+
 enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts, struct problem *problem)
 {
     struct head_request request;
@@ -372,46 +391,18 @@ enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts,
     }
     if (!check_length(&head) || !check_host(&head, hosts) || !check_parameters(&head))
         return HEAD_REFUSED;
-    *request = (struct head_request){ .n_bytes = (size_t)(at - bytes),
-                                      .is_chunked = head.fields.n_codings > 0,
-                                      .length = number_of(head.fields.length),
-                                      .forwarded = head.fields.forwarded.at,
-                                      .n_forwarded = head.fields.forwarded.n };
+    request->n_bytes = (size_t)(at - bytes);
+    request->is_chunked = head.fields.n_codings > 0;
+    request->length = number_of(head.fields.length);
+    request->forwarded = head.fields.forwarded.at;
+    request->n_forwarded = head.fields.forwarded.n;
     bool is_get = head.method.n == 3 && memcmp(head.method.at, "GET", 3) == 0;
     if (!is_get || !is_room_address(head.target, &room) || !has_word(head.fields.upgrade, "websocket"))
         return HEAD_HTTP;
-    return check_handshake(&head, (size_t)(at - bytes)) ? HEAD_WEBSOCKET : HEAD_REFUSED;
-}
-
-static void copy(char *out, size_t size, struct text text)
-{
-    size_t n = text.n < size ? text.n : 0; /* what does not fit is left out as a whole */
-    if (n)
-        memcpy(out, text.at, n);
-    out[n] = 0;
-}
-
-void head_read_handshake(const char *bytes, size_t n, struct handshake *handshake)
-{
-    struct problem problem; /* head_read has checked the head: nothing is refused here */
-    struct head head = { .problem = &problem };
-    const char *at = bytes, *end = bytes + n;
-    struct text line, room = { 0 };
-    size_t n_fields = 0;
-    *handshake = (struct handshake){ 0 };
-    while (next_line(&at, end, &line) && line.n == 0)
-        ;
-    (void)read_request_line(&head, line);
-    while (next_line(&at, end, &line) && line.n)
-        (void)read_field(&head, ++n_fields, line);
-    (void)is_room_address(head.target, &room);
-    copy(handshake->room_id, sizeof handshake->room_id, room);
-    if (!id_is_valid(handshake->room_id)) /* ids need no percent-encoding, so none is decoded */
-        handshake->room_id[0] = 0;
-    copy(handshake->key, sizeof handshake->key, head.fields.key);
-    copy(handshake->host, sizeof handshake->host, head.fields.host);
-    copy(handshake->origin, sizeof handshake->origin, head.fields.origin);
-    handshake->n_head = (size_t)(at - bytes);
+    if (!check_handshake(&head, request->n_bytes))
+        return HEAD_REFUSED;
+    fill_handshake(&request->handshake, &head, room, request->n_bytes);
+    return HEAD_WEBSOCKET;
 }
 
 void head_refuse_incomplete(const char *bytes, size_t n, bool has_ended, int waited_ms, struct problem *problem)

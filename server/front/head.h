@@ -20,7 +20,7 @@ enum {
 enum head_kind {
     HEAD_INCOMPLETE, /* the head is not whole yet */
     HEAD_HTTP,
-    HEAD_WEBSOCKET, /* a whole handshake for /api/v1/rooms/{id}/ws; head_read_handshake reads it */
+    HEAD_WEBSOCKET, /* a whole handshake for /api/v1/rooms/{id}/ws */
     HEAD_REFUSED    /* problem says why */
 };
 
@@ -31,6 +31,7 @@ struct head_request {
     uint64_t length;       /* of a body without chunks; 0: no body */
     const char *forwarded; /* value of the last X-Forwarded-For, borrowed from the bytes; NULL: none */
     size_t n_forwarded;
+    struct handshake handshake; /* HEAD_WEBSOCKET; without the client's address */
 };
 
 /* bytes: all that has come so far. hosts: names of this server; a request to another host is refused. */
@@ -38,7 +39,5 @@ NODISCARD enum head_kind head_look(const char *bytes, size_t n, const struct hos
 /* Like head_look; fills in request when the head is whole and not refused. */
 NODISCARD enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts, struct head_request *request,
                                    struct problem *problem);
-/* The handshake in bytes for which head_read returned HEAD_WEBSOCKET. */
-void head_read_handshake(const char *bytes, size_t n, struct handshake *handshake);
 /* The problem of a head that is not whole: its sender has ended, or its time is over. */
 void head_refuse_incomplete(const char *bytes, size_t n, bool has_ended, int waited_ms, struct problem *problem);

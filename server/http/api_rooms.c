@@ -340,8 +340,9 @@ void api_room_ws(struct api *api, struct call *call)
 {
     (void)api;
     struct problem problem;
-    problem_set(&problem, PROBLEM_UPGRADE, "", "",
-                "the WebSocket is opened by the first request of a connection: GET with Upgrade: websocket");
+    problem_set(
+        &problem, PROBLEM_UPGRADE, "", "",
+        "the WebSocket is opened by GET with Upgrade: websocket, sent when the requests before it were answered");
     call_add_header(call, "Upgrade", "websocket");
     call_add_header(call, "Connection", "close");
     call_answer_problem(call, &problem);

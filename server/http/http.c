@@ -450,10 +450,11 @@ static bool run_library(void *context)
     return MHD_get_timeout(http->daemon, &wait_ms) == MHD_YES && wait_ms == 0;
 }
 
-struct http *http_create(struct net *net, const struct http_options *options, struct error *err)
+struct http *http_create(struct net *net, struct front *front, const struct http_options *options, struct error *err)
 {
     struct http *http = mem_new(sizeof *http);
     http->net = net;
+    http->front = front;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0, options->is_alone);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes
                                                                                      : HTTP_MIN_ARCHIVE_DROPPED;
@@ -465,12 +466,6 @@ struct http *http_create(struct net *net, const struct http_options *options, st
         if (!http->files)
             goto fail;
     }
-    const struct front_options front_options = { .hosts = options->hosts,
-                                                 .trusted = options->trusted,
-                                                 .n_trusted = options->n_trusted };
-    http->front = front_create(&front_options, err);
-    if (!http->front)
-        goto fail;
     /* The library's log is off: with each answer it reports that a pair of sockets has no options of TCP. The library's
      * own limits on connections and time are off: the front has both, and the library (0.9.75) hangs for ever when its
      * limit on connections is reached. */
@@ -485,10 +480,10 @@ struct http *http_create(struct net *net, const struct http_options *options, st
         error_set(err, ERROR_IO, "the HTTP library did not start");
         goto fail;
     }
-    const struct front_server server = {
+    const struct front_library library = {
         .add = add_to_library, .run = run_library, .poll_fd = polled->epoll_fd, .context = http
     };
-    if (!front_serve(http->front, &server, err))
+    if (!front_serve(http->front, &library, err))
         goto fail;
     return http;
 fail:
@@ -510,26 +505,10 @@ void http_destroy(struct http *http)
     resume_feeds(http, true);
     if (http->daemon)
         MHD_stop_daemon(http->daemon);
-    front_destroy(http->front);
     gate_destroy(http->posting);
     files_destroy(http->files);
     intake_destroy(http->intake);
     queue_destroy(http->answered);
     api_destroy(http->api);
     free(http);
-}
-
-void http_add_connection(struct http *http, int socket, const struct address *peer, const struct address *client)
-{
-    front_add(http->front, socket, peer, client);
-}
-
-void http_ping(struct http *http, atomic_bool *beat)
-{
-    front_ping(http->front, beat);
-}
-
-void http_hang(struct http *http)
-{
-    front_hang(http->front);
 }

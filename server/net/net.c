@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
@@ -409,6 +410,7 @@ static void *work(void *context)
 {
     struct net *net = context;
     struct problem stops;
+    (void)prctl(PR_SET_NAME, "net");
     run_tasks(net); /* the rooms that are on disk */
     while (!net_is_stopping(net)) {
         schedule_wake(net);

@@ -1,5 +1,5 @@
 #pragma once
-/* The handshake of a WebSocket as the acceptor has checked it: plain data from where requests are read to where they
+/* The handshake of a WebSocket as the front has checked it: plain data from where requests are read to where they
  * are answered. */
 #include <stddef.h>
 

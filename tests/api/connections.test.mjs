@@ -8,6 +8,7 @@ import { createInterface } from 'node:readline';
 import { after, before, describe, test } from 'node:test';
 import { call, openPlan, sleep, startDaemon, until } from './daemon.mjs';
 import { FIRST, HOST, exchange, open, openEach, startWithPlan, statuses } from './plain_connection.mjs';
+import { holdThread, threadNamed } from './hold.mjs';
 import { Client } from './ws_client.mjs';
 
 describe('WebSockets of one address', () => {
@@ -165,8 +166,11 @@ describe('a refused upload', () => {
 });
 
 describe('connections that are gone while their requests wait', () => {
-  test('count until the requests are over', async () => {
-    const daemon = await startDaemon({ args: ['--stub', '--hang', 'net'] }); /* the API answers no request */
+  test('count until the requests are over', async (t) => {
+    const daemon = await startDaemon({ args: ['--stub'] });
+    t.after(() => daemon.stop());
+    const held = await holdThread(await threadNamed(daemon.child.pid, 'net')); /* the API answers no request */
+    if (!held) return void t.skip('a thread of another program may not be stopped here');
     const page = async (from) => {
       const connection = open(daemon.url, `GET /index.html HTTP/1.1\r\n${HOST}Connection: close\r\n\r\n`, { from });
       await connection.answered;
@@ -293,14 +297,16 @@ describe('the process', { concurrency: 4 }, () => {
     }
   });
 
-  for (const thread of ['net', 'http', 'acceptor'])
-    test(`whose ${thread} thread hangs no longer says that it lives, and ends within 10 s of SIGTERM all the same`, async () => {
+  for (const thread of ['net', 'front'])
+    test(`whose ${thread} thread hangs no longer says that it lives, and ends within 10 s of SIGTERM all the same`, async (t) => {
       const manager = await startManager();
       const daemon = await startDaemon({
-        args: ['--stub', '--hang', thread],
+        args: ['--stub'],
         env: { NOTIFY_SOCKET: manager.path, WATCHDOG_USEC: '800000' },
       });
       try {
+        const held = await holdThread(await threadNamed(daemon.child.pid, thread));
+        if (!held) return void t.skip('a thread of another program may not be stopped here');
         await until(daemon.log, (log) => log.includes(`the ${thread} thread has not moved`));
         assert.match(daemon.log(), new RegExp(`the ${thread} thread has not moved`));
         await until(manager.lines, (lines) => lines.includes('READY=1'));

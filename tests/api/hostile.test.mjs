@@ -161,7 +161,7 @@ describe('a stranger on the line', () => {
         426,
         /is "8"; expected is 13/,
       ],
-      ['a handshake that does not say Upgrade', handshake(room, { drop: 'Upgrade' }), 426, /first request/],
+      ['a handshake that does not say Upgrade', handshake(room, { drop: 'Upgrade' }), 426, /GET with Upgrade/],
       ['a handshake whose Connection does not', handshake(room, { drop: 'Connection' }), 426, /Connection is ""/],
       ['a handshake for a room that is not there', handshake('zzzz-zzzz'), 404, /no such room/],
       ['a handshake for a room by way of another', handshake(`x%2f..%2f${room}`), 404, /no such room/],

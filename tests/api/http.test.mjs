@@ -107,7 +107,7 @@ describe('the server', () => {
     }
   });
 
-  test('refuses a WebSocket on a connection that has been used, and closes it', async () => {
+  test('refuses a WebSocket of a room that is not there on a connection that has been used, and closes it', async () => {
     const { hostname, port } = new URL(url);
     const socket = connect(Number(port), hostname);
     let got = '';
@@ -121,7 +121,7 @@ describe('the server', () => {
     });
     socket.write('GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n');
     await closed;
-    assert.match(got, /HTTP\/1\.1 426 /);
+    assert.match(got, /HTTP\/1\.1 404 /);
     assert.match(got, /connection: close/i);
   });
 });

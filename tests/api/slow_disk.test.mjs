@@ -1,27 +1,15 @@
 // A disk that gives nothing for a while: who comes back into a room that sleeps waits, and is let in. One thread of the daemon, that of the store, is
 // stopped as a debugger does it; skipped where that is not allowed. --stub: grey pictures.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { call, sleep, startDaemon } from './daemon.mjs';
+import { holdThread } from './hold.mjs';
 import { Client } from './ws_client.mjs';
 
 const helloMs = 5000; // WS_HELLO_WITHIN_S: the daemon does not wait longer for a hello
-
-const hold = `
-import ctypes, os, sys
-libc = ctypes.CDLL(None)
-libc.ptrace.argtypes = [ctypes.c_ulong, ctypes.c_ulong, ctypes.c_void_p, ctypes.c_void_p]
-tid = int(sys.argv[1])
-if libc.ptrace(0x4206, tid, None, None) or libc.ptrace(0x4207, tid, None, None): sys.exit(77) # PTRACE_SEIZE, PTRACE_INTERRUPT
-os.waitpid(tid, 0x40000000)
-print('held', flush=True)
-sys.stdin.readline()
-libc.ptrace(17, tid, None, None) # PTRACE_DETACH
-`;
 
 /** Bytes that each thread has written. */
 const written = (pid) =>
@@ -53,16 +41,12 @@ test('who comes back while the disk is slow to give the room is let in, and is n
   await other.message('saved', ({ state }) => state === 'saved');
   const database = ([tid, bytes]) => bytes - (before.get(tid) ?? 0);
   const [[tid]] = [...written(daemon.child.pid)].sort((a, b) => database(b) - database(a)); // rooms are larger than what is said about them
-  const holder = spawn('python3', ['-c', hold, tid]);
-  const isHeld = await new Promise((done) => {
-    holder.stdout.once('data', () => done(true));
-    holder.once('exit', () => done(false));
-  });
-  if (!isHeld) return void t.skip('a thread of another program may not be stopped here');
+  const held = await holdThread(tid);
+  if (!held) return void t.skip('a thread of another program may not be stopped here');
   const back = await enter(daemon, room, { member, secret });
   await sleep(helloMs + 1500);
   assert.deepEqual(back.messages, []);
-  holder.stdin.write('\n');
+  held.release();
   assert.equal((await back.until(() => back.messages[0], 'an answer')).type, 'welcome');
   assert.equal(back.messages[0].member, member);
   back.cut();

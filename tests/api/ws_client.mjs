@@ -54,12 +54,12 @@ export class Client {
   /** Acknowledge each frame on arrival, as the page does. */
   shows = true;
 
-  /** Resolves when the server has answered the handshake, also when it refused. */
-  static async open(url, path, headers = {}) {
+  /** Resolves when the server has answered the handshake, also when it refused. socket: a connection that was used before; else a new one. */
+  static async open(url, path, headers = {}, socket = null) {
     const client = new Client();
     const { hostname, port, host } = new URL(url);
     const key = randomBytes(16).toString('base64');
-    client.#socket = connect({ host: hostname, port: Number(port) });
+    client.#socket = socket ?? connect({ host: hostname, port: Number(port) });
     client.#socket.on('error', () => {});
     client.#socket.on('data', (bytes) => client.#take(bytes, key));
     client.#socket.on('close', () => {

@@ -10,16 +10,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     struct problem whole = { 0 }, part = { 0 };
     if (!hosts)
         hosts = hosts_create(NULL, 0);
-    enum head_kind kind = head_look((const char *)data, n, hosts, &whole);
+    struct head_request request;
+    enum head_kind kind = head_read((const char *)data, n, hosts, &request, &whole);
     REQUIRE((kind == HEAD_REFUSED) == (whole.type != PROBLEM_NONE));
     REQUIRE(kind != HEAD_REFUSED || strlen(whole.detail) > 20);
     for (const char *byte = whole.detail; *byte; byte++)
         REQUIRE(*byte >= 32 && *byte < 127);
     if (kind == HEAD_WEBSOCKET) {
-        struct handshake handshake;
-        head_read_handshake((const char *)data, n, &handshake);
-        REQUIRE(handshake.n_head <= n && handshake.n_head >= 4 && data[handshake.n_head - 1] == '\n');
-        REQUIRE(strlen(handshake.key) == 24 && (!handshake.room_id[0] || id_is_valid(handshake.room_id)));
+        const struct handshake *handshake = &request.handshake;
+        REQUIRE(handshake->n_head <= n && handshake->n_head >= 4 && data[handshake->n_head - 1] == '\n');
+        REQUIRE(strlen(handshake->key) == 24 && (!handshake->room_id[0] || id_is_valid(handshake->room_id)));
     }
     if (n == 0 || n > HEAD_MAX_BYTES)
         return 0;

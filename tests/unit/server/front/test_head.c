@@ -206,7 +206,8 @@ static void a_handshake_is_read_as_it_stands(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char bytes[600];
         struct problem problem;
-        struct handshake handshake;
+        struct head_request request;
+        const struct handshake *handshake = &request.handshake;
         int n = snprintf(bytes, sizeof bytes,
                          "\r\nGET %s HTTP/1.1\r\n" HOST "Connection: Upgrade\r\nUpgrade: websocket\r\n" VERSION KEY
                          "Origin:  http://a.b:1 \r\n\r\n",
@@ -216,14 +217,13 @@ static void a_handshake_is_read_as_it_stands(void **state)
             continue;
         }
         memcpy(bytes + n, "\x81\x80", 2); /* the first frame is no part of it */
-        assert_int_equal(look(bytes, (size_t)n + 2, &problem), HEAD_WEBSOCKET);
-        head_read_handshake(bytes, (size_t)n + 2, &handshake);
-        assert_string_equal(handshake.room_id, cases[i].room_id);
-        assert_string_equal(handshake.host, "localhost:8080");
-        assert_string_equal(handshake.origin, "http://a.b:1");
-        assert_int_equal(strlen(handshake.key), 24);
-        assert_non_null(strstr(KEY, handshake.key));
-        assert_int_equal(handshake.n_head, n);
+        assert_int_equal(head_read(bytes, (size_t)n + 2, hosts, &request, &problem), HEAD_WEBSOCKET);
+        assert_string_equal(handshake->room_id, cases[i].room_id);
+        assert_string_equal(handshake->host, "localhost:8080");
+        assert_string_equal(handshake->origin, "http://a.b:1");
+        assert_int_equal(strlen(handshake->key), 24);
+        assert_non_null(strstr(KEY, handshake->key));
+        assert_int_equal(handshake->n_head, n);
     }
 }
 
@@ -237,15 +237,13 @@ static void an_origin_is_there_once_and_is_not_cut(void **state)
     assert_non_null(strstr(problem.detail, "Origin is there 2 times"));
     for (int more = 0; more < 2; more++) {
         char bytes[1000], origin[400];
-        struct handshake handshake;
+        struct head_request request;
         memset(origin, 'a', sizeof origin);
         origin[HANDSHAKE_MAX_ORIGIN + more] = 0;
         size_t n = (size_t)snprintf(bytes, sizeof bytes, SHAKE VERSION KEY "Origin: %s\r\n\r\n", origin);
-        assert_int_equal(look(bytes, n, &problem), more ? HEAD_REFUSED : HEAD_WEBSOCKET);
-        if (more)
-            continue;
-        head_read_handshake(bytes, n, &handshake);
-        assert_string_equal(handshake.origin, origin);
+        assert_int_equal(head_read(bytes, n, hosts, &request, &problem), more ? HEAD_REFUSED : HEAD_WEBSOCKET);
+        if (!more)
+            assert_string_equal(request.handshake.origin, origin);
     }
 }
 
