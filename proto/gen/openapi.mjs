@@ -40,8 +40,11 @@ function schemaOf(field, objects) {
   }
 }
 
-const mediaOf = (kind) => {
-  if (kind === 'json') return { 'application/json': { schema: { type: 'object' } } };
+/** The media types of an answer: a kind of its own, or the name of a schema in answers.json; files have that of their JSON form as well. */
+const mediaOf = (kind, answers, name) => {
+  const json = (schema) => ({ 'application/json': { schema } });
+  const form = json(name ? { $ref: `#/components/schemas/answer.${name}` } : { type: 'object' });
+  if (kind === 'json') return form;
   if (kind === 'image')
     return {
       'image/png': { schema: { type: 'string', format: 'binary' } },
@@ -49,7 +52,7 @@ const mediaOf = (kind) => {
     };
   if (kind === 'surface')
     return {
-      ...mediaOf('json'),
+      ...form,
       ...Object.fromEntries(
         ['model/stl', 'application/octet-stream', 'model/gltf-binary'].map((type) => [
           type,
@@ -57,12 +60,13 @@ const mediaOf = (kind) => {
         ]),
       ),
     };
-  if (kind === 'curves') return { ...mediaOf('json'), 'text/csv': { schema: { type: 'string' } } };
-  if (kind === 'scene') return { 'application/json': { schema: { $ref: '#/components/schemas/scene' } } };
+  if (kind === 'curves') return { ...form, 'text/csv': { schema: { type: 'string' } } };
+  if (kind === 'scene') return json({ $ref: '#/components/schemas/scene' });
+  if (`answer.${kind}` in answers) return json({ $ref: `#/components/schemas/answer.${kind}` });
   return { [kind]: { schema: { type: 'string' } } };
 };
 
-export function openapi(http, scene, version) {
+export function openapi(http, scene, answers, version) {
   const schemas = {
     problem: {
       type: 'object',
@@ -73,6 +77,7 @@ export function openapi(http, scene, version) {
         title: { type: 'string' },
         status: { type: 'integer' },
         detail: { type: 'string' },
+        instance: { type: 'string' },
         pointer: { type: 'string' },
         code: { type: 'string' },
         retry_after_ms: { type: 'integer' },
@@ -87,6 +92,7 @@ export function openapi(http, scene, version) {
         additionalProperties: false,
         properties: Object.fromEntries(object.fields.map((f) => [f.name, schemaOf(f, scene)])),
       };
+  Object.assign(schemas, answers);
   const paths = {};
   for (const route of http.routes) {
     const parameters = [...route.path.matchAll(/\{(\w+)\}/g)].map(([, name]) => ({
@@ -101,7 +107,7 @@ export function openapi(http, scene, version) {
       parameters.push({ name, in: 'header', required: about.includes('required'), description: about, schema: { type: 'string' } });
     const responses = {};
     for (const [status, kind] of Object.entries(route.answers))
-      responses[status] = { description: route.about, ...(kind && { content: mediaOf(kind) }) };
+      responses[status] = { description: route.about, ...(kind && { content: mediaOf(kind, answers, route.schema) }) };
     responses.default = {
       description: `A problem: ${route.problems.join(', ') || 'internal'}.`,
       content: { 'application/problem+json': { schema: { $ref: '#/components/schemas/problem' } } },

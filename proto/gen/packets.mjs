@@ -202,7 +202,8 @@ export function questionRoutes(packets) {
         path: question.path,
         about: question.about,
         query,
-        answers: { 200: question.answer ?? 'json' },
+        answers: { 200: question.answer ?? question.name },
+        schema: question.name,
         problems: question.problems,
       };
     });
