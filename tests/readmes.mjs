@@ -50,7 +50,7 @@ const wordsOf = (text) =>
       [...line.matchAll(/`([^`\s]+)`|\]\(([^)#:\s]+)\)/g)].map(([, code, link]) => ({ word: code ?? link, line: at + 1 })),
     );
 
-/** What a README's name stands for. @returns {string[]|null} paths; null for a word that is no path */
+/** The files that a README's name stands for. @returns {string[]|null} paths; null for a word that is no path */
 function pathsOf(top, files, folder, word) {
   if (word.includes('*')) {
     const tests = [join(folder, word), word].map(matcher);

@@ -26,7 +26,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
       await page.context().close();
     });
 
-  /** What Tab reaches, from the head of the page to its end. */
+  /** Elements that Tab reaches, from the head of the page to its end. */
   const tabStops = async (page) => {
     const stops = [];
     await page.evaluate(() => document.activeElement?.blur());

@@ -25,7 +25,7 @@ export const once = long === 'rest' ? () => {} : it;
 /** A test that is run with LONG_TESTS alone. */
 export const later = long ? it : () => {};
 
-/** What these tests need and is not there: they skip then. */
+/** A file that these tests need and that is not there: they skip then. */
 export const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));
 
 /** A browser that several test files use one after the other: what BEAMROOM_BROWSER names. */
@@ -83,7 +83,7 @@ export const newer = (page, view, revision) =>
 
 export const header = (page, view) => page.evaluate((n) => globalThis.beamroom.stats().headers[n], view);
 
-/** What was downloaded. @param {import('playwright-core').Download} download @returns {Promise<Buffer>} */
+/** The downloaded bytes. @param {import('playwright-core').Download} download @returns {Promise<Buffer>} */
 export async function bytesOf(download) {
   const parts = [];
   for await (const part of await download.createReadStream()) parts.push(part);

@@ -6,7 +6,7 @@ export const evenly = { scalp: [0, 4, 455], cranium: [0, 5, 847], brain: [0.5, 8
 
 const bins = 100;
 
-/** The same of a region of which half has no dose: a histogram of the other half, and bounds. */
+/** The curve of a region of which half has no dose: a histogram of the other half, and bounds. */
 function halved(curve) {
   const { min, mean, max, metrics } = curve;
   const none = Object.fromEntries(Object.keys(metrics).map((name) => [name, null]));

@@ -158,7 +158,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
       const dot = await plot.locator('.dot').nth(index).boundingBox();
       return [dot.x + dot.width / 2, dot.y + dot.height / 2];
     };
-    /** What lies at a place of the plot: the axis from two points, of which the values are known. */
+    /** The value at a place of the plot: the axis from two points, of which the values are known. */
     const [[x0], [x2]] = [await centre(0), await centre(2)];
     const valueAt = (x) => ((x - x0) / (x2 - x0)) * 800;
     const opacityAt = (y) => ((box.y + box.height - y) / box.height) ** 2;

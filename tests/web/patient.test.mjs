@@ -1,4 +1,4 @@
-// Whose plan it is: masked in the banner for everybody, shown to one person who asks, parts of another patient in a section of their own. Made-up DICOM; nobody's data.
+// Identity of the patient: masked in the banner for everybody, shown to one person who asks, parts of another patient in a section of their own. Made-up DICOM; nobody's data.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

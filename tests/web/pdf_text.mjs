@@ -16,7 +16,7 @@ function streamOf(body) {
 
 const units = (hex, digits = 4) => (hex.match(new RegExp(`.{${digits}}`, 'g')) ?? []).map((unit) => parseInt(unit, 16));
 
-/** From glyphs to text. */
+/** Reads the map from glyphs to text. */
 function mapOf(cmap) {
   const map = new Map();
   for (const [, block] of cmap.matchAll(/beginbfchar([\s\S]*?)endbfchar/g))

@@ -1,4 +1,4 @@
-// What the pointer does to pictures: clicks select, rests show facts, double clicks move nothing; mouse and finger in the browser.
+// Effects of the pointer on pictures: clicks select, rests show facts, double clicks move nothing; mouse and finger in the browser.
 import assert from 'node:assert/strict';
 import { after, before, describe } from 'node:test';
 import { call, until } from '../api/daemon.mjs';

@@ -1,4 +1,4 @@
-// What the page says while the renderer cannot be started: why, and when it is tried again. Skips without a browser.
+// The page while the renderer cannot be started: it says why, and when it tries again. Skips without a browser.
 import assert from 'node:assert/strict';
 import { chmodSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -39,7 +39,7 @@ describe('dropping plans', { skip: missing && `${missing} is not there` }, () =>
       return box.top >= outer.top - 1 && box.bottom <= outer.bottom + 1;
     });
 
-  /** As the browser's own window does it: folders come as entries to be walked. */
+  /** Drops files like the browser's own window: folders come as entries to be walked. */
   const drop = async (page, ...files) => {
     const devtools = await page.context().newCDPSession(page);
     const drag = (type) =>

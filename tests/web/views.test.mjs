@@ -61,7 +61,7 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
   };
   const stats = () => page.evaluate(() => globalThis.beamroom.stats());
   const undo = (page_) => page_.locator('[data-act="undo"]');
-  /** From patient space to the picture, x and y from -1 to 1. */
+  /** Maps patient space to the picture, x and y from -1 to 1. */
   const onPicture = (m, p) => {
     const row = (r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
     return [row(0) / row(3), row(1) / row(3)];

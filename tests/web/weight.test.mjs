@@ -1,4 +1,4 @@
-// What a first visit loads: number of requests and bytes over the wire; the font.
+// Load of a first visit: number of requests and bytes over the wire; the font.
 import assert from 'node:assert/strict';
 import { get } from 'node:http';
 import { after, before, test } from 'node:test';

@@ -157,7 +157,7 @@ async function show(abort) {
   }
 }
 
-/** Who presents and how the renderer is. Asked only while there is a stream: the question would wake a room that sleeps. */
+/** Asks who presents and how the renderer is. Asked only while there is a stream: the question would wake a room that sleeps. */
 async function tellFacts() {
   state.facts = await api.room(room);
   state.plan ||= (await api.plan(state.facts.plan)).name;

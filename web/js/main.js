@@ -13,7 +13,7 @@ import { isId } from './wire/check.js';
 
 keepTextVisible(document.documentElement);
 
-/** What the browser keeps between visits; null where it keeps nothing. */
+/** The browser's storage between visits; null where it keeps nothing. */
 function storage() {
   try {
     return localStorage;

@@ -71,7 +71,7 @@ export class Parts {
   }
 }
 
-/** What the fields of a part say of its picture, as the painter and the letters take it. */
+/** Header of a part's picture, from its fields, as the painter and the letters take it. */
 export function pictureHeader(fields) {
   const [width, height] = (fields['beamroom-size'] ?? '').split('x').map(Number);
   const matrix = (fields['beamroom-clip-from-lps'] ?? '').split(' ').map(Number);

@@ -1,7 +1,7 @@
 // The record of a room's review, from the HTTP API; apart from api.js, as a first visit does not need it.
 import { ofMember, Problem } from './api.js';
 
-/** As an export it is recorded as one. @param {string} room its id @param {{member: string, secret: string}} identity of who asks */
+/** Fetches a room's record. An export is recorded as one. @param {string} room its id @param {{member: string, secret: string}} identity of who asks */
 export async function fetchRecord(room, identity, isExport = false) {
   const response = await fetch(`api/v1/rooms/${room}/record?export=${isExport}`, { headers: ofMember(identity) }).catch(() => {
     throw new Problem({ detail: 'The server does not answer.' });

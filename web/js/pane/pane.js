@@ -191,7 +191,7 @@ export class Pane {
     return `${letters(plane.normal)} ${millimetres(positionOf(plane))}`;
   }
 
-  /** The same with the parts marked that a narrow pane leaves out. */
+  /** Like #where, with the parts marked that a narrow pane leaves out. */
   #whereInHead() {
     const where = this.#where();
     const at = isTurnable(this.#view.kind) ? where.indexOf(', ') + 2 : 0;

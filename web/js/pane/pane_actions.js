@@ -192,7 +192,7 @@ export class PaneActions {
     }
   }
 
-  /** The same for a pointer that moves: one question at a time, and then the newest place. */
+  /** Picks for a pointer that moves: one question at a time, and then the newest place. */
   async #followPointer(x, y, at) {
     this.#nextPick = [x, y, at];
     if (this.#isPicking) return;

@@ -38,7 +38,7 @@ export class PaneCamera {
     return cameras.completeCamera(view.document.value.camera, homeCamera(this.#room.plan.value, view.kind));
   }
 
-  /** Of a slice pane. */
+  /** The plane of a slice pane. */
   get plane() {
     return planeOfView(this.#room.scene.value, this.#view.document.value, this.#room.plan.value);
   }
@@ -68,7 +68,7 @@ export class PaneCamera {
     this.set(this.#panned(this.value, dx, dy), at);
   }
 
-  /** By keys: -1, 0 or 1 to the right and down. */
+  /** Pans by keys: -1, 0 or 1 to the right and down. */
   panStep(right, down, at) {
     this.pan(right * keyPanPx, down * keyPanPx, at);
   }

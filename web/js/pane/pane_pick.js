@@ -1,4 +1,4 @@
-// What lies under a place in a pane's picture: asks the server for the hit that is seen, or for the values at the point.
+// Picks at a place in a pane's picture: asks the server for the hit that is seen, or for the values at the point.
 import { crosshair } from '../room/plan.js';
 import { planeOfView } from '../room/obliques.js';
 import { isInSpace, isTilted } from '../room/kinds.js';
@@ -85,7 +85,7 @@ export class PanePick {
     return hit && this.factsOf(hit);
   }
 
-  /** Of a hit in 3-D: the region seen and those it lies in; of a slice, the values there. */
+  /** Facts of a hit: in 3-D the region seen and those it lies in, in a slice the values there. */
   async factsOf({ region, point_lps_mm }) {
     if (region === null) return this.#withDose(await this.#api.probe(this.#room.planId.value, point_lps_mm));
     const regions = [];

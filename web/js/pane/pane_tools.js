@@ -1,5 +1,4 @@
-// What takes pointer and keys of a pane before the pane does, and draws into it: the chosen tool when it is one that is loaded later, as "Move beam", and
-// what panes along a beam have (beam_panes.js).
+// Handlers that see a pane's input before the pane and draw into it: the chosen tool if it is loaded later, as "Move beam", and that of panes along a beam (beam_panes.js).
 import { isOfBeam } from '../room/kinds.js';
 import { Lazy, styled } from '../parts/lazy.js';
 
@@ -61,7 +60,7 @@ export class PaneTools {
     return null;
   }
 
-  /** What they draw into the pane. */
+  /** Drawings of the handlers in the pane. */
   draw(place) {
     if (isOfBeam(this.#pane.view.kind) && this.#pane.view.isOpen.value) beams.load();
     const drawn = this.#handlers.map((handler) => handler.draw?.(place) ?? {});

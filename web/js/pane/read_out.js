@@ -60,14 +60,14 @@ const doseLine = (answer) =>
         .join(', ')
     : '';
 
-/** The same for a caption: values at the crosshair. */
+/** Words of the values at the crosshair for a caption. */
 export function spoken(result, plan, scene) {
   if (!plan || !scene) return [];
   const { name, value } = words(result, plan, scene);
   return [plan.regions.length ? name.replace(/^Outside/, 'outside') : '', value ? `${value.label} ${value.text} ${value.unit}`.trim() : ''];
 }
 
-/** What the card must not cover: letters, scale bar, axes figure, legend. */
+/** Boxes that the card must not cover: letters, scale bar, axes figure, legend. */
 function takenIn(picture, { left, top }) {
   const marks = [
     ...picture.querySelectorAll('.overlay text, .overlay .figure, .overlay .scale'),

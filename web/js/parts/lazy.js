@@ -41,7 +41,7 @@ export class Lazy {
   }
 }
 
-/** What is loaded; null until then, and loads it. */
+/** The loaded module; until it is there null, and loads it. */
 export function known(lazy) {
   const module = lazy.loaded.value;
   if (!module) lazy.load();

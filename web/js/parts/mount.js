@@ -27,7 +27,7 @@ class Variables extends Directive {
     return nothing;
   }
 
-  // By the object model: the content security policy forbids style attributes.
+  // Sets styles by the object model: the content security policy forbids style attributes.
   update({ element }, [values]) {
     for (const [name, value] of Object.entries(values)) {
       if (this.#last[name] === value) continue; // set again, even the same value would have the browser compute styles

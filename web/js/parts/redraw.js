@@ -44,7 +44,7 @@ export class Redraw {
     this.#request();
   };
 
-  /** The same for painting a picture in a pane, perhaps some milliseconds later. */
+  /** Schedules the painting of a picture in a pane, perhaps some milliseconds later. */
   schedulePicture(pane, callback) {
     const isHere = this.#isDragging && pane.contains(this.#pressed);
     if (isHere) this.#flowedAt = this.#clock.now();

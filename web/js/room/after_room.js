@@ -1,4 +1,4 @@
-// What a person can do whose room has ended or never existed: go on in a room on the same plan, an existing or a new one.
+// Ways on for a person whose room has ended or never existed: a room on the same plan, an existing or a new one.
 import { signal } from '../../lib/signals-core.js';
 import { present } from './plans.js';
 

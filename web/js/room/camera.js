@@ -130,7 +130,7 @@ export function fit(camera, box) {
   return { ...camera, target_mm, position_mm: subtract(target_mm, scale(forward, away)), height_mm };
 }
 
-/** The same of a slice pane. */
+/** Fits a slice pane's camera to the box. */
 export function fitSlice(camera, { right, up }, box) {
   const target_mm = middleOf(box);
   const across = corners(box)

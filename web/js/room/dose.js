@@ -17,7 +17,7 @@ const names = {
   'epithermal-fluence': 'Epithermal fluence',
   'thermal-fluence': 'Thermal fluence',
 };
-/** What physical and weighted totals are summed from; a complete dose has the first four. */
+/** Summands of physical and weighted totals; a complete dose has the first four. */
 const summands = ['boron', 'nitrogen', 'fast', 'gamma', 'other'];
 const sums = ['weighted', 'total', 'isoeffective'];
 
@@ -30,7 +30,7 @@ export const doseName = (dose) => dose.name || dose.id;
 const componentOf = (dose, quantity) => dose.components.find((part) => part.quantity === quantity);
 const hasSummands = (dose) => dose.components.some(({ quantity }) => summands.includes(quantity));
 
-/** What can be shown of a dose, in the order of the list: sums only where there is something to sum. */
+/** Quantities of a dose that can be shown, in the order of the list: sums only where there is something to sum. */
 export function quantitiesOf(dose) {
   const has = (quantity) =>
     quantity === 'weighted' || quantity === 'isoeffective'
@@ -41,7 +41,7 @@ export function quantitiesOf(dose) {
   return Object.keys(names).filter(has);
 }
 
-/** What a sum of this dose lacks: ["nitrogen"]. */
+/** Summands that a sum of this dose lacks: ["nitrogen"]. */
 export function missingOf(dose, quantity) {
   if (!sums.includes(quantity) || (quantity === 'total' && componentOf(dose, 'total'))) return [];
   return summands.slice(0, 4).filter((part) => !componentOf(dose, part));

@@ -4,7 +4,7 @@ const isFluence = (quantity) => quantity.endsWith('fluence');
 const grays = { Gy: 1, cGy: 0.01, mGy: 0.001 };
 const volumeMetric = /^V(\d+(?:\.\d+)?)(cc)?$/;
 
-/** What a value in one unit is multiplied with to be one in the other; 1 where they do not convert. */
+/** Factor that converts a value from one unit to the other; 1 where they do not convert. */
 export const unitFactor = (from, to) => (grays[from] && grays[to] ? Number((grays[from] / grays[to]).toPrecision(12)) : 1);
 
 const scaled = (value, factor) => Number((value * factor).toPrecision(12));

@@ -1,4 +1,4 @@
-// Who presents, and whether this member follows the presenter with all panes or is on their own. Nobody else's picture
+// The presenter, and whether this member follows them with all panes or is on their own. Nobody else's picture
 // moves when a member leaves: their views become own views, and their changes of the scene the override of these.
 import { batch, computed, signal } from '../../lib/signals-core.js';
 import { asShown, ownBeam, wholeCamera, widen, widening } from './own_camera.js';

@@ -1,4 +1,4 @@
-// Whose plan it is: the masked patient, the shown treatment plan and its approval. The full name is never here. Pure.
+// Identity of a plan: the masked patient, the shown treatment plan and its approval. The full name is never here. Pure.
 import { shownDose } from './dose.js';
 import { shownImage } from './plan.js';
 

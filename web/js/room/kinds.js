@@ -1,4 +1,4 @@
-// What the kinds of views (scene.json) have in common.
+// Properties of the kinds of views (scene.json).
 
 /** A picture of the scene in space; else a slice pane, which has a plane and a scale. */
 export const isInSpace = (kind) => kind === '3d' || kind === 'beam';

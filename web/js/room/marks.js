@@ -22,7 +22,7 @@ const ownId = (kind, ids, member) => `${prefixes[kind]}${freeNumber(ids, prefixe
 
 const isOf = (id, member) => id.endsWith(`-${member}`) && id.length > member.length + 1;
 
-/** Of a patch what this member may change in the room without presenting; null: nothing of it. */
+/** The part of a patch that this member may change in the room without presenting; null: none. */
 export function ownPart(patch, member) {
   const part = {};
   for (const kind of kinds) {

@@ -24,7 +24,7 @@ export const normalOfKind = Object.fromEntries(Object.entries(kinds).map(([kind,
 /** A slice at a position along its patient axis: plane_of_kind. @returns {Plane} */
 export const planeOfKind = (kind, positionMm) => ({ origin: scale(kinds[kind].normal, positionMm), ...kinds[kind] });
 
-/** Of directions equally near to several slices' normals: axial before coronal before sagittal. */
+/** The kind of slice whose normal is nearest; of equally near ones axial before coronal before sagittal. */
 function nearestKind([x, y, z]) {
   const [l, p, s] = [Math.abs(x), Math.abs(y), Math.abs(z)];
   return s >= l && s >= p ? 'axial' : p >= l ? 'coronal' : 'sagittal';
@@ -78,7 +78,7 @@ export function reachOf(normal, { low, high }) {
 
 const rounded = (value, parts) => Math.round(value * parts) / parts || 0; // no -0
 const roundedTo = (parts) => (vector) => vector.map((value) => rounded(value, parts));
-/** As the scene keeps them: origins to 0.001 mm, directions to six digits. */
+/** Roundings of the scene: origins to 0.001 mm, directions to six digits. */
 export const roundedOrigin = roundedTo(1e3);
 export const roundedNormal = roundedTo(1e6);
 

@@ -42,7 +42,7 @@ export function widen(camera, kind, factor) {
 export const asShown = (camera, beam) => ((beam?.aperture_mm ?? null) === null ? camera : { ...camera, projection: 'parallel' });
 
 /**
- * What a beam's-eye view keeps beside its camera. An eye that is where the whole plan is seen would move with the opening angle: it stays where the picture has it.
+ * Fields that a beam's-eye view keeps beside its camera. An eye that is where the whole plan is seen would move with the opening angle: it stays where the picture has it.
  * @param {object|undefined} beam of the document @param {object|null} line the beam shown
  */
 export function ownBeam(beam, header, line) {

@@ -157,7 +157,7 @@ export function crosshairPatch(plan, image, point, { isFree = false } = {}) {
 /** True if low values of the image are white: as the scene says, else as the image itself does. */
 export const isLowWhite = (image, scene) => (scene.image.low_values === 'own' ? image.isInverted : scene.image.low_values === 'white');
 
-/** What an image is called; two that are called alike are told by their ids. */
+/** The name of an image; ids tell two of the same name apart. */
 export function imageName(plan, image) {
   const nameOf = ({ name, modality, id }) => name || (plan.images.length > 1 ? `${modality} ${id}` : modality);
   const isAlike = plan.images.some((other) => other.id !== image.id && nameOf(other) === nameOf(image));

@@ -1,4 +1,4 @@
-// What the pointer rests on in one pane: asks for the facts there, one question at a time, and keeps the newest answer.
+// Facts at the place where the pointer rests in one pane: asks for them, one question at a time, and keeps the newest answer.
 import { signal } from '../../lib/signals-core.js';
 
 export const restMs = 150;

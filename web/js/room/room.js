@@ -80,7 +80,7 @@ export class RoomState {
     this.files = signal(null); // {changed_ms, read_ms} while the plan's files are not what is shown
     this.acceptances = signal({ known: false, items: [] });
     this.accepted = computed(() => acceptedPairs(this.items.rows.value, this.acceptances.value.items));
-    /** What numbers and pictures depend on beside the fields of dose: the shown image decides what fits, and people what is used all the same. */
+    /** Key of the things that numbers and pictures depend on beside the fields of dose: the shown image decides what fits, and people what is used all the same. */
     this.fitKey = computed(() => [this.scene.value?.image?.id ?? '', ...this.acceptances.value.items].join(' '));
     this.saved = new Saved(this);
     this.following = new Following(this, (message) => this.#sending.act(message));
@@ -93,7 +93,7 @@ export class RoomState {
       members: signal([]),
       say: (type, more) => this.#connection.send({ type, ...more }),
     };
-    /** What this member sees: the room's scene with, for a member on their own, the override of their views. */
+    /** The scene that this member sees: the room's with, for a member on their own, the override of their views. */
     this.scene = computed(() => {
       const [scene, override] = [this.#sharedScene.value, this.following.override.value];
       return scene && override ? mergePatch(scene, override) : scene;
@@ -132,7 +132,7 @@ export class RoomState {
     return this.following.isPresenting.value || (this.following.isFollowing.value && this.control.may('scene'));
   }
 
-  /** What the ids of this member's marks end with. */
+  /** The end of ids of this member's marks. */
   get markSuffix() {
     return this.following.isPresenting.value ? '' : `-${this.member.value}`;
   }
@@ -461,7 +461,7 @@ export class RoomState {
     });
   }
 
-  /** What the server has not answered is sent again after the next welcome. */
+  /** Keeps changes that the server has not answered, to be sent again after the next welcome. */
   #keepChanges() {
     this.items.recall();
     this.#scene.recall();

@@ -1,4 +1,4 @@
-// What showing a saved view or a picture does to what people made in the room since: it may hide it, and never takes it away.
+// Merges a saved view or a picture into the room: things that people made since may be hidden, and are never removed.
 import { objects } from '../../gen/wire.js';
 
 /** Maps of the scene whose entries people make. isMark: an entry stays as it is now, also where the saved view has an older one. */
@@ -70,7 +70,7 @@ export function mergedScene(now, wanted) {
   return { scene, ...told };
 }
 
-/** The same in sentences; '' when there is nothing to say. */
+/** The merge in sentences; '' when there is nothing to say. */
 export function toldOfMerge({ hidden, changed, left }) {
   const sentences = [];
   if (hidden.length) sentences.push(`Hidden, not deleted: ${hidden.join(', ')}.`);

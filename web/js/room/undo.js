@@ -53,7 +53,7 @@ export class Undo {
     this.#gesture = 0;
   }
 
-  /** What run changes is one step, and one with the same act just before it: wheel and keys held down. */
+  /** Makes the changes of run one step, joined with the same act just before it: wheel and keys held down. */
   #runTogether(name, run) {
     if (this.#gesture) return void run();
     const now = this.#clock.now();
@@ -262,7 +262,7 @@ const after = (before, patch) =>
       ? Object.fromEntries(Object.entries({ ...before, ...patch }).filter(([, value]) => value !== null))
       : patch;
 
-/** What sets a field to a value, also where that has fewer fields inside than are there now. */
+/** The patch that sets a field to a value, also to one with fewer fields inside than now. */
 const patchTo = (now, wanted) =>
   isObject(wanted) && isObject(now) ? { ...Object.fromEntries(Object.keys(now).map((name) => [name, null])), ...wanted } : wanted;
 

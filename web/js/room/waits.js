@@ -12,5 +12,5 @@ export function waitReason({ link, renderer, plan }) {
   return '';
 }
 
-/** The same of numbers of dose. */
+/** Like waitReason, for numbers of dose. */
 export const doseWaitReason = (room) => waitReason(room) || (room.plan.value.doses.length ? '' : 'This plan has no dose.');

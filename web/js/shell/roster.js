@@ -23,7 +23,7 @@ function doing({ presenting, following, connected }, presenter) {
 export const avatar = (member, size = 'small') =>
   html`<span class=${`avatar member ${size}`} aria-hidden="true" ${variables({ '--member': member.color ?? '#929ba6' })}>${initials(member.name)}</span>`;
 
-/** What the presenter can do for another member. */
+/** Buttons of the presenter for another member. */
 function buttonsFor(member, { following, control }) {
   if (!following.isPresenting.value || member.presenting || member.connected === false || !control.may('scene', member.role))
     return nothing;
@@ -99,7 +99,7 @@ function nameForm({ room, ui, ownName }) {
     <input id="room-name" name="name" required maxlength=${maxName} autocomplete="name" placeholder=${room.identity.name} .value=${ownName.value.value}><button>Save</button></form>`;
 }
 
-/** What the popover of the room chip shows. @param {object} world {room, ui, ownName, api, watching} */
+/** Contents of the room chip's popover. @param {object} world {room, ui, ownName, api, watching} */
 export function roster({ room, ui, ownName, api, watching }) {
   const act = (event, what) => {
     const main = event.target.closest('.room-chip').querySelector('.chip-main');

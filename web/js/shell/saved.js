@@ -1,4 +1,4 @@
-// What of the room is on the server's disk, in the status bar; while nothing can be written, a line over the panes as well.
+// The room's state on the server's disk, in the status bar; while nothing can be written, a line over the panes as well.
 import { html, nothing } from '../../lib/lit-html.js';
 import { icon } from '../parts/icons.js';
 

@@ -52,7 +52,7 @@ function checkList(value, length, field, pointer) {
 const readInner = (value, field, pointer, tables) => readObject(tables.objects[field.object], value, pointer, tables);
 
 const controlPattern = /[\x00-\x1f\x7f]/;
-/** By type of field: the checked value, or a WireError. tables: words of enums and fields of objects. */
+/** Readers by type of field: return the checked value, or throw a WireError. tables: words of enums and fields of objects. */
 const readers = {
   bool: (value, field, pointer) => (need(typeof value === 'boolean', value, 'true or false', pointer), value),
   number: (value, field, pointer) => (need(Number.isFinite(value), value, 'a number', pointer), checkRange(value, field, pointer), value),

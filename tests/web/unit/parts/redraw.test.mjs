@@ -63,7 +63,7 @@ function world() {
   };
   const value = signal(0);
   const pressed = {}; // an element
-  /** As mount() does: what was drawn, in order. */
+  /** Draws like mount(), and notes the order. */
   const part = (host, costMs = 0) => {
     const [drawn, tick] = [[], signal(0)];
     let [isDrawn, isWaiting] = [false, false];

@@ -1,4 +1,4 @@
-// What the page says of the server's disk: never saved before the server has said so.
+// The page's words about the server's disk: never saved before the server has said so.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { roomWorld, welcome } from '../fake_room.mjs';

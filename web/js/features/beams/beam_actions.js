@@ -1,4 +1,4 @@
-// What the page does with beams: draft, reset, keep, move, show. Every change is a patch of the scene.
+// Actions on beams: draft, reset, keep, move, show. Every change is a patch of the scene.
 import { chosenBeam, choosePatch, keptDraft, keptPatch, maxKept, newDraft, plannedPatch, redrafted } from './beams.js';
 import { endCompare } from './beam_ui.js';
 import { beamView } from '../../room/layout.js';
@@ -40,7 +40,7 @@ export function openBeamsEye({ room, ui }) {
   else toggleBeamEye(room, ui);
 }
 
-/** What a selected row stands for: the chosen beam, or the draft, for the row of drafts. */
+/** The beam of the selected row; the chosen one, or the draft, for the row of drafts. */
 export const selectedBeam = ({ room, ui }) =>
   ui.selection.value.id
     ? (room.plan.value.beams.find(({ id }) => id === ui.selection.value.id) ?? null)

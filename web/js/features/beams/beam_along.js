@@ -1,4 +1,4 @@
-// What slides along a beam: the beam slice, the clip plane across it, the eye; the range, and the regions on the way. Pure; mm from the entry.
+// Things that slide along a beam: the beam slice, the clip plane across it, the eye; the range, and the regions on the way. Pure; mm from the entry.
 import { alongOf } from '../../room/beam_line.js';
 import { clipBox } from '../clip/clip.js';
 
@@ -32,7 +32,7 @@ export const regionAt = (bands, mm) => bands.find(({ from_mm: from, to_mm: to })
 /** True if the clip plane across a beam is of the beam that the scene shows. */
 const isClipOfBeam = (scene) => !scene.clip.beam.id || (scene.clip.beam.id === scene.beam.id && !scene.beam.draft.enabled);
 
-/** What the slider moves: [id, name][]. */
+/** Choices of the things that the slider moves: [id, name][]. */
 export const movers = (isTogether) =>
   isTogether
     ? [

@@ -123,7 +123,7 @@ function ninety(scene) {
   };
 }
 
-/** As SERA's contours are: without jumps at the target's border, in per cent of the maximum in the tissue around it. What a person has chosen stays. */
+/** Changes towards isodoses like SERA's contours: without jumps at the target's border, in per cent of the maximum in the tissue around it. What a person has chosen stays. */
 function asTissueAround(plan, { dose }) {
   const targets = targetsOf(plan);
   const outer = targets.find(({ parent }) => !targets.some(({ id }) => id === parent));

@@ -14,7 +14,7 @@ const lineOf = ({ entry_mm, target_mm, aperture_mm }) => ({
   aperture_mm: aperture_mm ?? null,
 });
 
-/** What the answer of the question beam says of a line; null where it is not known. */
+/** Facts of a line from the answer of the question beam; null where they are not known. */
 const facts = (answer) =>
   answer
     ? {

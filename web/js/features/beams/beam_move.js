@@ -76,7 +76,7 @@ class PaneMove {
     return [x + left, y + top];
   }
 
-  /** By the picture as it was when the drag began: of a view that moves with its beam, later ones show other places. */
+  /** Moves by the picture as it was when the drag began: a view that moves with its beam shows other places later. */
   move(mode, { x, y, at }) {
     if (!this.#held) return false;
     const { part, from, matrix, box, place } = this.#held;

@@ -18,14 +18,14 @@ const dragZoomPerPixel = 0.006;
 const lock = html`<svg class="icon" viewBox="0 0 16 16" width="12" height="12" aria-hidden="true"><rect x="3" y="7" width="10" height="7" rx="1.500"/><path d="M5 7V5a3 3 0 0 1 6 0v2"/></svg>`;
 const ringPicture = html`<svg class="icon" viewBox="0 0 16 16" width="16" height="16" aria-hidden="true"><circle cx="8" cy="8" r="5.500"/><circle cx="11.9" cy="4.1" r="1.800" fill="currentColor"/></svg>`;
 
-/** What such a pane does with pointer and keys, and what it shows. @param {object} pane {room, ui, api, view, actions} @returns {import('../../pane/pane_tools.js').PaneHandler} */
+/** Makes the handler of such a pane's pointer, keys and drawing. @param {object} pane {room, ui, api, view, actions} @returns {import('../../pane/pane_tools.js').PaneHandler} */
 export function makePane(pane) {
   const clock = { setTimeout: (...args) => setTimeout(...args), clearTimeout: (timer) => clearTimeout(timer) };
   const facts = beamFacts({ ...pane, clock });
   return new (pane.view.kind === 'beam' ? BeamEye : BeamSlice)(pane, facts);
 }
 
-/** What both have: the place of the slice, and sliding. */
+/** Parts common to both: the place of the slice, and sliding. */
 class AlongBeam {
   /** @param {object} pane {room, ui, view, actions} @param {import('./beam_facts.js').BeamFacts} facts */
   constructor(pane, facts) {

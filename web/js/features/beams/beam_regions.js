@@ -1,4 +1,4 @@
-// What a beam meets: the regions in its aperture and the lengths of those that its axis crosses.
+// Regions that a beam meets: those in its aperture and the lengths of those that its axis crosses.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { mm } from './beam_words.js';

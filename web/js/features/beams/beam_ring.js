@@ -64,7 +64,7 @@ export function ringNumbers(place, hasCrosshair) {
 
 const handleAt = ({ middle: [x, y], pxPerMm }, ring) => [x + (ring / 2) * pxPerMm * diagonal, y - (ring / 2) * pxPerMm * diagonal];
 
-/** What the ring is beside the beam's aperture, which it need not be. */
+/** Words that compare the ring with the beam's aperture, from which it may differ. */
 function ringWords(frame, ring, { aperture, isShaped }, width) {
   const [x, y] = handleAt(frame, ring);
   const isPlanned = aperture && Math.abs(ring - aperture) < 0.05;

@@ -1,4 +1,4 @@
-// What this page alone knows about beams: which point the tool moves. And whether the planned beam is looked at instead of the draft.
+// State of beams that this page alone has: the point that the tool moves, and whether the planned beam is looked at instead of the draft.
 import { signal } from '../../../lib/signals-core.js';
 import { isDrafted } from './beams.js';
 

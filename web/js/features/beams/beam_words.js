@@ -12,7 +12,7 @@ export function movedWords(moved) {
   return parts.join(', ') || 'as planned';
 }
 
-/** Whose dose is shown while a beam is drafted; where the plan has none, what the beam is not. */
+/** Says whose dose is shown while a beam is drafted; in a plan without doses, that the beam is not the planned one. */
 export function draftBelongs(plan, scene) {
   if (!chosenBeam(plan, scene)) return 'this plan has no planned beam';
   return plan.doses.length ? 'dose shown belongs to the planned beam' : 'not the planned beam';

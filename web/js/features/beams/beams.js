@@ -41,7 +41,7 @@ export function movedFrom(planned, line) {
 
 // ---- how beams are drawn ------------------------------------------------------------------------------------------------
 
-/** As the scene has it, or as it would be. */
+/** The look of a beam: the scene's, or the one that it would get. */
 export const lookOf = (scene, id) => ({ visible: false, opening: true, color: plainColor, ...scene.beam.looks[id] });
 
 /** Written whole, so that undo finds the first change of a beam's look as it was. */

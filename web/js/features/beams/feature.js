@@ -7,10 +7,10 @@ const panels = new Lazy(async () => (await Promise.all([import('./later_editing.
 /** True where beams can be shown or drafted. */
 export const hasBeams = (plan) => plan.beams.length + plan.curves.length + plan.images.length + plan.regions.length;
 
-/** What beam_rows.js exports; null for a plan without anything, and until it is loaded. */
+/** Exports of beam_rows.js; null for a plan without beams, and until they are loaded. */
 export const ofBeams = ({ plan, scene }) => (plan.value && scene.value?.beam && hasBeams(plan.value) ? known(rows) : null);
 
-/** What later_editing.js exports, drawn in Selection. */
+/** Draws parts of later_editing.js in Selection. */
 export const drawBeam = (use) => panels.draw(use);
 
 /** Above the panes while a beam is drafted. */

@@ -23,7 +23,7 @@ export function presetItems(world, act = (run) => run) {
   )}</div>`;
 }
 
-/** The same in the tree. */
+/** The presets in the tree. */
 export function presetRows(world) {
   const { room } = world;
   return presetsOf(room.plan.value, room.scene.value).map(({ id, name, icon: picture, about, why }) =>

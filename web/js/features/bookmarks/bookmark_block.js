@@ -73,7 +73,7 @@ async function copy({ ui }, row, event) {
   }
 }
 
-/** What of the view that was shown last could not be shown. */
+/** Report of the parts of the view shown last that could not be shown. */
 function reportBlock(world, id) {
   const { lines, n, name, id: of } = bookmarksIn(world).report.value;
   if (!n || of !== id) return nothing;

@@ -10,7 +10,7 @@ export { bookmarkBlock } from './bookmark_block.js';
 
 const known = new WeakMap();
 
-/** Of this page's room; its keys work from the first call on. @returns {Bookmarks} */
+/** The bookmarks of this page's room; their keys work from the first call on. @returns {Bookmarks} */
 export function bookmarksIn(world) {
   if (!known.has(world)) known.set(world, new Bookmarks(world));
   return known.get(world);
@@ -28,7 +28,7 @@ export async function attempt({ ui }, run, done = '') {
   }
 }
 
-/** What of a saved view could not be shown, in a sentence; '' when it is whole. */
+/** A sentence about the parts of a saved view that could not be shown; '' when it is whole. */
 const lost = ({ report, n_report: all }) =>
   all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}.` : '';
 

@@ -23,7 +23,7 @@ const newRow = (world) =>
 
 export const bookmarkRows = (world) => html`${n(world) ? known(parts)?.bookmarkRows(world) : nothing}${newRow(world)}`;
 
-/** What bookmark_rows.js exports, drawn in Selection. */
+/** Draws parts of bookmark_rows.js in Selection. */
 export const drawBookmark = (use) => parts.draw(use);
 
 /** Above the panes while saved views are presented. */

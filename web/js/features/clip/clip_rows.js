@@ -74,7 +74,7 @@ function planeRow(world, row) {
   );
 }
 
-/** What caps show: chosen as a plane is, and then in Selection. */
+/** The row of caps: chosen as a plane is, and then in Selection. */
 function capsRow(world) {
   const words = capWords(world.room.scene.value.clip.cap);
   return treeRow(
@@ -84,7 +84,7 @@ function capsRow(world) {
   );
 }
 
-/** What acts on all planes: as key C does, and to the crosshair. */
+/** Actions on all planes: key C's, and the move to the crosshair. */
 function actionRows({ room, ui }) {
   const nOn = enabledClips(room.plan.value, room.scene.value).length;
   const toggle = (event) => toggleClips(room, ui, event.timeStamp);

@@ -11,7 +11,7 @@ function boundsOf(row, read) {
 
 const finite = (value) => (Number.isFinite(value) ? value : NaN);
 
-/** Of the dose shown and of the one that it is compared with. @returns {DvhAnswer}
+/** Reads the curves of the dose shown and of the one that it is compared with. @returns {DvhAnswer}
  *  @typedef {{unit: string, quantity: string, method: string, missing: string[], reason: string, per: string, left: {region: string, reason: string}[], curves: import('./dose_dvh.js').DvhCurve[]}} DvhAnswer
  *  left: regions without a curve of the dose shown. */
 export function readDvh(answer) {

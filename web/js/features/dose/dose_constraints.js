@@ -26,7 +26,7 @@ export function readMetric(text) {
   return parts[3] === '%' && !(Number(parts[2]) <= 100) ? '' : metric;
 }
 
-/** What a metric is measured in: the quantity's unit, % or cm3. @returns {'dose'|'percent'|'cm3'} */
+/** The kind of a metric's unit: the quantity's unit, % or cm3. @returns {'dose'|'percent'|'cm3'} */
 export const measureOf = (metric) => (!metric.startsWith('V') ? 'dose' : metric.endsWith('cc') ? 'cm3' : 'percent');
 
 /** "D95 %", "V20 Gy(w)", for people. */
@@ -126,7 +126,7 @@ export const constraintsCsv = (rows, plan) =>
   ]);
 
 /**
- * What is known of a limit. @typedef {{word: 'met'|'not met'|'not known', value: number|null, bounds: [number, number], unit: string, reason: string, basis: string, population: string}} Verdict
+ * The verdict on a limit. @typedef {{word: 'met'|'not met'|'not known', value: number|null, bounds: [number, number], unit: string, reason: string, basis: string, population: string}} Verdict
  * bounds of the figure, as in dose_dvh.js; value null unless they are one. basis: whose weights count, '' none.
  * @param {object|undefined} row of the server's answer
  */

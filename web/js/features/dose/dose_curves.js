@@ -80,7 +80,7 @@ export class DoseCurves {
     return Boolean(plan.value && scene.value?.dose) && renderer.value.state === 'ready' && !isScenePending.value;
   }
 
-  /** Of the shown scene with another dose or quantity. @param {object} more patch of scene.dose */
+  /** The question for the shown scene with another dose or quantity. @param {object} more patch of scene.dose */
   #question(name, keyed, more, parameters = {}) {
     const { planId, scene, following } = this.#room;
     if (!this.#isReady || !planId.value) return null;

@@ -150,7 +150,7 @@ export class DoseFacts {
   }
 }
 
-/** What the answers depend on, without what only pictures do. */
+/** The style of the dose without fields that only pictures depend on. */
 function scaleStyle({ grid, wash, lines, surfaces, coverage, compare, interpolation, error, levels, ...style }) {
   return style;
 }

@@ -1,4 +1,4 @@
-// What a picture with dose must say: its levels with colour, value and unit, its reference, and whether it may not belong.
+// Legend of a picture with dose: its levels with colour, value and unit, its reference, and whether it may not belong.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { doseName, isOn, missingWords, referenceWords, shownDose, unitOf } from '../../room/dose.js';
 import { levelsOf, percentOf, doseOf } from './level_list.js';
@@ -81,7 +81,7 @@ function isShown(scene, is3d) {
   );
 }
 
-/** Of the second dose, whose lines are dashed. */
+/** Names the second dose, whose lines are dashed. */
 function compareWords({ id, mode }, plan) {
   const second = plan.doses.find((dose) => dose.id === id);
   return second && (mode === 'lines' || mode === 'difference') ? html`<p>dashed: ${doseName(second)}</p>` : nothing;

@@ -21,7 +21,7 @@ export const levelParts = [
 export const plain = (value) => String(Number(value.toPrecision(6)));
 /** The level in words: "90 %", "1.01 Gy(w)". */
 export const levelWords = (level, unit) => (level.unit === 'percent' ? `${plain(level.value)} %` : `${plain(level.value)} ${unit}`);
-/** The same dose in the other unit, without it: "1.01" or "90"; a dash where 100 % is not known. */
+/** The level's dose in the other unit, without the unit: "1.01" or "90"; a dash where 100 % is not known. */
 export const otherText = (level, reference) =>
   level.unit === 'percent' ? significant(doseOf(level, reference)) : number(percentOf(level, reference), 0);
 

@@ -50,7 +50,7 @@ function extent(width, height, angle) {
   return [width * c + height * s, width * s + height * c];
 }
 
-/** What no label covers, in CSS px of the picture. */
+/** Boxes that no label may cover, in CSS px of the picture. */
 function takenIn(host) {
   const picture = host.querySelector('.picture').getBoundingClientRect();
   return [...host.querySelectorAll('.legend, .overlay .letter, .overlay .scale, .overlay .caption')].map((mark) => {

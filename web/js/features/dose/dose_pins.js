@@ -44,7 +44,7 @@ export function pinsBlock(world) {
 
 const words = (mm) => ['L', 'P', 'S'].map((letter, axis) => `${letter} ${number(mm[axis], 1)}`).join('  ');
 
-/** What the file of the pins has: places, regions, image, the shown dose, its components, and the basis of all numbers. */
+/** Rows of the file of pins: places, regions, image, the shown dose, its components, and the basis of all numbers. */
 export function pinRows(plan, scene, known) {
   const pins = pinsOf(scene);
   const answers = pins.map(({ id }) => known[id]?.result);

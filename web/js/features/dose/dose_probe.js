@@ -121,7 +121,7 @@ function noteWords(plan, answer, hasWeights) {
   return `${per}${times}${sum}${weights}`;
 }
 
-/** What a number must not be read without. */
+/** Warnings without which a number must not be read. */
 function marks(plan, scene, answer) {
   const missing = missingWords(answer?.missing ?? []);
   const words = [

@@ -1,4 +1,4 @@
-// What 100 % is, and whose weights hold: fields for the tree and for Selection.
+// Reference of 100 %, and the region whose weights hold: fields for the tree and for Selection.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { live } from '../../../lib/directives/live.js';
 import { referenceWords, shownDose, unitOf } from '../../room/dose.js';
@@ -60,7 +60,7 @@ export function referenceSelect(world, { tabindex }) {
     ${ofRegions('region-max', 'Maximum of')}${ofRegions('region-mean', 'Mean of')}</select>`;
 }
 
-/** What the chosen kind of reference needs besides: its number, its place. */
+/** Further fields of the chosen kind of reference: its number, its place. */
 export function referenceMore(world, isDisabled, change) {
   const { room, doses } = world;
   const [plan, scene] = [room.plan.value, room.scene.value];
@@ -72,7 +72,7 @@ export function referenceMore(world, isDisabled, change) {
     ${reason ? html`<dt>Reference</dt><dd class="err">${reason}</dd>` : nothing}`;
 }
 
-/** Whose weights hold: each tissue its own, or one region's everywhere. */
+/** Choice of weights: each tissue its own, or one region's everywhere. */
 export function tissueSelect({ room, ui }, { tabindex }) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   const { tissue } = scene.dose;

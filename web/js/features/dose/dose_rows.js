@@ -118,7 +118,7 @@ function radioRow(world, dose, quantity) {
   );
 }
 
-/** The same as one field, where rows are dear. */
+/** The quantities as one field, where rows are dear. */
 function quantityRow(world, dose) {
   const missing = missingWords(missingOf(dose, world.room.scene.value.dose.quantity));
   return html`${controlRow(world, 'quantity', quantitySelect(world, dose, { tabindex: -1 }), 'Quantity')}

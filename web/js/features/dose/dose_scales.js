@@ -1,4 +1,4 @@
-// What a wash shows that is none of levels: a difference, a gamma index, a statistical error; with its colours, their ends, and of what it is. Pure.
+// Washes other than levels: a difference, a gamma index, a statistical error; with their colours, the ends of these, and their subject. Pure.
 import { dosePresets } from '../../../gen/dose_presets.js';
 import { doseName, shownDose, unitOf } from '../../room/dose.js';
 

@@ -4,7 +4,7 @@ import { known, Lazy } from '../../parts/lazy.js';
 const panels = new Lazy(() => import('./later_rows.js'));
 const drawn = new Lazy(() => import('./later_drawn.js'));
 
-/** What later_rows.js exports; null for a plan without doses, and until it is loaded. */
+/** Exports of later_rows.js; null for a plan without doses, and until it is loaded. */
 export const ofDose = (room) => (room.plan.value?.doses.length ? known(panels) : null);
 
 /** Pins the values at the crosshair. */
@@ -13,7 +13,7 @@ export async function pinHere(world, at) {
   drawn.loaded.peek()?.pinHere(world, at);
 }
 
-/** What later_drawn.js exports; null while nothing of a dose is switched on and nothing is pinned, and until it is loaded. */
+/** Exports of later_drawn.js; null while nothing of a dose is switched on and nothing is pinned, and until it is loaded. */
 export function ofDrawnDose(room) {
   const scene = room.scene.value;
   if (!room.plan.value?.doses.length || !scene?.dose) return null;

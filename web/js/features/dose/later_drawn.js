@@ -1,4 +1,4 @@
-// What is on the page once dose is drawn or values are pinned, loaded at once.
+// Modules for a page on which dose is drawn or values are pinned, loaded together.
 export { doseLegend } from './dose_legend.js';
 export { lineLabels } from './dose_lines.js';
 export { pinHere } from './dose_pin.js';

@@ -63,7 +63,7 @@ function filesPreset(plan) {
   };
 }
 
-/** What can be chosen: the presets, and the plan's own. */
+/** The choices: the presets, and the plan's own weights. */
 export const presetsFor = (plan) => [filesPreset(plan), ...weightPresets].filter(Boolean);
 
 export const baseName = (name) => (name.endsWith(edited) ? name.slice(0, -edited.length) : name);

@@ -26,7 +26,7 @@ export const reasons = [
 export const reasonName = (id) => reasons.find(([known]) => known === id)?.[1] ?? id;
 export const minLetters = 10;
 
-/** As the server counts: letters and digits of ASCII, and every character beyond it. */
+/** Counts letters like the server: letters and digits of ASCII, and every character beyond it. */
 export const nLetters = (text) => [...text].filter((letter) => /[0-9A-Za-z]/.test(letter) || letter >= '\u00c0').length;
 
 export const isRank = (relation) => order.indexOf(relation);
@@ -109,13 +109,13 @@ export function isWanted(plan, scene, { kind, id, ...use }) {
   return kind === 'regions' && regionsOf(plan, use).some((region) => scene.regions[region.id]?.visible);
 }
 
-/** What the bar asks about: shown, not used, and a person may accept it. */
+/** The uses that the bar asks about: shown, not used, and a person may accept them. */
 export const questionsOf = (plan, scene, uses) =>
   uses.filter((use) => use.state === 'not-used' && use.needs === 'acceptance' && isWanted(plan, scene, use));
-/** What is shown by a person's word: each picture and number is marked. */
+/** The uses that are shown by a person's word: each picture and number is marked. */
 export const byWordOf = (plan, scene, uses) => uses.filter((use) => use.state === 'by-word' && isWanted(plan, scene, use));
 
-/** What enters the numbers of dose by a person's word, whether anything of it is drawn or not. */
+/** The uses that enter the numbers of dose by a person's word, drawn or not. */
 export function inNumbersOf(plan, scene, uses) {
   const isChosen = ({ kind, id }) =>
     kind !== 'dose' ||
@@ -164,7 +164,7 @@ export function selectedUse(plan, uses, { kind, id }) {
   );
 }
 
-/** What is to be selected for a part. @returns {[string, string]} kind and id */
+/** The selection for a part. @returns {[string, string]} kind and id */
 export function selectionOf(plan, use) {
   if (use.kind === 'regions') return ['region', regionsOf(plan, use)[0]?.id ?? ''];
   return [use.kind, use.kind === 'tracks' ? '' : use.id];

@@ -1,4 +1,4 @@
-// What does not fit: the bar above the panes, the marks, the form in Selection by which a person has it used all the same.
+// Parts that do not fit: the bar above the panes, the marks, the form in Selection by which a person has them used all the same.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { signal } from '../../../lib/signals-core.js';
@@ -113,7 +113,7 @@ export function numberMark(world) {
   return used.length ? mark(used) : nothing;
 }
 
-/** The same as rows of a file: [name, parts, fact, who, words]. */
+/** Uses in the numbers as rows of a file: [name, parts, fact, who, words]. */
 export const usedRows = ({ room }) =>
   inNumbers({ room }).map((use) => [
     'used though it does not fit',
@@ -234,7 +234,7 @@ async function withdraw(world, row) {
 const usedBlock = (world, use) =>
   html`<section class="block fit-block"><h3 class="warn">${icon('warning')} ${markWords(use.relation)}</h3><p class="note">${factOf(use.reason)}</p></section>${listBlock(world)}`;
 
-/** What is used all the same in this room, with who said so; and what was accepted for other files. */
+/** Lists the parts that are used all the same in this room, with the person who said so; and acceptances for other files. */
 export function listBlock(world) {
   const { room } = world;
   const plan = room.plan.value;

@@ -6,7 +6,7 @@ import { signal } from '../../../lib/signals-core.js';
 export class Histograms {
   #ask;
   #pending = new Map(); // plan and image -> Promise<Histogram|null>
-  /** By plan and image: what came; null: the server has none. */
+  /** The answers, by plan and image; null: the server has none. */
   #known = signal(new Map());
 
   /** @param {(plan: string, image: string) => Promise<Histogram>} ask */

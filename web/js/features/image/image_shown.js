@@ -1,4 +1,4 @@
-// What an image is called, and showing it: for its row in the tree and for Selection.
+// The name of an image, and showing it: for its row in the tree and for Selection.
 import { imageName, shownImage } from '../../room/plan.js';
 import { showPatchWithVolume } from './transfer.js';
 

@@ -44,7 +44,7 @@ function cullRow(image, scene, volume, isDisabled, change) {
     ${isOn ? numberField('Leave out of the volume below', Number(volume.cull_below.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ cull_below }, event)) : nothing}</div>`;
 }
 
-/** What only the method ray has: light, and the transfer function. */
+/** Fields that only the method ray has: light, and the transfer function. */
 function rayBlock(world, image, isDisabled, change) {
   const { window, volume } = world.room.scene.value.image;
   return html`<section class="block"><h3>Transfer function <span class="dim">of ${image.modality}</span></h3>

@@ -20,7 +20,7 @@ import { significant, unitText } from '../../parts/format.js';
 
 const narrowest = 1e-15;
 
-/** As many figures as tell the greys of a window of this width apart. */
+/** Formats a value with as many figures as tell the greys of a window of this width apart. */
 const shown = (value, width) => Number(value.toFixed(Math.min(Math.max(1, 3 - Math.floor(Math.log10(width))), 20)));
 
 /** The window as the scene has it now, percentiles included where the server knows them. */

@@ -6,7 +6,7 @@ export const linePx = 15;
 const gapPx = 12;
 const [edgePx, footPx, figurePx] = [26, 30, 96]; // letters at the edges; scale and window at the foot; axes figure in 3-D
 
-/** What no value may cover. @param {{x: number, y: number}|null} mark the crosshair @returns {import('../../parts/place.js').Box[]} */
+/** Boxes that no value may cover. @param {{x: number, y: number}|null} mark the crosshair @returns {import('../../parts/place.js').Box[]} */
 export function takenIn([width, height], is3d, mark) {
   const half = edgePx / 2;
   const square = (x, y) => ({ x, y, width: edgePx, height: edgePx });

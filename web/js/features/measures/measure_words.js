@@ -1,4 +1,4 @@
-// What is said of measures: names, values with their units.
+// Words of measures: names, values with their units.
 import { shortId } from '../../room/marks.js';
 import { kindName, kinds, pointsOf, valueOf } from './measures.js';
 import { shownImage } from '../../room/plan.js';

@@ -31,7 +31,7 @@ export function angleDeg(a, b, c) {
   return length(p) > 0 && length(q) > 0 ? (Math.atan2(length(cross(p, q)), dot(p, q)) * 180) / Math.PI : NaN;
 }
 
-/** Of an ellipse by its centre and the ends of two half axes; also right where these are not at right angles. */
+/** Area of an ellipse from its centre and the ends of two half axes; also right where these are not at right angles. */
 export const areaMm2 = ([center, a, b]) => Math.PI * length(cross(subtract(a, center), subtract(b, center)));
 
 /** Points around an ellipse, the first one not repeated at the end. */

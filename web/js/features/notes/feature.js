@@ -8,7 +8,7 @@ const notes = new Lazy(async () => (await Promise.all([import('./later.js'), sty
 /** The inspector's Notes. */
 export const drawNotes = (world) => notes.draw(({ notesTab }) => notesTab(world));
 
-/** What notes.js exports; null while the room has no note, and until it is loaded. */
+/** Exports of notes.js; null while the room has no note, and until they are loaded. */
 export const ofNotes = ({ items }) => (items.notes.value.length ? known(notes) : null);
 
 /** Tells of notes that mention this person, from the first note on. */

@@ -21,7 +21,7 @@ export function beginWith(room, key, text) {
 
 export const isWritten = (room, key) => draftOf(room, key).value.text.trim() !== '';
 
-/** What was written for notes that are deleted meanwhile. @param {Set<string>} ids of the notes that are there @returns {{text: string, drop: () => void}[]} */
+/** Drafts for notes that were deleted meanwhile. @param {Set<string>} ids of the notes that are there @returns {{text: string, drop: () => void}[]} */
 export function leftOver(room, ids) {
   return [...drafts].flatMap(([key, draft]) => {
     const [of, name] = key.split(' ');

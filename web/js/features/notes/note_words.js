@@ -1,4 +1,4 @@
-// What the parts of notes share: who this member is, what they may do, the line with author and time, a text with its mentions.
+// Help shared by the parts of notes: this member and their rights, the line with author and time, a text with its mentions.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { partsOf, whenWords } from './threads.js';
 import { variables } from '../../parts/mount.js';

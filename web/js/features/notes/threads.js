@@ -44,7 +44,7 @@ export function filtered(threads, { text, author, who, hasResolved }, me) {
 /** The names of all who wrote, each once. */
 export const authorsOf = (rows) => [...new Set(rows.map(({ author_name: name }) => name))].sort((a, b) => a.localeCompare(b));
 
-/** What a body says of who is mentioned: members, and who was mentioned before, whose "@name" is in the text. */
+/** The mentions of a body: members, and people mentioned before, whose "@name" is in the text. */
 export function mentionsIn(text, members, before = []) {
   const all = [...members.map(({ id, name }) => ({ member: id, name })), ...before];
   const found = all.filter(

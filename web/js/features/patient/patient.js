@@ -1,4 +1,4 @@
-// Whose plan it is, in the banner and in the Plan tab: masked, for everybody. The card that shows the full identity to one person is loaded when it is opened.
+// The patient, in the banner and in the Plan tab: masked, for everybody. The card that shows the full identity to one person is loaded when it is opened.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { approvalOf, dateWords, shownPatient, shownTreatmentPlan, unknownWords } from '../../room/identity.js';
 import { icon } from '../../parts/icons.js';

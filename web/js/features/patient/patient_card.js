@@ -33,7 +33,7 @@ document.addEventListener('visibilitychange', () => {
 });
 addEventListener('hashchange', hide);
 
-/** What this person may read at this moment; null: nothing, the identity is masked. */
+/** The identity that this person may read at this moment; null: none, it is masked. */
 export function shownIdentity({ room }) {
   const patient = shownPatient(room.plan.value, room.scene.value);
   const known = identity.value;

@@ -251,7 +251,7 @@ export class PaneLines {
     this.#held = { line, isTurn, point, grab: heightOver(line.plane, point), slice: this.#slice(scene), pivot: this.#pivot(line, scene) };
   }
 
-  /** What a plane turns about: the point of its line in the slice that is nearest to its origin. */
+  /** The pivot of a plane: the point of its line in the slice that is nearest to its origin. */
   #pivot({ plane }, scene) {
     const slice = this.#slice(scene);
     const start = nearestIn(slice, plane.origin);

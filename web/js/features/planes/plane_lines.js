@@ -97,7 +97,7 @@ export function keptPart(all, box) {
   return polygon;
 }
 
-/** What lies in every slice pane: the letters in the middle of the edges, scale bar and window at the foot; with a legend, that too. */
+/** Boxes taken in every slice pane: the letters in the middle of the edges, scale bar and window at the foot; with a legend, that too. */
 export function takenIn([width, height], hasLegend) {
   const around = (x, y) => ({ x: x - letterHalf, y: y - letterHalf, width: 2 * letterHalf, height: 2 * letterHalf });
   return [

@@ -35,7 +35,7 @@ export function pointKey(room, ui, isAsking) {
   else room.pointers.isPointing.value = !room.pointers.isPointing.peek();
 }
 
-/** Of the strip, and of the dock with words below the icons; nothing for who is alone. */
+/** The pointing buttons, for the strip or (isDock) with words below the icons. Nothing for a member alone in the room. */
 export function pointTools(world, isDock = false) {
   const { room, ui } = world;
   const { pointers } = room;

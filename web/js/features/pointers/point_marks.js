@@ -10,7 +10,7 @@ import { PanePick } from '../../pane/pane_pick.js';
 
 const restMs = 300; // a pointer that has not moved for so long is asked about
 
-/** What is drawn: {id, name, color, point, movedAt, isLook}. */
+/** The pointers to draw: {id, name, color, point, movedAt, isLook}. */
 function shown({ room }, number) {
   const { pointers } = room;
   const [look, own] = [pointers.look.value, pointers.own.value];

@@ -1,4 +1,4 @@
-// What the server alone knows of the record of a room: the revision of the plan's files, who was present, the audit's newest row.
+// Facts of a room's record that the server alone knows: the revision of the plan's files, who was present, the audit's newest row.
 import { signal } from '../../../lib/signals-core.js';
 import { fetchRecord } from '../../net/record.js';
 

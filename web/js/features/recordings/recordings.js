@@ -81,7 +81,7 @@ function transport({ recording, control }) {
 const then = ({ presenting, connected }) =>
   [presenting ? 'presented' : '', connected === false ? 'was away' : ''].filter(Boolean).join(', ') || 'was there';
 
-/** Who was in the meeting at the time that is shown. */
+/** People in the meeting at the time that is shown. */
 const people = ({ recording: { members } }, avatar) =>
   members.value.length
     ? html`<h3 class="replay-title">In the meeting at this time</h3>

@@ -58,7 +58,7 @@ export function regionBlock(world, region) {
     ${region.voxels && isExportable(style.representation) && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
 }
 
-/** By what the region is coloured in 3-D, and those inside it. */
+/** Choice of what colours the region in 3-D, and those inside it. */
 function coloured({ room }, region, isDisabled, how) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   const { texture } = scene.regions[region.id];

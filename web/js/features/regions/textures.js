@@ -1,4 +1,4 @@
-// What colours the regions in 3-D: their own colour, the image, or the dose. Pure.
+// Colours of regions in 3-D: their own colour, the image, or the dose. Pure.
 
 /** Representations that are made of triangles; others have their own colour alone. */
 const withTriangles = ['surface', 'univels', 'nurbs', 'fan'];
@@ -17,7 +17,7 @@ export function textures(plan, now) {
     .map((texture) => [texture, ...words[texture]]);
 }
 
-/** What all of these regions are coloured by; '' where they differ. */
+/** The texture of all these regions; '' where they differ. */
 export function textureOf(scene, regions) {
   const found = new Set(regions.map(({ id }) => scene.regions[id]?.texture ?? 'none'));
   return found.size === 1 ? [...found][0] : '';

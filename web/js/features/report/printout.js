@@ -96,7 +96,7 @@ function pictures({ printout }, plan) {
   );
 }
 
-/** Whose dose the picture shows, while a beam was drafted. */
+/** Says whose dose the picture shows, if a beam was drafted. */
 function draft({ record: { scene } }, plan) {
   return isDrafted(plan, scene)
     ? html`<p class="values"><b>Draft beam:</b> ${[draftBelongs(plan, scene), draftWords(plan, scene)].filter(Boolean).join(', ')}.</p>`
@@ -138,7 +138,7 @@ function figures({ printout }) {
     <p class="values">Univels and volume are the region's own; surfaces enclose all regions inside it as well. Off: distance from the univels' border.</p>`;
 }
 
-/** Of the newest picture; without one, of the room as it is now. */
+/** The measures of the newest picture; without one, of the room as it is now. */
 function measures(world) {
   const { room, printout } = world;
   const list = Object.entries(printout.entries.value.at(-1)?.record.scene.measures ?? room.scene.value?.measures ?? {});

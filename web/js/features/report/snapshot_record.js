@@ -1,4 +1,4 @@
-// What an annotated snapshot carries: plan, revision, scene and view (server/wire/snapshot_record.h). Reading it from a
+// Record in an annotated snapshot: plan, revision, scene and view (server/wire/snapshot_record.h). Reading it from a
 // file, and showing it again in a room.
 import { isPng, maxFileBytes, textOfPng } from '../../net/png.js';
 import { isId, readDocument } from '../../wire/check.js';

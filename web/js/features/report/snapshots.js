@@ -139,7 +139,7 @@ export async function openSnapshot(api, record, enter) {
   enter(id);
 }
 
-/** The same for a file that was dropped on the start page. @returns {Promise<boolean>} false: it is no picture */
+/** Opens a picture that was dropped on the start page. @returns {Promise<boolean>} false: it is no picture */
 export async function openDroppedSnapshot(api, file, enter) {
   const record = await (await records()).recordOfFile(file);
   if (!record) return false;

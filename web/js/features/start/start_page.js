@@ -64,7 +64,7 @@ const page = (state, uploads, { enter, ownName, thumbnails }) => html`<div class
   <aside class="load-report" aria-label="Load report and upload"><div class="found">${report(state)}</div>${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
   <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">Research use. Not for diagnosis or treatment decisions.</b></footer>${deleteDialog(state, ownName)}</div>`;
 
-/** What concerns the server and not one plan. */
+/** Notices about the server, not about one plan. */
 const notices = (
   state,
 ) => html`${state.error.value ? html`<div class="notice bad" role="alert">${icon('error')}<div><b>${state.error.value}</b><p>Trying again every few seconds.</p></div></div>` : nothing}

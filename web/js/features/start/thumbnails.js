@@ -4,7 +4,7 @@ import { signal } from '../../../lib/signals-core.js';
 
 const most = 60; // pictures kept
 
-/** What a picture depends on: a plan's default scene changes only with its files. */
+/** Key of a picture: a plan's default scene changes only with its files. */
 const keyOf = (plan) => `${plan.id} ${plan.n_bytes}`;
 
 export class Thumbnails {

@@ -4,10 +4,10 @@ import { known, Lazy, styled } from '../../parts/lazy.js';
 const rows = new Lazy(async () => (await Promise.all([import('./track_rows.js'), styled('js/features/tracks/track.css')]))[0]);
 const panels = new Lazy(() => import('./track_block.js'));
 
-/** What track_rows.js exports; null for a plan without tracks, and until it is loaded. */
+/** Exports of track_rows.js; null for a plan without tracks, and until they are loaded. */
 export const ofTracks = ({ plan, scene }) => (plan.value?.nTracks && scene.value?.tracks ? known(rows) : null);
 
-/** What track_block.js exports, drawn in Selection. */
+/** Draws parts of track_block.js in Selection. */
 export const drawTracks = (use) => panels.draw(use);
 
 /** Key T: tracks on or off. */

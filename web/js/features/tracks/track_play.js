@@ -21,7 +21,7 @@ export class TrackPlay {
     this.seconds = signal(durations[0]);
   }
 
-  /** From where it stands; from the beginning when all are drawn. */
+  /** Starts where it stands; at the beginning when all are drawn. */
   start() {
     const { plan, scene, canChange } = this.#room;
     if (this.isOn.peek() || !canChange.peek()) return;

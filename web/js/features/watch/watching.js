@@ -75,7 +75,7 @@ export class WorkedIn {
   }
 }
 
-/** Who is seen in the small picture: {name, isAway}; null: nobody, as this member follows or presents, or nobody else presents. @param {import('../../room/room.js').RoomState} room */
+/** The presenter seen in the small picture: {name, isAway}; null: nobody, as this member follows or presents, or nobody else presents. @param {import('../../room/room.js').RoomState} room */
 export function watched({ following, recording }) {
   if (following.isFollowing.value || following.isPresenting.value) return null;
   const presenter = following.presenter.value;

@@ -1,4 +1,4 @@
-// What presets of beam, dose and volume change, against a plan worked out by hand: a beam from the front, a target 40 mm behind its entry.
+// Changes by presets of beam, dose and volume, against a plan worked out by hand: a beam from the front, a target 40 mm behind its entry.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from '../../page.mjs';

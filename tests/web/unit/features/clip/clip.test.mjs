@@ -1,4 +1,4 @@
-// What the clip planes keep, where they are and what changes them, against figures worked out by hand.
+// Clip planes: the part that they keep, their places and their changes, against figures worked out by hand.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from '../../page.mjs';

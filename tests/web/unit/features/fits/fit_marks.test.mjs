@@ -1,4 +1,4 @@
-// What stands on the page and on paper where parts are used by a person's word, and who is offered to say it. The words of templates are read without a browser.
+// Marks on the page and on paper where parts are used by a person's word, and the offer to say it. The words of templates are read without a browser.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from '../../page.mjs';
@@ -22,7 +22,7 @@ function textOf(part) {
   if (part.strings) return part.strings.map((text, at) => text + textOf(part.values[at])).join('');
   return typeof part === 'object' ? '' : String(part);
 }
-/** What is read: without tags. */
+/** The text as read, without tags. */
 const read = (part) =>
   textOf(part)
     .replace(/<[^>]*>/g, ' ')

@@ -1,4 +1,4 @@
-// What fits what, on the page: the parts that a scene uses, what the bar asks about, the marks, sums that cannot be, whose plan it is.
+// Fits on the page: the parts that a scene uses, what the bar asks about, the marks, sums that cannot be, whose plan it is.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from '../../page.mjs';

@@ -1,4 +1,4 @@
-// By what regions are coloured: the choices, of one and of several, and what is said where it does not show.
+// Colours of regions: the choices, of one and of several, and what is said where it does not show.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from '../../page.mjs';

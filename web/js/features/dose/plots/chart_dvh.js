@@ -133,7 +133,7 @@ function nearest(world, { value, yValue }) {
   return curves.value.filter(({ of }) => !of).sort((a, b) => Math.abs(at(a) - yValue) - Math.abs(at(b) - yValue))[0];
 }
 
-/** What the pointer is about: of the nearest curve's region, what has at least the dose there or, of a differential one, what is in the bin. */
+/** The part that the pointer is about: in the nearest curve's region the univels with at least the dose there or, for a differential one, those in the bin. */
 function partAt(world, place) {
   const curve = nearest(world, place);
   if (!curve || !(place.value >= 0)) return null;
@@ -338,7 +338,7 @@ export const leftWords = ({ room, curves }) =>
     .map(({ region, reason }) => `${regionName(room.plan.value)(region)}: not known: ${reason}.`)
     .join(' ');
 
-/** Whose weights the histograms have: "each region's own weights"; '' none. */
+/** Names the weights of the histograms: "each region's own weights"; '' none. */
 export const basisWords = ({ curves }) => curves.curves.value[0]?.basis ?? '';
 
 /** @param {{isInline: boolean}} how isInline: choices and table beside the plot, as there is room */

@@ -65,7 +65,7 @@ export function valueWords({ verdict }) {
   return Number.isFinite(verdict.bounds[0]) && words !== 'not known' ? `${words} ${unitText(verdict.unit)}` : words;
 }
 
-/** Whose weights count: "each region's own weights", "weights of brain"; '' none. */
+/** Names the weights that count: "each region's own weights", "weights of brain"; '' none. */
 export function limitBasis({ room }, { constraint, verdict }) {
   const { tissue = '', quantity } = constraint;
   if (verdict.basis) return verdict.basis;

@@ -41,5 +41,5 @@ export const staleMark = (isOld) =>
 export const withoutMark = (missing) =>
   missing?.length ? html`<span class="chart-without warn">${icon('warning', 12)} without ${missing.join(', ')}</span>` : nothing;
 
-/** What does not fit and is used by a person's word is marked wherever its numbers stand. */
+/** Mark beside the numbers of parts that do not fit and are used by a person's word. */
 export const doubtMark = ({ room }) => ofFits(room)?.numberMark({ room }) ?? nothing;

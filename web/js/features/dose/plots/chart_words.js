@@ -16,7 +16,7 @@ export function weightWords(plan, { quantity, tissue }) {
   return tissue ? `as ${regionName(plan)(tissue)}` : 'own weights';
 }
 
-/** What the numbers depend on, as rows of a file: [name, value, ...]. of: figures of regions: whose weights count, and which univels. @param {{basis: string, population: string}} [of] */
+/** The basis of the numbers, as rows of a file: [name, value, ...]. of: figures of regions: whose weights count, and which univels. @param {{basis: string, population: string}} [of] */
 export function basisRows({ room }, quantity, answer, of) {
   const [plan, { dose }] = [room.plan.value, room.scene.value];
   const perPpm = plan.doses.some(({ components }) => components.some((part) => part.per_ppm));

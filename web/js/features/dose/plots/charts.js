@@ -1,4 +1,4 @@
-// What is loaded when the plots of dose are first wanted: the drawer, its form in a sheet, the table of limits, and their part of the report to print.
+// Modules that are loaded when the plots of dose are first wanted: the drawer, its form in a sheet, the table of limits, and their part of the report to print.
 import { effect } from '../../../../lib/signals-core.js';
 import { DoseCurves } from '../dose_curves.js';
 import { limitsBlock } from './chart_limits.js';
