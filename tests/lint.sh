@@ -138,6 +138,18 @@ planted_import() {
     echo "$out"
     return 1
 }
+comments_begin() { "${NODE:-node}" tests/comments.mjs $(sources '*.c' '*.h' '*.cc' '*.hh' '*.inc' '*.glsl' '*.vert' '*.frag' '*.js' '*.mjs' '*.css'); }
+planted_comment() {
+    local file out
+    file=$(mktemp)
+    printf '#pragma once\n/* What a planted header is for. */\nint a; /* of a field: a phrase */\n/* Of a\n * thing. */\n// Code.\n// From here on\n' >"$file"
+    out=$("${NODE:-node}" tests/comments.mjs "$file")
+    rm "$file"
+    [ "$(sed 's/^[^:]*:\([0-9]*\):.*/\1/' <<<"$out" | tr '\n' ' ')" = "2 4 " ] && return 0
+    echo "two planted comments, in lines 2 and 4; the check said:"
+    echo "$out"
+    return 1
+}
 no_addresses_in_the_lock() { ! grep -nE '"resolved"|https?://[^"]*\.tgz' package-lock.json; }
 
 copy=$(mktemp -d)
@@ -160,6 +172,8 @@ check "JavaScript and CSS are laid out and free of mistakes as biome.jsonc says 
 check "a name that nobody declares, an unknown property of CSS and a line out of layout are found" planted_script
 check "the page's imports follow tests/page_layers.txt" page_layers
 check "an import from one feature to another, and one upwards, are found" planted_import
+check "comments begin with their subject (tests/comments.mjs)" comments_begin
+check "comments that begin in the middle are found" planted_comment
 check "locks stand in core/base alone" locks_in_base
 check "no value-changing float flags" no_flags
 check "each header compiles alone, once" headers_stand_alone

@@ -4,7 +4,7 @@
 
 /* Notes when the room is due next. To be called after anything that came into it. */
 void schedule_room(struct net_room *room);
-/* The same, after what is due of it was done. */
+/* Settles the room, then notes when it is due next. */
 void schedule_settle(struct net_room *room);
 /* The room is due at this time at the latest. */
 void schedule_room_at(struct net_room *room, int64_t time_us);

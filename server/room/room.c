@@ -331,9 +331,8 @@ static bool refuse(struct room *room, void *connection, const char *text, size_t
 
 /* ---- what follows ----------------------------------------------------------------------------------------------- */
 
-/* What follows from a change, and what is due with time, in this order: who is there and who presents comes before what
- * is shown to whom, and that before the pictures. Each does what is due and returns when it is due again; INT64_MAX:
- * only another entry can make it due. */
+/* Consequences of a change and of time, in this order: members and presenter, then what is shown to whom, then
+ * pictures. Each does what is due and returns when it is due again; INT64_MAX: only another entry can make it due. */
 static const struct {
     int64_t (*settle)(struct room *room);
     bool is_at_once; /* after each message; the others once for all messages that have come together */
@@ -387,7 +386,7 @@ static int64_t settle_shown(struct room *room, struct member *member)
     return request_us < next_us ? request_us : next_us;
 }
 
-/* What the text says. Returns true for an acknowledgement that was taken. */
+/* Applies the message of a text. Returns true for an acknowledgement that was taken. */
 static bool take_text(struct room *room, struct member *member, void *connection, const char *text, size_t n)
 {
     struct message message;

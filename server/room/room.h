@@ -45,7 +45,7 @@ bool room_has_member(const struct room *room, void *connection); /* it has said 
 /* Does what follows from all that came, and what is due with time: stills, dropping members that are away ... Each
  * entry but room_text_came ends with it. Returns when it is due again; INT64_MAX: only after another call. */
 int64_t room_settle(struct room *room, int64_t now_us);
-/* The same time, as it was found last. */
+/* The time that room_settle found last. */
 int64_t room_due_us(const struct room *room);
 
 /* Answers to render. A picture that is no longer wanted (the renderer was restarted, the view closed) is dropped. */

@@ -11,5 +11,5 @@ int64_t members_settle_away(struct room *room);
 void members_free(struct room *room);
 /* Closes the views of members whose connection was closed for want of memory. Returns INT64_MAX. */
 int64_t members_settle_lost(struct room *room);
-/* Who presents, and who lags: where that is news, all are sent the list. Returns when a lag may change next. */
+/* Settles presenter and lags; sends all members the list if one of them changed. Returns when a lag may change next. */
 int64_t members_settle(struct room *room);

@@ -1,5 +1,5 @@
 #pragma once
-/* What others may know of a link that lets new members in. Included by room.h. */
+/* Public part of a link that lets new members in. Included by room.h. */
 #include "server/room/state/room_types.h"
 
 /* The eight digits that name the link of this token in the audit. */

@@ -15,7 +15,7 @@ struct room_display {
     bool is_main; /* it shows the room's main view */
 };
 
-/* As room_display_add. */
+/* Like room_display_add. */
 NODISCARD struct room_display *display_add(struct room *room, const char *view,
                                            const struct room_display_callbacks *callbacks, struct problem *problem);
 struct room *display_remove(struct room_display *display); /* returns its room */
