@@ -21,6 +21,7 @@
 #include "core/load/origins.h"
 #include "core/load/part_names.h"
 #include "core/load/plan_ids.h"
+#include "core/load/reader_table.h"
 #include "core/load/region_builder.h"
 #include "core/load/region_hierarchy.h"
 #include "core/load/registrations.h"
@@ -96,7 +97,7 @@ static void add_image(struct loading *loading, struct part_reading *reading)
     plan_make_id(image->id, entry->id, entry->path, others, plan->n_images);
     reading->image = plan->n_images;
     plan->image_origins[plan->n_images] = origin_of_reading(loading, reading);
-    loading->image_stacks[plan->n_images++] = reading->format == PART_DICOM ? reading->stack : -1;
+    loading->image_stacks[plan->n_images++] = reading->reader == &part_dicom ? reading->stack : -1;
     memcpy(image->name, entry->name, sizeof image->name);
     snprintf(image->modality, sizeof image->modality, "%s", entry->modality[0] ? entry->modality : reading->modality);
     image->volume = take_volume(reading);
@@ -160,7 +161,7 @@ static bool add_regions(struct loading *loading, struct region_builder *builder,
                         struct error *err)
 {
     const struct plan_file_region *entry = &loading->file->regions[reading->index];
-    if (reading->layers && reading->format == PART_DICOM)
+    if (reading->layers && reading->reader == &part_dicom)
         plan_dicom_check_segmentation(loading, reading);
     for (size_t i = 0; reading->layers && i < reading->layers->n; i++) {
         struct volume *layer = reading->layers->volumes[i];
@@ -218,7 +219,7 @@ static struct dose *start_dose(struct loading *loading, const struct part_readin
     origin_state(origin, entry);
     memcpy(dose->id, id, sizeof dose->id);
     memcpy(dose->name, entry->name, sizeof dose->name);
-    plan_dose_units(dose, entry, part_is_sera_dose(reading->format), &plan->report);
+    plan_dose_units(dose, entry, part_is_sera_dose(reading->reader), &plan->report);
     plan_dose_frame(dose, entry, entry->components[0].path, &plan->report);
     return dose;
 }
@@ -238,9 +239,9 @@ static bool is_of_dose(struct loading *loading, const struct dose *dose, const s
 static void add_component(struct loading *loading, struct dose *dose, struct part_reading *reading)
 {
     const struct plan_file_dose *entry = &loading->file->doses[reading->index];
-    if (part_is_sera_dose(reading->format))
+    if (part_is_sera_dose(reading->reader))
         plan_add_sera(dose, entry, reading->component, &reading->doses, &loading->plan->report);
-    else if (reading->format == PART_DICOM)
+    else if (reading->reader == &part_dicom)
         plan_dicom_add_component(loading, dose, reading);
     else
         plan_add_component(dose, entry, reading->component, take_volume(reading), &loading->plan->report);
@@ -292,7 +293,7 @@ static void add_dose(struct loading *loading, size_t index)
         struct part_reading *reading = &loading->readings[i];
         if (reading->kind != PART_KIND_DOSE || reading->index != index || reading->is_failed || is_grouped)
             continue;
-        if (reading->format == PART_DICOM && entry->n_components == 1) {
+        if (reading->reader == &part_dicom && entry->n_components == 1) {
             plan_dicom_add_doses(loading, index, entry);
             dose = plan->n_doses > before ? &plan->doses[before] : NULL;
             is_grouped = true;

@@ -5,47 +5,20 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/formats/sera/sera_pp.h"
-#include "core/formats/track_csv.h"
-#include "core/load/part_format.h"
+#include "core/load/reader_table.h"
 
 _Static_assert((int)TRACK_MAX_FILES >= (int)PLAN_FILE_MAX_TRACKS, "each file of tracks of a plan is kept");
 _Static_assert((int)TRACK_FILE_NAME_SIZE == (int)FOLDER_NAME_SIZE, "the path of a file fits");
 
-/* The columns of a table say their unit. */
-static bool parse_table(struct plan *plan, const struct plan_file_tracks *entry, const struct bytes *bytes,
-                        double *unit_mm, struct error *err)
-{
-    *unit_mm = 1;
-    if (entry->mm > 0 && entry->mm != 1)
-        report_add(&plan->report, REPORT_WARNING, "tracks.unit-doubtful", entry->path,
-                   "The plan says the tracks are in cm, but the columns of the table are in mm; mm was taken.");
-    return track_csv_parse(bytes->data, bytes->size, entry->path, &plan->tracks, &plan->report, err);
-}
-
-static bool parse_pp(struct plan *plan, const struct plan_file_tracks *entry, const struct bytes *bytes,
-                     double *unit_mm, struct error *err)
-{
-    size_t first = plan->tracks.n_segments;
-    if (!pp_parse(bytes->data, bytes->size, entry->path, &plan->tracks, &plan->report, err))
-        return false;
-    *unit_mm = pp_unit_mm(&plan->tracks, first, entry->mm, &plan->bounds_lps_mm, entry->path, &plan->report);
-    if (!(*unit_mm > 0))
-        return error_set(err, ERROR_MEMORY, "%s: no memory to tell its unit", entry->path);
-    pp_scale(&plan->tracks, first, *unit_mm, entry->path, &plan->report);
-    return true;
-}
-
 static bool add_file(struct plan *plan, const struct folder *folder, const struct plan_file_tracks *entry,
-                     enum part_format format, struct error *err)
+                     const struct part_reader *reader, struct error *err)
 {
     struct bytes bytes;
     double unit_mm;
     size_t first = plan->tracks.n_segments;
-    size_t most = format == PART_TRACK_CSV ? TRACK_CSV_MAX_BYTES : PP_MAX_BYTES;
-    if (!folder_read(folder, entry->path, most, UINT64_MAX, &bytes, err))
+    if (!folder_read(folder, entry->path, reader->tracks_max_bytes, UINT64_MAX, &bytes, err))
         return false;
-    bool is_read = (format == PART_TRACK_CSV ? parse_table : parse_pp)(plan, entry, &bytes, &unit_mm, err);
+    bool is_read = reader->read_tracks(plan, entry, &bytes, &unit_mm, err);
     bytes_free(&bytes);
     if (!is_read)
         return false;
@@ -85,20 +58,20 @@ bool plan_add_tracks(struct loading *loading, struct error *err)
     const struct plan_file *file = loading->file;
     for (size_t i = 0; i < file->n_tracks; i++) {
         const char *path = file->tracks[i].path;
-        enum part_format format = part_format_of(folder, path);
+        const struct part_reader *reader = part_reader_of(folder, path);
         struct error why = { 0 };
         size_t n_before = plan->tracks.n_segments;
-        if (format == PART_ABSENT) {
+        if (reader == &part_absent) {
             error_set(&why, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", path);
             loading_leave_out(loading, "part.unreadable", path, &why);
             continue;
         }
-        if (format != PART_PP && format != PART_TRACK_CSV) {
+        if (!reader->read_tracks) {
             report_add(&plan->report, REPORT_WARNING, "tracks.unsupported", path,
                        "Tracks of this kind are not read by this version; the plan is shown without them.");
             continue;
         }
-        if (add_file(plan, folder, &file->tracks[i], format, &why))
+        if (add_file(plan, folder, &file->tracks[i], reader, &why))
             continue;
         plan->tracks.n_segments = n_before;
         if (!loading_may_leave_out(&why)) {

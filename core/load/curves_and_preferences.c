@@ -12,6 +12,7 @@
 #include "core/formats/text.h"
 #include "core/formats/zlib_stream.h"
 #include "core/load/part_names.h"
+#include "core/load/reader_table.h"
 
 static bool read_curve(const struct folder *folder, const char *path, struct dose_curve *curve, struct report *report,
                        struct error *err)

@@ -9,16 +9,6 @@ enum {
     PLAN_DICOM_MAX_PLANS = 16              /* RTPLAN objects of a plan; further ones are reported */
 };
 
-/* Reads the headers of the DICOM files that plan.json names, each a file or a folder with all below it, into
- * parts->dicom. Leaves it NULL when plan.json names none. errors as dicom_index_scan */
-NODISCARD bool plan_dicom_scan_named(const struct folder *folder, struct plan_parts *parts,
-                                     const struct dicom_progress *progress, struct report *report, struct error *err);
-/* Finds the parts of a folder without plan.json; names are the files that may be DICOM. Images, structure sets and
- * segmentations become entries of parts->file, images in this order: CT first, then by number of slices. */
-NODISCARD bool plan_dicom_recognise(const struct folder *folder, char *const *names, size_t n_names,
-                                    struct plan_parts *parts, const struct dicom_progress *progress,
-                                    struct report *report, struct error *err);
-
 /* The stack with a slice at path, when path is a file; the stack with the most slices below path, when it is a folder.
  * -1: none. */
 int plan_dicom_stack(const struct dicom_index *index, const char *path);

@@ -9,6 +9,7 @@
 #include "core/base/mem.h"
 #include "core/formats/text.h"
 #include "core/load/part_names.h"
+#include "core/load/reader_table.h"
 #include "core/plan/plan.h"
 
 enum { MOST_FILES = 256 };

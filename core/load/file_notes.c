@@ -7,9 +7,8 @@
 
 #include "core/base/mem.h"
 #include "core/load/file_kind.h"
-#include "core/load/nifti_parts.h"
-#include "core/load/nrrd_parts.h"
 #include "core/load/part_names.h"
+#include "core/load/reader_table.h"
 
 /* A file whose use is known. */
 struct known {
@@ -67,25 +66,6 @@ static const char *words_of(const struct part_reading *reading)
     return "beams";
 }
 
-/* The file beside a header that holds its data; "" none. */
-static void find_companion(const struct folder *folder, const char *path, enum part_format format,
-                           char other[FOLDER_NAME_SIZE])
-{
-    struct nifti_pair pair;
-    struct nrrd_header header;
-    other[0] = 0;
-    if (format == PART_NIFTI && plan_nifti_is_pair(path) && plan_nifti_find_pair(folder, path, &pair, NULL)) {
-        memcpy(other, strcmp(pair.head, path) == 0 ? pair.voxels : pair.head, FOLDER_NAME_SIZE);
-    } else if (format == PART_NRRD) {
-        if (plan_nrrd_peek(folder, path, &header, NULL))
-            memcpy(other, header.data_file, FOLDER_NAME_SIZE);
-        nrrd_header_finish(&header);
-    } else if ((format == PART_UVH && !part_find_data(folder, path, ".uv", other)) ||
-               (format == PART_SERA_DOSE && !part_find_data(folder, path, ".cdf", other))) {
-        other[0] = 0;
-    }
-}
-
 /* The slices of a series have one line, at the first in the order of names. */
 static bool add_stack(struct notes *notes, const struct dicom_stack *stack, struct error *err)
 {
@@ -104,17 +84,18 @@ static bool add_stack(struct notes *notes, const struct dicom_stack *stack, stru
 static bool add_reading(struct notes *notes, const struct part_reading *reading, struct error *err)
 {
     struct loading *loading = notes->loading;
-    char other[FOLDER_NAME_SIZE];
+    char other[FOLDER_NAME_SIZE] = "";
     if (reading->is_failed)
         return add(notes, reading->path, NULL, 0, err);
-    if (reading->kind == PART_KIND_IMAGE && reading->format == PART_DICOM)
+    if (reading->kind == PART_KIND_IMAGE && reading->reader == &part_dicom)
         return add_stack(notes, &loading->parts.dicom->stacks[reading->stack], err);
-    find_companion(&loading->folder, reading->path, reading->format, other);
+    if (reading->reader->find_companion)
+        reading->reader->find_companion(&loading->folder, reading->path, other);
     bool is_added =
         add(notes, reading->path, words_of(reading), 0, err) && add_copy(notes, other, words_of(reading), err);
-    if (reading->kind == PART_KIND_IMAGE && reading->format == PART_QSH)
+    if (reading->kind == PART_KIND_IMAGE && reading->reader == &part_qsh)
         is_added = is_added && add(notes, loading->file->images[reading->index].header, "an image", 0, err);
-    if (reading->format == PART_SERA_DOSE && part_find_data(&loading->folder, reading->path, ".cmf", other))
+    if (reading->reader == &part_sera_chd && part_find_data(&loading->folder, reading->path, ".cmf", other))
         is_added = is_added && add_copy(notes, other, "the mask of a dose", err);
     if (reading->kind == PART_KIND_REGION && reading->index < loading->file->n_regions)
         is_added = is_added && add(notes, loading->file->regions[reading->index].names, "names of labels", 0, err);
@@ -171,12 +152,12 @@ static void note_not_read(struct notes *notes, const char *path)
     if (notes->n_not_read++ >= FILE_NOTES_MAX)
         return;
     struct error unread = { 0 };
-    enum part_format format = part_format_read(&loading->folder, path, &unread);
-    bool is_known = format != PART_UNKNOWN && format != PART_ABSENT;
+    const struct part_reader *reader = part_reader_ask(&loading->folder, path, &unread);
+    bool is_known = reader != &part_unknown && reader != &part_absent;
     report_add(&loading->plan->report, REPORT_NOTE, "file.not-read", path, "Not read%s: %s.",
                loading->parts.is_recognised ? "" : ", as plan.json does not name it",
                unread.code == ERROR_IO ? unread.text
-               : is_known              ? part_format_word(format)
+               : is_known              ? reader->word
                                        : file_kind_words(&loading->folder, path));
 }
 

@@ -2,7 +2,7 @@
 #include "core/load/find_parts.h"
 
 #include "core/formats/plan/plan_json.h"
-#include "core/load/dicom_parts.h"
+#include "core/load/dicom_scan.h"
 #include "core/load/part_names.h"
 #include "core/load/recognise.h"
 

@@ -8,9 +8,8 @@
 #include "core/base/mem.h"
 #include "core/formats/plan/plan_json.h"
 #include "core/formats/text.h"
-#include "core/load/nrrd_parts.h"
-#include "core/load/part_format.h"
 #include "core/load/part_names.h"
+#include "core/load/reader_table.h"
 
 enum { LIST_MAX_BYTES = 16 << 20, LISTS_MAX_MIB = 64 /* of all lists in a folder */, MOST_LISTS = PLAN_FILE_MAX_PARTS };
 
@@ -43,13 +42,16 @@ static bool labels_beside(const char *path, char out[FOLDER_NAME_SIZE])
     return n > 0 && n < FOLDER_NAME_SIZE;
 }
 
+#define MAP_ENDINGS(reader) reader.grid ? reader.grid->map_endings : NULL,
+
 static bool has_grid_beside(const struct folder *folder, const char *list)
 {
-    static const char *const endings[] = { ".nii.gz", ".nii", ".seg.nrrd", ".nrrd", ".nhdr", ".hdr", ".hdr.gz" };
+    const char *const *const endings[] = { PART_READERS(MAP_ENDINGS) };
     char grid[FOLDER_NAME_SIZE];
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
-        if (with_ending(list, endings[i], grid) && folder_look(folder, grid, NULL) == FOLDER_FILE)
-            return true;
+        for (const char *const *ending = endings[i]; ending && *ending; ending++)
+            if (with_ending(list, *ending, grid) && folder_look(folder, grid, NULL) == FOLDER_FILE)
+                return true;
     return false;
 }
 
@@ -148,13 +150,11 @@ static const struct name_list *own_list(const struct name_lists *lists, const ch
 
 static struct label_map look_at(const struct name_lists *lists, const struct folder *folder, const char *path)
 {
-    enum part_format format = part_format_of(folder, path);
-    struct label_map map = { format == PART_NIFTI || format == PART_NRRD, false, own_list(lists, path) };
-    struct nrrd_header header;
-    if (format == PART_NRRD) {
-        map.names_itself = plan_nrrd_peek(folder, path, &header, NULL) && header.n_segments > 0;
-        nrrd_header_finish(&header);
-    }
+    const struct grid_reader *grid = part_reader_of(folder, path)->grid;
+    struct label_map map = { grid != NULL, false, own_list(lists, path) };
+    struct grid_facts facts;
+    if (grid && grid->read_layers)
+        map.names_itself = grid->peek(folder, path, &facts, NULL) && facts.has_segments;
     return map;
 }
 

@@ -4,7 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/formats/gzip.h"
 #include "core/formats/text.h"
+#include "core/load/loading.h"
+#include "core/load/reader_table.h"
 
 enum { HEAD_BYTES = 1 << 16 };
 #define DATA_FILE_MAX_BYTES (VOLUME_MAX_BYTES + (1 << 20))
@@ -115,3 +118,75 @@ struct volume *plan_nifti_read(const struct folder *folder, const char *name, en
     bytes_free(&bytes);
     return volume;
 }
+
+/* ---- the format's reader ---------------------------------------------------------------------------------------- */
+
+static bool peek(const struct folder *folder, const char *name, struct grid_facts *facts, struct error *err)
+{
+    struct nifti_header header;
+    if (!plan_nifti_peek(folder, name, &header, err))
+        return false;
+    *facts = (struct grid_facts){ .grid = header.grid, .n_layers = 1 };
+    return true;
+}
+
+/* True if this file of a pair must be passed over: a pair is taken once, by its header, and by the unpacked header
+ * where there are two. */
+static bool is_second_of_pair(const struct folder *folder, const char *name)
+{
+    struct nifti_pair pair, other;
+    if (!plan_nifti_is_pair(name) || !plan_nifti_find_pair(folder, name, &pair, NULL))
+        return false;
+    if (strcmp(pair.head, name) != 0)
+        return true;
+    return text_has_ending(name, ".gz") && plan_nifti_find_pair(folder, pair.voxels, &other, NULL) &&
+           strcmp(other.head, name) != 0;
+}
+
+static struct part_need estimate(const struct loading *loading, const struct part_reading *reading, enum raw_use use)
+{
+    struct bytes head;
+    struct nifti_header header;
+    char voxels[FOLDER_NAME_SIZE];
+    struct part_need need = { reading->bytes, 0 };
+    plan_nifti_voxels(&loading->folder, reading->path, voxels);
+    if (!plan_nifti_peek(&loading->folder, reading->path, &header, NULL) ||
+        !folder_read(&loading->folder, voxels, UINT64_MAX, 2, &head, NULL))
+        return need;
+    bool is_packed = gzip_is(head.data, head.size);
+    bytes_free(&head);
+    return part_need_of_voxels(grid_n_voxels(&header.grid), header.type, use, reading->bytes,
+                               is_packed || header.is_swapped || header.data_at % 8 != 0, is_packed);
+}
+
+static bool summarise(const struct folder *folder, const char *name, struct part_summary *summary, struct error *err)
+{
+    struct nifti_header header;
+    plan_nifti_voxels(folder, name, summary->data);
+    if (strcmp(summary->data, name) == 0)
+        summary->data[0] = 0;
+    return plan_nifti_peek(folder, name, &header, err);
+}
+
+static void find_companion(const struct folder *folder, const char *name, char other[FOLDER_NAME_SIZE])
+{
+    struct nifti_pair pair;
+    other[0] = 0;
+    if (plan_nifti_is_pair(name) && plan_nifti_find_pair(folder, name, &pair, NULL))
+        memcpy(other, strcmp(pair.head, name) == 0 ? pair.voxels : pair.head, FOLDER_NAME_SIZE);
+}
+
+static const char *const names[] = { ".nii", ".nii.gz", NULL };
+static const char *const pair_names[] = { ".hdr", ".hdr.gz", ".img", ".img.gz", NULL }; /* DICOM slices may be .img */
+static const char *const map_endings[] = { ".nii.gz", ".nii", ".hdr", ".hdr.gz", NULL };
+static const struct grid_reader grids = {
+    .peek = peek, .read = plan_nifti_read, .is_passed_over = is_second_of_pair, .map_endings = map_endings
+};
+const struct part_reader part_nifti = { .word = "NIfTI",
+                                        .names = names,
+                                        .names_in_doubt = pair_names,
+                                        .reads = PART_READS_GRIDS,
+                                        .grid = &grids,
+                                        .estimate = estimate,
+                                        .summarise = summarise,
+                                        .find_companion = find_companion };

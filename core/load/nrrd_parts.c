@@ -1,9 +1,14 @@
-/* Reads NRRD files of a plan's folder. */
-#include "core/load/nrrd_parts.h"
+/* Reads NRRD files of a plan's folder, with the data file that a detached header names. */
+#include <string.h>
+
+#include "core/formats/nrrd.h"
+#include "core/load/loading.h"
+#include "core/load/reader_table.h"
 
 #define DATA_FILE_MAX_BYTES (VOLUME_MAX_BYTES + NRRD_HEAD_BYTES)
 
-bool plan_nrrd_peek(const struct folder *folder, const char *name, struct nrrd_header *header, struct error *err)
+/* Reads the header alone, and checks that the data file exists. The caller finishes header, also after a failure. */
+static bool read_header(const struct folder *folder, const char *name, struct nrrd_header *header, struct error *err)
 {
     struct bytes head;
     *header = (struct nrrd_header){ 0 };
@@ -35,8 +40,8 @@ static bool read_parts(const struct folder *folder, const char *name, struct nrr
     return is_read;
 }
 
-struct volume *plan_nrrd_read(const struct folder *folder, const char *name, enum raw_use use, struct report *report,
-                              struct error *err)
+static struct volume *read_grid(const struct folder *folder, const char *name, enum raw_use use, struct report *report,
+                                struct error *err)
 {
     struct nrrd_header header;
     struct bytes data;
@@ -49,8 +54,8 @@ struct volume *plan_nrrd_read(const struct folder *folder, const char *name, enu
     return volume;
 }
 
-bool plan_nrrd_read_layers(const struct folder *folder, const char *name, struct nrrd_layers *layers,
-                           struct report *report, struct error *err)
+static bool read_layers(const struct folder *folder, const char *name, struct nrrd_layers *layers,
+                        struct report *report, struct error *err)
 {
     struct nrrd_header header;
     struct bytes data;
@@ -61,3 +66,60 @@ bool plan_nrrd_read_layers(const struct folder *folder, const char *name, struct
     nrrd_header_finish(&header);
     return is_read;
 }
+
+static bool peek(const struct folder *folder, const char *name, struct grid_facts *facts, struct error *err)
+{
+    struct nrrd_header header;
+    bool is_read = read_header(folder, name, &header, err);
+    *facts = (struct grid_facts){ header.grid, header.n_segments > 0, header.n_layers };
+    nrrd_header_finish(&header);
+    return is_read;
+}
+
+static struct part_need estimate(const struct loading *loading, const struct part_reading *reading, enum raw_use use)
+{
+    struct nrrd_header header;
+    struct part_need need = { reading->bytes, 0 };
+    uint64_t file_bytes = reading->bytes;
+    if (read_header(&loading->folder, reading->path, &header, NULL)) {
+        if (header.data_file[0])
+            folder_look(&loading->folder, header.data_file, &file_bytes);
+        need = part_need_of_voxels(grid_n_voxels(&header.grid) * header.n_layers, header.type, use, file_bytes, true,
+                                   false);
+    }
+    nrrd_header_finish(&header);
+    return need;
+}
+
+static bool summarise(const struct folder *folder, const char *name, struct part_summary *summary, struct error *err)
+{
+    struct nrrd_header header;
+    bool is_good = read_header(folder, name, &header, err);
+    for (size_t i = 0; is_good && i < header.n_segments; i++)
+        summary->n_segments += header.segments[i].is_present;
+    if (is_good)
+        memcpy(summary->data, header.data_file, sizeof summary->data);
+    nrrd_header_finish(&header);
+    return is_good;
+}
+
+static void find_companion(const struct folder *folder, const char *name, char other[FOLDER_NAME_SIZE])
+{
+    struct nrrd_header header;
+    other[0] = 0;
+    if (read_header(folder, name, &header, NULL))
+        memcpy(other, header.data_file, FOLDER_NAME_SIZE);
+    nrrd_header_finish(&header);
+}
+
+static const char *const names[] = { ".seg.nrrd", ".nrrd", ".nhdr", NULL };
+static const struct grid_reader grids = {
+    .peek = peek, .read = read_grid, .read_layers = read_layers, .map_endings = names
+};
+const struct part_reader part_nrrd = { .word = "NRRD",
+                                       .names = names,
+                                       .reads = PART_READS_GRIDS,
+                                       .grid = &grids,
+                                       .estimate = estimate,
+                                       .summarise = summarise,
+                                       .find_companion = find_companion };

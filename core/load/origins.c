@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/load/dicom_parts.h"
+#include "core/load/reader_table.h"
 
 _Static_assert((int)DICOM_MAX_PATIENTS == (int)ORIGIN_MAX_PATIENTS, "every patient of the index has a place");
 _Static_assert((int)FOLDER_NAME_SIZE == (int)sizeof((struct part_origin *)NULL)->path, "a path fits");
@@ -115,9 +116,9 @@ struct part_origin origin_of_reading(const struct loading *loading, const struct
     const struct dicom_index *index = loading->parts.dicom;
     const struct dicom_object *object = NULL;
     const char *path = reading->path;
-    if (reading->format == PART_DICOM && index && reading->kind == PART_KIND_IMAGE)
+    if (reading->reader == &part_dicom && index && reading->kind == PART_KIND_IMAGE)
         object = &index->objects[index->stacks[reading->stack].objects[0]];
-    else if (reading->format == PART_DICOM && index)
+    else if (reading->reader == &part_dicom && index)
         object = dicom_index_at(index, path);
     if (object) {
         origin_of_object(loading, reading, object, &origin);

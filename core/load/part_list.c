@@ -4,18 +4,19 @@
 #include "core/base/mem.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/nifti_parts.h"
+#include "core/load/reader_table.h"
 
-static bool refuse_format(const char *path, enum part_format format, struct error *err)
+static bool refuse_format(const char *path, const struct part_reader *reader, struct error *err)
 {
-    if (format == PART_ABSENT)
+    if (reader == &part_absent)
         return error_set(err, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", path);
-    if (format == PART_UNKNOWN)
+    if (reader == &part_unknown)
         return error_set(err, ERROR_UNSUPPORTED, "%s: the format is not one that this version reads", path);
-    return error_set(err, ERROR_UNSUPPORTED, "%s: %s is not read here by this version", path, part_format_word(format));
+    return error_set(err, ERROR_UNSUPPORTED, "%s: %s is not read here by this version", path, reader->word);
 }
 
 static struct part_reading *list_part(struct loading *loading, enum part_kind kind, size_t index, size_t component,
-                                      const char *path, enum part_format format)
+                                      const char *path, const struct part_reader *reader)
 {
     struct part_reading *reading = &loading->readings[loading->n_readings++];
     reading->kind = kind;
@@ -23,7 +24,7 @@ static struct part_reading *list_part(struct loading *loading, enum part_kind ki
     reading->component = component;
     reading->path = path;
     reading->loading = loading;
-    reading->format = format;
+    reading->reader = reader;
     char voxels[FOLDER_NAME_SIZE];
     plan_nifti_voxels(&loading->folder, path, voxels);
     folder_look(&loading->folder, voxels[0] ? voxels : path, &reading->bytes);
@@ -37,7 +38,7 @@ static size_t list_dicom(struct loading *loading, enum part_kind kind, enum dico
     const struct dicom_object *object;
     size_t n = 0;
     for (; n < most && (object = plan_dicom_object(loading->parts.dicom, of, path, n)); n++)
-        list_part(loading, kind, index, component, object->path, PART_DICOM); /* whatever the file is called */
+        list_part(loading, kind, index, component, object->path, &part_dicom); /* whatever the file is called */
     return n;
 }
 
@@ -51,11 +52,11 @@ static bool refuse_dicom(const struct loading *loading, const char *path, const 
 static bool list_image(struct loading *loading, size_t i, struct error *err)
 {
     const char *path = loading->file->images[i].path;
-    enum part_format format = part_format_of(&loading->folder, path);
-    if (format != PART_NIFTI && format != PART_NRRD && format != PART_QSH && format != PART_DICOM)
-        return refuse_format(path, format, err);
-    struct part_reading *reading = list_part(loading, PART_KIND_IMAGE, i, 0, path, format);
-    if (format != PART_DICOM)
+    const struct part_reader *reader = part_reader_of(&loading->folder, path);
+    if (!(reader->reads & PART_READS_IMAGES))
+        return refuse_format(path, reader, err);
+    struct part_reading *reading = list_part(loading, PART_KIND_IMAGE, i, 0, path, reader);
+    if (reader != &part_dicom)
         return true;
     reading->stack = plan_dicom_stack(loading->parts.dicom, path);
     if (reading->stack < 0)
@@ -70,15 +71,15 @@ static bool list_image(struct loading *loading, size_t i, struct error *err)
 static bool list_regions(struct loading *loading, size_t i, struct error *err)
 {
     const char *path = loading->file->regions[i].path;
-    enum part_format format = part_format_of(&loading->folder, path);
-    if (format == PART_DICOM)
+    const struct part_reader *reader = part_reader_of(&loading->folder, path);
+    if (reader == &part_dicom)
         return list_dicom(loading, PART_KIND_REGION, DICOM_KIND_STRUCT, i, 0, path, PLAN_FILE_MAX_PARTS) +
                        list_dicom(loading, PART_KIND_REGION, DICOM_KIND_SEGMENTATION, i, 0, path, PLAN_FILE_MAX_PARTS) >
                    0 ||
                refuse_dicom(loading, path, "structure set or segmentation", err);
-    if (format != PART_NIFTI && format != PART_NRRD && format != PART_UVH)
-        return refuse_format(path, format, err);
-    list_part(loading, PART_KIND_REGION, i, 0, path, format);
+    if (!(reader->reads & PART_READS_REGIONS))
+        return refuse_format(path, reader, err);
+    list_part(loading, PART_KIND_REGION, i, 0, path, reader);
     return true;
 }
 
@@ -90,14 +91,14 @@ static bool dose_is_readable(struct loading *loading, const struct plan_file_dos
     *is_readable = true;
     for (size_t c = 0; c < dose->n_components; c++) {
         const char *path = dose->components[c].path;
-        enum part_format format = part_format_of(&loading->folder, path);
-        if (format == PART_ABSENT)
-            return refuse_format(path, format, err);
-        if (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format) || format == PART_DICOM)
+        const struct part_reader *reader = part_reader_of(&loading->folder, path);
+        if (reader == &part_absent)
+            return refuse_format(path, reader, err);
+        if (reader->reads & PART_READS_DOSES)
             continue;
         report_add(&loading->plan->report, REPORT_WARNING, "dose.unsupported", path,
                    "The dose \"%s\" is in a format (%s) that this version does not read; the plan is shown without it.",
-                   dose->id, part_format_word(format));
+                   dose->id, reader->word);
         *is_readable = false;
         return true;
     }
@@ -113,18 +114,18 @@ static bool list_dose(struct loading *loading, size_t i, struct error *err)
     for (size_t c = 0; is_readable && c < dose->n_components; c++) {
         const char *path = dose->components[c].path;
         size_t most = dose->n_components > 1 ? 1 : PLAN_DICOM_MAX_DOSES; /* a component stands for one object */
-        enum part_format format = part_format_of(&loading->folder, path);
-        if (format != PART_DICOM)
-            list_part(loading, PART_KIND_DOSE, i, c, path, format);
+        const struct part_reader *reader = part_reader_of(&loading->folder, path);
+        if (reader != &part_dicom)
+            list_part(loading, PART_KIND_DOSE, i, c, path, reader);
         else if (list_dicom(loading, PART_KIND_DOSE, DICOM_KIND_DOSE, i, c, path, most) == 0)
             return refuse_dicom(loading, path, "dose", err);
     }
     for (size_t c = 0; is_readable && c < dose->n_components; c++)
         if (dose->components[c].error[0])
             list_part(loading, PART_KIND_DOSE_ERROR, i, c, dose->components[c].error,
-                      part_format_of(&loading->folder, dose->components[c].error));
+                      part_reader_of(&loading->folder, dose->components[c].error));
     if (is_readable && dose->mask[0])
-        list_part(loading, PART_KIND_DOSE_MASK, i, 0, dose->mask, part_format_of(&loading->folder, dose->mask));
+        list_part(loading, PART_KIND_DOSE_MASK, i, 0, dose->mask, part_reader_of(&loading->folder, dose->mask));
     return true;
 }
 

@@ -12,25 +12,6 @@ const char *part_base_name(const char *name)
     return slash ? slash + 1 : name;
 }
 
-int part_stem_length(const char *base)
-{
-    static const char *const packings[] = { ".gz", ".sz", ".bz2" };
-    static const char *const formats[] = { ".nii",  ".seg.nrrd", ".nrrd", ".nhdr", ".hdr",  ".img", ".uvh", ".uv",
-                                           ".qim",  ".qhd",      ".rst",  ".rstb", ".chd",  ".cdf", ".cmf", ".dose",
-                                           ".json", ".dcm",      ".ima",  ".pp",   ".cmap", ".rsc", ".csv" };
-    char stem[FOLDER_NAME_SIZE];
-    snprintf(stem, sizeof stem, "%s", base);
-    for (size_t i = 0; i < sizeof packings / sizeof packings[0]; i++)
-        if (text_has_ending(stem, packings[i])) {
-            stem[strlen(stem) - strlen(packings[i])] = 0;
-            break;
-        }
-    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
-        if (text_has_ending(stem, formats[i]))
-            return (int)(strlen(stem) - strlen(formats[i]));
-    return (int)strlen(stem);
-}
-
 bool part_name_has_word(const char *name, const char *const *words, size_t n_words)
 {
     char low[FOLDER_NAME_SIZE];

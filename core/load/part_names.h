@@ -3,9 +3,6 @@
 #include "core/formats/folder.h"
 
 const char *part_base_name(const char *name); /* the name after the last slash */
-/* Length of a base name without the endings of its format: "case7.liver_mask" of case7.liver_mask.nii.gz. An ending
- * that names no format belongs to the name. */
-int part_stem_length(const char *base);
 /* True if the name contains one of the words, whatever its case. words: in lower case. */
 bool part_name_has_word(const char *name, const char *const *words, size_t n_words);
 

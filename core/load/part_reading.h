@@ -9,28 +9,20 @@
 #include "core/formats/sera/sera_doses.h"
 #include "core/formats/sera/sera_uvh.h"
 #include "core/load/grid_content.h"
-#include "core/load/part_format.h"
+#include "core/load/part_reader.h"
 
-enum part_kind {
-    PART_KIND_IMAGE,
-    PART_KIND_REGION,
-    PART_KIND_DOSE,
-    PART_KIND_DOSE_MASK,
-    PART_KIND_DOSE_ERROR,
-    PART_KIND_BEAMS
-};
 #define PART_WITHOUT_ENTRY SIZE_MAX
 
-/* Listed by part_list.c, filled by one thread in read_part.c, emptied by assemble*.c. Which of the results is filled
- * depends on kind and format. */
+/* Listed by part_list.c, filled by one thread by its reader (read_part.h), emptied by assemble*.c. Which of the results
+ * is filled depends on kind and reader. */
 struct part_reading {
     enum part_kind kind;
     size_t index;     /* of the entry in its list of the plan file; PART_WITHOUT_ENTRY: found in the folder */
     size_t component; /* index of the component in the dose of that entry */
     const char *path; /* relative to the plan's folder; borrowed from the plan file or the DICOM index */
-    enum part_format format;
-    int stack;      /* of a DICOM image: which stack of the index */
-    uint64_t bytes; /* size of the file, for the order of reading and for progress */
+    const struct part_reader *reader; /* of its format; never NULL */
+    int stack;                        /* of a DICOM image: which stack of the index */
+    uint64_t bytes;                   /* size of the file, for the order of reading and for progress */
 
     struct volume *volume;
     struct nrrd_layers *layers;      /* of a NRRD label map or a DICOM segmentation, instead of volume */

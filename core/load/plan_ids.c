@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/load/part_names.h"
+#include "core/load/reader_table.h"
 
 void plan_make_id(char id[64], const char *given, const char *path, const char *const *others, size_t n_others)
 {

@@ -4,6 +4,7 @@
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
 #include "core/load/read_part.h"
+#include "core/load/reader_table.h"
 
 static void order_readings(struct loading *loading)
 {
@@ -22,7 +23,7 @@ static void leave_out_failed(struct loading *loading)
     for (size_t i = 0; i < loading->n_readings; i++) {
         struct part_reading *reading = &loading->readings[i];
         if (reading->is_failed)
-            loading_leave_out(loading, reading->format == PART_DICOM ? "dicom.unreadable" : "part.unreadable",
+            loading_leave_out(loading, reading->reader == &part_dicom ? "dicom.unreadable" : "part.unreadable",
                               reading->path, &reading->err);
     }
 }
@@ -30,7 +31,7 @@ static void leave_out_failed(struct loading *loading)
 /* The name shown for a reading: the series of a DICOM image, else the path. */
 static const char *name_of(const struct loading *loading, const struct part_reading *reading)
 {
-    if (reading->kind == PART_KIND_IMAGE && reading->format == PART_DICOM &&
+    if (reading->kind == PART_KIND_IMAGE && reading->reader == &part_dicom &&
         loading->file->images[reading->index].name[0])
         return loading->file->images[reading->index].name;
     return reading->path;

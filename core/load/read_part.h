@@ -1,5 +1,5 @@
 #pragma once
-/* Reads one listed file of a plan: the one place that chooses the reader by format and kind. */
+/* Reads one listed file of a plan by the reader of its format (reader_table.h); what all volumes share stands here. */
 #include "core/load/loading.h"
 
 /* Fills the reading with what its file holds, its report, and err when it fails. Any thread; one call a reading. */

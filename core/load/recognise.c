@@ -6,34 +6,20 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "core/formats/gzip.h"
-#include "core/formats/sera/sera_rst.h"
 #include "core/formats/text.h"
 #include "core/load/dicom_parts.h"
+#include "core/load/dicom_scan.h"
 #include "core/load/dose_files.h"
 #include "core/load/label_lists.h"
-#include "core/load/nifti_parts.h"
-#include "core/load/nrrd_parts.h"
-#include "core/load/part_format.h"
 #include "core/load/part_names.h"
-#include "core/plan/plan.h"
+#include "core/load/reader_table.h"
 
-/* The folder being recognised, and the parts found so far. */
-struct recognition {
-    const struct folder *folder;
-    struct plan_file *file;
-    struct report *report;
-    char **dicom; /* [n_dicom] names of files that may be DICOM; borrowed from the tree */
-    size_t n_dicom;
+/* What is known of the folder beside the parts found so far. */
+struct looked {
+    struct recognition all;
     struct name_lists *lists;
     struct dose_files doses;
     struct error reason; /* why the first file that looked like a part was not used */
-};
-
-/* Properties of a grid, from its header. */
-struct grid_facts {
-    struct grid grid;
-    bool has_segments;
 };
 
 /* True if nnU-Net's images of the same case lie beside a file: case_0000.nii.gz beside case.nii.gz, its prediction. */
@@ -54,197 +40,54 @@ static bool is_label_map(const struct folder *folder, const char *name, const st
            has_channels_beside(folder, name);
 }
 
-static bool is_rst(const struct folder *folder, const char *name)
-{
-    struct bytes head;
-    uint8_t text[RST_HEAD_BYTES];
-    struct rst_header header;
-    if (!folder_read(folder, name, UINT64_MAX, sizeof text, &head, NULL))
-        return false;
-    size_t n = head.size;
-    if (gzip_is(head.data, head.size))
-        n = gzip_head(head.data, head.size, text, sizeof text);
-    else
-        memcpy(text, head.data, n);
-    bytes_free(&head);
-    return rst_parse_header(text, n, name, &header, NULL);
-}
-
-/* The very bytes, so that the file opens, in whatever encoding its name is. */
-static void set_path(char *out, size_t size, const char *name)
-{
-    snprintf(out, size, "%s", name);
-}
-
-static void ignore_one(struct recognition *all, const char *name, const char *why)
-{
-    report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "%s", why);
-}
-
-static void add_image(struct recognition *all, const char *name, const char *header)
-{
-    struct plan_file *file = all->file;
-    if (file->n_images >= PLAN_MAX_IMAGES) {
-        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name,
-                   "More than %d images; this one was not read.", PLAN_MAX_IMAGES);
-        return;
-    }
-    struct plan_file_image *image = &file->images[file->n_images++];
-    set_path(image->path, sizeof image->path, name);
-    set_path(image->header, sizeof image->header, header);
-}
-
-static struct plan_file_region *add_region(struct recognition *all, const char *name)
-{
-    struct plan_file *file = all->file;
-    if (file->n_regions >= PLAN_FILE_MAX_PARTS) {
-        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name,
-                   "More than %d files of regions; this one was not read.", PLAN_FILE_MAX_PARTS);
-        return NULL;
-    }
-    struct plan_file_region *region = &file->regions[file->n_regions++];
-    set_path(region->path, sizeof region->path, name);
-    return region;
-}
-
-static void add_dose(struct recognition *all, const char *name)
-{
-    struct plan_file *file = all->file;
-    if (file->n_doses >= PLAN_MAX_DOSES) {
-        report_add(all->report, REPORT_WARNING, "plan.ignored-file", name, "More than %d doses; this one was not read.",
-                   PLAN_MAX_DOSES);
-        return;
-    }
-    struct plan_file_dose *dose = &file->doses[file->n_doses++];
-    set_path(dose->components[0].path, FOLDER_NAME_SIZE, name);
-    dose->components[0].quantity = DOSE_TOTAL;
-    dose->n_components = 1;
-}
-
 /* Reports a grid whose header cannot be read; it is left out. The first reason is kept: it becomes the error when the
  * folder holds nothing else. */
-static bool has_good_header(struct recognition *all, const char *name, enum part_format format,
+static bool has_good_header(struct looked *looked, const char *name, const struct grid_reader *grid,
                             struct grid_facts *facts)
 {
     struct error err = { 0 };
-    struct nifti_header nifti;
-    struct nrrd_header nrrd = { 0 };
-    bool is_good = false;
-    if (format == PART_NRRD) {
-        is_good = plan_nrrd_peek(all->folder, name, &nrrd, &err);
-        *facts = (struct grid_facts){ nrrd.grid, nrrd.n_segments > 0 };
-        nrrd_header_finish(&nrrd);
-    } else {
-        is_good = plan_nifti_peek(all->folder, name, &nifti, &err);
-        *facts = (struct grid_facts){ .has_segments = false };
-        if (is_good)
-            facts->grid = nifti.grid;
-    }
-    if (is_good)
+    if (grid->peek(looked->all.folder, name, facts, &err))
         return true;
-    report_add(all->report, REPORT_ERROR, "plan.ignored-file", name, "Left out: %s", err.text);
-    if (!all->reason.text[0])
-        all->reason = err;
+    report_add(looked->all.report, REPORT_ERROR, "plan.ignored-file", name, "Left out: %s", err.text);
+    if (!looked->reason.text[0])
+        looked->reason = err;
     return false;
 }
 
-/* True if this file of a NIfTI pair must be passed over: a pair is taken once, by its header, and by the unpacked
- * header where there are two. */
-static bool is_second_of_pair(const struct folder *folder, const char *name)
+static void add_grid(struct looked *looked, const char *name, const struct grid_reader *grid)
 {
-    struct nifti_pair pair, other;
-    if (!plan_nifti_is_pair(name) || !plan_nifti_find_pair(folder, name, &pair, NULL))
-        return false;
-    if (strcmp(pair.head, name) != 0)
-        return true;
-    return text_has_ending(name, ".gz") && plan_nifti_find_pair(folder, pair.voxels, &other, NULL) &&
-           strcmp(other.head, name) != 0;
-}
-
-static void add_grid(struct recognition *all, const char *name, enum part_format format)
-{
+    struct recognition *all = &looked->all;
     struct grid_facts facts;
-    if (is_second_of_pair(all->folder, name) || !has_good_header(all, name, format, &facts))
+    if ((grid->is_passed_over && grid->is_passed_over(all->folder, name)) ||
+        !has_good_header(looked, name, grid, &facts))
         return;
     struct dose_words words;
-    if (name_lists_has_map(all->lists, name) || is_label_map(all->folder, name, &facts))
-        (void)add_region(all, name);
-    else if (!dose_files_is_name(name, &words) || !dose_files_add(&all->doses, name, &facts.grid, &words))
-        add_image(all, name, "");
+    if (name_lists_has_map(looked->lists, name) || is_label_map(all->folder, name, &facts))
+        recognition_add_regions(all, name);
+    else if (!dose_files_is_name(name, &words) || !dose_files_add(&looked->doses, name, &facts.grid, &words))
+        recognition_add_image(all, name, "");
 }
 
 /* Joins the files that are doses by their names; those that are none after all become images. */
-static void add_doses(struct recognition *all)
+static void add_doses(struct looked *looked)
 {
-    dose_files_join(&all->doses, all->file, all->report);
-    for (size_t i = 0; i < all->doses.n; i++)
-        if (!all->doses.files[i].is_taken)
-            add_image(all, all->doses.files[i].path, "");
-    dose_files_finish(&all->doses);
+    dose_files_join(&looked->doses, looked->all.file, looked->all.report);
+    for (size_t i = 0; i < looked->doses.n; i++)
+        if (!looked->doses.files[i].is_taken)
+            recognition_add_image(&looked->all, looked->doses.files[i].path, "");
+    dose_files_finish(&looked->doses);
 }
 
-static void add_qsh(struct recognition *all, const char *name)
+static void recognise_file(struct looked *looked, char *name)
 {
-    char data[FOLDER_NAME_SIZE];
-    if (!text_has_ending(name, ".qhd"))
-        return;
-    if (part_find_data(all->folder, name, ".qim", data))
-        add_image(all, data, name);
-    else
-        ignore_one(all, name, "There is no file of pixels beside it.");
-}
-
-static void recognise_file(struct recognition *all, char *name)
-{
-    struct plan_file *file = all->file;
-    char data[FOLDER_NAME_SIZE];
-    enum part_format format = part_format_of(all->folder, name);
-    switch (format) {
-    case PART_NIFTI:
-    case PART_NRRD: add_grid(all, name, format); break;
-    case PART_UVH:
-        if (part_find_data(all->folder, name, ".uv", data))
-            (void)add_region(all, name);
-        else
-            ignore_one(all, name, "There is no file of univels beside it.");
-        break;
-    case PART_QSH: add_qsh(all, name); break;
-    case PART_PP:
-    case PART_TRACK_CSV:
-        if (file->n_tracks < PLAN_FILE_MAX_TRACKS)
-            set_path(file->tracks[file->n_tracks++].path, FOLDER_NAME_SIZE, name);
-        else
-            ignore_one(all, name, "More files of tracks than are read.");
-        break;
-    case PART_SERA_RST:
-        if (is_rst(all->folder, name))
-            add_dose(all, name);
-        else
-            ignore_one(all, name, "Named like a dose of SERA, but its header is another one's.");
-        break;
-    case PART_SERA_DOSE:
-        if (part_find_data(all->folder, name, ".cdf", data))
-            add_dose(all, name);
-        else
-            ignore_one(all, name, "There is no table of points, .cdf.sz or .cdf, beside it.");
-        break;
-    case PART_SERA_CURVE:
-        if (file->n_curves < PLAN_MAX_CURVES)
-            set_path(file->curves[file->n_curves++].path, FOLDER_NAME_SIZE, name);
-        else
-            ignore_one(all, name, "More curves than are read.");
-        break;
-    case PART_SERA_PREFERENCES:
-        if (file->n_preferences < PLAN_FILE_MAX_PREFERENCES)
-            set_path(file->preferences[file->n_preferences++], FOLDER_NAME_SIZE, name);
-        else
-            ignore_one(all, name, "More files of preferences than are read.");
-        break;
-    case PART_DICOM: all->dicom[all->n_dicom++] = name; break;
-    default:
-        if (text_has_ending(name, ".info") && !file->hierarchy[0])
-            set_path(file->hierarchy, sizeof file->hierarchy, name);
-    }
+    struct plan_file *file = looked->all.file;
+    const struct part_reader *reader = part_reader_of(looked->all.folder, name);
+    if (reader->grid)
+        add_grid(looked, name, reader->grid);
+    else if (reader->recognise)
+        reader->recognise(&looked->all, name);
+    else if (text_has_ending(name, ".info") && !file->hierarchy[0])
+        snprintf(file->hierarchy, sizeof file->hierarchy, "%s", name);
 }
 
 /* The first line, from this index on, about a DICOM file that could not be read. */
@@ -301,18 +144,20 @@ static bool recognise_tree(const struct folder *folder, const struct folder_tree
                            const struct dicom_progress *progress, struct plan_parts *parts, struct error *reason,
                            struct report *report, struct error *err)
 {
-    struct recognition all = { folder, parts->file,
-                               report, mem_new((tree->n_files + 1) * sizeof(char *)),
-                               0,      name_lists_find(folder, tree, progress ? progress->cancel : NULL, report),
-                               { 0 },  { 0 } };
-    for (size_t i = 0; i < tree->n_files && !(progress && progress->cancel && atomic_load(progress->cancel)); i++)
-        recognise_file(&all, tree->files[i].name);
-    add_doses(&all);
-    name_lists_assign(all.lists, folder, parts->file, report);
-    name_lists_destroy(all.lists);
-    bool is_scanned = plan_dicom_recognise(folder, all.dicom, all.n_dicom, parts, progress, report, err);
-    free(all.dicom);
-    *reason = all.reason;
+    const atomic_bool *cancel = progress ? progress->cancel : NULL;
+    struct looked looked = { .all = { .folder = folder,
+                                      .file = parts->file,
+                                      .report = report,
+                                      .dicom = mem_new((tree->n_files + 1) * sizeof(char *)) },
+                             .lists = name_lists_find(folder, tree, cancel, report) };
+    for (size_t i = 0; i < tree->n_files && !(cancel && atomic_load(cancel)); i++)
+        recognise_file(&looked, tree->files[i].name);
+    add_doses(&looked);
+    name_lists_assign(looked.lists, folder, parts->file, report);
+    name_lists_destroy(looked.lists);
+    bool is_scanned = plan_dicom_recognise(folder, looked.all.dicom, looked.all.n_dicom, parts, progress, report, err);
+    free(looked.all.dicom);
+    *reason = looked.reason;
     return is_scanned;
 }
 

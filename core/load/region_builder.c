@@ -9,6 +9,7 @@
 #include "core/base/mem.h"
 #include "core/formats/text.h"
 #include "core/load/part_names.h"
+#include "core/load/reader_table.h"
 #include "core/region/contour/contour_layer.h"
 #include "core/region/label_rows.h"
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "core/load/part_names.h"
+#include "core/load/reader_table.h"
 
 static void make_image(struct loading *loading, struct part_reading *reading, const char *why)
 {
@@ -62,7 +63,7 @@ void plan_settle_parts(struct loading *loading)
         return;
     for (size_t i = 0; i < loading->n_readings; i++) {
         struct part_reading *reading = &loading->readings[i];
-        if (reading->is_failed || !reading->volume || (reading->format != PART_NIFTI && reading->format != PART_NRRD))
+        if (reading->is_failed || !reading->volume || !reading->reader->grid)
             continue;
         if (reading->kind == PART_KIND_REGION)
             settle_regions(loading, reading);
@@ -73,7 +74,7 @@ void plan_settle_parts(struct loading *loading)
 
 int plan_image_rank(const struct loading *loading, const struct part_reading *reading)
 {
-    if (!loading->parts.is_recognised || reading->format == PART_DICOM)
+    if (!loading->parts.is_recognised || reading->reader == &part_dicom)
         return 0;
     if (reading->is_label_like)
         return PLAN_IMAGE_RANKS - 1;

@@ -5,16 +5,10 @@
 #include <string.h>
 
 #include "core/formats/plan/plan_json.h"
-#include "core/formats/sera/sera_chd.h"
-#include "core/formats/sera/sera_rst.h"
-#include "core/formats/sera/sera_uvh.h"
-#include "core/formats/text.h"
 #include "core/load/dicom_parts.h"
 #include "core/load/find_parts.h"
-#include "core/load/nifti_parts.h"
-#include "core/load/nrrd_parts.h"
-#include "core/load/part_format.h"
 #include "core/load/part_names.h"
+#include "core/load/reader_table.h"
 
 enum { NAMES_MAX_BYTES = 16 << 20 };
 
@@ -36,77 +30,18 @@ static void count_bytes(const struct folder *folder, const char *name, struct pl
         summary->n_bytes += bytes;
 }
 
-/* Checks that the files exist and that the header is valid. */
-static bool check_nifti(const struct folder *folder, const char *name, struct plan_summary *summary, struct error *err)
+/* Checks that the files exist and that the header is valid, and counts the file of voxels. */
+static bool check_part(const struct folder *folder, const char *path, const struct part_reader *reader, unsigned reads,
+                       struct plan_summary *summary, struct part_summary *part, struct error *err)
 {
-    struct nifti_header header;
-    char voxels[FOLDER_NAME_SIZE];
-    plan_nifti_voxels(folder, name, voxels);
-    if (strcmp(voxels, name) != 0)
-        count_bytes(folder, voxels, summary);
-    return plan_nifti_peek(folder, name, &header, err);
-}
-
-static bool check_nrrd(const struct folder *folder, const char *name, struct plan_summary *summary, size_t *n_segments,
-                       struct error *err)
-{
-    struct nrrd_header header;
-    bool is_good = plan_nrrd_peek(folder, name, &header, err);
-    for (size_t i = 0; is_good && n_segments && i < header.n_segments; i++)
-        *n_segments += header.segments[i].is_present;
-    if (is_good && header.data_file[0])
-        count_bytes(folder, header.data_file, summary);
-    nrrd_header_finish(&header);
-    return is_good;
-}
-
-static size_t count_bodies(const struct uvh *uvh)
-{
-    size_t n = 0;
-    for (size_t i = 0; i < uvh->n_bodies; i++) {
-        const struct uvh_body *body = &uvh->bodies[i];
-        n += body->uvval != 0 && !text_equal(body->name, "buffer") && !text_equal(body->name, "void") &&
-             !strstr(body->name, "ABSENT");
-    }
-    return n;
-}
-
-static bool check_univels(const struct folder *folder, const char *name, struct plan_summary *summary,
-                          size_t *n_regions, struct error *err)
-{
-    struct bytes header;
-    struct uvh uvh;
-    char data[FOLDER_NAME_SIZE];
-    if (!folder_read(folder, name, UVH_MAX_BYTES, UINT64_MAX, &header, err))
-        return false;
-    bool is_good = uvh_parse(header.data, header.size, name, &uvh, NULL, err);
-    bytes_free(&header);
-    if (!is_good)
-        return false;
-    *n_regions += count_bodies(&uvh);
-    uvh_finish(&uvh);
-    if (!part_find_data(folder, name, ".uv", data))
-        return error_set(err, ERROR_NOT_FOUND, "%s: the univels, a .uv or .uv.gz file beside it, are missing", name);
-    count_bytes(folder, data, summary);
-    return true;
-}
-
-static bool refuse(const char *path, enum part_format format, struct error *err)
-{
-    if (format == PART_ABSENT)
+    *part = (struct part_summary){ 0 };
+    if (reader == &part_absent)
         return error_set(err, ERROR_NOT_FOUND, "%s: there is no such file in the plan's folder", path);
-    return error_set(err, ERROR_UNSUPPORTED, "%s: %s: not read by this version", path, part_format_word(format));
-}
-
-static bool check_image(const struct folder *folder, const struct plan_file_image *image, struct plan_summary *summary,
-                        struct error *err)
-{
-    enum part_format format = part_format_of(folder, image->path);
-    if (format == PART_NIFTI)
-        return check_nifti(folder, image->path, summary, err);
-    if (format == PART_NRRD)
-        return check_nrrd(folder, image->path, summary, NULL, err);
-    return format == PART_QSH || refuse(image->path, format, err);
+    if (!(reader->reads & reads) || !reader->summarise)
+        return error_set(err, ERROR_UNSUPPORTED, "%s: %s: not read by this version", path, reader->word);
+    bool is_good = reader->summarise(folder, path, part, err);
+    count_bytes(folder, part->data, summary);
+    return is_good;
 }
 
 static size_t count_names(const struct folder *folder, const char *path)
@@ -155,9 +90,11 @@ static size_t check_images(const struct folder *folder, const struct plan_parts 
     size_t n_good = 0;
     for (size_t i = 0; i < parts->file->n_images; i++) {
         const struct plan_file_image *image = &parts->file->images[i];
+        struct part_summary part;
         int stack = plan_dicom_stack(parts->dicom, image->path);
         count_bytes(folder, image->path, summary);
-        n_good += stack >= 0 || check_image(folder, image, summary, err->text[0] ? NULL : err);
+        n_good += stack >= 0 || check_part(folder, image->path, part_reader_of(folder, image->path), PART_READS_IMAGES,
+                                           summary, &part, err->text[0] ? NULL : err);
         add_image_part(summary, parts, i, stack);
     }
     return n_good;
@@ -208,26 +145,23 @@ static size_t check_regions(const struct folder *folder, const struct plan_parts
     size_t n_regions = 0, n_names = 0, n_maps = 0, n_good = 0;
     for (size_t i = 0; i < file->n_regions; i++) {
         const struct plan_file_region *region = &file->regions[i];
-        enum part_format format = part_format_of(folder, region->path);
-        struct error *why = err->text[0] ? NULL : err;
+        const struct part_reader *reader = part_reader_of(folder, region->path);
+        struct part_summary part;
         bool is_good = true;
         count_bytes(folder, region->path, summary);
-        if (format == PART_UVH) {
-            is_good = check_univels(folder, region->path, summary, &n_regions, why);
-        } else if (format == PART_DICOM) {
+        if (reader == &part_dicom) {
             size_t n = count_objects(folder, parts->dicom, DICOM_KIND_STRUCT, region->path, summary) +
                        count_objects(folder, parts->dicom, DICOM_KIND_SEGMENTATION, region->path, summary);
             n_regions += region->name[0] && n > 1 ? 1 : n;
-        } else if (format != PART_NIFTI && format != PART_NRRD) {
-            is_good = refuse(region->path, format, why);
         } else {
-            size_t n = count_names(folder, region->names), n_segments = 0;
-            if (format == PART_NIFTI)
-                is_good = check_nifti(folder, region->path, summary, why);
-            else
-                is_good = check_nrrd(folder, region->path, summary, &n_segments, why);
+            is_good =
+                check_part(folder, region->path, reader, PART_READS_REGIONS, summary, &part, err->text[0] ? NULL : err);
+            n_regions += part.n_regions;
+        }
+        if (reader->grid) {
+            size_t n = count_names(folder, region->names);
             if (n == 0 && !region->name[0])
-                n = n_segments;
+                n = part.n_segments;
             n_regions += region->name[0] != 0;
             n_names += n;
             n_maps += !region->name[0] && n == 0;
@@ -247,20 +181,18 @@ static size_t count_doses(const struct folder *folder, const struct plan_parts *
     size_t n_components = 0, n_unread = 0, n_objects = 0;
     for (size_t i = 0; i < file->n_doses; i++) {
         const struct plan_file_dose *dose = &file->doses[i];
-        enum part_format first = part_format_of(folder, dose->components[0].path);
         bool is_read = true;
         size_t n_more = 0; /* a file of SERA holds several components */
-        if (dose->n_components == 1 && first == PART_DICOM) {
+        if (dose->n_components == 1 && part_reader_of(folder, dose->components[0].path) == &part_dicom) {
             n_objects += count_objects(folder, parts->dicom, DICOM_KIND_DOSE, dose->components[0].path, summary);
             continue;
         }
         for (size_t c = 0; c < dose->n_components; c++) {
             count_bytes(folder, dose->components[c].path, summary);
-            enum part_format format = part_format_of(folder, dose->components[c].path);
-            is_read = is_read && (format == PART_NIFTI || format == PART_NRRD || part_is_sera_dose(format) ||
-                                  format == PART_DICOM);
-            if (part_is_sera_dose(format) && dose->components[c].quantity == DOSE_TOTAL)
-                n_more += (format == PART_SERA_RST ? RST_N_DOSES : CHD_N_COLUMNS) - dose->n_components;
+            const struct part_reader *reader = part_reader_of(folder, dose->components[c].path);
+            is_read = is_read && (reader->reads & PART_READS_DOSES);
+            if (part_is_sera_dose(reader) && dose->components[c].quantity == DOSE_TOTAL)
+                n_more += reader->n_doses - dose->n_components;
         }
         n_components += is_read ? dose->n_components + n_more : 0;
         n_unread += !is_read;
