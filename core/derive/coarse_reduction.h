@@ -4,8 +4,7 @@
 #include "core/derive/derive.h"
 #include "core/surface/surface.h"
 
-/* All surfaces of a plan together have at most so many triangles when coarse, unless the largest reduction (8) still
- * leaves more. */
+/* Most triangles of all coarse surfaces of a plan together, unless the largest reduction (8) still leaves more. */
 enum { COARSE_MAX_TRIANGLES = 80000 };
 
 /* The smallest reduction that keeps the limit; 1: the full surfaces keep it; 0 on failure. Surfaces that are built on

@@ -9,8 +9,8 @@ struct image_histogram {
     struct derive_result base;
     double low, high;       /* smallest and largest finite value, in the image's unit; 0 and 0 without one */
     uint64_t n, n_left_out; /* voxels with a finite value, and the others */
-    /* The smallest value that so many percent of the finite values do not exceed: of whole numbers exact, of real ones
-     * within (high - low) / 2^28. NAN without a finite value. */
+    /* The smallest value that the given percentage of finite values do not exceed: exact for whole numbers, for real
+     * ones within (high - low) / 2^28. NAN without a finite value. */
     double percentiles[IMAGE_HISTOGRAM_N_PERCENTILES];
     /* Voxels by ascending level; the value of a level is first + step * level. For 8 and 16 bits a level for each
      * stored value; for floats equal parts of low to high, whose middle that value is. */

@@ -97,7 +97,7 @@ struct field_recipe {
     struct derive_recipe base;
     struct dose_choice dose;
     enum isodose_grid grid;
-    uint32_t reduction; /* every so many voxels along each axis; 1: all */
+    uint32_t reduction; /* every n-th voxel along each axis; 1: all */
 };
 
 struct isodose_field {
@@ -147,7 +147,7 @@ static const struct grid *univel_grid(const struct plan *plan)
     return finest;
 }
 
-/* Every so many voxels of a grid. errors those of grid_init */
+/* Makes the grid of every `reduction`-th voxel along each axis. errors those of grid_init */
 static bool reduce_grid(const struct grid *full, uint32_t reduction, struct grid *reduced, struct error *err)
 {
     struct affine map = full->lps_mm_from_ijk;

@@ -22,7 +22,7 @@ void isoeffective_rows_destroy(struct isoeffective_rows *rows);
  *   factors  the smallest with which, at the middle of each edge between two voxels, the dose between the finer voxels
  *            differs by at most ISOEFFECTIVE_ERROR / 3 of itself, or of 1 % of the maximum where it is lower: the error
  *            of a linear interpolation falls with the square of the step, and those of the three axes add up
- *   limit    so many voxels in all rows at most: then the axes with the least error are left coarser
+ *   limit    most voxels in all rows; beyond it the axes with the least error stay coarser
  *   error    what is left of the error by this estimate, as a part of the dose */
 #define ISOEFFECTIVE_ERROR 0.001
 NODISCARD bool isoeffective_rows_grid(const struct isoeffective_rows *rows, uint64_t limit, struct grid *grid,

@@ -1,4 +1,4 @@
-/* Reads a dose-volume histogram: what lies from a value on, and which value so many univels have. */
+/* Reads a dose-volume histogram: the univels from a value on, and the value that n univels reach. */
 #include "core/dose/dvh.h"
 
 #include <math.h>

@@ -28,7 +28,8 @@ NODISCARD bool dvh_add(struct dvh *dvh, const struct dvh *other, struct error *e
 double dvh_edge(uint32_t bin);
 /* Univels with at least this value. */
 double dvh_univels_from(const struct dvh *dvh, double value);
-/* The greatest value that so many univels have at least; low for more than all, high for 0; NAN without a value. */
+/* D_n: the largest value v such that at least n_univels univels are >= v; low for more than all, high for 0; NAN
+ * without a value. */
 double dvh_value_of_hottest(const struct dvh *dvh, double n_univels);
 /* Counts into n equal bins from `from` on, in univels: the differential curve. Values beyond them are left out. */
 void dvh_counts(const struct dvh *dvh, double from, double width, size_t n, double *counts);

@@ -93,7 +93,7 @@ double dvh_metric_value(const struct dvh *dvh, const struct dvh_metric *metric)
     return NAN;
 }
 
-/* The value that so many univels of the whole have at least, when those without a value have 0 (is_hot false) or the
+/* The largest value that at least n univels of the whole reach, when those without a value have 0 (is_hot false) or the
  * greatest of all. */
 static double ranked(const struct dvh *dvh, double n, bool is_hot)
 {

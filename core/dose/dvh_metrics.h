@@ -26,7 +26,7 @@ double dvh_metric_value(const struct dvh *dvh, const struct dvh_metric *metric);
 /* The two bounds of a figure of the whole region, when univels without a value may have any value from 0 on; most is
  * INFINITY where there is none. NAN: the region is too small for the figure. */
 void dvh_metric_bounds(const struct dvh *dvh, const struct dvh_metric *metric, double *least, double *most);
-/* True if so many univels have no value that figures are said as bounds: 0.1 % of the region and more. */
+/* True if figures are given as bounds: 0.1 % of the univels or more have no value. */
 bool dvh_is_partial(const struct dvh *dvh);
 /* The bounds that are said of a figure: those of dvh_metric_bounds, of a region that is not partial both its value. */
 void dvh_metric_range(const struct dvh *dvh, const struct dvh_metric *metric, double *least, double *most);

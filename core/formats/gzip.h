@@ -28,7 +28,7 @@ NODISCARD bool gzip_exact(const uint8_t *data, size_t size, const char *name, ui
 NODISCARD bool gzip_all(const uint8_t *data, size_t size, const char *name, uint64_t limit, struct bytes *out,
                         struct error *err);
 
-/* The most bytes that so many compressed bytes can hold: deflate reaches at most 1032 to 1. */
+/* The most bytes that n compressed bytes can hold: deflate reaches at most 1032 to 1. */
 uint64_t gzip_most(uint64_t compressed_bytes);
 
 /* True if the bytes after a stream are all zero, or there are none. */

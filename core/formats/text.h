@@ -9,7 +9,7 @@ enum { TEXT_LINE_SIZE = 513, TEXT_MAX_LINES = 200000 };
 struct text {
     const char *at, *end;
     size_t line;       /* number of the line read last, from 1 */
-    size_t most_lines; /* reading ends after so many lines; text_start sets TEXT_MAX_LINES */
+    size_t most_lines; /* reading ends after this line; text_start sets TEXT_MAX_LINES */
 };
 
 void text_start(struct text *text, const uint8_t *data, size_t size);

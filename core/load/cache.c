@@ -122,7 +122,7 @@ static void count_pieces(struct pieces *pieces)
     pieces->checks = mem_new((pieces->n_pieces + 1) * sizeof *pieces->checks);
 }
 
-/* Computes where the voxels lie after a head of so many bytes. Returns the size of the file. */
+/* Computes the places of the voxels behind a head of head_bytes. Returns the size of the file. */
 static uint64_t place_voxels(struct pieces *pieces, uint64_t head_bytes)
 {
     uint64_t at = aligned(sizeof(struct file_start) + head_bytes);

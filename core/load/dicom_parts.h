@@ -14,7 +14,7 @@ enum {
 int plan_dicom_stack(const struct dicom_index *index, const char *path);
 /* True if the object's file is path or lies below it. */
 bool plan_dicom_is_under(const struct dicom_object *object, const char *path);
-/* The nth object of a kind at or below path, from 0; "" is the whole folder. NULL: there are not so many. */
+/* The nth object of a kind at or below path, from 0; "" is the whole folder. NULL: there are fewer. */
 const struct dicom_object *plan_dicom_object(const struct dicom_index *index, enum dicom_kind kind, const char *path,
                                              size_t nth);
 

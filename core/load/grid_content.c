@@ -8,7 +8,7 @@
 
 enum {
     MOST_LABEL = 65535,
-    FEW_VALUES = 16,  /* a file named as labels may hold so many in any arrangement */
+    FEW_VALUES = 16,  /* values that a file named as labels may hold in any arrangement */
     MOST_UNNAMED = 64 /* more values are not taken for labels without a name */
 };
 #define LEAST_ALIKE 0.5         /* of a file named as labels */

@@ -69,7 +69,7 @@ static void append_character(char *out, size_t size, uint32_t code)
     snprintf(out + n, size - n, "%s", bytes);
 }
 
-/* Adds "A. " for the first letter or digit of a text of so many bytes; nothing without one. */
+/* Adds "A. " for the first letter or digit of a text of n bytes; nothing without one. */
 static void append_initial(char *out, size_t size, const char *text, size_t n)
 {
     uint32_t code;
@@ -99,7 +99,7 @@ static struct component component_of(const char *group, size_t n, int index)
     return (struct component){ group, (size_t)((next ? next : end) - group) };
 }
 
-/* The initials of a group of so many bytes. */
+/* The initials of a group of n bytes. */
 static void append_initials(char *out, size_t size, const char *group, size_t n, bool is_family_first)
 {
     struct component family = component_of(group, n, 0), given = component_of(group, n, 1),

@@ -2,7 +2,7 @@
 /* The values of a volume within a flat ellipse in the patient. */
 #include "core/volume/volume.h"
 
-/* At most about so many samples: a larger ellipse is sampled more coarsely. */
+/* Largest number of samples, about: a larger ellipse is sampled more coarsely. */
 enum { ELLIPSE_MAX_SAMPLES = 1000000 };
 
 struct ellipse_values {

@@ -30,7 +30,7 @@ enum {
     FRONT_IDLE_MS = 60000,    /* without a byte either way, unless a request waits for its answer */
     FRONT_ANSWER_MS = 120000, /* from a request's last byte to the first of its answer: requests to renderers time out
                                  after 30 s */
-    /* In each window so many bytes of a body must come, or of an answer be taken: a kilobyte a second. */
+    /* Least bytes in each window, of a body that comes or of an answer that is taken: a kilobyte a second. */
     FRONT_WINDOW_MS = 60000,
     FRONT_WINDOW_BYTES = 64 << 10,
 

@@ -29,7 +29,7 @@ NODISCARD bool place_path(const struct json_place *place, const cJSON *object, c
                           char out[FOLDER_NAME_SIZE]);
 NODISCARD bool place_bool(const struct json_place *place, const cJSON *object, const char *key, bool *out);
 NODISCARD bool place_point(const struct json_place *place, const cJSON *object, const char *key, struct vec3 *out);
-/* A list of at most so many objects. */
+/* A list of at most `most` objects. */
 NODISCARD bool place_list(const struct json_place *place, const cJSON *object, const char *key, size_t most,
                           const cJSON **list);
 /* The value of "color": "#rrggbb", or three numbers of 0 to 1 or 0 to 255. */

@@ -32,7 +32,7 @@ struct beam_eye_marks {
 /* False: the snapshot's picture has neither crosshair nor ring. camera: the snapshot's, resolved. */
 bool beam_eye_marks_of(const struct snapshot *snapshot, const struct camera *camera, struct beam_eye_marks *marks);
 
-/* Half the length of the tick at so many times 5 mm from the middle: 9 px each 50 mm, 6 px each 10 mm, else 3 px; 0:
+/* Half the length of the n-th tick, n times 5 mm from the middle: 9 px each 50 mm, 6 px each 10 mm, else 3 px; 0:
  * none, because such ticks would be too close together. */
 double beam_eye_tick_px(const struct beam_eye_marks *marks, int64_t fives);
 

@@ -11,7 +11,7 @@
 
 /* Limits of the cache: 48 MiB of lines. */
 enum { MAX_ENTRIES = 1024, MAX_LINES = 1 << 20 };
-/* Below so many triangles looking at all of them takes no time. */
+/* With fewer triangles a search of all of them takes no time. */
 enum { MIN_INDEXED_TRIANGLES = 4096 };
 /* More than single precision rounds coordinates by: farther away the plane surely misses a shape. */
 static const double rounding_mm = 1e-2;

@@ -113,7 +113,7 @@ static bool fill_univels(struct entry *entry, struct error *err)
     return is_good;
 }
 
-/* Below so many triangles looking at all of them takes no time. */
+/* With fewer triangles a search of all of them takes no time. */
 enum { MIN_INDEXED_TRIANGLES = 4096 };
 
 static bool cut_shape(struct entry *entry, struct derive *derived, const struct shape *shape, struct error *err)

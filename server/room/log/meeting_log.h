@@ -13,7 +13,7 @@
 
 enum {
     LOG_STATE_LEAST_BYTES = 128 << 10, /* of changes, before another complete state is written */
-    LOG_STATE_TIMES = 3,               /* and so many times the bytes of the last one: states are a quarter of a log */
+    LOG_STATE_TIMES = 3,               /* and this multiple of the last state's bytes: states are a quarter of a log */
     LOG_MAX_TEXT_BYTES = 32 << 20,     /* of one batch */
     LOG_MAX_ENTRIES = 4096,            /* of one part */
     LOG_MAX_T_MS = 1000000000          /* eleven days */

@@ -35,7 +35,7 @@ bool link_create(struct room *room, enum wire_member_role role, int64_t expires_
 {
     assert(expires_s >= ROOM_LINK_MIN_S && expires_s <= ROOM_LINK_MAX_S);
     if (room->n_links == ROOM_MAX_LINKS)
-        forget(room); /* not before, so that who comes late is told why */
+        forget(room); /* only now: until then a late visitor is told why the link ended */
     if (room->n_links == ROOM_MAX_LINKS)
         return problem_set(problem, PROBLEM_LIMIT, "", "", "%d links of this room are valid, more are not allowed",
                            room->n_links);

@@ -12,7 +12,7 @@ enum {
         32, /* inputs of one view that no sent picture shows yet; beyond these, inputs are reported together */
     RETRY_US = 100000, /* pause after a failed picture; doubled each time */
     RETRY_AT_MOST_US = 4000000,
-    /* In a room of more members, the list of members goes out at most once in so many microseconds for each of them:
+    /* In a room of more members, n members get the list of members at most once in n MEMBERS_EVERY_US:
      * everybody is sent a row for everybody, so 200 people who enter at once would make gigabytes of lists. */
     FEW_MEMBERS = 24,
     MEMBERS_EVERY_US = 2000,

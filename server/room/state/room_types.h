@@ -25,8 +25,8 @@ enum {
     ROOM_LINK_MIN_S = 60,
     ROOM_LINK_MAX_S = 30 * 24 * 3600,
     ROOM_MAX_PRESENCE = 1000,      /* stays of members that are kept; of more, the first are counted only */
-    ROOM_SAME_STAY_MS = 60000,     /* who comes back within this goes on with the same stay */
-    ROOM_MAX_AUDIT_DETAIL = 1024,  /* bytes of the detail of a row for the audit; of a longer one only the length */
+    ROOM_SAME_STAY_MS = 60000,     /* a member who returns within this continues the same stay */
+    ROOM_MAX_AUDIT_DETAIL = 1024,  /* bytes of the detail of an audit row; a longer one is replaced by its length */
     ROOM_MAX_GATHERED = 32,        /* acts that are being gathered into a row each; the oldest is then recorded */
     ROOM_AUDIT_QUIET_MS = 1000,    /* acts further apart are rows of their own */
     ROOM_AUDIT_AT_MOST_MS = 30000, /* no row gathers acts of a longer time */
@@ -135,7 +135,7 @@ struct room_callbacks {
     /* A row for the audit, to be committed with what else of the room is written, or before. NULL: there is no audit.
      */
     void (*audited)(void *context, struct room *room, const struct room_audit *row);
-    /* False: so many rows wait for the disk that the room refuses what would need another. NULL: always true. */
+    /* False: too many rows wait for the disk, so the room refuses acts that need another. NULL: always true. */
     bool (*audit_has_place)(void *context);
     /* NULL: rooms are not kept; or: what of the room is on disk at this moment */
     void (*is_saved)(void *context, const struct room *room, struct room_saved *saved);

@@ -7,7 +7,7 @@
 
 enum {
     WATCH_EVERY_US = 200000, /* between two pictures */
-    WATCH_SHARE = 16, /* while own views wait to be acknowledged, it has one byte for so many of theirs at most */
+    WATCH_SHARE = 16,        /* while own views have unacknowledged pictures, watch gets at most 1/16 of their bytes */
     WATCH_LATE_US = 1000000
 };
 

@@ -39,7 +39,7 @@ export class PaneTools {
     return this.#made.get(name);
   }
 
-  /** The handlers, first the one that is asked first. Read in an effect, it is told when one comes. @returns {PaneHandler[]} */
+  /** The handlers, in the order in which they are asked. Reactive: an effect that reads this runs again when one is loaded. @returns {PaneHandler[]} */
   get #handlers() {
     const { ui, view } = this.#pane;
     const tool = ui.tool.value;

@@ -14,7 +14,7 @@ export class Lazy {
     this.loaded = signal(null); // T; null: not yet
   }
 
-  /** A template of what is loaded; until then, and when it could not be loaded, one that says so. Read in an effect, it is told when it comes. @param {(loaded: T) => unknown} use */
+  /** The template of the loaded part; until then, and when it could not be loaded, one that says so. Reactive: an effect that reads this runs again when it loads. @param {(loaded: T) => unknown} use */
   draw(use) {
     if (this.loaded.value) return use(this.loaded.value);
     if (this.#error.value)

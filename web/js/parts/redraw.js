@@ -9,7 +9,7 @@ const pictureMs = 40; // another pane waits at most this long for its picture
 const flowMs = 100; // pictures follow one another when the last came this recently
 const gatherMs = 25; // how long the other panes' pictures wait then for one another
 const slowMs = 100;
-const earlyMs = 30; // by how much what is around the panes may be drawn sooner, in a frame without pictures: those are not to wait for it
+const earlyMs = 30; // panels around the panes may be drawn this much early in a frame without pictures: pictures must not wait for them
 const enoughMs = 2; // of drawing in a frame, after which no further panel around the panes is begun in it
 
 export class Redraw {

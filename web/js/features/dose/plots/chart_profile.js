@@ -211,7 +211,7 @@ function tick(pen, px, x, foot, words) {
   if (words) write(pen, px, words, x + 4 * px, foot - 10 * px, { color: '#b9c0c9' });
 }
 
-/** Behind the curves what the line runs through, and a bar with names above. */
+/** Shades the regions along the line behind the curves, and names them in a bar above. */
 function bands({ room, curves }, chart, pen, px) {
   const { left, top, width, height } = chart.bbox;
   const clamp = (x) => Math.min(Math.max(x, left), left + width);
