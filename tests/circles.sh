@@ -1,7 +1,6 @@
 #!/bin/bash
 # Finds circles: circles.sh BUILD, where BUILD has obj/core and obj/server (build/release).
-#   Of folders: one that includes another, directly or by others, which includes it; but for the includes that
-#   tests/layers.txt names as "up".
+#   Of folders: one that includes another, directly or by others, which includes it.
 #   Of files of one folder: an object file that uses a symbol of another which, directly or by others, uses one of it.
 # Prints each circle, a line a member, and fails then. tsort finds them.
 set -eu
@@ -19,8 +18,7 @@ report() { # report TITLE: edges "A B" on standard input
 
 folder_edges() {
     grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]+"(core|server)/' core server --include='*.[ch]' --include='*.cc' |
-        sed -E 's#^([^:]*):[0-9]+:.*"(.*)".*#up \1: \2#' | { grep -vxFf <(grep '^up ' tests/layers.txt 2>/dev/null) || true; } |
-        sed -E 's#^up (.*)/[^/:]*: (.*)/[^/]*#\1 \2#' | awk '$1 != $2' | sort -u
+        sed -E 's#^(.*)/[^/:]*:[0-9]+:.*"(.*)/[^/"]*".*#\1 \2#' | awk '$1 != $2' | sort -u
 }
 
 symbol_edges() { # of the object files given

@@ -19,7 +19,6 @@ BEGIN {
         sub(/#.*/, "", line)
         if (line ~ /^[[:space:]]*$/) continue
         split(line, side, /:[[:space:]]*/)
-        if (side[1] ~ /^up /) { upward[substr(side[1], 4) " " side[2]] = rules; continue }
         if (side[1] ~ /^only [^*\/]*\.h$/) generated[substr(side[1], 6)] = 1
         if (side[1] ~ /^only /) { n_only++; only_name[n_only] = substr(side[1], 6); only_home[n_only] = side[2] }
         else { allowed[side[1]] = side[2] }
@@ -48,13 +47,11 @@ BEGIN {
     from = layer_of(folder_of(file)); to = folder_of(name)
     if (from == "") { complain(at ": " folder_of(file) " has no line in " rules); next }
     if (to == folder_of(file) || layer_of(to) == from) next
-    if ((file " " name) in upward) { upward[file " " name] = ""; next }
     n = split(allowed[from], may, " "); ok = 0
     for (j = 1; j <= n; j++) ok = ok || name == may[j] || layer_of(to) == may[j] || (may[j] == "core" && inside(to, "core")) || to == may[j]
     if (!ok) complain(at ": " from " may not include " name " (" (layer_of(to) == "" ? to : layer_of(to)) ")")
 }
 END {
-    for (edge in upward) if (upward[edge] != "" && exists(substr(edge, 1, index(edge, " ") - 1))) complain(rules ": no such include any more: up " edge)
     if (bad) { print bad " of " n_includes " includes break tests/layers.txt"; exit 1 }
     if (n_includes < 2) { print "no includes found"; exit 1 }
 }'

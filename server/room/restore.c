@@ -16,23 +16,6 @@
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */
 
-/* [{view, mover}] of the shared views. */
-static char *write_views(const struct room *room)
-{
-    cJSON *list = cJSON_CreateArray();
-    for (const struct stream *stream = room->streams; stream; stream = stream->next) {
-        if (!stream->is_shared || stream->is_of_display)
-            continue;
-        cJSON *item = cJSON_CreateObject();
-        json_add(item, "view", cJSON_Duplicate(stream->view, true));
-        cJSON_AddStringToObject(item, "mover", stream->mover);
-        json_append(list, item);
-    }
-    char *text = list ? json_print(list) : NULL;
-    cJSON_Delete(list);
-    return text;
-}
-
 static bool write_members(const struct room *room, struct room_kept *kept)
 {
     size_t n = (size_t)(room->n_members + room->n_known);
@@ -59,7 +42,7 @@ bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept)
     if (ok && (parts & ROOM_SCENE) && scene)
         ok = (kept->scene = json_print(scene)) != NULL;
     if (ok && (parts & ROOM_VIEWS))
-        ok = (kept->views = write_views(room)) != NULL;
+        ok = (kept->views = streams_write(room)) != NULL;
     if (ok && (parts & ROOM_MEMBERS))
         ok = write_members(room, kept);
     if (ok && (parts & ROOM_LINKS))
@@ -90,31 +73,6 @@ static cJSON *read_json(const struct room *room, const char *text, const char *w
     if (text && !json)
         log_error("room %s: %s is not readable in the database: %s", room->id, what, problem.detail);
     return json;
-}
-
-static void read_views(struct room *room, const char *text)
-{
-    cJSON *list = read_json(room, text, "the list of views");
-    const cJSON *item;
-    int n = 0;
-    cJSON_ArrayForEach(item, list)
-    {
-        struct problem problem = { 0 };
-        const cJSON *kept = cJSON_GetObjectItemCaseSensitive(item, "view");
-        cJSON *view = kept && n++ < 64 ? view_document_patch(NULL, kept, &problem) : NULL;
-        if (!view) {
-            log_error("room %s: a kept view is left out: %s", room->id, problem.detail);
-            continue;
-        }
-        if (stream_shared(room, view)) {
-            cJSON_Delete(view);
-            continue;
-        }
-        const char *mover = json_text(item, "mover");
-        struct stream *stream = stream_create(room, view, true);
-        (void)snprintf(stream->mover, sizeof stream->mover, "%s", mover && id_is_valid(mover) ? mover : "");
-    }
-    cJSON_Delete(list);
 }
 
 static void read_members(struct room *room, const struct room_kept *kept)
@@ -151,5 +109,7 @@ void room_restore(struct room *room, const struct room_kept *kept, int64_t now_u
     read_members(room, kept);
     presence_read(room, kept->presence);
     links_read(room, kept);
-    read_views(room, kept->views);
+    cJSON *views = read_json(room, kept->views, "the list of views");
+    streams_read(room, views);
+    cJSON_Delete(views);
 }

@@ -24,7 +24,7 @@
 #include "server/room/people/member.h"
 #include "server/room/people/pointers.h"
 #include "server/room/people/presenter.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/roles.h"
 #include "server/room/streams/display.h"
@@ -106,6 +106,11 @@ void room_end_because(struct room *room, const char *reason)
     (void)snprintf(room->end_reason, sizeof room->end_reason, "%s", reason);
 }
 
+bool room_was_used(const struct room *room)
+{
+    return !room->replay && (room->n_named > 0 || room->has_links || room->is_changed);
+}
+
 uint32_t room_n_named(const struct room *room)
 {
     return room->n_named;
@@ -150,13 +155,13 @@ static bool replace_plan(struct room *room, const cJSON *plan_document, const cJ
     room->defaults = defaults;
     if (!before || !json_equal(scene, before)) {
         room->revision++;
-        kept_changed(room, ROOM_SCENE);
+        room_event(room, ROOM_SCENE, NULL);
     }
     cJSON_Delete(room->scene);
     cJSON_Delete(room->restored);
     room->scene = scene;
     room->restored = NULL;
-    room->unrecorded |= ROOM_ALL_PARTS;
+    room_event(room, ROOM_PLAN, NULL);
     return true;
 }
 
@@ -302,6 +307,19 @@ static void record_refusal(struct room *room, const struct member *member, const
     audit_tell(room, &row);
 }
 
+/* What a member is told who has just come, after welcome, in this order. */
+static void (*const shown_to_newcomer[])(struct room *room, struct member *member) = {
+    acceptances_tell, send_renderer_state, control_send, saved_show,     files_show,
+    members_show,     pointers_show,       look_show,    recording_show, replay_show,
+};
+
+static void greet(struct room *room, void *connection, const struct message_hello *hello)
+{
+    struct member *member = member_hello(room, connection, hello);
+    for (size_t i = 0; member && i < sizeof shown_to_newcomer / sizeof shown_to_newcomer[0]; i++)
+        shown_to_newcomer[i](room, member);
+}
+
 /* Messages whose effect is always recorded: without place for that they are refused. */
 static bool is_recorded(enum message_type type)
 {
@@ -397,7 +415,7 @@ static bool take_text(struct room *room, struct member *member, void *connection
         return false;
     }
     if (!member && message.type == MESSAGE_HELLO) {
-        (void)member_hello(room, connection, &message.hello);
+        greet(room, connection, &message.hello);
     } else if (!member) {
         problem_set(&problem, PROBLEM_VALIDATION, "/type", "required", "%s", hello_first);
         if (refuse(room, connection, text, n, &problem))

@@ -113,6 +113,8 @@ void room_replay_begin(struct room *room, const char *of_room, uint32_t n_named,
 void room_replay_came(struct room *room, const char *const *texts, size_t n, int64_t next_ms,
                       const struct problem *problem, int64_t now_us);
 
+/* True once a member has entered, a link was made, or the scene was changed. */
+bool room_was_used(const struct room *room);
 /* How many members the room has ever had. */
 uint32_t room_n_named(const struct room *room);
 /* Whether the room has a use for the revision of the plan's files as they are now: it plays, or records and does not

@@ -13,7 +13,7 @@
 #include "server/room/out/audit.h"
 #include "server/room/out/send.h"
 #include "server/room/state/body_check.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/roles.h"
 #include "server/room/streams/stream.h"
@@ -226,7 +226,7 @@ void acceptances_settle(struct room *room)
     room->acceptances.is_known = is_known;
     if (has_changed && room->scene) {
         room->revision++;
-        kept_changed(room, ROOM_SCENE);
+        room_event(room, ROOM_SCENE, NULL);
         streams_changed(room, false);
         room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
         send_scene_patch(room, cJSON_CreateObject(), NULL, 0, true);

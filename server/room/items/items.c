@@ -14,10 +14,10 @@
 #include "server/room/items/item_row.h"
 #include "server/room/items/record_body.h"
 #include "server/room/items/room_items.h"
-#include "server/room/log/recording.h"
 #include "server/room/out/audit.h"
 
 #include "server/room/out/send.h"
+#include "server/room/state/event.h"
 #include "server/room/state/roles.h"
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
@@ -51,7 +51,7 @@ static void tell_members(struct room *room, const char *id, const char *row, con
     struct message message = { .type = MESSAGE_ITEM, .item = { .item = row ? cJSON_CreateRaw(row) : NULL } };
     (void)snprintf(message.item.id, sizeof message.item.id, "%s", id);
     (void)snprintf(message.item.by, sizeof message.item.by, "%s", by);
-    recording_item_changed(room, id);
+    room_event(room, ROOM_ITEMS, id);
     for (int i = 0; i < room->n_members; i++) {
         const bool is_own = strcmp(room->members[i]->id, by) == 0;
         message.item.input = is_own ? input : 0; /* the input number is only for its sender */
@@ -63,7 +63,6 @@ static void tell_members(struct room *room, const char *id, const char *row, con
 /* Tells the room's owner and all members. */
 static void tell(struct room *room, const char *id, const char *row, const struct member *by, uint32_t input)
 {
-    room->saved.n_item_changes++;
     if (room->callbacks.item_changed)
         room->callbacks.item_changed(room->callbacks.context, room, row, id);
     tell_members(room, id, row, by->id, input);
@@ -194,7 +193,6 @@ void items_written(struct room *room, uint64_t number, const struct problem *pro
     } else {
         struct item *before = keeping->is_change ? items_find(room, keeping->item.id) : NULL;
         const struct item *item = take(room, before, &keeping->item, keeping->item.row);
-        room->saved.n_item_changes++;
         tell_members(room, item->id, item->row, keeping->member, keeping->input);
         if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
             acceptances_settle(room);

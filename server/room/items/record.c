@@ -1,4 +1,5 @@
 /* Puts the record of a review together. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -6,8 +7,8 @@
 #include "server/room/items/record_body.h"
 #include "server/room/items/room_items.h"
 #include "server/room/out/send.h"
-#include "server/room/room.h"
 #include "server/room/state/presence.h"
+#include "server/room/streams/stream.h"
 #include "server/wire/json.h"
 #include "server/wire/message.h"
 
@@ -87,10 +88,13 @@ static cJSON *describe_saved(const struct room *room)
 
 char *record_of(const struct room *room, const struct item *item, struct problem *problem)
 {
-    struct room_kept kept;
+    const cJSON *scene = room->scene ? room->scene : room->restored;
     if (!record_is_wanted(item->kind))
         return NULL;
-    if (!room_keep(room, ROOM_SCENE | ROOM_VIEWS, &kept)) {
+    char *scene_text = scene ? json_print(scene) : NULL, *views_text = streams_write(room);
+    if ((scene && !scene_text) || !views_text) {
+        free(scene_text);
+        free(views_text);
         json_no_memory(problem, "a record");
         return NULL;
     }
@@ -99,11 +103,12 @@ char *record_of(const struct room *room, const struct item *item, struct problem
     cJSON_AddNumberToObject(json, "version", 1);
     json_add(json, "item", cJSON_CreateRaw(item->row));
     json_add(json, "record", room_record(room));
-    json_add(json, "scene", kept.scene ? cJSON_CreateRaw(kept.scene) : cJSON_CreateNull());
-    json_add(json, "views", kept.views ? cJSON_CreateRaw(kept.views) : cJSON_CreateNull());
+    json_add(json, "scene", scene_text ? cJSON_CreateRaw(scene_text) : cJSON_CreateNull());
+    json_add(json, "views", cJSON_CreateRaw(views_text));
     char *text = json_print(json);
     cJSON_Delete(json);
-    room_kept_finish(&kept);
+    free(scene_text);
+    free(views_text);
     if (!text)
         json_no_memory(problem, "a record");
     return text;

@@ -15,12 +15,12 @@
 #include "server/room/log/room_recordings.h"
 #include "server/room/out/audit.h"
 #include "server/room/out/send.h"
+#include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/wire/json.h"
 
 static const int64_t every_us = RECORDING_EVERY_MS * INT64_C(1000), batch_us = RECORDING_BATCH_MS * INT64_C(1000),
                      empty_us = ROOM_RECORDING_EMPTY_S * INT64_C(1000000);
-enum { ALL_PARTS = ROOM_ALL_PARTS | RECORDED_POINTERS | RECORDED_ITEMS };
 
 struct recorder {
     struct meeting_log *log;
@@ -28,8 +28,6 @@ struct recorder {
     int64_t start_us, sampled_us, written_us, empty_since_us; /* empty_since_us 0: somebody is there */
     bool has_events;                                          /* perhaps; since the last batch */
     bool is_unsure;                                           /* there was no memory to look at what has changed */
-    char (*items)[16];                                        /* that changed */
-    size_t n_items;
     char presenter[64];
 };
 
@@ -135,23 +133,6 @@ void recording_revision_came(struct room *room, const char *revision)
 
 /* ---- what has changed ------------------------------------------------------------------------------------------- */
 
-void recording_item_changed(struct room *room, const char *id)
-{
-    struct recorder *recorder = room->recorder;
-    if (!recorder || (room->unrecorded & RECORDED_ITEMS))
-        return;
-    for (size_t i = 0; i < recorder->n_items; i++)
-        if (strcmp(recorder->items[i], id) == 0)
-            return;
-    void *more = realloc(recorder->items, (recorder->n_items + 1) * sizeof recorder->items[0]);
-    if (!more) {
-        room->unrecorded |= RECORDED_ITEMS; /* all are compared */
-        return;
-    }
-    recorder->items = more;
-    (void)snprintf(recorder->items[recorder->n_items++], sizeof recorder->items[0], "%s", id);
-}
-
 static void mark(struct recorder *recorder, int64_t t_ms, const char *kind, const char *name)
 {
     if (!recorder->facts->marks)
@@ -184,12 +165,17 @@ static void put_item(struct room *room, struct recorder *recorder, int64_t t_ms,
     meeting_log_put(recorder->log, t_ms, LOG_ITEMS, id, item ? json_read(item->row, strlen(item->row), NULL) : NULL);
 }
 
+static bool is_dirty(const struct room *room)
+{
+    return room->unrecorded.parts || room->unrecorded.n_items;
+}
+
 static void sample(struct room *room)
 {
     struct recorder *recorder = room->recorder;
     struct meeting_log *log = recorder->log;
     const int64_t t_ms = recorded_ms(room, recorder);
-    const unsigned dirty = room->unrecorded;
+    const unsigned dirty = room->unrecorded.parts;
     const size_t n_refused = mem_n_refused();
     if (dirty & ROOM_MEMBERS) {
         meeting_log_put_all(log, t_ms, LOG_MEMBERS, recorded_members(room));
@@ -199,19 +185,18 @@ static void sample(struct room *room)
         meeting_log_put(log, t_ms, LOG_SCENE, "scene", recorded_scene(room));
     if (dirty & (ROOM_SCENE | ROOM_VIEWS))
         meeting_log_put_all(log, t_ms, LOG_VIEWS, recorded_views(room));
-    if (dirty & RECORDED_POINTERS)
+    if (dirty & ROOM_POINTERS)
         meeting_log_put_all(log, t_ms, LOG_POINTERS, recorded_pointers(room));
-    if (dirty & RECORDED_ITEMS)
+    if (dirty & ROOM_ITEMS)
         meeting_log_put_all(log, t_ms, LOG_ITEMS, recorded_items(room));
-    for (size_t i = 0; i < recorder->n_items; i++)
-        put_item(room, recorder, t_ms, recorder->items[i]);
-    recorder->n_items = 0;
+    for (size_t i = 0; i < room->unrecorded.n_items; i++)
+        put_item(room, recorder, t_ms, room->unrecorded.items[i]);
     recorder->is_unsure = mem_n_refused() != n_refused;
     if (recorder->is_unsure) {
         log_error("room %s: a part of a recording is lost: no memory", room->id);
         meeting_log_restart(log);
     }
-    room->unrecorded = recorder->is_unsure ? ALL_PARTS : 0;
+    unrecorded_reset(room, recorder->is_unsure ? ROOM_ALL_RECORDED : 0);
     recorder->sampled_us = room->now_us;
     recorder->has_events = !recorder->is_unsure;
 }
@@ -237,7 +222,6 @@ static void end(struct room *room, enum wire_recording_state state, const struct
     facts->state = state;
     room->recorder = NULL;
     meeting_log_destroy(recorder->log);
-    free(recorder->items);
     free(recorder);
     if (room->callbacks.recorded)
         room->callbacks.recorded(room->callbacks.context, room, facts, NULL);
@@ -256,7 +240,7 @@ static void write_batch(struct room *room)
     recorder->written_us = room->now_us;
     if (recorder->is_unsure || !meeting_log_take(recorder->log, t_ms, &batch)) {
         if (batch.n_events) /* they are lost */
-            room->unrecorded = ALL_PARTS;
+            unrecorded_reset(room, ROOM_ALL_RECORDED);
         return;
     }
     const size_t n = strlen(batch.text);
@@ -276,7 +260,7 @@ static void write_batch(struct room *room)
 /* Writes all that is not written yet. False: it was full, and has ended. */
 static bool write_all(struct room *room)
 {
-    if (room->unrecorded || room->recorder->n_items)
+    if (is_dirty(room))
         sample(room);
     write_batch(room);
     return room->recorder != NULL;
@@ -296,7 +280,7 @@ int64_t recording_settle(struct room *room)
             end(room, WIRE_RECORDING_STATE_EMPTY, NULL);
         return INT64_MAX;
     }
-    if ((room->unrecorded || recorder->n_items) && room->now_us >= recorder->sampled_us + every_us)
+    if (is_dirty(room) && room->now_us >= recorder->sampled_us + every_us)
         sample(room);
     if (recorder->has_events && room->now_us >= recorder->written_us + batch_us) {
         write_batch(room);
@@ -304,7 +288,7 @@ int64_t recording_settle(struct room *room)
             return INT64_MAX;
     }
     int64_t due_us = recorder->empty_since_us ? recorder->empty_since_us + empty_us : INT64_MAX;
-    if ((room->unrecorded || recorder->n_items) && recorder->sampled_us + every_us < due_us)
+    if (is_dirty(room) && recorder->sampled_us + every_us < due_us)
         due_us = recorder->sampled_us + every_us;
     if (recorder->has_events && recorder->written_us + batch_us < due_us)
         due_us = recorder->written_us + batch_us;
@@ -368,7 +352,7 @@ bool recording_start(struct room *room, struct member *member, const struct mess
     room->recorder = mem_new(sizeof *room->recorder);
     *room->recorder =
         (struct recorder){ .log = log, .facts = facts, .start_us = room->now_us, .written_us = room->now_us };
-    room->unrecorded = ALL_PARTS;
+    unrecorded_reset(room, ROOM_ALL_RECORDED);
     (void)snprintf(room->recorder->presenter, sizeof room->recorder->presenter, "%s", member->id);
     audit(room, facts, member);
     sample(room);
@@ -445,6 +429,7 @@ void recording_cut(struct room *room)
 void recordings_finish(struct room *room)
 {
     recording_cut(room);
+    unrecorded_reset(room, 0);
     for (int i = 0; i < room->n_recordings; i++)
         room_recording_finish(&room->recordings[i]);
     room->n_recordings = 0;

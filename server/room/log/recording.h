@@ -17,10 +17,9 @@ enum {
 /* The handlers of recording.start and recording.stop. */
 bool recording_start(struct room *room, struct member *member, const struct message *message, struct problem *problem);
 bool recording_stop(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-cJSON *recordings_list(const struct room *room);          /* room_recordings */
-bool recording_delete(struct room *room, const char *id); /* room_recording_delete */
-void recording_cut(struct room *room);                    /* room_recording_cut */
-void recording_item_changed(struct room *room, const char *id);
+cJSON *recordings_list(const struct room *room);               /* room_recordings */
+bool recording_delete(struct room *room, const char *id);      /* room_recording_delete */
+void recording_cut(struct room *room);                         /* room_recording_cut */
 void recording_show(struct room *room, struct member *member); /* tells a member who has just come */
 /* Writes what is due; returns when something is due again. */
 int64_t recording_settle(struct room *room);

@@ -13,7 +13,7 @@
 #include "server/room/log/room_recordings.h"
 #include "server/room/out/send.h"
 #include "server/room/people/presenter.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/room/streams/stream.h"
 #include "server/wire/json_merge.h"
 
@@ -408,7 +408,7 @@ bool replay_leave(struct room *room, struct member *member, const struct message
     room->replay = replay;
     replay_free(room);
     room->is_changed = true;
-    kept_changed(room, ROOM_ALL_PARTS);
+    room_event(room, ROOM_ALL_PARTS, NULL);
     for (const struct item *item = room->items; item && room->callbacks.item_changed; item = item->next)
         room->callbacks.item_changed(room->callbacks.context, room, item->row, item->id);
     return true;

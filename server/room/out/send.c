@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/room/items/item_list.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/wire/document.h"
 #include "server/wire/message.h"
@@ -85,26 +84,6 @@ void send_to_all(struct room *room, const struct message *message)
 
 /* Where the documents in a message are borrowed, message_finish is not called on it. */
 
-void send_welcome(struct room *room, struct member *member)
-{
-    struct message message = { .type = MESSAGE_WELCOME };
-    struct message_welcome *welcome = &message.welcome;
-    welcome->protocol = WIRE_PROTOCOL;
-    copy_text(welcome->room, sizeof welcome->room, room->id);
-    copy_text(welcome->member, sizeof welcome->member, member->id);
-    copy_text(welcome->secret, sizeof welcome->secret, member->secret);
-    copy_text(welcome->name, sizeof welcome->name, member->name);
-    copy_text(welcome->plan_id, sizeof welcome->plan_id, room->plan_id);
-    welcome->plan = room->plan;
-    welcome->scene = room->scene;
-    welcome->revision = room->revision;
-    copy_text(welcome->gl, sizeof welcome->gl, room->gl);
-    cJSON *items = items_rows(room);
-    welcome->items = items;
-    send_to_member(room, member, &message);
-    cJSON_Delete(items);
-}
-
 static void send_members_now(struct room *room, struct member *only)
 {
     struct message message = { .type = MESSAGE_MEMBERS, .members = { room_members(room) } };
@@ -117,7 +96,7 @@ static void send_members_now(struct room *room, struct member *only)
 
 void send_members(struct room *room)
 {
-    kept_changed(room, ROOM_MEMBERS);
+    room_event(room, ROOM_MEMBERS, NULL);
     int64_t due_us = room->members_sent_us + MEMBERS_EVERY_US * (int64_t)room->n_members;
     if (room->n_members > FEW_MEMBERS && room->now_us < due_us) {
         room->members_due_us = due_us;

@@ -12,7 +12,6 @@ void send_latest(struct room *room, struct member *member, uint32_t key, const s
 void send_latest_to_others(struct room *room, const struct member *but, uint32_t key, const struct message *message);
 void send_to_all(struct room *room, const struct message *message);
 
-void send_welcome(struct room *room, struct member *member);
 /* To all; in a large room soon, when the list went out just before (MEMBERS_EVERY_US). */
 void send_members(struct room *room);
 /* Like send_members, but to the newcomer at once. */

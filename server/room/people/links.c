@@ -10,7 +10,7 @@
 #include "core/base/mem.h"
 #include "server/room/out/audit.h"
 #include "server/room/people/room_links.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/room/state/secret.h"
 
 static_assert(SECRET_TEXT == 33, "room.h tells the size of a token");
@@ -47,7 +47,7 @@ bool link_create(struct room *room, enum wire_member_role role, int64_t expires_
     secret_make(token);
     secret_hash(token, link->token_hash);
     room->has_links = true;
-    kept_changed(room, ROOM_LINKS);
+    room_event(room, ROOM_LINKS, NULL);
     return true;
 }
 
@@ -101,7 +101,7 @@ void link_used(struct room *room, struct link *link, const struct member *member
         return;
     link->is_used = true;
     (void)snprintf(link->person, sizeof link->person, "%s", person);
-    kept_changed(room, ROOM_LINKS);
+    room_event(room, ROOM_LINKS, NULL);
 }
 
 bool links_write(const struct room *room, struct room_kept *kept)

@@ -6,12 +6,8 @@
 #include <string.h>
 
 #include "core/base/mem.h"
-#include "server/room/items/acceptance.h"
-#include "server/room/items/record_body.h"
-#include "server/room/log/recording.h"
-#include "server/room/log/replay.h"
+#include "server/room/items/item_list.h"
 #include "server/room/out/audit.h"
-#include "server/room/out/saved.h"
 #include "server/room/out/send.h"
 #include "server/room/people/control.h"
 #include "server/room/people/known.h"
@@ -182,11 +178,32 @@ static void refuse_link(struct room *room, void *connection, const char *name, c
     send_bye(room, connection, -1, refusal);
 }
 
-bool member_hello(struct room *room, void *connection, const struct message_hello *hello)
+/* The documents in the message are borrowed: message_finish is not called on it. */
+static void welcome_member(struct room *room, struct member *member)
+{
+    struct message message = { .type = MESSAGE_WELCOME };
+    struct message_welcome *welcome = &message.welcome;
+    welcome->protocol = WIRE_PROTOCOL;
+    (void)snprintf(welcome->room, sizeof welcome->room, "%s", room->id);
+    (void)snprintf(welcome->member, sizeof welcome->member, "%s", member->id);
+    (void)snprintf(welcome->secret, sizeof welcome->secret, "%s", member->secret);
+    (void)snprintf(welcome->name, sizeof welcome->name, "%s", member->name);
+    (void)snprintf(welcome->plan_id, sizeof welcome->plan_id, "%s", room->plan_id);
+    welcome->plan = room->plan;
+    welcome->scene = room->scene;
+    welcome->revision = room->revision;
+    (void)snprintf(welcome->gl, sizeof welcome->gl, "%s", room->gl);
+    cJSON *items = items_rows(room);
+    welcome->items = items;
+    send_to_member(room, member, &message);
+    cJSON_Delete(items);
+}
+
+struct member *member_hello(struct room *room, void *connection, const struct message_hello *hello)
 {
     if (hello->protocol != WIRE_PROTOCOL) {
         send_bye(room, connection, -1, old_page);
-        return false;
+        return NULL;
     }
     struct member *member = NULL;
     for (int i = 0; i < room->n_members && hello->member[0]; i++)
@@ -199,11 +216,11 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     const bool is_known = member || known_has(room, hello->member, hello->secret); /* whatever became of their link */
     if (!is_known && hello->link[0] && (refusal = link_find(room, hello->link, hello->person, &link)) != NULL) {
         refuse_link(room, connection, hello->name, refusal);
-        return false;
+        return NULL;
     }
     if (!audit_has_place(room, NULL)) {
         send_bye(room, connection, UNRECORDED_RETRY_MS, unrecorded);
-        return false;
+        return NULL;
     }
     const char *as = link ? "link" : "new";
     if (member) {
@@ -226,7 +243,7 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
             link_used(room, link, member, hello->person);
     } else {
         send_bye(room, connection, FULL_RETRY_MS, room_is_full);
-        return false;
+        return NULL;
     }
     if (hello->name[0])
         (void)snprintf(member->name, sizeof member->name, "%s", hello->name);
@@ -237,17 +254,12 @@ bool member_hello(struct room *room, void *connection, const struct message_hell
     (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
     record_entry(room, member, as);
     presence_entered(room, member);
-    send_welcome(room, member);
-    acceptances_tell(room, member);
-    send_renderer_state(room, member);
-    control_send(room, member);
-    saved_show(room, member);
-    files_show(room, member);
+    welcome_member(room, member);
+    return member;
+}
+
+void members_show(struct room *room, struct member *member)
+{
     (void)presenter_settle(room);
     send_members_to_newcomer(room, member);
-    pointers_show(room, member);
-    look_show(room, member);
-    recording_show(room, member);
-    replay_show(room, member);
-    return true;
 }

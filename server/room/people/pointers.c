@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "server/room/out/send.h"
+#include "server/room/state/event.h"
 
 static const int64_t kept_us = POINTER_KEPT_MS * INT64_C(1000);
 
@@ -53,7 +54,7 @@ bool pointer_move(struct room *room, struct member *member, const struct message
     pointing->view = to->has_point_mm ? (int)to->view : 0;
     pointing->moved_us = room->now_us;
     pointing->is_due = true;
-    room->unrecorded |= RECORDED_POINTERS;
+    room_event(room, ROOM_POINTERS, NULL);
     (void)pointers_settle(room);
     return true;
 }
@@ -64,7 +65,7 @@ void pointer_end(struct room *room, struct member *member)
         return;
     member->pointing.is_on = false;
     member->pointing.view = 0;
-    room->unrecorded |= RECORDED_POINTERS;
+    room_event(room, ROOM_POINTERS, NULL);
     pass_on(room, member);
 }
 

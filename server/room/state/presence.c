@@ -8,7 +8,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/wire/json.h"
 
 static struct presence *add(struct room *room)
@@ -52,7 +52,7 @@ void presence_entered(struct room *room, const struct member *member)
     (void)snprintf(stay->name, sizeof stay->name, "%s", member->name);
     stay->role = member->role;
     stay->left_ms = 0;
-    kept_changed(room, ROOM_PRESENCE);
+    room_event(room, ROOM_PRESENCE, NULL);
 }
 
 void presence_left(struct room *room, const struct member *member)
@@ -61,7 +61,7 @@ void presence_left(struct room *room, const struct member *member)
     if (!stay || stay->left_ms)
         return;
     stay->left_ms = clock_wall_ms();
-    kept_changed(room, ROOM_PRESENCE);
+    room_event(room, ROOM_PRESENCE, NULL);
 }
 
 static bool is_here(const struct room *room, const struct presence *stay)

@@ -186,8 +186,11 @@ struct link { /* lets new members in */
     bool is_one_use, is_used;
 };
 
-/* Parts of a room that a recording looks at, beside those of enum room_part. */
-enum { RECORDED_POINTERS = 64, RECORDED_ITEMS = 128 };
+struct unrecorded { /* has changed since the recording looked: event.h */
+    unsigned parts;
+    char (*items)[16]; /* ids, while a recording runs */
+    size_t n_items;
+};
 
 struct recorder;
 struct replay;
@@ -263,9 +266,9 @@ struct room {
     int n_recordings;
     double recording_speed;    /* > 0 */
     struct recorder *recorder; /* NULL: no recording runs */
-    unsigned unrecorded;       /* parts that have changed since the recorder looked */
-    struct replay *replay;     /* NULL: the room plays none */
-    bool has_links;            /* there was one; then those who are no members may do less: room_call_may */
+    struct unrecorded unrecorded;
+    struct replay *replay; /* NULL: the room plays none */
+    bool has_links;        /* there was one; then those who are no members may do less: room_call_may */
     struct stream *streams;
     struct stream
         *main; /* of them: what watch and displays show; of the last presenter when there is none; NULL: none */

@@ -191,5 +191,3 @@ struct room_counters {
 
 NODISCARD cJSON *room_members(const struct room *room);
 size_t room_n_connected(const struct room *room);
-/* True once a member has entered, a link was made, or the scene was changed. */
-bool room_was_used(const struct room *room);

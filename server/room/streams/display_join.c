@@ -5,7 +5,6 @@
 #include "core/base/mem.h"
 #include "server/room/streams/display.h"
 #include "server/room/streams/stream.h"
-#include "server/room/views/beginning.h"
 
 static bool is_of_kind(const struct stream *stream, int kind)
 {
@@ -79,7 +78,7 @@ static struct stream *make_shared(struct room *room, int kind, struct problem *p
     cJSON_Delete(patch);
     if (!view)
         return NULL;
-    struct stream *stream = stream_create(room, beginning_view(room, view), true);
+    struct stream *stream = stream_create(room, stream_first_view(room, view), true);
     stream->is_of_display = true;
     return stream;
 }

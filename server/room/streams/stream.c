@@ -8,7 +8,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/room/out/send.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/room/state/reach.h"
 #include "server/room/streams/display.h"
 #include "server/room/streams/size_class.h"
@@ -85,7 +85,7 @@ struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
     start_pace(room, stream);
     stream_reached(room, stream);
     if (is_shared)
-        kept_changed(room, ROOM_VIEWS);
+        room_event(room, ROOM_VIEWS, NULL);
     return stream;
 }
 
@@ -175,7 +175,7 @@ bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
     stream->view = view;
     stream->scene_is_stale = true;
     if (stream->is_shared)
-        kept_changed(room, ROOM_VIEWS);
+        room_event(room, ROOM_VIEWS, NULL);
     if (stream->kind != view_kind(view)) {
         stream->kind = view_kind(view);
         start_pace(room, stream);

@@ -41,6 +41,10 @@ void stream_send_refusal(struct room *room, struct member *member, const struct 
 void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence);
 /* Requests the pictures that are due; returns when to call again. */
 int64_t streams_request_due(struct room *room);
+/* The shared views as they are kept: [{view, mover}]. The text is the caller's; NULL: no memory. Reading leaves out
+ * what is not a view. */
+NODISCARD char *streams_write(const struct room *room);
+void streams_read(struct room *room, const cJSON *list);
 bool view_has_override(const cJSON *view);
 /* True if the view's override fits the plan, or the plan is not known yet. */
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem);
@@ -53,5 +57,8 @@ int view_kind(const cJSON *view);
 /* True if two view documents are of one kind and number, and oblique ones of one plane: then one shared stream serves
  * both. */
 bool views_are_alike(const cJSON *a, const cJSON *b);
+/* A shared view that is made: with the camera of the bookmark that the room began with, where it has none of its own.
+ * Takes document. */
+NODISCARD cJSON *stream_first_view(const struct room *room, cJSON *document);
 /* The shared stream for such views; NULL: there is none yet. */
 struct stream *stream_shared(const struct room *room, const cJSON *view);

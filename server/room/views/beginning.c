@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "server/room/items/bookmark_body.h"
-#include "server/room/streams/stream.h"
 #include "server/room/views/room_bookmarks.h"
 
 /* ---- bookmarks of a room ---------------------------------------------------------------------------------------- */
@@ -74,39 +73,6 @@ cJSON *beginning_scene(struct room *room, const cJSON *plan, const cJSON *defaul
     cJSON_Delete(room->begun);
     room->begun = begun;
     return cJSON_DetachItemFromObjectCaseSensitive(begun, "scene");
-}
-
-static bool has_camera(const cJSON *document)
-{
-    const cJSON *camera = cJSON_GetObjectItemCaseSensitive(document, "camera");
-    static const char *const fields[] = { "position_mm", "target_mm", "up", "height_mm" };
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
-        const cJSON *field = cJSON_GetObjectItemCaseSensitive(camera, fields[i]);
-        if (field && !cJSON_IsNull(field))
-            return true;
-    }
-    return false;
-}
-
-cJSON *beginning_view(const struct room *room, cJSON *document)
-{
-    const cJSON *entry;
-    cJSON_ArrayForEach(entry, room->first_views)
-    {
-        const cJSON *saved = cJSON_GetObjectItemCaseSensitive(entry, "document");
-        if (!views_are_alike(saved, document) || has_camera(document))
-            continue;
-        cJSON *patch = cJSON_CreateObject();
-        json_add(patch, "camera", cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(saved, "camera"), true));
-        json_add(patch, "beam", cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(saved, "beam"), true));
-        cJSON *view = view_document_patch(document, patch, NULL);
-        cJSON_Delete(patch);
-        if (!view)
-            return document; /* no memory: the home camera */
-        cJSON_Delete(document);
-        return view;
-    }
-    return document;
 }
 
 cJSON *room_beginning(const struct room *room)

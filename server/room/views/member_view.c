@@ -5,12 +5,11 @@
 #include <string.h>
 
 #include "server/room/out/send.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/own_view.h"
 #include "server/room/streams/main_view.h"
 #include "server/room/streams/stream.h"
-#include "server/room/views/beginning.h"
 
 /* ---- joining and leaving a stream ------------------------------------------------------------------------------- */
 
@@ -59,7 +58,7 @@ static void view_join(struct room *room, struct member *member, struct member_vi
     if (view->stream != stream) {
         view_leave(room, view);
         if (stream->is_of_display)
-            kept_changed(room, ROOM_VIEWS);
+            room_event(room, ROOM_VIEWS, NULL);
         stream->is_of_display = false;
         view->member = member;
         stream_add_viewer(stream, view);
@@ -131,7 +130,7 @@ static void join_shared(struct room *room, struct member *member, struct member_
 {
     struct stream *stream = stream_shared(room, document);
     if (!stream || stream->is_of_display) {
-        document = beginning_view(room, document);
+        document = stream_first_view(room, document);
         if (stream)
             (void)stream_set_view(room, stream, document);
         else

@@ -3,7 +3,7 @@
 
 #include "server/room/out/audit.h"
 #include "server/room/out/send.h"
-#include "server/room/state/kept.h"
+#include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/room/streams/main_view.h"
 #include "server/room/streams/stream.h"
@@ -40,7 +40,7 @@ static bool apply(struct room *room, const cJSON *patch, struct member *by, uint
     if (has_changed) {
         room->revision++;
         room->is_changed = true;
-        kept_changed(room, ROOM_SCENE);
+        room_event(room, ROOM_SCENE, NULL);
         if (is_audited)
             audit_scene(room, before, by ? by : room->caller);
         streams_scene_changed(room, before, patch);
@@ -69,7 +69,7 @@ bool scene_show(struct room *room, cJSON *scene)
     room->scene = scene;
     if (told->child) {
         room->revision++;
-        kept_changed(room, ROOM_SCENE);
+        room_event(room, ROOM_SCENE, NULL);
         streams_scene_changed(room, before, told);
         room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
         send_scene_patch(room, told, NULL, 0, true);

@@ -1,0 +1,42 @@
+/* Passes on which parts of a room have changed. */
+#include "server/room/state/event.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void unrecorded_reset(struct room *room, unsigned parts)
+{
+    free(room->unrecorded.items);
+    room->unrecorded = (struct unrecorded){ .parts = parts };
+}
+
+/* An item is recorded by its id; without memory for that all are compared. */
+static void add_item(struct room *room, const char *id)
+{
+    struct unrecorded *unrecorded = &room->unrecorded;
+    if (!room->recorder || (unrecorded->parts & ROOM_ITEMS))
+        return;
+    for (size_t i = 0; i < unrecorded->n_items; i++)
+        if (strcmp(unrecorded->items[i], id) == 0)
+            return;
+    void *more = realloc(unrecorded->items, (unrecorded->n_items + 1) * sizeof unrecorded->items[0]);
+    if (!more) {
+        unrecorded->parts |= ROOM_ITEMS;
+        return;
+    }
+    unrecorded->items = more;
+    (void)snprintf(unrecorded->items[unrecorded->n_items++], sizeof unrecorded->items[0], "%s", id);
+}
+
+void room_event(struct room *room, unsigned parts, const char *id)
+{
+    const unsigned kept = parts & ROOM_ALL_PARTS;
+    room->unrecorded.parts |= parts & ROOM_PLAN ? ROOM_ALL_PARTS : parts & ~(unsigned)ROOM_ITEMS;
+    if (parts & ROOM_ITEMS) {
+        room->saved.n_item_changes++;
+        add_item(room, id);
+    }
+    if (kept && room->callbacks.kept_changed && !room->replay) /* a replay is on disk already */
+        room->callbacks.kept_changed(room->callbacks.context, room, kept);
+}
