@@ -2,11 +2,12 @@
 //   THIRD-PARTY.md has a row for each package of deploy/packages and package.json, and none for others; of npm's with the licence they state
 //   the version stands in the Makefile, and everywhere else as there
 //   README.md has at most 6,000 bytes and names the browsers of deploy/promised.mjs
+//   each file of docs/decisions has its four headings, at most 40 lines, and a row in the README.md there
 //   every path that README.md, CONTRIBUTING.md, THIRD-PARTY.md and docs/**/*.md name exists
 // Prints one line a fault, "FILE:LINE: SENTENCE", and exits with 1 if there is one.
 import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
-import { dirname, join, normalize, resolve } from 'node:path';
+import { basename, dirname, join, normalize, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const root = process.argv[2] ?? '.';
@@ -133,8 +134,20 @@ function paths() {
   }
 }
 
+function decisions() {
+  const list = files.includes('docs/decisions/README.md') ? read('docs/decisions/README.md') : '';
+  for (const name of files.filter((file) => /^docs\/decisions\/\d/.test(file))) {
+    const text = read(name);
+    const headings = [...text.matchAll(/^## (.*)$/gm)].map(([, words]) => words).join(', ');
+    if (headings !== 'Context, Decision, Figures, Consequences') faults.push(`${name}:1: its headings are ${headings}`);
+    if (text.split('\n').length > 41) faults.push(`${name}:1: more than 40 lines`);
+    if (!list.includes(`(${basename(name)})`)) faults.push(`${name}:1: not in docs/decisions/README.md`);
+  }
+}
+
 thirdParty();
 versions();
+decisions();
 await readme();
 paths();
 for (const fault of faults) console.log(fault);

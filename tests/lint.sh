@@ -73,9 +73,10 @@ planted_documents() {
     sed -i 's/"version": "[0-9.]*",/"version": "9.9.9",/' "$folder/package.json"
     head -c 5000 /dev/zero | tr '\0' x >>"$folder/README.md"
     sed -i "s/chrome: '[0-9]*'/chrome: '999'/" "$folder/deploy/promised.mjs"
+    mkdir "$folder/docs/decisions" && printf '# 99. Planted\n\n## Decision\n' >"$folder/docs/decisions/99-planted.md"
     out=$("${NODE:-node}" tests/documents.mjs "$folder") && status=1
     for fault in 'threads.md:.*core/base/planted.c is not there' 'threads.md:.*planted.md leads nowhere' 'no row for planted-dev' 'package.json:1: version 9.9.9' \
-        'README.md:1: [0-9]* bytes' 'promise chrome 999'; do
+        'README.md:1: [0-9]* bytes' 'promise chrome 999' '99-planted.md:1: its headings' '99-planted.md:1: not in'; do
         grep -q "$fault" <<<"$out" || { echo "not found: $fault"; status=1; }
     done
     rm -rf "$folder"
