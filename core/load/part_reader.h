@@ -1,7 +1,7 @@
 #pragma once
-/* What the program has to know of a format of files: one struct part_reader each, all of them in reader_table.h. A
- * volume format gives a struct grid_reader and an estimate; the steps of loading that all volumes share are written
- * once, in recognise.c, read_part.c and summary.c. Any thread. */
+/* Interface of a format of files: one struct part_reader each, all of them in reader_table.h. A volume format gives a
+ * struct grid_reader and an estimate; the steps of loading that all volumes share are written once, in recognise.c,
+ * read_part.c and summary.c. Any thread. */
 #include "core/formats/nrrd.h"
 #include "core/load/recognition.h"
 
@@ -25,7 +25,7 @@ struct loading;
 struct part_reading;
 struct plan;
 
-/* What the header of a volume says. */
+/* Facts of a volume's header. */
 struct grid_facts {
     struct grid grid;
     bool has_segments; /* the file names labels itself */
@@ -55,7 +55,7 @@ struct part_need {
 struct part_need part_need_of_voxels(uint64_t n_voxels, enum raw_type type, enum raw_use use, uint64_t file_bytes,
                                      bool is_copied, bool is_taken);
 
-/* What names and headers say of a part, for the list of plans. */
+/* Facts of a part from names and headers, for the list of plans. */
 struct part_summary {
     size_t n_regions;            /* of a file that is regions alone */
     size_t n_segments;           /* labels that a label map names itself */

@@ -100,7 +100,7 @@ static bool read_region(const struct loading *loading, struct part_reading *read
     return read_grid(grid, &loading->folder, reading, region->name[0] ? RAW_MASK : RAW_LABELS);
 }
 
-/* What belongs to a dose is a volume; any other file is refused as NIfTI. */
+/* Reads a volume that belongs to a dose; any other file is refused as NIfTI. */
 static bool read_beside_dose(const struct loading *loading, struct part_reading *reading, enum raw_use use)
 {
     const struct part_reader *reader = reading->reader->grid ? reading->reader : &part_nifti;

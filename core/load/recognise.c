@@ -14,7 +14,7 @@
 #include "core/load/part_names.h"
 #include "core/load/reader_table.h"
 
-/* What is known of the folder beside the parts found so far. */
+/* Facts of the folder beside the parts found so far. */
 struct looked {
     struct recognition all;
     struct name_lists *lists;
