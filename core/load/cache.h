@@ -34,7 +34,7 @@ struct plan_cache_reading {
     void *context;
     const atomic_bool *cancel; /* may be NULL */
 };
-/* Fills everything of the plan but id, shapes and load_us. Returns false when there is no usable file; the plan is then
+/* Fills everything of the plan but id and load_us. Returns false when there is no usable file; the plan is then
  * unchanged. */
 NODISCARD bool plan_cache_read(const char *cache_folder, const struct plan_sources *sources,
                                const struct plan_cache_reading *reading, struct plan *plan);

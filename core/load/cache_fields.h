@@ -22,7 +22,7 @@ void fields_bytes(struct fields *fields, void *value, size_t size);
 void fields_u64(struct fields *fields, uint64_t *value);
 void fields_text(struct fields *fields, char *text, size_t size);
 
-/* Writes or reads everything of the plan but id, shapes, load_us and the voxels. Reading creates volumes with voxels
+/* Writes or reads everything of the plan but id, load_us and the voxels. Reading creates volumes with voxels
  * NULL and checks counts, indices, enums and numbers that must be finite. After is_bad the plan holds what was read so
  * far; the caller releases it. */
 void fields_plan(struct fields *fields, struct plan *plan);

@@ -1,6 +1,6 @@
 #pragma once
 /* The net thread: the loop of connections, rooms, the fleet. Everything about rooms and renderers happens on it; other
- * threads hand it tasks. The only folder that uses room, fleet and ws. */
+ * threads hand it tasks. Joins room, fleet, store and ws. */
 #include <stdint.h>
 
 #include "server/fleet/fleet.h"

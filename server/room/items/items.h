@@ -1,7 +1,8 @@
 #pragma once
-/* Items of a room: notes with their replies, and bookmarks. Puts, changes and deletes them with their limits and
- * versions, and tells the members. What a body holds is the business of its kind's reader alone (note_body.h). Internal
- * to server/room; what others use (room_items, room_restore_item, item_changed) stands in room.h. */
+/* Items of a room: notes with their replies, bookmarks, checks, decisions, signatures and acceptances. Puts, changes
+ * and deletes them with their limits and versions, and tells the members. What a body holds is the business of its
+ * kind's reader alone (note_body.h). Internal to server/room; what others use (room_items, room_restore_item,
+ * item_changed) stands in room.h. */
 #include "server/room/state/room_state.h"
 #include "server/wire/message.h"
 

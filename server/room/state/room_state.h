@@ -140,7 +140,7 @@ static inline bool view_is_watch(const struct member_view *view)
     return view->member && view == &view->member->views[ROOM_WATCH - 1];
 }
 
-struct item { /* a note, a reply or a bookmark */
+struct item { /* a reply is a note */
     struct item *next;
     char id[16];
     enum wire_item_kind kind;
