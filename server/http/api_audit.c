@@ -6,7 +6,7 @@
 
 #include "core/base/clock.h"
 
-static void record(struct call *call)
+static void audit_export(struct call *call)
 {
     struct net *net = ((struct api *)call->api)->net;
     static const char rooms[] = "/api/v1/rooms/";
@@ -55,6 +55,6 @@ bool api_audit_export(struct api *api, struct call *call, const char *what)
     if (!call->exported)
         api_audit_add_head(api, call);
     call->exported = what;
-    call->answering = record;
+    call->answering = audit_export;
     return true;
 }

@@ -101,15 +101,15 @@ cJSON *api_bookmark_of_token(struct api *api, const char *token)
     return body;
 }
 
-struct saved_search {
+struct bookmark_search {
     struct call *call;
     void (*handle)(struct api *api, struct call *call);
 };
 
 /* The room of the bookmark was looked for on the disk: it is awake, or there is none. */
-static void saved_awoke(void *context, const char *token, const struct problem *problem)
+static void bookmark_awoke(void *context, const char *token, const struct problem *problem)
 {
-    struct saved_search search = *(struct saved_search *)context;
+    struct bookmark_search search = *(struct bookmark_search *)context;
     (void)token;
     free(context);
     search.call->context = search.call; /* looked for already */
@@ -124,9 +124,9 @@ bool api_bookmark_sleeps(struct api *api, struct call *call, const char *token,
 {
     if (call->context || !net_n_asleep(api->net) || strlen(token) != BOOKMARK_TOKEN_CHARS)
         return false;
-    struct saved_search *search = mem_new(sizeof *search);
-    *search = (struct saved_search){ call, handle };
-    net_saved_wake(api->net, token, saved_awoke, search);
+    struct bookmark_search *search = mem_new(sizeof *search);
+    *search = (struct bookmark_search){ call, handle };
+    net_bookmark_wake(api->net, token, bookmark_awoke, search);
     return true;
 }
 

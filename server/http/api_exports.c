@@ -64,7 +64,7 @@ static bool plan_revision_is_settled(struct api *api, struct room *room, struct 
     return true;
 }
 
-static bool record_told(struct api *api, const struct call *call, const cJSON *body, struct problem *problem)
+static bool audit_told(struct api *api, const struct call *call, const cJSON *body, struct problem *problem)
 {
     const char *what = "", *name = "";
     struct room *room = net_room_find(api->net, call->ids[0]);
@@ -91,7 +91,7 @@ void api_room_export(struct api *api, struct call *call)
     cJSON *body;
     if (!call_read_object(call, media_types, &body))
         return;
-    const bool ok = record_told(api, call, body, &problem);
+    const bool ok = audit_told(api, call, body, &problem);
     cJSON_Delete(body);
     if (ok)
         api_audit_add_head(api, call);

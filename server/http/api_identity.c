@@ -26,7 +26,7 @@ static bool may_read(const struct api *api, const struct call *call, struct prob
     return api_audit_has_place(api, problem);
 }
 
-static void record(struct call *call)
+static void audit_identity(struct call *call)
 {
     struct net *net = ((struct api *)call->api)->net;
     const char *room_id = call_query(call, "room");
@@ -50,7 +50,7 @@ void api_plan_identity(struct api *api, struct call *call)
     }
     if (!api_find_plan(api, call, &plan))
         return;
-    call->answering = record;
+    call->answering = audit_identity;
     packet_init(&question, PACKET_IDENTITY);
     api_query_send(api, call, call->ids[0], &question, api_query_answer);
 }

@@ -88,8 +88,9 @@ void asleep_wake(struct net *net, const char *id,
     done(context, id, &problem);
 }
 
-void asleep_wake_saved(struct net *net, const char *token,
-                       void (*done)(void *context, const char *room_id, const struct problem *problem), void *context)
+void asleep_wake_bookmark(struct net *net, const char *token,
+                          void (*done)(void *context, const char *room_id, const struct problem *problem),
+                          void *context)
 {
     struct problem problem;
     if (!net->store || !net->n_asleep || !store_read(net->store, token, net->n_tickets + 1)) {

@@ -16,8 +16,9 @@ void asleep_tell(struct net *net, const char *room_id, const struct problem *pro
 /* The room that this answer of the store is about; NULL: it was deleted meanwhile. */
 struct asleep_room *asleep_of_answer(const struct net *net, const struct store_answer *answer);
 /* Like asleep_wake, for the room that has a bookmark with this token. */
-void asleep_wake_saved(struct net *net, const char *token,
-                       void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
+void asleep_wake_bookmark(struct net *net, const char *token,
+                          void (*done)(void *context, const char *room_id, const struct problem *problem),
+                          void *context);
 /* The waiter for that whose answer this is; NULL: none. */
 const struct waiter *asleep_waiter_of_answer(const struct net *net, const struct store_answer *answer);
 void asleep_finish(struct net *net);

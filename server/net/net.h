@@ -71,8 +71,8 @@ bool net_room_is_asleep(const struct net *net, const char *room_id);
 void net_room_wake(struct net *net, const char *room_id,
                    void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
 /* Like net_room_wake, for the room that has the bookmark with this token; not-found when there is none. */
-void net_saved_wake(struct net *net, const char *token,
-                    void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
+void net_bookmark_wake(struct net *net, const char *token,
+                       void (*done)(void *context, const char *room_id, const struct problem *problem), void *context);
 /* Reads one segment of a recording: from the last batch that begins with a state at or before t_ms up to the next such
  * batch, at next_ms. done is called once, later; n 0: they cannot be read, and problem says why. False with problem:
  * the disk has too much to do, and done is not called. */

@@ -391,10 +391,10 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
         asleep_tell(net, token, problem.type == PROBLEM_NONE ? NULL : &problem);
 }
 
-void net_saved_wake(struct net *net, const char *token,
-                    void (*done)(void *context, const char *room_id, const struct problem *problem), void *context)
+void net_bookmark_wake(struct net *net, const char *token,
+                       void (*done)(void *context, const char *room_id, const struct problem *problem), void *context)
 {
-    asleep_wake_saved(net, token, done, context);
+    asleep_wake_bookmark(net, token, done, context);
 }
 
 size_t net_n_rooms(const struct net *net)

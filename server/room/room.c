@@ -296,8 +296,8 @@ static void whole_number(const cJSON *json, const char *name, double most, int64
     *value = number >= 0 && number <= most ? (int64_t)number : 0;
 }
 
-static void record_refusal(struct room *room, const struct member *member, const char *what,
-                           const struct problem *problem)
+static void audit_refused(struct room *room, const struct member *member, const char *what,
+                          const struct problem *problem)
 {
     const struct audit_act row = {
         .by = member, .action = "refused", .detail = cJSON_CreateObject(), .is_refused = true, .before = -1, .after = -1
@@ -343,7 +343,7 @@ static bool refuse(struct room *room, void *connection, const char *text, size_t
     whole_number(json, "input", UINT32_MAX, &input);
     cJSON_Delete(json);
     if (problem->type == PROBLEM_FORBIDDEN || problem->type == PROBLEM_NOT_PRESENTER)
-        record_refusal(room, member, to, problem);
+        audit_refused(room, member, to, problem);
     return send_problem(room, connection, to, view, input, problem);
 }
 

@@ -51,7 +51,7 @@ static const struct member *find(const struct room *room, const char *id)
     return NULL;
 }
 
-static void record(struct room *room)
+static void audit_control(struct room *room)
 {
     const char *act = wire_control_act_words.words[room->control_act.act];
     const struct audit_act row = { .by = find(room, room->control_act.by),
@@ -75,7 +75,7 @@ int64_t control_settle(struct room *room)
     (void)snprintf(message.control.by, sizeof message.control.by, "%s", room->control_act.by);
     room->control_is_new = false;
     if (room->control_act.act != WIRE_CONTROL_ACT_NONE)
-        record(room);
+        audit_control(room);
     send_to_all(room, &message);
     message_finish(&message);
     return INT64_MAX;

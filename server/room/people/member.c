@@ -149,7 +149,7 @@ static struct member *member_create(struct room *room, const char *name, enum wi
 }
 
 /* as: "new", "back", or "link" for a new one who came by a link. */
-static void record_entry(struct room *room, const struct member *member, const char *as)
+static void audit_entered(struct room *room, const struct member *member, const char *as)
 {
     const struct audit_act row = {
         .by = member, .action = "open", .detail = cJSON_CreateObject(), .before = -1, .after = room->revision
@@ -252,7 +252,7 @@ struct member *member_hello(struct room *room, void *connection, const struct me
     (void)snprintf(member->person, sizeof member->person, "%s", hello->person);
     member->connection = connection;
     (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
-    record_entry(room, member, as);
+    audit_entered(room, member, as);
     presence_entered(room, member);
     welcome_member(room, member);
     return member;
