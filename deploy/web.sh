@@ -12,6 +12,7 @@ part=$dest.part
 rm -rf "$part"
 mkdir -p "$part/lib/directives" "$part/gen"
 [ ! -d web ] || cp -r web/. "$part/"
+find "$part" -name README.md -delete # they are for whoever changes the page
 
 # The libraries' source maps stay behind, so the comments that name them go too.
 library() { sed 's|//# sourceMappingURL=.*$||' "node_modules/$1" >"$part/lib/$2"; }

@@ -122,7 +122,7 @@ function paths() {
     for (const match of text.matchAll(/`([^`\n]+)`/g)) {
       const word = match[1].replace(/:\d+$/, '');
       if (!isPath(word) || word.startsWith('build/') || word.startsWith('node_modules/')) continue;
-      const found = name === 'docs/where.md' ? exists(word.split('/').at(-1) || word) : exists(word);
+      const found = exists(word);
       if (!found) faults.push(`${name}:${lineOf(text, match.index)}: ${match[1]} is not there`);
     }
     for (const match of text.matchAll(/\]\(([^)\s#]+)(?:#[^)]*)?\)/g)) {

@@ -83,7 +83,7 @@ export function findings(top) {
     const mine = own.filter((path) => homeOf(path) === readme);
     const nLines = text.trimEnd().split('\n').length;
     if (nLines > mostLines) said.push(`${readme} has ${nLines} lines; at most ${mostLines}`);
-    const exact = new Map(); // stem to lines
+    const exact = new Map(); // path to lines
     const patterns = [];
     for (const { word, line } of wordsOf(text)) {
       const found = pathsOf(top, files, folder, word);
@@ -101,11 +101,12 @@ export function findings(top) {
         continue;
       }
       if (!statSync(join(top, path)).isFile() || !mine.includes(path)) continue;
-      exact.set(stemOf(path), [...(exact.get(stemOf(path)) ?? []), line]);
+      exact.set(path, [...(exact.get(path) ?? []), line]);
     }
     for (const [stem, lines] of exact)
       if (lines.length > 1) said.push(`${stem} is named ${lines.length} times in ${readme}: lines ${lines.join(', ')}`);
-    const times = (path) => (exact.has(stemOf(path)) ? 1 : patterns.filter(({ stems }) => stems.has(stemOf(path))).length);
+    const stems = new Set([...exact.keys()].map(stemOf));
+    const times = (path) => (stems.has(stemOf(path)) ? 1 : patterns.filter((pattern) => pattern.stems.has(stemOf(path))).length);
     for (const sub of new Set(mine.map((path) => dirname(path)))) {
       const here = mine.filter((path) => dirname(path) === sub);
       const unnamed = here.filter((path) => times(path) === 0);
