@@ -307,7 +307,7 @@ static void audit_refused(struct room *room, const struct member *member, const 
     audit_tell(room, &row);
 }
 
-/* What a member is told who has just come, after welcome, in this order. */
+/* Messages to a newcomer after welcome, in this order. */
 static void (*const shown_to_newcomer[])(struct room *room, struct member *member) = {
     acceptances_tell, send_renderer_state, control_send, saved_show,     files_show,
     members_show,     pointers_show,       look_show,    recording_show, replay_show,

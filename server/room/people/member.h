@@ -5,7 +5,7 @@
 
 /* Makes the connection a member; returns false when it was refused with bye. */
 struct member *member_hello(struct room *room, void *connection, const struct message_hello *hello);
-/* Who is there and who presents: to a member who has just come, and to the others. */
+/* Sends the list of members and the presenter, to a newcomer and to the others. */
 void members_show(struct room *room, struct member *member);
 void member_disconnected(struct room *room, struct member *member, int64_t heard_us); /* away since heard_us */
 /* Drops members that have been away for ROOM_MEMBER_KEPT_S. Returns when the next one is due. */
