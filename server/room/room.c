@@ -264,6 +264,7 @@ static const struct {
     { MESSAGE_HELLO, handle_second_hello },
     { MESSAGE_VIEW_OPEN, member_view_open },
     { MESSAGE_VIEW_PATCH, member_view_patch },
+    { MESSAGE_VIEW_ACTIVE, member_view_active },
     { MESSAGE_VIEW_CLOSE, member_view_close },
     { MESSAGE_WATCH, watch_set },
     { MESSAGE_FOLLOW, member_follow },

@@ -16,12 +16,14 @@ void main_view_patched(struct member *member, int number, const cJSON *patch)
     bool is_act = false;
     for (const cJSON *field = patch->child; field; field = field->next)
         is_act = is_act || strcmp(field->string, "size_px") != 0;
-    if (!patch->child) {
-        member->active = number;
-        member->has_told_active = true;
-    } else if (is_act) {
+    if (is_act)
         main_view_acted(member, number);
-    }
+}
+
+void main_view_active(struct member *member, int number)
+{
+    member->active = number;
+    member->has_told_active = true;
 }
 
 static struct stream *shared_of(const struct member *member, int number)

@@ -267,6 +267,18 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
     return true;
 }
 
+bool member_view_active(struct room *room, struct member *member, const struct message *message,
+                        struct problem *problem)
+{
+    const struct member_view *view = open_view(member, message->view_active.view, problem);
+    if (!view)
+        return false;
+    main_view_active(member, (int)message->view_active.view);
+    if (!view->is_following || member_presents(room, member))
+        view->stream->acted_us = room->now_us;
+    return true;
+}
+
 bool member_view_close(struct room *room, struct member *member, const struct message *message, struct problem *problem)
 {
     struct member_view *view = open_view(member, message->view_close.view, problem);

@@ -8,6 +8,8 @@
 bool member_view_open(struct room *room, struct member *member, const struct message *message, struct problem *problem);
 bool member_view_patch(struct room *room, struct member *member, const struct message *message,
                        struct problem *problem);
+bool member_view_active(struct room *room, struct member *member, const struct message *message,
+                        struct problem *problem);
 bool member_view_close(struct room *room, struct member *member, const struct message *message,
                        struct problem *problem);
 bool member_follow(struct room *room, struct member *member, const struct message *message, struct problem *problem);

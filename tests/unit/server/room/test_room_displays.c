@@ -136,14 +136,14 @@ static void a_screen_that_names_no_view_shows_the_one_the_presenter_works_in(voi
     struct screen screen = { 0 };
     fake_join(&fake, &ann, true);
     open_axial(&ann);
-    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":2,\"patch\":{}}");
+    fake_say(&fake, &ann, "{\"type\":\"view.active\",\"view\":2}");
     struct room_display *display = add_screen(&screen);
     assert_string_equal(screen.kind, "axial");
     assert_string_equal(room_display_kind(display), "axial");
     size_t n_pictures = screen.n_pictures;
     assert_int_equal(n_pictures, 1);
 
-    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{}}");
+    fake_say(&fake, &ann, "{\"type\":\"view.active\",\"view\":1}");
     assert_string_equal(screen.kind, "3d"); /* the picture that is there */
     assert_int_equal(screen.n_pictures, n_pictures + 1);
     fake_turn(&fake, &ann, 8, 21);
@@ -170,7 +170,7 @@ static void a_screen_that_names_a_view_keeps_it(void **state)
     open_axial(&ann);
     struct room_display *display = room_display_add(fake.room, "axial", &callbacks, fake.now_us, &problem);
     assert_non_null(display);
-    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{}}");
+    fake_say(&fake, &ann, "{\"type\":\"view.active\",\"view\":1}");
     fake_turn(&fake, &ann, 8, 21);
     settle_one();
     assert_string_equal(room_display_kind(display), "axial");
@@ -187,7 +187,7 @@ static void of_several_screens_each_goes_over(void **state)
         displays[i] = add_screen(&screens[i]);
     fake_join(&fake, &ann, true);
     open_axial(&ann);
-    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":2,\"patch\":{}}");
+    fake_say(&fake, &ann, "{\"type\":\"view.active\",\"view\":2}");
     for (int i = 0; i < 3; i++) {
         assert_string_equal(screens[i].kind, "axial");
         assert_int_equal(screens[i].n_ended, 0);

@@ -58,7 +58,7 @@ static void open_axial(struct fake_page *page)
 
 static void work_in(struct fake_page *page, int view)
 {
-    fake_say(&fake, page, "{\"type\":\"view.patch\",\"view\":%d,\"patch\":{}}", view);
+    fake_say(&fake, page, "{\"type\":\"view.active\",\"view\":%d}", view);
 }
 
 /* Ann presents, Ben looks for himself; all is drawn and acknowledged. */
@@ -237,6 +237,8 @@ static void of_a_presenter_who_tells_nothing_the_view_acted_in_counts(void **sta
     fake_say(&fake, &ann,
              "{\"type\":\"scene.patch\",\"view\":2,\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.5}}}}");
     assert_string_equal(told(&ben), "axial");
+    fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":1,\"patch\":{}}");
+    assert_string_equal(told(&ben), "axial"); /* nor is an empty patch */
     fake_turn(&fake, &ann, 8, 21);
     assert_string_equal(told(&ben), "3d");
 }

@@ -12,7 +12,7 @@ const timers = { now: () => performance.now(), setTimeout: (...more) => setTimeo
 /** A wheel turns slices of a pane that is not the active one: so every act in a pane counts, not the focus alone. */
 function tellActive({ room, ui, connection }) {
   const worked = new WorkedIn((view) => {
-    if (isShown(view)) connection.send({ type: 'view.patch', view, patch: {} });
+    if (isShown(view)) connection.send({ type: 'view.active', view });
   }, timers);
   const isShown = (view) => room.following.isPresenting.peek() && room.view(view)?.isOpen.peek();
   const onAct = ({ target }) => {
