@@ -11,7 +11,7 @@ const words = {
   span: { type: 'array', items: { type: 'number' }, minItems: 2, maxItems: 2 },
   any: {},
 };
-const ofOthers = ['scene', 'problem']; // schemas that the document has besides these
+const ofOthers = ['scene', 'view', 'camera', 'problem']; // schemas that the document has besides these
 const ofFiles = ['json', 'image', 'surface', 'curves', 'scene']; // kinds of answers that openapi.mjs knows
 
 /** @returns {Object<string, object>} "answer.NAME" to its schema. Throws where a name is not known, or is used by nobody. */

@@ -144,7 +144,12 @@ test('rooms, and what their members write down', async () => {
     () => ask(`${at}/recordings`),
     (answer) => answer.recordings.length > 0,
   );
-  await ask(`${at}/recordings/${recordings[0].id}/state?t_ms=0`);
+  const recorded = `${at}/recordings/${recordings[0].id}/state?t_ms=0`;
+  await until(
+    () => call(`${daemon.url}${recorded}`),
+    ({ status }) => status === 200, // its first second is written after it
+  );
+  await ask(recorded);
   await ask(`${at}/links`, 'POST', { role: 'reviewer' });
 });
 
