@@ -5,7 +5,7 @@
 //   licences.txt                    of the libraries and the font
 //   FILE.gz FILE.br                 beside each text file that gets smaller
 // The files in page/ carry a hash of their contents in their names, so the daemon lets browsers keep them for ever.
-import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { createHash } from 'node:crypto';
 import { basename, dirname, join } from 'node:path';
 import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
@@ -54,22 +54,34 @@ async function joinModules(entry) {
   ];
   const start = [...parts.keys()].find((name) => parts.get(name).entryPoint === entry);
   const first = [...new Set(withImports(start))];
-  const longName = (name, exported) => `p${first.indexOf(name)}_${exported}`;
-  const exportsOf = (name, words) => parts.get(name).exports.map(words).join(', ');
-  const whole = [
-    ...first.slice(0, -1).map((name) => `export { ${exportsOf(name, (word) => `${word} as ${longName(name, word)}`)} } from './${name}';`),
-    `import './${start}';`,
-  ].join('\n');
+  const taking = /import(?:\{([^}]*)\}from)?"\.\/([^"]+)";/g;
+  /** "exported as local, ..." of a statement that takes something from a part of the first file. */
+  const wordsOf = (words) =>
+    words.split(',').map((word) => {
+      const [exported, local = exported] = word.split(' as ');
+      return { exported, local };
+    });
+  /** The exports that other parts take from the first file: for each of its parts, the names there and in the joined file. */
+  const taken = new Map(first.map((name) => [name, new Map()]));
+  const shortName = new Map();
+  let n = 0;
+  for (const [name, text] of textOf)
+    if (!first.includes(name))
+      for (const [, words, from] of text.matchAll(taking))
+        if (words && taken.has(from))
+          for (const { exported } of wordsOf(words))
+            if (!taken.get(from).has(exported)) taken.get(from).set(exported, `p${(n++).toString(36)}`);
+  const exportsOf = (names) => [...names].map(([exported, long]) => `${exported} as ${long}`).join(', ');
+  const whole = [...taken]
+    .map(([name, names]) => (names.size ? `export { ${exportsOf(names)} } from './${name}';` : `import './${name}';`))
+    .join('\n');
 
   /** The text of a part that is loaded later: what it takes from the first file it takes under the names that file has for it. */
   const fromFirst = (text) =>
-    text.replace(/import(?:\{([^}]*)\}from)?"\.\/([^"]+)";/g, (statement, words, name) => {
+    text.replace(taking, (statement, words, name) => {
       if (!first.includes(name)) return statement;
       if (!words) return ''; // it is there already
-      const named = words.split(',').map((word) => {
-        const [exported, local = exported] = word.split(' as ');
-        return `${longName(name, exported)} as ${local}`;
-      });
+      const named = wordsOf(words).map(({ exported, local }) => `${shortName.get(taken.get(name).get(exported))} as ${local}`);
       return `import{${named.join(',')}}from"./${finalName(start)}";`;
     });
 
@@ -89,7 +101,22 @@ async function joinModules(entry) {
   });
   const ready = { ...shared, format: 'esm', banner: { js: notice } };
   const lazy = [...parts.keys()].filter((name) => parts.get(name).entryPoint && name !== start);
-  await build({ ...ready, entryPoints: [{ in: 'whole', out: finalName(start).replace(/\.js$/, '') }], plugins: [plugin(true)] });
+  const { outputFiles: joined } = await build({
+    ...ready,
+    entryPoints: [{ in: 'whole', out: finalName(start).replace(/\.js$/, '') }],
+    plugins: [plugin(true)],
+    write: false,
+  });
+  // exports keep the short names that they have inside: some hundred names less to send
+  const [{ path, text: mainText }] = joined;
+  const list = mainText.match(/export\s*\{([^}]*)\};?\s*$/);
+  if (!list) throw new Error('the joined modules do not end with what they export');
+  for (const word of list[1].split(',')) {
+    const [local, name = local] = word.trim().split(' as ');
+    shortName.set(name, local);
+  }
+  mkdirSync(dirname(path), { recursive: true });
+  writeFileSync(path, `${mainText.slice(0, list.index)}export{${[...new Set(shortName.values())].join(',')}};\n`);
   await build({
     ...ready,
     entryPoints: lazy.map((name) => ({ in: name, out: finalName(name).replace(/\.js$/, '') })),

@@ -1,60 +1,57 @@
 // One pane: header, picture with its overlay, slice slider.
+import { followMark } from './follow_mark.js';
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { live } from '../../lib/directives/live.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
+import { features, partsOf } from '../features/index.js';
 import { fidelity } from '../room/fidelity.js';
 import { heightOver, positionOf, reachOf, stepAcross } from '../room/obliques.js';
 import { crosshair, isLowWhite, shownImage } from '../room/plan.js';
-import { nameSome } from '../features/regions/refusals.js';
 import { describe } from '../room/camera.js';
 import { isInSpace, isTilted, isTurnable } from '../room/kinds.js';
 import { letters } from './letters.js';
 import { overlay } from './overlay.js';
 import { Painter } from './painter.js';
 import { PointerReader } from './pointer.js';
-import { ofFits } from '../features/fits/feature.js';
-import { millimetres, number, windowText } from '../parts/format.js';
-import { ofDose, ofDrawnDose } from '../features/dose/feature.js';
+import { millimetres, nameSome, number, windowText } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { mount, variables } from '../parts/mount.js';
-import { ofNotes } from '../features/notes/feature.js';
 import { hasOwnRegions, orientation } from './orientation_menu.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { paneKind } from './pane_kind.js';
-import { PaneLines } from '../features/planes/pane_lines.js';
-import { followMark } from '../shell/room_chip.js';
 import { readOut, spoken } from './read_out.js';
-import { ofTracks } from '../features/tracks/feature.js';
-import { imageLegend } from '../features/image/window_fields.js';
 
 const resizeMs = 120;
 const maxSide = 4096;
 const lowPane = 300; // px; lower slice panes show legends only while they are active
 
 export class Pane {
+  #world;
   #room;
   #ui;
   #view;
   #refused;
   #probed;
-  #doses;
   #size = signal([0, 0]);
   #resizeTimer = 0;
   #stops = [];
   #lastCaption = '';
 
-  /** @param {HTMLElement} host @param {object} world {room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted} */
-  constructor(host, { room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted }, view) {
+  /** @param {HTMLElement} host @param {object} world that of the room page @param {import('../room/view.js').ViewState} view */
+  constructor(host, world, view) {
+    const { room, ui, refused, probed, decode, redraw, onPainted } = world;
+    this.#world = world;
     this.#room = room;
     this.#ui = ui;
     this.#view = view;
     this.#refused = refused;
     this.#probed = probed;
-    this.#doses = doses;
     this.host = host;
-    this.actions = new PaneActions(room, ui, api, view.number, { histograms, ellipses });
-    this.lines = new PaneLines(room, ui, view, () => this.place);
+    const place = () => this.place;
+    const make = (pane) =>
+      features.flatMap((feature) => feature.pane?.(Object.assign(Object.create(world), { host, place, ...pane }), view) ?? []);
+    this.actions = new PaneActions(world, view.number, make);
     this.badge = computed(() =>
       fidelity({
         link: room.link.value,
@@ -149,11 +146,12 @@ export class Pane {
     const { name, number: n } = this.#view;
     const isMaximised = this.#ui.maximised.value === n;
     this.actions.box = this.#box;
-    const { lines, handles } = this.lines.draw();
+    const { parts } = this.actions;
+    const lines = parts.flatMap((part) => part.lines?.() ?? []);
     const tools = this.actions.tools.draw(this.place);
     return html`
       <header class=${classMap({ 'pane-head': true, active: this.#ui.active.value === n })}>
-        ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${tools.where ?? this.#whereInHead()}</span>${ofFits(this.#room)?.wordMark({ room: this.#room }) ?? nothing}${tools.head ?? nothing}<span class="grow"></span>
+        ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${tools.where ?? this.#whereInHead()}</span>${parts.map((part) => part.head?.())}${tools.head ?? nothing}<span class="grow"></span>
         ${followMark(this.#room)}${this.#badgeButton()}
         <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
           title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${name}`}>
@@ -166,7 +164,7 @@ export class Pane {
             this.#ui.active.value = n;
           }}>
           <canvas width="16" height="16"></canvas>
-          ${lines}<svg class="overlay" aria-hidden="true">${this.#overlay()}${tools.overlay}</svg>${handles}${this.#notePins()}${tools.handles}
+          ${lines.map((part) => part.lines)}<svg class="overlay" aria-hidden="true">${this.#overlay()}${tools.overlay}</svg>${lines.map((part) => part.handles)}${this.#pins()}${tools.handles}
           <svg class="overlay pointers" aria-hidden="true"></svg><div class="pointed"></div>
           ${this.#cover()}
         </div>
@@ -219,35 +217,34 @@ export class Pane {
     const image = shownImage(plan, scene);
     const plane = isInSpace(view.kind) ? null : this.actions.plane;
     const tolerance = plane && stepAcross(plane.normal, image?.stepMm ?? [1, 1, 1]) / 2;
-    return html`${this.actions.measures.overlay({ header, box, pane })}${ofDrawnDose(this.#room)?.lineLabels({ doses: this.#doses, view, host: this.host, header, box })}${ofDrawnDose(this.#room)?.pinMarks({ scene, plane, tolerance, header, box, pane })}${plane ? nothing : ofTracks(this.#room)?.chosenTrack({ room: this.#room, ui: this.#ui }, { header, box })}${overlay(
-      {
-        kind: view.kind,
-        header,
-        box,
-        pane,
-        isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
-        axes: scene.axes?.visible ? plan?.bounds : null,
-        point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
-        pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
-        windowText: image
-          ? windowText(scene.image.window, image.unit, isLowWhite(image, scene))
-          : plan?.regions.length
-            ? 'No image: regions'
-            : '',
-      },
-    )}`;
+    const layers = this.actions.parts.map((part) => part.layer?.({ scene, plane, tolerance, header, box, pane }));
+    return html`${layers}${overlay({
+      kind: view.kind,
+      header,
+      box,
+      pane,
+      isOffPlane: isTilted(view.kind) && Math.abs(heightOver(plane, crosshair(scene))) > tolerance,
+      axes: scene.axes?.visible ? plan?.bounds : null,
+      point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
+      pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
+      windowText: image
+        ? windowText(scene.image.window, image.unit, isLowWhite(image, scene))
+        : plan?.regions.length
+          ? 'No image: regions'
+          : '',
+    })}`;
   }
 
-  #notePins() {
-    const notes = ofNotes(this.#room);
+  /** Pins on the picture; their place is worked out where there is one. */
+  #pins() {
     const { scene, plan } = this.#room;
-    if (!notes || !scene.value) return nothing;
-    const plane = isInSpace(this.#view.kind) ? null : this.actions.plane;
-    const tolerance = plane && stepAcross(plane.normal, shownImage(plan.value, scene.value)?.stepMm ?? [1, 1, 1]) / 2;
-    return notes.notePins(
-      { room: this.#room, ui: this.#ui },
-      { header: this.#view.painted.value, box: this.#box, pane: this.#size.value, plane, tolerance },
-    );
+    if (!scene.value) return nothing;
+    const place = () => {
+      const plane = isInSpace(this.#view.kind) ? null : this.actions.plane;
+      const tolerance = plane && stepAcross(plane.normal, shownImage(plan.value, scene.value)?.stepMm ?? [1, 1, 1]) / 2;
+      return { header: this.#view.painted.value, box: this.#box, pane: this.#size.value, plane, tolerance };
+    };
+    return this.actions.parts.map((part) => part.pins?.(place));
   }
 
   #cover() {
@@ -287,14 +284,8 @@ export class Pane {
         : nothing;
     const reasons = isInSpace(this.#view.kind) ? this.#refused.value : this.#view.missing.value.reasons;
     const missing = plan.regions.filter(({ id }) => reasons[id]);
-    const images = isInSpace(this.#view.kind) ? nothing : imageLegend({ room: this.#room }, this.#view.number);
-    const dose = ofDrawnDose(this.#room)?.doseLegend(
-      { room: this.#room, ui: this.#ui, doses: this.#doses },
-      this.#view,
-      this.#size.value,
-      missing.length > 0 || check !== nothing,
-    );
-    return html`${images}${dose}${missing.length ? this.#missing(scene, missing, reasons, check) : check}`;
+    const legends = this.actions.parts.map((part) => part.legend?.(this.#size.value, missing.length > 0 || check !== nothing));
+    return html`${legends}${missing.length ? this.#missing(scene, missing, reasons, check) : check}`;
   }
 
   #missing(scene, missing, reasons, check) {
@@ -341,16 +332,9 @@ export class Pane {
     if (!this.#view.painted.value?.is_still || isOld) return this.#lastCaption;
     const facts =
       this.#ui.active.value === this.#view.number && result
-        ? [...spoken(result, this.#room.plan.value, this.#room.scene.value), ofDose(this.#room)?.doseHere({ doses: this.#doses })]
+        ? [...spoken(result, this.#room.plan.value, this.#room.scene.value), ...partsOf('here', this.#world)]
         : [];
     this.#lastCaption = [this.#view.name, this.#where(), ...facts].filter(Boolean).join(', ');
     return this.#lastCaption;
   }
-}
-
-/** "R1" for "Reviewer 1", "AL" for "Ada Lovelace". */
-export function initials(name) {
-  const words = name.trim().split(/\s+/);
-  const letters = words.length > 1 ? words[0][0] + words.at(-1)[0] : words[0].slice(0, 2);
-  return letters.toUpperCase();
 }

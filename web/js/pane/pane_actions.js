@@ -1,21 +1,15 @@
 // Turns pointer and keyboard input on a pane into changes of camera, crosshair, slice and window.
 import { beamShown } from '../room/beam_line.js';
+import { features } from '../features/index.js';
 import { layouts } from '../room/layout.js';
 import { originAt, planeOfView, positionOf, stepAcross } from '../room/obliques.js';
 import { crosshair, crosshairPatch, shownImage } from '../room/plan.js';
 import { Pointed } from '../room/pointed.js';
 import { isInSpace, isTilted } from '../room/kinds.js';
-import { toggleCaps, toggleClips } from '../features/clip/clip_rows.js';
-import { beamKey, toggleBeamEye } from '../features/beams/beam_view.js';
-import { ofDose, pinHere } from '../features/dose/feature.js';
 import { PaneCamera } from './pane_camera.js';
-import { PaneMeasures } from '../features/measures/pane_measures.js';
 import { PanePick } from './pane_pick.js';
 import { PaneTools } from './pane_tools.js';
 import { PaneWindow } from './pane_window.js';
-import { pointKey } from '../features/pointers/feature.js';
-import { noteHere } from '../features/notes/feature.js';
-import { toggleTracks } from '../features/tracks/feature.js';
 
 const degreesPerPixel = 0.4;
 const keyDegrees = 5;
@@ -26,6 +20,7 @@ const dragZoomPerPixel = 0.006;
 const looks = { 1: ['anterior', 'posterior'], 3: ['left', 'right'], 7: ['superior', 'inferior'] };
 
 export class PaneActions {
+  #world;
   #room;
   #ui;
   #number;
@@ -33,8 +28,10 @@ export class PaneActions {
   #isPicking = false; // the crosshair follows the pointer in 3-D; one question at a time
   #nextPick = null;
 
-  /** @param {import('../room/room.js').RoomState} room @param {import('../room/ui.js').UiState} ui */
-  constructor(room, ui, api, number, { histograms, ellipses }) {
+  /** @param {object} world that of the room page @param {number} number of the view @param {(pane: object) => object[]} parts makes what the features have in this pane */
+  constructor(world, number, parts) {
+    const { room, ui, api, histograms } = world;
+    this.#world = world;
     this.#room = room;
     this.#ui = ui;
     this.#number = number;
@@ -42,13 +39,9 @@ export class PaneActions {
     this.window = new PaneWindow(room, histograms, number);
     this.cameras = new PaneCamera(room, ui, number, () => this.box);
     this.#pick = new PanePick(room, api, this.view, () => this.box);
-    this.measures = new PaneMeasures(
-      { room, ui, ellipses },
-      this.view,
-      () => this.box,
-      (x, y) => this.#pick.pointAt(x, y),
-    );
-    this.tools = new PaneTools({ room, ui, api, view: this.view, actions: this });
+    const pane = { box: () => this.box, pointAt: (x, y) => this.#pick.pointAt(x, y) };
+    this.parts = parts(pane);
+    this.tools = new PaneTools({ room, ui, api, view: this.view, actions: this }, this.parts);
     this.pointed = new Pointed((x, y) => this.#pick.factsAt(x, y));
   }
 
@@ -74,11 +67,11 @@ export class PaneActions {
   start = (mode, at) => {
     this.#ui.active.value = this.#number;
     this.pointed.hide();
-    if (!this.tools.take('start', mode, at)) this.measures.start(mode, at);
+    this.tools.take('start', mode, at);
   };
 
   move = (mode, { x, y, dx, dy, alt, at }) => {
-    if (this.tools.take('move', mode, { x, y, dx, dy, alt, at }) || this.measures.move(mode, { x, y, at })) return;
+    if (this.tools.take('move', mode, { x, y, dx, dy, alt, at })) return;
     const tool = mode === 'primary' ? this.#ui.tool.value : mode;
     if (tool === 'pan') this.cameras.pan(dx, dy, at);
     else if (this.is3d && (tool === 'roll' || (alt && mode === 'primary'))) this.cameras.rollBy(x, y, dx, dy, at);
@@ -89,12 +82,11 @@ export class PaneActions {
   };
 
   end = () => {
-    this.tools.take('end');
-    this.measures.end(performance.now());
+    this.tools.end(performance.now());
   };
 
   tap = ({ x, y, shift, alt, at }) => {
-    if (this.tools.take('tap', { x, y, shift, alt, at }) || (!shift && this.measures.tap({ x, y, at }))) return;
+    if (this.tools.take('tap', { x, y, shift, alt, at })) return;
     if (shift) {
       if (this.is3d) this.#crosshairToSeen(x, y, at);
       return;
@@ -104,7 +96,7 @@ export class PaneActions {
   };
 
   doubleTap = ({ x, y, touch, at }) => {
-    if (this.tools.take('doubleTap', { x, y, touch, at }) || this.measures.doubleTap({ x, y, at })) return;
+    if (this.tools.take('doubleTap', { x, y, touch, at })) return;
     if (touch) this.reset(at);
     else this.#ui.maximise(this.#number);
   };
@@ -126,7 +118,7 @@ export class PaneActions {
   };
 
   hover = ({ x, y, shift, alt, at }) => {
-    if (this.tools.take('hover', { x, y, shift, alt, at }) || this.measures.hover({ x, y })) return;
+    if (this.tools.take('hover', { x, y, shift, alt, at })) return;
     if (!shift) return this.pointed.hover(x, y);
     this.pointed.hide();
     if (!this.#room.canChange.value) return;
@@ -257,10 +249,7 @@ export class PaneActions {
     if (event.altKey || event.metaKey) return false;
     const at = event.timeStamp;
     const act =
-      this.tools.key(event, at) ??
-      this.measures.key(event, at) ??
-      beamKey(this.#room, this.#ui, event, at) ??
-      (event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at));
+      this.tools.key(event, at) ?? this.#otherKey(event, at) ?? (event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at));
     if (!act || !this.#room.canChange.value) return false;
     this.pointed.hide();
     act();
@@ -272,7 +261,8 @@ export class PaneActions {
     return dx === undefined ? null : () => this.cameras.panStep(dx, dy, at);
   }
 
-  #keyAction({ key, code, shiftKey }, at) {
+  #keyAction(event, at) {
+    const { key, code, shiftKey } = event;
     const layout = shiftKey && layouts[/^Digit([1-7])$/.exec(code)?.[1] - 1];
     if (layout && (layout.id !== 'beam' || beamShown(this.#room.plan.value, this.#room.scene.value)))
       return () => this.#ui.setLayout(layout.id);
@@ -305,26 +295,26 @@ export class PaneActions {
       g: () => this.cameras.fit(at),
       f: () => this.#room.following.toggle(),
       v: () => this.#ui.toggleDrawer(),
-      c: () => toggleClips(this.#room, this.#ui, at),
-      k: () => toggleCaps(this.#room, this.#ui, at),
-      d: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'wash', at),
-      i: () => this.#dose()?.toggleDose(this.#room, this.#ui, 'lines', at),
-      q: () => this.#dose() && pinHere({ room: this.#room, ui: this.#ui }, at),
-      n: () => noteHere({ room: this.#room, ui: this.#ui }),
-      t: () => toggleTracks({ room: this.#room, ui: this.#ui }, at),
       w: () => this.#toggleTool('window'),
       m: () => this.#toggleTool('measure'),
       z: () => this.#toggleTool('zoom'),
-      p: () => pointKey(this.#room, this.#ui, shiftKey),
-      b: () => toggleBeamEye(this.#room, this.#ui),
       Enter: () => this.#ui.maximise(this.#number),
     };
-    return arrows[key] ?? common[key.length === 1 ? key.toLowerCase() : key] ?? null;
+    const name = key.length === 1 ? key.toLowerCase() : key;
+    return arrows[key] ?? common[name] ?? this.#featureKey(name, event, at);
   }
 
-  #dose() {
-    if (!this.#room.plan.value?.doses.length) this.#ui.notify('ok', 'This plan has no dose.', 'dose');
-    return ofDose(this.#room);
+  #featureKey(name, event, at) {
+    const act = features.find(({ keys }) => keys?.[name])?.keys[name];
+    return act ? () => act(this.#world, at, event) : null;
+  }
+
+  #otherKey(event, at) {
+    for (const { key } of features) {
+      const act = key?.(this.#world, event, at);
+      if (act) return act;
+    }
+    return null;
   }
 
   #toggleTool(tool) {

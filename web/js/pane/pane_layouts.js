@@ -4,7 +4,7 @@ import { classMap } from '../../lib/directives/class-map.js';
 import { beamShown } from '../room/beam_line.js';
 import { layoutId, layouts } from '../room/layout.js';
 import { isInSpace, isTurnable } from '../room/kinds.js';
-import { presetMenu } from '../features/beams/preset_menu.js';
+import { partsOf } from '../features/index.js';
 import { checkbox } from '../parts/fields.js';
 import { icon } from '../parts/icons.js';
 
@@ -51,7 +51,7 @@ export function panesMenu(world, isDock = false) {
         ) => html`<button role="radio" aria-checked=${chosen(ui) === id} class=${classMap({ on: chosen(ui) === id })}
         @click=${act(() => ui.setLayout(id))}>${icon(picture)}<span>${name}</span>${isDock ? nothing : html`<kbd>Shift ${index + 1}</kbd>`}</button>`,
       )}</div>
-      ${presetMenu(world, act)}
+      ${partsOf('panesMenu', world, act)}
       <div class="checks">${checkbox('Link zoom', ui.panes.isZoomLinked.value, false, link, 'All slice panes show as many mm per pixel, and the crosshair at the same place')}
         ${checkbox(
           'Link the 3-D cameras',

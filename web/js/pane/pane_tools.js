@@ -1,6 +1,5 @@
 // Handlers that see a pane's input before the pane and draw into it: the chosen tool if it is loaded later, as "Move beam", and that of panes along a beam (beam_panes.js).
-import { isOfBeam } from '../room/kinds.js';
-import { Lazy, styled } from '../parts/lazy.js';
+import { features } from '../features/index.js';
 
 /**
  * Each event is as in pointer.js; a handler that returns true has used it, and the pane does nothing.
@@ -15,9 +14,8 @@ import { Lazy, styled } from '../parts/lazy.js';
  */
 
 const makers = new Map();
-const beams = new Lazy(
-  async () => (await Promise.all([import('../features/beams/beam_panes.js'), styled('js/features/beams/beam.css')]))[0],
-);
+/** The part of a feature for panes of this kind; undefined: none. */
+const ofKind = (kind) => features.find(({ panesOf }) => panesOf?.has(kind))?.panesOf;
 
 /**
  * Adds a tool: while ui.tool is its name, it takes part in panes of every kind.
@@ -27,11 +25,13 @@ export const addTool = (name, make) => makers.set(name, make);
 
 export class PaneTools {
   #pane;
+  #parts;
   #made = new Map();
 
-  /** @param {object} pane {room, ui, api, view, actions} */
-  constructor(pane) {
+  /** @param {object} pane {room, ui, api, view, actions} @param {PaneHandler[]} parts of the features, which are asked last */
+  constructor(pane, parts) {
     this.#pane = pane;
+    this.#parts = parts;
   }
 
   #of(name, make) {
@@ -43,17 +43,31 @@ export class PaneTools {
   get #handlers() {
     const { ui, view } = this.#pane;
     const tool = ui.tool.value;
-    const kind = isOfBeam(view.kind) && beams.loaded.value?.makePane;
+    const kind = ofKind(view.kind)?.code.loaded.value?.makePane;
     return [this.#of(tool, makers.get(tool)), this.#of('kind', kind || null)].filter(Boolean);
+  }
+
+  /** A view whose camera is locked is moved by nobody until that is loaded. */
+  get #isWaiting() {
+    const { kind } = this.#pane.view;
+    const own = ofKind(kind);
+    return own?.isLocked(kind) && !own.code.loaded.peek();
   }
 
   /** Offers an event. Returns whether it was used; in a view whose camera is locked it always is until that is loaded. */
   take(name, ...args) {
-    return this.#handlers.some((handler) => handler[name]?.(...args)) || (this.#pane.view.kind === 'beam' && !beams.loaded.peek());
+    const isTaken = (handler) => handler[name]?.(...args);
+    return this.#handlers.some(isTaken) || this.#isWaiting || this.#parts.some(isTaken);
+  }
+
+  /** Ends a drag, also one that none of them had taken. */
+  end(at) {
+    this.#handlers.some((handler) => handler.end?.());
+    for (const part of this.#parts) part.end?.(at);
   }
 
   key(event, at) {
-    for (const handler of this.#handlers) {
+    for (const handler of [...this.#handlers, ...this.#parts]) {
       const act = handler.key?.(event, at);
       if (act) return act;
     }
@@ -62,7 +76,7 @@ export class PaneTools {
 
   /** Drawings of the handlers in the pane. */
   draw(place) {
-    if (isOfBeam(this.#pane.view.kind) && this.#pane.view.isOpen.value) beams.load();
+    if (this.#pane.view.isOpen.value) ofKind(this.#pane.view.kind)?.code.load();
     const drawn = this.#handlers.map((handler) => handler.draw?.(place) ?? {});
     return { ...Object.assign({}, ...drawn), overlay: drawn.map(({ overlay }) => overlay), handles: drawn.map(({ handles }) => handles) };
   }

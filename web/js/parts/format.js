@@ -73,3 +73,17 @@ export const windowText = ({ center, width }, unit, isInverted = false) => {
   const [c, w] = width < 1e-4 ? [significant(center), significant(width)] : [number(center, digits), number(width, digits)];
   return `C ${c}  W ${w}${unit ? ` ${unitText(unit)}` : ''}${isInverted ? '  low white' : ''}`;
 };
+
+/** "R1" for "Reviewer 1", "AL" for "Ada Lovelace". */
+export function initials(name) {
+  const words = name.trim().split(/\s+/);
+  const letters = words.length > 1 ? words[0][0] + words.at(-1)[0] : words[0].slice(0, 2);
+  return letters.toUpperCase();
+}
+
+/** "liver and colon", "liver, colon and 21 more" */
+export function nameSome(names, shown = 3) {
+  if (names.length <= 1) return names[0] ?? '';
+  if (names.length <= shown) return `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
+  return `${names.slice(0, shown - 1).join(', ')} and ${names.length - shown + 1} more`;
+}

@@ -86,3 +86,7 @@ const paths = {
 /** @param {keyof typeof paths} name @param {12|16|20} size */
 export const icon = (name, size = 16) =>
   html`<svg class="icon" viewBox="0 0 16 16" width=${size} height=${size} aria-hidden="true">${paths[name]}</svg>`;
+
+/** A square of a colour. */
+export const swatch = (color) =>
+  html`<svg class="swatch" viewBox="0 0 12 12" width="12" height="12" aria-hidden="true"><rect width="12" height="12" rx="2.5" fill=${color}/></svg>`;

@@ -41,6 +41,9 @@ export class Lazy {
   }
 }
 
+/** A module that is loaded with its style sheets when it is first drawn or known. @param {() => Promise<object>} load imports it @param {string[]} sheets */
+export const later = (load, ...sheets) => new Lazy(async () => (await Promise.all([load(), ...sheets.map(styled)]))[0]);
+
 /** The loaded module; until it is there null, and loads it. */
 export function known(lazy) {
   const module = lazy.loaded.value;

@@ -1,12 +1,11 @@
 // The banner of a room: name of the plan, its warnings, members, invitation, help.
+import { initials } from '../parts/format.js';
 import { html, nothing } from '../../lib/lit-html.js';
 import { troubles } from '../room/plan.js';
-import { ofDose } from '../features/dose/feature.js';
+import { partsOf } from '../features/index.js';
 import { icon } from '../parts/icons.js';
-import { Lazy, styled } from '../parts/lazy.js';
+import { later } from '../parts/lazy.js';
 import { variables } from '../parts/mount.js';
-import { initials } from '../pane/pane.js';
-import { approval, patientButton } from '../features/patient/patient.js';
 import { roomChip } from './room_chip.js';
 import { roving } from '../parts/roving.js';
 import { stripEnd } from './tools.js';
@@ -14,7 +13,7 @@ import { stripEnd } from './tools.js';
 export const brand = () =>
   html`<a class="brand" href="#/" title="All plans" aria-label="Beamroom, all plans">${icon('logo', 20)}<b>Beamroom</b></a>`;
 
-const invite = new Lazy(async () => (await Promise.all([import('./invite.js'), styled('js/shell/invite.css')]))[0]);
+const invite = later(() => import('./invite.js'), 'js/shell/invite.css');
 
 async function copyLink(ui) {
   const field = document.querySelector('#invite-link');
@@ -46,10 +45,10 @@ export function banner(world) {
   const members = room.members.value.filter((member) => member.connected !== false);
   const own = members.find((member) => member.id === you);
   const others = members.filter((member) => member.id !== you);
-  return html`${brand()}<i class="rule"></i>${patientButton(world)}
+  return html`${brand()}<i class="rule"></i>${partsOf('bannerStart', world)}
     <div class="plan-name"><h1 title=${plan?.name ?? ''}><span>${plan?.name ?? room.planId.value}</span></h1>
-      <span class="dim plan-id">Plan <code>${room.planId.value}</code></span>${ofDose(room)?.doseBasis(world, 'below')}</div>
-    ${approval(world)}${ofDose(room)?.doseBasis(world, 'aside')}
+      <span class="dim plan-id">Plan <code>${room.planId.value}</code></span>${partsOf('bannerName', world)}</div>
+    ${partsOf('bannerFacts', world)}
     ${warnings(world)}
     <span class="grow"></span>
     ${

@@ -2,28 +2,24 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { crosshair, shownImage } from '../room/plan.js';
-import { ofDose, ofDrawnDose, pinHere } from '../features/dose/feature.js';
+import { partsOf } from '../features/index.js';
 import { number, significant } from '../parts/format.js';
-import { icon } from '../parts/icons.js';
+import { icon, swatch } from '../parts/icons.js';
 
 export function probe(world) {
   const { room, ui, probed } = world;
-  const dose = ofDose(room);
   const plan = room.plan.value;
   const scene = room.scene.value;
   const image = shownImage(plan, scene);
   const { result, error, isOld } = probed.value;
   const value = result?.images?.find((other) => other.id === image?.id);
   const point = crosshair(scene);
-  return html`<section class="block"><h3 class="dose-head">Probe at crosshair <span class="grow"></span>${dose ? html`<button class="icon-button" title="Pin these values (Q)" aria-label="Pin these values" ?disabled=${!room.canChange.value} @click=${(event) => pinHere(world, event.timeStamp)}>${icon('marker')}</button>` : nothing}</h3>
+  return html`<section class="block"><h3 class="dose-head">Probe at crosshair <span class="grow"></span>${partsOf('probeTool', world)}</h3>
       <div class="numbers">${['L', 'P', 'S'].map((letter, axis) => html`<div><span class="dim">${letter}</span><b>${number(point[axis], 1)}${axis === 2 ? ' mm' : ''}</b></div>`)}
         ${image ? html`<div class=${classMap({ end: true, old: isOld })}><span class="dim">${image.modality}</span><b>${value && value.value !== null ? `${significant(value.value)} ${value.unit}` : '–'}</b></div>` : nothing}</div>
       <div class=${classMap({ inside: true, old: isOld })}>${error ? html`<span class="err">${icon('error')} ${error}</span>` : inside(plan, scene, result, ui)}</div></section>
-    ${dose?.doseAtCrosshair(world)}${ofDrawnDose(room)?.pinsBlock(world)}`;
+    ${partsOf('probe', world)}`;
 }
-
-export const swatch = (color) =>
-  html`<svg class="swatch" viewBox="0 0 12 12" width="12" height="12" aria-hidden="true"><rect width="12" height="12" rx="2.5" fill=${color}/></svg>`;
 
 function inside(plan, scene, result, ui) {
   if (!result) return html`<span class="dim">…</span>`;

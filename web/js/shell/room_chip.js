@@ -3,7 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { effect, untracked } from '../../lib/signals-core.js';
 import { dayTime } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
-import { known, Lazy, styled } from '../parts/lazy.js';
+import { known, later } from '../parts/lazy.js';
 
 const marks = { presenting: 'people', following: 'people', own: 'person', away: 'phase', none: 'warning' };
 
@@ -35,7 +35,7 @@ function words({ following, control, recording }) {
 }
 
 /** The members, what can be done about control, and the own name: no part of what a first visit loads. */
-const roster = new Lazy(async () => (await Promise.all([import('./roster.js'), styled('js/shell/roster.css')]))[0]);
+const roster = later(() => import('./roster.js'), 'js/shell/roster.css');
 
 /** Above the toasts: who requests control, for the presenter. */
 export const requestLines = (world) => {
@@ -80,12 +80,4 @@ export function roomChip(world, place) {
       <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
     ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
     ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label="Members of this room">${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;
-}
-
-/** In the header of each pane: whether it shows the shared view or an own one. Nothing for a member who is alone. */
-export function followMark(room) {
-  const isOwn = !room.following.isFollowing.value;
-  if (!isOwn && room.members.value.filter(({ connected }) => connected !== false).length < 2) return nothing;
-  const about = isOwn ? 'Own view' : room.following.isPresenting.value ? 'Shared view: the others see it' : 'Shared view';
-  return html`<span class="follow-mark" role="img" data-own=${isOwn} title=${about} aria-label=${about}>${icon(isOwn ? 'person' : 'people', 12)}</span>`;
 }

@@ -1,40 +1,27 @@
 // The room page: panes with the panels around them, connected to the room's state.
 import { html, nothing } from '../../lib/lit-html.js';
 import { computed, effect, signal } from '../../lib/signals-core.js';
+import { features, partsOf } from '../features/index.js';
 import { AfterRoom } from '../room/after_room.js';
-import { Comparison } from '../features/regions/comparison.js';
-import { DoseFacts } from '../features/dose/dose_facts.js';
-import { Ellipses } from '../features/measures/ellipses.js';
-import { Histograms } from '../features/image/histograms.js';
 import { crosshair } from '../room/plan.js';
-import { Refusals, inQuestion } from '../features/regions/refusals.js';
-import { shapeQuery } from '../features/regions/shapes.js';
 import { views } from '../room/layout.js';
 import { RoomState } from '../room/room.js';
-import { Printout } from '../features/report/report_pages.js';
 import { UiState } from '../room/ui.js';
 import { Undo, listenUndo } from '../room/undo.js';
 import { banner } from './banner.js';
-import { leaveBeam } from '../features/beams/beam_view.js';
-import { draftBar } from '../features/beams/feature.js';
-import { leaveBookmarks, playBar, resumeBookmark } from '../features/bookmarks/feature.js';
-import { ChartLoader } from '../features/dose/plots/chart_loader.js';
 import { ended, watchEnd } from './ended.js';
 import { filesBar } from './files_bar.js';
-import { ofFits } from '../features/fits/feature.js';
 import { coverPage, help, toasts } from './float.js';
-import { inspector, selected } from './inspector.js';
+import { inspector } from './inspector.js';
 import { soon } from '../net/soon.js';
 import { mount } from '../parts/mount.js';
-import { watchNotes } from '../features/notes/feature.js';
 import { Pane } from '../pane/pane.js';
 import { giveOblique } from '../pane/pane_kind.js';
 import { paneSwitch } from './pane_switch.js';
-import { startPointers } from '../features/pointers/feature.js';
-import { listenSnapshots, otherPlanDialog, resumeSnapshot } from '../features/report/snapshots.js';
 import { offerName, requestLines } from './room_chip.js';
 import { savedLine } from './saved.js';
-import { sectionOfKind } from './sections.js';
+import { sectionOf } from './sections.js';
+import { loadBlocks } from './selection.js';
 import { status } from './status.js';
 import { toolStrip } from './tools.js';
 import { tree } from './tree.js';
@@ -43,9 +30,9 @@ const probeMs = 60;
 const tickMs = 250;
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
-const drawer = (world) => (world.ui.arrangement.value.drawer ? world.charts.draw('drawer') : nothing);
-const floating = (world) =>
-  html`${help(world)}${selected.loaded.value?.figuresDialog(world) ?? nothing}${ended(world)}${otherPlanDialog(world)}${world.printoutDialog.value?.(world) ?? nothing}`;
+const drawer = (world) => (world.ui.arrangement.value.drawer ? features.map(({ drawer: own }) => own?.draw(world)) : nothing);
+const dialogs = ['help', ...features.flatMap((feature) => feature.dialogs ?? [])];
+const floating = (world) => html`${help(world)}${ended(world)}${partsOf('dialog', world)}`;
 
 const frame = () => html`<div class="room">
   <a class="skip" href="#picture-1">To the panes</a>
@@ -72,15 +59,6 @@ export function roomPage(
   const room = new RoomState(id, { connection, clock, schedule: redraw.schedule, sendSoon: soon(clock), notify: ui.notify });
   const undo = new Undo(room, { clock, notify: ui.notify });
   const probed = signal({ result: null, error: '', isOld: false });
-  const shaped = signal({ region: '', representation: '', result: null, error: '' });
-  const comparison = new Comparison(api, signal([]));
-  const refusals = new Refusals(api, signal({}));
-  const histograms = new Histograms(api.histogram);
-  const ellipses = new Ellipses(api.ellipse, clock);
-
-  const doses = new DoseFacts(room, api);
-  const refused = computed(() => ({ ...refusals.reasons.value, ...room.view(1).missing.value.reasons }));
-
   const onPainted = (header, isDrawn) => {
     const answered = room.frameShown(header, isDrawn);
     hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
@@ -91,19 +69,6 @@ export function roomPage(
     adapt(ui),
     effect(() => layOut(host.querySelector('.room'), ui)),
   ); // before the panes measure themselves: views open at their sizes
-  const panes = room.views.map(
-    (view) =>
-      new Pane(
-        part(`[data-view="${view.number}"]`),
-        { room, ui, api, refused, probed, histograms, ellipses, doses, decode, redraw, onPainted },
-        view,
-      ),
-  );
-  connection.addEventListener('frame', ({ detail }) => {
-    room.frameCame(detail.header);
-    panes[detail.header.view - 1]?.painter.offer(detail);
-  });
-
   const after = new AfterRoom({ api, clock, enter });
   const world = {
     after,
@@ -113,33 +78,27 @@ export function roomPage(
     clock,
     connection,
     decode,
+    redraw,
     storage,
     ownName,
     undo,
     probed,
-    shaped,
-    refused,
-    comparison,
-    histograms,
-    ellipses,
-    doses,
+    onPainted,
     panes: () => panes,
-    printout: new Printout(id, api, globalThis.sessionStorage),
-    otherPlan: signal(null),
-    printoutDialog: signal(null),
   };
-  world.charts = new ChartLoader(world);
-  stops.push(() => world.charts.stop());
+  for (const feature of features) feature.make?.(world);
+  const panes = room.views.map((view) => new Pane(part(`[data-view="${view.number}"]`), world, view));
+  connection.addEventListener('frame', ({ detail }) => {
+    room.frameCame(detail.header);
+    panes[detail.header.view - 1]?.painter.offer(detail);
+  });
+
   for (const [name, draw] of [
     ['.banner', banner],
     ['.tree', tree],
     ['.strip', toolStrip],
     ['.switch', paneSwitch],
-    [
-      '.dose-bars',
-      () =>
-        html`${filesBar(world)}${ofFits(room)?.otherPatientsBar(world)}${ofFits(room)?.fitBar(world)}${draftBar(world)}${playBar(world)}`,
-    ],
+    ['.dose-bars', () => html`${filesBar(world)}${partsOf('bar', world)}`],
     ['.chart-drawer', drawer],
     ['.inspector', inspector],
     ['.status', status],
@@ -152,24 +111,14 @@ export function roomPage(
     effect(() => describeTitle(room)),
     reveal(host, ui),
     probe(room, api, probed, clock),
-    doses.start(clock),
+    ...features.flatMap((feature) => feature.start?.(world) ?? []),
   );
   stops.push(
     listenKeys(ui, room),
     listenUndo(globalThis, undo),
-    shape(room, ui, api, shaped),
-    compare(room, ui, comparison),
-    refuse(room, refusals),
     moveFocus(host, ui),
     watchEnd(host, room, after, plan),
     giveOblique(world),
-    watchNotes(world),
-    leaveBeam(world),
-    startPointers(world),
-    listenSnapshots(world),
-    resumeSnapshot(world),
-    resumeBookmark(world),
-    () => leaveBookmarks(world),
     coverPage(host, ui),
   );
 
@@ -210,7 +159,7 @@ function layOut(element, ui) {
 function reveal(host, ui) {
   return effect(() => {
     const { kind } = ui.selection.value;
-    if (sectionOfKind[kind]) queueMicrotask(() => host.querySelector('.tree .row.selected')?.scrollIntoView({ block: 'nearest' }));
+    if (sectionOf(kind)) queueMicrotask(() => host.querySelector('.tree .row.selected')?.scrollIntoView({ block: 'nearest' }));
   });
 }
 
@@ -251,71 +200,12 @@ function probe(room, api, probed, clock) {
   };
 }
 
-/** Requests the figures of the chosen region's shape whenever another region or another shape is chosen. */
-function shape(room, ui, api, shaped) {
-  let pending = null;
-  const wanted = computed(() => {
-    const scene = room.scene.value;
-    const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
-    const representation = region && scene?.regions[region.id]?.representation;
-    const isReady = room.renderer.value.state === 'ready' && Boolean(representation) && region.voxels > 0;
-    return isReady ? JSON.stringify([region.id, representation, shapeQuery(scene, representation)]) : '';
-  });
-  const stop = effect(() => {
-    pending?.abort();
-    if (!wanted.value) return;
-    const [region, representation, query] = JSON.parse(wanted.value);
-    const { signal: aborted } = (pending = new AbortController());
-    shaped.value = { region: '', representation: '', result: null, error: '' };
-    const tell = (answer) => {
-      if (!aborted.aborted) shaped.value = { region, representation, result: null, error: '', ...answer };
-    };
-    api.surface(room.planId.peek(), region, query, aborted).then(
-      (result) => tell({ result }),
-      (error) => tell({ error: error.message }),
-    );
-  });
-  return () => {
-    stop();
-    pending?.abort();
-  };
-}
-
-/** Finds the regions that cannot be drawn whenever other regions are shown, or in another way. */
-function refuse(room, refusals) {
-  const questions = computed(() =>
-    room.renderer.value.state === 'ready' ? JSON.stringify(inQuestion(room.plan.value, room.scene.value)) : '',
-  );
-  const stop = effect(() => {
-    if (questions.value) refusals.ask(room.planId.peek(), JSON.parse(questions.value));
-  });
-  return () => {
-    stop();
-    refusals.stop();
-  };
-}
-
-/** Starts the comparison when its dialog opens or, while it is open, another region is chosen. */
-function compare(room, ui, comparison) {
-  const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
-  const stop = effect(() => {
-    const id = of.value;
-    const region = room.plan.peek()?.regions.find((other) => other.id === id);
-    if (region) comparison.start(room.planId.peek(), region, room.scene.peek());
-    else comparison.stop();
-  });
-  return () => {
-    stop();
-    comparison.stop();
-  };
-}
-
 /** The inspector's Selection is loaded when somebody begins to use the page: it is there before the first click. */
 function loadBeforeClicks() {
   const abort = new AbortController();
   const load = () => {
     abort.abort();
-    selected.load();
+    loadBlocks();
   };
   for (const event of ['pointerover', 'keydown', 'touchstart']) addEventListener(event, load, { signal: abort.signal, passive: true });
   return () => abort.abort();
@@ -342,7 +232,7 @@ function adapt(ui) {
 /** Moves the focus into a dialog that opens, and back afterwards to the element that opened it. */
 function moveFocus(host, ui) {
   let opener = null;
-  const isDialog = computed(() => ['help', 'figures', 'printout', 'other-plan'].includes(ui.popover.value));
+  const isDialog = computed(() => dialogs.includes(ui.popover.value));
   return effect(() => {
     const isOpen = isDialog.value;
     if (!isOpen && !opener) return;
@@ -364,8 +254,7 @@ function listenKeys(ui, room) {
     else if (event.key === '?' && !isTyping) ui.toggle('help');
   };
   const onPress = (event) => {
-    if (ui.popover.value && !['help', 'figures', 'printout', 'other-plan'].includes(ui.popover.value) && !event.target.closest('.anchor'))
-      ui.popover.value = '';
+    if (ui.popover.value && !dialogs.includes(ui.popover.value) && !event.target.closest('.anchor')) ui.popover.value = '';
   };
   addEventListener('keydown', onKey);
   addEventListener('pointerdown', onPress);

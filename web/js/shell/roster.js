@@ -1,11 +1,11 @@
 // The members of a room: who presents, follows or waits; what can be done about control; the own name. Loaded when it is first opened.
+import { initials } from '../parts/format.js';
 import { html, nothing } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
 import { maxName } from '../room/own_name.js';
 import { icon } from '../parts/icons.js';
 import { recordings } from '../features/recordings/recordings.js';
 import { variables } from '../parts/mount.js';
-import { initials } from '../pane/pane.js';
 
 const topic = 'following';
 const lags = {

@@ -2,12 +2,13 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { worst } from '../room/fidelity.js';
 import { crosshair } from '../room/plan.js';
-import { ofDose } from '../features/dose/feature.js';
+import { partsOf } from '../features/index.js';
 import { number } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { savedMark } from './saved.js';
 
-export function status({ room, ui, panes, probed, doses }) {
+export function status(world) {
+  const { room, ui, panes, probed } = world;
   const shown = ui.visible.value;
   const badge = worst(
     panes()
@@ -27,7 +28,7 @@ export function status({ room, ui, panes, probed, doses }) {
     <span class="pairing pace" title=${`From an input to its picture, median of the last 20. Ping ${room.pingMs.value === null ? '–' : `${number(room.pingMs.value)} ms`}.`}>Latency <b id="latency">${latency === null ? '–' : `${number(latency)} ms`}</b></span>
     <span class="pairing pace"><b id="fps">${fps ? `${number(fps)} fps` : 'idle'}</b></span>
     <span class="dim wide" id="gl">${room.gl.value}</span>
-    ${point && !ui.isTouch.value ? html`<i class="rule"></i><span class="pairing">Position <b>L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm</b></span><span class="place-name">${[region?.name, ofDose(room)?.doseHere({ doses })].filter(Boolean).join(', ')}</span>` : nothing}
+    ${point && !ui.isTouch.value ? html`<i class="rule"></i><span class="pairing">Position <b>L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm</b></span><span class="place-name">${[region?.name, ...partsOf('here', world)].filter(Boolean).join(', ')}</span>` : nothing}
     <span class="grow"></span>
     <span class="radiological">Radiological: patient right on screen left</span><i class="rule"></i>
     <b class="research" title="Beamroom is not a medical device. It shows what a calculation gave, for research and plan review; nobody has certified it for decisions on patients.">Research use. Not for diagnosis or treatment decisions.</b>`;

@@ -2,17 +2,13 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { crosshair } from '../room/plan.js';
+import { features, partsOf } from '../features/index.js';
 import { number } from '../parts/format.js';
-import { ofBeams } from '../features/beams/feature.js';
-import { hasCharts } from '../features/dose/plots/chart_loader.js';
-import { ofDose } from '../features/dose/feature.js';
 import { icon } from '../parts/icons.js';
 import { layoutButtons, panesMenu } from '../pane/pane_layouts.js';
-import { pointTools } from '../features/pointers/feature.js';
 import { roving } from '../parts/roving.js';
 import { roomChip } from './room_chip.js';
 import { sectionsOf } from './sections.js';
-import { snapshotMenu } from '../features/report/snapshots.js';
 import { undoButtons } from './undo_buttons.js';
 
 const tools = [
@@ -35,6 +31,9 @@ const tool = (
 ) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${title} aria-pressed=${ui.tool.value === id}
   aria-label=${name} tabindex=${id === 'crosshair' ? 0 : -1} @click=${() => choose(ui, id)}>${icon(id)}<span class="word">${name}</span></button>`;
 
+const stripOf = (place, ...args) => features.map(({ strip }) => strip?.[place]?.(...args));
+const hasDrawer = (plan) => features.some(({ drawer }) => drawer?.has(plan));
+
 export function toolStrip(world) {
   return world.ui.isTouch.value ? dock(world) : strip(world);
 }
@@ -43,14 +42,14 @@ function strip(world) {
   const { ui } = world;
   const isPicture = ui.tab.value === 'selection' && ui.selection.value.kind === 'view' && ui.isInspectorOpen.value;
   return html`<div class="tools" role="toolbar" aria-label="Tools" @keydown=${roving}>
-    ${tools.map((row) => tool(ui, row))}${ofBeams(world.room)?.moveTool(world)}
+    ${tools.map((row) => tool(ui, row))}${stripOf('mode', world)}
     <i class="rule"></i>
     ${layoutButtons(world)}${panesMenu(world)}
     <i class="rule"></i>
-    ${doseTools(world)}<button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
-    ${hasCharts(world.room.plan.value) ? html`<button class=${classMap({ tool: true, plain: true, on: ui.isDrawerOpen.value })} tabindex="-1" title="Plots of dose: histograms, depth profile (V)" aria-label="Plots of dose" aria-pressed=${ui.isDrawerOpen.value} @click=${() => ui.toggleDrawer()}>${icon('drawer')}</button>` : nothing}
+    ${stripOf('show', world)}<button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
+    ${hasDrawer(world.room.plan.value) ? html`<button class=${classMap({ tool: true, plain: true, on: ui.isDrawerOpen.value })} tabindex="-1" title="Plots of dose: histograms, depth profile (V)" aria-label="Plots of dose" aria-pressed=${ui.isDrawerOpen.value} @click=${() => ui.toggleDrawer()}>${icon('drawer')}</button>` : nothing}
     <span class="grow"></span>
-    ${pointTools(world)}${roomChip(world, 'strip')}
+    ${stripOf('meet', world)}${roomChip(world, 'strip')}
     ${stripEnd(world)}
   </div>`;
 }
@@ -62,22 +61,7 @@ export function stripEnd(world) {
   return html`
     ${undoButtons(world)}
     <button class="tool plain" tabindex="-1" title="Reset this view (R)" aria-label="Reset view" ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
-    ${snapshotMenu(world)}`;
-}
-
-/** Isodose lines and wash, where the plan has a dose. */
-function doseTools({ room, ui }, size = '') {
-  const [plan, scene] = [room.plan.value, room.scene.value];
-  if (!plan?.doses.length || !scene || size === 'phone') return nothing;
-  const isDock = Boolean(size);
-  return [
-    ['lines', 'isodose', 'Isodose', 'Isodose lines (I)'],
-    ['wash', 'wash', 'Wash', 'Wash of dose (D)'],
-  ].map(([part, picture, word, title]) => {
-    const { visible } = scene.dose[part];
-    return html`<button class=${classMap({ tool: true, plain: !isDock, on: visible })} tabindex="-1" title=${title} aria-label=${word} aria-pressed=${visible} ?disabled=${!room.canChange.value}
-      @click=${(event) => ofDose(room)?.toggleDose(room, ui, part, event.timeStamp)}>${icon(picture, isDock ? 20 : 16)}${isDock ? html`<span class="word">${word}</span>` : nothing}</button>`;
-  });
+    ${stripOf('end', world)}`;
 }
 
 /** Buttons 74 x 56; at the right the region and the position at the crosshair. */
@@ -88,6 +72,7 @@ function dock(world) {
   const plan = room.plan.value;
   const region = plan?.regions.find(({ id }) => id === probed.value.result?.regions[0]);
   const point = scene && crosshair(scene);
+  const sheetTabs = features.flatMap(({ tabs = [] }) => tabs).filter(({ inSheet }) => inSheet);
   const isTab = (tab) => sheet === 'inspector' && ui.tab.value === tab;
   const open = (tab) => () => {
     if (isTab(tab)) ui.sheet.value = '';
@@ -99,14 +84,14 @@ function dock(world) {
     ${tools.filter(([id]) => (size !== 'phone' && !plan?.doses.length) || ['crosshair', 'window', 'measure'].includes(id)).map((row) => tool(ui, row))}
     ${size === 'phone' ? nothing : html`<i class="rule"></i>`}
     ${sectionsOf(plan, scene).length ? button('tree', 'Parts', sheet === 'tree', () => ui.openSheet('tree')) : nothing}
-    ${doseTools(world, size)}${button('target', 'Probe', isTab('probe'), open('probe'))}
-    ${hasCharts(plan) && size !== 'phone' ? button('curve', 'DVH', isTab('dvh'), open('dvh')) : nothing}
+    ${stripOf('show', world, size)}${button('target', 'Probe', isTab('probe'), open('probe'))}
+    ${size === 'phone' ? nothing : sheetTabs.filter(({ inSheet }) => inSheet(plan)).map(({ id, name }) => button('curve', name, isTab(id), open(id)))}
     ${button('panel', 'Selection', isTab('selection'), open('selection'))}
     ${
       size === 'phone'
         ? nothing
-        : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}${pointTools(world, true)}
-      <span class="grow"></span><p class="at-crosshair"><b>${[region?.name, ofDose(room)?.doseHere(world)].filter(Boolean).join(' · ')}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`
+        : html`${button('cube', '3-D', isTab('selection') && ui.selection.value.kind === 'view', () => ui.choose('view'))}${panesMenu(world, true)}${stripOf('meet', world, true)}
+      <span class="grow"></span><p class="at-crosshair"><b>${[region?.name, ...partsOf('here', world)].filter(Boolean).join(' · ')}</b><span>${point ? `L ${number(point[0], 1)}  P ${number(point[1], 1)}  S ${number(point[2], 1)} mm` : ''}</span></p>`
     }
   </div>`;
 }

@@ -2,9 +2,8 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from '../parts/icons.js';
-import { regionTools } from '../features/regions/region_rows.js';
 import { roving } from '../parts/roving.js';
-import { sectionOfKind, sectionsOf } from './sections.js';
+import { sectionOf, sectionsOf } from './sections.js';
 import { treeKeys } from './tree_keys.js';
 
 const loading = html`<p class="empty">The plan is being loaded.</p>`;
@@ -26,7 +25,7 @@ function whole(world) {
       }}>${icon('chevronLeft')}</button></header>
     ${
       plan
-        ? html`${regionTools(world)}<div class="scroll">${list(
+        ? html`${sectionsOf(plan, room.scene.value).map(({ tools }) => tools?.(world))}<div class="scroll">${list(
             world,
             'Parts of the plan',
             sectionsOf(plan, room.scene.value).map((section) => folding(world, section)),
@@ -40,7 +39,7 @@ function whole(world) {
 /** True if one of the sections has the row that keys act on: with a rail another section may have been opened since. */
 function hasRow({ ui }, sections, hasHeads) {
   const [kind] = ui.row.value.split(':');
-  return kind === 'section' ? hasHeads : sections.some(({ id }) => sectionOfKind[kind] === id);
+  return kind === 'section' ? hasHeads : sections.some(({ id }) => sectionOf(kind) === id);
 }
 
 /** An element that takes the focus for all of its rows, those of the sections; the row that keys act on is its active descendant. */
@@ -102,7 +101,7 @@ function rail(world) {
         <button class="icon-button" title="Close" aria-label=${`Close ${open.name}`} @click=${() => {
           ui.section.value = '';
         }}>${icon('close')}</button></header>
-      ${open.id === 'regions' ? regionTools(world) : nothing}<div class="scroll">${list(world, open.name, open.rows(world), [open])}</div></div>`
+      ${open.tools?.(world)}<div class="scroll">${list(world, open.name, open.rows(world), [open])}</div></div>`
         : nothing
     }`;
 }
@@ -123,7 +122,7 @@ function inSheet(world) {
       }}>${icon('chevronDown')}</button></div>
     ${
       shown
-        ? html`<div class="sheet-panel" role="tabpanel" id="part-panel" aria-labelledby=${`part-${shown.id}`}>${shown.id === 'regions' ? regionTools(world) : nothing}
+        ? html`<div class="sheet-panel" role="tabpanel" id="part-panel" aria-labelledby=${`part-${shown.id}`}>${shown.tools?.(world)}
       <div class="scroll">${list(world, shown.name, shown.rows(world), [shown])}</div></div>`
         : loading
     }`;

@@ -1,57 +1,10 @@
 // The words for what undo and redo would change.
+import { features } from '../features/index.js';
 import { shownImage } from '../room/plan.js';
 import { number, significant, windowText } from '../parts/format.js';
 
-const words = {
-  'image.id': 'image',
-  'image.window': 'window',
-  'image.low_values': 'greys of low values',
-  'image.interpolation': 'values between voxels',
-  'image.color_map': 'colours',
-  'image.looks': 'window of another image',
-  'image.clipped': 'clipping of slices',
-  'clip.cap': 'what caps show',
-};
-const volumeWords = {
-  visible: 'visibility of the volume',
-  points: 'transfer function',
-  cull_below: 'threshold of the volume',
-  steps: 'slices of the volume',
-};
-const blendWords = { id: 'second image', opacity: 'opacity of the second image' };
 const regionWords = { visible: 'visibility', clipped: 'clipping', color: 'colour', representation: 'form' };
 const units = { _mm: 'mm', _px: 'px', _deg: '°' };
-
-const doseWords = {
-  id: 'dose shown',
-  quantity: 'quantity of dose',
-  grid: 'grid of the dose',
-  factor: 'factor of the dose',
-  sum: 'sum of doses',
-  population: 'univels of regions',
-  tissue: 'weights of isodoses',
-  blood_ppm: 'boron in blood',
-  weights: 'weights',
-  weights_name: 'weights',
-  error: 'statistical error',
-  interpolation: 'values between dose voxels',
-  reference: 'reference of dose',
-  levels: 'isodose levels',
-  wash: 'wash',
-  lines: 'isodose lines',
-  surfaces: 'isodose surfaces',
-  coverage: 'coverage',
-  compare: 'comparison of doses',
-};
-
-const beamWords = {
-  id: 'chosen beam',
-  looks: 'look of a beam',
-  opacity: 'opacity of openings',
-  slice: 'beam slice',
-  draft: 'draft beam',
-  kept: 'kept draft',
-};
 
 const unitOf = (name) => Object.keys(units).find((ending) => name.endsWith(ending));
 const unique = (list) => [...new Set(list)];
@@ -83,21 +36,8 @@ export function stepName(changes, room) {
 
 function fieldName({ path }) {
   const [group, name, ...inner] = path;
-  if (group === 'image' && name === 'obliques') return 'oblique plane';
   if (group === 'axes') return 'patient axes';
-  if (group === 'clip' && name !== 'cap') return `clip ${name.replace('_', ' ')}`;
-  if (group === 'image' && name === 'volume' && inner[0] === 'clipped') return 'clipping of the volume';
-  if (group === 'image' && name === 'slices') return inner.at(-1) === 'position_mm' ? 'crosshair' : 'slices in 3-D';
-  if (group === 'image' && name === 'volume') return volumeWords[inner[0]] ?? 'volume';
-  if (group === 'image' && name === 'blend') return blendWords[inner[0]] ?? 'second image';
-  if (group === 'constraints') return 'limit of dose';
-  if (group === 'dose') return doseWords[name] ?? 'dose';
-  if (group === 'beam') return beamWords[name] ?? 'beam';
-  if (group === 'tracks') return 'particle tracks';
-  if (group === 'probes') return 'pinned probe';
-  if (group === 'measures')
-    return inner.length ? `${inner[0] === 'points' ? 'points' : inner[0] === 'visible' ? 'visibility' : inner[0]} of a measure` : 'measure';
-  const known = words[`${group}.${name}`];
+  const known = features.find(({ undo }) => undo?.[group])?.undo[group](name, inner);
   if (known) return known;
   const ending = unitOf(name ?? '');
   return [group, ...(name ? [ending ? name.slice(0, -ending.length) : name] : [])].join(' ').replaceAll('_', ' ');

@@ -1,9 +1,9 @@
 // Regions that a beam meets: those in its aperture and the lengths of those that its axis crosses.
+import { swatch } from '../../parts/icons.js';
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { mm } from './beam_words.js';
 import { number } from '../../parts/format.js';
-import { swatch } from '../../shell/probe.js';
 
 /** @param {object|null} facts the answer to the question beam; null: not here yet */
 export function regionBlocks(world, facts, isOld) {

@@ -9,8 +9,7 @@ import { toggleMove } from './feature.js';
 import { presetRows } from './preset_menu.js';
 import { draftWords } from './beam_words.js';
 import { ofFits } from '../fits/feature.js';
-import { icon } from '../../parts/icons.js';
-import { swatch } from '../../shell/probe.js';
+import { icon, swatch } from '../../parts/icons.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
 
 /** "draft" while one stands in for the chosen beam. */

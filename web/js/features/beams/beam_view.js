@@ -42,7 +42,7 @@ const isBeamCut = ({ views, scene: { value: scene } }) =>
   scene?.beam && (scene.beam.slice.visible || scene.clip.beam.enabled || views[beamSliceView - 1].isOpen.value);
 
 /** The action of one of these keys; null: another key, or nothing to move. */
-export function beamKey(room, ui, { code, shiftKey }, at) {
+export function beamKey({ room, ui }, { code, shiftKey }, at) {
   const by = { BracketLeft: -1, BracketRight: 1 }[code];
   return by && isBeamCut(room) ? () => slideBeam(room, ui, by * (shiftKey ? 10 : 1), at) : null;
 }

@@ -1,27 +1,61 @@
-// The panels of beams: no part of what a first visit loads.
-import { known, Lazy, styled } from '../../parts/lazy.js';
+// Beams: shown, chosen, drafted, kept; panes along a beam; presets of beam, dose and volume.
+import { isOfBeam } from '../../room/kinds.js';
+import { known, later } from '../../parts/lazy.js';
+import { beamKey, leaveBeam, toggleBeamEye } from './beam_view.js';
+import { presetMenu } from './preset_menu.js';
 
-const rows = new Lazy(() => import('./beam_rows.js'));
-const panels = new Lazy(async () => (await Promise.all([import('./later_editing.js'), styled('js/features/beams/beam_draft.css')]))[0]);
+const rows = later(() => import('./beam_rows.js'));
+const editing = later(() => import('./later_editing.js'), 'js/features/beams/beam_draft.css');
 
 /** True where beams can be shown or drafted. */
-export const hasBeams = (plan) => plan.beams.length + plan.curves.length + plan.images.length + plan.regions.length;
+const hasBeams = (plan) => plan.beams.length + plan.curves.length + plan.images.length + plan.regions.length;
 
 /** Exports of beam_rows.js; null for a plan without beams, and until they are loaded. */
-export const ofBeams = ({ plan, scene }) => (plan.value && scene.value?.beam && hasBeams(plan.value) ? known(rows) : null);
-
-/** Draws parts of later_editing.js in Selection. */
-export const drawBeam = (use) => panels.draw(use);
-
-/** Above the panes while a beam is drafted. */
-export const draftBar = (world) =>
-  panels.loaded.value || world.room.scene.value?.beam?.draft.enabled ? known(panels)?.draftBar(world) : null;
+const ofBeams = ({ plan, scene }) => (plan.value && scene.value?.beam && hasBeams(plan.value) ? known(rows) : null);
 
 /** Turns the tool on that moves a beam, or off again. */
 export async function toggleMove(world) {
   const { ui } = world;
   if (ui.tool.value === 'beam') return void (ui.tool.value = 'crosshair');
   ui.choose('beam', '');
-  await panels.load();
-  panels.loaded.peek()?.startMoving(world);
+  await editing.load();
+  editing.loaded.peek()?.startMoving(world);
 }
+
+const words = {
+  id: 'chosen beam',
+  looks: 'look of a beam',
+  opacity: 'opacity of openings',
+  slice: 'beam slice',
+  draft: 'draft beam',
+  kept: 'kept draft',
+};
+
+/** @type {import('../index.js').Feature} */
+export const beams = {
+  sections: [
+    {
+      id: 'beams',
+      name: 'Beams',
+      icon: 'target',
+      place: 5,
+      has: hasBeams,
+      note: (world) => ofBeams(world.room)?.beamNote(world) ?? '',
+      rows: (world) => ofBeams(world.room)?.beamRows(world),
+    },
+  ],
+  kinds: { beam: 'beams', kept: 'beams', preset: 'beams', curve: 'beams' },
+  blocks: editing,
+  keys: { b: ({ room, ui }) => toggleBeamEye(room, ui) },
+  key: beamKey,
+  undo: { beam: (name) => words[name] ?? 'beam' },
+  bar: (world) => (editing.loaded.value || world.room.scene.value?.beam?.draft.enabled ? known(editing)?.draftBar(world) : null),
+  strip: { mode: (world) => ofBeams(world.room)?.moveTool(world) },
+  panesMenu: presetMenu,
+  panesOf: {
+    has: isOfBeam,
+    isLocked: (kind) => kind === 'beam',
+    code: later(() => import('./beam_panes.js'), 'js/features/beams/beam.css'),
+  },
+  start: leaveBeam,
+};

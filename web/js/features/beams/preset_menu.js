@@ -3,11 +3,11 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { signal } from '../../../lib/signals-core.js';
 import { icon } from '../../parts/icons.js';
-import { known, Lazy } from '../../parts/lazy.js';
+import { known, later } from '../../parts/lazy.js';
 import { variables } from '../../parts/mount.js';
 import { name } from '../../parts/tree_row.js';
 
-const presets = new Lazy(() => import('./preset_items.js'));
+const presets = later(() => import('./preset_items.js'));
 const isOpen = signal(false); // the rows of the tree
 
 /** The presets in a menu, where the plan has a beam or a dose. @param {(run: () => void) => (event: Event) => void} act what a click does */

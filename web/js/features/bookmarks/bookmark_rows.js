@@ -1,4 +1,5 @@
 // Saved views: rows of the tree, Selection, the bar while they are presented.
+import { bookmarkBlock } from './bookmark_block.js';
 import { html, nothing } from '../../../lib/lit-html.js';
 import { repeat } from '../../../lib/directives/repeat.js';
 import { Bookmarks, bookmarksOf } from './bookmarks.js';
@@ -6,7 +7,7 @@ import { toldOfMerge } from '../../room/saved_merge.js';
 import { icon } from '../../parts/icons.js';
 import { name, treeRow } from '../../parts/tree_row.js';
 
-export { bookmarkBlock } from './bookmark_block.js';
+export const blocks = { bookmark: bookmarkBlock };
 
 const known = new WeakMap();
 

@@ -2,17 +2,12 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { effect } from '../../../lib/signals-core.js';
 import { icon } from '../../parts/icons.js';
-import { known, Lazy, styled } from '../../parts/lazy.js';
+import { known, later } from '../../parts/lazy.js';
 import { name, treeRow } from '../../parts/tree_row.js';
 
-const parts = new Lazy(async () => (await Promise.all([import('./bookmark_rows.js'), styled('js/features/bookmarks/bookmark.css')]))[0]);
-
-/** Scene and views can be saved once they are there. */
-export const hasBookmarks = (plan, scene) => Boolean(scene);
+const parts = later(() => import('./bookmark_rows.js'), 'js/features/bookmarks/bookmark.css');
 
 const n = ({ room }) => [...room.items.rows.value.values()].filter(({ kind }) => kind === 'bookmark').length;
-
-export const bookmarkNote = (world) => String(n(world) || '');
 
 const newRow = (world) =>
   treeRow(
@@ -21,24 +16,13 @@ const newRow = (world) =>
     html`${icon('plus')}${name('Save this view …')}`,
   );
 
-export const bookmarkRows = (world) => html`${n(world) ? known(parts)?.bookmarkRows(world) : nothing}${newRow(world)}`;
-
-/** Draws parts of bookmark_rows.js in Selection. */
-export const drawBookmark = (use) => parts.draw(use);
-
-/** Above the panes while saved views are presented. */
-export const playBar = (world) => parts.loaded.value?.playBar(world) ?? nothing;
-
-/** The page leaves the room. */
-export const leaveBookmarks = (world) => parts.loaded.peek()?.leave(world);
-
 const pendingKey = (room) => `saved ${room}`;
 
 /** Remembers that this tab has just made the room from a saved view. */
 export const beginWith = (room) => sessionStorage.setItem(pendingKey(room), '1');
 
 /** Arranges the page as the view that this tab has made the room from, and says what of it could not be shown. @returns {() => void} stops */
-export function resumeBookmark(world) {
+function resumeBookmark(world) {
   const { room } = world;
   if (!sessionStorage.getItem(pendingKey(room.id))) return () => {};
   let isShown = false;
@@ -52,3 +36,28 @@ export function resumeBookmark(world) {
     });
   });
 }
+
+/** @type {import('../index.js').Feature} */
+export const bookmarks = {
+  sections: [
+    {
+      id: 'saved',
+      name: 'Saved views',
+      icon: 'bookmark',
+      place: 9,
+      has: (plan, scene) => Boolean(scene), // scene and views can be saved once they are there
+      note: (world) => String(n(world) || ''),
+      rows: (world) => html`${n(world) ? known(parts)?.bookmarkRows(world) : nothing}${newRow(world)}`,
+    },
+  ],
+  kinds: { bookmark: 'saved' },
+  blocks: parts,
+  bar: (world) => parts.loaded.value?.playBar(world) ?? nothing,
+  start(world) {
+    const stop = resumeBookmark(world);
+    return () => {
+      stop();
+      parts.loaded.peek()?.leave(world);
+    };
+  },
+};

@@ -27,8 +27,7 @@ import { clipRange } from './clip_range.js';
 import { clipPosition } from './clip_rows.js';
 import { checkbox, numberField } from '../../parts/fields.js';
 import { number } from '../../parts/format.js';
-import { icon } from '../../parts/icons.js';
-import { swatch } from '../../shell/probe.js';
+import { icon, swatch } from '../../parts/icons.js';
 
 const tenths = (value) => Math.round(value * 10) / 10 || 0;
 const manyRegions = 8; // more are folded

@@ -16,8 +16,7 @@ import {
 import { ownRegions } from '../../room/identity.js';
 import { numberField, typed } from '../../parts/fields.js';
 import { number } from '../../parts/format.js';
-import { icon } from '../../parts/icons.js';
-import { swatch } from '../../shell/probe.js';
+import { icon, swatch } from '../../parts/icons.js';
 
 const [sliderHigh, highest] = [40, 1000]; // ppm: the slider's end, proto/scene.json
 const columns = [

@@ -1,20 +1,47 @@
-// The panels of dose: no part of what a first visit loads, as the start page and many plans do without.
-import { known, Lazy } from '../../parts/lazy.js';
+// Dose: levels, lines, wash, surfaces, comparison, weights, pinned probes, plots. Little of it is part of a first visit: many plans do without.
+import { html, nothing } from '../../../lib/lit-html.js';
+import { icon } from '../../parts/icons.js';
+import { known, later } from '../../parts/lazy.js';
+import { DoseFacts } from './dose_facts.js';
+import { doseTools } from './dose_tools.js';
+import { ChartLoader, hasCharts } from './plots/chart_loader.js';
 
-const panels = new Lazy(() => import('./later_rows.js'));
-const drawn = new Lazy(() => import('./later_drawn.js'));
+const panels = later(() => import('./later_rows.js'));
+const drawn = later(() => import('./later_drawn.js'));
+
+const words = {
+  id: 'dose shown',
+  quantity: 'quantity of dose',
+  grid: 'grid of the dose',
+  factor: 'factor of the dose',
+  sum: 'sum of doses',
+  population: 'univels of regions',
+  tissue: 'weights of isodoses',
+  blood_ppm: 'boron in blood',
+  weights: 'weights',
+  weights_name: 'weights',
+  error: 'statistical error',
+  interpolation: 'values between dose voxels',
+  reference: 'reference of dose',
+  levels: 'isodose levels',
+  wash: 'wash',
+  lines: 'isodose lines',
+  surfaces: 'isodose surfaces',
+  coverage: 'coverage',
+  compare: 'comparison of doses',
+};
 
 /** Exports of later_rows.js; null for a plan without doses, and until it is loaded. */
-export const ofDose = (room) => (room.plan.value?.doses.length ? known(panels) : null);
+const ofDose = (room) => (room.plan.value?.doses.length ? known(panels) : null);
 
 /** Pins the values at the crosshair. */
-export async function pinHere(world, at) {
+async function pinHere(world, at) {
   if (!drawn.loaded.peek()) await drawn.load();
   drawn.loaded.peek()?.pinHere(world, at);
 }
 
 /** Exports of later_drawn.js; null while nothing of a dose is switched on and nothing is pinned, and until it is loaded. */
-export function ofDrawnDose(room) {
+function ofDrawnDose(room) {
   const scene = room.scene.value;
   if (!room.plan.value?.doses.length || !scene?.dose) return null;
   const { wash, lines, surfaces, coverage, compare } = scene.dose;
@@ -27,3 +54,64 @@ export function ofDrawnDose(room) {
     Object.keys(scene.probes).length > 0;
   return isOn ? known(drawn) : null;
 }
+
+/** The action of a key of dose; without a dose it says so. */
+const withDose = (act) => (world, at) => {
+  const { room, ui } = world;
+  if (!room.plan.value?.doses.length) ui.notify('ok', 'This plan has no dose.', 'dose');
+  const rows = ofDose(room);
+  if (rows) act(world, at, rows);
+};
+const toggle = (part) => withDose(({ room, ui }, at, rows) => rows.toggleDose(room, ui, part, at));
+
+/** @type {import('../index.js').Feature} */
+export const dose = {
+  make(world) {
+    world.doses = new DoseFacts(world.room, world.api);
+    world.charts = new ChartLoader(world);
+  },
+  start(world) {
+    const stop = world.doses.start(world.clock);
+    return () => {
+      stop();
+      world.charts.stop();
+    };
+  },
+  sections: [
+    {
+      id: 'doses',
+      name: 'Doses',
+      icon: 'dose',
+      place: 4,
+      has: (plan) => plan.doses.length,
+      note: (world) => ofDose(world.room)?.doseNote(world) ?? '',
+      rows: (world) => ofDose(world.room)?.doseRows(world),
+    },
+  ],
+  kinds: { dose: 'doses', quantity: 'doses', dosing: 'doses', level: 'doses' },
+  blocks: later(() => import('./later_blocks.js')),
+  isSoon: true,
+  tabs: [{ id: 'dvh', name: 'DVH', inSheet: hasCharts, draw: ({ charts }) => charts.draw('sheet') }],
+  keys: { d: toggle('wash'), i: toggle('lines'), q: withDose(pinHere) },
+  undo: { dose: (name) => words[name] ?? 'dose', constraints: () => 'limit of dose', probes: () => 'pinned probe' },
+  drawer: { has: hasCharts, draw: ({ charts }) => charts.draw('drawer') },
+  strip: {
+    show: (world, size) => doseTools(world, (part, at) => ofDose(world.room)?.toggleDose(world.room, world.ui, part, at), size),
+  },
+  bannerName: (world) => ofDose(world.room)?.doseBasis(world, 'below'),
+  bannerFacts: (world) => ofDose(world.room)?.doseBasis(world, 'aside'),
+  planParts: ({ room, charts }) => (room.plan.value.doses.length ? charts.draw('limits') : nothing),
+  probeTool: (world) =>
+    ofDose(world.room)
+      ? html`<button class="icon-button" title="Pin these values (Q)" aria-label="Pin these values" ?disabled=${!world.room.canChange.value} @click=${(event) => pinHere(world, event.timeStamp)}>${icon('marker')}</button>`
+      : nothing,
+  probe: (world) => html`${ofDose(world.room)?.doseAtCrosshair(world)}${ofDrawnDose(world.room)?.pinsBlock(world)}`,
+  here: (world) => ofDose(world.room)?.doseHere(world),
+  pane: (world, view) => ({
+    layer: ({ scene, plane, tolerance, header, box, pane }) => {
+      const shown = ofDrawnDose(world.room);
+      return html`${shown?.lineLabels({ doses: world.doses, view, host: world.host, header, box })}${shown?.pinMarks({ scene, plane, tolerance, header, box, pane })}`;
+    },
+    legend: (size, isLeftTaken) => ofDrawnDose(world.room)?.doseLegend(world, view, size, isLeftTaken),
+  }),
+};

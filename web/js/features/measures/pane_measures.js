@@ -72,7 +72,7 @@ export class PaneMeasures {
 
   // ---- picture ------------------------------------------------------------------------------------------------------------------
 
-  overlay({ header, box, pane }) {
+  layer({ header, box, pane }) {
     const is3d = isInSpace(this.#view.kind);
     const measures = this.#shown.map(([id, measure]) => ({
       id,
@@ -140,7 +140,8 @@ export class PaneMeasures {
   }
 
   /** A finger that is lifted begins its press only then: pointer.js. */
-  tap({ x, y, at }) {
+  tap({ x, y, shift, at }) {
+    if (shift) return false;
     const wasPressed = this.#pressed;
     this.#pressed = null;
     if (wasPressed) this.#add(x, y, at);

@@ -1,18 +1,15 @@
-// Notes on the page: what a first visit loads of them. The rest comes with the first note, or when somebody writes one.
+// Notes. The rest is loaded with the first note, or when somebody writes one.
 import { effect, untracked } from '../../../lib/signals-core.js';
 import { crosshair } from '../../room/plan.js';
-import { known, Lazy, styled } from '../../parts/lazy.js';
+import { known, later } from '../../parts/lazy.js';
 
-const notes = new Lazy(async () => (await Promise.all([import('./later.js'), styled('js/features/notes/notes.css')]))[0]);
+const parts = later(() => import('./later.js'), 'js/features/notes/notes.css');
 
-/** The inspector's Notes. */
-export const drawNotes = (world) => notes.draw(({ notesTab }) => notesTab(world));
-
-/** Exports of notes.js; null while the room has no note, and until they are loaded. */
-export const ofNotes = ({ items }) => (items.notes.value.length ? known(notes) : null);
+/** Exports of later.js; null while the room has no note, and until they are loaded. */
+const ofNotes = ({ items }) => (items.notes.value.length ? known(parts) : null);
 
 /** Tells of notes that mention this person, from the first note on. */
-export function watchNotes(world) {
+function watchNotes(world) {
   let stop = null;
   const wait = effect(() => {
     const module = ofNotes(world.room);
@@ -29,3 +26,18 @@ export function noteHere({ room, ui }) {
   ui.newNote.value = { point_mm: crosshair(room.scene.value).map((value) => Math.round(value * 1000) / 1000 || 0) };
   ui.showTab('notes');
 }
+
+/** @type {import('../index.js').Feature} */
+export const notes = {
+  tabs: [
+    {
+      id: 'notes',
+      name: 'Notes',
+      count: ({ room }) => room.items.nOpen.value,
+      draw: (world) => parts.draw(({ notesTab }) => notesTab(world)),
+    },
+  ],
+  keys: { n: noteHere },
+  start: watchNotes,
+  pane: (world) => ({ pins: (place) => ofNotes(world.room)?.notePins(world, place()) }),
+};

@@ -2,9 +2,9 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { approvalOf, dateWords, shownPatient, shownTreatmentPlan, unknownWords } from '../../room/identity.js';
 import { icon } from '../../parts/icons.js';
-import { Lazy, styled } from '../../parts/lazy.js';
+import { later } from '../../parts/lazy.js';
 
-const card = new Lazy(async () => (await Promise.all([import('./patient_card.js'), styled('js/features/fits/fit.css')]))[0]);
+const card = later(() => import('./patient_card.js'), 'js/features/fits/fit.css');
 
 const unknown = html`<span class="patient-unknown dim" title=${`Identity unknown: ${unknownWords}`}>${icon('note', 12)} <span>identity unknown</span></span>`;
 

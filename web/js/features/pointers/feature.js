@@ -3,12 +3,12 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { effect } from '../../../lib/signals-core.js';
 import { icon } from '../../parts/icons.js';
-import { Lazy, styled } from '../../parts/lazy.js';
+import { later } from '../../parts/lazy.js';
 
-const panels = new Lazy(async () => (await Promise.all([import('./later.js'), styled('js/features/pointers/point.css')]))[0]);
+const panels = later(() => import('./later.js'), 'js/features/pointers/point.css');
 
 /** @param {object} world {room, ui, api, clock, panes, storage} @returns {() => void} stops */
-export function startPointers(world) {
+function startPointers(world) {
   let stop = null;
   const stopEffect = effect(() => {
     if (!world.room.pointers.shown.value.length) return;
@@ -28,7 +28,7 @@ function refusal({ pointers }) {
 }
 
 /** Key P: pointing on or off; with Shift it asks everybody to look here. */
-export function pointKey(room, ui, isAsking) {
+function pointKey(room, ui, isAsking) {
   const why = refusal(room);
   if (why) return void ui.notify('ok', why, 'point');
   if (isAsking) panels.loaded.peek()?.askToLook({ room, ui });
@@ -36,7 +36,7 @@ export function pointKey(room, ui, isAsking) {
 }
 
 /** The pointing buttons, for the strip or (isDock) with words below the icons. Nothing for a member alone in the room. */
-export function pointTools(world, isDock = false) {
+function pointTools(world, isDock = false) {
   const { room, ui } = world;
   const { pointers } = room;
   if (!pointers.others.value.length) return nothing;
@@ -58,3 +58,10 @@ export function pointTools(world, isDock = false) {
       @click=${() => ui.toggle('point')}>${icon('chevronDown', isDock ? 16 : 12)}</button>
     ${isOpen ? panels.loaded.value?.pointMenu(world, isDock) : nothing}</span>`;
 }
+
+/** @type {import('../index.js').Feature} */
+export const pointers = {
+  keys: { p: ({ room, ui }, at, { shiftKey }) => pointKey(room, ui, shiftKey) },
+  strip: { meet: pointTools },
+  start: startPointers,
+};

@@ -1,10 +1,7 @@
-// The record of the review on the page: what a first visit loads of it. The rest comes when its tab is opened.
-import { Lazy, styled } from '../../parts/lazy.js';
+// The record of the review. The rest comes when its tab is opened.
+import { later } from '../../parts/lazy.js';
 
-const record = new Lazy(
-  async () =>
-    (await Promise.all([import('./record_tab.js'), styled('js/features/notes/notes.css'), styled('js/features/record/record.css')]))[0],
-);
+const tab = later(() => import('./record_tab.js'), 'js/features/notes/notes.css', 'js/features/record/record.css');
 
-/** The inspector's Record. */
-export const drawRecord = (world) => record.draw(({ recordTab }) => recordTab(world));
+/** @type {import('../index.js').Feature} */
+export const record = { tabs: [{ id: 'record', name: 'Record', draw: (world) => tab.draw(({ recordTab }) => recordTab(world)) }] };

@@ -63,10 +63,3 @@ export class Refusals {
     this.#known.set(key, reason);
   }
 }
-
-/** "liver and colon", "liver, colon and 21 more" */
-export function nameSome(names, shown = 3) {
-  if (names.length <= 1) return names[0] ?? '';
-  if (names.length <= shown) return `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
-  return `${names.slice(0, shown - 1).join(', ')} and ${names.length - shown + 1} more`;
-}

@@ -3,10 +3,8 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { repeat } from '../../../lib/directives/repeat.js';
 import { maxName } from '../../room/own_name.js';
 import { present } from '../../room/plans.js';
-import { nameSome } from '../regions/refusals.js';
-import { count } from '../../parts/format.js';
+import { count, initials, nameSome } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
-import { initials } from '../../pane/pane.js';
 
 /** "Dr A, Dr B and 2 more"; "nobody in it now" */
 export const whoIn = (room) =>

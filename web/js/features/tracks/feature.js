@@ -1,17 +1,33 @@
-// The panels of particle tracks: no part of what a first visit loads.
-import { known, Lazy, styled } from '../../parts/lazy.js';
+// Particle tracks.
+import { known, later } from '../../parts/lazy.js';
 
-const rows = new Lazy(async () => (await Promise.all([import('./track_rows.js'), styled('js/features/tracks/track.css')]))[0]);
-const panels = new Lazy(() => import('./track_block.js'));
+const rows = later(() => import('./track_rows.js'), 'js/features/tracks/track.css');
 
 /** Exports of track_rows.js; null for a plan without tracks, and until they are loaded. */
-export const ofTracks = ({ plan, scene }) => (plan.value?.nTracks && scene.value?.tracks ? known(rows) : null);
-
-/** Draws parts of track_block.js in Selection. */
-export const drawTracks = (use) => panels.draw(use);
+const ofTracks = ({ plan, scene }) => (plan.value?.nTracks && scene.value?.tracks ? known(rows) : null);
 
 /** Key T: tracks on or off. */
 export function toggleTracks({ room, ui }, at) {
   if (!room.plan.value?.nTracks) return void ui.notify('ok', 'This plan has no particle tracks.', 'tracks');
   room.patchScene({ tracks: { visible: !room.scene.value.tracks.visible } }, { view: ui.active.value, at });
 }
+
+/** @type {import('../index.js').Feature} */
+export const tracks = {
+  sections: [
+    {
+      id: 'tracks',
+      name: 'Tracks',
+      icon: 'tracks',
+      place: 6,
+      has: (plan) => plan.nTracks,
+      note: (world) => ofTracks(world.room)?.trackNote(world) ?? '',
+      rows: (world) => ofTracks(world.room)?.trackRows(world),
+    },
+  ],
+  kinds: { tracks: 'tracks', track: 'tracks' },
+  blocks: later(() => import('./track_block.js')),
+  keys: { t: toggleTracks },
+  undo: { tracks: () => 'particle tracks' },
+  pane: (world) => ({ layer: ({ plane, header, box }) => (plane ? null : ofTracks(world.room)?.chosenTrack(world, { header, box })) }),
+};

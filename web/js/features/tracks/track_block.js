@@ -118,3 +118,5 @@ export function segmentBlock(world) {
       ${track.file === null ? nothing : html`<dt>File</dt><dd>${track.file}, segment ${number(track.file_segment)}</dd>`}</dl>
     <div class="buttons">${flyButton(world, track.from_lps_mm, 'Fly to its start')}${flyButton(world, track.to_lps_mm, 'Fly to its end')}<button @click=${() => ui.choose('tracks', '')}>All tracks</button></div></section>`;
 }
+
+export const blocks = { tracks: trackBlock, track: segmentBlock };

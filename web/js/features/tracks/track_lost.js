@@ -4,8 +4,7 @@ import { crosshairPatch, shownImage } from '../../room/plan.js';
 import { isTurnable } from '../../room/kinds.js';
 import { add, subtract } from '../../parts/vec.js';
 import { number, position } from '../../parts/format.js';
-import { icon } from '../../parts/icons.js';
-import { swatch } from '../../shell/probe.js';
+import { icon, swatch } from '../../parts/icons.js';
 
 /** "brain"; outside all regions. */
 export const placeWords = (plan, region) =>

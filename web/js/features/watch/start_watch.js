@@ -2,9 +2,9 @@
 // A presenter's page tells here in which view they work: it is the one that the small pictures of the others, and displays, show.
 import { effect, untracked } from '../../../lib/signals-core.js';
 import { Watching, WorkedIn, watched } from './watching.js';
-import { Lazy, styled } from '../../parts/lazy.js';
+import { later } from '../../parts/lazy.js';
 
-const panel = new Lazy(async () => (await Promise.all([import('./watch.js'), styled('js/features/watch/watch.css')]))[0]);
+const panel = later(() => import('./watch.js'), 'js/features/watch/watch.css');
 
 const acts = ['wheel', 'pointerdown', 'keydown', 'input'];
 const timers = { now: () => performance.now(), setTimeout: (...more) => setTimeout(...more), clearTimeout: (timer) => clearTimeout(timer) };

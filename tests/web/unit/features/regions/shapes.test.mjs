@@ -6,7 +6,8 @@ import { load } from '../../page.mjs';
 const { csvText } = await load('parts/csv.js');
 const { figureRows, isExportable, methods, representations, shapeQuery, volumeDifference } = await load('features/regions/shapes.js');
 const { Comparison } = await load('features/regions/comparison.js');
-const { Refusals, inQuestion, nameSome } = await load('features/regions/refusals.js');
+const { Refusals, inQuestion } = await load('features/regions/refusals.js');
+const { nameSome } = await load('parts/format.js');
 const { signal } = await load('../lib/signals-core.js');
 
 const scene = {

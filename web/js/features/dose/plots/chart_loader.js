@@ -1,15 +1,11 @@
 // The plots of dose, loaded when they are first wanted: their code, their style and uPlot are no part of what a first visit loads.
-import { Lazy, styled } from '../../../parts/lazy.js';
+import { later } from '../../../parts/lazy.js';
 
 export class ChartLoader {
   #parts;
 
   constructor(world) {
-    this.#parts = new Lazy(async () =>
-      (await Promise.all([import('./charts.js'), styled('lib/uplot.css'), styled('js/features/dose/plots/chart.css')]))[0].makeCharts(
-        world,
-      ),
-    );
+    this.#parts = later(async () => (await import('./charts.js')).makeCharts(world), 'lib/uplot.css', 'js/features/dose/plots/chart.css');
   }
 
   /** One part of the plots as a template. @param {'drawer'|'sheet'|'limits'|'printed'} name */

@@ -1,0 +1,13 @@
+// Clip planes: what is cut off in the pictures.
+import { later } from '../../parts/lazy.js';
+import { clipNote, clipRows, hasClips, toggleCaps, toggleClips } from './clip_rows.js';
+
+/** @type {import('../index.js').Feature} */
+export const clip = {
+  sections: [{ id: 'clip', name: 'Clip', icon: 'clip', place: 7, has: hasClips, note: clipNote, rows: clipRows }],
+  kinds: { clip: 'clip' },
+  blocks: later(() => import('./later_blocks.js')),
+  isSoon: true,
+  keys: { c: ({ room, ui }, at) => toggleClips(room, ui, at), k: ({ room, ui }, at) => toggleCaps(room, ui, at) },
+  undo: { clip: (name) => (name === 'cap' ? 'what caps show' : `clip ${name.replace('_', ' ')}`) },
+};

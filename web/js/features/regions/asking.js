@@ -1,0 +1,63 @@
+// When the server is asked about regions: the figures of the chosen one, which cannot be drawn, how its representations compare.
+import { computed, effect } from '../../../lib/signals-core.js';
+import { inQuestion } from './refusals.js';
+import { shapeQuery } from './shapes.js';
+
+/** Requests the figures of the chosen region's shape whenever another region or another shape is chosen. */
+export function askShape({ room, ui, api, shaped }) {
+  let pending = null;
+  const wanted = computed(() => {
+    const scene = room.scene.value;
+    const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
+    const representation = region && scene?.regions[region.id]?.representation;
+    const isReady = room.renderer.value.state === 'ready' && Boolean(representation) && region.voxels > 0;
+    return isReady ? JSON.stringify([region.id, representation, shapeQuery(scene, representation)]) : '';
+  });
+  const stop = effect(() => {
+    pending?.abort();
+    if (!wanted.value) return;
+    const [region, representation, query] = JSON.parse(wanted.value);
+    const { signal: aborted } = (pending = new AbortController());
+    shaped.value = { region: '', representation: '', result: null, error: '' };
+    const tell = (answer) => {
+      if (!aborted.aborted) shaped.value = { region, representation, result: null, error: '', ...answer };
+    };
+    api.surface(room.planId.peek(), region, query, aborted).then(
+      (result) => tell({ result }),
+      (error) => tell({ error: error.message }),
+    );
+  });
+  return () => {
+    stop();
+    pending?.abort();
+  };
+}
+
+/** Finds the regions that cannot be drawn whenever other regions are shown, or in another way. */
+export function askRefusals({ room, refusals }) {
+  const questions = computed(() =>
+    room.renderer.value.state === 'ready' ? JSON.stringify(inQuestion(room.plan.value, room.scene.value)) : '',
+  );
+  const stop = effect(() => {
+    if (questions.value) refusals.ask(room.planId.peek(), JSON.parse(questions.value));
+  });
+  return () => {
+    stop();
+    refusals.stop();
+  };
+}
+
+/** Starts the comparison when its dialog opens or, while it is open, another region is chosen. */
+export function askComparison({ room, ui, comparison }) {
+  const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
+  const stop = effect(() => {
+    const id = of.value;
+    const region = room.plan.peek()?.regions.find((other) => other.id === id);
+    if (region) comparison.start(room.planId.peek(), region, room.scene.peek());
+    else comparison.stop();
+  });
+  return () => {
+    stop();
+    comparison.stop();
+  };
+}
