@@ -90,7 +90,7 @@ describe('docs/api.md', () => {
   const all = examples(readFileSync('docs/api.md', 'utf8'));
   test('has commands', () => assert.ok(all.length >= 15));
   for (const { line, command, kind, answer } of all)
-    test(`line ${line}: ${command.trim().split('\n').at(-1).trim().slice(0, 90)}`, { skip }, async () => {
+    test(`line ${line}: ${command.trim().split('\n').at(-1).trim().slice(0, 90)}`, { skip, timeout: 120000 }, async () => {
       const got = await ask(command);
       assert.equal(got.status, 0, `${got.error}\n${got.text}`);
       if (kind === 'json') assert.equal(difference(JSON.parse(answer), parseStrict(got.text)), '');
