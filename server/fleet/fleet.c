@@ -59,10 +59,9 @@ const char *fleet_state_word(enum fleet_state state)
 static void update_list(struct fleet *fleet)
 {
     struct folder_list found;
-    if (!lister_take(fleet->lister, &found))
+    if (!lister_take(fleet->lister, &found, &fleet->n_lists))
         return;
-    fleet->is_listing = false;
-    fleet->n_lists++;
+    fleet->is_listing = fleet->n_lists < fleet->n_list_requests;
     fleet->list_has_changed |= !fleet->is_listed;
     fleet->is_listed = true;
     plan_list_update(fleet, &found);

@@ -128,8 +128,8 @@ bool fleet_no_plan(const struct fleet *fleet, const char *plan_id, struct proble
 size_t fleet_n_plans(const struct fleet *fleet);
 bool fleet_plan_at(const struct fleet *fleet, size_t index, struct fleet_plan *plan);
 bool fleet_plan_find(const struct fleet *fleet, const char *id, struct fleet_plan *plan);
-uint64_t fleet_n_lists(const struct fleet *fleet); /* how often they were listed */
-/* Has them listed, and returns which fleet_n_lists has a list that was begun after this call. */
+uint64_t fleet_n_lists(const struct fleet *fleet); /* the newest request that the list answers */
+/* Has them listed, and returns from which fleet_n_lists on the list was begun after this call. */
 uint64_t fleet_list_again(struct fleet *fleet);
 void fleet_rescan(struct fleet *fleet); /* lists the folders again, in the background */
 

@@ -22,15 +22,22 @@ struct lister {
     void *context;
     struct queue *requested; /* holds at most one item, the lister: list again */
     struct queue *ended;     /* the same, put when the thread ends */
-    struct mailbox *lists;
+    struct mailbox *lists;   /* of struct numbered_list; a newer one replaces one that was not taken */
+    _Atomic uint64_t n_requests;
     atomic_int state; /* WAKING: the thread is inside wake; LEFT_BEHIND: the owner is gone, wake must not be called */
     atomic_int references; /* the owner's and the thread's */
 };
 
+struct numbered_list {
+    struct folder_list list;
+    uint64_t number; /* requests before it was begun */
+};
+
 static void drop_list(void *letter)
 {
-    folder_list_finish(letter);
-    free(letter);
+    struct numbered_list *numbered = letter;
+    folder_list_finish(&numbered->list);
+    free(numbered);
 }
 
 static void unref(struct lister *lister)
@@ -61,9 +68,10 @@ static void *work(void *argument)
 {
     struct lister *lister = argument;
     while (queue_take(lister->requested, -1)) {
-        struct folder_list *list = mem_new(sizeof *list);
-        lister->function((const char *const *)lister->folders, lister->n_folders, list);
-        mailbox_put(lister->lists, list);
+        struct numbered_list *numbered = mem_new(sizeof *numbered);
+        numbered->number = atomic_load(&lister->n_requests);
+        lister->function((const char *const *)lister->folders, lister->n_folders, &numbered->list);
+        mailbox_put(lister->lists, numbered);
         if (!tell(lister))
             break;
     }
@@ -85,6 +93,7 @@ struct lister *lister_create(const char *const *folders, size_t n_folders, liste
     lister->requested = queue_create(1, NULL);
     lister->ended = queue_create(1, NULL);
     lister->lists = mailbox_create(drop_list);
+    atomic_init(&lister->n_requests, 0);
     atomic_init(&lister->state, IN_USE);
     atomic_init(&lister->references, 2);
     int failed = pthread_create(&lister->thread, NULL, work, lister);
@@ -113,17 +122,20 @@ void lister_destroy(struct lister *lister)
     unref(lister);
 }
 
-void lister_request(struct lister *lister)
+uint64_t lister_request(struct lister *lister)
 {
-    (void)queue_try_put(lister->requested, lister); /* full: one more listing is due already */
+    const uint64_t number = atomic_fetch_add(&lister->n_requests, 1) + 1;
+    (void)queue_try_put(lister->requested, lister); /* full: one more listing is due already, and has this number */
+    return number;
 }
 
-bool lister_take(struct lister *lister, struct folder_list *list)
+bool lister_take(struct lister *lister, struct folder_list *list, uint64_t *number)
 {
-    struct folder_list *newest = mailbox_take(lister->lists);
+    struct numbered_list *newest = mailbox_take(lister->lists);
     if (!newest)
         return false;
-    *list = *newest;
+    *list = newest->list;
+    *number = newest->number;
     free(newest);
     return true;
 }

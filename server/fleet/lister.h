@@ -14,7 +14,9 @@ struct lister;
 NODISCARD struct lister *lister_create(const char *const *folders, size_t n_folders, lister_function function,
                                        void (*wake)(void *context), void *context, struct error *err);
 void lister_destroy(struct lister *lister);
-/* Has the folders listed again. Calls during a listing cause one more listing. Never waits. */
-void lister_request(struct lister *lister);
-/* Takes the newest list; the caller calls folder_list_finish. Returns false when there is none since the last call. */
-NODISCARD bool lister_take(struct lister *lister, struct folder_list *list);
+/* Has the folders listed again, and returns the number of this request, from 1 on. Requests during a listing cause one
+ * more listing. Never waits. */
+uint64_t lister_request(struct lister *lister);
+/* Takes the newest list; the caller calls folder_list_finish. number: of the newest request that was made before the
+ * list was begun. Returns false when there is none since the last call. */
+NODISCARD bool lister_take(struct lister *lister, struct folder_list *list, uint64_t *number);

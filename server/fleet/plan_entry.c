@@ -47,7 +47,7 @@ bool fleet_no_plan(const struct fleet *fleet, const char *plan_id, struct proble
 
 void fleet_rescan(struct fleet *fleet)
 {
-    lister_request(fleet->lister);
+    fleet->n_list_requests = lister_request(fleet->lister);
     fleet->is_listing = true;
 }
 
@@ -58,9 +58,8 @@ uint64_t fleet_n_lists(const struct fleet *fleet)
 
 uint64_t fleet_list_again(struct fleet *fleet)
 {
-    const uint64_t number = fleet->n_lists + (fleet->is_listing ? 2 : 1); /* the one under way began before */
     fleet_rescan(fleet);
-    return number;
+    return fleet->n_list_requests;
 }
 
 struct plan_entry *plan_entry_find(const struct fleet *fleet, const char *id)

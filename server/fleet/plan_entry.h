@@ -98,7 +98,7 @@ struct fleet {
     size_t n_plans;
     bool list_has_changed; /* options.changed(NULL) is due */
     bool is_listing, is_listed;
-    uint64_t n_lists; /* taken from the lister */
+    uint64_t n_list_requests, n_lists; /* the newest request of the lister; the newest that a taken list answers */
     struct lister *lister;
     struct run_clock clock; /* stepped by fleet_tick */
     int64_t rest_us;        /* how long the next tick may be put off, as fleet_rest_us said last */
