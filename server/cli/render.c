@@ -1,62 +1,27 @@
 /* `beamroom render`: draws one picture of a plan. */
 #include <errno.h>
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <time.h>
 
 #include "core/annotate/describe.h"
 #include "core/base/clock.h"
 #include "core/base/file_write.h"
 #include "core/base/mem.h"
-#include "core/encode/encode.h"
-#include "core/render/render.h"
 #include "core/render/visible/visible.h"
 #include "core/scene/camera.h"
 #include "server/cli/command.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/open_plan.h"
-#include "server/cli/render_beam.h"
-#include "server/cli/render_dose.h"
-#include "server/cli/render_show.h"
+#include "server/cli/render_arguments.h"
 #include "server/cli/text.h"
 #include "server/wire/document.h"
 #include "server/wire/plan_document.h"
 #include "server/wire/snapshot_record.h"
 
-enum { DOCUMENT_MAX_BYTES = 1 << 20, DEFAULT_QUALITY = 92 };
-
-struct render_arguments {
-    const char *folder, *out;
-    const char *scene, *view; /* a file's name, or JSON, which begins with "{" */
-    struct render_show show;
-    struct render_dose dose;
-    struct render_beam beam;
-    enum encode_codec codec;
-    enum render_back_end back_end;
-    int size_px[2]; /* 0: that of the view */
-    bool has_from;  /* from_deg is given: towards the patient's left from the front; up from the horizontal */
-    double from_deg[2];
-    int quality;
-    bool has_annotations;
-    const char *accepted[ACCEPTANCES_MAX]; /* "THING=WITH" */
-    size_t n_accepted;
-};
-
-/* False: that is one too many, or has no '='. */
-static bool add_acceptance(struct render_arguments *arguments, const char *pair)
-{
-    const char *equals = strchr(pair, '=');
-    if (arguments->n_accepted == ACCEPTANCES_MAX || !equals || equals == pair || !equals[1]) {
-        fprintf(stderr, "beamroom render: --accept '%.100s' is not THING=WITH, such as dose:plan=image:ct\n", pair);
-        return false;
-    }
-    arguments->accepted[arguments->n_accepted++] = pair;
-    return true;
-}
+enum { DOCUMENT_MAX_BYTES = 1 << 20 };
 
 /* False with err: a part that the plan does not have, or no memory. */
 static bool list_acceptances(const struct render_arguments *arguments, const struct plan *plan,
@@ -77,57 +42,6 @@ static bool list_acceptances(const struct render_arguments *arguments, const str
             return error_set(err, ERROR_NOT_FOUND, "--accept '%.100s' names a part that the plan does not have", pair);
     }
     return true;
-}
-
-static void print_help(void)
-{
-    printf(
-        "usage: beamroom render DIR -o OUT.png|OUT.jpg [OPTION]...\n"
-        "Draws one picture of the plan in the folder DIR, the same that the daemon shows for the same scene and view.\n\n"
-        "  -o, --output OUT  the picture; its ending says whether PNG or JPEG\n"
-        "  --scene JSON      what differs from the scene a new room starts with (a merge patch, RFC 7396): JSON in { }, or the\n"
-        "                    name of a file of it\n"
-        "  --view JSON       what differs from the view a new room starts with, 1024x768: camera, kind, size, override\n"
-        "  --show REGIONS    ids with commas between: these regions alone, opaque or with the opacity in ID=0.3; none: no region\n"
-        "  --slices SLICES   axial, coronal, sagittal, with commas between and perhaps =MM behind: these slices alone; none\n"
-        "  --volume METHOD   the image as a volume: ray, slices, mip or average; METHOD=VALUE: without what is below VALUE\n"
-        "  --plane N[@P]     an oblique plane with the direction N through the point P, else through where the slices meet,\n"
-        "                    each X,Y,Z towards L, P and S: its own picture, or a slice in one whose kind is said\n"
-        "  --clip PLANE=MM   cuts off what lies beyond: axial-low, axial-high, coronal-low, coronal-high, sagittal-low or\n"
-        "                    sagittal-high, each at a position along S, P or L, or beam, across the beam at a distance from\n"
-        "                    its entry, and what lies before; given again: one more plane\n"
-        "  --no-caps         leaves cuts of --clip open, so that they show what is hollow\n"
-        "  --window C/W      the image's window: centre and width, in its unit\n"
-        "  --dose ID         the dose that is shown\n"
-        "  --accept A=B      uses two parts though they do not fit, such as dose:plan=image:ct; the caption says so; given\n"
-        "                    again: one more pair\n"
-        "  --quantity WORD   weighted, total, boron, nitrogen, fast, gamma, isoeffective and others of the scene\n"
-        "  --ppm N           boron in blood; --tissue ID: the weights of this region everywhere\n"
-        "  --reference R     what 100 %% is: body, file, value=N, region-max=ID, region-mean=ID or point=X,Y,Z\n"
-        "  --level V[=COLOR] an isodose level, 95%% or 20Gy, alone; given again: one more\n"
-        "  --wash STYLE      dose as colour on slices, caps and textures: bands or smooth, =OPACITY behind\n"
-        "  --lines           isodose lines on slices and caps\n"
-        "  --isodoses GRID   isodose surfaces of all levels, made in the grid of the dose or of the univels\n"
-        "  --texture WHAT    what colours the regions shown: none, image or dose (of --wash)\n"
-        "  --beam[=ID]       draws this beam, without ID the first, with its aperture, and chooses it; given again: one more is\n"
-        "                    drawn\n"
-        "  --draft E:T       a draft of a beam in its place, from an entry to a target, each X,Y,Z in mm towards L, P and S\n"
-        "  --beam-slice MM   the image on the plane across the chosen beam, at this distance from its entry\n"
-        "  --tracks[=LIST]   particle tracks, of these classes alone: neutron-low, neutron-medium, neutron-high, gamma-low,\n"
-        "                    gamma-medium, gamma-high, lost, beam-line, with commas between; neutron, gamma: three each\n"
-        "  --kind KIND       3d, axial, coronal, sagittal, oblique; beam: along the chosen beam; beam-slice: across it\n"
-        "  --along MM        in a beam's-eye view: the eye's distance from the beam's entry; else the whole plan is seen\n"
-        "  --ring MM         in a beam's-eye view: a ring of this diameter about its axis, in parallel projection\n"
-        "  --from A,E        looks at the plan from A degrees off the front, towards the patient's left, and E degrees up\n"
-        "  --size WxH        pixels, each 16 to 4096; before what --view says\n"
-        "  --gl BACKEND      auto (default), egl-device, egl-surfaceless, osmesa or soft\n"
-        "  --quality N       of a JPEG, 1 to 100 (default %d)\n"
-        "  --annotations     letters, scale bar and a caption below the picture, which makes the file higher; a PNG then\n"
-        "                    carries scene and view, so that the page can show them again\n"
-        "  --help            this text\n\n"
-        "The fields of scene and view are those of the daemon's API. Equal plans, scenes and views give equal pictures on the\n"
-        "same back end.\n",
-        DEFAULT_QUALITY);
 }
 
 /* ---- what to draw ----------------------------------------------------------------------------------------------- */
@@ -413,208 +327,12 @@ static bool draw(struct derive *derived, const struct render_arguments *argument
     return is_drawn;
 }
 
-/* ---- the command line ------------------------------------------------------------------------------------------- */
-
-static bool parse_between(const char **at, int low, int high, int *number)
-{
-    if (**at < '0' || **at > '9')
-        return false;
-    char *end;
-    errno = 0;
-    long value = strtol(*at, &end, 10);
-    *at = end;
-    *number = (int)value;
-    return errno == 0 && value >= low && value <= high;
-}
-
-static bool parse_size(const char *text, int size_px[2])
-{
-    return parse_between(&text, 16, 4096, &size_px[0]) && *text++ == 'x' &&
-           parse_between(&text, 16, 4096, &size_px[1]) && *text == 0;
-}
-
-static bool parse_from(const char *text, double from_deg[2])
-{
-    char *end;
-    from_deg[0] = strtod(text, &end);
-    if (end == text || *end++ != ',')
-        return false;
-    from_deg[1] = strtod(text = end, &end);
-    return end != text && *end == 0 && fabs(from_deg[0]) <= 360 && fabs(from_deg[1]) <= 90;
-}
-
-static bool parse_quality(const char *text, int *quality)
-{
-    return parse_between(&text, 1, 100, quality) && *text == 0;
-}
-
-static bool codec_from_path(const char *path, enum encode_codec *codec)
-{
-    const char *dot = strrchr(path, '.');
-    if (!dot)
-        return false;
-    *codec = strcasecmp(dot, ".png") == 0 ? ENCODE_PNG : ENCODE_JPEG;
-    return *codec == ENCODE_PNG || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0;
-}
-
-/* Checks the words of the options, before the plan is open. */
-static bool check_words(const struct render_arguments *arguments, struct error *err)
-{
-    cJSON *nothing = cJSON_CreateObject(), *view = cJSON_CreateObject();
-    cJSON *shown = render_show_patch(&arguments->show, nothing, err);
-    cJSON *dosed = shown ? render_dose_patch(&arguments->dose, nothing, err) : NULL;
-    cJSON *beam = dosed ? render_beam_patch(&arguments->beam, NULL, nothing, err) : NULL;
-    bool is_good = beam && render_beam_add_view(&arguments->beam, view, err);
-    cJSON_Delete(shown);
-    cJSON_Delete(dosed);
-    cJSON_Delete(beam);
-    cJSON_Delete(view);
-    cJSON_Delete(nothing);
-    return is_good;
-}
-
-/* False when there is nothing to draw; *code is then the exit code. */
-static bool parse_arguments(int argc, char **argv, struct render_arguments *arguments, int *code)
-{
-    static const struct option long_options[] = {
-        { "output", required_argument, NULL, 'o' },
-        { "scene", required_argument, NULL, 's' },
-        { "view", required_argument, NULL, 'v' },
-        { "size", required_argument, NULL, 'z' },
-        { "show", required_argument, NULL, 'r' },
-        { "slices", required_argument, NULL, 'l' },
-        { "volume", required_argument, NULL, 'u' },
-        { "plane", required_argument, NULL, 'p' },
-        { "window", required_argument, NULL, 'w' },
-        { "from", required_argument, NULL, 'f' },
-        { "clip", required_argument, NULL, 'c' },
-        { "no-caps", no_argument, NULL, 'n' },
-        { "dose", required_argument, NULL, 'd' },
-        { "accept", required_argument, NULL, 'A' },
-        { "quantity", required_argument, NULL, 'Q' },
-        { "ppm", required_argument, NULL, 'P' },
-        { "tissue", required_argument, NULL, 'T' },
-        { "reference", required_argument, NULL, 'R' },
-        { "level", required_argument, NULL, 'L' },
-        { "wash", required_argument, NULL, 'W' },
-        { "lines", no_argument, NULL, 'I' },
-        { "isodoses", required_argument, NULL, 'S' },
-        { "texture", required_argument, NULL, 'X' },
-        { "beam", optional_argument, NULL, 'b' },
-        { "draft", required_argument, NULL, 'D' },
-        { "beam-slice", required_argument, NULL, 'B' },
-        { "tracks", optional_argument, NULL, 't' },
-        { "kind", required_argument, NULL, 'k' },
-        { "along", required_argument, NULL, 'E' },
-        { "ring", required_argument, NULL, 'G' },
-        { "gl", required_argument, NULL, 'g' },
-        { "quality", required_argument, NULL, 'q' },
-        { "annotations", no_argument, NULL, 'a' },
-        { "help", no_argument, NULL, 'h' },
-        { NULL, 0, NULL, 0 },
-    };
-    *code = EXIT_USAGE;
-    opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, "ho:", long_options, NULL)) != -1;) {
-        switch (option) {
-        case 'o': arguments->out = optarg; break;
-        case 's': arguments->scene = optarg; break;
-        case 'v': arguments->view = optarg; break;
-        case 'r': arguments->show.regions = optarg; break;
-        case 'l': arguments->show.slices = optarg; break;
-        case 'u': arguments->show.volume = optarg; break;
-        case 'p': arguments->show.plane = optarg; break;
-        case 'w': arguments->show.window = optarg; break;
-        case 'f':
-            arguments->has_from = true;
-            if (!parse_from(optarg, arguments->from_deg))
-                return command_usage_error("render", "--from '%s' is not of the form 30,12: degrees up to 360 and 90",
-                                           optarg),
-                       false;
-            break;
-        case 'c':
-            if (arguments->show.n_clips == RENDER_SHOW_MAX_CLIPS)
-                return command_usage_error("render", "--clip is given more than %d times", RENDER_SHOW_MAX_CLIPS),
-                       false;
-            arguments->show.clips[arguments->show.n_clips++] = optarg;
-            arguments->beam.has_clip = arguments->beam.has_clip || strncmp(optarg, "beam", 4) == 0;
-            break;
-        case 'n': arguments->show.is_uncapped = true; break;
-        case 'd': arguments->dose.dose = optarg; break;
-        case 'A':
-            if (!add_acceptance(arguments, optarg))
-                return false;
-            break;
-        case 'Q': arguments->dose.quantity = optarg; break;
-        case 'P': arguments->dose.ppm = optarg; break;
-        case 'T': arguments->dose.tissue = optarg; break;
-        case 'R': arguments->dose.reference = optarg; break;
-        case 'W': arguments->dose.wash = optarg; break;
-        case 'I': arguments->dose.has_lines = true; break;
-        case 'S': arguments->dose.isodoses = optarg; break;
-        case 'X': arguments->dose.texture = optarg; break;
-        case 'b':
-            if (arguments->beam.n_beams == RENDER_BEAM_MAX)
-                return command_usage_error("render", "--beam is given more than %d times", RENDER_BEAM_MAX), false;
-            arguments->beam.beams[arguments->beam.n_beams++] = optarg ? optarg : "";
-            break;
-        case 'D': arguments->beam.draft = optarg; break;
-        case 'B': arguments->beam.slice = optarg; break;
-        case 't': arguments->beam.tracks = optarg ? optarg : ""; break;
-        case 'k': arguments->beam.kind = optarg; break;
-        case 'E': arguments->beam.along = optarg; break;
-        case 'G': arguments->beam.ring = optarg; break;
-        case 'L':
-            if (arguments->dose.n_levels == RENDER_DOSE_MAX_LEVELS)
-                return command_usage_error("render", "--level is given more than %d times", RENDER_DOSE_MAX_LEVELS),
-                       false;
-            arguments->dose.levels[arguments->dose.n_levels++] = optarg;
-            break;
-        case 'z':
-            if (!parse_size(optarg, arguments->size_px))
-                return command_usage_error("render", "--size '%s' is not of the form 1024x768, each 16 to 4096",
-                                           optarg),
-                       false;
-            break;
-        case 'g':
-            if (!render_back_end_from_word(optarg, &arguments->back_end))
-                return command_usage_error("render",
-                                           "--gl '%s' is not auto, egl-device, egl-surfaceless, osmesa or soft",
-                                           optarg),
-                       false;
-            break;
-        case 'q':
-            if (!parse_quality(optarg, &arguments->quality))
-                return command_usage_error("render", "--quality '%s' is not 1 to 100", optarg), false;
-            break;
-        case 'a': arguments->has_annotations = true; break;
-        case 'h':
-            print_help();
-            *code = EXIT_DONE;
-            return false;
-        default:
-            return command_usage_error("render", "'%s' is not an option or lacks its value", argv[optind - 1]), false;
-        }
-    }
-    struct error err = { 0 };
-    if (!check_words(arguments, &err))
-        return command_usage_error("render", "%s", err.text), false;
-    if (argc - optind != 1)
-        return command_usage_error("render", "one folder is needed, %d are given", argc - optind), false;
-    if (!arguments->out)
-        return command_usage_error("render", "where to write is needed: -o OUT.png or -o OUT.jpg"), false;
-    if (!codec_from_path(arguments->out, &arguments->codec))
-        return command_usage_error("render", "-o '%s' does not end in .png, .jpg or .jpeg", arguments->out), false;
-    arguments->folder = argv[optind];
-    return true;
-}
-
 int command_render(int argc, char **argv)
 {
-    struct render_arguments arguments = { .back_end = RENDER_AUTO, .quality = DEFAULT_QUALITY };
+    struct render_arguments arguments;
     struct error err = { 0 };
     int code;
-    if (!parse_arguments(argc, argv, &arguments, &code))
+    if (!render_arguments_parse(argc, argv, &arguments, &code))
         return code;
     struct plan *plan = command_open_plan("render", arguments.folder);
     if (!plan)
