@@ -99,3 +99,10 @@ char *mem_copy_text(const char *text)
     memcpy(copy, text, n);
     return copy;
 }
+
+void mem_put_text(char *to, size_t size, const char *text)
+{
+    size_t n = text ? strnlen(text, size - 1) : 0;
+    memcpy(to, text ? text : "", n);
+    to[n] = 0;
+}

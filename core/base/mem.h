@@ -32,3 +32,6 @@ size_t mem_n_refused(void); /* number of times mem_counted returned NULL on this
 
 /* Copy of a string; aborts as mem_new does. */
 NODISCARD char *mem_copy_text(const char *text);
+
+/* Puts text, which may be NULL, into an array of size bytes, cut to it. */
+void mem_put_text(char *to, size_t size, const char *text);

@@ -26,12 +26,6 @@ void plan_scans_start(struct fleet *fleet)
     }
 }
 
-static void copy_text(char *to, size_t n, const cJSON *json, const char *name)
-{
-    const char *text = json_text(json, name);
-    (void)snprintf(to, n, "%s", text ? text : "");
-}
-
 /* The printed summary into the entry. Returns false with a reason when it is malformed or says that the plan cannot be
  * read. */
 static bool read_summary(struct plan_entry *plan, const cJSON *json, char reason[240])
@@ -43,8 +37,8 @@ static bool read_summary(struct plan_entry *plan, const cJSON *json, char reason
         return false;
     }
     if (json_text(json, "name") && json_text(json, "name")[0])
-        copy_text(plan->name, sizeof plan->name, json, "name");
-    copy_text(plan->note, sizeof plan->note, json, "note");
+        json_put_text(plan->name, sizeof plan->name, json, "name");
+    json_put_text(plan->note, sizeof plan->note, json, "note");
     plan->is_phantom = json_flag(json, "phantom", false);
     plan->has_plan_file = json_flag(json, "has_plan_file", false);
     plan->n_bytes = n_bytes >= 0 && n_bytes < 9e15 ? (uint64_t)n_bytes : 0;
@@ -58,7 +52,7 @@ static bool read_summary(struct plan_entry *plan, const cJSON *json, char reason
         }
     if (json_flag(json, "readable", false))
         return true;
-    copy_text(reason, 240, json, "reason");
+    json_put_text(reason, 240, json, "reason");
     return false;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/log.h"
+#include "core/base/mem.h"
 #include "server/fleet/gl_probe.h"
 #include "server/fleet/renderers.h"
 #include "server/fleet/requests.h"
@@ -18,13 +19,6 @@ enum {
     MAX_MEMBERS = 64, /* of that document, which has some 16 */
     LEAST_MEMORY_SLACK = 256 << 20
 };
-
-static void copy_text(char *to, size_t n, const char *text)
-{
-    size_t n_copied = strnlen(text, n - 1);
-    memcpy(to, text, n_copied);
-    to[n_copied] = 0;
-}
 
 void renderer_started(struct fleet *fleet, const struct watch_event *event)
 {
@@ -60,7 +54,7 @@ void renderer_memory(struct fleet *fleet, const struct watch_event *event)
 static bool progress_packet(struct fleet *fleet, struct plan_entry *plan, const struct packet_progress *progress)
 {
     char phase[sizeof plan->phase];
-    copy_text(phase, sizeof phase, progress->phase);
+    mem_put_text(phase, sizeof phase, progress->phase);
     if (plan->state == FLEET_READY)
         return false;
     if (progress->percent != plan->percent || strcmp(phase, plan->phase) != 0)
@@ -98,7 +92,7 @@ static bool ready_packet(struct fleet *fleet, struct plan_entry *plan, struct pa
     plan_entry_forget_documents(plan);
     plan->document = packet_take_document(packet, ready->plan);
     plan->default_scene = packet_take_document(packet, ready->scene);
-    copy_text(plan->confined, sizeof plan->confined, ready->confined);
+    mem_put_text(plan->confined, sizeof plan->confined, ready->confined);
     plan->load_ms = ready->load_ms;
     plan->was_ready = true;
     plan->percent = 100;

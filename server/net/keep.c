@@ -47,18 +47,13 @@ void keep_is_saved(void *context, const struct room *room, struct room_saved *sa
 
 /* ---- items ------------------------------------------------------------------------------------------------------ */
 
-static void copy_text(char *to, size_t size, const char *from)
-{
-    (void)snprintf(to, size, "%s", from ? from : "");
-}
-
 /* Copies the fields that the database searches for into columns beside the whole row. */
 static void read_columns(const char *row, struct store_item *item)
 {
     cJSON *json = json_read(row, strlen(row), NULL);
-    copy_text(item->kind, sizeof item->kind, json_text(json, "kind"));
-    copy_text(item->author, sizeof item->author, json_text(json, "author"));
-    copy_text(item->author_name, sizeof item->author_name, json_text(json, "author_name"));
+    json_put_text(item->kind, sizeof item->kind, json, "kind");
+    json_put_text(item->author, sizeof item->author, json, "author");
+    json_put_text(item->author_name, sizeof item->author_name, json, "author_name");
     item->version = (int64_t)json_number(json, "version", 0);
     item->created_ms = (int64_t)json_number(json, "created_ms", 0);
     item->changed_ms = (int64_t)json_number(json, "changed_ms", 0);
@@ -90,7 +85,7 @@ static void item_changed(struct net_room *room, const char *row, const char *id)
     }
     free(item->body);
     *item = (struct store_item){ 0 };
-    copy_text(item->id, sizeof item->id, id);
+    mem_put_text(item->id, sizeof item->id, id);
     if (row) {
         item->body = mem_copy_text(row);
         read_columns(row, item);
@@ -142,7 +137,7 @@ static bool fill_prompt(struct store_room *row, const struct room_item_write *wr
     row->audit[row->n_audit++] = audit;
     struct store_item *item = &row->items[row->n_items++];
     *item = (struct store_item){ .body = mem_copy_text(write->row) };
-    copy_text(item->id, sizeof item->id, write->id);
+    mem_put_text(item->id, sizeof item->id, write->id);
     read_columns(write->row, item);
     if (!write->record)
         return true;
@@ -150,12 +145,12 @@ static bool fill_prompt(struct store_room *row, const struct room_item_write *wr
     *record = (struct store_record){ .time_ms = write->time_ms,
                                      .item = mem_copy_text(write->row),
                                      .body = mem_copy_text(write->record) };
-    copy_text(record->id, sizeof record->id, write->id);
-    copy_text(record->room, sizeof record->room, row->id);
-    copy_text(record->plan, sizeof record->plan, row->plan);
-    copy_text(record->kind, sizeof record->kind, write->kind);
-    copy_text(record->author, sizeof record->author, write->author);
-    copy_text(record->author_name, sizeof record->author_name, write->author_name);
+    mem_put_text(record->id, sizeof record->id, write->id);
+    mem_put_text(record->room, sizeof record->room, row->id);
+    mem_put_text(record->plan, sizeof record->plan, row->plan);
+    mem_put_text(record->kind, sizeof record->kind, write->kind);
+    mem_put_text(record->author, sizeof record->author, write->author);
+    mem_put_text(record->author_name, sizeof record->author_name, write->author_name);
     return true;
 }
 

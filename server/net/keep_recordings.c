@@ -115,12 +115,6 @@ void keep_recordings_finish(struct net_room *room)
 
 /* ---- from the store --------------------------------------------------------------------------------------------- */
 
-static void copy_text(char *to, size_t size, const cJSON *json, const char *name)
-{
-    const char *text = json_text(json, name);
-    (void)snprintf(to, size, "%s", text ? text : "");
-}
-
 static double number_below(const cJSON *json, const char *name, double most)
 {
     const double number = json_number(json, name, 0);
@@ -154,10 +148,10 @@ static bool read_facts(const char *text, struct room_recording *facts)
     facts->n_batches = (uint32_t)number_below(json, "n_batches", ROOM_MAX_RECORDING_EVENTS);
     facts->n_events = (uint32_t)number_below(json, "n_events", ROOM_MAX_RECORDING_EVENTS);
     facts->n_bytes = (uint64_t)number_below(json, "n_bytes", ROOM_MAX_RECORDING_BYTES);
-    copy_text(facts->by, sizeof facts->by, json, "by");
-    copy_text(facts->by_name, sizeof facts->by_name, json, "by_name");
-    copy_text(facts->plan_mark, sizeof facts->plan_mark, json, "plan_mark");
-    copy_text(facts->plan_revision, sizeof facts->plan_revision, json, "plan_revision"); /* older ones have none */
+    json_put_text(facts->by, sizeof facts->by, json, "by");
+    json_put_text(facts->by_name, sizeof facts->by_name, json, "by_name");
+    json_put_text(facts->plan_mark, sizeof facts->plan_mark, json, "plan_mark");
+    json_put_text(facts->plan_revision, sizeof facts->plan_revision, json, "plan_revision"); /* older ones have none */
     marks = cJSON_DetachItemFromObjectCaseSensitive(json, "marks");
     if (are_marks(marks))
         facts->marks = marks;

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <time.h>
 
 #include "core/base/clock.h"
@@ -17,6 +16,7 @@
 #include "server/net/keep_recordings.h"
 #include "server/net/net.h"
 #include "server/net/schedule.h"
+#include "server/wire/random.h"
 
 struct net_room *rooms_find(const struct net *net, const char *id)
 {
@@ -61,20 +61,13 @@ static void close_connection(void *context, void *connection)
 
 /* ---- rooms ------------------------------------------------------------------------------------------------------ */
 
-/* 40 random bits as "7q4k-m2wz". The letters i, l and o and the digit 1 are left out: they are misread. */
+/* 40 random bits as "7q4k-m2wz". */
 static bool make_id(char id[16])
 {
-    static const char letters[] = "abcdefghjkmnpqrstuvwxyz023456789";
-    uint8_t bytes[8];
-    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
+    char letters[8 + 1];
+    if (!random_letters(letters, 8))
         return false;
-    char *at = id;
-    for (int i = 0; i < 8; i++) {
-        if (i == 4)
-            *at++ = '-';
-        *at++ = letters[bytes[i] % 32];
-    }
-    *at = 0;
+    (void)snprintf(id, 16, "%.4s-%s", letters, letters + 4);
     return true;
 }
 

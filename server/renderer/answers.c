@@ -7,6 +7,7 @@
 #include "core/pick/pick.h"
 #include "core/scene/scene_probe.h"
 #include "server/wire/document.h"
+#include "server/wire/json.h"
 #include "server/wire/plan_origins.h"
 #include "server/wire/shape_query.h"
 #include "wire_gen.h"
@@ -14,11 +15,6 @@
 static cJSON *point(struct vec3 p)
 {
     return cJSON_CreateDoubleArray((double[3]){ p.x, p.y, p.z }, 3);
-}
-
-static void add_number(cJSON *json, const char *name, double value)
-{
-    cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
 static uint8_t *shape_file(const struct plan *plan, struct subject subject, const struct shape_query *query,
@@ -93,18 +89,18 @@ cJSON *answer_surface(struct question *question, struct derive *derived, struct 
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "region", subject_id(plan, subject));
     add_key(json, &query);
-    add_number(json, "triangles", (double)facts.n_triangles);
-    add_number(json, "vertices", (double)facts.n_vertices);
-    add_number(json, "lines", (double)facts.n_lines);
-    add_number(json, "points", (double)facts.n_points);
-    add_number(json, "area_mm2", has_mesh ? facts.area_mm2 : NAN);
-    add_number(json, "volume_mm3", has_mesh ? facts.volume_mm3 : NAN);
-    add_number(json, "univel_volume_mm3", facts.univel_volume_mm3);
-    add_number(json, "n_univels", (double)facts.n_univels);
-    add_number(json, "distance_mean_mm", facts.distance_mean_mm);
-    add_number(json, "distance_max_mm", facts.distance_max_mm);
-    add_number(json, "n_bytes", (double)facts.n_bytes);
-    add_number(json, "ms", facts.build_ms);
+    json_add_finite(json, "triangles", (double)facts.n_triangles);
+    json_add_finite(json, "vertices", (double)facts.n_vertices);
+    json_add_finite(json, "lines", (double)facts.n_lines);
+    json_add_finite(json, "points", (double)facts.n_points);
+    json_add_finite(json, "area_mm2", has_mesh ? facts.area_mm2 : NAN);
+    json_add_finite(json, "volume_mm3", has_mesh ? facts.volume_mm3 : NAN);
+    json_add_finite(json, "univel_volume_mm3", facts.univel_volume_mm3);
+    json_add_finite(json, "n_univels", (double)facts.n_univels);
+    json_add_finite(json, "distance_mean_mm", facts.distance_mean_mm);
+    json_add_finite(json, "distance_max_mm", facts.distance_max_mm);
+    json_add_finite(json, "n_bytes", (double)facts.n_bytes);
+    json_add_finite(json, "ms", facts.build_ms);
     return json;
 }
 
@@ -128,7 +124,7 @@ cJSON *answer_probe(struct question *question, struct derive *derived, struct pr
             continue;
         cJSON *image = cJSON_CreateObject();
         cJSON_AddStringToObject(image, "id", plan->images[i].id);
-        add_number(image, "value", probe.image_value[i]);
+        json_add_finite(image, "value", probe.image_value[i]);
         cJSON_AddStringToObject(image, "unit", plan->images[i].unit);
         cJSON_AddItemToArray(images, image);
     }
@@ -141,8 +137,8 @@ cJSON *answer_probe(struct question *question, struct derive *derived, struct pr
         cJSON_AddStringToObject(item, "id", dose->id);
         cJSON_AddStringToObject(item, "quantity", dose_quantity_word(component->quantity));
         cJSON_AddBoolToObject(item, "per_ppm", component->is_per_ppm);
-        add_number(item, "boron_ppm", component->has_boron_ppm ? component->boron_ppm : NAN);
-        add_number(item, "value", probe.doses[i].value);
+        json_add_finite(item, "boron_ppm", component->has_boron_ppm ? component->boron_ppm : NAN);
+        json_add_finite(item, "value", probe.doses[i].value);
         dose_unit_of(dose, component->quantity, unit);
         cJSON_AddStringToObject(item, "unit", unit);
         cJSON_AddStringToObject(item, "per", dose->per);
@@ -204,8 +200,8 @@ cJSON *answer_pick(struct question *question, struct derive *derived, struct pro
         else
             cJSON_AddNullToObject(hit, "level");
         add_beam(hit, snapshot, hits[i].subject);
-        add_number(hit, "distance_mm", hits[i].distance_mm);
-        add_number(hit, "alpha", hits[i].alpha);
+        json_add_finite(hit, "distance_mm", hits[i].distance_mm);
+        json_add_finite(hit, "alpha", hits[i].alpha);
         cJSON_AddBoolToObject(hit, "cap", hits[i].is_on_cap);
         cJSON_AddBoolToObject(hit, "seen", i == seen);
         cJSON_AddItemToArray(list, hit);
@@ -236,7 +232,7 @@ cJSON *answer_summary(const struct plan_summary *summary)
     cJSON *parts = cJSON_AddArrayToObject(json, "parts");
     for (size_t i = 0; i < summary->n_parts; i++)
         cJSON_AddItemToArray(parts, cJSON_CreateString(summary->parts[i]));
-    add_number(json, "n_bytes", (double)summary->n_bytes);
+    json_add_finite(json, "n_bytes", (double)summary->n_bytes);
     return json;
 }
 

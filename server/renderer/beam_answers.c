@@ -11,16 +11,12 @@
 #include "core/scene/beam_place.h"
 #include "server/renderer/answers.h"
 #include "server/wire/document.h"
+#include "server/wire/json.h"
 #include "server/wire/plan_document.h"
 
 static cJSON *point(struct vec3 p)
 {
     return cJSON_CreateDoubleArray((double[3]){ p.x, p.y, p.z }, 3);
-}
-
-static void add_number(cJSON *json, const char *name, double value)
-{
-    cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
 static const double SAME_DIAMETER_MM = 0.005; /* figures are given to 0.1 mm */
@@ -64,8 +60,8 @@ static void add_line(cJSON *json, const struct beam_asked *asked)
     cJSON_AddItemToObject(json, "entry_lps_mm", point(shown->entry_lps_mm));
     cJSON_AddItemToObject(json, "target_lps_mm", point(shown->target_lps_mm));
     cJSON_AddItemToObject(json, "direction", point(shown->direction));
-    add_number(json, "length_mm", shown->length_mm);
-    add_number(json, "aperture_mm", shown->aperture_mm);
+    json_add_finite(json, "length_mm", shown->length_mm);
+    json_add_finite(json, "aperture_mm", shown->aperture_mm);
     bool has_radiation = planned && planned->has_delivery && planned->delivery.radiation[0];
     cJSON_AddItemToObject(json, "radiation",
                           has_radiation ? cJSON_CreateString(planned->delivery.radiation) : cJSON_CreateNull());
@@ -77,9 +73,9 @@ static void add_angles(cJSON *json, const struct beam_asked *asked)
     char card[SERA_CARD_SIZE];
     cJSON *sera = cJSON_AddObjectToObject(json, "sera");
     cJSON_AddItemToObject(sera, "target_cm", cJSON_CreateDoubleArray(angles.target_cm, 3));
-    add_number(sera, "z_cm", angles.z_cm);
-    add_number(sera, "phi_deg", angles.phi_deg);
-    add_number(sera, "theta_deg", angles.theta_deg);
+    json_add_finite(sera, "z_cm", angles.z_cm);
+    json_add_finite(sera, "phi_deg", angles.phi_deg);
+    json_add_finite(sera, "theta_deg", angles.theta_deg);
     cJSON_AddStringToObject(json, "card", sera_card(&angles, card));
     if (!asked->planned || !asked->planned->has_delivery) {
         cJSON_AddNullToObject(json, "iec");
@@ -90,8 +86,8 @@ static void add_angles(cJSON *json, const struct beam_asked *asked)
     if (asked->shown.is_draft)
         room = beam_angles_from_direction(vec3_scale(asked->shown.direction, -1), delivery->patient_position, &room);
     cJSON *iec = cJSON_AddObjectToObject(json, "iec");
-    add_number(iec, "gantry_deg", room.gantry_deg);
-    add_number(iec, "couch_deg", room.couch_deg);
+    json_add_finite(iec, "gantry_deg", room.gantry_deg);
+    json_add_finite(iec, "couch_deg", room.couch_deg);
     cJSON_AddStringToObject(iec, "patient_position", patient_position_word(delivery->patient_position));
 }
 
@@ -103,8 +99,8 @@ static void add_crossed(cJSON *json, const struct beam_asked *asked)
         const struct ray_band *band = &asked->bands[i];
         cJSON *item = cJSON_CreateObject();
         cJSON_AddStringToObject(item, "region", set->regions[band->region].id);
-        add_number(item, "from_mm", band->from_mm);
-        add_number(item, "to_mm", band->to_mm);
+        json_add_finite(item, "from_mm", band->from_mm);
+        json_add_finite(item, "to_mm", band->to_mm);
         cJSON_AddItemToArray(bands, item);
         double length = 0, to_target = 0;
         bool is_first = true;
@@ -120,8 +116,8 @@ static void add_crossed(cJSON *json, const struct beam_asked *asked)
             continue;
         item = cJSON_CreateObject();
         cJSON_AddStringToObject(item, "region", set->regions[band->region].id);
-        add_number(item, "length_mm", length);
-        add_number(item, "to_target_mm", to_target);
+        json_add_finite(item, "length_mm", length);
+        json_add_finite(item, "to_target_mm", to_target);
         cJSON_AddItemToArray(crossed, item);
     }
 }
@@ -131,9 +127,9 @@ static void add_depths(cJSON *json, const struct beam_asked *asked)
     double skin = asked->n_bands ? asked->bands[0].from_mm : NAN;
     cJSON_AddItemToObject(json, "skin_lps_mm",
                           asked->n_bands ? point(beam_point(&asked->shown, skin)) : cJSON_CreateNull());
-    add_number(json, "skin_along_mm", skin);
-    add_number(json, "gap_mm", skin);
-    add_number(json, "depth_mm", asked->shown.length_mm - skin);
+    json_add_finite(json, "skin_along_mm", skin);
+    json_add_finite(json, "gap_mm", skin);
+    json_add_finite(json, "depth_mm", asked->shown.length_mm - skin);
     cJSON_AddItemToObject(json, "skin_reason",
                           asked->n_bands ? cJSON_CreateNull()
                           : asked->regions->n_regions
@@ -170,7 +166,7 @@ static bool add_aperture(cJSON *json, const struct beam_asked *asked, struct pro
         return problem_set(problem, PROBLEM_MEMORY, "", "", "%s", err.text);
     }
     cJSON *aperture = cJSON_AddObjectToObject(json, "aperture");
-    add_number(aperture, "diameter_mm", asked->cylinder_mm);
+    json_add_finite(aperture, "diameter_mm", asked->cylinder_mm);
     cJSON_AddBoolToObject(aperture, "is_ring", asked->is_ring);
     cJSON *list = cJSON_AddArrayToObject(aperture, "regions");
     for (;;) {
@@ -185,10 +181,10 @@ static bool add_aperture(cJSON *json, const struct beam_asked *asked, struct pro
         double share = (double)found[next].n_voxels / (double)region->n_voxels;
         cJSON *item = cJSON_CreateObject();
         cJSON_AddStringToObject(item, "region", region->id);
-        add_number(item, "first_mm", found[next].first_along_mm);
-        add_number(item, "inside_cm3", share * region->volume_cm3);
-        add_number(item, "region_cm3", region->volume_cm3);
-        add_number(item, "share", share);
+        json_add_finite(item, "first_mm", found[next].first_along_mm);
+        json_add_finite(item, "inside_cm3", share * region->volume_cm3);
+        json_add_finite(item, "region_cm3", region->volume_cm3);
+        json_add_finite(item, "share", share);
         cJSON_AddItemToArray(list, item);
         found[next].n_voxels = 0;
     }
@@ -264,9 +260,9 @@ cJSON *answer_beam(struct question *question, struct derive *derived, struct pro
     cJSON_AddItemToObject(json, "planned", planned);
     cJSON *moved = cJSON_AddObjectToObject(json, "moved");
     const struct vec3 a = before.shown.direction, b = asked.shown.direction;
-    add_number(moved, "entry_mm", vec3_length(vec3_sub(asked.shown.entry_lps_mm, before.shown.entry_lps_mm)));
-    add_number(moved, "target_mm", vec3_length(vec3_sub(asked.shown.target_lps_mm, before.shown.target_lps_mm)));
-    add_number(moved, "direction_deg", atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b)) * 180 / MATH_PI);
+    json_add_finite(moved, "entry_mm", vec3_length(vec3_sub(asked.shown.entry_lps_mm, before.shown.entry_lps_mm)));
+    json_add_finite(moved, "target_mm", vec3_length(vec3_sub(asked.shown.target_lps_mm, before.shown.target_lps_mm)));
+    json_add_finite(moved, "direction_deg", atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b)) * 180 / MATH_PI);
     return json;
 }
 
@@ -319,8 +315,8 @@ cJSON *answer_beam_place(struct question *question, struct derive *derived, stru
     cJSON *json = cJSON_CreateObject();
     cJSON_AddItemToObject(json, "entry_mm", is_placed ? point(entry_lps_mm) : cJSON_CreateNull());
     cJSON_AddItemToObject(json, "target_mm", is_placed ? point(beam.target_lps_mm) : cJSON_CreateNull());
-    add_number(json, "gap_mm", skin.gap_mm);
-    add_number(json, "depth_mm", skin.depth_mm);
+    json_add_finite(json, "gap_mm", skin.gap_mm);
+    json_add_finite(json, "depth_mm", skin.depth_mm);
     cJSON_AddItemToObject(json, "why", is_placed ? cJSON_CreateNull() : cJSON_CreateString(why.text));
     return json;
 }

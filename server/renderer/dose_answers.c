@@ -10,18 +10,8 @@
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
 #include "server/wire/document.h"
+#include "server/wire/json.h"
 #include "wire_gen.h"
-
-void dose_add_number(cJSON *json, const char *name, double value)
-{
-    cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
-}
-
-/* NULL stands for null. */
-void dose_add_text(cJSON *json, const char *name, const char *text)
-{
-    cJSON_AddItemToObject(json, name, text ? cJSON_CreateString(text) : cJSON_CreateNull());
-}
 
 static void add_quantities(cJSON *json, const char *name, uint32_t bits)
 {
@@ -34,13 +24,13 @@ static void add_quantities(cJSON *json, const char *name, uint32_t bits)
 static cJSON *weights_object(const struct scene_tissue_weights *weights, double blood_ppm)
 {
     cJSON *json = cJSON_CreateObject();
-    dose_add_number(json, "boron_ratio", weights->boron_ratio);
-    dose_add_number(json, "boron_ppm", weights->boron_ratio * blood_ppm);
-    dose_add_number(json, "cbe", weights->cbe);
-    dose_add_number(json, "nitrogen", weights->nitrogen);
-    dose_add_number(json, "fast", weights->fast);
-    dose_add_number(json, "gamma", weights->gamma);
-    dose_add_number(json, "other", weights->other);
+    json_add_finite(json, "boron_ratio", weights->boron_ratio);
+    json_add_finite(json, "boron_ppm", weights->boron_ratio * blood_ppm);
+    json_add_finite(json, "cbe", weights->cbe);
+    json_add_finite(json, "nitrogen", weights->nitrogen);
+    json_add_finite(json, "fast", weights->fast);
+    json_add_finite(json, "gamma", weights->gamma);
+    json_add_finite(json, "other", weights->other);
     return json;
 }
 
@@ -80,9 +70,9 @@ static void add_parts(cJSON *json, const struct snapshot *snapshot)
         if (dose >= 0)
             fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, (size_t)dose }, &use, why);
         cJSON_AddStringToObject(part, "id", i == 0 ? snapshot->plan->doses[snapshot->dose].id : style->sum[i - 1].id);
-        dose_add_number(part, "factor", factor);
+        json_add_finite(part, "factor", factor);
         cJSON_AddBoolToObject(part, "used", fit_is_used(&use));
-        dose_add_text(part, "reason", fit_is_used(&use) ? NULL : why);
+        json_add_text(part, "reason", fit_is_used(&use) ? NULL : why);
         dose_add_accepted(part, &use);
         cJSON_AddItemToArray(parts, part);
     }
@@ -108,8 +98,8 @@ static void add_reference(cJSON *json, const struct snapshot *snapshot, const st
     cJSON_AddStringToObject(reference, "kind",
                             scene_dose_reference_kind_words.words[snapshot->scene.dose.reference.kind]);
     cJSON_AddStringToObject(reference, "words", scale->words);
-    dose_add_number(reference, "value", scale->reference);
-    dose_add_text(reference, "reason", scale->why_no_reference.code ? scale->why_no_reference.text : NULL);
+    json_add_finite(reference, "value", scale->reference);
+    json_add_text(reference, "reason", scale->why_no_reference.code ? scale->why_no_reference.text : NULL);
 }
 
 static void add_levels(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale)
@@ -120,8 +110,8 @@ static void add_levels(cJSON *json, const struct snapshot *snapshot, const struc
         cJSON *level = cJSON_CreateObject();
         double value = dose_level_value(scale, style->levels[i].value.unit, style->levels[i].value.value);
         cJSON_AddStringToObject(level, "id", style->levels[i].id);
-        dose_add_number(level, "value", value);
-        dose_add_number(level, "percent", 100 * value / scale->reference);
+        json_add_finite(level, "value", value);
+        json_add_finite(level, "percent", 100 * value / scale->reference);
         cJSON_AddItemToArray(levels, level);
     }
 }
@@ -143,12 +133,12 @@ void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct d
     cJSON_AddStringToObject(json, "per", is_whole ? "plan" : dose->per); /* fractions that are counted make the plan */
     cJSON_AddStringToObject(json, "quantity", scene_dose_quantity_words.words[style->quantity]);
     cJSON_AddStringToObject(json, "unit", unit);
-    dose_add_text(json, "reason", scale->field ? NULL : scale->why.text);
+    json_add_text(json, "reason", scale->field ? NULL : scale->why.text);
     add_fit(json, snapshot, (size_t)snapshot->dose);
     add_quantities(json, "missing", scale->field ? scale->field->missing : 0);
     add_parts(json, snapshot);
     cJSON_AddItemToObject(json, "tissue", style->tissue[0] ? cJSON_CreateString(style->tissue) : cJSON_CreateNull());
-    dose_add_number(json, "blood_ppm", style->blood_ppm);
+    json_add_finite(json, "blood_ppm", style->blood_ppm);
     cJSON_AddStringToObject(json, "weights_name", style->weights_name);
     add_reference(json, snapshot, scale);
 }
@@ -229,7 +219,7 @@ void dose_add_population(cJSON *json, const struct snapshot *snapshot, const str
                          const char *tissue, enum region_population population)
 {
     char words[96];
-    dose_add_text(json, "basis", dose_basis_words(snapshot->plan, choice, tissue, words));
+    json_add_text(json, "basis", dose_basis_words(snapshot->plan, choice, tissue, words));
     cJSON_AddStringToObject(json, "population", population == POPULATION_OWN ? "own" : "whole");
 }
 
@@ -362,18 +352,18 @@ static void add_components(cJSON *json, const struct snapshot *snapshot, struct 
         double value = value_at(snapshot, quantity, point, &why), weight = weight_in(weights, component->quantity);
         dose_unit_of(dose, component->quantity, unit);
         cJSON_AddStringToObject(item, "quantity", dose_quantity_word(component->quantity));
-        dose_add_number(item, "value", value);
+        json_add_finite(item, "value", value);
         cJSON_AddStringToObject(item, "unit", unit);
-        dose_add_text(item, "reason", why);
+        json_add_text(item, "reason", why);
         bool is_boron = component->quantity == DOSE_BORON && component->is_per_ppm;
-        dose_add_number(item, "boron_ppm",
+        json_add_finite(item, "boron_ppm",
                         component->is_per_ppm
                             ? snapshot->scene.dose.blood_ppm * (is_boron ? weights ? weights->boron_ratio : NAN : 1)
                         : component->has_boron_ppm ? component->boron_ppm
                                                    : NAN);
-        dose_add_number(item, "weight", weight);
-        dose_add_number(item, "weighted", value * weight);
-        dose_add_number(item, "error_percent", isnan(value) ? NAN : 100 * error_share(component, point));
+        json_add_finite(item, "weight", weight);
+        json_add_finite(item, "weighted", value * weight);
+        json_add_finite(item, "error_percent", isnan(value) ? NAN : 100 * error_share(component, point));
         cJSON_AddItemToArray(list, item);
     }
 }
@@ -388,7 +378,7 @@ static void add_place(cJSON *json, const struct plan *plan, const struct plan_pr
             continue;
         cJSON *image = cJSON_CreateObject();
         cJSON_AddStringToObject(image, "id", plan->images[i].id);
-        dose_add_number(image, "value", probe->image_value[i]);
+        json_add_finite(image, "value", probe->image_value[i]);
         cJSON_AddStringToObject(image, "unit", plan->images[i].unit);
         cJSON_AddItemToArray(images, image);
     }
@@ -418,16 +408,16 @@ cJSON *answer_dose_probe(struct question *question, struct derive *derived, stru
     add_place(json, plan, &probe);
     dose_add_basis(json, snapshot, &scale);
     double value = value_at(snapshot, snapshot->scene.dose.quantity, at, &why);
-    dose_add_number(json, "value", value);
-    dose_add_number(json, "percent", 100 * value / scale.reference);
-    dose_add_text(json, "value_reason", why);
+    json_add_finite(json, "value", value);
+    json_add_finite(json, "percent", 100 * value / scale.reference);
+    json_add_text(json, "value_reason", why);
     int tissue = tissue_at(snapshot, &probe);
     const struct scene_tissue_weights *weights =
         tissue >= 0 ? scene_weights_of(plan, &snapshot->scene, (size_t)tissue) : NULL;
-    dose_add_text(json, "weighted_by", weights ? plan->regions.regions[tissue].id : NULL);
+    json_add_text(json, "weighted_by", weights ? plan->regions.regions[tissue].id : NULL);
     cJSON_AddItemToObject(json, "weights",
                           weights ? weights_object(weights, snapshot->scene.dose.blood_ppm) : cJSON_CreateNull());
-    dose_add_number(json, "error_percent", 100 * shown_error_share(snapshot, at, weights));
+    json_add_finite(json, "error_percent", 100 * shown_error_share(snapshot, at, weights));
     add_components(json, snapshot, at, weights);
     static const enum scene_dose_quantity totals[] = { SCENE_DOSE_QUANTITY_WEIGHTED, SCENE_DOSE_QUANTITY_TOTAL,
                                                        SCENE_DOSE_QUANTITY_ISOEFFECTIVE };
@@ -441,9 +431,9 @@ cJSON *answer_dose_probe(struct question *question, struct derive *derived, stru
         cJSON *item = cJSON_CreateObject();
         dose_shown_unit(&plan->doses[snapshot->dose], choice.shown, choice.quantity, unit);
         cJSON_AddStringToObject(item, "quantity", scene_dose_quantity_words.words[totals[i]]);
-        dose_add_number(item, "value", value_at(snapshot, totals[i], at, &why));
+        json_add_finite(item, "value", value_at(snapshot, totals[i], at, &why));
         cJSON_AddStringToObject(item, "unit", unit);
-        dose_add_text(item, "reason", why);
+        json_add_text(item, "reason", why);
         cJSON_AddItemToArray(list, item);
     }
     dose_scale_finish(&scale);

@@ -3,8 +3,6 @@
 #include "core/scene/dose_scale.h"
 #include "server/wire/document.h"
 
-void dose_add_number(cJSON *json, const char *name, double value);   /* null for what is not finite */
-void dose_add_text(cJSON *json, const char *name, const char *text); /* null for NULL */
 /* Adds the basis that every read-out of the snapshot's dose states beside its numbers; snapshot->dose >= 0. */
 void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale);
 /* accepted: {by, words}, or null. */

@@ -10,6 +10,7 @@
 #include "core/region/target.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
+#include "server/wire/json.h"
 
 enum { MAX_BINS = 65536, MAX_METRICS = 16, WORD_SIZE = 32 }; /* bins of all curves of an answer */
 
@@ -185,11 +186,11 @@ static void add_conformity(cJSON *json, const struct asking *asking, const struc
             found.covered_cm3 = found.paddick = NAN;
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "level", style->levels[i].id);
-        dose_add_number(row, "value", value);
-        dose_add_number(row, "isodose_cm3", found.isodose_cm3);
-        dose_add_number(row, "covered_cm3", found.covered_cm3);
-        dose_add_number(row, "paddick", found.paddick);
-        dose_add_number(row, "rtog", found.rtog);
+        json_add_finite(row, "value", value);
+        json_add_finite(row, "isodose_cm3", found.isodose_cm3);
+        json_add_finite(row, "covered_cm3", found.covered_cm3);
+        json_add_finite(row, "paddick", found.paddick);
+        json_add_finite(row, "rtog", found.rtog);
         cJSON_AddItemToArray(list, row);
     }
 }
@@ -214,11 +215,11 @@ static cJSON *stated_object(const struct asking *asking, const struct curve *cur
             continue;
         cJSON *json = cJSON_CreateObject();
         double factor = choice->parts[0].factor * unit, mean = curve->dvh.n > 0 ? curve->dvh.sum / curve->dvh.n : NAN;
-        dose_add_number(json, "min", stated->low * factor);
-        dose_add_number(json, "mean", stated->mean * factor);
-        dose_add_number(json, "max", stated->high * factor);
-        dose_add_number(json, "volume_cm3", stated->volume_cm3);
-        dose_add_number(json, "mean_difference_percent", 100 * (mean / (stated->mean * factor) - 1));
+        json_add_finite(json, "min", stated->low * factor);
+        json_add_finite(json, "mean", stated->mean * factor);
+        json_add_finite(json, "max", stated->high * factor);
+        json_add_finite(json, "volume_cm3", stated->volume_cm3);
+        json_add_finite(json, "mean_difference_percent", 100 * (mean / (stated->mean * factor) - 1));
         return json;
     }
     return cJSON_CreateNull();
@@ -236,9 +237,9 @@ static void add_figure(cJSON *value, cJSON *least, cJSON *most, const char *name
 {
     double low, high;
     dvh_metric_range(dvh, metric, &low, &high);
-    dose_add_number(value, name, low == high ? low : NAN);
-    dose_add_number(least, name, low);
-    dose_add_number(most, name, high);
+    json_add_finite(value, name, low == high ? low : NAN);
+    json_add_finite(least, name, low);
+    json_add_finite(most, name, high);
 }
 
 /* {min, mean, max, metrics, least: {min, mean, max, metrics}, most} */
@@ -284,9 +285,9 @@ static cJSON *curve_object(const struct asking *asking, const struct curve *curv
     cJSON_AddStringToObject(json, "quantity", dose_quantity_scene_word(asking->snapshot->scene.dose.quantity));
     cJSON_AddStringToObject(json, "unit", curve->dose->unit);
     dose_add_population(json, asking->snapshot, &curve->dose->choice, asking->packet->tissue, asking->population);
-    dose_add_number(json, "n_univels", dvh->n + dvh->n_missing);
-    dose_add_number(json, "volume_cm3", (dvh->n + dvh->n_missing) * dvh->univel_cm3);
-    dose_add_number(json, "missing_cm3", dvh->n_missing * dvh->univel_cm3);
+    json_add_finite(json, "n_univels", dvh->n + dvh->n_missing);
+    json_add_finite(json, "volume_cm3", (dvh->n + dvh->n_missing) * dvh->univel_cm3);
+    json_add_finite(json, "missing_cm3", dvh->n_missing * dvh->univel_cm3);
     cJSON_AddBoolToObject(json, "is_partial", dvh_is_partial(dvh));
     add_figures(json, asking, dvh);
     cJSON_AddItemToObject(json, "stated", stated_object(asking, curve));
@@ -294,8 +295,8 @@ static cJSON *curve_object(const struct asking *asking, const struct curve *curv
         cJSON_Delete(json);
         return NULL;
     }
-    dose_add_number(json, "bin_from", curve->from);
-    dose_add_number(json, "bin_width", curve->width);
+    json_add_finite(json, "bin_from", curve->from);
+    json_add_finite(json, "bin_width", curve->width);
     cJSON *counts = cJSON_AddArrayToObject(json, "counts_cm3");
     for (size_t i = 0; i < curve->n; i++)
         cJSON_AddItemToArray(counts, cJSON_CreateNumber(curve->counts[i] * dvh->univel_cm3));

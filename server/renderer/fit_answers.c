@@ -4,6 +4,7 @@
 #include "core/scene/snapshot.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
+#include "server/wire/json.h"
 
 static void add_use(cJSON *parts, const struct scene_fits *fits, struct fit_part thing, const struct fit_use *use)
 {
@@ -25,8 +26,8 @@ static void add_use(cJSON *parts, const struct scene_fits *fits, struct fit_part
                                                    fit_pair_needs(&fit) == FIT_NEEDS_NEVER
                                                ? FIT_NEEDS_NEVER
                                                : FIT_NEEDS_ACCEPTANCE));
-    dose_add_text(object, "by", use->acceptance ? use->acceptance->by : NULL);
-    dose_add_text(object, "words", use->acceptance ? use->acceptance->words : NULL);
+    json_add_text(object, "by", use->acceptance ? use->acceptance->by : NULL);
+    json_add_text(object, "words", use->acceptance ? use->acceptance->words : NULL);
     cJSON_AddItemToArray(parts, object);
 }
 
@@ -57,9 +58,9 @@ cJSON *answer_fits(struct question *question, struct derive *derived, struct pro
     (void)derived;
     (void)problem;
     cJSON *json = cJSON_CreateObject();
-    dose_add_text(json, "image", snapshot->image >= 0 ? plan->images[snapshot->image].id : NULL);
-    dose_add_text(json, "blend", fits->blend >= 0 ? plan->images[fits->blend].id : NULL);
-    dose_add_text(json, "dose", snapshot->dose >= 0 ? plan->doses[snapshot->dose].id : NULL);
+    json_add_text(json, "image", snapshot->image >= 0 ? plan->images[snapshot->image].id : NULL);
+    json_add_text(json, "blend", fits->blend >= 0 ? plan->images[fits->blend].id : NULL);
+    json_add_text(json, "dose", snapshot->dose >= 0 ? plan->doses[snapshot->dose].id : NULL);
     cJSON *parts = cJSON_AddArrayToObject(json, "parts");
     for (size_t i = 0; i < plan->n_images; i++)
         add_use(parts, fits, (struct fit_part){ FIT_IMAGE, i }, &fits->beside[i]);

@@ -5,23 +5,24 @@
 #include "core/scene/dose_compare.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
+#include "server/wire/json.h"
 #include "wire_gen.h"
 
 static void add_gamma(cJSON *json, const struct dose_comparison *comparison, double most)
 {
     const struct gamma_facts *facts = comparison ? &comparison->gamma : NULL;
     bool has_any = facts && facts->n > 0;
-    dose_add_number(json, "voxels", facts ? (double)facts->n : NAN);
-    dose_add_number(json, "passed", facts ? (double)facts->n_passed : NAN);
-    dose_add_number(json, "pass_percent", has_any ? 100 * (double)facts->n_passed / (double)facts->n : NAN);
-    dose_add_number(json, "mean", has_any ? facts->mean : NAN);
-    dose_add_number(json, "max", has_any ? facts->max : NAN);
+    json_add_finite(json, "voxels", facts ? (double)facts->n : NAN);
+    json_add_finite(json, "passed", facts ? (double)facts->n_passed : NAN);
+    json_add_finite(json, "pass_percent", has_any ? 100 * (double)facts->n_passed / (double)facts->n : NAN);
+    json_add_finite(json, "mean", has_any ? facts->mean : NAN);
+    json_add_finite(json, "max", has_any ? facts->max : NAN);
     cJSON *left_out = cJSON_AddObjectToObject(json, "left_out");
-    dose_add_number(left_out, "outside", comparison ? (double)comparison->n_outside : NAN);
-    dose_add_number(left_out, "below", facts ? (double)facts->n_below : NAN);
-    dose_add_number(left_out, "without", facts ? (double)facts->n_without : NAN);
+    json_add_finite(left_out, "outside", comparison ? (double)comparison->n_outside : NAN);
+    json_add_finite(left_out, "below", facts ? (double)facts->n_below : NAN);
+    json_add_finite(left_out, "without", facts ? (double)facts->n_without : NAN);
     cJSON *histogram = cJSON_AddObjectToObject(json, "histogram");
-    dose_add_number(histogram, "width", most / GAMMA_BINS);
+    json_add_finite(histogram, "width", most / GAMMA_BINS);
     cJSON *counts = cJSON_AddArrayToObject(histogram, "counts");
     for (size_t i = 0; facts && i < GAMMA_BINS; i++)
         cJSON_AddItemToArray(counts, cJSON_CreateNumber((double)facts->bins[i]));
@@ -30,13 +31,13 @@ static void add_gamma(cJSON *json, const struct dose_comparison *comparison, dou
 static void add_difference(cJSON *json, const struct dose_comparison *comparison)
 {
     cJSON *difference = cJSON_AddObjectToObject(json, "difference");
-    dose_add_text(difference, "unit", comparison ? comparison->unit : NULL);
-    dose_add_number(difference, "voxels", comparison ? (double)comparison->n : NAN);
-    dose_add_number(difference, "without", comparison ? (double)comparison->n_without : NAN);
-    dose_add_number(difference, "mean", comparison ? comparison->mean : NAN);
-    dose_add_number(difference, "root_mean_square", comparison ? comparison->root_mean_square : NAN);
-    dose_add_number(difference, "low", comparison ? comparison->low : NAN);
-    dose_add_number(difference, "high", comparison ? comparison->high : NAN);
+    json_add_text(difference, "unit", comparison ? comparison->unit : NULL);
+    json_add_finite(difference, "voxels", comparison ? (double)comparison->n : NAN);
+    json_add_finite(difference, "without", comparison ? (double)comparison->n_without : NAN);
+    json_add_finite(difference, "mean", comparison ? comparison->mean : NAN);
+    json_add_finite(difference, "root_mean_square", comparison ? comparison->root_mean_square : NAN);
+    json_add_finite(difference, "low", comparison ? comparison->low : NAN);
+    json_add_finite(difference, "high", comparison ? comparison->high : NAN);
 }
 
 /* {kind, words, voxels, all_voxels} of the difference, which the gamma index shares. */
@@ -49,8 +50,8 @@ static void add_domain(cJSON *json, const struct snapshot *snapshot, const struc
         body_words(&snapshot->plan->regions, &choice->body, words);
     cJSON_AddStringToObject(domain, "kind", choice->is_in_body ? "body" : "grid");
     cJSON_AddStringToObject(domain, "words", words);
-    dose_add_number(domain, "voxels", comparison ? (double)(comparison->n_domain - comparison->n_below) : NAN);
-    dose_add_number(domain, "all_voxels", comparison ? (double)comparison->n_domain : NAN);
+    json_add_finite(domain, "voxels", comparison ? (double)(comparison->n_domain - comparison->n_below) : NAN);
+    json_add_finite(domain, "all_voxels", comparison ? (double)comparison->n_domain : NAN);
 }
 
 static void add_method(cJSON *json, const struct scene_dose_compare *asked, bool is_in_body, const char *reference)
@@ -89,16 +90,16 @@ cJSON *answer_gamma(struct question *question, struct derive *derived, struct pr
         json = cJSON_CreateObject();
         dose_add_basis(json, snapshot, &scale);
         dose_add_weights(json, snapshot);
-        dose_add_text(json, "second", asked->id[0] ? asked->id : NULL);
-        dose_add_number(json, "dose_percent", asked->dose_percent);
-        dose_add_number(json, "distance_mm", asked->distance_mm);
+        json_add_text(json, "second", asked->id[0] ? asked->id : NULL);
+        json_add_finite(json, "dose_percent", asked->dose_percent);
+        json_add_finite(json, "distance_mm", asked->distance_mm);
         cJSON_AddStringToObject(json, "normalization", scene_gamma_normalization_words.words[asked->normalization]);
-        dose_add_number(json, "threshold", scale.reference * asked->threshold_percent / 100);
+        json_add_finite(json, "threshold", scale.reference * asked->threshold_percent / 100);
         add_domain(json, snapshot, &difference, comparisons[1]);
         add_gamma(json, comparisons[0], index.gamma.most);
         add_difference(json, comparisons[1]);
         add_method(json, asked, difference.is_in_body, scale.words);
-        dose_add_text(json, "comparison_reason", why.code ? why.text : NULL);
+        json_add_text(json, "comparison_reason", why.code ? why.text : NULL);
     }
     for (int i = 0; i < 2; i++)
         if (comparisons[i])

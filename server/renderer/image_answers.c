@@ -8,11 +8,7 @@
 #include "core/volume/ellipse.h"
 #include "server/renderer/answers.h"
 #include "server/wire/document.h"
-
-static void add_number(cJSON *json, const char *name, double value)
-{
-    cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
-}
+#include "server/wire/json.h"
 
 /* NULL with problem: the plan has no such image, or it is of another patient. */
 static const struct plan_image *find_image(const struct plan *plan, const char *id, struct problem *problem)
@@ -47,10 +43,10 @@ cJSON *answer_histogram(struct question *question, struct derive *derived, struc
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "image", image->id);
     cJSON_AddStringToObject(json, "unit", image->unit);
-    add_number(json, "low", histogram->low);
-    add_number(json, "high", histogram->high);
-    add_number(json, "n", (double)histogram->n);
-    add_number(json, "n_left_out", (double)histogram->n_left_out);
+    json_add_finite(json, "low", histogram->low);
+    json_add_finite(json, "high", histogram->high);
+    json_add_finite(json, "n", (double)histogram->n);
+    json_add_finite(json, "n_left_out", (double)histogram->n_left_out);
     cJSON *list = cJSON_AddArrayToObject(json, "counts");
     for (size_t i = 0; i < n_bins; i++)
         cJSON_AddItemToArray(list, cJSON_CreateNumber((double)counts[i]));
@@ -58,7 +54,7 @@ cJSON *answer_histogram(struct question *question, struct derive *derived, struc
     for (int i = 0; i < IMAGE_HISTOGRAM_N_PERCENTILES; i++) {
         char name[16];
         (void)snprintf(name, sizeof name, "%g", image_histogram_percents[i]);
-        add_number(percentiles, name, histogram->percentiles[i]);
+        json_add_finite(percentiles, name, histogram->percentiles[i]);
     }
     derive_result_unref(&histogram->base);
     return json;
@@ -80,13 +76,13 @@ cJSON *answer_ellipse(struct question *question, struct derive *derived, struct 
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "image", image->id);
     cJSON_AddStringToObject(json, "unit", image->unit);
-    add_number(json, "area_mm2", values.area_mm2);
-    add_number(json, "mean", values.mean);
-    add_number(json, "sd", values.sd);
-    add_number(json, "min", values.low);
-    add_number(json, "max", values.high);
-    add_number(json, "n", (double)values.n);
-    add_number(json, "n_left_out", (double)values.n_left_out);
-    add_number(json, "step_mm", values.step_mm);
+    json_add_finite(json, "area_mm2", values.area_mm2);
+    json_add_finite(json, "mean", values.mean);
+    json_add_finite(json, "sd", values.sd);
+    json_add_finite(json, "min", values.low);
+    json_add_finite(json, "max", values.high);
+    json_add_finite(json, "n", (double)values.n);
+    json_add_finite(json, "n_left_out", (double)values.n_left_out);
+    json_add_finite(json, "step_mm", values.step_mm);
     return json;
 }

@@ -6,6 +6,7 @@
 #include "core/surface/mesh_export.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
+#include "server/wire/json.h"
 #include "wire_gen.h"
 
 static bool find_level(const struct snapshot *snapshot, const char *id, size_t *level, struct problem *problem)
@@ -39,11 +40,11 @@ static void add_facts(cJSON *json, const struct isodose_shape *made)
     struct shape_facts facts = { .area_mm2 = NAN, .volume_mm3 = NAN };
     if (made)
         isodose_shape_measure(made, &facts);
-    dose_add_number(json, "triangles", made ? (double)facts.n_triangles : NAN);
-    dose_add_number(json, "vertices", made ? (double)facts.n_vertices : NAN);
-    dose_add_number(json, "area_mm2", facts.area_mm2);
-    dose_add_number(json, "volume_mm3", facts.volume_mm3);
-    dose_add_number(json, "ms", made ? facts.build_ms : NAN);
+    json_add_finite(json, "triangles", made ? (double)facts.n_triangles : NAN);
+    json_add_finite(json, "vertices", made ? (double)facts.n_vertices : NAN);
+    json_add_finite(json, "area_mm2", facts.area_mm2);
+    json_add_finite(json, "volume_mm3", facts.volume_mm3);
+    json_add_finite(json, "ms", made ? facts.build_ms : NAN);
 }
 
 /* Answers the dose's basis and {level, value, grid, algorithm, triangles, vertices, area_mm2, volume_mm3, ms,
@@ -79,11 +80,11 @@ cJSON *answer_isodose(struct question *question, struct derive *derived, struct 
     } else if (is_good) {
         dose_add_basis(json, snapshot, &scale);
         cJSON_AddStringToObject(json, "level", question->packet.isodose.level);
-        dose_add_number(json, "value", isodose.choice.value);
+        json_add_finite(json, "value", isodose.choice.value);
         cJSON_AddStringToObject(json, "grid", scene_isodose_grid_words.words[snapshot->scene.dose.surfaces.grid]);
         cJSON_AddStringToObject(json, "algorithm", algorithm_word(snapshot));
         add_facts(json, made);
-        dose_add_text(json, "level_reason", made ? NULL : err.text);
+        json_add_text(json, "level_reason", made ? NULL : err.text);
     }
     if (made)
         derive_result_unref(&made->base);

@@ -5,11 +5,7 @@
 #include "core/render/visible/isoline_labels.h"
 #include "server/renderer/answers.h"
 #include "server/wire/document.h"
-
-static void add_number(cJSON *json, const char *name, double value)
-{
-    cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
-}
+#include "server/wire/json.h"
 
 static void add_labels(cJSON *json, const struct isoline_labels *labels, size_t level)
 {
@@ -19,11 +15,11 @@ static void add_labels(cJSON *json, const struct isoline_labels *labels, size_t 
         if (labels->labels[i].level != level)
             continue;
         cJSON *label = cJSON_CreateObject();
-        add_number(label, "x_px", place->x_px);
-        add_number(label, "y_px", place->y_px);
-        add_number(label, "angle_deg", place->angle_deg);
-        add_number(label, "width_px", place->width_px);
-        add_number(label, "height_px", place->height_px);
+        json_add_finite(label, "x_px", place->x_px);
+        json_add_finite(label, "y_px", place->y_px);
+        json_add_finite(label, "angle_deg", place->angle_deg);
+        json_add_finite(label, "width_px", place->width_px);
+        json_add_finite(label, "height_px", place->height_px);
         cJSON_AddItemToArray(list, label);
     }
 }
@@ -53,8 +49,8 @@ cJSON *answer_isolines(struct question *question, struct derive *derived, struct
         (void)snprintf(color, sizeof color, "#%06x", (unsigned)level->value.color_rgb & 0xffffffu);
         cJSON *item = cJSON_CreateObject();
         cJSON_AddStringToObject(item, "id", level->id);
-        add_number(item, "value", lines.levels[i].value);
-        add_number(item, "percent", 100 * lines.levels[i].value / lines.reference);
+        json_add_finite(item, "value", lines.levels[i].value);
+        json_add_finite(item, "percent", 100 * lines.levels[i].value / lines.reference);
         cJSON_AddStringToObject(item, "color", color);
         cJSON_AddStringToObject(item, "text", text);
         add_labels(item, &labels, lines.levels[i].index);

@@ -9,6 +9,7 @@
 #include "core/scene/dose_coverage_choice.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
+#include "server/wire/json.h"
 
 /* ---- coverage --------------------------------------------------------------------------------------------------- */
 
@@ -46,20 +47,20 @@ static void add_coverage(cJSON *json, const struct snapshot *snapshot, const str
         coverage = dose_coverage_get(snapshot->derived, &choice, &why);
     const struct region *region = has_choice ? &snapshot->plan->regions.regions[choice.region] : NULL;
     double cm3 = coverage ? grid_voxel_mm3(&coverage->labels->grid) / 1e3 : NAN;
-    dose_add_text(json, "region", region ? region->id : NULL);
-    dose_add_number(json, "low", has_choice ? choice.low : NAN);
-    dose_add_number(json, "high", has_choice ? choice.high : NAN);
+    json_add_text(json, "region", region ? region->id : NULL);
+    json_add_finite(json, "low", has_choice ? choice.low : NAN);
+    json_add_finite(json, "high", has_choice ? choice.high : NAN);
     bool is_partial = coverage && dvh_is_partial(&(struct dvh){ .n = (double)(coverage->n_region - coverage->n_without),
                                                                 .n_missing = (double)coverage->n_without });
     dose_add_population(json, snapshot, has_choice ? &choice.dose : &(struct dose_choice){ .n_parts = 0 },
                         snapshot->scene.dose.coverage.tissue, scene_population(snapshot->plan, &snapshot->scene));
-    dose_add_number(json, "volume_cm3", coverage ? coverage->volume_cm3 : NAN);
-    dose_add_number(json, "share", coverage && !is_partial ? coverage->least_share : NAN);
-    dose_add_number(json, "share_least", coverage ? coverage->least_share : NAN);
-    dose_add_number(json, "share_most", coverage ? coverage->most_share : NAN);
-    dose_add_number(json, "region_cm3", coverage ? (double)coverage->n_region * cm3 : NAN);
-    dose_add_number(json, "missing_cm3", coverage ? (double)coverage->n_without * cm3 : NAN);
-    dose_add_text(json, "coverage_reason", coverage ? NULL : why.text);
+    json_add_finite(json, "volume_cm3", coverage ? coverage->volume_cm3 : NAN);
+    json_add_finite(json, "share", coverage && !is_partial ? coverage->least_share : NAN);
+    json_add_finite(json, "share_least", coverage ? coverage->least_share : NAN);
+    json_add_finite(json, "share_most", coverage ? coverage->most_share : NAN);
+    json_add_finite(json, "region_cm3", coverage ? (double)coverage->n_region * cm3 : NAN);
+    json_add_finite(json, "missing_cm3", coverage ? (double)coverage->n_without * cm3 : NAN);
+    json_add_text(json, "coverage_reason", coverage ? NULL : why.text);
     cJSON_AddStringToObject(json, "method",
                             "Univels of the population, with the weights of the region; the dose at a univel's centre, "
                             "trilinear in the dose's own grid; low <= value < high. share is a part of all of them.");
@@ -153,14 +154,14 @@ static void add_verdict(cJSON *json, const struct snapshot *snapshot, const stru
                           constraint->tissue[0] ? cJSON_CreateString(constraint->tissue) : cJSON_CreateNull());
     dose_add_population(json, snapshot, &asked.choice, constraint->tissue,
                         scene_population(snapshot->plan, &snapshot->scene));
-    dose_add_number(json, "value", least == most ? least : NAN);
-    dose_add_number(json, "least", least);
-    dose_add_number(json, "most", most);
+    json_add_finite(json, "value", least == most ? least : NAN);
+    json_add_finite(json, "least", least);
+    json_add_finite(json, "most", most);
     cJSON_AddStringToObject(json, "unit", unit_of(&metric, asked.unit));
     cJSON_AddItemToObject(json, "met", is_known ? cJSON_CreateBool(is_met(constraint, least)) : cJSON_CreateNull());
-    dose_add_text(json, "reason", is_known ? NULL : why.text);
-    dose_add_number(json, "volume_cm3", (dvh.n + dvh.n_missing) * dvh.univel_cm3);
-    dose_add_number(json, "missing_cm3", dvh.n_missing * dvh.univel_cm3);
+    json_add_text(json, "reason", is_known ? NULL : why.text);
+    json_add_finite(json, "volume_cm3", (dvh.n + dvh.n_missing) * dvh.univel_cm3);
+    json_add_finite(json, "missing_cm3", dvh.n_missing * dvh.univel_cm3);
     dvh_finish(&dvh);
 }
 
@@ -193,7 +194,7 @@ cJSON *answer_constraints(struct question *question, struct derive *derived, str
         cJSON_AddStringToObject(row, "quantity", dose_quantity_scene_word(constraint->quantity));
         cJSON_AddStringToObject(row, "metric", constraint->metric);
         cJSON_AddStringToObject(row, "side", scene_limit_side_words.words[constraint->side]);
-        dose_add_number(row, "limit", constraint->limit);
+        json_add_finite(row, "limit", constraint->limit);
         add_verdict(row, snapshot, constraint);
         cJSON_AddItemToArray(list, row);
     }

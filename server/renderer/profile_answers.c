@@ -11,12 +11,13 @@
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
 #include "server/renderer/profile_line.h"
+#include "server/wire/json.h"
 
 static void add_numbers(cJSON *json, const char *name, const double *values, size_t n)
 {
     cJSON *list = cJSON_AddArrayToObject(json, name);
     for (size_t i = 0; i < n; i++)
-        cJSON_AddItemToArray(list, isfinite(values[i]) ? cJSON_CreateNumber(values[i]) : cJSON_CreateNull());
+        json_append(list, json_finite(values[i]));
 }
 
 /* ---- curves ----------------------------------------------------------------------------------------------------------- */
@@ -77,7 +78,7 @@ static bool add_curve(cJSON *curves, const struct profile *profile, enum scene_d
         add_numbers(curve, "physical", profile->values, n);
     else
         cJSON_AddNullToObject(curve, "physical");
-    dose_add_text(curve, "physical_unit", is_weighted ? field->unit : NULL);
+    json_add_text(curve, "physical_unit", is_weighted ? field->unit : NULL);
     cJSON_AddItemToArray(curves, curve);
     derive_result_unref(&field->base);
     return true;
@@ -156,14 +157,14 @@ static bool find_advantage(const struct profile *profile, cJSON *json, double *d
         return error_set(why, ERROR_NOT_FOUND, "the plan has no target whose weights a tumour would have");
     cJSON_AddStringToObject(json, "target", plan->regions.regions[target].id);
     double high = normal_high(profile, &scene, quantity);
-    dose_add_number(json, "normal_high", high);
+    json_add_finite(json, "normal_high", high);
     if (!isfinite(high))
         return error_set(why, ERROR_NOT_FOUND, "the line meets no normal tissue with a dose");
     memcpy(scene.dose.tissue, plan->regions.regions[target].id, sizeof plan->regions.regions[target].id);
     struct dose_field *field = fill_values(profile, &scene, quantity, &choice, profile->values, why);
     if (!field)
         return false;
-    dose_add_text(json, "unit", field->unit);
+    json_add_text(json, "unit", field->unit);
     derive_result_unref(&field->base);
     return profile_advantage_depth(&profile->line, profile->values, high, depth) ||
            error_set(why, ERROR_NOT_FOUND,
@@ -177,32 +178,32 @@ static void add_read_outs(cJSON *json, const struct profile *profile)
     for (size_t i = 0; i < profile->n_bands; i++) {
         cJSON *band = cJSON_CreateObject();
         cJSON_AddStringToObject(band, "region", set->regions[profile->bands[i].region].id);
-        dose_add_number(band, "from_mm", profile->bands[i].from_mm);
-        dose_add_number(band, "to_mm", profile->bands[i].to_mm);
+        json_add_finite(band, "from_mm", profile->bands[i].from_mm);
+        json_add_finite(band, "to_mm", profile->bands[i].to_mm);
         cJSON_AddItemToArray(bands, band);
     }
     double entry = profile->n_bands ? profile->bands[0].from_mm : NAN, depth = NAN;
     struct dose_choice choice;
     struct error why = { 0 };
     size_t at;
-    dose_add_number(json, "entry_mm", entry);
+    json_add_finite(json, "entry_mm", entry);
     const struct scene *scene = &profile->snapshot->scene;
     struct dose_field *field = fill_values(profile, scene, scene->dose.quantity, &choice, profile->values, &why);
     if (field && profile_peak(profile->values, profile->line.n, &at)) {
         cJSON *peak = cJSON_AddObjectToObject(json, "peak");
-        dose_add_number(peak, "depth_mm", profile_depth(&profile->line, at));
-        dose_add_number(peak, "from_entry_mm", profile_depth(&profile->line, at) - entry);
-        dose_add_number(peak, "value", profile->values[at]);
+        json_add_finite(peak, "depth_mm", profile_depth(&profile->line, at));
+        json_add_finite(peak, "from_entry_mm", profile_depth(&profile->line, at) - entry);
+        json_add_finite(peak, "value", profile->values[at]);
     } else
         cJSON_AddNullToObject(json, "peak");
     if (field)
         derive_result_unref(&field->base);
     cJSON *advantage = cJSON_AddObjectToObject(json, "advantage");
     bool has_one = find_advantage(profile, advantage, &depth, &why);
-    dose_add_number(advantage, "depth_mm", has_one ? depth : NAN);
-    dose_add_number(advantage, "from_entry_mm", has_one ? depth - entry : NAN);
-    dose_add_text(advantage, "reason", has_one ? NULL : why.text);
-    dose_add_number(json, "advantage_mm", has_one ? depth : NAN);
+    json_add_finite(advantage, "depth_mm", has_one ? depth : NAN);
+    json_add_finite(advantage, "from_entry_mm", has_one ? depth - entry : NAN);
+    json_add_text(advantage, "reason", has_one ? NULL : why.text);
+    json_add_finite(json, "advantage_mm", has_one ? depth : NAN);
 }
 
 /* ---- curves of the files ---------------------------------------------------------------------------------------------- */
@@ -227,7 +228,7 @@ static void add_references(cJSON *json, const struct plan *plan, cJSON *notes)
             cJSON_AddStringToObject(item, "quantity", dose_quantity_word(curve->quantities[column]));
             cJSON_AddStringToObject(item, "unit", words);
             cJSON_AddStringToObject(item, "per", curve->per);
-            dose_add_number(item, "radius_mm", curve->radii_mm[0]);
+            json_add_finite(item, "radius_mm", curve->radii_mm[0]);
             add_numbers(item, "depths_mm", curve->depths_mm, curve->n_depths);
             add_numbers(item, "values", values, curve->n_depths);
             cJSON_AddItemToArray(list, item);

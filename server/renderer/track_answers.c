@@ -6,6 +6,7 @@
 #include "core/scene/scene_probe.h"
 #include "core/scene/tracks_shown.h"
 #include "server/renderer/answers.h"
+#include "server/wire/json.h"
 
 static struct vec3 point_of(const float p[3])
 {
@@ -15,11 +16,6 @@ static struct vec3 point_of(const float p[3])
 static cJSON *point(struct vec3 p)
 {
     return cJSON_CreateDoubleArray((double[3]){ p.x, p.y, p.z }, 3);
-}
-
-static void add_number(cJSON *json, const char *name, double value)
-{
-    cJSON_AddItemToObject(json, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }
 
 /* The innermost region at a point. Adds its id, or null; false: the point is outside all regions. */
@@ -65,8 +61,8 @@ static void add_files(cJSON *json, const struct track_set *set)
     for (size_t i = 0; i < set->n_files; i++) {
         cJSON *file = cJSON_CreateObject();
         cJSON_AddStringToObject(file, "path", set->files[i].path);
-        add_number(file, "first", (double)first);
-        add_number(file, "segments", (double)set->files[i].n_segments);
+        json_add_finite(file, "first", (double)first);
+        json_add_finite(file, "segments", (double)set->files[i].n_segments);
         cJSON_AddStringToObject(file, "unit", set->files[i].unit_mm == 10 ? "cm" : "mm");
         cJSON_AddItemToArray(files, file);
         first += set->files[i].n_segments;
@@ -84,17 +80,17 @@ static void add_lost(cJSON *json, const struct snapshot *snapshot, size_t most)
             continue;
         const struct vec3 from = point_of(segment->from_lps_mm), to = point_of(segment->to_lps_mm);
         cJSON *item = cJSON_CreateObject();
-        add_number(item, "segment", (double)i);
+        json_add_finite(item, "segment", (double)i);
         bool is_inside = add_region(item, "region", snapshot, from);
         cJSON_AddItemToObject(item, "reason",
                               is_inside ? cJSON_CreateNull() : cJSON_CreateString("outside all regions"));
         cJSON_AddItemToObject(item, "from_lps_mm", point(from));
         cJSON_AddItemToObject(item, "to_lps_mm", point(to));
-        add_number(item, "energy_mev", (double)segment->energy_mev);
+        json_add_finite(item, "energy_mev", (double)segment->energy_mev);
         cJSON_AddItemToArray(lost, item);
         n++;
     }
-    add_number(json, "lost_left_out", (double)(n_all - n));
+    json_add_finite(json, "lost_left_out", (double)(n_all - n));
 }
 
 /* {segments, counts, shown, energies: {segments, low_mev, high_mev}, files: [{path, first, segments, unit}],
@@ -109,17 +105,17 @@ cJSON *answer_tracks(struct question *question, struct derive *derived, struct p
     char why[FIT_WHY_SIZE];
     cJSON *json = cJSON_CreateObject();
     (void)problem;
-    add_number(json, "segments", (double)set->n_segments);
+    json_add_finite(json, "segments", (double)set->n_segments);
     cJSON *counts = cJSON_AddObjectToObject(json, "counts");
     for (int class = 0; class < TRACK_N_CLASSES; class ++)
-        add_number(counts, track_class_word((enum track_class) class), (double)set->n_of_class[class]);
-    add_number(json, "shown", is_used ? (double)counted.n_shown : 0);
+        json_add_finite(counts, track_class_word((enum track_class) class), (double)set->n_of_class[class]);
+    json_add_finite(json, "shown", is_used ? (double)counted.n_shown : 0);
     fit_use_sentence(fits, (struct fit_part){ FIT_TRACKS, 0 }, &fits->tracks, why);
     cJSON_AddItemToObject(json, "reason", is_used ? cJSON_CreateNull() : cJSON_CreateString(why));
     cJSON *energies = cJSON_AddObjectToObject(json, "energies");
-    add_number(energies, "segments", (double)counted.n_with_energy);
-    add_number(energies, "low_mev", counted.energy_low_mev);
-    add_number(energies, "high_mev", counted.energy_high_mev);
+    json_add_finite(energies, "segments", (double)counted.n_with_energy);
+    json_add_finite(energies, "low_mev", counted.energy_low_mev);
+    json_add_finite(energies, "high_mev", counted.energy_high_mev);
     add_files(json, set);
     add_lost(json, question->snapshot, is_used ? (size_t)question->packet.tracks.lost : 0);
     return json;
@@ -143,10 +139,10 @@ cJSON *answer_track(struct question *question, struct derive *derived, struct pr
     }
     const struct track_segment *segment = &plan->tracks.segments[hit.segment];
     const struct vec3 from = point_of(segment->from_lps_mm), to = point_of(segment->to_lps_mm);
-    add_number(json, "segment", (double)hit.segment);
+    json_add_finite(json, "segment", (double)hit.segment);
     cJSON_AddStringToObject(json, "class", track_class_word((enum track_class)segment->class));
-    add_number(json, "energy_mev", (double)segment->energy_mev);
-    add_number(json, "length_mm", vec3_length(vec3_sub(to, from)));
+    json_add_finite(json, "energy_mev", (double)segment->energy_mev);
+    json_add_finite(json, "length_mm", vec3_length(vec3_sub(to, from)));
     cJSON_AddItemToObject(json, "from_lps_mm", point(from));
     cJSON_AddItemToObject(json, "to_lps_mm", point(to));
     (void)add_region(json, "from_region", question->snapshot, from);
@@ -157,9 +153,9 @@ cJSON *answer_track(struct question *question, struct derive *derived, struct pr
     bool has_file = file < plan->tracks.n_files;
     cJSON_AddItemToObject(json, "file",
                           has_file ? cJSON_CreateString(plan->tracks.files[file].path) : cJSON_CreateNull());
-    add_number(json, "file_segment", has_file ? (double)in_file : NAN);
+    json_add_finite(json, "file_segment", has_file ? (double)in_file : NAN);
     cJSON_AddItemToObject(json, "point_lps_mm", point(hit.point_lps_mm));
-    add_number(json, "distance_mm", hit.distance_mm);
-    add_number(json, "distance_px", hit.distance_px);
+    json_add_finite(json, "distance_mm", hit.distance_mm);
+    json_add_finite(json, "distance_px", hit.distance_px);
     return json;
 }

@@ -5,13 +5,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 
 #include "core/base/mem.h"
 #include "server/wire/document.h"
 #include "server/wire/json_index.h"
 #include "server/wire/json_merge.h"
 #include "server/wire/prune.h"
+#include "server/wire/random.h"
 
 enum {
     MAX_TRIES = 16, /* values in one document that are out of range and are left out */
@@ -128,14 +128,7 @@ bool bookmark_check(const cJSON *body, struct problem *problem)
 
 bool bookmark_make_token(char token[BOOKMARK_TOKEN_CHARS + 1])
 {
-    static const char letters[] = "abcdefghjkmnpqrstuvwxyz023456789";
-    uint8_t bytes[BOOKMARK_TOKEN_CHARS];
-    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
-        return false;
-    for (size_t i = 0; i < sizeof bytes; i++)
-        token[i] = letters[bytes[i] % 32];
-    token[BOOKMARK_TOKEN_CHARS] = 0;
-    return true;
+    return random_letters(token, BOOKMARK_TOKEN_CHARS);
 }
 
 bool bookmark_has_token(const cJSON *body, const char *token)

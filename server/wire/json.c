@@ -1,6 +1,8 @@
 /* Bounded parsing with cJSON, and printing: json.h. */
 #include "server/wire/json.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,6 +33,33 @@ void json_append(cJSON *array, cJSON *value)
 {
     if (value && !cJSON_AddItemToArray(array, value))
         cJSON_Delete(value);
+}
+
+cJSON *json_finite(double value)
+{
+    return isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull();
+}
+
+void json_add_finite(cJSON *object, const char *name, double value)
+{
+    json_add(object, name, json_finite(value));
+}
+
+void json_add_text(cJSON *object, const char *name, const char *text)
+{
+    json_add(object, name, text ? cJSON_CreateString(text) : cJSON_CreateNull());
+}
+
+void json_copy_text(cJSON *to, const cJSON *from, const char *name)
+{
+    const char *text = json_text(from, name);
+    json_add(to, name, cJSON_CreateString(text ? text : ""));
+}
+
+void json_put_text(char *to, size_t size, const cJSON *from, const char *name)
+{
+    const char *text = json_text(from, name);
+    (void)snprintf(to, size, "%s", text ? text : "");
 }
 
 /* Length in bytes of the well-formed UTF-8 character at s, of which n bytes are there; 0 for overlong forms,

@@ -14,17 +14,12 @@
 #include "server/wire/plan_fits.h"
 #include "server/wire/plan_origins.h"
 
-static cJSON *number(double value)
-{
-    return isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull();
-}
-
 static cJSON *point(struct vec3 p)
 {
     cJSON *array = cJSON_CreateArray();
-    json_append(array, number(p.x));
-    json_append(array, number(p.y));
-    json_append(array, number(p.z));
+    json_append(array, json_finite(p.x));
+    json_append(array, json_finite(p.y));
+    json_append(array, json_finite(p.z));
     return array;
 }
 
@@ -74,10 +69,10 @@ static cJSON *image_object(const struct plan_image *image)
     json_add(object, "modality", cJSON_CreateString(image->modality));
     json_add(object, "unit", cJSON_CreateString(image->unit));
     json_add(object, "grid", grid_object(&image->volume->grid));
-    json_add(object, "low", number(image->volume->low));
-    json_add(object, "high", number(image->volume->high));
-    json_add(window, "center", number(image->window_center));
-    json_add(window, "width", number(image->window_width));
+    json_add_finite(object, "low", image->volume->low);
+    json_add_finite(object, "high", image->volume->high);
+    json_add_finite(window, "center", image->window_center);
+    json_add_finite(window, "width", image->window_width);
     json_add(object, "window", window);
     json_add(object, "is_inverted", cJSON_CreateBool(image->is_inverted));
     return object;
@@ -99,11 +94,11 @@ static struct box3 region_bounds(const struct region *region, const struct grid 
 static cJSON *tissue_object(const struct region *region)
 {
     cJSON *object = cJSON_CreateObject();
-    json_add(object, "boron_ratio", number(region->boron_ratio));
-    json_add(object, "cbe_boron", number(region->cbe_boron));
-    json_add(object, "rbe_nitrogen", number(region->rbe_nitrogen));
-    json_add(object, "rbe_fast", number(region->rbe_fast));
-    json_add(object, "rbe_gamma", number(region->rbe_gamma));
+    json_add_finite(object, "boron_ratio", region->boron_ratio);
+    json_add_finite(object, "cbe_boron", region->cbe_boron);
+    json_add_finite(object, "rbe_nitrogen", region->rbe_nitrogen);
+    json_add_finite(object, "rbe_fast", region->rbe_fast);
+    json_add_finite(object, "rbe_gamma", region->rbe_gamma);
     return object;
 }
 
@@ -126,8 +121,8 @@ static cJSON *region_object(const struct region_set *set, size_t index)
     json_add(object, "depth", cJSON_CreateNumber(region_depth(set, index)));
     json_add(object, "grid", grid_object(grid));
     json_add(object, "label", cJSON_CreateNumber(region->label));
-    json_add(object, "voxels", number((double)region->n_voxels));
-    json_add(object, "volume_cm3", number(region->volume_cm3));
+    json_add_finite(object, "voxels", (double)region->n_voxels);
+    json_add_finite(object, "volume_cm3", region->volume_cm3);
     json_add(object, "center_mm", has_voxels ? point(region->centre_lps_mm) : cJSON_CreateNull());
     json_add(object, "bounds_mm", box(&bounds));
     json_add(object, "touches_edge", cJSON_CreateBool(region->touches_edge));
@@ -138,7 +133,7 @@ static cJSON *region_object(const struct region_set *set, size_t index)
 /* 0 stands for a value that is not known. */
 static cJSON *known(double value)
 {
-    return value > 0 ? number(value) : cJSON_CreateNull();
+    return value > 0 ? json_finite(value) : cJSON_CreateNull();
 }
 
 /* "same" or "differs" where the files give both frames, or plan.json says so; else what the dose says, null if nothing.
@@ -179,10 +174,10 @@ static cJSON *dose_object(const struct plan *plan, size_t index)
         json_add(entry, "quantity", cJSON_CreateString(dose_quantity_word(component->quantity)));
         json_add(entry, "unit", cJSON_CreateString(unit));
         json_add(entry, "per_ppm", cJSON_CreateBool(component->is_per_ppm));
-        json_add(entry, "boron_ppm", component->has_boron_ppm ? number(component->boron_ppm) : cJSON_CreateNull());
+        json_add(entry, "boron_ppm", component->has_boron_ppm ? json_finite(component->boron_ppm) : cJSON_CreateNull());
         json_add(entry, "grid", grid_object(&component->values->grid));
-        json_add(entry, "low", number(component->values->low));
-        json_add(entry, "high", number(component->values->high));
+        json_add_finite(entry, "low", component->values->low);
+        json_add_finite(entry, "high", component->values->high);
         json_add(entry, "reference", known(dose->reference[component->quantity]));
         json_add(entry, "body_high", known(dose->body_high[component->quantity]));
         json_append(components, entry);
@@ -221,29 +216,29 @@ cJSON *beam_outline_object(const struct beam_outline *outline)
 static cJSON *delivery_object(const struct beam_delivery *delivery)
 {
     cJSON *object = cJSON_CreateObject();
-    json_add(object, "number", number((double)delivery->number));
+    json_add_finite(object, "number", (double)delivery->number);
     json_add(object, "radiation", cJSON_CreateString(delivery->radiation));
     json_add(object, "machine", cJSON_CreateString(delivery->machine));
     json_add(object, "patient_position", cJSON_CreateString(patient_position_word(delivery->patient_position)));
-    json_add(object, "gantry_deg", number(delivery->gantry_deg));
-    json_add(object, "gantry_stop_deg", number(delivery->gantry_stop_deg));
-    json_add(object, "gantry_travel_deg", number(delivery->gantry_travel_deg));
-    json_add(object, "collimator_deg", number(delivery->collimator_deg));
-    json_add(object, "couch_deg", number(delivery->couch_deg));
-    json_add(object, "energy_mev", number(delivery->energy_mev));
-    json_add(object, "sad_mm", number(delivery->sad_mm));
-    json_add(object, "ssd_mm", number(delivery->ssd_mm));
+    json_add_finite(object, "gantry_deg", delivery->gantry_deg);
+    json_add_finite(object, "gantry_stop_deg", delivery->gantry_stop_deg);
+    json_add_finite(object, "gantry_travel_deg", delivery->gantry_travel_deg);
+    json_add_finite(object, "collimator_deg", delivery->collimator_deg);
+    json_add_finite(object, "couch_deg", delivery->couch_deg);
+    json_add_finite(object, "energy_mev", delivery->energy_mev);
+    json_add_finite(object, "sad_mm", delivery->sad_mm);
+    json_add_finite(object, "ssd_mm", delivery->ssd_mm);
     json_add(object, "jaws_x_mm", span(delivery->jaws_x_mm));
     json_add(object, "jaws_y_mm", span(delivery->jaws_y_mm));
     json_add(object, "opening_x_mm", span(delivery->opening_x_mm));
     json_add(object, "opening_y_mm", span(delivery->opening_y_mm));
-    json_add(object, "opening_cm2", number(delivery->opening_cm2));
+    json_add_finite(object, "opening_cm2", delivery->opening_cm2);
     json_add(object, "outline", beam_outline_object(&delivery->outline));
-    json_add(object, "control_points", number((double)delivery->n_control_points));
-    json_add(object, "dose_gy", number(delivery->dose_gy));
-    json_add(object, "meterset", number(delivery->meterset));
+    json_add_finite(object, "control_points", (double)delivery->n_control_points);
+    json_add_finite(object, "dose_gy", delivery->dose_gy);
+    json_add_finite(object, "meterset", delivery->meterset);
     json_add(object, "meterset_unit", cJSON_CreateString(delivery->meterset_unit));
-    json_add(object, "fractions", number((double)delivery->n_fractions));
+    json_add_finite(object, "fractions", (double)delivery->n_fractions);
     return object;
 }
 
@@ -253,7 +248,7 @@ static cJSON *beam_object(const struct beam *beam)
     json_add(object, "id", cJSON_CreateString(beam->id));
     json_add(object, "entry_mm", point(beam->entry_lps_mm));
     json_add(object, "target_mm", point(beam->target_lps_mm));
-    json_add(object, "aperture_mm", number(beam->aperture_mm));
+    json_add_finite(object, "aperture_mm", beam->aperture_mm);
     json_add(object, "name", cJSON_CreateString(beam->name));
     json_add(object, "delivery", beam->has_delivery ? delivery_object(&beam->delivery) : cJSON_CreateNull());
     return object;
@@ -294,10 +289,10 @@ static cJSON *track_looks(const struct track_set *tracks)
 static cJSON *tracks_object(const struct track_set *tracks)
 {
     cJSON *object = cJSON_CreateObject(), *classes = cJSON_CreateObject(), *colors = cJSON_CreateObject();
-    json_add(object, "segments", number((double)tracks->n_segments));
+    json_add_finite(object, "segments", (double)tracks->n_segments);
     for (int class = 0; class < TRACK_N_CLASSES; class ++) {
         const char *word = track_class_word((enum track_class) class);
-        json_add(classes, word, number((double)tracks->n_of_class[class]));
+        json_add(classes, word, json_finite((double)tracks->n_of_class[class]));
         json_add(colors, word, track_color((enum track_class) class));
     }
     json_add(object, "classes", classes);
@@ -326,8 +321,8 @@ static cJSON *curve_object(const struct dose_curve *curve)
         json_add(entry, "quantity", cJSON_CreateString(dose_quantity_word(curve->quantities[c])));
         json_add(entry, "unit", cJSON_CreateString(unit));
         json_add(entry, "per_ppm", cJSON_CreateBool(curve->is_per_ppm[c]));
-        json_add(entry, "peak", has_peak ? number(value) : cJSON_CreateNull());
-        json_add(entry, "peak_depth_mm", has_peak ? number(depth) : cJSON_CreateNull());
+        json_add(entry, "peak", has_peak ? json_finite(value) : cJSON_CreateNull());
+        json_add(entry, "peak_depth_mm", has_peak ? json_finite(depth) : cJSON_CreateNull());
         json_append(quantities, entry);
     }
     json_add(object, "quantities", quantities);
@@ -339,7 +334,7 @@ static cJSON *preferences_object(const struct plan_preferences *preferences)
     cJSON *object = cJSON_CreateObject(), *levels = cJSON_CreateArray(), *colors = cJSON_CreateArray();
     for (size_t i = 0; i < preferences->n_levels; i++) {
         cJSON *level = cJSON_CreateObject();
-        json_add(level, "percent", number(preferences->levels[i].percent));
+        json_add_finite(level, "percent", preferences->levels[i].percent);
         json_add(level, "color", color_text(preferences->levels[i].rgb));
         json_append(levels, level);
     }
@@ -363,7 +358,7 @@ static cJSON *report_object(const struct report *report)
         json_append(lines, entry);
     }
     json_add(object, "lines", lines);
-    json_add(object, "dropped", number((double)report->n_dropped));
+    json_add_finite(object, "dropped", (double)report->n_dropped);
     return object;
 }
 
@@ -398,7 +393,7 @@ static cJSON *write_plan(const struct plan *plan)
     json_add(object, "name", cJSON_CreateString(plan->name));
     json_add(object, "note", cJSON_CreateString(plan->note));
     json_add(object, "is_phantom", cJSON_CreateBool(plan->is_phantom));
-    json_add(object, "load_ms", number((double)plan->load_us / 1000));
+    json_add_finite(object, "load_ms", (double)plan->load_us / 1000);
     json_add(object, "bounds_mm", box(&plan->bounds_lps_mm));
     json_add(object, "home", home_object(plan));
     json_add(object, "images", images);

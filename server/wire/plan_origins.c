@@ -149,9 +149,7 @@ static cJSON *treatment_plan_object(const struct plan *plan, const struct treatm
     json_add(object, "reviewer", cJSON_CreateString(treatment->reviewer));
     json_add(object, "fractions",
              treatment->n_fractions > 0 ? cJSON_CreateNumber((double)treatment->n_fractions) : cJSON_CreateNull());
-    json_add(object, "prescription_gy",
-             isfinite(treatment->prescription_gy) ? cJSON_CreateNumber(treatment->prescription_gy)
-                                                  : cJSON_CreateNull());
+    json_add_finite(object, "prescription_gy", treatment->prescription_gy);
     json_add(object, "patient", index_or_null(treatment->patient, plan->n_patients));
     json_add(object, "structs", structs);
     json_add(object, "is_structs_absent", cJSON_CreateBool(is_absent));

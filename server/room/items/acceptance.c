@@ -27,12 +27,6 @@ static cJSON *body_of(const struct item *item, cJSON **row)
     return cJSON_GetObjectItemCaseSensitive(*row, "body");
 }
 
-static void copy_text(cJSON *to, const cJSON *from, const char *name)
-{
-    const char *text = json_text(from, name);
-    cJSON_AddStringToObject(to, name, text ? text : "");
-}
-
 static bool names_pair(const cJSON *body, const char *thing, const char *with)
 {
     const char *first = json_text(body, "thing"), *second = json_text(body, "with");
@@ -85,12 +79,12 @@ cJSON *acceptance_read(const struct room *room, const cJSON *body, const struct 
                        : room->writer ? wire_member_role_words.words[room->writer->role]
                                       : NULL;
     cJSON *read = cJSON_CreateObject();
-    copy_text(read, body, "thing");
-    copy_text(read, body, "with");
-    copy_text(read, body, "reason");
-    copy_text(read, body, "words");
+    json_copy_text(read, body, "thing");
+    json_copy_text(read, body, "with");
+    json_copy_text(read, body, "reason");
+    json_copy_text(read, body, "words");
     if (is_restored)
-        copy_text(read, body, "fact");
+        json_copy_text(read, body, "fact");
     else
         cJSON_AddStringToObject(read, "fact", json_text(fit, "reason") ? json_text(fit, "reason") : "");
     cJSON_AddStringToObject(read, "plan_revision", revision && strlen(revision) <= 64 ? revision : "");
@@ -146,12 +140,12 @@ void acceptance_audit(struct room *room, const struct item *item, const struct m
     cJSON_AddStringToObject(act.detail, "item", item->id);
     cJSON_AddNumberToObject(act.detail, "version", item->version);
     cJSON_AddStringToObject(act.detail, "sha256", hex);
-    copy_text(act.detail, body, "thing");
-    copy_text(act.detail, body, "with");
-    copy_text(act.detail, body, "reason");
-    copy_text(act.detail, body, "plan_revision");
+    json_copy_text(act.detail, body, "thing");
+    json_copy_text(act.detail, body, "with");
+    json_copy_text(act.detail, body, "reason");
+    json_copy_text(act.detail, body, "plan_revision");
     if (words && strlen(words) <= ROOM_MAX_AUDIT_DETAIL / 3) /* else the whole row would be left out */
-        copy_text(act.detail, body, "words");
+        json_copy_text(act.detail, body, "words");
     cJSON_Delete(row);
     audit_tell(room, &act);
 }
@@ -169,10 +163,10 @@ static cJSON *find_counting(const struct room *room, cJSON *ids)
         cJSON *row, *body = body_of(item, &row);
         if (is_of_these_files(room, body)) {
             cJSON *entry = cJSON_CreateObject();
-            copy_text(entry, body, "thing");
-            copy_text(entry, body, "with");
+            json_copy_text(entry, body, "thing");
+            json_copy_text(entry, body, "with");
             cJSON_AddStringToObject(entry, "by", item->author_name);
-            copy_text(entry, body, "words");
+            json_copy_text(entry, body, "words");
             json_append(list, entry);
             json_append(ids, cJSON_CreateString(item->id));
             n++;

@@ -1,11 +1,9 @@
 /* Checks changes of items, writes their rows, and tells members and the room's owner. */
 #include "server/room/items/items.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
@@ -19,21 +17,19 @@
 #include "server/room/out/send.h"
 #include "server/room/state/event.h"
 #include "server/room/state/roles.h"
+#include "server/wire/random.h"
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
+
+enum { ID_BYTES = 5 };
 
 /* 40 random bits: an id is not used again, so that what a page says late about a deleted item reaches no other one. */
 static void make_id(const struct room *room, char id[16])
 {
-    uint8_t bytes[5];
     do {
-        ssize_t n;
-        do
-            n = getrandom(bytes, sizeof bytes, 0);
-        while (n < 0 && errno == EINTR);
-        if (n != (ssize_t)sizeof bytes)
-            abort(); /* as a member's secret */
-        (void)snprintf(id, 16, "i-%02x%02x%02x%02x%02x", bytes[0], bytes[1], bytes[2], bytes[3], bytes[4]);
+        char digits[2 * ID_BYTES + 1];
+        random_hex(digits, ID_BYTES);
+        (void)snprintf(id, 16, "i-%s", digits);
     } while (items_find(room, id));
 }
 

@@ -52,12 +52,6 @@ static bool check_optional(const cJSON *body, const char *name, size_t most, str
     return !value || (cJSON_IsString(value) && !value->valuestring[0]) || body_check_text(value, where, most, problem);
 }
 
-static void copy_text(cJSON *to, const cJSON *from, const char *name)
-{
-    const char *text = json_text(from, name);
-    cJSON_AddStringToObject(to, name, text ? text : "");
-}
-
 /* Revision and role: as they were kept, else those of now. */
 static void give_place(const struct room *room, const cJSON *body, bool is_restored, cJSON *read)
 {
@@ -135,6 +129,16 @@ static bool check_entry(const struct room *room, const cJSON *body, const struct
     return true;
 }
 
+/* Copies the fields before the plan's revision; that and the role are given. */
+static cJSON *read_fields(const struct room *room, const cJSON *body, const char *const *names, bool is_restored)
+{
+    cJSON *read = cJSON_CreateObject();
+    for (; strcmp(*names, "plan_revision") != 0; names++)
+        json_copy_text(read, body, *names);
+    give_place(room, body, is_restored, read);
+    return read;
+}
+
 cJSON *record_read_check(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
                          struct problem *problem)
 {
@@ -145,13 +149,7 @@ cJSON *record_read_check(const struct room *room, const cJSON *body, const struc
         !check_optional(body, "comment", RECORD_MAX_TEXT, problem) ||
         !check_entry(room, body, before, is_restored, problem))
         return NULL;
-    cJSON *read = cJSON_CreateObject();
-    copy_text(read, body, "entry");
-    copy_text(read, body, "text");
-    copy_text(read, body, "state");
-    copy_text(read, body, "comment");
-    give_place(room, body, is_restored, read);
-    return read;
+    return read_fields(room, body, names, is_restored);
 }
 
 cJSON *record_read_decision(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
@@ -164,12 +162,7 @@ cJSON *record_read_decision(const struct room *room, const cJSON *body, const st
         !check_optional(body, "text", RECORD_MAX_TEXT, problem) ||
         !check_corrects(room, body, WIRE_ITEM_KIND_DECISION, is_restored, problem))
         return NULL;
-    cJSON *read = cJSON_CreateObject();
-    copy_text(read, body, "decision");
-    copy_text(read, body, "text");
-    copy_text(read, body, "corrects");
-    give_place(room, body, is_restored, read);
-    return read;
+    return read_fields(room, body, names, is_restored);
 }
 
 cJSON *record_read_signature(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
@@ -182,12 +175,7 @@ cJSON *record_read_signature(const struct room *room, const cJSON *body, const s
         !check_word(body, "meaning", &wire_meaning_words, problem) ||
         !check_corrects(room, body, WIRE_ITEM_KIND_SIGNATURE, is_restored, problem))
         return NULL;
-    cJSON *read = cJSON_CreateObject();
-    copy_text(read, body, "name");
-    copy_text(read, body, "meaning");
-    copy_text(read, body, "corrects");
-    give_place(room, body, is_restored, read);
-    return read;
+    return read_fields(room, body, names, is_restored);
 }
 
 /* ---- rights ----------------------------------------------------------------------------------------------------- */
@@ -253,11 +241,11 @@ void record_audit(struct room *room, const struct item *item, const struct membe
     cJSON_AddStringToObject(act.detail, "sha256", hex);
     if (is_append_only(item->kind)) {
         cJSON *row, *body = body_of(item, &row);
-        copy_text(act.detail, body, item->kind == WIRE_ITEM_KIND_DECISION ? "decision" : "meaning");
+        json_copy_text(act.detail, body, item->kind == WIRE_ITEM_KIND_DECISION ? "decision" : "meaning");
         if (item->kind == WIRE_ITEM_KIND_SIGNATURE)
-            copy_text(act.detail, body, "name");
-        copy_text(act.detail, body, "corrects");
-        copy_text(act.detail, body, "plan_revision");
+            json_copy_text(act.detail, body, "name");
+        json_copy_text(act.detail, body, "corrects");
+        json_copy_text(act.detail, body, "plan_revision");
         cJSON_Delete(row);
     }
     if (record) {

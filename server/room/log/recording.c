@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <time.h>
 
 #include "core/base/log.h"
@@ -18,6 +17,7 @@
 #include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/wire/json.h"
+#include "server/wire/random.h"
 
 static const int64_t every_us = RECORDING_EVERY_MS * INT64_C(1000), batch_us = RECORDING_BATCH_MS * INT64_C(1000),
                      empty_us = ROOM_RECORDING_EMPTY_S * INT64_C(1000000);
@@ -299,11 +299,11 @@ int64_t recording_settle(struct room *room)
 
 static void make_id(const struct room *room, char id[32])
 {
-    uint8_t bytes[5];
+    enum { ID_BYTES = 5 };
     do {
-        if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
-            abort(); /* as a member's secret */
-        (void)snprintf(id, 32, "rec-%02x%02x%02x%02x%02x", bytes[0], bytes[1], bytes[2], bytes[3], bytes[4]);
+        char digits[2 * ID_BYTES + 1];
+        random_hex(digits, ID_BYTES);
+        (void)snprintf(id, 32, "rec-%s", digits);
     } while (room_recording(room, id));
 }
 

@@ -5,15 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/wire/document.h"
 #include "server/wire/message.h"
-
-static void copy_text(char *to, size_t size, const char *from)
-{
-    (void)snprintf(to, size, "%s", from ? from : "");
-}
 
 /* text NULL: there was no memory for it. A page that misses a message would show a stale state, so its
  * connection is closed: it connects again and is sent everything. */
@@ -126,7 +122,7 @@ void send_renderer_state(struct room *room, struct member *member)
     struct message message = { .type = MESSAGE_RENDERER };
     message.renderer.state = room->state;
     message.renderer.percent = room->percent;
-    copy_text(message.renderer.phase, sizeof message.renderer.phase, room->phase);
+    mem_put_text(message.renderer.phase, sizeof message.renderer.phase, room->phase);
     if (room->problem.type != PROBLEM_NONE)
         message.renderer.problem = problem_to_json(&room->problem);
     if (member)
@@ -142,7 +138,7 @@ void send_plan(struct room *room)
     message.plan.plan = room->plan;
     message.plan.scene = room->scene;
     message.plan.revision = room->revision;
-    copy_text(message.plan.gl, sizeof message.plan.gl, room->gl);
+    mem_put_text(message.plan.gl, sizeof message.plan.gl, room->gl);
     send_to_all(room, &message);
 }
 
@@ -164,7 +160,7 @@ void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32
 {
     struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = patch } };
     if (by)
-        copy_text(message.scene.by, sizeof message.scene.by, by->id);
+        mem_put_text(message.scene.by, sizeof message.scene.by, by->id);
     for (int i = 0; i < room->n_members; i++) {
         struct member *member = room->members[i];
         if (member != by && !to_all)
@@ -191,13 +187,13 @@ static void write_view(struct stream *stream, int index, bool is_following, bool
     message.view.document = stream->view;
     message.view.follow = is_following;
     message.view.late = is_late;
-    copy_text(message.view.by, sizeof message.view.by, by);
+    mem_put_text(message.view.by, sizeof message.view.by, by);
     send_view_forget(stream);
     stream->told.text = message_write(&message);
     stream->told.index = index;
     stream->told.is_following = is_following;
     stream->told.is_late = is_late;
-    copy_text(stream->told.by, sizeof stream->told.by, by);
+    mem_put_text(stream->told.by, sizeof stream->told.by, by);
 }
 
 void send_view(struct room *room, struct member *member, int index, const char *by)
@@ -217,7 +213,7 @@ bool send_problem(struct room *room, void *connection, const char *to, int64_t v
                   const struct problem *problem)
 {
     struct message message = { .type = MESSAGE_PROBLEM };
-    copy_text(message.problem.to, sizeof message.problem.to, to);
+    mem_put_text(message.problem.to, sizeof message.problem.to, to);
     message.problem.view = view;
     message.problem.input = input;
     message.problem.problem = problem_to_json(problem);
@@ -242,7 +238,7 @@ void send_missing(struct room *room, struct member *member, int index, const cJS
 void send_bye(struct room *room, void *connection, int retry_ms, const char *reason)
 {
     struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };
-    copy_text(message.bye.reason, sizeof message.bye.reason, reason);
+    mem_put_text(message.bye.reason, sizeof message.bye.reason, reason);
     if (send_to_connection(room, connection, &message))
         room->callbacks.close(room->callbacks.context, connection);
 }
