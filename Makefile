@@ -62,7 +62,7 @@ endif
 DCMTK_LIBS := -ldcmjpeg -lijg8 -lijg12 -lijg16 -ldcmjpls -ldcmtkcharls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
 CORE_LIBS := $(DCMTK_LIBS) -lopenjp2 -lturbojpeg -lspng -lfreetype -ldeflate -lz -lcjson -ldl -lm
 UNPACK_LIBS := -larchive
-SERVER_LIBS := -lmicrohttpd -lsqlite3 -lsodium -lcjson -lm
+SERVER_LIBS := -lmicrohttpd -Wl,--as-needed -lwebsockets -lev -Wl,--no-as-needed -lsqlite3 -lsodium -lcjson -lm
 
 c_files = $(if $(wildcard $(1)),$(sort $(shell find $(wildcard $(1)) -name '*.c')))
 

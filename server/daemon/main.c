@@ -145,11 +145,12 @@ static bool gl_is_known(const char *gl, struct error *err)
                      gl);
 }
 
-/* Raises the limit on open files. The usual 1024 is for programs that use select(2). */
-static void raise_descriptors(void)
+/* Sets the limit on open files. The usual 1024 is for programs that use select(2); containers often allow a million, and
+ * libwebsockets keeps a table of as many as are allowed. */
+static void set_descriptors(void)
 {
     struct rlimit now;
-    if (getrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur >= N_DESCRIPTORS)
+    if (getrlimit(RLIMIT_NOFILE, &now) != 0)
         return;
     now.rlim_cur = now.rlim_max < N_DESCRIPTORS ? now.rlim_max : N_DESCRIPTORS;
     (void)setrlimit(RLIMIT_NOFILE, &now);
@@ -320,7 +321,7 @@ int main(int argc, char **argv)
     (void)setrlimit(RLIMIT_CORE, &no_core);
 
     notify_open();
-    raise_descriptors();
+    set_descriptors();
 
     bool ok = !options.gl || gl_is_known(options.gl, &err);
     if (options.backup) {

@@ -63,9 +63,10 @@ void out_queue_clear(struct queue_out *queue)
 
 void out_drop_frames(struct ws_connection *connection)
 {
-    for (int i = 0; i < WS_SLOTS; i++) {
-        frame_unref(connection->slots[i].frame);
-        connection->slots[i].frame = NULL;
+    for (int i = 0; connection->filled; i++) {
+        if (connection->filled & 1u << i)
+            frame_unref(connection->slots[i].frame);
+        connection->filled &= ~(1u << i);
     }
 }
 
@@ -215,16 +216,23 @@ void ws_send_frame(struct ws_connection *connection, const struct frame_header *
     if (connection->state != STATE_OPEN || header->view < 1 || header->view > WS_SLOTS)
         return;
     struct frame_slot *slot = &connection->slots[header->view - 1];
-    frame_unref(slot->frame);
+    if (connection->filled & 1u << (header->view - 1))
+        frame_unref(slot->frame);
     slot->frame = frame_ref(frame);
-    frame_header_write(header, slot->header);
+    connection->filled |= 1u << (header->view - 1);
+    slot->n_head = ws_write_head(slot->head, WS_BINARY, FRAME_HEADER_BYTES + frame->n_bytes);
+    frame_header_write(header, slot->head + slot->n_head);
+    slot->n_head += FRAME_HEADER_BYTES;
     mark(connection);
 }
 
 static struct sending_part *add_part(struct sending *sending)
 {
     struct sending_part *part = &sending->parts[sending->n++];
-    memset(part, 0, sizeof *part);
+    part->message = NULL;
+    part->frame = NULL;
+    part->slot = NULL;
+    part->is_latest = false;
     return part;
 }
 
@@ -234,20 +242,21 @@ static void begin_message(struct sending *sending, struct message_out *message)
     part->message = message;
     part->body = message->bytes;
     part->n_body = message->n;
-    part->n_head = ws_write_head(part->head, message->opcode, message->n);
+    part->head = part->own_head;
+    part->n_head = ws_write_head(part->own_head, message->opcode, message->n);
 }
 
-static void begin_frame(struct sending *sending, struct frame_slot *slot)
+static void begin_frame(struct ws_connection *connection, int at)
 {
-    struct sending_part *part = add_part(sending);
+    struct frame_slot *slot = &connection->slots[at];
+    struct sending_part *part = add_part(&connection->sending);
     part->frame = slot->frame;
     part->body = slot->frame->bytes;
     part->n_body = slot->frame->n_bytes;
-    part->n_head = ws_write_head(part->head, WS_BINARY, FRAME_HEADER_BYTES + part->n_body);
-    memcpy(part->head + part->n_head, slot->header, FRAME_HEADER_BYTES);
-    part->n_head += FRAME_HEADER_BYTES;
+    part->head = slot->head;
+    part->n_head = slot->n_head;
     part->slot = slot;
-    slot->frame = NULL;
+    connection->filled &= ~(1u << at);
 }
 
 /* Pongs before messages, messages before the close. */
@@ -287,16 +296,16 @@ static bool begin_next(struct ws_connection *connection)
         sending->parts[sending->n - 1].is_latest = true;
         return true;
     }
-    for (int i = 0; i < LAST_SLOT; i++) {
+    for (int i = 0; connection->filled && i < LAST_SLOT; i++) {
         int at = (connection->next_slot + i) % LAST_SLOT;
-        if (!connection->slots[at].frame)
+        if (!(connection->filled & 1u << at))
             continue;
         connection->next_slot = at + 1;
-        begin_frame(sending, &connection->slots[at]);
+        begin_frame(connection, at);
         return true;
     }
-    if (connection->slots[LAST_SLOT].frame)
-        begin_frame(sending, &connection->slots[LAST_SLOT]);
+    if (connection->filled)
+        begin_frame(connection, LAST_SLOT);
     return sending->n > 0;
 }
 
@@ -309,6 +318,7 @@ static void put_back(struct ws_connection *connection)
     if (last->slot) {
         last->slot->frame = last->frame;
         connection->next_slot = (int)(last->slot - connection->slots);
+        connection->filled |= 1u << connection->next_slot;
         sending->n--;
     } else if (last->is_latest) {
         last->message->next = latest->first;
@@ -328,11 +338,8 @@ static bool is_sending(const struct ws_connection *connection)
 
 static bool has_more(const struct ws_connection *connection)
 {
-    bool has = is_sending(connection) || connection->pongs.first || connection->texts.first || connection->close ||
-               (connection->state == STATE_OPEN && connection->latest.first);
-    for (int i = 0; i < WS_SLOTS; i++)
-        has = has || connection->slots[i].frame;
-    return has;
+    return is_sending(connection) || connection->pongs.first || connection->texts.first || connection->close ||
+           connection->filled || (connection->state == STATE_OPEN && connection->latest.first);
 }
 
 void out_drop_sending(struct ws_connection *connection)
@@ -351,10 +358,19 @@ static void finish_sending(struct ws_connection *connection)
     const struct message_out *last = connection->sending.parts[connection->sending.n - 1].message;
     if (last && last->opcode == WS_CLOSE) { /* RFC 6455 7.1.1: nothing more is sent; the client closes its direction */
         connection->state = STATE_LINGERING;
-        (void)shutdown(connection->fd, SHUT_WR);
+        (void)shutdown(connection->socket.fd, SHUT_WR);
         end_within(connection, WS_LINGER_MS * INT64_C(1000));
     }
     out_drop_sending(connection);
+}
+
+/* The frame is partly sent, and a newer one may come into its slot. */
+static void keep_head(struct sending_part *part)
+{
+    if (part->head == part->own_head)
+        return;
+    memcpy(part->own_head, part->head, part->n_head);
+    part->head = part->own_head;
 }
 
 enum sent { SENT_ALL, SENT_PART, SENT_FAILED };
@@ -375,7 +391,7 @@ static enum sent send_some(struct ws_connection *connection)
         n_left += n - n_skip;
     }
     struct msghdr header = { .msg_iov = pieces, .msg_iovlen = (size_t)n_pieces };
-    ssize_t n = sendmsg(connection->fd, &header, MSG_NOSIGNAL | MSG_DONTWAIT);
+    ssize_t n = sendmsg(connection->socket.fd, &header, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR && errno != ENOBUFS)
         return SENT_FAILED;
     if (n < 0) {
@@ -384,24 +400,19 @@ static enum sent send_some(struct ws_connection *connection)
         return SENT_PART;
     }
     sending->n_done += (size_t)n;
-    if ((size_t)n < n_left)
+    if ((size_t)n < n_left) {
+        keep_head(&sending->parts[sending->n - 1]);
         return SENT_PART;
+    }
     finish_sending(connection);
     return SENT_ALL;
 }
 
-static void arm(struct ws_connection *connection)
+static void ask_room(struct ws_connection *connection)
 {
-    if (!connection->is_armed)
-        loop_set_wants_room(&connection->ws->loop, connection->fd, connection, true);
-    connection->is_armed = true;
-}
-
-static void disarm(struct ws_connection *connection)
-{
-    if (connection->is_armed)
-        loop_set_wants_room(&connection->ws->loop, connection->fd, connection, false);
-    connection->is_armed = false;
+    if (!connection->is_asking)
+        sockets_ask_room(&connection->socket);
+    connection->is_asking = true;
 }
 
 int out_write(struct ws_connection *connection)
@@ -410,15 +421,13 @@ int out_write(struct ws_connection *connection)
     if (may_send && (is_sending(connection) || begin_next(connection)) && send_some(connection) == SENT_FAILED)
         return -1;
     if (may_send && has_more(connection))
-        arm(connection);
-    else
-        disarm(connection);
+        ask_room(connection);
     return 0;
 }
 
 static void flush(struct ws_connection *connection)
 {
-    if (connection->is_armed || connection->state == STATE_NONE || connection->state == STATE_LINGERING ||
+    if (connection->is_asking || connection->state == STATE_NONE || connection->state == STATE_LINGERING ||
         !has_more(connection))
         return;
     if (out_write(connection) == 0)

@@ -54,11 +54,11 @@ struct ws_parser { /* in the caller's storage; its members are parser.c's */
     bool is_in_payload, is_final;
     enum ws_opcode opcode;
     uint64_t n_payload, n_left;
-    uint8_t control[WS_MAX_CONTROL];
     enum ws_opcode kind; /* of the message under way; WS_CONTINUATION: none */
     uint8_t *message;
     size_t n_message, n_allocated;
     uint8_t utf8_more, utf8_low, utf8_high; /* continuation bytes a character still needs, and the range of the next */
+    uint8_t control[WS_MAX_CONTROL];
 };
 
 /* max_message_bytes: limit of a message, all fragments together. takes_binary false: a binary message gives

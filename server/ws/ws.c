@@ -1,4 +1,4 @@
-/* The event loop, the handshake of a connection, and incoming messages with their limits. */
+/* The handshake of a connection, and incoming messages with their limits. */
 #include "server/ws/ws.h"
 
 #include <errno.h>
@@ -119,10 +119,9 @@ static void check_later(struct ws_connection *connection, bool is_greeted)
     ws_check_at(connection, whole_second_after(due_us > now_us ? due_us : now_us));
 }
 
-static void start(struct ws_connection *connection, int socket, const char *room_id, const struct ws_count *count)
+static void start(struct ws_connection *connection, const char *room_id, const struct ws_count *count)
 {
     struct ws *ws = connection->ws;
-    connection->fd = socket;
     connection->count = *count;
     connection->state = STATE_OPEN;
     connection->pongs.last = &connection->pongs.first;
@@ -173,16 +172,17 @@ void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake, cons
         return;
     }
     struct ws_connection *connection = calloc(1, sizeof *connection);
-    if (!connection || !loop_add(&ws->loop, socket, connection)) {
+    if (!connection)
+        (void)close(socket);
+    if (!connection || !sockets_add(ws->sockets, &connection->socket, socket)) {
         log_warn("a connection could not be taken over: no memory");
         free(connection);
-        (void)close(socket);
         end_count(count);
         return;
     }
     connection->ws = ws;
     memcpy(connection->client, handshake->client, sizeof connection->client);
-    start(connection, socket, handshake->room_id, count);
+    start(connection, handshake->room_id, count);
 }
 
 void ws_refuse_as_stopping(struct ws *ws, int socket)
@@ -229,17 +229,25 @@ static void handle_event(struct ws_connection *connection, const struct ws_event
     }
 }
 
-static int receive(struct ws_connection *connection, const uint8_t *bytes, size_t n)
+static struct ws_connection *connection_of(struct socket *socket)
 {
+    return (struct ws_connection *)socket;
+}
+
+static int receive(struct socket *socket, const uint8_t *bytes, size_t n)
+{
+    struct ws_connection *connection = connection_of(socket);
+    struct ws *ws = connection->ws;
     struct ws_event event;
-    int64_t now_us = clock_now_us();
+    const int64_t now_us = ws->turn_us ? ws->turn_us : clock_now_us();
+    ws->turn_us = now_us;
     if (connection->state != STATE_OPEN) {
         connection->n_dropped += n;
         return connection->n_dropped > WS_MAX_DROPPED ? -1 : 0;
     }
     connection->heard_us = now_us;
-    if (!rate_allows(&connection->bytes, &connection->ws->limits.bytes, (int64_t)n, now_us)) {
-        refuse_rate(connection, &connection->ws->limits.bytes, "bytes");
+    if (!rate_allows(&connection->bytes, &ws->limits.bytes, (int64_t)n, now_us)) {
+        refuse_rate(connection, &ws->limits.bytes, "bytes");
         return out_answer_now(connection);
     }
     do {
@@ -284,9 +292,17 @@ static int check_connection(struct ws_connection *connection)
     return 0;
 }
 
-/* Ends and frees it. */
-static void cut(struct ws_connection *connection)
+static int take_more(struct socket *socket)
 {
+    struct ws_connection *connection = connection_of(socket);
+    connection->is_asking = false;
+    return out_write(connection);
+}
+
+/* Frees the connection, whose socket is about to be closed. */
+static void finish(struct socket *socket)
+{
+    struct ws_connection *connection = connection_of(socket);
     struct ws *ws = connection->ws;
     connection->state = STATE_NONE; /* from here on nothing is queued */
     ws->counters.n_connections--;
@@ -299,8 +315,6 @@ static void cut(struct ws_connection *connection)
     out_drop_sending(connection);
     out_unmark(connection);
     ws_parser_finish(&connection->parser);
-    loop_remove(&ws->loop, connection->fd);
-    (void)close(connection->fd);
     if (connection->previous)
         connection->previous->next = connection->next;
     else
@@ -310,24 +324,6 @@ static void cut(struct ws_connection *connection)
     const struct ws_count count = connection->count;
     free(connection);
     end_count(&count);
-}
-
-/* Returns non-zero when the connection has ended. */
-static int read_some(struct ws_connection *connection, bool has_ended)
-{
-    struct ws *ws = connection->ws;
-    ssize_t n = recv(connection->fd, ws->received, sizeof ws->received, MSG_DONTWAIT);
-    if (n > 0)
-        return receive(connection, ws->received, (size_t)n);
-    return n < 0 && !has_ended && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
-}
-
-static void handle_socket(const struct loop_event *event)
-{
-    struct ws_connection *connection = event->owner;
-    if (((event->is_readable || event->has_ended) && read_some(connection, event->has_ended) != 0) ||
-        (event->takes_more && out_write(connection) != 0))
-        cut(connection);
 }
 
 static void check_connections(struct ws *ws)
@@ -340,7 +336,7 @@ static void check_connections(struct ws *ws)
         next = connection->next;
         if (now_us >= connection->check_us) {
             if (check_connection(connection) != 0)
-                cut(connection);
+                sockets_close(&connection->socket);
             continue;
         }
         ping_early(connection, now_us);
@@ -358,7 +354,9 @@ struct ws *ws_create(const struct ws_callbacks *callbacks, const struct ws_limit
     ws->limits = *limits;
     ws->allowed_origin = allowed_origin ? mem_copy_text(allowed_origin) : NULL;
     ws->timer_us = ws->check_us = INT64_MAX;
-    if (loop_init(&ws->loop, err))
+    static const struct sockets_calls calls = { receive, take_more, finish };
+    ws->sockets = sockets_create(&calls, err);
+    if (ws->sockets)
         return ws;
     ws_destroy(ws);
     return NULL;
@@ -369,21 +367,19 @@ void ws_destroy(struct ws *ws)
     if (!ws)
         return;
     while (ws->connections)
-        cut(ws->connections);
-    loop_finish(&ws->loop);
+        sockets_close(&ws->connections->socket);
+    sockets_destroy(ws->sockets);
     free(ws->allowed_origin);
     free(ws);
 }
 
 void ws_serve(struct ws *ws)
 {
-    struct loop_events events;
     out_flush(ws);
-    loop_wait(&ws->loop, ws->timer_us < ws->check_us ? ws->timer_us : ws->check_us, &events);
-    for (int i = 0; i < events.n; i++)
-        handle_socket(&events.of[i]);
+    ws->turn_us = 0;
+    const bool is_woken = sockets_wait(ws->sockets, ws->timer_us < ws->check_us ? ws->timer_us : ws->check_us);
     check_connections(ws);
-    if (events.is_woken)
+    if (is_woken)
         ws->callbacks.woken(ws->callbacks.context);
     if (clock_now_us() >= ws->timer_us) {
         ws->timer_us = INT64_MAX;
@@ -394,7 +390,7 @@ void ws_serve(struct ws *ws)
 
 void ws_wake(struct ws *ws)
 {
-    loop_wake(&ws->loop);
+    sockets_wake(ws->sockets);
 }
 
 void ws_wake_at(struct ws *ws, int64_t time_us)

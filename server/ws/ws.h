@@ -1,7 +1,8 @@
 #pragma once
 /* WebSocket connections on sockets from the acceptor: the answer to the handshake, Origin, limits, the order of what is
- * sent, and how a connection ends. RFC 6455 is implemented here (parser.h parses it, loop.h waits). Knows messages,
- * frames and the ids of rooms, but neither rooms nor the messages' contents. Net thread, but for ws_wake. */
+ * sent, and how a connection ends. RFC 6455 is implemented here (parser.h); the sockets are libwebsockets' (sockets.h).
+ * Knows messages, frames and the ids of rooms, but neither rooms nor the messages' contents. Net thread, but for
+ * ws_wake. */
 #include <stdint.h>
 
 #include "server/wire/frame.h"
