@@ -15,7 +15,9 @@ place="full_disk_items full_recording"        # how much fits on a disk
 left_out=" $load $chance $place "
 
 picture_program() { # picture_program FOLDER PROGRAM
-    BEAMROOM_SAME=$1/$(basename "$2") "$2" >"$1/log.$(basename "$2")" 2>&1 </dev/null || [ $? = 77 ] || echo "FAILED: $2"
+    local name
+    name=$(basename "$2")
+    BEAMROOM_SAME=$1/$name "$2" >"$1/log.$name" 2>&1 </dev/null || [ $? = 77 ] || { echo "FAILED: $2"; echo "$name FAILED" >"$1/$name"; }
 }
 answer_file() { # answer_file FOLDER FILE
     local name
@@ -23,6 +25,7 @@ answer_file() { # answer_file FOLDER FILE
     BEAMROOM_SAME=$1/answers.$name "${NODE:-node}" --import ./tests/answers.mjs --test "$2" >"$1/log.$name" 2>&1 </dev/null && return
     echo "FAILED: $2"
     grep -A16 '^ *not ok' "$1/log.$name" | head -n 40
+    echo "$name.test.mjs FAILED" >"$1/answers.$name"
 }
 export -f picture_program answer_file
 
@@ -46,10 +49,20 @@ record() { # record FILE
     echo "$1: $(grep -c '^test_' "$file") pictures, $(grep -vc '^test_' "$file") answers"
 }
 
+# What failed in one of the two is said and not compared: record it again with FILES. What only NEW has is no difference.
 compare() { # compare OLD NEW
-    local differ
-    differ=$(diff "$1" "$2" | grep '^[<>]')
-    [ -n "$differ" ] || { echo "the same: $(grep -c '^test_' "$1") pictures, $(grep -vc '^test_' "$1") answers"; return 0; }
+    local failed new_ones differ n
+    failed=$(sed -n 's/ FAILED$//p' "$1" "$2" | sort -u | tr '\n' ' ')
+    new_ones=$(comm -13 <(cut -d' ' -f1 "$1" | sort -u) <(cut -d' ' -f1 "$2" | sort -u) | tr '\n' ' ')
+    comparable() { awk -v out=" $failed$new_ones" 'index(out, " " $1 " ") == 0' "$1"; }
+    [ -z "$failed" ] || echo "not compared, as they failed: $failed"
+    [ -z "$new_ones" ] || echo "only in $2: $new_ones"
+    differ=$(diff <(comparable "$1") <(comparable "$2") | grep '^[<>]')
+    if [ -z "$differ" ]; then
+        n=$(comparable "$1" | grep -c '^test_')
+        echo "the same: $n pictures, $(($(comparable "$1" | wc -l) - n)) answers"
+        return 0
+    fi
     head -n "${MOST:-60}" <<<"$differ"
     echo "$(wc -l <<<"$differ") lines differ"
     return 1
