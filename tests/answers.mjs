@@ -20,7 +20,9 @@ const rules = {
   ],
   // numbers under these names: times, durations, sizes that hold texts of these
   numbers: /(^|_)(ms|us|s|seconds|time|at|since|until|uptime|pid|rss|bytes|mib|load|sequence|port)$/,
-  // anything under these names: how far the disk, the folders, a recording are; the version of the program
+  // figures of other numbers: threads add sums in no fixed order
+  figures: 10,
+  // the revision of a review's record, and anything under these names: how far the disk, the folders, a recording are; the version of the program
   names: new Set(['saved', 'audit', 'parts', 'marks', 'server', 'program']),
 };
 const leftOut = {
@@ -28,8 +30,8 @@ const leftOut = {
   messages: /^(frame|lag|members|pointer|pong|recording|renderer|replay|saved|view|watch)/,
   // the list of plans fills in while folders are read; moments of a recording; how many frames are drawn in a time; pictures that show the time
   addresses: /^GET \/api\/v1\/plans$|[?&]t_ms=|[?&]frames=|annotations"?[:=]true/,
-  // which of two comes first
-  texts: /"status":(409|504)/,
+  // which of two comes first, what goes on or is busy, which allocation fails
+  texts: /"status":(409|503|504)|"state":"(running|queued)"|no memory for/,
 };
 
 const target = process.env.BEAMROOM_SAME;
@@ -42,8 +44,10 @@ function masked(value, name = '') {
   if (rules.names.has(name)) return 'LEFT OUT';
   if (Array.isArray(value)) return value.map((one) => masked(one, name));
   if (value && typeof value === 'object')
-    return Object.fromEntries(Object.entries(value).map(([key, one]) => [mask(key), masked(one, key)]));
-  if (typeof value === 'number' && rules.numbers.test(name)) return 0;
+    return Object.fromEntries(
+      Object.entries(value).map(([key, one]) => [mask(key), key === 'revision' && 'made_ms' in value ? 'LEFT OUT' : masked(one, key)]),
+    );
+  if (typeof value === 'number') return rules.numbers.test(name) ? 0 : Number(value.toPrecision(rules.figures));
   return typeof value === 'string' ? mask(value) : value;
 }
 
