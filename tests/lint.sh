@@ -82,6 +82,28 @@ planted_documents() {
     rm -rf "$folder"
     return $status
 }
+# The README of each folder is held to it: each planted fault has to be found, by its very sentence.
+planted_readmes() {
+    local folder out expected
+    folder=$(mktemp -d)
+    mkdir -p "$folder/core/one/deep" "$folder/core/two"
+    touch "$folder"/core/one/{a.c,a.h,b.c,cc.c} "$folder"/core/one/deep/{d.c,e.c} "$folder/core/two/f.c"
+    { printf '# one\n`a.h`, `a.h`; `gone.c`; `c*.c` and `*c.c`; `core/two/g.h`; `x*.c`\n'; yes . | head -n 29; } >"$folder/core/one/README.md"
+    expected='core/two/ has no README.md, nor has a folder above it
+core/one/README.md has 31 lines; at most 30
+core/one/README.md:2 names gone.c, which does not exist
+core/one/README.md:2 names core/two/g.h, which does not exist
+core/one/README.md:2 names x*.c, which nothing matches
+core/one/a.h is named 2 times in core/one/README.md: lines 2, 2
+core/one/b.c is not named in core/one/README.md
+core/one/cc.c is matched by 2 patterns in core/one/README.md
+core/one/deep/ has no README.md, and core/one/README.md names none of its 2 files'
+    out=$(git -C "$folder" init -q 2>&1 && "${NODE:-node}" tests/readmes.mjs "$folder")
+    rm -rf "$folder"
+    [ "$out" = "$expected" ] && return 0
+    diff <(echo "$expected") <(echo "$out")
+    return 1
+}
 no_calls() {
     ! grep -nE '(^|[^a-zA-Z0-9_.>])(sprintf|vsprintf|strcpy|strcat|strtok|gets|system|popen|setlocale|alloca|atoi|atof)[[:space:]]*\(' \
         $(sources '*.c' '*.h' '*.cc' '*.hh')
@@ -167,6 +189,8 @@ check "no folder and no file of a folder is in a circle" tests/circles.sh "${BEA
 check "a circle of folders and one of files are found" planted_circle
 check "documents name what is there: paths, packages with their licences, one version" "${NODE:-node}" tests/documents.mjs
 check "a path, a package and a version that are not are found" planted_documents
+check "the README of each folder names its files, each once, and nothing that is not there" "${NODE:-node}" tests/readmes.mjs
+check "faults of such a README are found" planted_readmes
 check "no banned calls" no_calls
 check "C is laid out as .clang-format says (clang-format -i FILE)" laid_out
 check "JavaScript and CSS are laid out and free of mistakes as biome.jsonc says (npx biome check --write FILE)" scripts_and_styles
