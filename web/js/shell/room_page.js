@@ -1,6 +1,6 @@
 // The room page: panes with the panels around them, connected to the room's state.
 import { html, nothing } from '../../lib/lit-html.js';
-import { computed, effect, signal } from '../../lib/signals-core.js';
+import { computed, effect } from '../../lib/signals-core.js';
 import { features, partsOf } from '../features/index.js';
 import { AfterRoom } from '../room/after_room.js';
 import { crosshair } from '../room/plan.js';
@@ -14,6 +14,7 @@ import { filesBar } from './files_bar.js';
 import { coverPage, help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { soon } from '../net/soon.js';
+import { Answer } from '../parts/answer.js';
 import { mount } from '../parts/mount.js';
 import { Pane } from '../pane/pane.js';
 import { giveOblique } from '../pane/pane_kind.js';
@@ -58,7 +59,7 @@ export function roomPage(
   const connection = connect(id);
   const room = new RoomState(id, { connection, clock, schedule: redraw.schedule, sendSoon: soon(clock), notify: ui.notify });
   const undo = new Undo(room, { clock, notify: ui.notify });
-  const probed = signal({ result: null, error: '', isOld: false });
+  const probing = probe(room, api, clock);
   const onPainted = (header, isDrawn) => {
     const answered = room.frameShown(header, isDrawn);
     hooks.painted(header, answered, (timesMs) => room.measured(timesMs));
@@ -82,7 +83,7 @@ export function roomPage(
     storage,
     ownName,
     undo,
-    probed,
+    probed: probing.state,
     onPainted,
     panes: () => panes,
   };
@@ -110,7 +111,7 @@ export function roomPage(
   stops.push(
     effect(() => describeTitle(room)),
     reveal(host, ui),
-    probe(room, api, probed, clock),
+    probing.start(),
     ...features.flatMap((feature) => feature.start?.(world) ?? []),
   );
   stops.push(
@@ -167,37 +168,14 @@ function describeTitle(room) {
   document.title = [room.plan.value?.name ?? room.planId.value, 'Beamroom'].filter(Boolean).join(' – ');
 }
 
-/** Requests the values at the crosshair whenever it has moved; only the newest answer is used. */
-function probe(room, api, probed, clock) {
-  let timer = 0;
-  let pending = null;
-  const place = computed(() => {
+/** The values at the crosshair, asked for when it has moved or the renderer is there again. */
+function probe(room, api, clock) {
+  const key = () => {
     const scene = room.scene.value;
-    return scene && room.plan.value ? crosshair(scene).join(' ') : '';
-  });
-  const ask = async () => {
-    pending?.abort();
-    pending = new AbortController();
-    const { signal: aborted } = pending;
-    try {
-      const result = await api.probe(room.planId.value, place.peek().split(' ').map(Number), aborted);
-      if (!aborted.aborted) probed.value = { result, error: '', isOld: false };
-    } catch (error) {
-      if (!aborted.aborted) probed.value = { result: null, error: error.message, isOld: false };
-    }
+    return scene && room.plan.value && room.renderer.value.state === 'ready' ? crosshair(scene).join(' ') : '';
   };
-  const stop = effect(() => {
-    const isReady = room.renderer.value.state === 'ready';
-    if (!place.value || !isReady) return;
-    probed.value = { ...probed.peek(), isOld: true };
-    clock.clearTimeout(timer);
-    timer = clock.setTimeout(ask, probeMs);
-  });
-  return () => {
-    stop();
-    clock.clearTimeout(timer);
-    pending?.abort();
-  };
+  const ask = (place, aborted) => api.probe(room.planId.peek(), place.split(' ').map(Number), aborted);
+  return new Answer({ key, ask, clock, restMs: probeMs, renews: true });
 }
 
 /** The inspector's Selection is loaded when somebody begins to use the page: it is there before the first click. */

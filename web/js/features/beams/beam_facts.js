@@ -1,11 +1,9 @@
 // Asks the server about a beam: entry, depths, angles, what lies in its aperture. One question at a time, and the newest scene next, so that
 // numbers follow a drag by at most one answer and an older answer never replaces a newer one.
-import { computed, effect, signal } from '../../../lib/signals-core.js';
-import { Asker } from '../../parts/asker.js';
+import { Answer } from '../../parts/answer.js';
 import { mergePatch } from '../../wire/merge.js';
 import { isComparing, isDraftOn } from './beam_ui.js';
 
-const none = { result: null, error: '', isOld: false };
 const known = new WeakMap(); // room -> Map of beam id -> BeamFacts
 
 /** The facts of one beam of the plan; '': of the one that the scene chooses, or of its draft. Asked for while somebody reads them. */
@@ -19,17 +17,21 @@ export function beamFacts({ room, api, clock }, id = '') {
 export class BeamFacts {
   #room;
   #api;
-  #clock;
   #id;
-  #stop = () => {};
 
   constructor(room, api, clock, id) {
     this.#room = room;
     this.#api = api;
-    this.#clock = clock;
     this.#id = id;
     /** {result, error, isOld}: isOld: of what was before, while the newer answer is still to come */
-    this.answer = signal(none, { watched: () => this.#start(), unwatched: () => this.#stop() });
+    this.answer = new Answer({
+      key: () => this.#key(),
+      ask: (key) => this.#ask(JSON.parse(key)[2]),
+      clock,
+      isSettled: () => !room.isScenePending.value,
+      clears: true,
+      whileRead: true,
+    }).state;
   }
 
   /** Diameter of the ring of a beam's-eye view that is on the screen, mm; null: the beam's own. */
@@ -46,39 +48,6 @@ export class BeamFacts {
     const drafted = isDraftOn(this.#room) ? draft.line : null;
     if (!this.#id && !drafted && !plan.value.beams.length) return '';
     return JSON.stringify([planId.value, this.#id ? null : [id, drafted], this.#ring()]);
-  }
-
-  #start() {
-    const key = computed(() => this.#key());
-    let settled = '';
-    const asker = new Asker(async () => {
-      const wanted = key.value;
-      const isSettled = !this.#room.isScenePending.peek();
-      if (!wanted) return;
-      const told = await this.#ask(JSON.parse(wanted)[2]).then(
-        (result) => ({ result, error: '' }),
-        (error) => ({ result: null, error: error.message }),
-      );
-      if (key.value) this.answer.value = { ...told, isOld: !isSettled || key.value !== wanted };
-      if (isSettled) settled = wanted;
-    }, this.#clock);
-    const stop = effect(() => {
-      const wanted = key.value;
-      void this.#room.isScenePending.value; // runs again when the daemon has confirmed the scene
-      if (wanted === settled) return;
-      const before = this.answer.peek();
-      if (!wanted) {
-        if (before.result || before.error) this.answer.value = none;
-        settled = '';
-      } else {
-        if (!before.isOld) this.answer.value = { ...before, isOld: true };
-        asker.want();
-      }
-    });
-    this.#stop = () => {
-      stop();
-      asker.stop();
-    };
   }
 
   /** For a member on their own with their override, so that the answer is of the scene that they see; of the draft, also while the planned beam is

@@ -3,7 +3,7 @@
 import { computed, signal } from '../../../lib/signals-core.js';
 import { mergePatch } from '../../wire/merge.js';
 import { readDvh, readProfile } from './dose_answers.js';
-import { Asked } from './dose_asked.js';
+import { Answer } from '../../parts/answer.js';
 import { plotPoints } from './dose_dvh.js';
 import { linesOf } from './dose_profile.js';
 import { ownRegions } from '../../room/identity.js';
@@ -12,6 +12,16 @@ import { ownRegions } from '../../room/identity.js';
 const looks = ['grid', 'levels', 'wash', 'lines', 'surfaces', 'coverage', 'error', 'interpolation', 'weights_name'];
 const [mostBins, allBins, mostIds] = [512, 60000, 2000]; // of a curve, of an answer; characters
 const numbersOf = (dose) => Object.fromEntries(Object.entries(dose ?? {}).filter(([name]) => !looks.includes(name)));
+
+export const restMs = 200;
+
+/** An answer that is asked for once what it depends on rests. @param {() => {key: string, ask: (aborted: AbortSignal) => Promise<object>}|null} wanted reactive */
+function live(wanted, clock) {
+  const now = computed(wanted);
+  const answer = new Answer({ key: () => now.value?.key ?? '', ask: (_, aborted) => now.peek().ask(aborted), clock, restMs });
+  answer.start();
+  return answer;
+}
 
 export class DoseCurves {
   #room;
@@ -48,9 +58,9 @@ export class DoseCurves {
     /** Those among them that have curves. */
     this.shownRegions = computed(() => this.regions.value.filter(({ id }) => !this.hidden.value.has(id)));
 
-    this.#dvh = new Asked(() => (this.isDvhShown.value ? this.#histograms() : null), clock);
-    this.#profile = new Asked(() => (this.isProfileShown.value ? this.#along() : null), clock);
-    this.#limits = new Asked(() => (this.areLimitsShown.value ? this.#kept() : null), clock);
+    this.#dvh = live(() => (this.isDvhShown.value ? this.#histograms() : null), clock);
+    this.#profile = live(() => (this.isProfileShown.value ? this.#along() : null), clock);
+    this.#limits = live(() => (this.areLimitsShown.value ? this.#kept() : null), clock);
 
     const read = (asked, as) =>
       computed(() => ({ ...asked.state.value, result: asked.state.value.result && as(asked.state.value.result) }));

@@ -1,7 +1,7 @@
 // Asks the server about the dose that the scene shows: its scale, its values at the crosshair and at pinned probes. One question of
 // each kind at a time, and the newest scene next, so that a slider that moves is never behind by more than one answer.
-import { computed, effect, signal } from '../../../lib/signals-core.js';
-import { Asker } from '../../parts/asker.js';
+import { computed } from '../../../lib/signals-core.js';
+import { Answer } from '../../parts/answer.js';
 import { DoseLabels } from './dose_labels.js';
 import { crosshair } from '../../room/plan.js';
 
@@ -10,21 +10,24 @@ const at = ([x, y, z]) => ({ x, y, z });
 export class DoseFacts {
   #room;
   #api;
+  #answers;
 
-  /** @param {import('../../room/room.js').RoomState} room @param {object} api of net/api.js */
-  constructor(room, api) {
+  /** @param {import('../../room/room.js').RoomState} room @param {object} api of net/api.js @param {object} clock */
+  constructor(room, api, clock) {
     this.#room = room;
     this.#api = api;
+    this.#answers = this.#live(clock);
+    const { scale, here, coverage, gamma, pins } = this.#answers;
     /** {result, error, isOld}: the answer to the question dose */
-    this.scale = signal({ result: null, error: '', isOld: false });
+    this.scale = scale.state;
     /** the same of dose_probe at the crosshair */
-    this.here = signal({ result: null, error: '', isOld: false });
+    this.here = here.state;
     /** the same of coverage and gamma, while they are shown */
-    this.coverage = signal({ result: null, error: '', isOld: false });
-    this.gamma = signal({ result: null, error: '', isOld: false });
-    this.labels = new DoseLabels(room, api);
+    this.coverage = coverage.state;
+    this.gamma = gamma.state;
+    this.labels = new DoseLabels(room, api, clock);
     /** by pin: {at, result, error} */
-    this.pins = signal({});
+    this.pins = computed(() => pins.state.value.result ?? {});
     /** 100 % in the quantity's unit; null: not known */
     this.reference = computed(() => (this.isOfScene(this.scale.value.result) ? this.scale.value.result.reference.value : null));
   }
@@ -36,7 +39,15 @@ export class DoseFacts {
   }
 
   /** @returns {() => void} stops asking */
-  start(clock) {
+  start() {
+    const stops = [...Object.values(this.#answers), this.labels].map((one) => one.start());
+    return () => {
+      for (const stop of stops) stop();
+    };
+  }
+
+  /** The answers, asked for again when their key changes, and once more when the server has the change. */
+  #live(clock) {
     const room = this.#room;
     const isReady = computed(
       () => room.renderer.value.state === 'ready' && Boolean(room.plan.value?.doses.length) && Boolean(room.scene.value),
@@ -52,95 +63,50 @@ export class DoseFacts {
         ? JSON.stringify([style.value, room.scene.value.dose.compare])
         : '',
     );
-    const askers = [
-      this.#follow(
-        clock,
+    const answer = (key, ask, more = {}) => new Answer({ key, ask, clock, isSettled: () => !room.isScenePending.value, ...more });
+    return {
+      scale: answer(
         () => style.value,
-        this.scale,
         () => this.#ask('dose', {}),
       ),
-      this.#follow(
-        clock,
+      here: answer(
         () => style.value && place.value && `${style.value} ${place.value}`,
-        this.here,
         () => this.#ask('dose/probe', at(place.peek().split(' '))),
       ),
-      this.#followPins(clock, style, pinned),
-      this.#follow(
-        clock,
+      pins: answer(this.#pinKey(style, pinned), () => this.#pinned(JSON.parse(pinned.peek())), { clears: true }),
+      coverage: answer(
         () => covered.value,
-        this.coverage,
         () => this.#ask('coverage', {}),
       ),
-      this.#follow(
-        clock,
+      gamma: answer(
         () => compared.value,
-        this.gamma,
         () => this.#ask('gamma', {}),
       ),
-      this.labels.start(clock),
-    ];
-    return () => {
-      for (const stop of askers) stop();
     };
   }
 
-  /** Asks when the key changes, and once more when the server has the change. */
-  #follow(clock, key, answer, ask) {
+  /** Pins are asked about once the server has the change. */
+  #pinKey(style, pinned) {
     let settled = '';
-    const asker = new Asker(async () => {
-      const wanted = key();
-      const isSettled = !this.#room.isScenePending.peek();
-      if (!wanted) return;
-      const tell = (facts) => {
-        if (key() === wanted) answer.value = { result: null, error: '', isOld: !isSettled, ...facts };
-      };
-      await ask().then(
-        (result) => tell({ result }),
-        (error) => tell({ error: error.message }),
-      );
-      if (isSettled) settled = wanted;
-    }, clock);
-    const stop = effect(() => {
-      const wanted = key();
-      void this.#room.isScenePending.value; // runs again when the daemon has confirmed the scene
-      if (!wanted || wanted === settled) return;
-      const before = answer.peek();
-      if (!before.isOld) answer.value = { ...before, isOld: true };
-      asker.want();
-    });
     return () => {
-      stop();
-      asker.stop();
+      const [isPending, now] = [
+        this.#room.isScenePending.value,
+        pinned.value === '{}' ? '' : style.value && `${style.value} ${pinned.value}`,
+      ];
+      if (!isPending || !now) settled = now;
+      return settled;
     };
   }
 
-  #followPins(clock, style, pinned) {
-    let asked = '';
-    const asker = new Asker(async () => {
-      const key = `${style.peek()} ${pinned.peek()}`;
-      const isSettled = !this.#room.isScenePending.peek();
-      const known = {};
-      for (const [id, { at_mm: mm }] of Object.entries(JSON.parse(pinned.peek()))) {
-        known[id] = await this.#ask('dose/probe', at(mm)).then(
-          (result) => ({ at: mm, result, error: '' }),
-          (error) => ({ at: mm, result: null, error: error.message }),
-        );
-      }
-      this.pins.value = known;
-      if (isSettled) asked = key;
-    }, clock);
-    const stop = effect(() => {
-      const key = `${style.value} ${pinned.value}`;
-      const isPending = this.#room.isScenePending.value;
-      if (pinned.value === '{}') {
-        if (Object.keys(this.pins.peek()).length) this.pins.value = {};
-      } else if (style.value && !isPending && key !== asked) asker.want();
-    });
-    return () => {
-      stop();
-      asker.stop();
-    };
+  async #pinned(pins) {
+    const known = {};
+    for (const [id, { at_mm: mm }] of Object.entries(pins)) {
+      known[id] = await this.#ask('dose/probe', at(mm)).then(
+        (result) => ({ at: mm, result, error: '' }),
+        (error) => ({ at: mm, result: null, error: error.message }),
+      );
+    }
+    return known;
   }
 
   /** For a member on their own with their override, so that the answer is of the scene that they see. */

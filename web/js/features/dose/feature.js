@@ -67,11 +67,11 @@ const toggle = (part) => withDose(({ room, ui }, at, rows) => rows.toggleDose(ro
 /** @type {import('../index.js').Feature} */
 export const dose = {
   make(world) {
-    world.doses = new DoseFacts(world.room, world.api);
+    world.doses = new DoseFacts(world.room, world.api, world.clock);
     world.charts = new ChartLoader(world);
   },
   start(world) {
-    const stop = world.doses.start(world.clock);
+    const stop = world.doses.start();
     return () => {
       stop();
       world.charts.stop();

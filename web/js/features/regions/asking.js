@@ -1,36 +1,31 @@
 // When the server is asked about regions: the figures of the chosen one, which cannot be drawn, how its representations compare.
 import { computed, effect } from '../../../lib/signals-core.js';
+import { Answer } from '../../parts/answer.js';
 import { inQuestion } from './refusals.js';
 import { shapeQuery } from './shapes.js';
 
-/** Requests the figures of the chosen region's shape whenever another region or another shape is chosen. */
-export function askShape({ room, ui, api, shaped }) {
-  let pending = null;
-  const wanted = computed(() => {
+/** The figures of the chosen region's shape: asked for when another region or another shape is chosen. */
+export function liveShape({ room, ui, api, clock }) {
+  const key = () => {
     const scene = room.scene.value;
     const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
     const representation = region && scene?.regions[region.id]?.representation;
     const isReady = room.renderer.value.state === 'ready' && Boolean(representation) && region.voxels > 0;
     return isReady ? JSON.stringify([region.id, representation, shapeQuery(scene, representation)]) : '';
-  });
-  const stop = effect(() => {
-    pending?.abort();
-    if (!wanted.value) return;
-    const [region, representation, query] = JSON.parse(wanted.value);
-    const { signal: aborted } = (pending = new AbortController());
-    shaped.value = { region: '', representation: '', result: null, error: '' };
-    const tell = (answer) => {
-      if (!aborted.aborted) shaped.value = { region, representation, result: null, error: '', ...answer };
-    };
-    api.surface(room.planId.peek(), region, query, aborted).then(
-      (result) => tell({ result }),
-      (error) => tell({ error: error.message }),
-    );
-  });
-  return () => {
-    stop();
-    pending?.abort();
   };
+  const ask = (wanted, aborted) => {
+    const [region, , query] = JSON.parse(wanted);
+    return api.surface(room.planId.peek(), region, query, aborted);
+  };
+  return new Answer({ key, ask, clock, restMs: 0, renews: true });
+}
+
+/** That answer with what it is of: {region, representation, result, error}; blank while a newer one is still to come. */
+export function shapeNow(answer) {
+  const { result, error, isOld } = answer.state.value;
+  if (isOld || !answer.of) return { region: '', representation: '', result: null, error: '' };
+  const [region, representation] = JSON.parse(answer.of);
+  return { region, representation, result, error };
 }
 
 /** Finds the regions that cannot be drawn whenever other regions are shown, or in another way. */

@@ -3,7 +3,7 @@ import { nothing } from '../../../lib/lit-html.js';
 import { computed, signal } from '../../../lib/signals-core.js';
 import { ownRegions } from '../../room/identity.js';
 import { later } from '../../parts/lazy.js';
-import { askComparison, askRefusals, askShape } from './asking.js';
+import { askComparison, askRefusals, liveShape, shapeNow } from './asking.js';
 import { Comparison } from './comparison.js';
 import { Refusals } from './refusals.js';
 import { regionRows, regionTools } from './region_rows.js';
@@ -15,13 +15,14 @@ const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derive
 export const regions = {
   make(world) {
     const { api, room } = world;
-    world.shaped = signal({ region: '', representation: '', result: null, error: '' });
+    world.shape = liveShape(world);
+    world.shaped = computed(() => shapeNow(world.shape));
     world.comparison = new Comparison(api, signal([]));
     world.refusals = new Refusals(api, signal({}));
     world.refused = computed(() => ({ ...world.refusals.reasons.value, ...room.view(1).missing.value.reasons }));
   },
   start(world) {
-    const stops = [askShape(world), askComparison(world), askRefusals(world)];
+    const stops = [world.shape.start(), askComparison(world), askRefusals(world)];
     return () => stops.forEach((stop) => stop());
   },
   sections: [

@@ -1,48 +1,41 @@
 // The server's numbers about particle tracks: how many are shown, energies, files, lost particles.
 import { signal } from '../../../lib/signals-core.js';
-import { Asker } from '../../parts/asker.js';
+import { Answer } from '../../parts/answer.js';
 import { TrackPlay } from './track_play.js';
 
 const perRoom = new WeakMap();
 
 class TrackFacts {
   #room;
-  #asker;
-  #wanted = '';
+  #answer;
+  #wanted = signal('');
+  #result = null; // of the last answer, which stays when the next question fails
 
   constructor(room, api, clock) {
     this.#room = room;
-    /** {result, error, of: what it was asked for} of the question tracks */
-    this.answer = signal({ result: null, error: '', of: '' });
     this.play = new TrackPlay(room, clock);
-    this.#asker = new Asker(async () => {
-      const of = this.#wanted;
-      const tell = (facts) => {
-        this.answer.value = { ...this.answer.peek(), error: '', of, ...facts };
-      };
+    const ask = async (of) => {
       // with the tracks of this page's scene, which the server may not have yet
       const view = { override: { ...room.following.override.peek(), tracks: JSON.parse(of) } };
-      await api.ofScene(room.planId.peek(), 'tracks', room.id, view, {}).then(
-        (result) => tell({ result }),
-        (error) => tell({ error: error.message }),
-      );
-    }, clock);
+      this.#result = await api.ofScene(room.planId.peek(), 'tracks', room.id, view, {});
+      return this.#result;
+    };
+    this.#answer = new Answer({ key: () => this.#wanted.value, ask, clock });
+    this.#answer.start();
   }
 
-  /** Asks about the scene as it is, unless it has been asked already; not while the tracks are played. To be read while drawing. */
+  /** Asks about the scene as it is, unless it has been asked already; not while the tracks are played. To be read while drawing. @returns {{result, error}} */
   want() {
     const { classes, first, count = null, energy_low_mev: low = null, energy_high_mev: high = null } = this.#room.scene.value.tracks;
     const of = JSON.stringify({ classes, first, count, energy_low_mev: low, energy_high_mev: high });
-    if (of !== this.#wanted && !this.play.isOn.value && this.#room.renderer.value.state === 'ready') {
-      this.#wanted = of;
-      this.#asker.want();
-    }
-    return this.answer.value;
+    if (of !== this.#wanted.peek() && !this.play.isOn.value && this.#room.renderer.value.state === 'ready') this.#wanted.value = of;
+    const { error } = this.#answer.state.value;
+    return { result: this.#result, error };
   }
 
   /** True if the answer is about the scene as it is. */
   get isNew() {
-    return this.answer.value.of === this.#wanted && !this.play.isOn.value;
+    return this.#answer.of === this.#wanted.peek() && !this.play.isOn.value;
   }
 }
 

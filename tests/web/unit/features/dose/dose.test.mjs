@@ -9,7 +9,6 @@ const { levelTables, tableOf, tablePatch } = await load('features/dose/dose_tabl
 const { choosePresetPatch, editPatch, isEdited, presetOf, presetsFor, tissueFor, weightPresets, weightsOf } =
   await load('features/dose/weight_table.js');
 const { pinnedAt } = await load('features/dose/pins.js');
-const { Asker } = await load('parts/asker.js');
 const { mergePatch } = await load('wire/merge.js');
 
 const part = (quantity, more = {}) => ({ quantity, unit: 'Gy', per_ppm: false, boron_ppm: null, ...more });
@@ -236,32 +235,4 @@ test('a point is pinned once', () => {
   const scene = { probes: { 'pin-1': { at_mm: [1, 2, 3], name: '' } } };
   assert.equal(pinnedAt(scene, [1.01, 2, 3]), null);
   assert.deepEqual(pinnedAt(scene, [1, 2, 4]), { id: 'pin-2', patch: { probes: { 'pin-2': { at_mm: [1, 2, 4], name: '' } } } });
-});
-
-test('one question at a time, and what changed meanwhile is one more', async () => {
-  const answers = [];
-  let asked = 0;
-  const asker = new Asker(
-    () => {
-      asked += 1;
-      return new Promise((resolve) => answers.push(resolve));
-    },
-    {
-      setTimeout: (run) => {
-        run();
-        return 1;
-      },
-      clearTimeout: () => {},
-    },
-  );
-  asker.want();
-  asker.want();
-  asker.want();
-  assert.equal(asked, 1);
-  answers[0]();
-  await new Promise((resolve) => setImmediate(resolve));
-  assert.equal(asked, 2);
-  answers[1]();
-  await new Promise((resolve) => setImmediate(resolve));
-  assert.equal(asked, 2);
 });

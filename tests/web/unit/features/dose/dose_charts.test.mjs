@@ -10,8 +10,6 @@ const { aligned, depthOf, linesOf, pointAt, referenceGroups, valueAt } = await l
 const { byState, constraintsCsv, constraintsFromCsv, freeConstraintId, limitAt, metricWords, mostConstraints, readMetric, verdictOf } =
   await load('features/dose/dose_constraints.js');
 const { csvRows, csvText } = await load('parts/csv.js');
-const { Asked, restMs } = await load('features/dose/dose_asked.js');
-const { signal } = await load('../lib/signals-core.js');
 
 const near = (value, expected, tolerance = 1e-9) => assert.ok(Math.abs(value - expected) <= tolerance, `${value} is not ${expected}`);
 const known = (figures) => Object.fromEntries(Object.entries(figures).map(([name, value]) => [name, [value, value]]));
@@ -378,73 +376,4 @@ test('what the server does not know is said with its reason, and is never met', 
   assert.equal(verdictOf({ value: 8 }).word, 'not known');
   assert.equal(verdictOf(undefined, 'The server does not answer.').reason, 'The server does not answer.');
   assert.equal(freeConstraintId({ 'limit-1': {}, 'limit-3': {} }, ['limit-2']), 'limit-4');
-});
-
-test('a question is asked once its parameters rest; the newest answer wins, and an older one is marked', async () => {
-  const timers = new Map();
-  let n = 0;
-  const clock = {
-    setTimeout: (run, ms) => {
-      assert.equal(ms, restMs);
-      timers.set(++n, run);
-      return n;
-    },
-    clearTimeout: (id) => timers.delete(id),
-  };
-  const rest = async () => {
-    for (const [id, run] of [...timers]) {
-      timers.delete(id);
-      run();
-    }
-    await new Promise((done) => {
-      setTimeout(done);
-    });
-  };
-  const key = signal('a');
-  const answers = [];
-  const asked = new Asked(
-    () =>
-      key.value
-        ? {
-            key: key.value,
-            ask: () =>
-              new Promise((resolve, reject) => {
-                answers.push({ resolve, reject, key: key.value });
-              }),
-          }
-        : null,
-    clock,
-  );
-  assert.deepEqual(asked.state.value, { result: null, error: '', isOld: true });
-  key.value = 'b';
-  await rest();
-  assert.deepEqual(
-    answers.map((answer) => answer.key),
-    ['b'],
-    'a was never asked',
-  );
-  answers[0].resolve({ of: 'b' });
-  await rest();
-  assert.deepEqual(asked.state.value, { result: { of: 'b' }, error: '', isOld: false });
-  key.value = 'c';
-  assert.deepEqual(asked.state.value, { result: { of: 'b' }, error: '', isOld: true });
-  await rest();
-  key.value = 'd';
-  await rest();
-  answers[2].resolve({ of: 'd' });
-  answers[1].resolve({ of: 'c' });
-  await rest();
-  assert.deepEqual(asked.state.value.result, { of: 'd' });
-  key.value = '';
-  await rest();
-  assert.deepEqual(
-    [asked.state.value.result, asked.state.value.isOld, answers.length],
-    [{ of: 'd' }, false, 3],
-    'nobody looks: nothing is asked',
-  );
-  key.value = 'e';
-  await rest();
-  answers[3].reject(new Error('The server does not answer.'));
-  await rest();
-  assert.deepEqual(asked.state.value, { result: null, error: 'The server does not answer.', isOld: false });
 });
