@@ -299,66 +299,15 @@ void keep_room_finish(struct net_room *room)
 
 /* ---- to the store ----------------------------------------------------------------------------------------------- */
 
-static void write_member(const struct room_kept_member *from, struct store_member *to)
-{
-    memcpy(to->id, from->id, sizeof to->id);
-    memcpy(to->name, from->name, sizeof to->name);
-    memcpy(to->color, from->color, sizeof to->color);
-    memcpy(to->role, from->role, sizeof to->role);
-    memcpy(to->secret_hash, from->secret_hash, sizeof to->secret_hash);
-    to->has_left = from->has_left;
-}
-
-static void write_link(const struct room_kept_link *from, struct store_link *to)
-{
-    memcpy(to->token_hash, from->token_hash, sizeof to->token_hash);
-    memcpy(to->role, from->role, sizeof to->role);
-    memcpy(to->person, from->person, sizeof to->person);
-    to->expires_ms = from->expires_ms;
-    to->is_one_use = from->is_one_use;
-    to->is_used = from->is_used;
-}
-
-/* Members and links, as far as they were asked for. False: no memory. */
-static bool make_lists(const struct room_kept *kept, struct store_room *row)
-{
-    if (kept->members && !(row->members = mem_array(kept->n_members, sizeof row->members[0], 1 << 20, NULL)))
-        return false;
-    if (kept->links && !(row->links = mem_array(kept->n_links, sizeof row->links[0], 1 << 20, NULL)))
-        return false;
-    row->n_members = kept->n_members;
-    row->n_links = kept->n_links;
-    for (size_t i = 0; i < row->n_members; i++)
-        write_member(&kept->members[i], &row->members[i]);
-    for (size_t i = 0; i < row->n_links; i++)
-        write_link(&kept->links[i], &row->links[i]);
-    return true;
-}
-
 /* The row with these parts; NULL: no memory. */
 static struct store_room *make_row(const struct net_room *room, unsigned parts)
 {
-    struct room_kept kept;
-    if (!room_keep(room->room, parts, &kept))
-        return NULL;
     struct store_room *row = mem_new(sizeof *row);
-    (void)snprintf(row->id, sizeof row->id, "%s", room_id(room->room));
-    (void)snprintf(row->plan, sizeof row->plan, "%s", room_plan_id(room->room));
-    memcpy(row->presenter, kept.presenter, sizeof row->presenter);
-    row->created_ms = kept.created_at_s * 1000;
-    row->used_ms = clock_wall_ms();
-    row->revision = kept.revision;
-    row->n_named = kept.n_named;
-    row->has_links = kept.has_links;
-    row->scene = kept.scene;
-    row->views = kept.views;
-    row->presence = kept.presence;
-    kept.scene = kept.views = kept.presence = NULL;
-    if (!make_lists(&kept, row)) {
-        store_room_free(row);
-        row = NULL;
+    if (!room_keep(room->room, parts, row)) {
+        free(row);
+        return NULL;
     }
-    room_kept_finish(&kept);
+    row->used_ms = clock_wall_ms();
     return row;
 }
 
@@ -473,49 +422,11 @@ void keep_all_again(struct net *net)
     }
 }
 
-static void read_member(const struct store_member *from, struct room_kept_member *to)
-{
-    memcpy(to->id, from->id, sizeof to->id);
-    memcpy(to->name, from->name, sizeof to->name);
-    memcpy(to->color, from->color, sizeof to->color);
-    memcpy(to->role, from->role, sizeof to->role);
-    memcpy(to->secret_hash, from->secret_hash, sizeof to->secret_hash);
-    to->has_left = from->has_left;
-}
-
-static void read_link(const struct store_link *from, struct room_kept_link *to)
-{
-    memcpy(to->token_hash, from->token_hash, sizeof to->token_hash);
-    memcpy(to->role, from->role, sizeof to->role);
-    memcpy(to->person, from->person, sizeof to->person);
-    to->expires_ms = from->expires_ms;
-    to->is_one_use = from->is_one_use;
-    to->is_used = from->is_used;
-}
-
 void keep_restore(struct net_room *room, const struct store_room *row)
 {
-    struct room_kept kept = { .created_at_s = row->created_ms / 1000,
-                              .revision = row->revision,
-                              .n_named = row->n_named,
-                              .has_links = row->has_links,
-                              .scene = row->scene,
-                              .views = row->views,
-                              .presence = row->presence };
-    memcpy(kept.presenter, row->presenter, sizeof kept.presenter);
-    kept.members = mem_array(row->n_members, sizeof kept.members[0], 1 << 20, NULL);
-    kept.n_members = kept.members ? row->n_members : 0;
-    for (size_t i = 0; i < kept.n_members; i++)
-        read_member(&row->members[i], &kept.members[i]);
-    kept.links = mem_array(row->n_links, sizeof kept.links[0], 1 << 20, NULL);
-    kept.n_links = kept.links ? row->n_links : 0;
-    for (size_t i = 0; i < kept.n_links; i++)
-        read_link(&row->links[i], &kept.links[i]);
     keep_recordings_restore(room->room, row);
     restore_items(room->room, row); /* before members */
-    room_restore(room->room, &kept, clock_now_us());
-    free(kept.members);
-    free(kept.links);
+    room_restore(room->room, row, clock_now_us());
     room->keep.changed = 0; /* it is what was read */
     room->keep.written = row->revision;
 }

@@ -129,13 +129,13 @@ void rooms_close(struct net *net, size_t index)
 static bool put_to_sleep(struct net *net, size_t index)
 {
     const struct net_room *room = net->rooms[index];
-    struct room_kept kept;
+    struct store_room kept;
     if (room->empty_since_us)
         room_recording_cut(room->room, clock_now_us()); /* written first */
     if (!net->store || !room->empty_since_us || !room_was_used(room->room) || !keep_is_written(room) ||
         !room_keep(room->room, ROOM_MEMBERS, &kept))
         return false;
-    struct store_summary facts = { .created_ms = kept.created_at_s * 1000,
+    struct store_summary facts = { .created_ms = kept.created_ms,
                                    .used_ms =
                                        (int64_t)time(NULL) * 1000 - (clock_now_us() - room->empty_since_us) / 1000,
                                    .revision = kept.revision,

@@ -16,7 +16,7 @@
 
 /* ---- writing ---------------------------------------------------------------------------------------------------- */
 
-static bool write_members(const struct room *room, struct room_kept *kept)
+static bool write_members(const struct room *room, struct store_room *kept)
 {
     size_t n = (size_t)(room->n_members + room->n_known);
     kept->members = mem_array(n, sizeof kept->members[0], 1 << 20, NULL);
@@ -29,13 +29,15 @@ static bool write_members(const struct room *room, struct room_kept *kept)
     return true;
 }
 
-bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept)
+bool room_keep(const struct room *room, unsigned parts, struct store_room *kept)
 {
     const cJSON *scene = room->scene ? room->scene : room->restored;
-    *kept = (struct room_kept){ .created_at_s = room->created_at_s,
-                                .revision = room->revision,
-                                .n_named = room->n_named,
-                                .has_links = room->has_links };
+    *kept = (struct store_room){ .created_ms = room->created_at_s * 1000,
+                                 .revision = room->revision,
+                                 .n_named = room->n_named,
+                                 .has_links = room->has_links };
+    (void)snprintf(kept->id, sizeof kept->id, "%s", room->id);
+    (void)snprintf(kept->plan, sizeof kept->plan, "%s", room->plan_id);
     if (room->presenter)
         (void)snprintf(kept->presenter, sizeof kept->presenter, "%s", room->presenter->id);
     bool ok = true;
@@ -54,14 +56,14 @@ bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept)
     return ok;
 }
 
-void room_kept_finish(struct room_kept *kept)
+void room_kept_finish(struct store_room *kept)
 {
     free(kept->scene);
     free(kept->views);
     free(kept->presence);
     free(kept->members);
     free(kept->links);
-    *kept = (struct room_kept){ 0 };
+    *kept = (struct store_room){ 0 };
 }
 
 /* ---- reading ---------------------------------------------------------------------------------------------------- */
@@ -75,10 +77,10 @@ static cJSON *read_json(const struct room *room, const char *text, const char *w
     return json;
 }
 
-static void read_members(struct room *room, const struct room_kept *kept)
+static void read_members(struct room *room, const struct store_room *kept)
 {
     for (size_t i = 0; i < kept->n_members; i++) {
-        const struct room_kept_member *from = &kept->members[i];
+        const struct store_member *from = &kept->members[i];
         if (!id_is_valid(from->id))
             continue;
         if (from->has_left || room->n_members == room->max_members) {
@@ -94,10 +96,10 @@ static void read_members(struct room *room, const struct room_kept *kept)
     }
 }
 
-void room_restore(struct room *room, const struct room_kept *kept, int64_t now_us)
+void room_restore(struct room *room, const struct store_room *kept, int64_t now_us)
 {
     room_enter(room, now_us);
-    room->created_at_s = kept->created_at_s;
+    room->created_at_s = kept->created_ms / 1000;
     room->revision = kept->revision;
     room->n_named = kept->n_named > room->n_named ? kept->n_named : room->n_named; /* items were restored before */
     room->is_changed = true;

@@ -91,12 +91,13 @@ void room_plan_revision(struct room *room, const char *revision);
 /* Records what is still being gathered. */
 void room_audit_flush(struct room *room, int64_t now_us);
 
-/* Fills kept with these parts of the room; room_kept_finish frees them. False: no memory. */
-NODISCARD bool room_keep(const struct room *room, unsigned parts, struct room_kept *kept);
-void room_kept_finish(struct room_kept *kept);
+/* Fills a row with what is kept of the room, of its parts with these; room_kept_finish frees what it holds. Times of
+ * use, items, recordings and rows for the audit are its owner's business. False: no memory. */
+NODISCARD bool room_keep(const struct room *room, unsigned parts, struct store_room *kept);
+void room_kept_finish(struct store_room *kept);
 /* Makes a room that was just created what it was when it was kept; its members are away. The scene counts once the plan
  * is ready, as after a restart of the renderer. What is not readable in kept is left out, and said in the log. */
-void room_restore(struct room *room, const struct room_kept *kept, int64_t now_us);
+void room_restore(struct room *room, const struct store_room *kept, int64_t now_us);
 
 /* [{id, state, started_ms, length_ms, by, by_name, n_events, n_bytes, marks}], the oldest first; NULL: no memory. */
 NODISCARD cJSON *room_recordings(struct room *room, int64_t now_us);

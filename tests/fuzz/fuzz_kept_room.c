@@ -11,8 +11,8 @@
 
 enum { MAX_MEMBERS = 300, MAX_LINKS = 40 };
 
-static struct room_kept_member members[MAX_MEMBERS];
-static struct room_kept_link links[MAX_LINKS];
+static struct store_member members[MAX_MEMBERS];
+static struct store_link links[MAX_LINKS];
 
 /* Takes the word before the next blank, cut to the size. */
 static const char *take_word(const char *at, char *to, size_t size)
@@ -22,13 +22,13 @@ static const char *take_word(const char *at, char *to, size_t size)
     return at + n + (at[n] == ' ');
 }
 
-static void take_member(struct room_kept *kept, const char *at)
+static void take_member(struct store_room *kept, const char *at)
 {
     char left[4];
     if (kept->n_members == MAX_MEMBERS)
         return;
-    struct room_kept_member *member = &members[kept->n_members++];
-    *member = (struct room_kept_member){ 0 };
+    struct store_member *member = &members[kept->n_members++];
+    *member = (struct store_member){ 0 };
     at = take_word(at, member->id, sizeof member->id);
     at = take_word(at, member->color, sizeof member->color);
     at = take_word(at, member->role, sizeof member->role);
@@ -39,13 +39,13 @@ static void take_member(struct room_kept *kept, const char *at)
         memcpy(kept->presenter, member->id, sizeof kept->presenter);
 }
 
-static void take_link(struct room_kept *kept, const char *at)
+static void take_link(struct store_room *kept, const char *at)
 {
     char word[24];
     if (kept->n_links == MAX_LINKS)
         return;
-    struct room_kept_link *link = &links[kept->n_links++];
-    *link = (struct room_kept_link){ 0 };
+    struct store_link *link = &links[kept->n_links++];
+    *link = (struct store_link){ 0 };
     link->token_hash[0] = (unsigned char)kept->n_links;
     at = take_word(at, link->role, sizeof link->role);
     at = take_word(at, word, sizeof word);
@@ -72,7 +72,7 @@ static void take_item(struct room *room, const char *row)
         REQUIRE(problem.type != PROBLEM_NONE && problem.detail[0]);
 }
 
-static void take_line(struct room *room, struct room_kept *kept, char *line)
+static void take_line(struct room *room, struct store_room *kept, char *line)
 {
     switch (line[0]) {
     case 'i': take_item(room, line + 1); break;
@@ -153,7 +153,7 @@ static bool is_same_text(const char *a, const char *b)
     return a && b ? strcmp(a, b) == 0 : a == b;
 }
 
-static void require_same(const struct room_kept *a, const struct room_kept *b)
+static void require_same(const struct store_room *a, const struct store_room *b)
 {
     REQUIRE(a->n_members == b->n_members && a->n_links == b->n_links && a->n_named == b->n_named);
     REQUIRE(a->revision == b->revision && strcmp(a->presenter, b->presenter) == 0);
@@ -169,7 +169,7 @@ static void require_same(const struct room_kept *a, const struct room_kept *b)
 /* A room from what another one keeps keeps the same. */
 static void check_next(const struct room *room, const cJSON *items, int64_t now_us)
 {
-    struct room_kept kept, again;
+    struct store_room kept, again;
     const cJSON *item;
     REQUIRE(room_keep(room, ROOM_ALL_PARTS, &kept));
     struct room *next = room_create("2v8x-p5fd", "head", &kept_plan_callbacks, NULL);
@@ -191,7 +191,7 @@ static void check_next(const struct room *room, const cJSON *items, int64_t now_
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
 {
-    struct room_kept kept = { .created_at_s = 1, .revision = 7, .n_named = 2 };
+    struct store_room kept = { .created_ms = 1000, .revision = 7, .n_named = 2 };
     const int64_t now_us = 1000000;
     char *bytes = malloc(n + 1), *line = bytes;
     REQUIRE(bytes != NULL);

@@ -76,7 +76,7 @@ static void play(const char *const *texts, size_t n, int64_t t_ms, bool is_chang
         if (i == 1) /* who comes late is told what is shown */
             say(room, &late, "{\"type\":\"hello\",\"protocol\":2,\"name\":\"Eva\"}", now_us);
     }
-    struct room_kept kept;
+    struct store_room kept;
     REQUIRE(room_keep(room, ROOM_ALL_PARTS, &kept));
     room_kept_finish(&kept);
     room_destroy(room);

@@ -8,9 +8,9 @@
 #include "core/base/mem.h"
 #include "server/room/state/roles.h"
 
-void known_write(const struct member *member, struct room_kept_member *kept)
+void known_write(const struct member *member, struct store_member *kept)
 {
-    *kept = (struct room_kept_member){ 0 };
+    *kept = (struct store_member){ 0 };
     (void)snprintf(kept->id, sizeof kept->id, "%s", member->id);
     (void)snprintf(kept->name, sizeof kept->name, "%s", member->name);
     (void)snprintf(kept->color, sizeof kept->color, "#%06x", (unsigned)color_rgb(member->color) & 0xffffff);
@@ -18,7 +18,7 @@ void known_write(const struct member *member, struct room_kept_member *kept)
     memcpy(kept->secret_hash, member->secret_hash, sizeof kept->secret_hash);
 }
 
-void known_read(const struct room_kept_member *kept, struct member *member)
+void known_read(const struct store_member *kept, struct member *member)
 {
     (void)snprintf(member->id, sizeof member->id, "%s", kept->id);
     (void)snprintf(member->name, sizeof member->name, "%.160s", kept->name);
@@ -52,7 +52,7 @@ static int first_to_forget(const struct room *room)
     return first < room->n_known ? first : 0;
 }
 
-void known_add(struct room *room, const struct room_kept_member *kept)
+void known_add(struct room *room, const struct store_member *kept)
 {
     if (!room->known)
         room->known = mem_array(ROOM_MAX_KNOWN, sizeof room->known[0], 1 << 20, NULL);
@@ -66,7 +66,7 @@ void known_add(struct room *room, const struct room_kept_member *kept)
 
 void known_add_member(struct room *room, const struct member *member)
 {
-    struct room_kept_member kept;
+    struct store_member kept;
     known_write(member, &kept);
     known_add(room, &kept);
 }

@@ -2,10 +2,10 @@
 /* Members that left but can come back as the same; members as they are kept. Internal to server/room. */
 #include "server/room/state/room_state.h"
 
-void known_write(const struct member *member, struct room_kept_member *kept);
-void known_read(const struct room_kept_member *kept, struct member *member);
+void known_write(const struct member *member, struct store_member *kept);
+void known_read(const struct store_member *kept, struct member *member);
 /* A member leaves the list of members. */
-void known_add(struct room *room, const struct room_kept_member *kept);
+void known_add(struct room *room, const struct store_member *kept);
 void known_add_member(struct room *room, const struct member *member);
 /* Whether a member with this id and secret left. */
 bool known_has(const struct room *room, const char *id, const char *secret);

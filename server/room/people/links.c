@@ -104,12 +104,12 @@ void link_used(struct room *room, struct link *link, const struct member *member
     room_event(room, ROOM_LINKS, NULL);
 }
 
-bool links_write(const struct room *room, struct room_kept *kept)
+bool links_write(const struct room *room, struct store_room *kept)
 {
     kept->links = mem_array((size_t)room->n_links, sizeof kept->links[0], 1 << 20, NULL);
     for (int i = 0; kept->links && i < room->n_links; i++) {
         const struct link *link = &room->links[i];
-        struct room_kept_link *to = &kept->links[kept->n_links++];
+        struct store_link *to = &kept->links[kept->n_links++];
         memcpy(to->token_hash, link->token_hash, sizeof to->token_hash);
         memcpy(to->person, link->person, sizeof to->person);
         (void)snprintf(to->role, sizeof to->role, "%s", wire_member_role_words.words[link->role]);
@@ -120,7 +120,7 @@ bool links_write(const struct room *room, struct room_kept *kept)
     return kept->links != NULL;
 }
 
-static void read_link(struct room *room, const struct room_kept_link *from)
+static void read_link(struct room *room, const struct store_link *from)
 {
     size_t role = 0;
     while (role < wire_member_role_words.n && strcmp(from->role, wire_member_role_words.words[role]) != 0)
@@ -143,7 +143,7 @@ static void read_link(struct room *room, const struct room_kept_link *from)
     memcpy(link->person, from->person, sizeof link->person);
 }
 
-void links_read(struct room *room, const struct room_kept *kept)
+void links_read(struct room *room, const struct store_room *kept)
 {
     room->has_links = kept->has_links || kept->n_links > 0;
     for (size_t i = 0; i < kept->n_links && room->n_links < ROOM_MAX_LINKS; i++)

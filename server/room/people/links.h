@@ -10,5 +10,5 @@ const char *link_find(struct room *room, const char *token, const char *person, 
 /* The member came in by it. */
 void link_used(struct room *room, struct link *link, const struct member *member, const char *person);
 /* To what is kept and back. False: no memory. */
-bool links_write(const struct room *room, struct room_kept *kept);
-void links_read(struct room *room, const struct room_kept *kept);
+bool links_write(const struct room *room, struct store_room *kept);
+void links_read(struct room *room, const struct store_room *kept);

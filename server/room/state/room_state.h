@@ -243,8 +243,8 @@ struct room {
     } acceptances;
     struct look look;
     struct gathered gathered[ROOM_MAX_GATHERED];
-    int n_gathered;                 /* the oldest first */
-    struct room_kept_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
+    int n_gathered;             /* the oldest first */
+    struct store_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
     int n_known;
     bool is_locked; /* control is given only, not taken */
     uint64_t n_control_requests;

@@ -3,6 +3,7 @@
  * room.h. */
 #include <stdint.h>
 
+#include "server/store/store_rows.h"
 #include "server/wire/document.h"
 #include "server/wire/frame.h"
 #include "wire_gen.h"
@@ -152,32 +153,6 @@ struct room_callbacks {
 /* Parts of a room that are kept on disk. */
 enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4, ROOM_LINKS = 8, ROOM_PRESENCE = 16 };
 enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS | ROOM_PRESENCE };
-
-struct room_kept_member {
-    char id[64], name[164], color[8], role[16];
-    unsigned char secret_hash[32]; /* of server/auth/secret.h */
-    bool has_left;                 /* it is not in the list of members, but may come back */
-};
-
-struct room_kept_link {
-    unsigned char token_hash[32]; /* as secret_hash */
-    char role[16], person[257];   /* person: who used it, if it is for one use */
-    int64_t expires_ms;           /* since 1970 */
-    bool is_one_use, is_used;
-};
-
-struct room_kept {
-    int64_t created_at_s;
-    uint32_t revision, n_named;
-    char presenter[64];               /* "": nobody */
-    char *scene, *views;              /* JSON; NULL: not asked for, or the plan was never loaded */
-    char *presence;                   /* JSON: who was here; NULL: not asked for, or unknown */
-    struct room_kept_member *members; /* NULL: not asked for */
-    size_t n_members;
-    bool has_links;               /* there is or was one */
-    struct room_kept_link *links; /* NULL: not asked for */
-    size_t n_links;
-};
 
 struct room_limits {
     int max_members;        /* at most ROOM_MAX_MEMBERS */

@@ -245,7 +245,7 @@ static struct fake_room other;
 /* Restores the room from its kept state, as after a restart. */
 static void wake_in(struct fake_room *woken)
 {
-    struct room_kept kept;
+    struct store_room kept;
     assert_true(room_keep(fake.room, ROOM_ALL_PARTS, &kept));
     fake_room_start(woken, 3);
     cJSON *rows = room_items(fake.room, WIRE_ITEM_KIND_ACCEPTANCE);
@@ -299,7 +299,7 @@ static void a_room_that_begins_with_a_saved_view_begins_unaccepted(void **state)
 static void a_room_kept_when_the_scene_held_acceptances_loads_without_them_and_keeps_the_rest(void **state)
 {
     (void)state;
-    struct room_kept kept;
+    struct store_room kept;
     enter();
     fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"regions\":{\"brain\":{\"opacity\":0.25}}}}");
     assert_true(room_keep(fake.room, ROOM_ALL_PARTS, &kept));

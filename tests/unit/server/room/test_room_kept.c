@@ -8,9 +8,9 @@ static struct fake_room again;
 static struct fake_page eve;
 
 /* A room made of what is kept of the fake one; change may be NULL. */
-static void wake(void (*change)(struct room_kept *kept))
+static void wake(void (*change)(struct store_room *kept))
 {
-    struct room_kept kept;
+    struct store_room kept;
     assert_true(room_keep(fake.room, ROOM_ALL_PARTS, &kept));
     if (change)
         change(&kept);
@@ -63,7 +63,7 @@ static void a_kept_link_gives_its_role(void **state)
 static void a_link_is_kept_as_a_hash(void **state)
 {
     char token[33];
-    struct room_kept kept;
+    struct store_room kept;
     (void)state;
     link_make(WIRE_MEMBER_ROLE_OBSERVER, false, token);
     assert_true(room_keep(fake.room, ROOM_LINKS, &kept));
@@ -93,12 +93,12 @@ static void a_used_link_stays_used_but_for_its_person(void **state)
     assert_string_equal(role_of_last(&eve), "reviewer");
 }
 
-static void expire(struct room_kept *kept)
+static void expire(struct store_room *kept)
 {
     kept->links[0].expires_ms = (int64_t)time(NULL) * 1000 - 1000;
 }
 
-static void far_away(struct room_kept *kept)
+static void far_away(struct store_room *kept)
 {
     kept->links[0].expires_ms = INT64_MAX;
 }
@@ -121,7 +121,7 @@ static void no_link_is_valid_longer_than_any_can_be_made(void **state)
     (void)state;
     link_make(WIRE_MEMBER_ROLE_REVIEWER, false, token);
     wake(far_away);
-    struct room_kept kept;
+    struct store_room kept;
     assert_true(room_keep(again.room, ROOM_LINKS, &kept));
     assert_true(kept.links[0].expires_ms <= ((int64_t)time(NULL) + 1 + ROOM_LINK_MAX_S) * 1000);
     room_kept_finish(&kept);
@@ -130,7 +130,7 @@ static void no_link_is_valid_longer_than_any_can_be_made(void **state)
     assert_string_equal(role_of_last(&eve), "");
 }
 
-static void spoil(struct room_kept *kept)
+static void spoil(struct store_room *kept)
 {
     (void)snprintf(kept->links[0].role, sizeof kept->links[0].role, "boss");
 }
@@ -147,7 +147,7 @@ static void a_link_with_an_unknown_role_lets_nobody_in_and_still_guards_the_room
     assert_false(room_call_may(again.room, NULL, WIRE_RIGHT_CONTROL, &problem));
 }
 
-static void drop_links(struct room_kept *kept)
+static void drop_links(struct store_room *kept)
 {
     kept->n_links = 0;
 }
@@ -183,7 +183,7 @@ static void the_first_stranger_in_a_woken_room_is_a_reviewer(void **state)
     assert_string_equal(role_of_last(&eve), "reviewer");
 }
 
-static void demote(struct room_kept *kept)
+static void demote(struct store_room *kept)
 {
     for (size_t i = 0; i < kept->n_members; i++)
         kept->members[i].role[0] = 0; /* as in a database from before there were roles */
