@@ -224,8 +224,8 @@ RUNNER := $(if $(findstring thread,$(SAN)),$(shell setarch -R true 2>/dev/null &
 # Programs run side by side; without a sanitizer many wait for most of their time. The thread sanitizer is slow: its programs
 # are those that start threads of their own, or the first of those that read plans by the same ones.
 ONE_THREAD := annotate describe beam_numbers beam_place describe_beam contour_grid dvh_oracle dose_sera_means dicom_numbers dicom_rtplan_opening dicom_rtplan_real dicom_rtdose_dvh \
-    isoeffective profile sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtplan \
-    dicom_rtstruct nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_data plan_real \
+    isoeffective profile sera sera_chd sera_extras sera_files sera_rst dicom_file dicom_pixels dicom_oracle dicom_hostile dicom_rtdose dicom_rtdose_real dicom_rtplan \
+    dicom_rtstruct dicom_rtstruct_real nifti nifti_oracle nrrd unpack document fields message frame packet plan_document shape_query head ws_parser ws_conformance ws_conformance_utf8 convert convert_edges plan_data plan_real \
     address api_routes beam_angles beam_camera beam_pick beams_drawn bookmark boundary camera clip_planes confine confine_calls contour_fill draw_clip \
     draw_list draw_volume encode image_values label_places marks mask mask_reduce mesh mesh_export missing nifti_pair nurbs outline packed phantom pick \
     pick_beams pick_cut pick_tracks pick_volume plane plan_json plan_limits reach recognise recognise_names region report roles room room_bookmarks \

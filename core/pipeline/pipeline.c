@@ -12,7 +12,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
-#include "core/pipeline/turns.h"
+#include "core/pipeline/picture.h"
 
 /* Small pictures are compressed by one thread and large ones by another, so that a large one, which takes ten times as
  * long, holds up none. A PNG takes as long as a large JPEG. */
@@ -29,18 +29,6 @@ enum { MAX_BEGUN = 32, MAX_PICTURES = PIPELINE_MAX_WAITING + MAX_BEGUN };
 /* Messages that may wait. Encode threads send at most two for each picture they hold; so half of the room for drops
  * leaves room for every other message. */
 enum { MAX_MESSAGES = 2048, MAX_MESSAGES_BEFORE_DROP = 1024 };
-
-/* A request on its way through the pipeline. Owned by the render thread, then by an encode thread. */
-struct picture {
-    struct pipeline_request request;
-    struct turns_item turn;
-    struct render_picture *render; /* begun and not done; else NULL */
-    struct image *image;           /* drawn and not compressed; else NULL */
-    struct pipeline_frame frame;
-    bool is_counted; /* in n_begun or with an encode thread, and with its image in n_image_bytes */
-    bool is_dropped;
-    bool needs_all; /* there was no memory for it beside others */
-};
 
 enum message_kind {
     MESSAGE_REQUEST, /* picture is to be drawn */
@@ -88,27 +76,6 @@ struct pipeline {
     int64_t leave_at_us;    /* when to leave the current picture; read by the back end's threads while it draws */
     uint64_t n_image_bytes; /* of pictures begun and not compressed */
 };
-
-void pipeline_annotation_destroy(struct pipeline_annotation *annotation)
-{
-    if (annotation)
-        free(annotation->text);
-    free(annotation);
-}
-
-static void picture_destroy(struct picture *picture)
-{
-    if (!picture)
-        return;
-    snapshot_unref(picture->request.snapshot);
-    pipeline_annotation_destroy(picture->request.annotation);
-    image_destroy(picture->image);
-    free(picture->frame.picture.bytes);
-    for (int i = 0; i < IMAGE_N_REDUCED; i++)
-        free(picture->frame.reduced[i].bytes);
-    free(picture->frame.marked.bytes);
-    free(picture);
-}
 
 static void drop_picture(void *picture)
 {
@@ -422,68 +389,12 @@ static void *render_main(void *argument)
 
 /* ---- the encode threads ----------------------------------------------------------------------------------------- */
 
-/* Replaces the image by one with letters, scale bar and caption. */
-static bool annotate(struct picture *picture, struct error *err)
-{
-    const struct pipeline_annotation *annotation = picture->request.annotation;
-    struct annotations annotations;
-    struct image *annotated = NULL;
-    if (annotations_describe(&annotations, picture->request.snapshot, picture->image->width_px, annotation->date, err))
-        annotated = annotate_image(picture->image, &annotations, err);
-    annotations_finish(&annotations);
-    image_destroy(picture->image);
-    picture->image = annotated;
-    return annotated != NULL;
-}
-
-static bool compress(struct encoder *encoder, struct picture *picture)
-{
-    const struct pipeline_request *request = &picture->request;
-    struct pipeline_frame *frame = &picture->frame;
-    if (request->annotation && !annotate(picture, &frame->error))
-        return false;
-    return request->annotation && request->encode.codec == ENCODE_PNG
-               ? encode_png_with_text(picture->image, request->annotation->keyword, request->annotation->text,
-                                      &frame->picture, &frame->error)
-               : encode_image(encoder, picture->image, &request->encode, &frame->picture, &frame->error);
-}
-
-/* A reduced picture for which there is no memory is left out: the picture itself will do. */
-static void compress_reduced(struct encoder *encoder, struct picture *picture)
-{
-    const struct pipeline_request *request = &picture->request;
-    for (int i = 0; i < IMAGE_N_REDUCED; i++) {
-        if (!request->is_reduced[i] || request->annotation)
-            continue;
-        struct error err = { 0 };
-        struct image *image = image_reduce(picture->image, image_divisor(i), &err);
-        if (!image || !encode_image(encoder, image, &request->encode, &picture->frame.reduced[i], &err))
-            log_warn("a picture is not made smaller: %s", err.text);
-        image_destroy(image);
-    }
-}
-
-/* Paints on the image itself, which nobody needs any more. */
-static void compress_marked(struct encoder *encoder, struct picture *picture)
-{
-    const struct pipeline_request *request = &picture->request;
-    struct error err = { 0 };
-    if (!request->mark || request->annotation)
-        return;
-    if (!annotate_mark(picture->image, request->mark, &err) ||
-        !encode_image(encoder, picture->image, &request->encode, &picture->frame.marked, &err))
-        log_warn("a picture is not made with the words \"%s\": %s", request->mark, err.text);
-}
-
 static void encode(struct pipeline *pipeline, struct encoder *encoder, struct picture *picture)
 {
     struct pipeline_frame *frame = &picture->frame;
     if (picture->image) {
         int64_t start_us = clock_now_us();
-        if (compress(encoder, picture)) {
-            compress_reduced(encoder, picture);
-            compress_marked(encoder, picture);
-        }
+        picture_compress(encoder, picture);
         frame->encode_us = clock_now_us() - start_us;
     }
     image_destroy(picture->image);

@@ -8,6 +8,7 @@
 
 #include "core/base/mem.h"
 #include "core/base/parallel.h"
+#include "core/formats/dicom/dicom_codestreams.h"
 #include "core/formats/dicom/dicom_mix.h"
 #include "core/formats/dicom/dicom_padding.h"
 #include "core/formats/dicom/dicom_slices.h"
@@ -15,12 +16,6 @@
 #include "core/formats/dicom/dicom_unpack.h"
 
 _Static_assert((int)DICOM_MAX_SIDE == (int)VOLUME_MAX_SIDE, "a picture that is read fits into a volume");
-
-/* Counts slices whose JPEG 2000 codestream contradicts their elements. */
-struct coded {
-    size_t n_unsaid, n_other_sign, n_other_bits;
-    uint32_t n_bits; /* number of bits in the last codestream that differs */
-};
 
 enum { MAX_THREADS = 8 };
 
@@ -30,7 +25,7 @@ struct reader {
     size_t object;           /* index of file's object; SIZE_MAX: none */
     struct bytes bytes;      /* the bytes of file, unless series->whole holds them */
     uint8_t *scratch;        /* one plane of stored values */
-    struct coded coded;
+    struct dicom_codestreams coded;
     int32_t range[2];
     size_t n_padding;
 };
@@ -51,7 +46,7 @@ struct series {
     struct bytes whole; /* the multi-frame file, when its frames must be decoded from memory */
     int32_t range[2];   /* smallest and largest integer cell */
     size_t n_padding;   /* cells without a value */
-    struct coded coded;
+    struct dicom_codestreams coded;
     atomic_size_t next, n_done;
     size_t n_reported; /* slices reported to progress->step, by the calling thread alone */
     atomic_bool is_failed;
@@ -94,40 +89,6 @@ static bool same_pixels(const struct dicom_pixels *a, const struct dicom_pixels 
            a->is_signed == b->is_signed;
 }
 
-static void count_coded(struct dicom_decoded decoded, const struct dicom_image *image, struct coded *coded)
-{
-    if (decoded.n_bits == 0)
-        return;
-    coded->n_unsaid += decoded.is_lossy && !image->is_lossy;
-    coded->n_other_sign += decoded.is_signed != image->pixels.is_signed;
-    if (decoded.n_bits != image->pixels.bits_stored) {
-        coded->n_other_bits++;
-        coded->n_bits = decoded.n_bits;
-    }
-}
-
-static void report_coded(const struct series *series, struct report *report)
-{
-    const struct coded *coded = &series->coded;
-    const struct dicom_object *first = object_of(series, &series->slices[0]);
-    const struct dicom_pixels *pixels = &first->image->pixels;
-    if (coded->n_unsaid > 0)
-        report_add(report, REPORT_WARNING, "image.lossy", first->path,
-                   "%zu of %zu slices were compressed with loss (JPEG 2000 with its irreversible "
-                   "transform), and their element (0028,2110) does not say so.",
-                   coded->n_unsaid, series->n_slices);
-    if (coded->n_other_sign > 0)
-        report_add(report, REPORT_WARNING, "image.coded-otherwise", first->path,
-                   "Element (0028,0103), pixel representation: found %d, but the JPEG "
-                   "2000 codestream of %zu of %zu slices holds %s values; their bits were taken as the element says.",
-                   pixels->is_signed, coded->n_other_sign, series->n_slices, pixels->is_signed ? "unsigned" : "signed");
-    if (coded->n_other_bits > 0)
-        report_add(report, REPORT_WARNING, "image.coded-otherwise", first->path,
-                   "Element (0028,0101), bits stored: found %u, but the JPEG 2000 "
-                   "codestream of %zu of %zu slices holds values of %u bits; those were taken.",
-                   pixels->bits_stored, coded->n_other_bits, series->n_slices, coded->n_bits);
-}
-
 /* Reads the stored values of a slice: native ones straight from the file, compressed ones by decoding. */
 static bool read_stored(struct series *series, struct reader *reader, const struct dicom_slice *slice, void *out,
                         struct error *err)
@@ -143,7 +104,7 @@ static bool read_stored(struct series *series, struct reader *reader, const stru
             return error_set(err, ERROR_IO, "%s: the file changed while it was read", object->path);
         if (!dicom_pixels_read(reader->file, slice->frame, out, err))
             return false;
-        count_coded(dicom_pixels_decoded(reader->file), image, &reader->coded);
+        dicom_codestreams_add(&reader->coded, dicom_pixels_decoded(reader->file), image);
         return true;
     }
     struct folder_part part;
@@ -282,10 +243,7 @@ static void join_results(struct series *series, int n_parts)
         series->range[0] = reader->range[0] < series->range[0] ? reader->range[0] : series->range[0];
         series->range[1] = reader->range[1] > series->range[1] ? reader->range[1] : series->range[1];
         series->n_padding += reader->n_padding;
-        series->coded.n_unsaid += reader->coded.n_unsaid;
-        series->coded.n_other_sign += reader->coded.n_other_sign;
-        series->coded.n_other_bits += reader->coded.n_other_bits;
-        series->coded.n_bits = reader->coded.n_bits ? reader->coded.n_bits : series->coded.n_bits;
+        dicom_codestreams_join(&series->coded, &reader->coded);
     }
 }
 
@@ -592,7 +550,7 @@ struct volume *dicom_series_read(const struct folder *folder, const struct dicom
         dicom_slices_compare(index, series.stack, report);
         choose_type(&series, facts, report);
         volume = read_volume(&series, &layout, report, err);
-        report_coded(&series, report);
+        dicom_codestreams_report(&series.coded, object_of(&series, &series.slices[0]), series.n_slices, report);
         dicom_slices_report_surplus(index, series.stack, report);
     }
     free(layout.planes);
