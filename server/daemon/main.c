@@ -145,8 +145,8 @@ static bool gl_is_known(const char *gl, struct error *err)
                      gl);
 }
 
-/* Sets the limit on open files. The usual 1024 is for programs that use select(2); containers often allow a million, and
- * libwebsockets keeps a table of as many as are allowed. */
+/* Sets the limit on open files. The usual 1024 is for programs that use select(2); containers often allow a million,
+ * and libwebsockets keeps a table of as many as are allowed. */
 static void set_descriptors(void)
 {
     struct rlimit now;

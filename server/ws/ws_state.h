@@ -53,8 +53,8 @@ enum state {
 };
 
 struct ws_connection { /* lives as long as its socket */
-    /* What each frame and its acknowledgement need stands together: with hundreds of members, little of it is in the
-     * processor's cache. */
+    /* Fields that a frame and its acknowledgement touch stand together: with hundreds of connections, few of them are
+     * in the processor's cache. */
     struct socket socket; /* the first member: sockets.h hands it back */
     struct ws *ws;
     void *owner;
