@@ -1,4 +1,4 @@
-// When the server is asked about regions: the figures of the chosen one, which cannot be drawn, how its representations compare.
+// When the server is asked about regions: the figures of the chosen one, which cannot be drawn.
 import { computed, effect } from '../../../lib/signals-core.js';
 import { Answer } from '../../parts/answer.js';
 import { inQuestion } from './refusals.js';
@@ -39,20 +39,5 @@ export function askRefusals({ room, refusals }) {
   return () => {
     stop();
     refusals.stop();
-  };
-}
-
-/** Starts the comparison when its dialog opens or, while it is open, another region is chosen. */
-export function askComparison({ room, ui, comparison }) {
-  const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
-  const stop = effect(() => {
-    const id = of.value;
-    const region = room.plan.peek()?.regions.find((other) => other.id === id);
-    if (region) comparison.start(room.planId.peek(), region, room.scene.peek());
-    else comparison.stop();
-  });
-  return () => {
-    stop();
-    comparison.stop();
   };
 }

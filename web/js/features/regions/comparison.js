@@ -1,4 +1,5 @@
 // The figures of one region by every method, requested one after the other.
+import { computed, effect, signal } from '../../../lib/signals-core.js';
 import { methods } from './shapes.js';
 
 /** Requests the figures of one method after the other; starting again drops the answers of the run before. */
@@ -33,4 +34,22 @@ export class Comparison {
       this.rows.value = [...rows];
     }
   }
+}
+
+/** Starts the comparison when its dialog opens or, while it is open, another region is chosen. */
+export function startComparison(world) {
+  const { room, ui, api } = world;
+  const comparison = new Comparison(api, signal([]));
+  world.comparison = comparison;
+  const of = computed(() => (ui.popover.value === 'figures' ? ui.region.value : ''));
+  const stop = effect(() => {
+    const id = of.value;
+    const region = room.plan.peek()?.regions.find((other) => other.id === id);
+    if (region) comparison.start(room.planId.peek(), region, room.scene.peek());
+    else comparison.stop();
+  });
+  return () => {
+    stop();
+    comparison.stop();
+  };
 }

@@ -1,15 +1,27 @@
 // Regions: how they are shown, their figures and shapes.
 import { nothing } from '../../../lib/lit-html.js';
-import { computed, signal } from '../../../lib/signals-core.js';
+import { computed, effect, signal, untracked } from '../../../lib/signals-core.js';
 import { ownRegions } from '../../room/identity.js';
 import { later } from '../../parts/lazy.js';
-import { askComparison, askRefusals, liveShape, shapeNow } from './asking.js';
-import { Comparison } from './comparison.js';
+import { askRefusals, liveShape, shapeNow } from './asking.js';
 import { Refusals } from './refusals.js';
 import { regionRows, regionTools } from './region_rows.js';
 
 const blocks = later(() => import('./later_blocks.js'));
 const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derived', none: '' };
+
+/** Comparing representations begins with what is loaded for it. @returns {() => void} stops */
+function compareLater(world) {
+  let stop = null;
+  const wait = effect(() => {
+    const parts = blocks.loaded.value;
+    if (parts) stop ??= untracked(() => parts.startComparison(world));
+  });
+  return () => {
+    wait();
+    stop?.();
+  };
+}
 
 /** @type {import('../index.js').Feature} */
 export const regions = {
@@ -17,12 +29,11 @@ export const regions = {
     const { api, room } = world;
     world.shape = liveShape(world);
     world.shaped = computed(() => shapeNow(world.shape));
-    world.comparison = new Comparison(api, signal([]));
     world.refusals = new Refusals(api, signal({}));
     world.refused = computed(() => ({ ...world.refusals.reasons.value, ...room.view(1).missing.value.reasons }));
   },
   start(world) {
-    const stops = [world.shape.start(), askComparison(world), askRefusals(world)];
+    const stops = [world.shape.start(), askRefusals(world), compareLater(world)];
     return () => stops.forEach((stop) => stop());
   },
   sections: [

@@ -19,7 +19,7 @@ const columns = [
 export function figuresDialog(world) {
   const { room, ui, comparison } = world;
   const region = room.plan.value?.regions.find((other) => other.id === ui.region.value);
-  if (ui.popover.value !== 'figures' || !region) return nothing;
+  if (ui.popover.value !== 'figures' || !region || !comparison) return nothing;
   const rows = comparison.rows.value;
   const n = rows.filter((row) => row.result || row.error).length;
   return html`<section class="card compare" role="dialog" tabindex="-1" aria-label="Methods compared">

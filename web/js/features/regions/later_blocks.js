@@ -3,6 +3,7 @@ import { html } from '../../../lib/lit-html.js';
 import { drawingBlocks } from './drawing.js';
 import { regionBlock } from './region.js';
 
+export { startComparison } from './comparison.js';
 export { figuresDialog } from './figures.js';
 
 function whole(world, isDisabled, change) {
