@@ -2,6 +2,7 @@
 //   THIRD-PARTY.md has a row for each package of deploy/packages and package.json, and none for others; of npm's with the licence they state
 //   the version stands in the Makefile, and everywhere else as there
 //   README.md has at most 6,000 bytes and names the browsers of deploy/promised.mjs
+//   docs/admin.md names each setting of deploy/beamroomd.conf
 //   each file of docs/decisions has its four headings, at most 40 lines, and a row in the README.md there
 //   every path that README.md, CONTRIBUTING.md, THIRD-PARTY.md and docs/**/*.md name exists
 // Prints one line a fault, "FILE:LINE: SENTENCE", and exits with 1 if there is one.
@@ -134,6 +135,12 @@ function paths() {
   }
 }
 
+function settings() {
+  const admin = read('docs/admin.md');
+  for (const [, , name] of read('deploy/beamroomd.conf').matchAll(/^(# )?([a-z-]+) = /gm))
+    if (!admin.includes(`\`${name}\``)) faults.push(`docs/admin.md:1: the setting ${name} is not named`);
+}
+
 function decisions() {
   const list = files.includes('docs/decisions/README.md') ? read('docs/decisions/README.md') : '';
   for (const name of files.filter((file) => /^docs\/decisions\/\d/.test(file))) {
@@ -147,6 +154,7 @@ function decisions() {
 
 thirdParty();
 versions();
+settings();
 decisions();
 await readme();
 paths();

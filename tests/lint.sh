@@ -67,16 +67,18 @@ planted_circle() {
 planted_documents() {
     local folder out fault status=0
     folder=$(mktemp -d)
-    cp --parents ./*.md Makefile package.json package-lock.json deploy/packages deploy/promised.mjs docs/threads.md "$folder"
+    cp --parents ./*.md Makefile package.json package-lock.json deploy/packages deploy/promised.mjs deploy/beamroomd.conf docs/threads.md docs/admin.md "$folder"
     printf '\nSee `core/base/planted.c`, and [a page](planted.md).\n' >>"$folder/docs/threads.md"
     sed -i 's/^bench="/&planted-dev /' "$folder/deploy/packages"
     sed -i 's/"version": "[0-9.]*",/"version": "9.9.9",/' "$folder/package.json"
     head -c 5000 /dev/zero | tr '\0' x >>"$folder/README.md"
     sed -i "s/chrome: '[0-9]*'/chrome: '999'/" "$folder/deploy/promised.mjs"
+    echo '# planted-setting = 1' >>"$folder/deploy/beamroomd.conf"
     mkdir "$folder/docs/decisions" && printf '# 99. Planted\n\n## Decision\n' >"$folder/docs/decisions/99-planted.md"
     out=$("${NODE:-node}" tests/documents.mjs "$folder") && status=1
     for fault in 'threads.md:.*core/base/planted.c is not there' 'threads.md:.*planted.md leads nowhere' 'no row for planted-dev' 'package.json:1: version 9.9.9' \
-        'README.md:1: [0-9]* bytes' 'promise chrome 999' '99-planted.md:1: its headings' '99-planted.md:1: not in'; do
+        'README.md:1: [0-9]* bytes' 'promise chrome 999' '99-planted.md:1: its headings' '99-planted.md:1: not in' \
+        'the setting planted-setting is not named'; do
         grep -q "$fault" <<<"$out" || { echo "not found: $fault"; status=1; }
     done
     rm -rf "$folder"
