@@ -20,6 +20,7 @@
 #include "server/room/out/send.h"
 #include "server/room/people/control.h"
 #include "server/room/people/handover.h"
+#include "server/room/people/links.h"
 #include "server/room/people/look.h"
 #include "server/room/people/member.h"
 #include "server/room/people/pointers.h"
@@ -56,6 +57,10 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
                             : ROOM_MAX_MEMBERS;
     room->recording_speed = limits && limits->recording_speed > 0 ? limits->recording_speed : 1;
     room->created_at_s = (int64_t)time(NULL); /* wall clock, only to be displayed */
+    audit_init(room);
+    control_init(room);
+    links_init(room);
+    look_init(room);
     return room;
 }
 
@@ -74,7 +79,6 @@ void room_destroy(struct room *room)
     for (int i = 0; i < room->n_members; i++)
         if (room->members[i]->connection)
             send_bye(room, room->members[i]->connection, -1, room->end_reason[0] ? room->end_reason : room_is_closed);
-    audit_free(room);
     members_free(room);
     while (room->streams)
         stream_destroy(room, room->streams);
@@ -84,6 +88,10 @@ void room_destroy(struct room *room)
     acceptances_free(room);
     beginning_free(room);
     replay_free(room);
+    audit_free(room);
+    look_free(room);
+    links_free(room);
+    control_free(room);
     cJSON_Delete(room->scene);
     cJSON_Delete(room->restored);
     free(room->known);

@@ -6,8 +6,19 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "core/base/mem.h"
 #include "server/auth/digest.h"
 #include "server/wire/json_merge.h"
+
+struct audit {
+    struct gathered gathered[ROOM_MAX_GATHERED]; /* the oldest first */
+    int n_gathered;
+};
+
+void audit_init(struct room *room)
+{
+    room->audit = mem_new(sizeof *room->audit);
+}
 
 static const int64_t quiet_us = ROOM_AUDIT_QUIET_MS * INT64_C(1000), at_most_us = ROOM_AUDIT_AT_MOST_MS * INT64_C(1000);
 
@@ -73,15 +84,15 @@ static void write_row(struct room *room, struct gathered *act)
 
 static void drop(struct room *room, int index)
 {
-    cJSON_Delete(room->gathered[index].detail);
-    room->n_gathered--;
-    memmove(&room->gathered[index], &room->gathered[index + 1],
-            (size_t)(room->n_gathered - index) * sizeof room->gathered[0]);
+    cJSON_Delete(room->audit->gathered[index].detail);
+    room->audit->n_gathered--;
+    memmove(&room->audit->gathered[index], &room->audit->gathered[index + 1],
+            (size_t)(room->audit->n_gathered - index) * sizeof room->audit->gathered[0]);
 }
 
 static void end(struct room *room, int index)
 {
-    write_row(room, &room->gathered[index]);
+    write_row(room, &room->audit->gathered[index]);
     drop(room, index);
 }
 
@@ -110,9 +121,9 @@ static bool is_same_act(const struct gathered *found, const struct audit_act *ac
 
 static struct gathered *find(struct room *room, const struct audit_act *act, const cJSON *detail)
 {
-    for (int i = 0; i < room->n_gathered; i++)
-        if (is_same_act(&room->gathered[i], act, detail))
-            return &room->gathered[i];
+    for (int i = 0; i < room->audit->n_gathered; i++)
+        if (is_same_act(&room->audit->gathered[i], act, detail))
+            return &room->audit->gathered[i];
     return NULL;
 }
 
@@ -129,9 +140,9 @@ static void fill(const struct room *room, const struct audit_act *act, struct ga
 
 static struct gathered *begin(struct room *room, const struct audit_act *act)
 {
-    if (room->n_gathered == ROOM_MAX_GATHERED)
+    if (room->audit->n_gathered == ROOM_MAX_GATHERED)
         end(room, 0);
-    struct gathered *found = &room->gathered[room->n_gathered++];
+    struct gathered *found = &room->audit->gathered[room->audit->n_gathered++];
     fill(room, act, found);
     return found;
 }
@@ -142,7 +153,7 @@ static struct gathered *place(struct room *room, const struct audit_act *act, bo
     cJSON *detail = act->detail ? act->detail : cJSON_CreateObject();
     struct gathered *found = find(room, act, detail);
     if (found && (room->now_us - found->last_us >= quiet_us || room->now_us - found->first_us >= at_most_us)) {
-        end(room, (int)(found - room->gathered));
+        end(room, (int)(found - room->audit->gathered));
         found = NULL;
     }
     *is_new = !found;
@@ -199,8 +210,8 @@ void audit_gather(struct room *room, const struct audit_act *act)
 
 void audit_flush(struct room *room, const struct member *by)
 {
-    for (int i = 0; i < room->n_gathered;)
-        if (!by || strcmp(room->gathered[i].member, by->id) == 0)
+    for (int i = 0; i < room->audit->n_gathered;)
+        if (!by || strcmp(room->audit->gathered[i].member, by->id) == 0)
             end(room, i);
         else
             i++;
@@ -209,8 +220,8 @@ void audit_flush(struct room *room, const struct member *by)
 int64_t audit_settle(struct room *room)
 {
     int64_t due_us = INT64_MAX;
-    for (int i = 0; i < room->n_gathered;) {
-        const struct gathered *act = &room->gathered[i];
+    for (int i = 0; i < room->audit->n_gathered;) {
+        const struct gathered *act = &room->audit->gathered[i];
         int64_t own_us = act->last_us + quiet_us;
         if (act->first_us + at_most_us < own_us)
             own_us = act->first_us + at_most_us;
@@ -226,8 +237,10 @@ int64_t audit_settle(struct room *room)
 
 void audit_free(struct room *room)
 {
-    while (room->n_gathered)
+    while (room->audit->n_gathered)
         drop(room, 0);
+    free(room->audit);
+    room->audit = NULL;
 }
 
 /* ---- the scene -------------------------------------------------------------------------------------------------- */
@@ -319,7 +332,7 @@ void audit_scene(struct room *room, const cJSON *before, const struct member *by
                              .before = (int64_t)room->revision - 1,
                              .after = room->revision,
                              .action = "weights" };
-    char key[sizeof room->gathered[0].key];
+    char key[sizeof room->audit->gathered[0].key];
     if (!room->callbacks.audited)
         return;
     act.detail = weights_changed(before, room->scene);

@@ -14,6 +14,17 @@ struct audit_act {
     int64_t before, after; /* revisions of the scene; -1: does not apply */
 };
 
+struct gathered { /* acts for the audit that are one row */
+    char action[24], key[64], member[64], name[161], address[46];
+    enum wire_member_role role;
+    bool is_refused;
+    cJSON *detail; /* of the last */
+    int64_t before, after;
+    int64_t first_us, last_us;
+    int64_t since_ms, newest_ms; /* since 1970: of the first act that no row was made for yet, and of the last */
+    unsigned n;                  /* acts that no row was made for yet */
+};
+
 /* A row that is committed together with an item, instead of by the callback audited. */
 struct audit_apart {
     struct gathered act;
@@ -33,6 +44,7 @@ void audit_gather(struct room *room, const struct audit_act *act);
 void audit_flush(struct room *room, const struct member *by);
 /* Records what is over; when the next is due, INT64_MAX: nothing is gathered. */
 int64_t audit_settle(struct room *room);
+void audit_init(struct room *room); /* with the room */
 void audit_free(struct room *room);
 /* False with problem storage: what is recorded cannot be stored now, so it is refused. */
 bool audit_has_place(const struct room *room, struct problem *problem);

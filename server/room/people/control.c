@@ -2,11 +2,23 @@
 #include "server/room/people/control.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "server/room/out/audit.h"
 #include "server/room/out/send.h"
 #include "server/wire/message.h"
+
+void control_init(struct room *room)
+{
+    room->control = mem_new(sizeof *room->control);
+}
+
+void control_free(struct room *room)
+{
+    free(room->control);
+}
 
 /* The ids of those who request control, the oldest request first. */
 static cJSON *requests_list(const struct room *room)
@@ -29,7 +41,7 @@ static cJSON *requests_list(const struct room *room)
 static void fill(const struct room *room, struct message *message)
 {
     *message = (struct message){ .type = MESSAGE_CONTROL };
-    message->control.locked = room->is_locked;
+    message->control.locked = room->control->is_locked;
     message->control.requests = requests_list(room);
     (void)snprintf(message->control.presenter, sizeof message->control.presenter, "%s",
                    room->presenter ? room->presenter->id : "");
@@ -53,28 +65,28 @@ static const struct member *find(const struct room *room, const char *id)
 
 static void audit_control(struct room *room)
 {
-    const char *act = wire_control_act_words.words[room->control_act.act];
-    const struct audit_act row = { .by = find(room, room->control_act.by),
+    const char *act = wire_control_act_words.words[room->control->act];
+    const struct audit_act row = { .by = find(room, room->control->by),
                                    .action = "control",
                                    .detail = cJSON_CreateObject(),
                                    .before = -1,
                                    .after = -1 };
     cJSON_AddStringToObject(row.detail, "act", act);
-    cJSON_AddStringToObject(row.detail, "member", room->control_act.member);
+    cJSON_AddStringToObject(row.detail, "member", room->control->member);
     audit_tell(room, &row);
 }
 
 int64_t control_settle(struct room *room)
 {
     struct message message;
-    if (!room->control_is_new)
+    if (!room->control->is_new)
         return INT64_MAX;
     fill(room, &message);
-    message.control.act = room->control_act.act;
-    (void)snprintf(message.control.member, sizeof message.control.member, "%s", room->control_act.member);
-    (void)snprintf(message.control.by, sizeof message.control.by, "%s", room->control_act.by);
-    room->control_is_new = false;
-    if (room->control_act.act != WIRE_CONTROL_ACT_NONE)
+    message.control.act = room->control->act;
+    (void)snprintf(message.control.member, sizeof message.control.member, "%s", room->control->member);
+    (void)snprintf(message.control.by, sizeof message.control.by, "%s", room->control->by);
+    room->control->is_new = false;
+    if (room->control->act != WIRE_CONTROL_ACT_NONE)
         audit_control(room);
     send_to_all(room, &message);
     message_finish(&message);
@@ -83,10 +95,10 @@ int64_t control_settle(struct room *room)
 
 void control_note(struct room *room, enum wire_control_act act, const struct member *member, const struct member *by)
 {
-    room->control_is_new = true;
-    room->control_act.act = act;
-    (void)snprintf(room->control_act.member, sizeof room->control_act.member, "%s", member ? member->id : "");
-    (void)snprintf(room->control_act.by, sizeof room->control_act.by, "%s", by ? by->id : "");
+    room->control->is_new = true;
+    room->control->act = act;
+    (void)snprintf(room->control->member, sizeof room->control->member, "%s", member ? member->id : "");
+    (void)snprintf(room->control->by, sizeof room->control->by, "%s", by ? by->id : "");
 }
 
 void control_pass(struct room *room, struct member *member)
@@ -94,7 +106,7 @@ void control_pass(struct room *room, struct member *member)
     if (room->presenter == member)
         return;
     room->presenter = member;
-    room->is_locked = false;
+    room->control->is_locked = false;
     for (int i = 0; i < room->n_members; i++)
         if (!member || room->members[i] == member)
             room->members[i]->request = 0;

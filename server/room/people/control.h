@@ -3,6 +3,17 @@
  * Internal to server/room. */
 #include "server/room/state/room_state.h"
 
+struct control {
+    bool is_locked;      /* control is given only, not taken */
+    uint64_t n_requests; /* ever made */
+    enum wire_control_act act;
+    char member[64], by[64]; /* of act */
+    bool is_new;             /* act is not told yet */
+};
+
+void control_init(struct room *room); /* with the room */
+void control_free(struct room *room);
+
 /* Makes the member the presenter, NULL: nobody. A lock ends, and the member's request; with nobody, all requests. */
 void control_pass(struct room *room, struct member *member);
 /* To be told with the next control message. */

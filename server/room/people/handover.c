@@ -17,14 +17,14 @@ static bool pass_on(struct room *room, struct member *member, enum wire_control_
                     struct problem *problem)
 {
     struct member *before = room->presenter;
-    const bool was_locked = room->is_locked;
+    const bool was_locked = room->control->is_locked;
     const uint64_t request = member->request;
     control_pass(room, member);
     control_note(room, act, member, act == WIRE_CONTROL_ACT_GIVEN ? before : member);
     (void)control_settle(room); /* first: the page takes the views that follow as those it presents */
     if (!views_follow(room, member, input, problem)) {
         room->presenter = before;
-        room->is_locked = was_locked;
+        room->control->is_locked = was_locked;
         member->request = request;
         control_note(room, WIRE_CONTROL_ACT_NONE, NULL, NULL);
         return false;
@@ -62,7 +62,7 @@ bool control_request(struct room *room, struct member *member, const struct mess
             problem->retry_after_ms = (int)((again_us - room->now_us) / 1000) + 1;
         return false;
     }
-    member->request = ++room->n_control_requests;
+    member->request = ++room->control->n_requests;
     control_note(room, WIRE_CONTROL_ACT_REQUESTED, member, member);
     return true;
 }
@@ -111,7 +111,7 @@ bool control_take(struct room *room, struct member *member, const struct message
         return problem_set(problem, PROBLEM_NOT_PRESENTER, "", "",
                            "%s presents: request control, or take it when %s has been away for %d s", presenter->id,
                            presenter->id, ROOM_PRESENTER_KEPT_S);
-    if (room->is_locked)
+    if (room->control->is_locked)
         return problem_set(problem, PROBLEM_NOT_PRESENTER, "", "locked", "%s has locked control: request it",
                            presenter->id);
     return pass_on(room, member, WIRE_CONTROL_ACT_TAKEN, input, problem);
@@ -122,8 +122,8 @@ bool control_lock(struct room *room, struct member *member, const struct message
     const bool is_locked = message->control_lock.locked;
     if (!member_presents(room, member))
         return refuse_not_presenter(room, problem, "lock control");
-    if (is_locked != room->is_locked)
+    if (is_locked != room->control->is_locked)
         control_note(room, is_locked ? WIRE_CONTROL_ACT_LOCKED : WIRE_CONTROL_ACT_UNLOCKED, NULL, member);
-    room->is_locked = is_locked;
+    room->control->is_locked = is_locked;
     return true;
 }

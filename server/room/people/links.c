@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -15,6 +16,21 @@
 
 static_assert(SECRET_TEXT == 33, "room.h tells the size of a token");
 
+struct links {
+    struct link list[ROOM_MAX_LINKS];
+    int n;
+};
+
+void links_init(struct room *room)
+{
+    room->links = mem_new(sizeof *room->links);
+}
+
+void links_free(struct room *room)
+{
+    free(room->links);
+}
+
 static bool is_over(const struct room *room, const struct link *link)
 {
     return room->now_us >= link->expires_us;
@@ -24,22 +40,22 @@ static bool is_over(const struct room *room, const struct link *link)
 static void forget(struct room *room)
 {
     int n = 0;
-    for (int i = 0; i < room->n_links; i++)
-        if (!is_over(room, &room->links[i]) && !room->links[i].is_used)
-            room->links[n++] = room->links[i];
-    room->n_links = n;
+    for (int i = 0; i < room->links->n; i++)
+        if (!is_over(room, &room->links->list[i]) && !room->links->list[i].is_used)
+            room->links->list[n++] = room->links->list[i];
+    room->links->n = n;
 }
 
 bool link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use, char token[33],
                  struct problem *problem)
 {
     assert(expires_s >= ROOM_LINK_MIN_S && expires_s <= ROOM_LINK_MAX_S);
-    if (room->n_links == ROOM_MAX_LINKS)
+    if (room->links->n == ROOM_MAX_LINKS)
         forget(room); /* only now: until then a late visitor is told why the link ended */
-    if (room->n_links == ROOM_MAX_LINKS)
+    if (room->links->n == ROOM_MAX_LINKS)
         return problem_set(problem, PROBLEM_LIMIT, "", "", "%d links of this room are valid, more are not allowed",
-                           room->n_links);
-    struct link *link = &room->links[room->n_links++];
+                           room->links->n);
+    struct link *link = &room->links->list[room->links->n++];
     *link = (struct link){ .role = role,
                            .expires_us = room->now_us + expires_s * INT64_C(1000000),
                            .expires_ms = clock_wall_ms() + expires_s * 1000,
@@ -54,9 +70,9 @@ bool link_create(struct room *room, enum wire_member_role role, int64_t expires_
 const char *link_find(struct room *room, const char *token, const char *person, struct link **found)
 {
     struct link *link = NULL;
-    for (int i = 0; i < room->n_links; i++) /* all of them, whichever it is */
-        if (secret_matches(token, room->links[i].token_hash))
-            link = &room->links[i];
+    for (int i = 0; i < room->links->n; i++) /* all of them, whichever it is */
+        if (secret_matches(token, room->links->list[i].token_hash))
+            link = &room->links->list[i];
     if (!link)
         return "the link is not one of this room, or ended long ago: ask for a new one";
     if (is_over(room, link))
@@ -106,9 +122,9 @@ void link_used(struct room *room, struct link *link, const struct member *member
 
 bool links_write(const struct room *room, struct store_room *kept)
 {
-    kept->links = mem_array((size_t)room->n_links, sizeof kept->links[0], 1 << 20, NULL);
-    for (int i = 0; kept->links && i < room->n_links; i++) {
-        const struct link *link = &room->links[i];
+    kept->links = mem_array((size_t)room->links->n, sizeof kept->links[0], 1 << 20, NULL);
+    for (int i = 0; kept->links && i < room->links->n; i++) {
+        const struct link *link = &room->links->list[i];
         struct store_link *to = &kept->links[kept->n_links++];
         memcpy(to->token_hash, link->token_hash, sizeof to->token_hash);
         memcpy(to->person, link->person, sizeof to->person);
@@ -133,7 +149,7 @@ static void read_link(struct room *room, const struct store_link *from)
     int64_t left_ms = from->expires_ms <= now_ms ? 0 : most_ms; /* at most, also when the clock was set back */
     if (left_ms && from->expires_ms < now_ms + most_ms)
         left_ms = from->expires_ms - now_ms;
-    struct link *link = &room->links[room->n_links++];
+    struct link *link = &room->links->list[room->links->n++];
     *link = (struct link){ .role = (enum wire_member_role)role,
                            .expires_us = room->now_us + left_ms * 1000,
                            .expires_ms = now_ms + left_ms,
@@ -146,6 +162,6 @@ static void read_link(struct room *room, const struct store_link *from)
 void links_read(struct room *room, const struct store_room *kept)
 {
     room->has_links = kept->has_links || kept->n_links > 0;
-    for (size_t i = 0; i < kept->n_links && room->n_links < ROOM_MAX_LINKS; i++)
+    for (size_t i = 0; i < kept->n_links && room->links->n < ROOM_MAX_LINKS; i++)
         read_link(room, &kept->links[i]);
 }

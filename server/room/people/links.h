@@ -2,6 +2,17 @@
 /* Links that let new members in with a role: making one, and finding one for a hello. Internal to server/room. */
 #include "server/room/state/room_state.h"
 
+struct link { /* lets new members in */
+    unsigned char token_hash[SECRET_HASH_BYTES];
+    char person[257]; /* who has used it, if it is for one */
+    enum wire_member_role role;
+    int64_t expires_us, expires_ms; /* the same moment on the room's clock and on the wall's */
+    bool is_one_use, is_used;
+};
+
+void links_init(struct room *room); /* with the room */
+void links_free(struct room *room);
+
 /* Makes one: room_link_create. */
 NODISCARD bool link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
                            char token[33], struct problem *problem);

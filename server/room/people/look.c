@@ -2,18 +2,38 @@
 #include "server/room/people/look.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "server/room/out/send.h"
 
 static const int64_t kept_us = LOOK_KEPT_S * INT64_C(1000000), every_us = LOOK_EVERY_MS * INT64_C(1000);
 
 enum { LOOK_KEY = 0 }; /* of send_latest; members' numbers begin with 1 */
 
+struct look {        /* the request to look at a point */
+    uint32_t number; /* of the newest; 0: there was none yet */
+    bool is_on, is_due;
+    char by[64];
+    struct vec3 point_mm;
+    int64_t since_us, told_us;
+};
+
+void look_init(struct room *room)
+{
+    room->look = mem_new(sizeof *room->look);
+}
+
+void look_free(struct room *room)
+{
+    free(room->look);
+}
+
 /* To be finished: owns the list of those who came. */
 static void fill_in(const struct room *room, struct message *message)
 {
-    const struct look *look = &room->look;
+    const struct look *look = room->look;
     *message = (struct message){ .type = MESSAGE_LOOK };
     message->look.number = look->number;
     (void)snprintf(message->look.by, sizeof message->look.by, "%s", look->by);
@@ -29,15 +49,15 @@ static void tell(struct room *room)
 {
     struct message message;
     fill_in(room, &message);
-    room->look.is_due = false;
-    room->look.told_us = room->now_us;
+    room->look->is_due = false;
+    room->look->told_us = room->now_us;
     send_latest_to_others(room, NULL, LOOK_KEY, &message);
     message_finish(&message);
 }
 
 bool look_here(struct room *room, struct member *member, const struct message *message, struct problem *problem)
 {
-    struct look *look = &room->look;
+    struct look *look = room->look;
     (void)problem;
     if (!message->look_here.has_point_mm) {
         look_end(room, member);
@@ -54,7 +74,7 @@ bool look_here(struct room *room, struct member *member, const struct message *m
 
 bool look_come(struct room *room, struct member *member, const struct message *message, struct problem *problem)
 {
-    struct look *look = &room->look;
+    struct look *look = room->look;
     (void)problem;
     bool is_old = !look->is_on || message->look_come.number != look->number;
     if (is_old || strcmp(look->by, member->id) == 0 || member->came_to == look->number)
@@ -67,7 +87,7 @@ bool look_come(struct room *room, struct member *member, const struct message *m
 
 void look_end(struct room *room, const struct member *member)
 {
-    struct look *look = &room->look;
+    struct look *look = room->look;
     if (!look->is_on || (member && strcmp(look->by, member->id) != 0))
         return;
     look->is_on = false;
@@ -77,7 +97,7 @@ void look_end(struct room *room, const struct member *member)
 void look_show(struct room *room, struct member *member)
 {
     struct message message;
-    if (!room->look.is_on)
+    if (!room->look->is_on)
         return;
     fill_in(room, &message);
     send_latest(room, member, LOOK_KEY, &message);
@@ -86,7 +106,7 @@ void look_show(struct room *room, struct member *member)
 
 int64_t look_settle(struct room *room)
 {
-    struct look *look = &room->look;
+    struct look *look = room->look;
     if (look->is_on && room->now_us >= look->since_us + kept_us)
         look_end(room, NULL);
     if (look->is_due && room->now_us >= look->told_us + every_us)

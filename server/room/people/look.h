@@ -17,3 +17,5 @@ void look_end(struct room *room, const struct member *member);
 void look_show(struct room *room, struct member *member);
 /* Sends what is due, and ends the request after its time. Returns when it is due again. */
 int64_t look_settle(struct room *room);
+void look_init(struct room *room); /* with the room */
+void look_free(struct room *room);

@@ -98,14 +98,6 @@ struct pointing { /* where a member points */
     int64_t moved_us, passed_us;
 };
 
-struct look {        /* the request to look at a point */
-    uint32_t number; /* of the newest; 0: there was none yet */
-    bool is_on, is_due;
-    char by[64];
-    struct vec3 point_mm;
-    int64_t since_us, told_us;
-};
-
 struct member {
     char id[64], name[161], secret[SECRET_TEXT]; /* secret "": only its hash is known until it comes back */
     unsigned char secret_hash[SECRET_HASH_BYTES];
@@ -161,29 +153,10 @@ struct keeping { /* an item that is being written, and counts afterwards */
     uint32_t input;
 };
 
-struct gathered { /* acts for the audit that are one row */
-    char action[24], key[64], member[64], name[161], address[46];
-    enum wire_member_role role;
-    bool is_refused;
-    cJSON *detail; /* of the last */
-    int64_t before, after;
-    int64_t first_us, last_us;
-    int64_t since_ms, newest_ms; /* since 1970: of the first act that no row was made for yet, and of the last */
-    unsigned n;                  /* acts that no row was made for yet */
-};
-
 struct presence { /* one stay of a member */
     char member[64], name[161];
     enum wire_member_role role;
     int64_t entered_ms, left_ms; /* since 1970; left_ms 0: still here, or the server ended */
-};
-
-struct link { /* lets new members in */
-    unsigned char token_hash[SECRET_HASH_BYTES];
-    char person[257]; /* who has used it, if it is for one */
-    enum wire_member_role role;
-    int64_t expires_us, expires_ms; /* the same moment on the room's clock and on the wall's */
-    bool is_one_use, is_used;
 };
 
 struct unrecorded { /* has changed since the recording looked: event.h */
@@ -192,6 +165,11 @@ struct unrecorded { /* has changed since the recording looked: event.h */
     size_t n_items;
 };
 
+/* Each is the business of the folder and header named beside its pointer in struct room. */
+struct audit;
+struct control;
+struct links;
+struct look;
 struct recorder;
 struct replay;
 
@@ -241,18 +219,11 @@ struct room {
         char revision[65]; /* of the files that the present renderer has loaded; "": not known */
         bool is_known;     /* as members were told last: revision is */
     } acceptances;
-    struct look look;
-    struct gathered gathered[ROOM_MAX_GATHERED];
-    int n_gathered;             /* the oldest first */
+    struct look *look;          /* people/look.h */
+    struct audit *audit;        /* out/audit.h */
     struct store_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
     int n_known;
-    bool is_locked; /* control is given only, not taken */
-    uint64_t n_control_requests;
-    struct {
-        enum wire_control_act act;
-        char member[64], by[64];
-    } control_act;
-    bool control_is_new; /* not told yet */
+    struct control *control; /* people/control.h */
     struct {
         struct room_saved told; /* as all were told last */
         int64_t told_us;
@@ -260,8 +231,7 @@ struct room {
         uint64_t n_item_changes, n_items_told;
         bool is_owed; /* somebody who has come was told something else than all */
     } saved;
-    struct link links[ROOM_MAX_LINKS];
-    int n_links;
+    struct links *links;                                   /* people/links.h */
     struct room_recording recordings[ROOM_MAX_RECORDINGS]; /* the oldest first */
     int n_recordings;
     double recording_speed;    /* > 0 */
