@@ -88,7 +88,7 @@ static bool answer_handshake(int socket, const char *key)
     return send(socket, answer, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT) == n;
 }
 
-/* Reads the head away: the acceptor has only peeked at it. */
+/* Reads the head away: the front has only peeked at it. */
 static bool skip_head(int socket, size_t n)
 {
     char bytes[WS_MAX_HEAD];

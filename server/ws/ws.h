@@ -1,5 +1,5 @@
 #pragma once
-/* WebSocket connections on sockets from the acceptor: the answer to the handshake, Origin, limits, the order of what is
+/* WebSocket connections on sockets from the front: the answer to the handshake, Origin, limits, the order of what is
  * sent, and how a connection ends. RFC 6455 is implemented here (parser.h); the sockets are libwebsockets' (sockets.h).
  * Knows messages, frames and the ids of rooms, but neither rooms nor the messages' contents. Net thread, but for
  * ws_wake. */
@@ -19,7 +19,7 @@ enum {
     WS_MAX_DROPPED = 1 << 20, /* bytes read and dropped meanwhile */
     WS_MAX_PONGS = 32,        /* waiting on one connection; beyond, the oldest is dropped, as RFC 6455 5.5.3 allows */
     WS_MAX_CONNECTIONS = 2000,
-    WS_MAX_HEAD = 16 << 10, /* bytes of a handshake; the acceptor's limit is lower */
+    WS_MAX_HEAD = 16 << 10, /* bytes of a handshake; the limit of server/front is lower */
     WS_RETRY_MS = 5000,     /* told to clients that are refused for a limit */
     WS_SLOTS = 9,           /* views of one connection that frames are sent of */
 };
