@@ -14,6 +14,8 @@ const rules = {
   texts: [
     [/\b(127\.0\.0\.\d+|localhost):\d+/g, 'HOST'],
     [/\/tmp\/[\w.-]+/g, '/tmp/X'], // a test's own folder
+    [/\bpage\/[\w-]+/g, 'page/X'], // named by its contents
+    [/^0\.\d+\.\d+$/, 'VERSION'], // of the program
     [/\b\d{4}-\d\d-\d\d[T ][\d:.]+( UTC|Z)?/g, 'TIME'],
     [/\b[a-hj-km-np-z02-9]{4}-[a-hj-km-np-z02-9]{4}\b/g, 'ROOM'], // random
     [/\b(?=[a-z]*\d)[a-z0-9]{8,}\b/g, 'ID'], // rows, secrets, tokens, hashes
@@ -22,16 +24,18 @@ const rules = {
   numbers: /(^|_)(ms|us|s|seconds|time|at|since|until|uptime|pid|rss|bytes|mib|load|sequence|port)$/,
   // figures of other numbers: threads add sums in no fixed order
   figures: 10,
-  // the revision of a review's record, and anything under these names: how far the disk, the folders, a recording are; the version of the program
-  names: new Set(['saved', 'audit', 'parts', 'marks', 'server', 'program']),
+  // the revision in a review's record and in messages about the scene, and anything under these names: how far the disk, the folders,
+  // a recording, a renderer are; the program with its version
+  names: new Set(['saved', 'audit', 'parts', 'marks', 'renderer', 'server', 'program']),
 };
 const leftOut = {
   // messages that tell how something goes on, or where others are just now
   messages: /^(frame|lag|members|pointer|pong|recording|renderer|replay|saved|view|watch)/,
-  // the list of plans fills in while folders are read; moments of a recording; how many frames are drawn in a time; pictures that show the time
-  addresses: /^GET \/api\/v1\/plans$|[?&]t_ms=|[?&]frames=|annotations"?[:=]true/,
+  // the list of plans, which fills while folders are read, and that of rooms, ordered by their last use; the description of the API, a
+  // document; moments of a recording; how many frames are drawn in a time; pictures that show the time
+  addresses: /^GET \/api\/v1\/(plans|rooms)$|^GET \/api\/v1\/openapi.json|[?&]t_ms=|[?&]frames=|annotations"?[:=]true/,
   // which of two comes first, what goes on or is busy, which allocation fails
-  texts: /"status":(409|503|504)|"state":"(running|queued)"|no memory for/,
+  texts: /"status":(409|503|504)|"state":"(running|queued)"|no memory for|"state":"not-loaded"/,
 };
 
 const target = process.env.BEAMROOM_SAME;
@@ -45,7 +49,10 @@ function masked(value, name = '') {
   if (Array.isArray(value)) return value.map((one) => masked(one, name));
   if (value && typeof value === 'object')
     return Object.fromEntries(
-      Object.entries(value).map(([key, one]) => [mask(key), key === 'revision' && 'made_ms' in value ? 'LEFT OUT' : masked(one, key)]),
+      Object.entries(value).map(([key, one]) => [
+        mask(key),
+        key === 'revision' && ('made_ms' in value || value.type === 'scene') ? 'LEFT OUT' : masked(one, key),
+      ]),
     );
   if (typeof value === 'number') return rules.numbers.test(name) ? 0 : Number(value.toPrecision(rules.figures));
   return typeof value === 'string' ? mask(value) : value;
@@ -98,7 +105,7 @@ function recordCalls() {
     const method = options.method ?? 'GET';
     const what = `${method} ${mask(decodeURIComponent(url.pathname + url.search))}`;
     const text = comparable(bytes, type, url.pathname);
-    const isOut = leftOut.addresses.test(what) || leftOut.addresses.test(String(options.body).slice(0, 2000));
+    const isOut = leftOut.addresses.test(what) || leftOut.addresses.test(String(options.body));
     if (method !== 'GET') settle();
     if (isOut || (typeof text === 'string' && leftOut.texts.test(text))) return answer;
     if (method === 'GET') polled.set(url.href, line(`${what} ${answer.status} ${type}`, text));
