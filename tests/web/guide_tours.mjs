@@ -32,8 +32,8 @@ const settled = async (page, views = [1, 2, 3, 4]) => {
   for (const view of views) {
     await page.waitForFunction((n) => {
       const { badges, headers } = globalThis.beamroom.stats();
-      const { width } = document.querySelector(`#picture-${n}`).getBoundingClientRect();
-      return badges[n] === 'full' && Math.abs(headers[n].width_px / devicePixelRatio - width) <= 1.5;
+      const box = document.querySelector(`#picture-${n}`)?.getBoundingClientRect(); // none before the room is drawn
+      return box && badges[n] === 'full' && Math.abs(headers[n].width_px / devicePixelRatio - box.width) <= 1.5;
     }, view);
   }
 };
@@ -245,7 +245,7 @@ export const tours = {
     await until(
       async () => {
         const use = page.getByRole('button', { name: 'Use it in this room' });
-        if ((await use.count()) && (await use.isEnabled())) await use.click().catch(() => {});
+        if (await use.isEnabled({ timeout: 1000 }).catch(() => false)) await use.click({ timeout: 1000 }).catch(() => {}); // gone once it is used
         return page.locator('.pane-head .fit-mark').count();
       },
       (n) => n > 0,
