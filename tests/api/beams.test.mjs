@@ -66,6 +66,7 @@ test("followers of a beam's-eye view are sent one picture, and who comes later s
   const room = await newRoom();
   const [presenter, first] = [await enter(room), await enter(room)];
   open(presenter, 1, 'beam', { beam: { aperture_mm: 90, along_mm: -40 } });
+  await presenter.frame(); // the shared view is the presenter's, not one that a follower opened first
   open(first, 1, 'beam');
   patch(presenter, 1, drafted(30));
   const revision = await revisionOf(presenter, 1);
