@@ -9,12 +9,16 @@ import { significant } from '../../parts/format.js';
 
 const still = (event) => event.stopPropagation();
 
+/** The value of 100 % as the scene is now; null: not known, or still to come. */
+const newestReference = ({ doses }) => (doses.scale.value.isOld ? null : doses.reference.value);
+
 /** "brain max, 1.13 Gy(w)": the reference with its value, as far as it is known. */
-export function referenceText({ room, doses }) {
+export function referenceText(world) {
+  const { room } = world;
   const [plan, scene] = [room.plan.value, room.scene.value];
   const { reference } = scene.dose;
   const words = referenceWords(plan, reference);
-  const value = reference.kind === 'value' ? reference.value : doses.reference.value;
+  const value = reference.kind === 'value' ? reference.value : newestReference(world);
   return Number.isFinite(value) ? `${words}, ${significant(value)} ${unitOf(shownDose(plan, scene), scene.dose.quantity)}` : words;
 }
 
@@ -24,7 +28,7 @@ const keyOf = ({ kind, region }) => (kind.startsWith('region') ? `${kind} ${regi
 function chosenPatch(world, key) {
   const [kind, region = ''] = key.split(' ');
   const scene = world.room.scene.value;
-  const value = world.doses.reference.value;
+  const value = newestReference(world);
   return {
     dose: {
       reference: {

@@ -8,6 +8,7 @@ const { addedLevel, convertedLevel, doseOf, levelsOf, percentOf } = await load('
 const { levelTables, tableOf, tablePatch } = await load('features/dose/dose_tables.js');
 const { choosePresetPatch, editPatch, isEdited, presetOf, presetsFor, tissueFor, weightPresets, weightsOf } =
   await load('features/dose/weight_table.js');
+const { referenceText } = await load('features/dose/dose_reference.js');
 const { pinnedAt } = await load('features/dose/pins.js');
 const { mergePatch } = await load('wire/merge.js');
 
@@ -77,6 +78,18 @@ test('sums are offered only where there is something to sum, in Gy(w) only where
   assert.equal(dependsOnBlood(full, 'weighted'), true);
   assert.equal(dependsOnBlood(full, 'gamma'), false);
   assert.equal(dependsOnBlood(total, 'total'), false);
+});
+
+test('the value of what was 100 % before never stands beside what is 100 % now', () => {
+  const scene = dose({ reference: { kind: 'region-max', region: 'brain' } });
+  const words = (isOld, value) =>
+    referenceText({
+      room: { plan: { value: plan }, scene: { value: scene } },
+      doses: { scale: { value: { isOld } }, reference: { value } },
+    });
+  assert.match(words(false, 16.2), / max, 16\.2 Gy\(w\)$/);
+  assert.match(words(true, 16.2), / max$/);
+  assert.match(words(false, null), / max$/);
 });
 
 test('what a total lacks is said', () => {
