@@ -70,6 +70,7 @@ function checkField(field, { enums, references, objects, known, isMessage }, whe
   need(types.includes(field.type), where, `unknown type ${field.type}`);
   need(field.type !== 'json' || isMessage, where, 'only a message has JSON that is not described');
   need(typeof field.about === 'string' && field.about !== '', where, 'needs a sentence "about"');
+  need(field.undo === undefined || (typeof field.undo === 'string' && field.undo !== ''), where, '"undo" is words for a person');
   if (['number', 'integer', 'vec3', 'direction', 'size'].includes(field.type))
     need(Number.isFinite(field.min) && Number.isFinite(field.max) && field.min <= field.max, where, 'needs min and max');
   if (field.type === 'text') need(Number.isInteger(field.max) && field.max > 0, where, 'needs max, in characters');

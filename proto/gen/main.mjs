@@ -6,6 +6,7 @@
 //   packets_gen.h packets_gen.c  structs, field tables and limits of the packets between daemon and renderer
 //   openapi.json openapi.c  the HTTP API, as a file and for the daemon to serve
 //   wire.js              the field tables for the page
+//   undo_words.js        what a step of undo is called, for the page
 //   volume_presets.h volume_presets.c volume_presets.js  transfer functions to begin with
 //   dose_presets.h dose_presets.c dose_presets.js  weights by kind of tissue, isoeffective parameters, isodose levels
 //   reference.html       all of it for people
@@ -25,6 +26,7 @@ import { problemHeader, problemSource } from './problem_c.mjs';
 import { readShaders, shadersHeader, shadersSource } from './shaders_c.mjs';
 import { referencePage } from './reference.mjs';
 import { reportCodes } from './report_codes.mjs';
+import { undoWordsScript } from './undo_words.mjs';
 
 const proto = join(dirname(fileURLToPath(import.meta.url)), '..');
 const read = (name) => JSON.parse(readFileSync(join(proto, name), 'utf8'));
@@ -60,6 +62,7 @@ write('dose_presets.h', dosePresetsHeader());
 write('dose_presets.c', dosePresetsSource(dosePresets));
 write('dose_presets.js', dosePresetsScript(dosePresets));
 write('wire.js', wireScript(scene, messages));
+write('undo_words.js', undoWordsScript(scene));
 write(
   'reference.html',
   referencePage(scene, messages, packets, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))),

@@ -1,5 +1,5 @@
 // wire.js: the descriptions as data for the page; web/js/wire/check.js reads them.
-// Without the sentences "about", which are half of the text and nothing that the page needs.
+// Without the sentences "about", which are half of the text and nothing that the page needs, and the words "undo", which are in undo_words.js.
 const wordsOf = (enums) => Object.fromEntries(Object.entries(enums).map(([name, { values }]) => [name, values.map(([word]) => word)]));
 
 /** Words of enums and fields of objects, of a checked description of documents. */
@@ -10,7 +10,8 @@ export function tables({ enums, objects, documents }) {
   };
 }
 
-const text = (value) => JSON.stringify(value, (key, part) => (key === 'about' && typeof part === 'string' ? undefined : part), 1);
+const text = (value) =>
+  JSON.stringify(value, (key, part) => ((key === 'about' || key === 'undo') && typeof part === 'string' ? undefined : part), 1);
 
 export function wireScript(scene, messages) {
   const { enums, objects } = tables(scene);

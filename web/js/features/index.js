@@ -29,7 +29,6 @@ import { tracks } from './tracks/feature.js';
  * @property {Tab[]} [tabs] of the inspector
  * @property {Record<string, (world, at: number, event: KeyboardEvent) => void>} [keys] of the pane that has the focus, by letter
  * @property {(world, event: KeyboardEvent, at: number) => (() => void)|null} [key] what another key does there
- * @property {Record<string, (name: string, inner: string[]) => string>} [undo] words for a step, by group of the scene's fields
  * @property {(world) => unknown} [bar] above the panes
  * @property {{has: (plan) => boolean, draw: (world) => unknown}} [drawer] beside the panes
  * @property {(world) => unknown} [dialog] over the page @property {string[]} [dialogs] the popovers that it shows as dialogs

@@ -1,13 +1,23 @@
 // The words for what undo and redo would change.
-import { features } from '../features/index.js';
+import { undoWords } from '../../gen/undo_words.js';
 import { shownImage } from '../room/plan.js';
 import { number, significant, windowText } from '../parts/format.js';
 
-const regionWords = { visible: 'visibility', clipped: 'clipping', color: 'colour', representation: 'form' };
 const units = { _mm: 'mm', _px: 'px', _deg: '°' };
 
 const unitOf = (name) => Object.keys(units).find((ending) => name.endsWith(ending));
 const unique = (list) => [...new Set(list)];
+
+/** The words of proto/scene.json for the innermost field of a path that has some; undefined: none has. @param {'scene'|'view'} document */
+function wordsOf(document, path) {
+  let [tree, words] = [undoWords[document]];
+  for (const name of path) {
+    tree = Object.hasOwn(tree, name) ? tree[name] : tree['*'];
+    if (typeof tree !== 'object') return tree ?? words;
+    words = tree[''] ?? words;
+  }
+  return words;
+}
 
 /** "opacity of brain", "window", "camera of 3-D", "crosshair", "visibility of 4 regions". @param {import('../room/undo.js').Change[]} changes */
 export function stepName(changes, room) {
@@ -20,25 +30,23 @@ export function stepName(changes, room) {
   const names = [];
   if (regions.length) {
     const ids = unique(regions.map(({ path }) => path[1]));
-    const fields = unique(regions.map(({ path }) => regionWords[path[2]] ?? path[2]?.replaceAll('_', ' ')));
+    const fields = unique(regions.map(({ path }) => wordsOf('scene', path) ?? path[2]?.replaceAll('_', ' ')));
     const who = ids.length > 1 ? `${ids.length} regions` : (room.plan.value?.regions.find(({ id }) => id === ids[0])?.name ?? ids[0]);
     names.push(`${fields.length > 2 ? 'style' : fields.join(' and ')} of ${who}`);
   }
   names.push(...unique(rest.map(fieldName)));
   const panes = unique(views.map(({ of }) => room.view(of).name)).map((name) => (name.startsWith('3-D') ? name : name.toLowerCase()));
-  const what = { plane: 'plane', override: 'regions', beam: views[0]?.path[1] === 'aperture_mm' ? 'ring' : 'place' };
   if (panes.length)
     names.push(
-      `${views.every(({ path }) => path[0] === views[0].path[0]) ? (what[views[0].path[0]] ?? 'camera') : 'camera'} of ${panes.join(', ')}`,
+      `${views.every(({ path }) => path[0] === views[0].path[0]) ? (wordsOf('view', views[0].path) ?? 'camera') : 'camera'} of ${panes.join(', ')}`,
     );
   return names.length > 2 ? `${names[0]} and ${names.length - 1} more` : names.join(' and ');
 }
 
 function fieldName({ path }) {
-  const [group, name, ...inner] = path;
-  if (group === 'axes') return 'patient axes';
-  const known = features.find(({ undo }) => undo?.[group])?.undo[group](name, inner);
+  const known = wordsOf('scene', path);
   if (known) return known;
+  const [group, name] = path;
   const ending = unitOf(name ?? '');
   return [group, ...(name ? [ending ? name.slice(0, -ending.length) : name] : [])].join(' ').replaceAll('_', ' ');
 }

@@ -6,7 +6,8 @@ import { test } from 'node:test';
 import { checkedDocuments, checkedMessages } from '../../../../proto/gen/check.mjs';
 import { openapi } from '../../../../proto/gen/openapi.mjs';
 import { tableOf } from '../../../../proto/gen/reference.mjs';
-import { tables as tablesOf } from '../../../../proto/gen/wire_js.mjs';
+import { undoWords } from '../../../../proto/gen/undo_words.mjs';
+import { tables as tablesOf, wireScript } from '../../../../proto/gen/wire_js.mjs';
 import { load, root } from '../page.mjs';
 
 const { WireError, readDocument } = await load('wire/check.js');
@@ -68,10 +69,21 @@ function changedField(object, field, change) {
   return changed;
 }
 
+test('words of undo stand by the path of their field, those of a map for all its keys, and not in the tables of fields', () => {
+  const level = { fields: [{ name: 'value', undo: 'value of a level' }, { name: 'line' }] };
+  const dose = { fields: [{ name: 'id' }, { name: 'levels', type: 'map', object: 'level', undo: 'levels' }] };
+  const dots = { name: 'dots', type: 'list', object: 'level', undo: 'dots' };
+  const scene = { fields: [{ name: 'dose', type: 'object', object: 'dose' }, { name: 'still' }, dots] };
+  const given = { enums: {}, objects: { level, dose }, documents: { scene } };
+  assert.deepEqual(undoWords(given), { scene: { dose: { levels: { '': 'levels', '*': { value: 'value of a level' } } }, dots: 'dots' } });
+  assert.doesNotMatch(wireScript(given, { enums: {}, messages: [] }), /undo/);
+});
+
 for (const [what, changed, words] of [
   ['a number without limits', changedField('style', 'opacity', { max: undefined }), /style\.opacity: needs min and max/],
   ['a default out of range', changedField('style', 'opacity', { default: 2 }), /style\.opacity: the default is out of range/],
   ['a list without a limit', changedField('volume', 'points', { max_items: undefined }), /volume\.points: needs max_items/],
+  ['undo without words', changedField('style', 'opacity', { undo: '' }), /style\.opacity: "undo" is words for a person/],
   ['a map without a limit', changedField('dose_style', 'levels', { max_items: 0 }), /dose_style\.levels: needs max_items/],
   [
     'an object inside itself',

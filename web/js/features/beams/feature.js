@@ -22,15 +22,6 @@ export async function toggleMove(world) {
   editing.loaded.peek()?.startMoving(world);
 }
 
-const words = {
-  id: 'chosen beam',
-  looks: 'look of a beam',
-  opacity: 'opacity of openings',
-  slice: 'beam slice',
-  draft: 'draft beam',
-  kept: 'kept draft',
-};
-
 /** @type {import('../index.js').Feature} */
 export const beams = {
   sections: [
@@ -48,7 +39,6 @@ export const beams = {
   blocks: editing,
   keys: { b: ({ room, ui }) => toggleBeamEye(room, ui) },
   key: beamKey,
-  undo: { beam: (name) => words[name] ?? 'beam' },
   bar: (world) => (editing.loaded.value || world.room.scene.value?.beam?.draft.enabled ? known(editing)?.draftBar(world) : null),
   strip: { mode: (world) => ofBeams(world.room)?.moveTool(world) },
   panesMenu: presetMenu,

@@ -9,5 +9,4 @@ export const clip = {
   blocks: later(() => import('./later_blocks.js')),
   isSoon: true,
   keys: { c: ({ room, ui }, at) => toggleClips(room, ui, at), k: ({ room, ui }, at) => toggleCaps(room, ui, at) },
-  undo: { clip: (name) => (name === 'cap' ? 'what caps show' : `clip ${name.replace('_', ' ')}`) },
 };

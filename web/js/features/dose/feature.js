@@ -9,28 +9,6 @@ import { ChartLoader, hasCharts } from './plots/chart_loader.js';
 const panels = later(() => import('./later_rows.js'));
 const drawn = later(() => import('./later_drawn.js'));
 
-const words = {
-  id: 'dose shown',
-  quantity: 'quantity of dose',
-  grid: 'grid of the dose',
-  factor: 'factor of the dose',
-  sum: 'sum of doses',
-  population: 'univels of regions',
-  tissue: 'weights of isodoses',
-  blood_ppm: 'boron in blood',
-  weights: 'weights',
-  weights_name: 'weights',
-  error: 'statistical error',
-  interpolation: 'values between dose voxels',
-  reference: 'reference of dose',
-  levels: 'isodose levels',
-  wash: 'wash',
-  lines: 'isodose lines',
-  surfaces: 'isodose surfaces',
-  coverage: 'coverage',
-  compare: 'comparison of doses',
-};
-
 /** Exports of later_rows.js; null for a plan without doses, and until it is loaded. */
 const ofDose = (room) => (room.plan.value?.doses.length ? known(panels) : null);
 
@@ -93,7 +71,6 @@ export const dose = {
   isSoon: true,
   tabs: [{ id: 'dvh', name: 'DVH', inSheet: hasCharts, draw: ({ charts }) => charts.draw('sheet') }],
   keys: { d: toggle('wash'), i: toggle('lines'), q: withDose(pinHere) },
-  undo: { dose: (name) => words[name] ?? 'dose', constraints: () => 'limit of dose', probes: () => 'pinned probe' },
   drawer: { has: hasCharts, draw: ({ charts }) => charts.draw('drawer') },
   strip: {
     show: (world, size) => doseTools(world, (part, at) => ofDose(world.room)?.toggleDose(world.room, world.ui, part, at), size),

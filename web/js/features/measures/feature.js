@@ -13,8 +13,5 @@ export const measures = {
   kinds: { measure: 'measures', measures: '' },
   blocks: later(() => import('./later_blocks.js')),
   isSoon: true,
-  undo: {
-    measures: (name, [of] = []) => (of ? `${{ points: 'points', visible: 'visibility' }[of] ?? of} of a measure` : 'measure'),
-  },
   pane: ({ room, ui, ellipses, box, pointAt }, view) => new PaneMeasures({ room, ui, ellipses }, view, box, pointAt),
 };
