@@ -10,7 +10,9 @@ import { Redraw } from './parts/redraw.js';
 import { Decoder } from './pane/decoder.js';
 import { keepTextVisible } from './parts/visible_text.js';
 import { isId } from './wire/check.js';
+import { language } from './languages/index.js';
 
+document.documentElement.lang = language;
 keepTextVisible(document.documentElement);
 
 /** The browser's storage between visits; null where it keeps nothing. */

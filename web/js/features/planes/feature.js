@@ -3,10 +3,11 @@ import { later } from '../../parts/lazy.js';
 import { hasClips } from '../clip/clip_rows.js';
 import { obliqueNote, obliqueRows } from './oblique_rows.js';
 import { PaneLines } from './pane_lines.js';
+import { say } from './words.js';
 
 /** @type {import('../index.js').Feature} */
 export const planes = {
-  sections: [{ id: 'planes', name: 'Planes', icon: 'plane', place: 2, has: hasClips, note: obliqueNote, rows: obliqueRows }],
+  sections: [{ id: 'planes', name: say.section, icon: 'plane', place: 2, has: hasClips, note: obliqueNote, rows: obliqueRows }],
   kinds: { oblique: 'planes' },
   blocks: later(() => import('./later_blocks.js')),
   isSoon: true,

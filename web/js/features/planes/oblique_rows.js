@@ -6,6 +6,7 @@ import { facing, freeId, maxObliques, newOblique, obliqueName } from '../../room
 import { icon } from '../../parts/icons.js';
 import { showOblique } from '../../pane/pane_kind.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
+import { say } from './words.js';
 
 export const obliquesOf = ({ room }) => room.scene.value?.image.obliques ?? {};
 export const isFull = (world) => Object.keys(obliquesOf(world)).length >= maxObliques;
@@ -28,16 +29,16 @@ export function obliqueRows(world) {
       const toggle = (event) => change(world, id, { visible: !oblique.visible }, event);
       return treeRow(
         world,
-        { kind: 'oblique', id, words: [words, about], title: `${words}: faces ${about}`, isOn: oblique.visible, toggle },
+        { kind: 'oblique', id, words: [words, about], title: say.faces({ plane: words, direction: about }), isOn: oblique.visible, toggle },
         html`
-      ${eye(oblique.visible, `Show ${words} in 3-D`, 'Show or hide in 3-D', isDisabled, toggle)}${name(words)} <span class="tail clipped">${about}</span>
-      <button class="eye" tabindex="-1" aria-label=${`Show ${words} in a pane`} title="Show in a pane" @click=${(event) => {
+      ${eye(oblique.visible, say.show({ plane: words }), say.showOrHide, isDisabled, toggle)}${name(words)} <span class="tail clipped">${about}</span>
+      <button class="eye" tabindex="-1" aria-label=${say.paneOf({ plane: words })} title=${say.pane} @click=${(event) => {
         event.stopPropagation();
         openOblique(world, id);
       }}>${icon('single')}</button>`,
       );
     },
-  )}${treeRow(world, { kind: 'oblique', id: '', words: ['New plane', '…'], title: 'By angles, by points, by a line, along a beam' }, html`${icon('plane')}${name('New plane …')}`)}`;
+  )}${treeRow(world, { kind: 'oblique', id: '', words: [say.newPlane, '…'], title: say.ways }, html`${icon('plane')}${name(say.addPlane)}`)}`;
 }
 
 // ---- changes ------------------------------------------------------------------------------------------------------------
@@ -48,9 +49,9 @@ export const change = ({ room, ui }, id, fields, event) =>
 /** Makes a plane and chooses it; with an id, gives that plane another place. @param {{origin_mm: number[], normal: number[]}|null} plane */
 export function setOblique(world, id, plane, event) {
   const { ui } = world;
-  if (!plane) return void ui.notify('warn', 'That is no plane: the points lie on one line.', 'oblique');
+  if (!plane) return void ui.notify('warn', say.onOneLine, 'oblique');
   if (id) return void change(world, id, plane, event);
-  if (isFull(world)) return void ui.notify('warn', `There are ${maxObliques} planes already; delete one first.`, 'oblique');
+  if (isFull(world)) return void ui.notify('warn', say.full({ n: maxObliques }), 'oblique');
   const made = freeId(obliquesOf(world));
   change(world, made, newOblique(plane), event);
   ui.select('oblique', made);

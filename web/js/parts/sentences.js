@@ -1,0 +1,33 @@
+// What a person reads stands in a table of each folder (words.js; later_words.js for what is loaded later), in English; languages/ has other languages.
+import { language, texts } from '../languages/index.js';
+
+const rules = new Intl.PluralRules(language);
+const inOrder = ['zero', 'one', 'two', 'few', 'many', 'other'];
+const forms = inOrder.filter((form) => rules.resolvedOptions().pluralCategories.includes(form));
+
+/**
+ * A text may have places: "{name}" takes a value, "{n|row|rows}" the form for that number, in the order of the language's plurals (CLDR: zero one two few
+ * many other). Texts without places are strings, others functions of their values; given a template for a place, such a function returns a list that
+ * lit-html draws, else a string.
+ * @template {Record<string, string>} T
+ * @param {string} group "shell", "dose", as languages/ has it @param {T} english by key
+ * @returns {{[K in keyof T]: any}}
+ */
+export function sentences(group, english) {
+  const own = texts[group] ?? {};
+  return Object.fromEntries(Object.entries(english).map(([key, text]) => [key, sentence(own[key] ?? text)]));
+}
+
+function sentence(text) {
+  const pieces = text.split(/\{([^}]*)\}/); // text, place, text, …
+  if (pieces.length === 1) return text;
+  return (values) => {
+    const all = pieces.map((piece, n) => (n % 2 ? filled(piece, values) : piece));
+    return all.some((one) => typeof one === 'object') ? all : all.join('');
+  };
+}
+
+function filled(place, values) {
+  const [name, ...words] = place.split('|');
+  return words.length ? (words[forms.indexOf(rules.select(values[name]))] ?? words.at(-1)) : values[name];
+}
