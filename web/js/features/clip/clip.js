@@ -3,48 +3,41 @@ import { dot, scale, unit } from '../../parts/vec.js';
 import { alongOf, beamPoint, beamShown } from '../../room/beam_line.js';
 import { normalOfAngles, normalOfKind, originAt, reachOf, roundedOrigin } from '../../room/obliques.js';
 import { crosshair, shownImage } from '../../room/plan.js';
+import { say } from './words.js';
 
 const letters = { axial: 'S', coronal: 'P', sagittal: 'L' };
 const axisOf = { axial: 2, coronal: 1, sagittal: 0 };
-const axisRow = (axis, end, keeps) => ({
+const axisRow = (axis, end, name, words) => ({
   id: `${axis}_${end}`,
   axis,
   end,
   other: `${axis}_${end === 'low' ? 'high' : 'low'}`,
-  name: `${axis[0].toUpperCase()}${axis.slice(1)}`,
-  keeps,
+  name,
   letter: letters[axis],
+  ...words,
 });
 
-/** The eight planes in the order of the list: of each axis first the one that is used most. high cuts off what lies towards the axis's positive letter. */
+/** The eight planes in the order of the list: of each axis first the one that is used most. high cuts off what lies towards the axis's positive letter.
+ *  name: of the axis; whole: with the side that is kept; keeps: that side; spoken: in lower case. */
 export const clipTable = [
-  axisRow('axial', 'high', 'below'),
-  axisRow('axial', 'low', 'above'),
-  axisRow('sagittal', 'high', 'right of'),
-  axisRow('sagittal', 'low', 'left of'),
-  axisRow('coronal', 'low', 'behind'),
-  axisRow('coronal', 'high', 'before'),
-  { id: 'beam', name: 'Beam', keeps: 'behind', letter: '' },
-  { id: 'free', name: 'Free', keeps: '', letter: '' },
+  axisRow('axial', 'high', say.axial, { whole: say.axialBelow, keeps: say.keepsBelow, spoken: say.axialHigh }),
+  axisRow('axial', 'low', say.axial, { whole: say.axialAbove, keeps: say.keepsAbove, spoken: say.axialLow }),
+  axisRow('sagittal', 'high', say.sagittal, { whole: say.sagittalRight, keeps: say.keepsRight, spoken: say.sagittalHigh }),
+  axisRow('sagittal', 'low', say.sagittal, { whole: say.sagittalLeft, keeps: say.keepsLeft, spoken: say.sagittalLow }),
+  axisRow('coronal', 'low', say.coronal, { whole: say.coronalBehind, keeps: say.keepsBehind, spoken: say.coronalLow }),
+  axisRow('coronal', 'high', say.coronal, { whole: say.coronalBefore, keeps: say.keepsBefore, spoken: say.coronalHigh }),
+  { id: 'beam', name: say.beam, letter: '', whole: say.beamBehind, keeps: say.keepsBehind, spoken: say.beamWord },
+  { id: 'free', name: say.free, letter: '', whole: say.free, keeps: '', spoken: say.freeWord },
 ];
 const rowOf = Object.fromEntries(clipTable.map((row) => [row.id, row]));
-const sides = {
-  axial_high: 'below',
-  axial_low: 'above',
-  sagittal_high: 'right',
-  sagittal_low: 'left',
-  coronal_low: 'behind',
-  coronal_high: 'before',
-  beam: 'behind',
-};
 const tenths = (value) => Math.round(value * 10) / 10 || 0; // no -0
 
 /** "Axial, below": the name with the side that is kept. */
-export const clipName = (id) => [rowOf[id].name, rowOf[id].keeps].filter(Boolean).join(', ');
-/** "keeps below": beside a line in a pane. */
-export const keepsWords = (id) => (sides[id] ? `keeps ${sides[id]}` : '');
-/** "axial high": for undo. */
-export const clipWords = (id) => id.replace('_', ' ');
+export const clipName = (id) => rowOf[id].whole;
+/** "keeps below", '' for the free one: beside a line in a pane. */
+export const keepsWords = (id) => rowOf[id].keeps;
+/** "axial high" */
+export const clipWords = (id) => rowOf[id].spoken;
 export const clipRow = (id) => rowOf[id];
 
 /** The beam that the plane of a beam lies across: the scene's chosen one or its draft, or one that is named. */
@@ -192,4 +185,4 @@ export const freeByAngles = (turnDeg, tiltDeg) => patchOf('free', { normal: norm
 
 /** "image, region colours", "nothing": what caps show. */
 export const capWords = ({ image, regions, outlines }) =>
-  [image && 'image', regions && 'region colours', outlines && 'outlines'].filter(Boolean).join(', ') || 'nothing';
+  [image && say.image, regions && say.regions, outlines && say.outlines].filter(Boolean).join(', ') || say.nothing;

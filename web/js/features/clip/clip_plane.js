@@ -28,9 +28,26 @@ import { clipPosition } from './clip_rows.js';
 import { checkbox, numberField } from '../../parts/fields.js';
 import { number } from '../../parts/format.js';
 import { icon, swatch } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 const tenths = (value) => Math.round(value * 10) / 10 || 0;
 const manyRegions = 8; // more are folded
+const headings = {
+  axial: say.planeAxial,
+  sagittal: say.planeSagittal,
+  coronal: say.planeCoronal,
+  beam: say.planeBeam,
+  free: say.planeFree,
+};
+/** Of each plane of an axis: its name with the side that it keeps, and what its switch does. */
+const sides = {
+  axial_high: { label: say.keepsBelow, about: say.keepBelow },
+  axial_low: { label: say.keepsAbove, about: say.keepAbove },
+  sagittal_high: { label: say.keepsRight, about: say.keepRight },
+  sagittal_low: { label: say.keepsLeft, about: say.keepLeft },
+  coronal_low: { label: say.keepsBehind, about: say.keepBehind },
+  coronal_high: { label: say.keepsBefore, about: say.keepBefore },
+};
 
 /** @param {(patch: object, event: Event) => void} change */
 export function clipBlock(world, isDisabled, change) {
@@ -45,10 +62,10 @@ function planeBlock(part) {
   const { row, plan, scene, isDisabled, change, world } = part;
   const { id } = row;
   const { enabled: isOn } = scene.clip[id];
-  return html`<section class="block clip-plane"><h3>${icon('clip')} Clip plane, ${row.axis ?? id} <span class="clip-on">${checkbox('on', isOn, isDisabled, (on, event) => change(switchedClip(plan, scene, id, on), event), 'Whether this plane cuts')}</span></h3>
+  return html`<section class="block clip-plane"><h3>${icon('clip')} ${headings[row.axis ?? id]} <span class="clip-on">${checkbox(say.on, isOn, isDisabled, (on, event) => change(switchedClip(plan, scene, id, on), event), say.whetherCuts)}</span></h3>
     ${row.axis ? axisFields(part) : id === 'beam' ? beamFields(part) : freeFields(part)}
-    <div class="buttons"><button ?disabled=${isDisabled} title="Through the crosshair" @click=${(event) => change(clipThrough(plan, scene, id, crosshair(scene)), event)}>${icon('crosshair')}To crosshair</button>
-      ${id === 'beam' ? nothing : html`<button ?disabled=${isDisabled} title="Keep the other side" @click=${(event) => flip(world, id, change, event)}>${icon('flip')}Flip</button>`}
+    <div class="buttons"><button ?disabled=${isDisabled} title=${say.throughCrosshair} @click=${(event) => change(clipThrough(plan, scene, id, crosshair(scene)), event)}>${icon('crosshair')}${say.toCrosshair}</button>
+      ${id === 'beam' ? nothing : html`<button ?disabled=${isDisabled} title=${say.otherSide} @click=${(event) => flip(world, id, change, event)}>${icon('flip')}${say.flip}</button>`}
       ${id === 'free' ? freeButtons(part) : nothing}</div></section>`;
 }
 
@@ -70,43 +87,43 @@ function axisFields({ row, plan, scene, isDisabled, change }) {
   };
   const field = (at, word) => {
     const [id, style] = [ids[at], [low, high][at]];
-    const { keeps } = clipRow(id);
-    return html`<div class=${style.enabled ? '' : 'off'}>${checkbox(word, style.enabled, isDisabled, (on, event) => change(switchedClip(plan, scene, id, on), event), `Keep what is ${keeps} it`)}
-      <span class="clip-number"><span aria-hidden="true">${row.letter}</span>${numberField(`${row.name}, keeps ${keeps}, ${row.letter} in mm`, tenths(style.position_mm), 'mm', isDisabled, (value, event) => change(movedClip(plan, scene, id, value), event))}</span></div>`;
+    const { label, about } = sides[id];
+    return html`<div class=${style.enabled ? '' : 'off'}>${checkbox(word, style.enabled, isDisabled, (on, event) => change(switchedClip(plan, scene, id, on), event), about)}
+      <span class="clip-number"><span aria-hidden="true">${row.letter}</span>${numberField(say.sideInMm({ side: label, letter: row.letter }), tenths(style.position_mm), 'mm', isDisabled, (value, event) => change(movedClip(plan, scene, id, value), event))}</span></div>`;
   };
   const thumbs = ids.map((id, at) => ({
-    label: `${row.name}, keeps ${clipRow(id).keeps}`,
+    label: sides[id].label,
     value: tenths([low, high][at].position_mm),
     text: clipPosition(row, [low, high][at].position_mm),
     isOn: [low, high][at].enabled,
     isChosen: id === row.id,
     move: move(at),
   }));
-  return html`<div class="clip-ends">${field(0, 'Keeps from')}${field(1, 'to')}</div>
+  return html`<div class="clip-ends">${field(0, say.keepsFrom)}${field(1, say.to)}</div>
     ${clipRange(range, thumbs, [low.enabled ? low.position_mm : range.low, high.enabled ? high.position_mm : range.high], isDisabled)}
     ${ends(row, range)}
-    ${leavesNothing(scene, row.axis) ? html`<p class="note why" role="status">${icon('warning', 12)} Nothing is left: each of the two planes cuts off what the other one keeps.</p>` : nothing}`;
+    ${leavesNothing(scene, row.axis) ? html`<p class="note why" role="status">${icon('warning', 12)} ${say.nothingLeft}</p>` : nothing}`;
 }
 
 const ends = (row, { low, high }) =>
   html`<div class="clip-scale"><span>${clipPosition(row, low)}</span><span>${clipPosition(row, high)}</span></div>`;
 
 /** One number and a slider with one thumb: along a beam, or along the free plane's normal. */
-function alongFields({ row, plan, scene, isDisabled, change }, label, keptFrom) {
+function alongFields({ row, plan, scene, isDisabled, change }, label, inMm, keptFrom) {
   const range = rangeOfClip(plan, scene, row.id);
   const position = positionOfClip(plan, scene, row.id);
   const move = (mm, event) => change(movedClip(plan, scene, row.id, mm), event);
   const { enabled: isOn } = scene.clip[row.id];
   const kept = !isOn ? [range.low, range.high] : keptFrom ? [position, range.high] : [range.low, position];
-  return html`<dl class="clip-list"><dt>${label}</dt><dd>${numberField(`${label} in mm`, tenths(position), 'mm', isDisabled, move)}</dd></dl>
+  return html`<dl class="clip-list"><dt>${label}</dt><dd>${numberField(inMm, tenths(position), 'mm', isDisabled, move)}</dd></dl>
     ${clipRange(range, [{ label, value: tenths(position), text: clipPosition(row, position), isOn, isChosen: true, move }], kept, isDisabled)}${ends(row, range)}`;
 }
 
 function beamFields(part) {
   const { plan, scene, isDisabled, change } = part;
   const shown = beamOf(plan, scene);
-  return html`${plan.beams.length > 1 ? html`<div class="clip-beams" role="group" aria-label="Beam of the plane">${plan.beams.map(({ id, name }) => html`<button class=${id === shown.id ? 'on' : ''} aria-pressed=${id === shown.id} ?disabled=${isDisabled} @click=${(event) => change({ clip: { beam: { id } } }, event)}>${name || id}</button>`)}</div>` : nothing}
-    ${alongFields(part, 'From the entry', true)}<p class="note">Across the beam ${shown.name || shown.id}, towards its target. What lies before the plane, as the beam runs, is cut off.</p>`;
+  return html`${plan.beams.length > 1 ? html`<div class="clip-beams" role="group" aria-label=${say.beamOf}>${plan.beams.map(({ id, name }) => html`<button class=${id === shown.id ? 'on' : ''} aria-pressed=${id === shown.id} ?disabled=${isDisabled} @click=${(event) => change({ clip: { beam: { id } } }, event)}>${name || id}</button>`)}</div>` : nothing}
+    ${alongFields(part, say.fromEntry, say.fromEntryMm, true)}<p class="note">${say.acrossBeam({ beam: shown.name || shown.id })}</p>`;
 }
 
 function freeFields(part) {
@@ -115,11 +132,11 @@ function freeFields(part) {
   const { turn, tilt } = anglesOf(normal);
   const place = (axis) => (value, event) =>
     change({ clip: { free: { origin_mm: replaced(origin, axis, Math.min(Math.max(value, -1e5), 1e5)) } } }, event);
-  return html`${alongFields(part, 'Along its direction', false)}
-    <dl class="clip-list"><dt title="About the patient's long axis: 0 anterior, 90 left, 180 posterior, −90 right">Turn</dt><dd>${numberField('Turn in degrees', tenths(turn), '°', isDisabled, (value, event) => change(freeByAngles(value, tilt), event))}</dd>
-      <dt title="Upwards: 90 superior, −90 inferior">Tilt</dt><dd>${numberField('Tilt in degrees', tenths(tilt), '°', isDisabled, (value, event) => change(freeByAngles(turn, Math.min(Math.max(value, -90), 90)), event))}</dd>
-      <dt>Through</dt><dd class="clip-origin">${['L', 'P', 'S'].map((letter, axis) => numberField(`Origin, ${letter} in mm`, tenths(origin[axis]), letter, isDisabled, place(axis)))}</dd></dl>
-    <p class="note">Cuts off what faces ${facing(normal)}. Turn: 0° anterior, 90° left; tilt: 90° superior.</p>`;
+  return html`${alongFields(part, say.alongDirection, say.alongDirectionMm, false)}
+    <dl class="clip-list"><dt title=${say.turnIs}>${say.turn}</dt><dd>${numberField(say.turnDegrees, tenths(turn), '°', isDisabled, (value, event) => change(freeByAngles(value, tilt), event))}</dd>
+      <dt title=${say.tiltIs}>${say.tilt}</dt><dd>${numberField(say.tiltDegrees, tenths(tilt), '°', isDisabled, (value, event) => change(freeByAngles(turn, Math.min(Math.max(value, -90), 90)), event))}</dd>
+      <dt>${say.through}</dt><dd class="clip-origin">${['L', 'P', 'S'].map((letter, axis) => numberField(say.originMm({ letter }), tenths(origin[axis]), letter, isDisabled, place(axis)))}</dd></dl>
+    <p class="note">${say.cutsOff({ direction: facing(normal) })}</p>`;
 }
 
 function freeButtons({ world, plan, scene, isDisabled, change }) {
@@ -129,19 +146,19 @@ function freeButtons({ world, plan, scene, isDisabled, change }) {
     change({ clip: { free: { normal: axes(camera()).forward.map((value) => Math.round(-value * 1e6) / 1e6 || 0) } } }, event);
   const shown = beamOf(plan, scene);
   const beam = shown && alongBeam({ entry_mm: shown.entry, target_mm: shown.target });
-  return html`<button ?disabled=${isDisabled} title="Square to the line of sight of the 3-D picture; what is nearer is cut off" @click=${square}>Square to the view</button>
-    ${beam ? html`<button ?disabled=${isDisabled} title=${`Through the axis of the beam ${shown.name || shown.id}, upright`} @click=${(event) => change({ clip: { free: beam } }, event)}>Along the beam</button>` : nothing}`;
+  return html`<button ?disabled=${isDisabled} title=${say.squareIs} @click=${square}>${say.square}</button>
+    ${beam ? html`<button ?disabled=${isDisabled} title=${say.throughBeam({ beam: shown.name || shown.id })} @click=${(event) => change({ clip: { free: beam } }, event)}>${say.alongBeam}</button>` : nothing}`;
 }
 
 function capBlock({ row, plan, scene, isDisabled, change }) {
   const { cap } = scene.clip;
   const image = shownImage(plan, scene);
   const set = (name) => (on, event) => change({ clip: { cap: { [name]: on } } }, event);
-  return html`<section class="block"><h3>Cap ${row ? html`<span class="clip-on">${checkbox('closed', scene.clip[row.id].cap, isDisabled, (on, event) => change({ clip: { [row.id]: { cap: on } } }, event), 'Whether the cut through solid things is closed (K: of all planes)')}</span>` : html`<span class="dim">what caps show</span>`}</h3>
-    <div class="clip-checks">${checkbox(image ? `Image, ${image.name || image.modality}` : 'Image', cap.image, isDisabled, set('image'), 'The image, as slices show it')}
-      ${checkbox('Region colours', cap.regions, isDisabled, set('regions'), 'The colours of the visible regions, mixed with the image')}
-      ${checkbox('Outlines', cap.outlines, isDisabled, set('outlines'), 'The outlines of the visible regions')}</div>
-    <p class="note">Of all planes. Where there is nothing to show a cap is dark.</p></section>`;
+  return html`<section class="block"><h3>${say.cap} ${row ? html`<span class="clip-on">${checkbox(say.closed, scene.clip[row.id].cap, isDisabled, (on, event) => change({ clip: { [row.id]: { cap: on } } }, event), say.closedIs)}</span>` : html`<span class="dim">${say.capsShow}</span>`}</h3>
+    <div class="clip-checks">${checkbox(image ? say.imageNamed({ image: image.name || image.modality }) : say.image, cap.image, isDisabled, set('image'), say.imageIs)}
+      ${checkbox(say.colours, cap.regions, isDisabled, set('regions'), say.coloursIs)}
+      ${checkbox(say.outlines, cap.outlines, isDisabled, set('outlines'), say.outlinesIs)}</div>
+    <p class="note">${say.capsNote}</p></section>`;
 }
 
 function exemptBlock({ plan, scene, isDisabled, change }) {
@@ -151,27 +168,26 @@ function exemptBlock({ plan, scene, isDisabled, change }) {
     @change=${(event) => change({ regions: { [id]: { clipped: !event.target.checked } } }, event)}>${swatch(scene.regions[id]?.color ?? color)}${name}</label>`,
   );
   const n = regions.filter(({ id }) => scene.regions[id]?.clipped === false).length;
-  return html`<section class="block"><h3>Not cut <span class="dim">by any plane</span></h3>
-    ${names.length > manyRegions ? html`<details class="more"><summary>${icon('chevronDown', 12)}Regions <span class="dim">${n ? `${number(n)} not cut` : 'all are cut'}</span></summary><div class="clip-checks">${names}</div></details>` : html`<div class="clip-checks">${names}</div>`}
+  return html`<section class="block"><h3>${say.notCut} <span class="dim">${say.byAny}</span></h3>
+    ${names.length > manyRegions ? html`<details class="more"><summary>${icon('chevronDown', 12)}${say.regions} <span class="dim">${n ? say.nNotCut({ n: number(n) }) : say.allCut}</span></summary><div class="clip-checks">${names}</div></details>` : html`<div class="clip-checks">${names}</div>`}
     <div class="clip-checks">${
       plan.images.length
-        ? html`${checkbox('Slices', !scene.image.clipped, isDisabled, (on, event) => change({ image: { clipped: !on } }, event), 'The slices in the 3-D picture')}
-      ${checkbox('Volume', !scene.image.volume.clipped, isDisabled, (on, event) => change({ image: { volume: { clipped: !on } } }, event), 'The image as a volume')}`
+        ? html`${checkbox(say.slices, !scene.image.clipped, isDisabled, (on, event) => change({ image: { clipped: !on } }, event), say.slicesIs)}
+      ${checkbox(say.volume, !scene.image.volume.clipped, isDisabled, (on, event) => change({ image: { volume: { clipped: !on } } }, event), say.volumeIs)}`
         : nothing
     }</div></section>`;
 }
 
 function cuttingBlock({ world, plan, scene, isDisabled, change }) {
   const on = enabledClips(plan, scene);
-  if (!on.length)
-    return html`<section class="block"><p class="note">No plane cuts. C in a pane turns clipping on, K closes or opens the cuts.</p></section>`;
+  if (!on.length) return html`<section class="block"><p class="note">${say.noPlane}</p></section>`;
   const off = (event) => {
     const { patch, remembered } = toggledClips(plan, scene, world.ui.clips);
     world.ui.clips = remembered;
     change(patch, event);
   };
-  return html`<section class="block"><h3>Planes that cut</h3><table><thead><tr><th scope="col">Plane</th><th scope="col">at</th><th scope="col">cap</th></tr></thead>
-      <tbody>${on.map(({ id }) => html`<tr><td>${clipName(id)}</td><td>${clipPosition(clipRow(id), positionOfClip(plan, scene, id))}</td><td aria-label=${`${clipWords(id)} ${scene.clip[id].cap ? 'with cap' : 'without cap'}`}>${scene.clip[id].cap ? icon('check', 12) : '–'}</td></tr>`)}</tbody></table>
-    <div class="buttons"><button ?disabled=${isDisabled} @click=${(event) => change(allThroughCrosshair(plan, scene), event)}>${icon('crosshair')}All to crosshair</button>
-      <button ?disabled=${isDisabled} title="All planes off, and on again with C" @click=${off}>All off</button></div></section>`;
+  return html`<section class="block"><h3>${say.planesCut}</h3><table><thead><tr><th scope="col">${say.plane}</th><th scope="col">${say.at}</th><th scope="col">${say.capColumn}</th></tr></thead>
+      <tbody>${on.map(({ id }) => html`<tr><td>${clipName(id)}</td><td>${clipPosition(clipRow(id), positionOfClip(plan, scene, id))}</td><td aria-label=${(scene.clip[id].cap ? say.withCap : say.withoutCap)({ plane: clipWords(id) })}>${scene.clip[id].cap ? icon('check', 12) : '–'}</td></tr>`)}</tbody></table>
+    <div class="buttons"><button ?disabled=${isDisabled} @click=${(event) => change(allThroughCrosshair(plan, scene), event)}>${icon('crosshair')}${say.allToCrosshair}</button>
+      <button ?disabled=${isDisabled} title=${say.allOffIs} @click=${off}>${say.allOff}</button></div></section>`;
 }

@@ -16,6 +16,7 @@ import {
 import { number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
+import { say } from './words.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
 const tenths = (value) => Math.round(value * 10) / 10 || 0;
@@ -28,7 +29,7 @@ export const hasClips = (plan) => plan.images.length + plan.regions.length;
 /** "2 on"; '' while nothing is cut. */
 export function clipNote({ room }) {
   const n = enabledClips(room.plan.value, room.scene.value).length;
-  return n ? `${n} on` : 'off';
+  return n ? say.nOn({ n }) : say.off;
 }
 
 export function clipRows(world) {
@@ -56,17 +57,17 @@ function planeRow(world, row) {
       kind: 'clip',
       id,
       words: [words, text],
-      more: [cap ? 'with cap' : 'without cap'],
-      title: `${words}: ${text}`,
+      more: [cap ? say.withCap : say.withoutCap],
+      title: say.at({ plane: words, position: text }),
       isOn,
       toggle,
       step: (by, event) => move(position + by, event),
     },
     html`
-    ${eye(isOn, `Clip plane ${words}`, isOn ? 'Do not cut here' : 'Cut here; at first through the crosshair', isDisabled, toggle)}${name(words)}
+    ${eye(isOn, say.clipPlane({ plane: words }), isOn ? say.uncut : say.cut, isDisabled, toggle)}${name(words)}
     <span class="field clip-field" data-letter=${row.letter} @click=${still}><input type="number" step="any" tabindex="-1" .value=${live(position.toFixed(1))}
-      aria-label=${`Position of ${words} in mm`} ?disabled=${isDisabled} @change=${(event) => move(event.target.valueAsNumber, event)}></span>
-    <button class="clip-cap" tabindex="-1" aria-pressed=${cap} aria-label=${`Cap of ${words}`} title=${cap ? 'The cut is closed with a cap; leave it open' : 'Close the cut with a cap'} ?disabled=${isDisabled}
+      aria-label=${say.positionOf({ plane: words })} ?disabled=${isDisabled} @change=${(event) => move(event.target.valueAsNumber, event)}></span>
+    <button class="clip-cap" tabindex="-1" aria-pressed=${cap} aria-label=${say.capOf({ plane: words })} title=${cap ? say.leaveOpen : say.close} ?disabled=${isDisabled}
       @click=${(event) => {
         event.stopPropagation();
         change({ clip: { [id]: { cap: !cap } } }, event);
@@ -79,8 +80,8 @@ function capsRow(world) {
   const words = capWords(world.room.scene.value.clip.cap);
   return treeRow(
     world,
-    { kind: 'clip', id: 'caps', words: ['Caps show', words], title: `Caps show ${words}` },
-    html`${icon('image')}${name('Caps show')} <span class="tail clipped">${words}</span>`,
+    { kind: 'clip', id: 'caps', words: [say.caps, words], title: say.capsShow({ what: words }) },
+    html`${icon('image')}${name(say.caps)} <span class="tail clipped">${words}</span>`,
   );
 }
 
@@ -89,7 +90,7 @@ function actionRows({ room, ui }) {
   const nOn = enabledClips(room.plan.value, room.scene.value).length;
   const toggle = (event) => toggleClips(room, ui, event.timeStamp);
   const move = (event) => room.patchScene(allThroughCrosshair(room.plan.value, room.scene.value), how(ui, event));
-  return html`${actionRow(room, ui, 'switch', 'clip', nOn ? 'All off' : 'On again', !nOn && !ui.clips.length, toggle)}${actionRow(room, ui, 'crosshair', 'crosshair', 'All to crosshair', !nOn, move)}`;
+  return html`${actionRow(room, ui, 'switch', 'clip', nOn ? say.allOff : say.onAgain, !nOn && !ui.clips.length, toggle)}${actionRow(room, ui, 'crosshair', 'crosshair', say.allToCrosshair, !nOn, move)}`;
 }
 
 function actionRow(room, ui, id, picture, words, isOff, act) {
@@ -116,5 +117,5 @@ export function toggleClips(room, ui, at) {
 export function toggleCaps(room, ui, at) {
   const patch = toggledCaps(room.plan.value, room.scene.value);
   if (patch) room.patchScene(patch, { view: ui.active.value, at });
-  else ui.notify('ok', 'No clip plane cuts, so there is nothing to cap.', 'clip');
+  else ui.notify('ok', say.nothingToCap, 'clip');
 }
