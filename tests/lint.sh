@@ -183,6 +183,38 @@ planted_import() {
     echo "$out"
     return 1
 }
+page_words() { "${NODE:-node}" tests/page_words.mjs; }
+planted_words() {
+    local folder out expected
+    folder=$(mktemp -d)
+    mkdir -p "$folder/web/js/clip" "$folder/web/js/parts"
+    printf "import { say } from './clip/clip.js';\n\nsay();\n" >"$folder/web/js/main.js"
+    cat >"$folder/web/js/clip/clip.js" <<'JS'
+import { html } from '../parts/html.js';
+import { say } from './words.js';
+import { say as later } from './later_words.js';
+
+const names = { axial: 'Axial cut', icon: 'eye-off' };
+export const clip = (ui, n) => html`<p class="a note" title="Planted one" data-key="Aa bb">${say.none} mm<b>Planted two</b>${n ? 'planted' : names.axial} ${n === 'all of' ? icon('eye') : later.name}</p>
+  <i class=${`old ${n}`} aria-label=${`planted ${n}`} @click=${() => ui.notify('ok', `Planted ${n} more`)}></i>`;
+JS
+    printf "export const say = sentences('clip', {\n  some: 'Some',\n});\n" >"$folder/web/js/clip/words.js"
+    printf "export const say = sentences('clip.later', {\n  name: 'Name',\n});\n" >"$folder/web/js/clip/later_words.js"
+    expected='web/js/clip/clip.js:6: web/js/clip/words.js has no "none"
+web/js/clip/words.js:2: nothing reads "some"
+web/js/clip/clip.js is loaded at once, and imports web/js/clip/later_words.js
+web/js/clip/clip.js:6: stands outside of a table of words: Planted one
+web/js/clip/clip.js:6: stands outside of a table of words: Planted two
+web/js/clip/clip.js:5: stands outside of a table of words: Axial cut
+web/js/clip/clip.js:6: stands outside of a table of words: planted
+web/js/clip/clip.js:7: stands outside of a table of words: planted {}
+web/js/clip/clip.js:7: stands outside of a table of words: Planted {} more'
+    out=$("${NODE:-node}" tests/page_words.mjs "$folder")
+    rm -rf "$folder"
+    [ "$out" = "$expected" ] && return 0
+    diff <(echo "$expected") <(echo "$out")
+    return 1
+}
 comments_begin() { "${NODE:-node}" tests/comments.mjs $(sources '*.c' '*.h' '*.cc' '*.hh' '*.inc' '*.glsl' '*.vert' '*.frag' '*.js' '*.mjs' '*.css'); }
 planted_comment() {
     local file out
@@ -221,6 +253,8 @@ check "JavaScript and CSS are laid out and free of mistakes as biome.jsonc says 
 check "a name that nobody declares, an unknown property of CSS and a line out of layout are found" planted_script
 check "the page's imports follow tests/page_layers.txt" page_layers
 check "an import from one feature to another, and one upwards, are found" planted_import
+check "what a person reads on the page stands in tables of words (tests/page_words.mjs)" page_words
+check "texts outside of a table, keys that are missing or too many, and a table of later in what is loaded at once are found" planted_words
 check "comments begin with their subject (tests/comments.mjs)" comments_begin
 check "comments that begin in the middle are found" planted_comment
 check "locks stand in core/base alone" locks_in_base

@@ -1,0 +1,224 @@
+// Finds what a person reads outside of the tables of words: node tests/page_words.mjs [ROOT]; prints each, and fails then. Strings that only look like
+// words, and files whose sentences are not in a table yet, stand in tests/page_words.txt. Of the tables: each key is read somewhere, none that is read is
+// missing, and no module that is loaded at once imports one of what is loaded later.
+import { existsSync, readFileSync, readdirSync } from 'node:fs';
+import { basename, dirname, join, normalize } from 'node:path';
+import { ancestor } from 'acorn-walk';
+import { parse } from 'acorn';
+
+const root = process.argv[2] ?? '.';
+const top = 'web/js';
+const entry = `${top}/main.js`;
+const mechanism = `${top}/parts/sentences.js`;
+const readAttributes = ['title', 'aria-label', 'aria-description', 'aria-valuetext', 'aria-roledescription', 'placeholder', 'alt', 'label'];
+const units =
+  /\b(mm|cm|dm|Gy|HU|px|keV|MeV|eV|ppm|ug|ml|kg|min|ms|kB|MB|GB|SUV|Beamroom|CT|MR|PET|DICOM|RTSTRUCT|SEG|NIfTI|NRRD|CSV|PNG|JSON|PDF|RBE|CBE|OER)\b|&\w+;/g;
+
+/** "path", "path text": files and strings. @returns {{files: Set<string>, strings: Map<string, string[]>}} */
+function readAllowed(text) {
+  const lines = text.split('\n').filter((line) => line && !line.startsWith('#'));
+  const strings = new Map();
+  for (const line of lines.filter((one) => one.includes(': '))) {
+    const at = line.indexOf(': ');
+    strings.set(line.slice(0, at), [...(strings.get(line.slice(0, at)) ?? []), line.slice(at + 2)]);
+  }
+  return { files: new Set(lines.filter((line) => !line.includes(': '))), strings };
+}
+
+const scripts = (folder) =>
+  readdirSync(join(root, folder), { withFileTypes: true }).flatMap((one) =>
+    one.isDirectory() ? scripts(`${folder}/${one.name}`) : one.name.endsWith('.js') ? [`${folder}/${one.name}`] : [],
+  );
+
+/** Letters but units, and letters that stand alone (L R A P S I, keys, axes). */
+const isRead = (text) => /\p{L}\p{L}/u.test(text.replace(units, ' '));
+/** A name for the program (a class, a field, an icon) is one word without a capital at its beginning. */
+const isSentence = (text) => isRead(text) && (/\p{L}\p{L}+[,:;.]? [\p{L}({]/u.test(text) || /^\p{Lu}\p{Ll}+([ .,:…]|$)/u.test(text.trim()));
+
+/** Where the pieces of a template and its values stand. @returns {{texts: [string, number][], values: string[]}} read texts with their offsets; of each value its attribute, '' for text */
+function placesOf(quasis) {
+  const texts = [];
+  const values = [];
+  let [state, attribute, quote, name] = ['text', '', '', ''];
+  for (const { value, start } of quasis) {
+    const html = value.raw;
+    let from = 0;
+    const take = (to) => (state === 'text' || readAttributes.includes(attribute)) && texts.push([html.slice(from, to), start + from]);
+    for (let at = 0; at < html.length; at++) {
+      const c = html[at];
+      if (state === 'text' && c === '<' && /[a-z/!]/i.test(html[at + 1] ?? '')) {
+        take(at);
+        [state, name, attribute] = ['tag', '', ''];
+      } else if (state === 'tag') {
+        if (c === '>') [state, from] = ['text', at + 1];
+        else if (c === '=') [attribute, name, state, quote, from] = [name, '', 'value', '', at + 1];
+        else name = /[\s/<]/.test(c) ? '' : name + c;
+      } else if (state === 'value') {
+        if (!quote && (c === '"' || c === "'")) [quote, from] = [c, at + 1];
+        else if (quote ? c === quote : /[\s>]/.test(c)) {
+          take(at);
+          [state, attribute, from] = [c === '>' ? 'text' : 'tag', '', at + 1];
+        }
+      }
+    }
+    if (state !== 'tag') take(html.length);
+    values.push(state === 'value' ? attribute : state === 'tag' ? '(tag)' : '');
+  }
+  return { texts, values };
+}
+
+const skipped = /^(querySelector|querySelectorAll|closest|matches|import|setAttribute|getAttribute|styled|error|warn|debug)$/;
+/** True of a text that never reaches a person: a key of an event, a selector, a name that is compared, an error of the program. */
+function isForProgram(parents) {
+  const [own, parent, above] = parents;
+  if (parent.type === 'BinaryExpression' && parent.operator !== '+') return true;
+  if (parent.type === 'Property' && parent.key === own) return true;
+  if (parent.type === 'MemberExpression' || parent.type === 'SwitchCase' || parent.source === own) return true;
+  if (parents.some(({ callee }) => skipped.test(callee?.property?.name ?? callee?.name ?? ''))) return true;
+  return parent.type === 'ArrayExpression' && above?.type === 'MemberExpression'; // ['one', 'two'].includes(…)
+}
+
+/** Through values alone (a ? b : c, a + b, a ?? b, a piece of a text), not through an argument. */
+const isValue = (parents, end) => {
+  for (let at = 0; parents[at] !== end; at++) {
+    const { type, operator, test } = parents[at + 1];
+    if (!/^(Conditional|Logical|Binary)Expression$|^TemplateLiteral$/.test(type) || test === parents[at]) return false;
+    if (type === 'BinaryExpression' && operator !== '+') return false;
+  }
+  return true;
+};
+
+/** @returns {{line: number, text: string}[]} what a person reads in a file */
+function readIn(source, tree) {
+  const found = [];
+  const lineOf = (offset) => source.slice(0, offset).split('\n').length;
+  const say = (offset, text) => found.push({ line: lineOf(offset), text: text.trim().replace(/\s+/g, ' ') });
+  const attributes = new Map(); // of a value in a template, its attribute
+  const isTemplate = (node) => node.type === 'TaggedTemplateExpression' && /^(html|svg)$/.test(node.tag.name);
+  ancestor(tree, {
+    TaggedTemplateExpression(node) {
+      if (!isTemplate(node)) return;
+      const { texts, values } = placesOf(node.quasi.quasis);
+      for (const [text, at] of texts) if (isRead(text)) say(at + text.search(/\S/), text);
+      for (const [n, value] of node.quasi.expressions.entries()) attributes.set(value, values[n]);
+    },
+  });
+  const literal = (node, text, ancestors) => {
+    if (!isRead(text)) return;
+    const parents = [...ancestors].reverse();
+    if (isForProgram(parents)) return;
+    const value = parents.find((one) => attributes.has(one));
+    const template = parents.findIndex(isTemplate);
+    const attribute = value && parents.indexOf(value) < template ? attributes.get(value) : null;
+    const isShown = attribute === '' || readAttributes.includes(attribute);
+    if (attribute !== null && !isShown && !/^[@.]/.test(attribute) && isValue(parents, value)) return;
+    if ((isShown && isValue(parents, value)) || isSentence(text)) say(node.start, text);
+  };
+  ancestor(tree, {
+    Literal: (node, _, ancestors) => typeof node.value === 'string' && literal(node, node.value, ancestors),
+    TemplateLiteral(node, _, ancestors) {
+      if (ancestors.at(-2)?.type === 'TaggedTemplateExpression' && isTemplate(ancestors.at(-2))) return;
+      const whole = node.quasis.map(({ value }) => value.cooked).join('{}');
+      literal(node, whole, ancestors);
+    },
+  });
+  return found;
+}
+
+/** The table of a file that has one. @returns {{group: string, keys: Map<string, number>}|null} */
+function tableOf(tree) {
+  let table = null;
+  ancestor(tree, {
+    CallExpression({ callee, arguments: [group, english] }) {
+      if (callee.name !== 'sentences' || english?.type !== 'ObjectExpression') return;
+      table = { group: group.value, keys: new Map(english.properties.map(({ key, loc }) => [key.name ?? key.value, loc.start.line])) };
+    },
+  });
+  return table;
+}
+
+const trees = new Map();
+const sources = new Map();
+for (const path of scripts(top)) {
+  sources.set(path, readFileSync(join(root, path), 'utf8'));
+  trees.set(path, parse(sources.get(path), { ecmaVersion: 'latest', sourceType: 'module', locations: true }));
+}
+const faults = [];
+const tables = new Map();
+for (const [path, tree] of trees) {
+  const table = path === mechanism ? null : tableOf(tree);
+  if (table) tables.set(path, table);
+}
+
+const rules = join(root, 'tests/page_words.txt');
+const allowed = readAllowed(existsSync(rules) ? readFileSync(rules, 'utf8') : '');
+const folderOf = (path) =>
+  dirname(path)
+    .replace(`${top}/`, '')
+    .replace(/^features\//, '')
+    .replace(top, 'page');
+const groups = new Map();
+for (const [path, { group }] of tables) {
+  const own = folderOf(path);
+  if (basename(path) === 'words.js' ? group !== own : !group.startsWith(`${own.split('/')[0]}.`) || !path.endsWith('_words.js'))
+    faults.push(`${path}: its group is "${group}"`);
+  if (groups.has(group)) faults.push(`${path}: ${groups.get(group)} has the group "${group}"`);
+  groups.set(group, path);
+}
+
+/** Imports with their names. @returns {{path: string, names: [string, string][]}[]} the table's name and its own */
+const importsOf = (path) =>
+  trees
+    .get(path)
+    .body.filter(({ source }) => source)
+    .map(({ source, specifiers = [], loc }) => ({
+      path: normalize(join(dirname(path), source.value)),
+      names: specifiers.map(({ imported, local }) => [imported?.name ?? '*', local.name]),
+      line: loc.start.line,
+    }));
+
+const used = new Map([...tables.keys()].map((path) => [path, new Set()]));
+for (const [path, tree] of trees)
+  for (const { path: other, names } of importsOf(path)) {
+    const table = tables.get(other);
+    for (const [, own] of table ? names : []) {
+      ancestor(tree, {
+        MemberExpression({ object, property, computed, loc }) {
+          if (object.type !== 'Identifier' || object.name !== own) return;
+          const keys = computed ? (property.type === 'Literal' ? [property.value] : [...table.keys.keys()]) : [property.name];
+          for (const key of keys) {
+            used.get(other).add(key);
+            if (!table.keys.has(key)) faults.push(`${path}:${loc.start.line}: ${other} has no "${key}"`);
+          }
+        },
+      });
+    }
+  }
+for (const [path, { keys }] of tables)
+  for (const [key, line] of keys) if (!used.get(path).has(key)) faults.push(`${path}:${line}: nothing reads "${key}"`);
+
+const atOnce = new Set();
+const visit = (path, from) => {
+  if (tables.has(path) && basename(path) !== 'words.js') faults.push(`${from} is loaded at once, and imports ${path}`);
+  if (atOnce.has(path) || !trees.has(path)) return;
+  atOnce.add(path);
+  for (const { path: other } of importsOf(path)) visit(other, path);
+};
+visit(entry, '');
+
+let n = 0;
+for (const [path, tree] of trees) {
+  if (tables.has(path)) continue;
+  const strings = allowed.strings.get(path) ?? [];
+  const found = readIn(sources.get(path), tree);
+  const left = found.filter(({ text }) => !strings.includes(text));
+  n += left.length;
+  for (const text of strings) if (!found.some((one) => one.text === text)) faults.push(`${rules}: ${path} has no "${text}" any more`);
+  if (allowed.files.has(path) && !left.length) faults.push(`${rules}: ${path} has its sentences in a table: take it off`);
+  if (!allowed.files.has(path))
+    faults.push(...left.map(({ line, text }) => `${path}:${line}: stands outside of a table of words: ${text}`));
+}
+for (const path of allowed.files) if (!trees.has(path)) faults.push(`${rules}: ${path} is not there`);
+for (const fault of faults) console.log(fault);
+if (process.env.COUNT) console.log(`${n} texts outside, ${[...tables.values()].reduce((sum, { keys }) => sum + keys.size, 0)} in tables`);
+process.exitCode = faults.length ? 1 : 0;
