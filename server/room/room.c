@@ -27,6 +27,7 @@
 #include "server/room/people/presenter.h"
 #include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
+#include "server/room/state/presence.h"
 #include "server/room/state/roles.h"
 #include "server/room/streams/display.h"
 #include "server/room/streams/lag.h"
@@ -55,12 +56,15 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
     room->max_members = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS
                             ? limits->max_members
                             : ROOM_MAX_MEMBERS;
-    room->recording_speed = limits && limits->recording_speed > 0 ? limits->recording_speed : 1;
     room->created_at_s = (int64_t)time(NULL); /* wall clock, only to be displayed */
+    events_init(room);
+    presence_init(room);
     audit_init(room);
+    saved_init(room);
     control_init(room);
     links_init(room);
     look_init(room);
+    recordings_init(room, limits && limits->recording_speed > 0 ? limits->recording_speed : 1);
     return room;
 }
 
@@ -95,7 +99,9 @@ void room_destroy(struct room *room)
     cJSON_Delete(room->scene);
     cJSON_Delete(room->restored);
     free(room->known);
-    free(room->presences);
+    saved_free(room);
+    presence_free(room);
+    events_free(room);
     free(room);
 }
 

@@ -126,7 +126,7 @@ cJSON *room_record(const struct room *room)
     cJSON_AddNumberToObject(json, "made_ms", (double)clock_wall_ms());
     cJSON_AddNumberToObject(json, "created_ms", (double)room->created_at_s * 1000);
     json_add(json, "present", presence_list(room));
-    cJSON_AddNumberToObject(json, "n_present_dropped", room->n_presences_dropped);
+    cJSON_AddNumberToObject(json, "n_present_dropped", presence_n_dropped(room));
     json_add(json, "checklist", rows_of(room, WIRE_ITEM_KIND_CHECK));
     json_add(json, "decisions", rows_of(room, WIRE_ITEM_KIND_DECISION));
     json_add(json, "signatures", rows_of(room, WIRE_ITEM_KIND_SIGNATURE));

@@ -31,13 +31,19 @@ struct recorder {
     char presenter[64];
 };
 
+void recordings_init(struct room *room, double speed)
+{
+    room->recordings = mem_new(sizeof *room->recordings);
+    room->recordings->speed = speed;
+}
+
 /* ---- facts ------------------------------------------------------------------------------------------------------ */
 
 const struct room_recording *room_recording(const struct room *room, const char *id)
 {
-    for (int i = 0; i < room->n_recordings; i++)
-        if (strcmp(room->recordings[i].id, id) == 0)
-            return &room->recordings[i];
+    for (int i = 0; i < room->recordings->n; i++)
+        if (strcmp(room->recordings->list[i].id, id) == 0)
+            return &room->recordings->list[i];
     return NULL;
 }
 
@@ -49,14 +55,14 @@ void room_recording_finish(struct room_recording *recording)
 
 static int64_t recorded_ms(const struct room *room, const struct recorder *recorder)
 {
-    return (int64_t)((double)(room->now_us - recorder->start_us) * room->recording_speed / 1000);
+    return (int64_t)((double)(room->now_us - recorder->start_us) * room->recordings->speed / 1000);
 }
 
 cJSON *recordings_list(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
-    for (int i = 0; i < room->n_recordings; i++) {
-        const struct room_recording *facts = &room->recordings[i];
+    for (int i = 0; i < room->recordings->n; i++) {
+        const struct room_recording *facts = &room->recordings->list[i];
         const bool runs = room->recorder && room->recorder->facts == facts;
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "id", facts->id);
@@ -167,7 +173,7 @@ static void put_item(struct room *room, struct recorder *recorder, int64_t t_ms,
 
 static bool is_dirty(const struct room *room)
 {
-    return room->unrecorded.parts || room->unrecorded.n_items;
+    return events_unrecorded(room)->parts || events_unrecorded(room)->n_items;
 }
 
 static void sample(struct room *room)
@@ -175,7 +181,8 @@ static void sample(struct room *room)
     struct recorder *recorder = room->recorder;
     struct meeting_log *log = recorder->log;
     const int64_t t_ms = recorded_ms(room, recorder);
-    const unsigned dirty = room->unrecorded.parts;
+    const struct unrecorded *unrecorded = events_unrecorded(room);
+    const unsigned dirty = unrecorded->parts;
     const size_t n_refused = mem_n_refused();
     if (dirty & ROOM_MEMBERS) {
         meeting_log_put_all(log, t_ms, LOG_MEMBERS, recorded_members(room));
@@ -189,8 +196,8 @@ static void sample(struct room *room)
         meeting_log_put_all(log, t_ms, LOG_POINTERS, recorded_pointers(room));
     if (dirty & ROOM_ITEMS)
         meeting_log_put_all(log, t_ms, LOG_ITEMS, recorded_items(room));
-    for (size_t i = 0; i < room->unrecorded.n_items; i++)
-        put_item(room, recorder, t_ms, room->unrecorded.items[i]);
+    for (size_t i = 0; i < unrecorded->n_items; i++)
+        put_item(room, recorder, t_ms, unrecorded->items[i]);
     recorder->is_unsure = mem_n_refused() != n_refused;
     if (recorder->is_unsure) {
         log_error("room %s: a part of a recording is lost: no memory", room->id);
@@ -322,9 +329,9 @@ static bool may_start(const struct room *room, const struct member *member, stru
             problem->retry_after_ms = 500;
         return false;
     }
-    if (room->n_recordings == ROOM_MAX_RECORDINGS)
+    if (room->recordings->n == ROOM_MAX_RECORDINGS)
         return problem_set(problem, PROBLEM_LIMIT, "", "",
-                           "the room has %d recordings, and more are not allowed: delete some", room->n_recordings);
+                           "the room has %d recordings, and more are not allowed: delete some", room->recordings->n);
     return true;
 }
 
@@ -337,14 +344,14 @@ bool recording_start(struct room *room, struct member *member, const struct mess
     struct meeting_log *log = meeting_log_create();
     if (!log)
         return json_no_memory(problem, "a recording");
-    struct room_recording *facts = &room->recordings[room->n_recordings];
+    struct room_recording *facts = &room->recordings->list[room->recordings->n];
     *facts = (struct room_recording){ .state = WIRE_RECORDING_STATE_RUNNING };
     if (!recording_plan_mark(room, facts->plan_mark)) {
         meeting_log_destroy(log);
         return json_no_memory(problem, "a recording");
     }
     make_id(room, facts->id);
-    room->n_recordings++;
+    room->recordings->n++;
     (void)snprintf(facts->by, sizeof facts->by, "%s", member->id);
     (void)snprintf(facts->by_name, sizeof facts->by_name, "%s", member->name);
     (void)clock_gettime(CLOCK_REALTIME, &now); /* only to be displayed */
@@ -380,11 +387,11 @@ bool recording_stop(struct room *room, struct member *member, const struct messa
 bool recording_delete(struct room *room, const char *id)
 {
     int index = 0;
-    while (index < room->n_recordings && strcmp(room->recordings[index].id, id) != 0)
+    while (index < room->recordings->n && strcmp(room->recordings->list[index].id, id) != 0)
         index++;
-    if (index == room->n_recordings)
+    if (index == room->recordings->n)
         return false;
-    struct room_recording *facts = &room->recordings[index];
+    struct room_recording *facts = &room->recordings->list[index];
     if (room->recorder && room->recorder->facts == facts)
         end(room, WIRE_RECORDING_STATE_STOPPED, NULL);
     facts->state = WIRE_RECORDING_STATE_DELETED;
@@ -394,21 +401,21 @@ bool recording_delete(struct room *room, const char *id)
     room_recording_finish(facts);
     if (room->recorder && room->recorder->facts > facts)
         room->recorder->facts--;
-    room->n_recordings--;
-    memmove(facts, facts + 1, (size_t)(room->n_recordings - index) * sizeof *facts);
+    room->recordings->n--;
+    memmove(facts, facts + 1, (size_t)(room->recordings->n - index) * sizeof *facts);
     return true;
 }
 
 void room_restore_recording(struct room *room, struct room_recording *recording)
 {
-    if (room->n_recordings == ROOM_MAX_RECORDINGS || !id_is_valid(recording->id) ||
+    if (room->recordings->n == ROOM_MAX_RECORDINGS || !id_is_valid(recording->id) ||
         room_recording(room, recording->id)) {
         room_recording_finish(recording);
         return;
     }
     if (recording->state == WIRE_RECORDING_STATE_RUNNING)
         recording->state = WIRE_RECORDING_STATE_CUT;
-    room->recordings[room->n_recordings++] = *recording;
+    room->recordings->list[room->recordings->n++] = *recording;
     recording->marks = NULL;
 }
 
@@ -430,7 +437,8 @@ void recordings_finish(struct room *room)
 {
     recording_cut(room);
     unrecorded_reset(room, 0);
-    for (int i = 0; i < room->n_recordings; i++)
-        room_recording_finish(&room->recordings[i]);
-    room->n_recordings = 0;
+    for (int i = 0; i < room->recordings->n; i++)
+        room_recording_finish(&room->recordings->list[i]);
+    free(room->recordings);
+    room->recordings = NULL;
 }

@@ -14,6 +14,14 @@ enum {
     RECORDING_BATCH_MS = 1000
 };
 
+struct recordings {                                  /* of a room, that are kept */
+    struct room_recording list[ROOM_MAX_RECORDINGS]; /* the oldest first */
+    int n;
+    double speed; /* how many times as fast their clock runs; > 0 */
+};
+
+void recordings_init(struct room *room, double speed); /* with the room */
+
 /* The handlers of recording.start and recording.stop. */
 bool recording_start(struct room *room, struct member *member, const struct message *message, struct problem *problem);
 bool recording_stop(struct room *room, struct member *member, const struct message *message, struct problem *problem);

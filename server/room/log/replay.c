@@ -469,7 +469,7 @@ void replay_begin(struct room *room, const char *of_room, uint32_t n_named, cons
 {
     struct replay *replay = mem_new(sizeof *replay);
     *replay = (struct replay){
-        .facts = *recording, .rate = 1, .speed = room->recording_speed, .told = WIRE_REPLAY_STATE_WAITING
+        .facts = *recording, .rate = 1, .speed = room->recordings->speed, .told = WIRE_REPLAY_STATE_WAITING
     };
     (void)snprintf(replay->of_room, sizeof replay->of_room, "%s", of_room);
     replay->facts.marks = recording->marks ? cJSON_Duplicate(recording->marks, true) : NULL;

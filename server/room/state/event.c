@@ -5,16 +5,44 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/mem.h"
+
+struct events {
+    struct unrecorded unrecorded;
+    uint64_t n_item_changes;
+};
+
+void events_init(struct room *room)
+{
+    room->events = mem_new(sizeof *room->events);
+}
+
+void events_free(struct room *room)
+{
+    free(room->events->unrecorded.items);
+    free(room->events);
+}
+
+uint64_t events_n_item_changes(const struct room *room)
+{
+    return room->events->n_item_changes;
+}
+
+const struct unrecorded *events_unrecorded(const struct room *room)
+{
+    return &room->events->unrecorded;
+}
+
 void unrecorded_reset(struct room *room, unsigned parts)
 {
-    free(room->unrecorded.items);
-    room->unrecorded = (struct unrecorded){ .parts = parts };
+    free(room->events->unrecorded.items);
+    room->events->unrecorded = (struct unrecorded){ .parts = parts };
 }
 
 /* An item is recorded by its id; without memory for that all are compared. */
 static void add_item(struct room *room, const char *id)
 {
-    struct unrecorded *unrecorded = &room->unrecorded;
+    struct unrecorded *unrecorded = &room->events->unrecorded;
     if (!room->recorder || (unrecorded->parts & ROOM_ITEMS))
         return;
     for (size_t i = 0; i < unrecorded->n_items; i++)
@@ -32,9 +60,9 @@ static void add_item(struct room *room, const char *id)
 void room_event(struct room *room, unsigned parts, const char *id)
 {
     const unsigned kept = parts & ROOM_ALL_PARTS;
-    room->unrecorded.parts |= parts & ROOM_PLAN ? ROOM_ALL_PARTS : parts & ~(unsigned)ROOM_ITEMS;
+    room->events->unrecorded.parts |= parts & ROOM_PLAN ? ROOM_ALL_PARTS : parts & ~(unsigned)ROOM_ITEMS;
     if (parts & ROOM_ITEMS) {
-        room->saved.n_item_changes++;
+        room->events->n_item_changes++;
         add_item(room, id);
     }
     if (kept && room->callbacks.kept_changed && !room->replay) /* a replay is on disk already */

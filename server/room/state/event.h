@@ -11,7 +11,19 @@ enum {
     ROOM_ALL_RECORDED = ROOM_ALL_PARTS | ROOM_POINTERS | ROOM_ITEMS
 };
 
+struct unrecorded { /* has changed since the recording looked */
+    unsigned parts;
+    char (*items)[16]; /* ids, while a recording runs */
+    size_t n_items;
+};
+
+void events_init(struct room *room); /* with the room */
+void events_free(struct room *room);
+
 /* These parts have changed. id: the item's, with ROOM_ITEMS; else NULL. */
 void room_event(struct room *room, unsigned parts, const char *id);
+const struct unrecorded *events_unrecorded(const struct room *room);
+/* Changes of items since the room was made. */
+uint64_t events_n_item_changes(const struct room *room);
 /* The recording has looked at everything, or (parts) is to look at these again. */
 void unrecorded_reset(struct room *room, unsigned parts);

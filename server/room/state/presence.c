@@ -11,39 +11,67 @@
 #include "server/room/state/event.h"
 #include "server/wire/json.h"
 
-static struct presence *add(struct room *room)
+struct presence { /* one stay of a member */
+    char member[64], name[161];
+    enum wire_member_role role;
+    int64_t entered_ms, left_ms; /* since 1970; left_ms 0: still here, or the server ended */
+};
+
+struct presences {
+    struct presence *list; /* the first first; room for ROOM_MAX_PRESENCE. NULL: nobody was here */
+    int n;
+    unsigned n_dropped;
+};
+
+void presence_init(struct room *room)
 {
-    if (!room->presences)
-        room->presences = mem_array(ROOM_MAX_PRESENCE, sizeof room->presences[0], 1 << 20, NULL);
-    if (!room->presences) {
-        room->n_presences_dropped++;
+    room->presences = mem_new(sizeof *room->presences);
+}
+
+void presence_free(struct room *room)
+{
+    free(room->presences->list);
+    free(room->presences);
+}
+
+unsigned presence_n_dropped(const struct room *room)
+{
+    return room->presences->n_dropped;
+}
+
+static struct presence *add(struct presences *presences)
+{
+    if (!presences->list)
+        presences->list = mem_array(ROOM_MAX_PRESENCE, sizeof presences->list[0], 1 << 20, NULL);
+    if (!presences->list) {
+        presences->n_dropped++;
         return NULL;
     }
-    if (room->n_presences == ROOM_MAX_PRESENCE) {
-        memmove(room->presences, room->presences + 1, (ROOM_MAX_PRESENCE - 1) * sizeof room->presences[0]);
-        room->n_presences--;
-        room->n_presences_dropped++;
+    if (presences->n == ROOM_MAX_PRESENCE) {
+        memmove(presences->list, presences->list + 1, (ROOM_MAX_PRESENCE - 1) * sizeof presences->list[0]);
+        presences->n--;
+        presences->n_dropped++;
     }
-    struct presence *stay = &room->presences[room->n_presences++];
+    struct presence *stay = &presences->list[presences->n++];
     *stay = (struct presence){ 0 };
     return stay;
 }
 
-static struct presence *last_of(struct room *room, const char *member)
+static struct presence *last_of(struct presences *presences, const char *member)
 {
-    for (int i = room->n_presences; i-- > 0;)
-        if (strcmp(room->presences[i].member, member) == 0)
-            return &room->presences[i];
+    for (int i = presences->n; i-- > 0;)
+        if (strcmp(presences->list[i].member, member) == 0)
+            return &presences->list[i];
     return NULL;
 }
 
 void presence_entered(struct room *room, const struct member *member)
 {
     const int64_t now_ms = clock_wall_ms();
-    struct presence *stay = last_of(room, member->id);
+    struct presence *stay = last_of(room->presences, member->id);
     const bool goes_on = stay && stay->left_ms && now_ms - stay->left_ms <= ROOM_SAME_STAY_MS;
     if (!goes_on)
-        stay = add(room);
+        stay = add(room->presences);
     if (!stay)
         return;
     if (!goes_on)
@@ -57,7 +85,7 @@ void presence_entered(struct room *room, const struct member *member)
 
 void presence_left(struct room *room, const struct member *member)
 {
-    struct presence *stay = last_of(room, member->id);
+    struct presence *stay = last_of(room->presences, member->id);
     if (!stay || stay->left_ms)
         return;
     stay->left_ms = clock_wall_ms();
@@ -75,8 +103,8 @@ static bool is_here(const struct room *room, const struct presence *stay)
 cJSON *presence_list(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
-    for (int i = 0; i < room->n_presences; i++) {
-        const struct presence *stay = &room->presences[i];
+    for (int i = 0; i < room->presences->n; i++) {
+        const struct presence *stay = &room->presences->list[i];
         cJSON *json = cJSON_CreateObject();
         cJSON_AddStringToObject(json, "member", stay->member);
         cJSON_AddStringToObject(json, "name", stay->name);
@@ -92,7 +120,7 @@ cJSON *presence_list(const struct room *room)
 char *presence_write(const struct room *room)
 {
     cJSON *json = cJSON_CreateObject();
-    cJSON_AddNumberToObject(json, "n_dropped", room->n_presences_dropped);
+    cJSON_AddNumberToObject(json, "n_dropped", room->presences->n_dropped);
     json_add(json, "stays", presence_list(room));
     char *text = json_print(json);
     cJSON_Delete(json);
@@ -126,10 +154,10 @@ void presence_read(struct room *room, const char *text)
     const cJSON *row;
     if (text && !json)
         log_error("room %s: who was there is not readable in the database", room->id);
-    room->n_presences_dropped = n_dropped > 0 && n_dropped < 1e9 ? (unsigned)n_dropped : 0;
+    room->presences->n_dropped = n_dropped > 0 && n_dropped < 1e9 ? (unsigned)n_dropped : 0;
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(json, "stays"))
     {
-        struct presence read, *stay = read_stay(row, &read) ? add(room) : NULL;
+        struct presence read, *stay = read_stay(row, &read) ? add(room->presences) : NULL;
         if (stay)
             *stay = read;
     }

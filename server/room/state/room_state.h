@@ -153,25 +153,17 @@ struct keeping { /* an item that is being written, and counts afterwards */
     uint32_t input;
 };
 
-struct presence { /* one stay of a member */
-    char member[64], name[161];
-    enum wire_member_role role;
-    int64_t entered_ms, left_ms; /* since 1970; left_ms 0: still here, or the server ended */
-};
-
-struct unrecorded { /* has changed since the recording looked: event.h */
-    unsigned parts;
-    char (*items)[16]; /* ids, while a recording runs */
-    size_t n_items;
-};
-
 /* Each is the business of the folder and header named beside its pointer in struct room. */
 struct audit;
 struct control;
+struct events;
 struct links;
 struct look;
+struct presences;
 struct recorder;
+struct recordings;
 struct replay;
+struct saved;
 
 struct room {
     char id[64], plan_id[64];
@@ -203,9 +195,7 @@ struct room {
     char end_reason[200];                    /* "": the room is closed */
     char plan_revision[65];                  /* of the plan's files; "": not known */
     const struct member *writer;             /* while the body of an item is read: who writes it */
-    struct presence *presences;              /* who was here, the first first; room for ROOM_MAX_PRESENCE */
-    int n_presences;
-    unsigned n_presences_dropped;
+    struct presences *presences;             /* state/presence.h */
     const struct member *caller;  /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */
     const char *caller_address;   /* and from where; NULL: no call */
     uint32_t n_named;             /* members ever made, for ids */
@@ -223,22 +213,14 @@ struct room {
     struct audit *audit;        /* out/audit.h */
     struct store_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
     int n_known;
-    struct control *control; /* people/control.h */
-    struct {
-        struct room_saved told; /* as all were told last */
-        int64_t told_us;
-        int64_t news_us; /* since when it is another; 0: it is not */
-        uint64_t n_item_changes, n_items_told;
-        bool is_owed; /* somebody who has come was told something else than all */
-    } saved;
-    struct links *links;                                   /* people/links.h */
-    struct room_recording recordings[ROOM_MAX_RECORDINGS]; /* the oldest first */
-    int n_recordings;
-    double recording_speed;    /* > 0 */
-    struct recorder *recorder; /* NULL: no recording runs */
-    struct unrecorded unrecorded;
-    struct replay *replay; /* NULL: the room plays none */
-    bool has_links;        /* there was one; then those who are no members may do less: room_call_may */
+    struct control *control;       /* people/control.h */
+    struct events *events;         /* state/event.h */
+    struct saved *saved;           /* out/saved.h */
+    struct links *links;           /* people/links.h */
+    struct recordings *recordings; /* log/recording.h */
+    struct recorder *recorder;     /* NULL: no recording runs */
+    struct replay *replay;         /* NULL: the room plays none */
+    bool has_links;                /* there was one; then those who are no members may do less: room_call_may */
     struct stream *streams;
     struct stream
         *main; /* of them: what watch and displays show; of the last presenter when there is none; NULL: none */

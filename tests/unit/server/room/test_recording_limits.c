@@ -82,12 +82,12 @@ static void assert_ends_full(void)
     const size_t n_before = disk.n;
     sets_opacity("0.5");
     assert_null(fake.room->recorder);
-    assert_int_equal(fake.room->recordings[0].state, WIRE_RECORDING_STATE_FULL);
+    assert_int_equal(fake.room->recordings->list[0].state, WIRE_RECORDING_STATE_FULL);
     assert_hears(&ann, "full");
     assert_hears(&ben, "full");
     assert_int_equal(disk.n, n_before);
     assert_true(opacity_in(room_scene(fake.room, NULL)) == 0.5); /* the meeting goes on */
-    assert_true(opacity_recorded(fake.room->recordings[0].length_ms) == 0.25);
+    assert_true(opacity_recorded(fake.room->recordings->list[0].length_ms) == 0.25);
     assert_true(opacity_recorded(0) == 0.4);
     fake_say(&fake, &ann, "{\"type\":\"recording.start\"}"); /* another one may follow */
     assert_hears(&ben, "running");
@@ -116,7 +116,7 @@ static void with_all_its_bytes_it_is_full(void **state)
 {
     (void)state;
     begins();
-    fake.room->recordings[0].n_bytes = ROOM_MAX_RECORDING_BYTES - 1;
+    fake.room->recordings->list[0].n_bytes = ROOM_MAX_RECORDING_BYTES - 1;
     assert_ends_full();
 }
 
@@ -124,7 +124,7 @@ static void with_all_its_events_it_is_full(void **state)
 {
     (void)state;
     begins();
-    fake.room->recordings[0].n_events = ROOM_MAX_RECORDING_EVENTS;
+    fake.room->recordings->list[0].n_events = ROOM_MAX_RECORDING_EVENTS;
     assert_ends_full();
 }
 
@@ -144,7 +144,7 @@ static void a_room_keeps_so_many(void **state)
     cJSON_Delete(problem);
     assert_null(fake.room->recorder);
     char first[32];
-    (void)snprintf(first, sizeof first, "%s", fake.room->recordings[0].id);
+    (void)snprintf(first, sizeof first, "%s", fake.room->recordings->list[0].id);
     assert_true(room_recording_delete(fake.room, first, fake.now_us));
     fake_say(&fake, &ann, "{\"type\":\"recording.start\"}");
     assert_hears(&ben, "running");
