@@ -3,6 +3,7 @@ import { chosenBeam, choosePatch, keptDraft, keptPatch, maxKept, newDraft, plann
 import { endCompare } from './beam_ui.js';
 import { beamView } from '../../room/layout.js';
 import { toggleBeamEye } from './beam_view.js';
+import { say } from './later_words.js';
 
 /** The planned beam is looked at no longer, and the scene is changed. make: the patch, of the scene as it is then */
 export function changeBeam({ room, ui }, make, event, view = ui.active.value) {
@@ -20,7 +21,7 @@ export const useKept = (world, id, event) => changeBeam(world, (_, scene) => kep
 /** Sets entry, target or aperture of the draft; begins one where there is none. */
 export function setLine(world, fields, event, view) {
   const isSet = changeBeam(world, (plan, scene) => redrafted(plan, scene, fields), event, view);
-  if (!isSet) world.ui.notify('warn', 'Entry and target would be the same point.', 'beam');
+  if (!isSet) world.ui.notify('warn', say.samePoint, 'beam');
   return isSet;
 }
 
@@ -29,7 +30,7 @@ export function keepDraft(world, event) {
   const { room, ui } = world;
   endCompare(room);
   const kept = keptDraft(room.plan.value, room.scene.value);
-  if (!kept) return void ui.notify('warn', `There are ${maxKept} kept drafts already: delete one first.`, 'beam');
+  if (!kept) return void ui.notify('warn', say.fullOfKept({ n: maxKept }), 'beam');
   room.patchScene(kept.patch, { view: ui.active.value, at: event.timeStamp });
   ui.choose('kept', kept.id);
 }

@@ -1,6 +1,7 @@
 // Things that slide along a beam: the beam slice, the clip plane across it, the eye; the range, and the regions on the way. Pure; mm from the entry.
 import { alongOf } from '../../room/beam_line.js';
 import { clipBox } from '../clip/clip.js';
+import { say } from './pane_words.js';
 
 const beyondMm = 10; // before the skin and behind the last region
 const tenths = (value) => Math.round(value * 10) / 10 || 0;
@@ -32,17 +33,17 @@ export const regionAt = (bands, mm) => bands.find(({ from_mm: from, to_mm: to })
 /** True if the clip plane across a beam is of the beam that the scene shows. */
 const isClipOfBeam = (scene) => !scene.clip.beam.id || (scene.clip.beam.id === scene.beam.id && !scene.beam.draft.enabled);
 
-/** Choices of the things that the slider moves: [id, name][]. */
+/** Choices of the things that the slider moves: [id, name, label of the slider][]. */
 export const movers = (isTogether) =>
   isTogether
     ? [
-        ['slice', 'Slice, clip'],
-        ['eye', 'Eye'],
+        ['slice', say.sliceAndClip, say.sliceAndClipAlong],
+        ['eye', say.eye, say.eyeAlong],
       ]
     : [
-        ['slice', 'Slice'],
-        ['clip', 'Clip plane'],
-        ['eye', 'Eye'],
+        ['slice', say.slice, say.sliceAlong],
+        ['clip', say.clipPlane, say.clipPlaneAlong],
+        ['eye', say.eye, say.eyeAlong],
       ];
 
 /** Where that is. @param {number} eye of the view */

@@ -6,6 +6,7 @@ import { keepDraft, resetDraft } from './beam_actions.js';
 import { exportMenu } from './beam_export.js';
 import { draftBelongs, draftWords } from './beam_words.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 export function draftBar(world) {
   const { room, ui } = world;
@@ -16,11 +17,11 @@ export function draftBar(world) {
   const isComparing = isComparingIn(room);
   const compare = (event) => {
     if (toggleCompare(room, { view: ui.active.value, at: event.timeStamp })) ui.choose('beam', '');
-    else ui.notify('ok', 'You follow the presenter. Look for yourself (F) to compare.', 'beam');
+    else ui.notify('ok', say.youFollow, 'beam');
   };
   const moved = draftWords(plan, withDraft(scene));
-  return html`<div class="beam-bars"><div class="beam-bar" role="group" aria-label="Draft beam">${icon('warning')}<p><span role="status"><b>Draft beam:</b> ${draftBelongs(plan, scene)}</span> <span class="beam-moved">${isComparing ? html`<b>Planned beam shown</b>, draft: ` : nothing}${moved}</span></p>
-    ${planned ? html`<button aria-pressed=${isComparing} title=${isComparing ? 'Show the draft again' : 'Show the planned beam in the pictures; press again for the draft'} ?disabled=${isOff} @click=${compare}>${isComparing ? 'Back to the draft' : 'Compare'}</button>` : nothing}
-    <button title=${planned ? 'Put the draft away; undo brings it back' : 'Put the draft away'} ?disabled=${isOff} @click=${(event) => resetDraft(world, event)}>${planned ? 'Reset to planned' : 'Put away'}</button>
-    <button title="Keep this position in the tree" ?disabled=${isOff} @click=${(event) => keepDraft(world, event)}>Keep</button>${exportMenu(world)}</div></div>`;
+  return html`<div class="beam-bars"><div class="beam-bar" role="group" aria-label=${say.draftBeam}>${icon('warning')}<p><span role="status"><b>${say.draftBeamIs}</b> ${draftBelongs(plan, scene)}</span> <span class="beam-moved">${isComparing ? say.comparing({ planned: html`<b>${say.plannedShown}</b>`, moved }) : moved}</span></p>
+    ${planned ? html`<button aria-pressed=${isComparing} title=${isComparing ? say.showDraft : say.compareIs} ?disabled=${isOff} @click=${compare}>${isComparing ? say.backToDraft : say.compare}</button>` : nothing}
+    <button title=${planned ? say.putAwayUndo : say.putAwayIs} ?disabled=${isOff} @click=${(event) => resetDraft(world, event)}>${planned ? say.reset : say.putAway}</button>
+    <button title=${say.keepIs} ?disabled=${isOff} @click=${(event) => keepDraft(world, event)}>${say.keep}</button>${exportMenu(world)}</div></div>`;
 }

@@ -5,6 +5,7 @@ import { add, cross, dot, length, scale, subtract, unit } from '../../parts/vec.
 import { beamShown } from '../../room/beam_line.js';
 import { isWeighted, shownDose } from '../../room/dose.js';
 import { crosshair, isTarget } from '../../room/plan.js';
+import { say } from './preset_words.js';
 
 const usualApertureMm = 100; // of the ring, where the plan says none
 const [throughTarget, aroundTarget, underSurface] = [0.35, [0.25, 0.4], 0.5]; // opacities: of a target that is cut through; of the outermost and of other regions before a target; of a target in an isodose surface
@@ -17,7 +18,10 @@ const tenths = (mm) => Math.round(mm * 10) / 10 || 0; // no -0
 
 const targetsOf = (plan) => plan.regions.filter((region) => isTarget(region) && region.center_mm);
 const nameOf = (part) => part.name || part.id;
-const listed = (parts) => (parts.length > 2 ? `${parts.length} targets` : parts.map(nameOf).join(' and '));
+const listed = ([one, two, ...more]) => {
+  if (!two) return one ? nameOf(one) : '';
+  return more.length ? say.nTargets({ n: more.length + 2 }) : say.twoTargets({ one: nameOf(one), two: nameOf(two) });
+};
 
 /** Where the targets are: the middle of the first one, else where the slices meet. */
 const middleOf = (plan, scene) => targetsOf(plan)[0]?.center_mm ?? crosshair(scene);
@@ -28,10 +32,10 @@ function onlyTargets(plan, opacity) {
   const others = plan.regions.filter((region) => !targets.includes(region));
   return [
     {
-      words: `${listed(targets)} ${opacity < 1 ? 'transparent' : 'shown'}`,
+      words: (opacity < 1 ? say.transparent : say.shown)({ targets: listed(targets) }),
       patch: { regions: Object.fromEntries(targets.map(({ id }) => [id, { visible: true, opacity }])) },
     },
-    { words: 'other regions hidden', patch: { regions: Object.fromEntries(others.map(({ id }) => [id, { visible: false }])) } },
+    { words: say.othersHidden, patch: { regions: Object.fromEntries(others.map(({ id }) => [id, { visible: false }])) } },
   ];
 }
 
@@ -52,12 +56,12 @@ function targetsInside(plan, scene) {
   const clear = ({ id, depth }) => [id, { visible: true, opacity: Math.min(scene.regions[id].opacity, aroundTarget[Math.min(depth, 1)]) }];
   return [
     {
-      words: `${listed(targets)} shown`,
+      words: say.shown({ targets: listed(targets) }),
       patch: {
         regions: Object.fromEntries(targets.map(({ id }) => [id, { visible: true, opacity: outer.has(id) ? aroundTarget[1] : 1 }])),
       },
     }, // one in another is seen
-    { words: 'regions around transparent', patch: { regions: Object.fromEntries(around.map(clear)) } },
+    { words: say.aroundTransparent, patch: { regions: Object.fromEntries(around.map(clear)) } },
   ];
 }
 
@@ -66,12 +70,12 @@ const axes = ['axial', 'coronal', 'sagittal'];
 const clips = ['axial_low', 'axial_high', 'coronal_low', 'coronal_high', 'sagittal_low', 'sagittal_high', 'beam', 'free'];
 
 const noSlices = (scene) => ({
-  words: 'slices hidden',
+  words: say.slicesHidden,
   patch: { image: { slices: off(axes, { visible: false }), obliques: off(Object.keys(scene.image.obliques ?? {}), { visible: false }) } },
 });
-const noVolume = { words: 'volume hidden', patch: { image: { volume: { visible: false } } } };
+const noVolume = { words: say.volumeHidden, patch: { image: { volume: { visible: false } } } };
 const noPatientClips = {
-  words: 'clip planes off',
+  words: say.clipsOff,
   patch: {
     clip: off(
       clips.filter((id) => id !== 'beam'),
@@ -79,9 +83,9 @@ const noPatientClips = {
     ),
   },
 }; // one across the beam belongs to it
-const noClips = { words: 'clip planes off', patch: { clip: off(clips, { enabled: false }) } };
-const noBeamSlice = { words: 'beam slice hidden', patch: { beam: { slice: { visible: false } } } };
-const noSurfaces = { words: 'isodose surfaces hidden', patch: { dose: { surfaces: { visible: false } } } };
+const noClips = { words: say.clipsOff, patch: { clip: off(clips, { enabled: false }) } };
+const noBeamSlice = { words: say.beamSliceHidden, patch: { beam: { slice: { visible: false } } } };
+const noSurfaces = { words: say.surfacesHidden, patch: { dose: { surfaces: { visible: false } } } };
 
 // ---- beams and cameras --------------------------------------------------------------------------------------------------
 
@@ -105,10 +109,10 @@ function besideBeam(plan, { direction }) {
 
 /** In two or three words; '' when it is there. */
 const lacks = {
-  beam: (plan, scene) => (beamShown(plan, scene) ? '' : 'no beam'),
-  image: (plan) => (plan.images.length ? '' : 'no image'),
-  target: (plan) => (targetsOf(plan).length ? '' : 'no target'),
-  dose: (plan, scene) => (shownDose(plan, scene) ? '' : 'no dose'), // one that does not fit is said above the panes
+  beam: (plan, scene) => (beamShown(plan, scene) ? '' : say.noBeam),
+  image: (plan) => (plan.images.length ? '' : say.noImage),
+  target: (plan) => (targetsOf(plan).length ? '' : say.noTarget),
+  dose: (plan, scene) => (shownDose(plan, scene) ? '' : say.noDose), // one that does not fit is said above the panes
 };
 
 /** The level of 90 %: the scene's, or a new one; surfaces of the others off. */
@@ -131,13 +135,24 @@ function asTissueAround(plan, { dose }) {
   if (!around) return [];
   return [
     ...(isWeighted(dose.quantity) && !dose.tissue
-      ? [{ words: `weights of ${nameOf(around)} everywhere`, patch: { dose: { tissue: around.id } } }]
+      ? [{ words: say.weightsOf({ region: nameOf(around) }), patch: { dose: { tissue: around.id } } }]
       : []),
     ...(dose.reference.kind === 'body'
-      ? [{ words: `100 % is the maximum in ${nameOf(around)}`, patch: { dose: { reference: { kind: 'region-max', region: around.id } } } }]
+      ? [{ words: say.hundredIs({ region: nameOf(around) }), patch: { dose: { reference: { kind: 'region-max', region: around.id } } } }]
       : []),
   ];
 }
+
+const throughTargetWords = {
+  sagittal: say.sagittalTarget,
+  coronal: say.coronalTarget,
+  axial: say.axialTarget,
+};
+const throughCrosshairWords = {
+  sagittal: say.sagittalCrosshair,
+  coronal: say.coronalCrosshair,
+  axial: say.axialCrosshair,
+};
 
 /** The plane that cuts through the targets along the beam, on the side of the home camera: of the three that square with the patient the one that the beam runs in best. */
 function alongClip(plan, scene) {
@@ -147,9 +162,10 @@ function alongClip(plan, scene) {
   const best = [0, 1, 2]
     .map((axis) => ({ axis, rank: Math.abs(look[axis]) * (1 - Math.abs(direction[axis])) }))
     .sort((a, b) => b.rank - a.rank)[0].axis;
-  const id = `${['sagittal', 'coronal', 'axial'][best]}_${look[best] > 0 ? 'high' : 'low'}`;
+  const axis = ['sagittal', 'coronal', 'axial'][best];
+  const id = `${axis}_${look[best] > 0 ? 'high' : 'low'}`;
   return {
-    words: `${id.split('_')[0]} clip plane through ${targetsOf(plan).length ? 'the target' : 'the crosshair'}`,
+    words: (targetsOf(plan).length ? throughTargetWords : throughCrosshairWords)[axis],
     patch: { clip: { ...noClips.patch.clip, [id]: { enabled: true, cap: true, position_mm: tenths(middleOf(plan, scene)[best]) } } },
   };
 }
@@ -157,11 +173,11 @@ function alongClip(plan, scene) {
 const table = [
   {
     id: 'beam-slice',
-    name: 'Beam slice through the target',
+    name: say.beamSlice,
     icon: 'plane',
     needs: ['beam', 'image', 'target'],
     kind: '3d',
-    about: 'The image across the beam at the middle of the target, which is transparent',
+    about: say.beamSliceIs,
     make: (plan, scene) => {
       const line = beamShown(plan, scene);
       const along = tenths(dot(subtract(middleOf(plan, scene), line.entry), line.direction));
@@ -170,8 +186,8 @@ const table = [
         : {};
       return {
         parts: [
-          { words: `beam slice ${along} mm from the entry`, patch: { beam: { slice: { visible: true, along_mm: along } } } },
-          { words: 'beam shown', patch: { beam: look } },
+          { words: say.beamSliceAt({ mm: along }), patch: { beam: { slice: { visible: true, along_mm: along } } } },
+          { words: say.beamShown, patch: { beam: look } },
           ...onlyTargets(plan, throughTarget),
           noSlices(scene),
           noVolume,
@@ -184,14 +200,14 @@ const table = [
   },
   {
     id: 'ninety',
-    name: '90 % surface over the target',
+    name: say.ninety,
     icon: 'isodose',
     needs: ['dose', 'target'],
     kind: '3d',
-    about: 'The isodose surface of 90 % around the target: whether it fits',
+    about: say.ninetyIs,
     make: (plan, scene) => ({
       parts: [
-        { words: 'isodose surface of 90 %', patch: { dose: { surfaces: { visible: true }, levels: ninety(scene) } } },
+        { words: say.surfaceOfNinety, patch: { dose: { surfaces: { visible: true }, levels: ninety(scene) } } },
         ...asTissueAround(plan, scene),
         ...onlyTargets(plan, underSurface),
         noSlices(scene),
@@ -204,19 +220,19 @@ const table = [
   },
   {
     id: 'washed-volume',
-    name: 'Clipped volume with wash',
+    name: say.washedVolume,
     icon: 'cube',
     needs: ['dose', 'image'],
     kind: '3d',
-    about: 'The image as a volume, coloured by the dose, cut through the target along the beam',
+    about: say.washedVolumeIs,
     make: (plan, scene) => ({
       parts: [
-        { words: 'volume shown', patch: { image: { volume: { visible: true, clipped: true } } } },
-        { words: 'wash on it', patch: { dose: { wash: { visible: true, volume: true } } } },
+        { words: say.volumeShown, patch: { image: { volume: { visible: true, clipped: true } } } },
+        { words: say.washOnIt, patch: { dose: { wash: { visible: true, volume: true } } } },
         alongClip(plan, scene),
         ...(targetsOf(plan).length
           ? onlyTargets(plan, 1)
-          : [{ words: 'regions hidden', patch: { regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { visible: false }])) } }]),
+          : [{ words: say.regionsHidden, patch: { regions: Object.fromEntries(plan.regions.map(({ id }) => [id, { visible: false }])) } }]),
         noSlices(scene),
         noBeamSlice,
         noSurfaces,
@@ -226,16 +242,16 @@ const table = [
   },
   {
     id: 'beams-eye',
-    name: "Beam's eye with aperture",
+    name: say.beamsEye,
     icon: 'target',
     needs: ['beam'],
     kind: 'beam',
-    about: 'Along the beam, in parallel projection, with a ring of its aperture',
+    about: say.beamsEyeIs,
     make: (plan, scene) => {
       const aperture = beamShown(plan, scene).aperture ?? usualApertureMm;
       return {
         parts: [
-          { words: `ring of ${tenths(aperture)} mm, parallel projection`, patch: {} },
+          { words: say.ringOf({ mm: tenths(aperture) }), patch: {} },
           ...targetsInside(plan, scene),
           noSlices(scene),
           noBeamSlice,
@@ -310,5 +326,5 @@ export function applyPreset({ room, ui, undo }, id, at) {
       if (Object.keys(view).length) changeView(room, number, view, at);
     }),
   );
-  ui.notify('ok', `${name}: ${words.join(', ')}.`, 'preset', { word: 'Undo', keys: 'Ctrl+Z', act: () => undo.undo() });
+  ui.notify('ok', say.changed({ name, changes: words.join(', ') }), 'preset', { word: say.undo, keys: 'Ctrl+Z', act: () => undo.undo() });
 }

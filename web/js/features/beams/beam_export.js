@@ -5,6 +5,7 @@ import { beamFacts } from './beam_facts.js';
 import { endCompare } from './beam_ui.js';
 import { exportFile } from '../../room/exports.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 /** The answer of the draft as it is; null while it is still to come, or there is none. */
 const fresh = (world) => {
@@ -31,12 +32,12 @@ export function exportMenu(world) {
       'application/json',
     );
   const card = () => exportFile(world, 'beam-card', `${room.planId.value}-draft-beam.txt`, answer.card, 'text/plain');
-  return html`<span class="anchor"><button aria-haspopup="menu" aria-expanded=${isOpen} title="Save the draft as a file" @click=${() => ui.toggle('beam-export')}>Export</button>
+  return html`<span class="anchor"><button aria-haspopup="menu" aria-expanded=${isOpen} title=${say.exportIs} @click=${() => ui.toggle('beam-export')}>${say.export}</button>
     ${
       isOpen
-        ? html`<div class="popover beam-export"><div class="menu" role="menu" aria-label="Export the draft">
-      <button role="menuitem" @click=${save(json)}>${icon('download')}<span>JSON: planned and draft geometry</span></button>
-      <button role="menuitem" ?disabled=${!answer?.card} title=${answer?.card ? nothing : 'The server has not said it yet'} @click=${save(card)}>${icon('download')}<span>SERA beam card</span></button></div></div>`
+        ? html`<div class="popover beam-export"><div class="menu" role="menu" aria-label=${say.exportDraft}>
+      <button role="menuitem" @click=${save(json)}>${icon('download')}<span>${say.exportJson}</span></button>
+      <button role="menuitem" ?disabled=${!answer?.card} title=${answer?.card ? nothing : say.notSaid} @click=${save(card)}>${icon('download')}<span>${say.exportCard}</span></button></div></div>`
         : nothing
     }</span>`;
 }

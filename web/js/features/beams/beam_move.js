@@ -11,8 +11,9 @@ import { setLine } from './beam_actions.js';
 import { coordinates } from './beam_words.js';
 import { variables } from '../../parts/mount.js';
 import { addTool } from '../../pane/pane_tools.js';
+import { say } from './later_words.js';
 
-const words = { target: 'Target', entry: 'Entry' };
+const words = { target: say.targetOfBeam, entry: say.entryOfBeam };
 const inPlaneMm = 2; // farther from the slice a point is drawn faint
 const takePx = 22; // a press this near to a point takes that one
 const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -136,13 +137,13 @@ class PaneMove {
 
   #handle({ part, point, at: [x, y] }) {
     const { room, ui, view } = this.#pane;
-    const text = `${words[part]} of the beam, ${coordinates(point).join(', ')} mm`;
+    const text = words[part]({ place: coordinates(point).join(', ') });
     const focus = () => {
       movedPoint.value = part;
       ui.active.value = view.number;
     };
     return html`<i class=${classMap({ 'beam-handle': true, chosen: movedPoint.value === part, off: this.#isOff(point) })} role="button" tabindex="0" data-part=${part} aria-label=${text} aria-disabled=${!room.canChange.value}
-      title=${`${text} (drag, arrow keys)`} ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @focus=${focus}><svg viewBox="-22 -22 44 44" width="44" height="44" aria-hidden="true">${[
+      title=${say.handle({ point: text })} ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @focus=${focus}><svg viewBox="-22 -22 44 44" width="44" height="44" aria-hidden="true">${[
         'under',
         'ink',
       ].map((layer) =>

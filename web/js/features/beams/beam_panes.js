@@ -11,6 +11,7 @@ import { beamFoot } from './beam_foot.js';
 import { showInstead, spaceInstead } from './beam_view.js';
 import { ringHandle, ringNumbers } from './beam_ring.js';
 import { millimetres } from '../../parts/format.js';
+import { say } from './pane_words.js';
 
 const wheelZoom = 1.12;
 const keyZoom = 1.15;
@@ -72,7 +73,8 @@ class AlongBeam {
   /** "44.3 mm from entry, tumor" */
   words(mm) {
     const region = this.pane.room.plan.value?.regions.find(({ id }) => id === regionAt(this.bands, mm));
-    return [`${millimetres(mm)} from entry`, region?.name].filter(Boolean).join(', ');
+    const distance = millimetres(mm);
+    return region?.name ? say.fromEntryIn({ distance, region: region.name }) : say.fromEntry({ distance });
   }
 }
 
@@ -123,7 +125,7 @@ class BeamSlice extends AlongBeam {
     return {
       where: this.words(mm),
       overlay: numbers,
-      slider: html`<label class="slice-slider" title="Along the beam (wheel, arrow keys, [ and ])"><input type="range" aria-label=${`${view.name}, mm from entry`} min=${low} max=${high} step="0.1" .value=${live(String(mm))}
+      slider: html`<label class="slice-slider" title=${say.alongKeys}><input type="range" aria-label=${say.viewAlong({ view: view.name })} min=${low} max=${high} step="0.1" .value=${live(String(mm))}
       ?disabled=${!room.canChange.value} aria-valuetext=${this.words(mm)} @input=${(event) => this.slide(event.target.valueAsNumber, event.timeStamp)} @keydown=${onKey}></label>`,
     };
   }
@@ -171,8 +173,8 @@ class BeamEye extends AlongBeam {
   }
 
   #tellLocked() {
-    this.pane.ui.notify('ok', 'The camera is locked to the beam.', 'beam-lock', {
-      word: 'Turn it freely',
+    this.pane.ui.notify('ok', say.locked, 'beam-lock', {
+      word: say.turnFreely,
       act: () => this.unlock(performance.now()),
     });
     return true;
@@ -218,12 +220,12 @@ class BeamEye extends AlongBeam {
     const document = view.document.value;
     const ring = document.beam?.aperture_mm ?? null;
     const isOff = !room.canChange.value;
-    const words = `camera locked to ${beam.isDraft ? 'draft beam' : 'beam'}`;
+    const words = beam.isDraft ? say.lockedToDraft : say.lockedToBeam;
     const mover = this.#mover;
     const place = header && pane[0] > 1 ? { header, box, pane, beam, ring } : null;
     return {
-      where: html`<button class="beam-lock" ?disabled=${isOff} title="Leave the beam: a 3-D view with the same camera, which can be turned (B goes back to the 3-D view before)" @click=${(event) => this.unlock(event.timeStamp)}><span>${words}</span>${lock}</button>`,
-      head: html`<button class="icon-button small beam-ring-toggle" aria-pressed=${ring !== null} aria-label="Ring" ?disabled=${isOff} title=${ring === null ? 'Ring: parallel projection, so that its size is true at every depth' : 'Without the ring'}
+      where: html`<button class="beam-lock" ?disabled=${isOff} title=${say.leave} @click=${(event) => this.unlock(event.timeStamp)}><span>${words}</span>${lock}</button>`,
+      head: html`<button class="icon-button small beam-ring-toggle" aria-pressed=${ring !== null} aria-label=${say.ringName} ?disabled=${isOff} title=${ring === null ? say.ringOn : say.ringOff}
         @click=${(event) => this.toggleRing(event.timeStamp)}>${ringPicture}</button>`,
       overlay: place && ringNumbers(place, document.beam?.crosshair !== false),
       handles: place && ring !== null ? ringHandle(place, isOff, (mm, at) => this.setRing(mm, at)) : nothing,

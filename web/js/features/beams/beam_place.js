@@ -8,6 +8,7 @@ import { setLine } from './beam_actions.js';
 import { startMoving } from './beam_move.js';
 import { numberField } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 const tenths = (value) => (Number.isFinite(value) ? Math.round(value * 10) / 10 || 0 : '');
 const leastApertureMm = 0.1; // scene.json
@@ -43,7 +44,7 @@ async function ask(world, event, parameters) {
       parameters,
     );
     if (number !== asked) return;
-    if (!entry_mm || !target_mm) ui.notify('warn', why || 'There is no such position.', 'beam');
+    if (!entry_mm || !target_mm) ui.notify('warn', why || say.noPosition, 'beam');
     else setLine(world, { entry_mm, target_mm }, at);
   } catch (error) {
     if (number === asked) ui.notify('err', error.message, 'beam');
@@ -55,7 +56,7 @@ function moveButton(world, part, words, isDisabled) {
   const { ui } = world;
   const isOn = ui.tool.value === 'beam' && movedPoint.value === part;
   const toggle = () => (isOn ? void (ui.tool.value = 'crosshair') : startMoving(world, part));
-  return html`<button class=${isOn ? 'on' : ''} aria-pressed=${isOn} title="Drag it in any pane; arrow keys move it by 1 mm, with Shift by 10" ?disabled=${isDisabled} @click=${toggle}>${words}</button>`;
+  return html`<button class=${isOn ? 'on' : ''} aria-pressed=${isOn} title=${say.moveIs} ?disabled=${isDisabled} @click=${toggle}>${words}</button>`;
 }
 
 /** @param {object|null} facts the answer to the question beam; null: not here yet */
@@ -64,35 +65,35 @@ export function placeBlock(world, isDisabled, facts) {
   const line = shownLine(room.plan.value, room.scene.value);
   if (!line) return nothing;
   const isDraft = isDraftOn(room);
-  const point = (part, name) =>
+  const point = (part, name, inMm) =>
     html`<dt>${name}</dt><dd class="beam-fields">${['L', 'P', 'S'].map((letter, axis) =>
-      numberField(`${name}, ${letter} in mm`, tenths(line[`${part}_mm`][axis]), letter, isDisabled, (value, event) =>
+      numberField(inMm({ letter }), tenths(line[`${part}_mm`][axis]), letter, isDisabled, (value, event) =>
         setLine(world, { [`${part}_mm`]: replaced(line[`${part}_mm`], axis, value) }, event),
       ),
     )}</dd>`;
   const { phi_deg: phi, theta_deg: theta } = facts?.sera ?? {};
   const turn = (angles) => (value, event) => ask(world, event, { mode: 'angles', phi_deg: phi, theta_deg: theta, ...angles(value) });
-  return html`<section class="block beam-place"><h3 class="beam-head">Position <span class="dim">${isDraft ? 'of the draft' : 'a change begins a draft'}</span></h3>
-    <div class="beam-moved-point"><div class="segment" role="group" aria-label="Move by dragging in the panes">${[
-      ['target', 'Move target'],
-      ['entry', 'Move entry'],
+  return html`<section class="block beam-place"><h3 class="beam-head">${say.position} <span class="dim">${isDraft ? say.ofDraft2 : say.beginsDraft}</span></h3>
+    <div class="beam-moved-point"><div class="segment" role="group" aria-label=${say.moveByDragging}>${[
+      ['target', say.moveTarget],
+      ['entry', say.moveEntry],
     ].map(([part, words]) => moveButton(world, part, words, isDisabled))}</div></div>
-    <dl>${point('target', 'Target')}${point('entry', 'Entry')}
-      <dt title="The entry turns about the target, as far from it as before">Angles φ, θ</dt><dd class="beam-fields">${numberField(
-        'Angle φ in degrees',
+    <dl>${point('target', say.target, say.targetIn)}${point('entry', say.entry, say.entryIn)}
+      <dt title=${say.turnsAbout}>${say.angles}</dt><dd class="beam-fields">${numberField(
+        say.phiDegrees,
         tenths(phi),
         '°',
         isDisabled || !facts?.sera,
         turn((value) => ({ phi_deg: Math.min(Math.max(value, 0), 180) })),
       )}${numberField(
-        'Angle θ in degrees',
+        say.thetaDegrees,
         tenths(theta),
         '°',
         isDisabled || !facts?.sera,
         turn((value) => ({ theta_deg: value % 360 })),
       )}</dd>
-      <dt title="The entry moves along the axis; angles and target stay">Skin gap</dt><dd class="beam-fields">${numberField('Skin gap in mm', tenths(facts?.gap_mm), 'mm', isDisabled || !facts, (value, event) => ask(world, event, { mode: 'gap', gap_mm: value }))}</dd>
-      <dt title="Diameter">Aperture</dt><dd class="beam-fields">${numberField('Aperture of the draft in mm', tenths(line.aperture_mm), 'mm', isDisabled, (value, event) => setLine(world, { aperture_mm: Math.min(Math.max(value, leastApertureMm), mostApertureMm) }, event))}</dd></dl>
-    <div class="buttons"><button ?disabled=${isDisabled} title="The axis runs through the crosshair to the target; the distance stays" @click=${(event) => ask(world, event, { mode: 'through', point_lps_mm: crosshair(room.scene.value).join() })}>${icon('crosshair')}Through the crosshair</button>
-      <button ?disabled=${isDisabled} title="From where the target is nearest to the skin" @click=${(event) => ask(world, event, { mode: 'shortest' })}>Shortest path</button></div></section>`;
+      <dt title=${say.gapMoves}>${say.gap}</dt><dd class="beam-fields">${numberField(say.gapMm, tenths(facts?.gap_mm), 'mm', isDisabled || !facts, (value, event) => ask(world, event, { mode: 'gap', gap_mm: value }))}</dd>
+      <dt title=${say.diameter}>${say.aperture}</dt><dd class="beam-fields">${numberField(say.apertureMm, tenths(line.aperture_mm), 'mm', isDisabled, (value, event) => setLine(world, { aperture_mm: Math.min(Math.max(value, leastApertureMm), mostApertureMm) }, event))}</dd></dl>
+    <div class="buttons"><button ?disabled=${isDisabled} title=${say.throughCrosshairIs} @click=${(event) => ask(world, event, { mode: 'through', point_lps_mm: crosshair(room.scene.value).join() })}>${icon('crosshair')}${say.throughCrosshair}</button>
+      <button ?disabled=${isDisabled} title=${say.shortestIs} @click=${(event) => ask(world, event, { mode: 'shortest' })}>${say.shortest}</button></div></section>`;
 }

@@ -5,6 +5,7 @@ import { add, scale, toPicture } from '../../parts/vec.js';
 import { number } from '../../parts/format.js';
 import { variables } from '../../parts/mount.js';
 import { sliderKey } from '../../parts/slider_keys.js';
+import { say } from './pane_words.js';
 
 const numbersMm = [20, 40, 80];
 const nearMm = [5, 10]; // where those lie outside
@@ -58,7 +59,7 @@ export function ringNumbers(place, hasCrosshair) {
           return svg`${text(x + r, y + 20, mm, 'middle')}${text(x - r, y + 20, mm, 'middle')}${text(x + 13, y - r + 4, mm, 'start')}${text(x + 13, y + r + 4, mm, 'start')}`;
         })
       : nothing
-  }${hasCrosshair && !(header.pixels_per_mm > 0) ? svg`<text class="halo caption beam-depth" x="12" y=${height - 12}>mm at the target’s depth</text>` : nothing}
+  }${hasCrosshair && !(header.pixels_per_mm > 0) ? svg`<text class="halo caption beam-depth" x="12" y=${height - 12}>${say.atDepth}</text>` : nothing}
     ${ring === null ? nothing : ringWords(frame, ring, place.beam, width)}`;
 }
 
@@ -69,13 +70,15 @@ function ringWords(frame, ring, { aperture, isShaped }, width) {
   const [x, y] = handleAt(frame, ring);
   const isPlanned = aperture && Math.abs(ring - aperture) < 0.05;
   const below = !aperture
-    ? `drawn; ${isShaped ? 'the opening is not round' : 'aperture not known'}`
+    ? isShaped
+      ? say.notRound
+      : say.notKnown
     : isPlanned
-      ? 'as the aperture'
-      : `drawn; the aperture is ${number(aperture, aperture % 1 ? 1 : 0)} mm`;
+      ? say.asAperture
+      : say.apertureIs({ mm: number(aperture, aperture % 1 ? 1 : 0) });
   const isLeft = x + 20 + Math.max(18, below.length) * charPx > width;
   const at = placed(isLeft ? x - 14 : x + 14);
-  return svg`<g text-anchor=${isLeft ? 'end' : 'start'}><text class="halo beam-aperture" x=${at} y=${placed(y - 4)}>ring ${number(ring, ring % 1 ? 1 : 0)} mm</text><text class="halo caption" x=${at} y=${placed(y + 10)}>${below}</text></g>`;
+  return svg`<g text-anchor=${isLeft ? 'end' : 'start'}><text class="halo beam-aperture" x=${at} y=${placed(y - 4)}>${say.ringOf({ mm: number(ring, ring % 1 ? 1 : 0) })}</text><text class="halo caption" x=${at} y=${placed(y + 10)}>${below}</text></g>`;
 }
 
 /** The round handle on the ring, up and to the right. @param {(mm: number, at: number) => void} set */
@@ -88,7 +91,7 @@ export function ringHandle(place, isOff, set) {
   } = place;
   const [x, y] = handleAt(frame, ring);
   if (x < 0 || y < 0 || x > width || y > height) return nothing;
-  const words = `ring ${number(ring, 1)} mm`;
+  const words = say.ringOf({ mm: number(ring, 1) });
   const onMove = (event) => {
     event.stopPropagation(); // no card at the pointer beside the handle
     if (!event.currentTarget.hasPointerCapture(event.pointerId)) return;
@@ -110,6 +113,6 @@ export function ringHandle(place, isOff, set) {
     event.stopPropagation();
     set(mm, event.timeStamp);
   };
-  return html`<div class="clip-handles"><i class="beam-handle" role="slider" tabindex="0" aria-label="Ring" aria-valuemin=${range.low} aria-valuemax=${range.high} aria-valuenow=${ring} aria-valuetext=${words} aria-disabled=${isOff}
-    title=${`${words} (drag, arrow keys)`} ${variables({ '--x': `${placed(x)}px`, '--y': `${placed(y)}px` })} @pointerdown=${onDown} @pointermove=${onMove} @keydown=${onKey}></i></div>`;
+  return html`<div class="clip-handles"><i class="beam-handle" role="slider" tabindex="0" aria-label=${say.ringName} aria-valuemin=${range.low} aria-valuemax=${range.high} aria-valuenow=${ring} aria-valuetext=${words} aria-disabled=${isOff}
+    title=${say.handle({ ring: words })} ${variables({ '--x': `${placed(x)}px`, '--y': `${placed(y)}px` })} @pointerdown=${onDown} @pointermove=${onMove} @keydown=${onKey}></i></div>`;
 }

@@ -3,6 +3,7 @@ import { effect } from '../../../lib/signals-core.js';
 import { beamShown } from '../../room/beam_line.js';
 import { beamSliceView, beamView } from '../../room/layout.js';
 import { isOfBeam, isTurnable } from '../../room/kinds.js';
+import { say } from './words.js';
 
 /** The 3-D view that takes the place of the beam's eye: the one that stood there, else one that no pane shows. */
 export function spaceInstead({ room, ui }) {
@@ -19,7 +20,7 @@ export function showInstead(ui, from, to) {
 /** Key B: a 3-D pane, the active one if it is one, becomes the beam's eye, and that 3-D again. */
 export function toggleBeamEye(room, ui) {
   if (ui.visible.value.includes(beamView)) return void showInstead(ui, beamView, spaceInstead({ room, ui }));
-  if (!beamShown(room.plan.value, room.scene.value)) return void ui.notify('ok', 'This plan has no beam.', 'beam');
+  if (!beamShown(room.plan.value, room.scene.value)) return void ui.notify('ok', say.noBeam, 'beam');
   const from = [ui.active.value, ...ui.visible.value].find((number) => isTurnable(room.view(number).kind)) ?? ui.active.value;
   if (isTurnable(room.view(from).kind)) ui.beforeBeam = from;
   showInstead(ui, from, beamView);
@@ -58,13 +59,7 @@ export function leaveBeam({ room, ui }) {
         const free = room.views.find((other) => !isOfBeam(other.kind) && !ui.visible.peek().includes(other.number));
         ui.showInPlaceOf(number, number === beamSliceView && free ? free.number : spaceInstead({ room, ui }));
       }
-      ui.notify(
-        'ok',
-        plan.beams.length
-          ? 'The beam of this pane is gone: it shows something else now.'
-          : 'There is no beam: the pane shows something else now.',
-        'beam',
-      );
+      ui.notify('ok', plan.beams.length ? say.beamGone : say.noBeamNow, 'beam');
     });
   });
 }

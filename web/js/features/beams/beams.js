@@ -85,9 +85,6 @@ export const plannedPatch = { beam: { draft: { enabled: false, shows_planned: fa
 
 // ---- drafts that were kept ----------------------------------------------------------------------------------------------
 
-/** "Draft 2" for the id draft-2, when it was given no name. */
-export const keptName = (id, { name = '' } = {}) => name || id.replace(/^draft-(\d+)$/, 'Draft $1');
-
 /** Null: there are as many as there may be. @returns {{id: string, patch: object}|null} */
 export function keptDraft(plan, scene, name = '') {
   const { kept } = scene.beam;

@@ -3,6 +3,7 @@ import { isOfBeam } from '../../room/kinds.js';
 import { known, later } from '../../parts/lazy.js';
 import { beamKey, leaveBeam, toggleBeamEye } from './beam_view.js';
 import { presetMenu } from './preset_menu.js';
+import { say } from './words.js';
 
 const rows = later(() => import('./beam_rows.js'));
 const editing = later(() => import('./later_editing.js'), 'js/features/beams/beam_draft.css');
@@ -27,7 +28,7 @@ export const beams = {
   sections: [
     {
       id: 'beams',
-      name: 'Beams',
+      name: say.section,
       icon: 'target',
       place: 5,
       has: hasBeams,

@@ -6,6 +6,7 @@ import { icon } from '../../parts/icons.js';
 import { known, later } from '../../parts/lazy.js';
 import { variables } from '../../parts/mount.js';
 import { name } from '../../parts/tree_row.js';
+import { say } from './words.js';
 
 const presets = later(() => import('./preset_items.js'));
 const isOpen = signal(false); // the rows of the tree
@@ -14,7 +15,7 @@ const isOpen = signal(false); // the rows of the tree
 export function presetMenu(world, act) {
   const plan = world.room.plan.value;
   return plan?.beams.length || plan?.doses.length
-    ? html`<p class="menu-head">Show together</p>${presets.draw(({ presetItems }) => presetItems(world, act))}`
+    ? html`<p class="menu-head">${say.together}</p>${presets.draw(({ presetItems }) => presetItems(world, act))}`
     : nothing;
 }
 
@@ -34,5 +35,5 @@ export function presetRows(world) {
   const fold = () => {
     isOpen.value = !isOpen.value;
   };
-  return html`${presetItem(world, { id: 'all', words: 'Show together', isUnfolded: isOpen.value, indent: 0, act: fold }, html`${icon(isOpen.value ? 'chevronDown' : 'chevronRight')}${name('Show together')}`)}${isOpen.value ? known(presets)?.presetRows(world) : nothing}`;
+  return html`${presetItem(world, { id: 'all', words: say.together, isUnfolded: isOpen.value, indent: 0, act: fold }, html`${icon(isOpen.value ? 'chevronDown' : 'chevronRight')}${name(say.together)}`)}${isOpen.value ? known(presets)?.presetRows(world) : nothing}`;
 }

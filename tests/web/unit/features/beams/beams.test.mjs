@@ -9,7 +9,7 @@ const beamUi = await load('features/beams/beam_ui.js');
 const { stepName } = await load('shell/undo_words.js');
 const { draftDocument } = await load('features/beams/beam_file.js');
 const { mergePatch } = await load('wire/merge.js');
-const { movedWords } = await load('features/beams/beam_words.js');
+const { keptName, movedWords } = await load('features/beams/beam_words.js');
 
 const plan = {
   name: 'Head',
@@ -106,8 +106,8 @@ test('drafts are kept under the next free id, sixteen at most, and one that was 
   const kept = after(patch, drafted);
   assert.deepEqual(kept.beam.kept['draft-1'], { name: '', entry_mm: [0, -100, 0], target_mm: [3, 4, 0], aperture_mm: 120 });
   assert.equal(beams.keptDraft(plan, kept).id, 'draft-2');
-  assert.equal(beams.keptName('draft-1', { name: '' }), 'Draft 1');
-  assert.equal(beams.keptName('draft-1', { name: 'Through the ear' }), 'Through the ear');
+  assert.equal(keptName('draft-1', { name: '' }), 'Draft 1');
+  assert.equal(keptName('draft-1', { name: 'Through the ear' }), 'Through the ear');
   const again = after(beams.keptPatch(kept.beam.kept['draft-1']), after(beams.plannedPatch, kept));
   assert.deepEqual(beams.shownLine(plan, again), { entry_mm: [0, -100, 0], target_mm: [3, 4, 0], aperture_mm: 120 });
   const full = after(

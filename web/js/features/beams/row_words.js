@@ -1,0 +1,30 @@
+// What a person reads of beams in the tree, and how far a draft has moved.
+import { sentences } from '../../parts/sentences.js';
+
+export const say = sentences('beams.rows', {
+  draftOn: 'draft',
+  chosen: 'chosen',
+  show: 'Show {beam}',
+  showLine: 'Show its line and aperture',
+  hideLine: 'Hide its line and aperture',
+  draft: 'Draft',
+  newDraft: 'New draft',
+  draftIs: 'A beam that is being positioned; the plan keeps its own',
+  newDraftIs: 'A new position for a beam; the plan keeps its own',
+  kept: 'kept',
+  keptIs: '{draft}: a draft that was kept',
+  curve: 'reference curve',
+  moveIs: 'Move entry or target of a beam in any pane; the plan keeps its own',
+  move: 'Move beam',
+  moved: 'target moved {mm} mm, direction {degrees}°',
+  movedTarget: 'target moved {mm} mm',
+  movedDirection: 'direction {degrees}°',
+  asPlanned: 'as planned',
+  noPlanned: 'this plan has no planned beam',
+  doseOfPlanned: 'dose shown belongs to the planned beam',
+  notPlanned: 'not the planned beam',
+  figures: '{mm} mm, {degrees}°',
+  figureTarget: '{mm} mm',
+  figureDirection: '{degrees}°',
+  draftNumber: 'Draft {n}',
+});
