@@ -4,6 +4,7 @@ import { repeat } from '../../../lib/directives/repeat.js';
 import { kindName } from './measures.js';
 import { measureName, valueTexts } from './measure_words.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
+import { say } from './words.js';
 
 export const measuresOf = (scene) => Object.entries(scene?.measures ?? {});
 
@@ -24,7 +25,7 @@ export function measureRows(world) {
         world,
         { kind: 'measure', id, words: [words, value], title: kindName(measure.kind), isOn: measure.visible, toggle },
         html`
-      ${eye(measure.visible, `Show ${words}`, 'Show or hide', !room.canChange.value, toggle)}${name(words)} <span class="tail">${value}</span>`,
+      ${eye(measure.visible, say.show({ measure: words }), say.showOrHide, !room.canChange.value, toggle)}${name(words)} <span class="tail">${value}</span>`,
       );
     },
   );

@@ -1,13 +1,15 @@
 // Words of measures: names, values with their units.
 import { shortId } from '../../room/marks.js';
-import { kindName, kinds, pointsOf, valueOf } from './measures.js';
+import { kinds, pointsOf, valueOf } from './measures.js';
 import { shownImage } from '../../room/plan.js';
 import { number, significant, unitText } from '../../parts/format.js';
+import { say } from './words.js';
 
 export const kindIcons = { distance: 'measure', angle: 'angle', polyline: 'polyline', ellipse: 'ellipse' };
 export { kinds };
 
-export const measureName = (id, measure) => measure.name || `${kindName(measure.kind)} ${shortId(id, /^(m|own)/)}`;
+const numbered = { distance: say.distanceNumber, angle: say.angleNumber, polyline: say.polylineNumber, ellipse: say.ellipseNumber };
+export const measureName = (id, { name, kind }) => name || numbered[kind]({ n: shortId(id, /^(m|own)/) });
 
 /** The image that an ellipse is measured in. */
 export const imageOf = (plan, scene, measure) => plan.images.find(({ id }) => id === measure.image) ?? shownImage(plan, scene);
@@ -20,7 +22,7 @@ function meanText(world, id, measure) {
   if (!image || measure.points.length < 3) return '';
   const { statistics, isOld } = ellipses.of(id, room.planId.value, image.id, pointsOf(measure));
   if (!statistics) return isOld ? '…' : '';
-  if (!statistics.n) return 'outside the image';
+  if (!statistics.n) return say.outside;
   const words = `${significant(statistics.mean)} ± ${significant(statistics.sd)}${image.unit ? ` ${unitText(image.unit)}` : ''}`;
   return `${plan.images.length > 1 ? `${image.modality} ` : ''}${words}${isOld ? ' …' : ''}`;
 }

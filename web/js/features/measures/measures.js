@@ -3,16 +3,17 @@ import { add, cross, dot, length, scale, subtract, unit } from '../../parts/vec.
 import { replaced } from '../../parts/lists.js';
 import { freeNumber } from '../../room/marks.js';
 import { heightOver } from '../../room/obliques.js';
+import { say } from './words.js';
 
 export const mostMeasures = 64; // proto/scene.json
 export const mostPoints = 64;
 
-/** Kinds: word, name, points that are drawn, how it is drawn. */
+/** Kinds: word, name, points that are drawn. */
 export const kinds = [
-  ['distance', 'Distance', 2, 'Drag from one point to the other, or click both.'],
-  ['angle', 'Angle', 3, 'Click three points: the angle is at the second.'],
-  ['polyline', 'Polyline', Infinity, 'Click its points, the last one twice.'],
-  ['ellipse', 'Ellipse', 2, 'Drag from its centre to its edge, then drag its two other points.'],
+  ['distance', say.distance, 2],
+  ['angle', say.angle, 3],
+  ['polyline', say.polyline, Infinity],
+  ['ellipse', say.ellipse, 2],
 ];
 export const kindName = (kind) => kinds.find(([id]) => id === kind)[1];
 export const pointsToDraw = (kind) => kinds.find(([id]) => id === kind)[2];

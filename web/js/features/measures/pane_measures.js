@@ -6,6 +6,7 @@ import { isInSpace } from '../../room/kinds.js';
 import { measureOverlay } from './measure_overlay.js';
 import { toPicture } from '../../parts/vec.js';
 import { measureName, valueTexts } from './measure_words.js';
+import { say } from './words.js';
 
 const [mousePx, fingerPx] = [10, 22]; // how far from a point a press still takes it
 const samePx = 4;
@@ -215,8 +216,7 @@ export class PaneMeasures {
     this.#set(null);
     if (!draft || draft.points.length < 2) return;
     const id = freeId(this.#scene.measures, room.sharesMarks, room.markSuffix);
-    if (Object.keys(this.#scene.measures).length >= mostMeasures)
-      return void ui.notify('warn', `There are ${mostMeasures} measures already: delete one first.`, 'measures');
+    if (Object.keys(this.#scene.measures).length >= mostMeasures) return void ui.notify('warn', say.full({ n: mostMeasures }), 'measures');
     room.patchScene(newMeasure(id, draft.kind, this.#completed(draft, draft.points), shownImage(room.plan.value, this.#scene)), {
       view: this.#view.number,
       at,
