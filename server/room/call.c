@@ -7,6 +7,7 @@
 
 #include "server/room/log/replay.h"
 #include "server/room/out/audit.h"
+#include "server/room/people/links.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/roles.h"
 #include "server/room/views/shared_scene.h"
@@ -61,8 +62,8 @@ bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller,
 void room_audit_call(struct room *room, const char *member, const char *address, const char *action, cJSON *detail,
                      bool is_refused, int64_t now_us)
 {
-    if (strcmp(action, "export") == 0 && room->plan_revision[0])
-        cJSON_AddStringToObject(detail, "plan_revision", room->plan_revision);
+    if (strcmp(action, "export") == 0 && room->files.revision[0])
+        cJSON_AddStringToObject(detail, "plan_revision", room->files.revision);
     const struct audit_act act = { .by = find_caller(room, member),
                                    .action = action,
                                    .address = address,
@@ -86,7 +87,7 @@ bool room_call_may(const struct room *room, const char *member, enum wire_right 
     if (member)
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "member",
                            "Beamroom-Member names no member of this room, or not with its secret");
-    if (room->has_links && (right == WIRE_RIGHT_SCENE || !role_has_right(WIRE_MEMBER_ROLE_REVIEWER, right)))
+    if (links_were_made(room) && (right == WIRE_RIGHT_SCENE || !role_has_right(WIRE_MEMBER_ROLE_REVIEWER, right)))
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "role",
                            "this room has links, so only its members may do this: send Beamroom-Member");
     return true;

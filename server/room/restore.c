@@ -18,12 +18,12 @@
 
 static bool write_members(const struct room *room, struct store_room *kept)
 {
-    size_t n = (size_t)(room->n_members + room->n_known);
+    size_t n = (size_t)(room->n_members + room->known->n);
     kept->members = mem_array(n, sizeof kept->members[0], 1 << 20, NULL);
     if (!kept->members)
         return false;
-    for (int i = 0; i < room->n_known; i++)
-        kept->members[kept->n_members++] = room->known[i];
+    for (int i = 0; i < room->known->n; i++)
+        kept->members[kept->n_members++] = room->known->list[i];
     for (int i = 0; i < room->n_members; i++)
         known_write(room->members[i], &kept->members[kept->n_members++]);
     return true;
@@ -35,7 +35,7 @@ bool room_keep(const struct room *room, unsigned parts, struct store_room *kept)
     *kept = (struct store_room){ .created_ms = room->created_at_s * 1000,
                                  .revision = room->revision,
                                  .n_named = room->n_named,
-                                 .has_links = room->has_links };
+                                 .has_links = links_were_made(room) };
     (void)snprintf(kept->id, sizeof kept->id, "%s", room->id);
     (void)snprintf(kept->plan, sizeof kept->plan, "%s", room->plan_id);
     if (room->presenter)

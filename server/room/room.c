@@ -20,6 +20,7 @@
 #include "server/room/out/send.h"
 #include "server/room/people/control.h"
 #include "server/room/people/handover.h"
+#include "server/room/people/known.h"
 #include "server/room/people/links.h"
 #include "server/room/people/look.h"
 #include "server/room/people/member.h"
@@ -61,7 +62,10 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
     presence_init(room);
     audit_init(room);
     saved_init(room);
+    items_init(room);
+    acceptances_init(room);
     control_init(room);
+    known_init(room);
     links_init(room);
     look_init(room);
     recordings_init(room, limits && limits->recording_speed > 0 ? limits->recording_speed : 1);
@@ -98,7 +102,7 @@ void room_destroy(struct room *room)
     control_free(room);
     cJSON_Delete(room->scene);
     cJSON_Delete(room->restored);
-    free(room->known);
+    known_free(room);
     saved_free(room);
     presence_free(room);
     events_free(room);
@@ -122,7 +126,7 @@ void room_end_because(struct room *room, const char *reason)
 
 bool room_was_used(const struct room *room)
 {
-    return !room->replay && (room->n_named > 0 || room->has_links || room->is_changed);
+    return !room->replay && (room->n_named > 0 || links_were_made(room) || room->is_changed);
 }
 
 uint32_t room_n_named(const struct room *room)
@@ -133,7 +137,7 @@ uint32_t room_n_named(const struct room *room)
 size_t room_n_decided(const struct room *room)
 {
     size_t n = 0;
-    for (const struct item *item = room->items; item; item = item->next)
+    for (const struct item *item = room->items->first; item; item = item->next)
         n += record_is_wanted(item->kind);
     return n;
 }
@@ -234,7 +238,7 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
 
 void room_plan_revision(struct room *room, const char *revision)
 {
-    (void)snprintf(room->plan_revision, sizeof room->plan_revision, "%s", revision);
+    (void)snprintf(room->files.revision, sizeof room->files.revision, "%s", revision);
 }
 
 bool room_wants_revision(const struct room *room)

@@ -19,6 +19,17 @@
 #include "server/room/streams/stream.h"
 #include "server/wire/json_merge.h"
 
+struct acceptances {
+    cJSON *list, *ids; /* of those that count: for the renderer, and the items' ids; NULL: not known, or none */
+    char revision[65]; /* of the files that the present renderer has loaded; "": not known */
+    bool is_known;     /* as members were told last: revision is */
+};
+
+void acceptances_init(struct room *room)
+{
+    room->acceptances = mem_new(sizeof *room->acceptances);
+}
+
 /* ---- bodies ----------------------------------------------------------------------------------------------------- */
 
 static cJSON *body_of(const struct item *item, cJSON **row)
@@ -38,7 +49,7 @@ static bool names_pair(const cJSON *body, const char *thing, const char *with)
 static bool is_of_these_files(const struct room *room, const cJSON *body)
 {
     const char *revision = json_text(body, "plan_revision");
-    return revision && revision[0] && strcmp(revision, room->acceptances.revision) == 0;
+    return revision && revision[0] && strcmp(revision, room->acceptances->revision) == 0;
 }
 
 /* Refuses a second acceptance of a pair, and one more than are counted. */
@@ -46,7 +57,7 @@ static bool check_others(const struct room *room, const cJSON *body, struct prob
 {
     size_t n = 0;
     bool is_there = false;
-    for (const struct item *item = room->items; item && !is_there; item = item->next) {
+    for (const struct item *item = room->items->first; item && !is_there; item = item->next) {
         if (item->kind != WIRE_ITEM_KIND_ACCEPTANCE)
             continue;
         cJSON *row, *other = body_of(item, &row);
@@ -74,10 +85,10 @@ cJSON *acceptance_read(const struct room *room, const cJSON *body, const struct 
         return NULL;
     const cJSON *fit =
         is_restored ? NULL : acceptance_fit(room->plan, json_text(body, "thing"), json_text(body, "with"));
-    const char *revision = is_restored ? json_text(body, "plan_revision") : room->acceptances.revision;
-    const char *role = is_restored    ? json_text(body, "role")
-                       : room->writer ? wire_member_role_words.words[room->writer->role]
-                                      : NULL;
+    const char *revision = is_restored ? json_text(body, "plan_revision") : room->acceptances->revision;
+    const char *role = is_restored           ? json_text(body, "role")
+                       : room->items->writer ? wire_member_role_words.words[room->items->writer->role]
+                                             : NULL;
     cJSON *read = cJSON_CreateObject();
     json_copy_text(read, body, "thing");
     json_copy_text(read, body, "with");
@@ -116,7 +127,7 @@ bool acceptance_may_write(const struct room *room, const struct member *member, 
                            "an acceptance stays as it was made: withdraw it and make another");
     if (!acceptance_may(room, member, kind, problem))
         return false;
-    if (room->acceptances.revision[0] && room->plan)
+    if (room->acceptances->revision[0] && room->plan)
         return true;
     problem_set(problem, PROBLEM_BUSY, "", "",
                 "the revision of the plan's files is not known yet: GET /api/v1/plans/%s/revision", room->plan_id);
@@ -157,7 +168,7 @@ static cJSON *find_counting(const struct room *room, cJSON *ids)
 {
     cJSON *list = cJSON_CreateArray();
     int n = 0;
-    for (const struct item *item = room->items; item && !room->replay && n < ACCEPTANCE_MAX; item = item->next) {
+    for (const struct item *item = room->items->first; item && !room->replay && n < ACCEPTANCE_MAX; item = item->next) {
         if (item->kind != WIRE_ITEM_KIND_ACCEPTANCE)
             continue;
         cJSON *row, *body = body_of(item, &row);
@@ -179,7 +190,7 @@ static cJSON *find_counting(const struct room *room, cJSON *ids)
 bool acceptance_counts(const struct room *room, const struct item *item)
 {
     const cJSON *id;
-    cJSON_ArrayForEach(id, room->acceptances.ids)
+    cJSON_ArrayForEach(id, room->acceptances->ids)
     {
         if (strcmp(id->valuestring, item->id) == 0)
             return true;
@@ -191,8 +202,8 @@ void acceptances_tell(struct room *room, struct member *member)
 {
     struct message message = { .type = MESSAGE_ACCEPTANCES };
     cJSON *none = cJSON_CreateArray();
-    message.acceptances.known = room->acceptances.revision[0] != 0;
-    message.acceptances.items = room->acceptances.ids ? room->acceptances.ids : none;
+    message.acceptances.known = room->acceptances->revision[0] != 0;
+    message.acceptances.items = room->acceptances->ids ? room->acceptances->ids : none;
     if (member)
         send_to_member(room, member, &message);
     else
@@ -203,21 +214,21 @@ void acceptances_tell(struct room *room, struct member *member)
 void acceptances_settle(struct room *room)
 {
     const size_t refused = mem_n_refused();
-    const bool is_known = room->acceptances.revision[0] != 0;
+    const bool is_known = room->acceptances->revision[0] != 0;
     cJSON *ids = cJSON_CreateArray(), *list = find_counting(room, ids);
     if (mem_n_refused() != refused) { /* better none than a part of them */
         cJSON_Delete(ids);
         cJSON_Delete(list);
         ids = list = NULL;
     }
-    const bool had_none = !room->acceptances.list || !room->acceptances.list->child, has_none = !list || !list->child;
-    const bool has_changed = had_none != has_none || (!has_none && !json_equal(list, room->acceptances.list));
-    const bool is_news = has_changed || is_known != room->acceptances.is_known;
-    cJSON_Delete(room->acceptances.list);
-    cJSON_Delete(room->acceptances.ids);
-    room->acceptances.list = list;
-    room->acceptances.ids = ids;
-    room->acceptances.is_known = is_known;
+    const bool had_none = !room->acceptances->list || !room->acceptances->list->child, has_none = !list || !list->child;
+    const bool has_changed = had_none != has_none || (!has_none && !json_equal(list, room->acceptances->list));
+    const bool is_news = has_changed || is_known != room->acceptances->is_known;
+    cJSON_Delete(room->acceptances->list);
+    cJSON_Delete(room->acceptances->ids);
+    room->acceptances->list = list;
+    room->acceptances->ids = ids;
+    room->acceptances->is_known = is_known;
     if (has_changed && room->scene) {
         room->revision++;
         room_event(room, ROOM_SCENE, NULL);
@@ -232,7 +243,7 @@ void acceptances_settle(struct room *room)
 bool acceptances_want_revision(const struct room *room)
 {
     const cJSON *fit;
-    if (room->acceptances.revision[0] || room->replay || !room->plan)
+    if (room->acceptances->revision[0] || room->replay || !room->plan)
         return false;
     cJSON_ArrayForEach(fit, cJSON_GetObjectItemCaseSensitive(room->plan, "fits"))
     {
@@ -245,19 +256,20 @@ bool acceptances_want_revision(const struct room *room)
 
 void acceptances_revision(struct room *room, const char *revision)
 {
-    if (revision[0] && room->acceptances.revision[0])
+    if (revision[0] && room->acceptances->revision[0])
         return; /* the files may have changed; what is loaded has not */
-    (void)snprintf(room->acceptances.revision, sizeof room->acceptances.revision, "%s", revision);
+    (void)snprintf(room->acceptances->revision, sizeof room->acceptances->revision, "%s", revision);
     acceptances_settle(room);
 }
 
 void acceptances_free(struct room *room)
 {
-    cJSON_Delete(room->acceptances.list);
-    cJSON_Delete(room->acceptances.ids);
+    cJSON_Delete(room->acceptances->list);
+    cJSON_Delete(room->acceptances->ids);
+    free(room->acceptances);
 }
 
 const cJSON *room_acceptances(const struct room *room)
 {
-    return room->acceptances.list && room->acceptances.list->child ? room->acceptances.list : NULL;
+    return room->acceptances->list && room->acceptances->list->child ? room->acceptances->list : NULL;
 }

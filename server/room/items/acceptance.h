@@ -2,7 +2,7 @@
 /* Acceptances of a room: by a person's word two parts of the plan that do not fit are used together, here and for the
  * files that the person saw. They are items of the room and nothing else: no scene, saved view, permalink, new room or
  * replay holds one. What the renderer is told is room_acceptances. Internal to server/room. */
-#include "server/room/state/room_state.h"
+#include "server/room/items/item_list.h"
 
 enum { ACCEPTANCE_MAX_BYTES = 4096 }; /* of a body */
 
@@ -26,6 +26,7 @@ bool acceptance_counts(const struct room *room, const struct item *item);
 bool acceptances_want_revision(const struct room *room);
 /* It is this; "": another process loads the files, so it is not known. */
 void acceptances_revision(struct room *room, const char *revision);
+void acceptances_init(struct room *room); /* with the room */
 void acceptances_free(struct room *room);
 /* Tells a member, who has just come, which count. */
 void acceptances_tell(struct room *room, struct member *member);

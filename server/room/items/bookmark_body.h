@@ -1,7 +1,7 @@
 #pragma once
 /* The body of a bookmark as the room keeps it (server/wire/bookmark.h): the room adds the plan, the token and, when the
  * page sends none, the scene. Internal to server/room. */
-#include "server/room/state/room_state.h"
+#include "server/room/items/item_list.h"
 #include "server/wire/bookmark.h"
 
 /* The body, checked and complete, as a new document; pointers of problems begin with /body. Without scene (or with

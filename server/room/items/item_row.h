@@ -1,7 +1,7 @@
 #pragma once
 /* The row of an item as text: what the body of each kind may be, writing a row, and reading one that was kept
  * (room_restore_item of room.h). Knows nothing of who may change items: items.h. Internal to server/room. */
-#include "server/room/state/room_state.h"
+#include "server/room/items/item_list.h"
 
 const char *item_word(enum wire_item_kind kind);
 /* The body, checked and complete, as text for free(). NULL with problem. */

@@ -83,7 +83,7 @@ static struct item *find_to_change(const struct room *room, const struct member 
                     item_word(item->kind), item->author_name);
         return NULL;
     }
-    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+    for (const struct keeping *keeping = room->items->keeping; keeping; keeping = keeping->next)
         if (strcmp(keeping->item.id, id) == 0) {
             problem_set(problem, PROBLEM_CONFLICT, "/item", "",
                         "another change of this %s by %.40s is just being kept: try again", item_word(item->kind),
@@ -118,10 +118,10 @@ static bool write_first(struct room *room, const struct keeping *keeping, const 
     struct audit_apart apart = { 0 };
     char *record = record_of(room, item, problem);
     const bool has_record = record || !record_is_wanted(item->kind);
-    room->apart = &apart;
+    audit_set_apart(room, &apart);
     record_audit(room, item, member, record);
     acceptance_audit(room, item, member, false);
-    room->apart = NULL;
+    audit_set_apart(room, NULL);
     const struct room_item_write write = { .id = item->id,
                                            .kind = item_word(item->kind),
                                            .row = item->row,
@@ -141,8 +141,9 @@ static bool write_first(struct room *room, const struct keeping *keeping, const 
 static bool keep_first(struct room *room, const struct item *next, bool is_change, const struct member *member,
                        uint32_t input, struct problem *problem)
 {
-    struct keeping *keeping = mem_new(sizeof *keeping), **last = &room->keeping;
-    *keeping = (struct keeping){ .number = ++room->n_kept, .item = *next, .is_change = is_change, .input = input };
+    struct keeping *keeping = mem_new(sizeof *keeping), **last = &room->items->keeping;
+    *keeping =
+        (struct keeping){ .number = ++room->items->n_kept, .item = *next, .is_change = is_change, .input = input };
     (void)snprintf(keeping->member, sizeof keeping->member, "%s", member->id);
     if (!write_first(room, keeping, member, problem)) {
         free(keeping->item.row);
@@ -157,9 +158,9 @@ static bool keep_first(struct room *room, const struct item *next, bool is_chang
 
 void items_forget_keeping(struct room *room)
 {
-    while (room->keeping) {
-        struct keeping *keeping = room->keeping;
-        room->keeping = keeping->next;
+    while (room->items->keeping) {
+        struct keeping *keeping = room->items->keeping;
+        room->items->keeping = keeping->next;
         free(keeping->item.row);
         free(keeping);
     }
@@ -168,14 +169,14 @@ void items_forget_keeping(struct room *room)
 size_t room_n_items_written(const struct room *room)
 {
     size_t n = 0;
-    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+    for (const struct keeping *keeping = room->items->keeping; keeping; keeping = keeping->next)
         n++;
     return n;
 }
 
 void items_written(struct room *room, uint64_t number, const struct problem *problem)
 {
-    struct keeping **at = &room->keeping, *keeping;
+    struct keeping **at = &room->items->keeping, *keeping;
     while (*at && (*at)->number != number)
         at = &(*at)->next;
     if (!(keeping = *at))
@@ -229,9 +230,9 @@ bool items_put(struct room *room, struct member *member, const struct message *m
     next.version++;
     next.changed_ms = before ? clock_wall_ms() : next.created_ms;
     copy_name(next.changed_name, member->name);
-    room->writer = member;
+    room->items->writer = member;
     char *body = item_body_text(room, put->kind, put->body, before, false, problem);
-    room->writer = NULL;
+    room->items->writer = NULL;
     char *row = body ? item_row_text(&next, body) : NULL;
     if (body && !row)
         json_no_memory(problem, "an item");
@@ -259,7 +260,7 @@ bool items_delete(struct room *room, struct member *member, const struct message
     struct item *item = find_to_change(room, member, asked->item, asked->version, problem);
     if (!item || (room->callbacks.can_write && !room->callbacks.can_write(room->callbacks.context, problem)))
         return false;
-    for (struct item *reply = room->items, *after; reply; reply = after) {
+    for (struct item *reply = room->items->first, *after; reply; reply = after) {
         after = reply->next;
         if (strcmp(reply->parent, item->id) != 0)
             continue;

@@ -2,7 +2,7 @@
 /* The body of a note: {text, anchor: null | {point_mm?, region?}, resolved, mentions: [{member, name}], parent}. A
  * reply is a note with a parent; it has no anchor and is not resolved. Knows the plan's regions, not who may write.
  * Internal to server/room. */
-#include "server/room/state/room_state.h"
+#include "server/room/items/item_list.h"
 
 enum {
     NOTE_MAX_TEXT = 2000, /* characters */

@@ -16,7 +16,7 @@
 static cJSON *rows_of(const struct room *room, enum wire_item_kind kind)
 {
     cJSON *list = cJSON_CreateArray();
-    for (const struct item *item = room->items; item; item = item->next) {
+    for (const struct item *item = room->items->first; item; item = item->next) {
         if (item->kind != kind)
             continue;
         cJSON *row = json_read(item->row, strlen(item->row), NULL);
@@ -43,17 +43,17 @@ static cJSON *rows_of(const struct room *room, enum wire_item_kind kind)
 static void fill_files(const struct room *room, struct message *message)
 {
     *message = (struct message){ .type = MESSAGE_FILES };
-    message->files.changed_ms = (double)room->files_changed_ms;
-    message->files.read_ms = (double)room->files_read_ms;
+    message->files.changed_ms = (double)room->files.changed_ms;
+    message->files.read_ms = (double)room->files.read_ms;
 }
 
 void room_files(struct room *room, int64_t changed_ms, int64_t read_ms)
 {
     struct message message;
-    if (room->files_changed_ms == changed_ms)
+    if (room->files.changed_ms == changed_ms)
         return;
-    room->files_changed_ms = changed_ms;
-    room->files_read_ms = read_ms;
+    room->files.changed_ms = changed_ms;
+    room->files.read_ms = read_ms;
     fill_files(room, &message);
     send_to_all(room, &message);
     message_finish(&message);
@@ -62,7 +62,7 @@ void room_files(struct room *room, int64_t changed_ms, int64_t read_ms)
 void files_show(struct room *room, struct member *member)
 {
     struct message message;
-    if (!room->files_changed_ms)
+    if (!room->files.changed_ms)
         return;
     fill_files(room, &message);
     send_to_member(room, member, &message);
@@ -121,7 +121,7 @@ cJSON *room_record(const struct room *room)
     cJSON_AddNumberToObject(json, "version", 1);
     cJSON_AddStringToObject(json, "room", room->id);
     cJSON_AddStringToObject(json, "plan", room->plan_id);
-    cJSON_AddStringToObject(json, "plan_revision", room->plan_revision);
+    cJSON_AddStringToObject(json, "plan_revision", room->files.revision);
     cJSON_AddNumberToObject(json, "revision", room->revision);
     cJSON_AddNumberToObject(json, "made_ms", (double)clock_wall_ms());
     cJSON_AddNumberToObject(json, "created_ms", (double)room->created_at_s * 1000);

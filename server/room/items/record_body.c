@@ -55,10 +55,10 @@ static bool check_optional(const cJSON *body, const char *name, size_t most, str
 /* Revision and role: as they were kept, else those of now. */
 static void give_place(const struct room *room, const cJSON *body, bool is_restored, cJSON *read)
 {
-    const char *revision = is_restored ? json_text(body, "plan_revision") : room->plan_revision;
+    const char *revision = is_restored ? json_text(body, "plan_revision") : room->files.revision;
     const char *role = is_restored ? json_text(body, "role") : NULL;
-    if (!is_restored && room->writer)
-        role = wire_member_role_words.words[room->writer->role];
+    if (!is_restored && room->items->writer)
+        role = wire_member_role_words.words[room->items->writer->role];
     cJSON_AddStringToObject(read, "plan_revision", revision && strlen(revision) <= 64 ? revision : "");
     cJSON_AddStringToObject(read, "role", role && strlen(role) < 16 ? role : "");
 }
@@ -87,7 +87,7 @@ static bool is_of_entry(const struct room *room, const struct item *item, const 
         return false;
     cJSON *row, *body = body_of(item, &row);
     const char *found = json_text(body, "entry"), *revision = json_text(body, "plan_revision");
-    const bool is_of = found && revision && strcmp(found, entry) == 0 && strcmp(revision, room->plan_revision) == 0;
+    const bool is_of = found && revision && strcmp(found, entry) == 0 && strcmp(revision, room->files.revision) == 0;
     cJSON_Delete(row);
     return is_of;
 }
@@ -95,10 +95,10 @@ static bool is_of_entry(const struct room *room, const struct item *item, const 
 /* Whether another check of the same entry stands under the same revision, or is being kept. */
 static bool entry_is_there(const struct room *room, const char *entry, const struct item *before)
 {
-    for (const struct item *item = room->items; item; item = item->next)
+    for (const struct item *item = room->items->first; item; item = item->next)
         if (item != before && is_of_entry(room, item, entry))
             return true;
-    for (const struct keeping *keeping = room->keeping; keeping; keeping = keeping->next)
+    for (const struct keeping *keeping = room->items->keeping; keeping; keeping = keeping->next)
         if (!(before && strcmp(keeping->item.id, before->id) == 0) && is_of_entry(room, &keeping->item, entry))
             return true;
     return false;
@@ -188,13 +188,13 @@ bool record_may_write(const struct room *room, const struct member *member, enum
     if (kind == WIRE_ITEM_KIND_DECISION && member->role != WIRE_MEMBER_ROLE_PRESENTER)
         return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role",
                            "only a member of role presenter writes down what was decided");
-    if (!room->plan_revision[0]) {
+    if (!room->files.revision[0]) {
         problem_set(problem, PROBLEM_BUSY, "", "",
                     "the revision of the plan's files is not known yet: GET /api/v1/plans/%s/revision", room->plan_id);
         problem->retry_after_ms = 1000;
         return false;
     }
-    if (is_append_only(kind) && room->files_changed_ms)
+    if (is_append_only(kind) && room->files.changed_ms)
         return problem_set(
             problem, PROBLEM_CONFLICT, "", "files",
             "the plan's files have changed on the disk since they were read: nothing is decided or signed "
@@ -212,7 +212,7 @@ bool record_may_change(const struct room *room, const struct item *item, struct 
         return true;
     cJSON *row, *body = body_of(item, &row);
     const char *revision = json_text(body, "plan_revision");
-    const bool is_of_now = revision && strcmp(revision, room->plan_revision) == 0;
+    const bool is_of_now = revision && strcmp(revision, room->files.revision) == 0;
     cJSON_Delete(row);
     return is_of_now || problem_set(problem, PROBLEM_FORBIDDEN, "/item", "append-only",
                                     "this entry stands under an earlier revision of the plan's files, and stays");

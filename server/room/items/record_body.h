@@ -3,7 +3,7 @@
  * under the revision of the plan's files that it was written for, which the server gives it, as the role of who wrote
  * it. Decisions and signatures are never changed or deleted: a correction is a new one that names the old. Knows
  * nothing of the list of items' limits. Internal to server/room. */
-#include "server/room/state/room_state.h"
+#include "server/room/items/item_list.h"
 
 enum {
     RECORD_MAX_TEXT = 2000, /* characters of what is said about an entry or a decision */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/room/items/item_list.h"
 #include "server/room/log/meeting_log.h"
 #include "server/room/log/room_recordings.h"
 #include "server/room/state/member_list.h"
@@ -71,7 +72,7 @@ cJSON *recorded_pointers(const struct room *room)
 cJSON *recorded_items(const struct room *room)
 {
     cJSON *entries = cJSON_CreateObject();
-    for (const struct item *item = room->items; item; item = item->next)
+    for (const struct item *item = room->items->first; item; item = item->next)
         json_add(entries, item->id, json_read(item->row, strlen(item->row), NULL));
     return entries;
 }

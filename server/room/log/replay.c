@@ -7,6 +7,7 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/room/items/item_list.h"
 #include "server/room/log/meeting_log.h"
 #include "server/room/log/recording.h"
 #include "server/room/log/replay_shown.h"
@@ -409,7 +410,7 @@ bool replay_leave(struct room *room, struct member *member, const struct message
     replay_free(room);
     room->is_changed = true;
     room_event(room, ROOM_ALL_PARTS, NULL);
-    for (const struct item *item = room->items; item && room->callbacks.item_changed; item = item->next)
+    for (const struct item *item = room->items->first; item && room->callbacks.item_changed; item = item->next)
         room->callbacks.item_changed(room->callbacks.context, room, item->row, item->id);
     return true;
 }

@@ -106,11 +106,9 @@ static const struct item *find_in(const struct item *list, const char *id)
 /* All are read again: so they stand in the order of their time, whatever has changed. */
 void shown_items(struct room *room, const cJSON *state)
 {
-    struct item *before = room->items;
+    struct item *before = items_take_all(room);
     cJSON *list = recorded_item_list(state);
     const cJSON *entry;
-    room->items = NULL;
-    room->n_items = room->n_item_bytes = 0;
     cJSON_ArrayForEach(entry, list)
     {
         struct problem problem = { 0 };
@@ -126,7 +124,7 @@ void shown_items(struct room *room, const cJSON *state)
     for (const struct item *item = before; item; item = item->next)
         if (!items_find(room, item->id))
             tell_item(room, item->id, NULL);
-    for (const struct item *item = room->items; item; item = item->next) {
+    for (const struct item *item = room->items->first; item; item = item->next) {
         const struct item *old = find_in(before, item->id);
         if (!old || strcmp(old->row, item->row) != 0)
             tell_item(room, item->id, item->row);

@@ -13,6 +13,7 @@
 struct audit {
     struct gathered gathered[ROOM_MAX_GATHERED]; /* the oldest first */
     int n_gathered;
+    struct audit_apart *apart; /* NULL: rows go to the room's owner */
 };
 
 void audit_init(struct room *room)
@@ -189,12 +190,17 @@ void audit_apart_finish(struct audit_apart *apart)
     free(apart->detail);
 }
 
+void audit_set_apart(struct room *room, struct audit_apart *apart)
+{
+    room->audit->apart = apart;
+}
+
 void audit_tell(struct room *room, const struct audit_act *act)
 {
     bool is_new;
-    if (room->apart) {
-        audit_apart_finish(room->apart);
-        fill_apart(room, act, room->apart);
+    if (room->audit->apart) {
+        audit_apart_finish(room->audit->apart);
+        fill_apart(room, act, room->audit->apart);
         return;
     }
     struct gathered *gathered = place(room, act, &is_new);

@@ -31,6 +31,8 @@ struct audit_apart {
     char *detail;          /* owned */
     struct room_audit row; /* borrows from the two */
 };
+/* Until this is called with NULL, the newest row goes there. */
+void audit_set_apart(struct room *room, struct audit_apart *apart);
 void audit_apart_finish(struct audit_apart *apart);
 
 /* Records it at once, and gathers the repetitions that follow: the same member, name, role, address, action, detail and

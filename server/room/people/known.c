@@ -8,6 +8,17 @@
 #include "core/base/mem.h"
 #include "server/room/state/roles.h"
 
+void known_init(struct room *room)
+{
+    room->known = mem_new(sizeof *room->known);
+}
+
+void known_free(struct room *room)
+{
+    free(room->known->list);
+    free(room->known);
+}
+
 void known_write(const struct member *member, struct store_member *kept)
 {
     *kept = (struct store_member){ 0 };
@@ -38,30 +49,31 @@ void known_read(const struct store_member *kept, struct member *member)
 
 static void known_remove(struct room *room, int index)
 {
-    room->n_known--;
-    memmove(&room->known[index], &room->known[index + 1], (size_t)(room->n_known - index) * sizeof room->known[0]);
+    room->known->n--;
+    memmove(&room->known->list[index], &room->known->list[index + 1],
+            (size_t)(room->known->n - index) * sizeof room->known->list[0]);
 }
 
 /* Presenters are forgotten last: once none is known, the next stranger in the empty room becomes one. */
 static int first_to_forget(const struct room *room)
 {
     int first = 0;
-    while (first < room->n_known &&
-           strcmp(room->known[first].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) == 0)
+    while (first < room->known->n &&
+           strcmp(room->known->list[first].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) == 0)
         first++;
-    return first < room->n_known ? first : 0;
+    return first < room->known->n ? first : 0;
 }
 
 void known_add(struct room *room, const struct store_member *kept)
 {
-    if (!room->known)
-        room->known = mem_array(ROOM_MAX_KNOWN, sizeof room->known[0], 1 << 20, NULL);
-    if (!room->known)
+    if (!room->known->list)
+        room->known->list = mem_array(ROOM_MAX_KNOWN, sizeof room->known->list[0], 1 << 20, NULL);
+    if (!room->known->list)
         return; /* then it cannot come back as the same */
-    if (room->n_known == ROOM_MAX_KNOWN)
+    if (room->known->n == ROOM_MAX_KNOWN)
         known_remove(room, first_to_forget(room));
-    room->known[room->n_known] = *kept;
-    room->known[room->n_known++].has_left = true;
+    room->known->list[room->known->n] = *kept;
+    room->known->list[room->known->n++].has_left = true;
 }
 
 void known_add_member(struct room *room, const struct member *member)
@@ -74,8 +86,8 @@ void known_add_member(struct room *room, const struct member *member)
 /* -1: there is none. */
 static int find(const struct room *room, const char *id, const char *secret)
 {
-    for (int i = 0; i < room->n_known && id[0]; i++)
-        if (strcmp(room->known[i].id, id) == 0 && secret_matches(secret, room->known[i].secret_hash))
+    for (int i = 0; i < room->known->n && id[0]; i++)
+        if (strcmp(room->known->list[i].id, id) == 0 && secret_matches(secret, room->known->list[i].secret_hash))
             return i;
     return -1;
 }
@@ -91,7 +103,15 @@ struct member *known_back(struct room *room, const char *id, const char *secret)
     if (index < 0)
         return NULL;
     struct member *member = mem_new(sizeof *member);
-    known_read(&room->known[index], member);
+    known_read(&room->known->list[index], member);
     known_remove(room, index);
     return member;
+}
+
+enum wire_member_role role_of_newcomer(const struct room *room)
+{
+    bool is_first = room->n_members == 0;
+    for (int i = 0; is_first && i < room->known->n; i++)
+        is_first = strcmp(room->known->list[i].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) != 0;
+    return is_first ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_REVIEWER;
 }

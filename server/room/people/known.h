@@ -2,6 +2,14 @@
 /* Members that left but can come back as the same; members as they are kept. Internal to server/room. */
 #include "server/room/state/room_state.h"
 
+struct known {
+    struct store_member *list; /* the first to leave first; room for ROOM_MAX_KNOWN. NULL: nobody left */
+    int n;
+};
+
+void known_init(struct room *room); /* with the room */
+void known_free(struct room *room);
+
 void known_write(const struct member *member, struct store_member *kept);
 void known_read(const struct store_member *kept, struct member *member);
 /* A member leaves the list of members. */
@@ -12,3 +20,6 @@ bool known_has(const struct room *room, const char *id, const char *secret);
 /* The member with this id and secret who left, as a new struct member that is not yet in the list; NULL: there is
  * none. */
 struct member *known_back(struct room *room, const char *id, const char *secret);
+/* The role of a new member who enters without a link: presenter in a room without members that knows no
+ * presenter who left and might come back, else reviewer. */
+enum wire_member_role role_of_newcomer(const struct room *room);

@@ -19,6 +19,7 @@ static_assert(SECRET_TEXT == 33, "room.h tells the size of a token");
 struct links {
     struct link list[ROOM_MAX_LINKS];
     int n;
+    bool were_made; /* there was one, perhaps none any more */
 };
 
 void links_init(struct room *room)
@@ -29,6 +30,11 @@ void links_init(struct room *room)
 void links_free(struct room *room)
 {
     free(room->links);
+}
+
+bool links_were_made(const struct room *room)
+{
+    return room->links->were_made;
 }
 
 static bool is_over(const struct room *room, const struct link *link)
@@ -62,7 +68,7 @@ bool link_create(struct room *room, enum wire_member_role role, int64_t expires_
                            .is_one_use = is_one_use };
     secret_make(token);
     secret_hash(token, link->token_hash);
-    room->has_links = true;
+    room->links->were_made = true;
     room_event(room, ROOM_LINKS, NULL);
     return true;
 }
@@ -161,7 +167,7 @@ static void read_link(struct room *room, const struct store_link *from)
 
 void links_read(struct room *room, const struct store_room *kept)
 {
-    room->has_links = kept->has_links || kept->n_links > 0;
+    room->links->were_made = kept->has_links || kept->n_links > 0;
     for (size_t i = 0; i < kept->n_links && room->links->n < ROOM_MAX_LINKS; i++)
         read_link(room, &kept->links[i]);
 }

@@ -13,6 +13,8 @@ struct link { /* lets new members in */
 void links_init(struct room *room); /* with the room */
 void links_free(struct room *room);
 
+/* There was one; then those who are no members may do less: room_call_may. */
+bool links_were_made(const struct room *room);
 /* Makes one: room_link_create. */
 NODISCARD bool link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
                            char token[33], struct problem *problem);

@@ -1,4 +1,4 @@
-/* Checks roles against rights, and chooses roles and colours of new members. */
+/* Checks roles against rights, and chooses colours of new members. */
 #include "server/room/state/roles.h"
 
 #include <string.h>
@@ -26,14 +26,6 @@ bool role_check(enum wire_member_role role, enum wire_right right, struct proble
         return true;
     return problem_set(problem, PROBLEM_FORBIDDEN, "", "role", "the role of %s does not include to %s",
                        wire_member_role_words.words[role], acts[right]);
-}
-
-enum wire_member_role role_of_newcomer(const struct room *room)
-{
-    bool is_first = room->n_members == 0;
-    for (int i = 0; is_first && i < room->n_known; i++)
-        is_first = strcmp(room->known[i].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) != 0;
-    return is_first ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_REVIEWER;
 }
 
 int color_of_newcomer(const struct room *room)

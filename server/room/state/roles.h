@@ -9,9 +9,6 @@ enum { ROLES_N_COLORS = 12 };
 bool role_has_right(enum wire_member_role role, enum wire_right right);
 /* True if the role has the right; else fills problem, forbidden with the code "role". */
 bool role_check(enum wire_member_role role, enum wire_right right, struct problem *problem);
-/* The role of a new member who enters without a link: presenter in a room without members that knows no
- * presenter who left and might come back, else reviewer. */
-enum wire_member_role role_of_newcomer(const struct room *room);
 /* The colour that the fewest members of the room have, the first of these: a number below ROLES_N_COLORS. */
 int color_of_newcomer(const struct room *room);
 uint32_t color_rgb(int color); /* 0xrrggbb */

@@ -132,31 +132,18 @@ static inline bool view_is_watch(const struct member_view *view)
     return view->member && view == &view->member->views[ROOM_WATCH - 1];
 }
 
-struct item { /* a reply is a note */
-    struct item *next;
-    char id[16];
-    enum wire_item_kind kind;
-    uint32_t version;
-    char author[64], author_name[161], author_color[8]; /* author_color: "#rrggbb" */
-    char changed_name[161];                             /* who changed it last */
-    int64_t created_ms, changed_ms;                     /* since 1970, UTC */
-    char parent[16];                                    /* of a reply: the note's id; "": none */
-    char *row;                                          /* all of this with the body, as JSON */
-};
-
-struct keeping { /* an item that is being written, and counts afterwards */
-    struct keeping *next;
-    uint64_t number;
-    struct item item; /* what it will be; row: owned */
-    bool is_change;   /* of an item in the list */
-    char member[64];  /* who gave it */
-    uint32_t input;
+struct plan_files {
+    char revision[65];           /* "": not known */
+    int64_t changed_ms, read_ms; /* room_files */
 };
 
 /* Each is the business of the folder and header named beside its pointer in struct room. */
+struct acceptances;
 struct audit;
 struct control;
 struct events;
+struct items;
+struct known;
 struct links;
 struct look;
 struct presences;
@@ -191,36 +178,25 @@ struct room {
     int spoke;                /* index of the one that member_who_speaks found last */
     bool has_lost;            /* some is_lost */
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
-    int64_t files_changed_ms, files_read_ms; /* room_files */
-    char end_reason[200];                    /* "": the room is closed */
-    char plan_revision[65];                  /* of the plan's files; "": not known */
-    const struct member *writer;             /* while the body of an item is read: who writes it */
-    struct presences *presences;             /* state/presence.h */
-    const struct member *caller;  /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */
-    const char *caller_address;   /* and from where; NULL: no call */
-    uint32_t n_named;             /* members ever made, for ids */
-    struct item *items;           /* oldest first */
-    size_t n_items, n_item_bytes; /* n_item_bytes: of their rows */
-    struct keeping *keeping;      /* the oldest first */
-    uint64_t n_kept;              /* numbers of keeping that were given out */
-    struct audit_apart *apart;    /* audit.h; NULL: rows go to the room's owner */
-    struct {
-        cJSON *list, *ids; /* of those that count: for the renderer, and the items' ids; NULL: not known, or none */
-        char revision[65]; /* of the files that the present renderer has loaded; "": not known */
-        bool is_known;     /* as members were told last: revision is */
-    } acceptances;
-    struct look *look;          /* people/look.h */
-    struct audit *audit;        /* out/audit.h */
-    struct store_member *known; /* who left, the first of them first; room for ROOM_MAX_KNOWN */
-    int n_known;
-    struct control *control;       /* people/control.h */
-    struct events *events;         /* state/event.h */
-    struct saved *saved;           /* out/saved.h */
-    struct links *links;           /* people/links.h */
-    struct recordings *recordings; /* log/recording.h */
-    struct recorder *recorder;     /* NULL: no recording runs */
-    struct replay *replay;         /* NULL: the room plays none */
-    bool has_links;                /* there was one; then those who are no members may do less: room_call_may */
+    char end_reason[200];     /* "": the room is closed */
+    struct plan_files files;
+    struct presences *presences; /* state/presence.h */
+    const struct member *caller; /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */
+    const char *caller_address;  /* and from where; NULL: no call */
+    uint32_t n_named;            /* members ever made, for ids */
+    struct items *items;         /* items/item_list.h */
+    struct acceptances *acceptances; /* items/acceptance.h */
+    struct look *look;               /* people/look.h */
+    struct audit *audit;             /* out/audit.h */
+    struct known *known;             /* people/known.h */
+    struct control *control;         /* people/control.h */
+    struct events *events;           /* state/event.h */
+    struct saved *saved;             /* out/saved.h */
+    struct links *links;             /* people/links.h */
+    struct recordings *recordings;   /* log/recording.h */
+    struct recorder *recorder;       /* NULL: no recording runs */
+    struct replay *replay;           /* NULL: the room plays none */
+
     struct stream *streams;
     struct stream
         *main; /* of them: what watch and displays show; of the last presenter when there is none; NULL: none */

@@ -10,7 +10,7 @@
 
 cJSON *room_bookmark(const struct room *room, const char *id, uint32_t *version)
 {
-    for (const struct item *item = room->items; item; item = item->next)
+    for (const struct item *item = room->items->first; item; item = item->next)
         if (item->kind == WIRE_ITEM_KIND_BOOKMARK && strcmp(item->id, id) == 0) {
             *version = item->version;
             return bookmark_body_of(item);
@@ -20,7 +20,7 @@ cJSON *room_bookmark(const struct room *room, const char *id, uint32_t *version)
 
 cJSON *room_bookmark_of_token(const struct room *room, const char *token)
 {
-    for (const struct item *item = room->items; item; item = item->next) {
+    for (const struct item *item = room->items->first; item; item = item->next) {
         if (item->kind != WIRE_ITEM_KIND_BOOKMARK || !strstr(item->row, token))
             continue; /* before the row is parsed: there may be many */
         cJSON *body = bookmark_body_of(item);

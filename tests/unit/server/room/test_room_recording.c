@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "core/base/mem.h"
+#include "server/room/items/item_list.h"
 #include "server/room/log/meeting_log.h"
 #include "server/room/log/recorded_parts.h"
 #include "server/room/state/room_state.h"
@@ -236,7 +237,7 @@ static void changes_the_scene(int who)
 
 static void writes_a_note(int who)
 {
-    const struct item *item = meeting.room->items;
+    const struct item *item = meeting.room->items->first;
     for (int i = below(8); item && i > 0; i--)
         item = item->next;
     if (!item || below(2))
