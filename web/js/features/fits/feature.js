@@ -1,8 +1,9 @@
 // Parts of the page for plans whose parts do not fit: not loaded by a first visit, as most plans fit.
 import { html } from '../../../lib/lit-html.js';
 import { partsOfOthers } from '../../room/identity.js';
-import { count } from '../../parts/format.js';
+import { number } from '../../parts/format.js';
 import { known, later } from '../../parts/lazy.js';
+import { say } from './words.js';
 
 const panels = later(() => import('./later.js'), 'js/features/fits/fit.css');
 
@@ -14,11 +15,14 @@ export const fits = {
   sections: [
     {
       id: 'others',
-      name: 'Not this patient',
+      name: say.section,
       icon: 'error',
       place: 10,
       has: (plan, scene) => partsOfOthers(plan, scene).length,
-      note: ({ room }) => `${count(partsOfOthers(room.plan.value, room.scene.value).length, 'part')}, never drawn`,
+      note: ({ room }) => {
+        const n = partsOfOthers(room.plan.value, room.scene.value).length;
+        return say.neverDrawn({ count: number(n), n });
+      },
       rows: (world) => ofFits(world.room)?.otherPatients(world),
     },
   ],

@@ -4,19 +4,26 @@ import { partOf } from './fits.js';
 import { partsOfOthers, patientOf, shownPatient } from '../../room/identity.js';
 import { shownImage } from '../../room/plan.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
-const names = { image: 'Image', dose: 'Dose', beam: 'Beam', region: 'Region' };
-const relationWords = {
-  same: 'same',
-  registered: 'by registration',
-  unstated: 'not stated',
-  absent: 'same',
-  plan: 'same',
-  unit: 'same',
-  per: 'same',
-  apart: 'apart',
-  frame: 'other',
-  patient: 'other',
+const names = { image: say.image, dose: say.dose, beam: say.beam, region: say.region };
+const within = { image: say.inImage, dose: say.inDose, beam: say.inBeam, region: say.inRegion };
+/** A cell of the table: its text, and how it is marked. */
+const [same, other] = [
+  [say.same, 'ok'],
+  [say.differs, 'err'],
+];
+const relations = {
+  same,
+  registered: [say.byRegistration, 'ok'],
+  unstated: [say.notStated, ''],
+  absent: same,
+  plan: same,
+  unit: same,
+  per: same,
+  apart: [say.apart, 'err'],
+  frame: other,
+  patient: other,
 };
 
 /** Each part against the shown image: frame, patient, plan, in words. */
@@ -29,15 +36,19 @@ export function fitsTable({ room }) {
   const cells = ({ thing, relation, reason }) => {
     const { word, name, part, kind } = partOf(plan, thing);
     const isOther = part && plan.patients[part.patient] && plan.patients[image.patient] && part.patient !== image.patient;
-    const patient = !part || !plan.patients[part.patient] || !plan.patients[image.patient] ? 'not stated' : isOther ? 'other' : 'same';
-    const of = plan.treatmentPlans[part?.plan]?.label ?? (relation === 'absent' ? 'not here' : '–');
-    const isBad = (text) =>
-      ['other', 'apart', 'not here'].includes(text) ? 'err' : text === 'same' || text === 'by registration' ? 'ok' : '';
-    const frame = relationWords[relation] ?? relation;
-    return html`<tr title=${reason}><th scope="row">${kind === 'image' ? name : [word, name && `‘${name}’`].filter(Boolean).join(' ')}</th><td class=${isBad(frame)}>${frame}</td><td class=${isBad(patient)}>${patient}</td><td class=${isBad(of)}>${of}</td></tr>`;
+    const isStated = part && plan.patients[part.patient] && plan.patients[image.patient];
+    const label = plan.treatmentPlans[part?.plan]?.label;
+    const facts = [
+      relations[relation] ?? [relation, ''],
+      !isStated ? [say.notStated, ''] : isOther ? other : same,
+      label === undefined && relation === 'absent' ? [say.notHere, 'err'] : [label ?? '–', ''],
+    ];
+    const of = kind === 'image' ? name : name ? say.partQuoted({ kind: word, name }) : word;
+    return html`<tr title=${reason}><th scope="row">${of}</th>${facts.map(([text, mark]) => html`<td class=${mark}>${text}</td>`)}</tr>`;
   };
-  return html`<section class="block"><h3>What fits what <span class="dim">all against ${partOf(plan, key).name}</span></h3>
-    <table class="fit-table"><thead><tr><th scope="col">part</th><th scope="col">frame</th><th scope="col">patient</th><th scope="col">plan</th></tr></thead><tbody>${rows.map(cells)}</tbody></table></section>`;
+  const columns = [say.columnPart, say.columnFrame, say.columnPatient, say.columnPlan];
+  return html`<section class="block"><h3>${say.fitsWhat} <span class="dim">${say.allAgainst({ image: partOf(plan, key).name })}</span></h3>
+    <table class="fit-table"><thead><tr>${columns.map((word) => html`<th scope="col">${word}</th>`)}</tr></thead><tbody>${rows.map(cells)}</tbody></table></section>`;
 }
 
 /** The red bar: parts of several patients. */
@@ -46,22 +57,24 @@ export function otherPatientsBar({ room }) {
   const others = plan && scene ? partsOfOthers(plan, scene) : [];
   if (!others.length) return nothing;
   const byPatient = [...new Set(others.map(({ masked }) => masked))].map((masked) => {
-    const kinds = [
-      ...new Set(
-        others.filter((part) => part.masked === masked).map(({ kind, name }) => (kind === 'image' ? name : names[kind].toLowerCase())),
-      ),
-    ];
-    return `${kinds.length > 1 ? `${kinds.slice(0, -1).join(', ')} and ${kinds.at(-1)}` : kinds[0]} of ${masked}`;
+    const own = others.filter((part) => part.masked === masked);
+    const kinds = [...new Set(own.map(({ kind, name }) => (kind === 'image' ? name : within[kind])))];
+    const parts = kinds.length > 1 ? say.partsAnd({ parts: kinds.slice(0, -1).join(', '), last: kinds.at(-1) }) : kinds[0];
+    return say.partsOf({ parts, patient: masked });
   });
   const label = plan.treatmentPlans.find(({ patient }) => plan.patients[patient] === shownPatient(plan, scene))?.label;
-  return html`<div class="fit-bar err" role="alert"><span class="err">${icon('error')}</span><p><b>This folder holds parts of ${plan.patients.length} patients.</b> Shown: ${shownPatient(plan, scene).masked}${label ? `, the patient of plan ${label}` : ''}. Not used: ${byPatient.join('; ')}.</p></div>`;
+  const facts = { patient: shownPatient(plan, scene).masked, parts: byPatient.join('; '), plan: label };
+  return html`<div class="fit-bar err" role="alert"><span class="err">${icon('error')}</span>
+    <p><b>${say.severalPatients({ n: plan.patients.length })}</b> ${label ? say.shownOfPlanNot(facts) : say.shownNot(facts)}</p></div>`;
 }
 
 /** The rows of the tree's last section. */
 export function otherPatients({ room }) {
   return partsOfOthers(room.plan.value, room.scene.value).map(({ kind, name, masked }) => {
-    const words = kind === 'image' ? name : `${names[kind]} ‘${name}’`;
-    return html`<li class="row off not-this-patient" role="treeitem" aria-level="2" aria-selected="false" aria-label=${`${words} ${masked}, never used`}>${icon('eyeOff')}<span class="name">${words}</span> <span class="tail">${masked}</span></li>`;
+    const words = kind === 'image' ? name : say.partQuoted({ kind: names[kind], name });
+    const label = say.neverUsed({ part: words, patient: masked });
+    return html`<li class="row off not-this-patient" role="treeitem" aria-level="2" aria-selected="false" aria-label=${label}>
+      ${icon('eyeOff')}<span class="name">${words}</span> <span class="tail">${masked}</span></li>`;
   });
 }
 

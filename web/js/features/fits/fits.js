@@ -2,35 +2,47 @@
 import { pairKey } from '../../room/accepted.js';
 import { isOn as isDoseOn, shownDose } from '../../room/dose.js';
 import { imageName, shownImage } from '../../room/plan.js';
+import { say } from './later_words.js';
 
 /** Relations, the worst first; and the two words that mark what is used all the same. */
 const marks = {
-  patient: 'other patient',
-  frame: 'other frame',
-  apart: 'lies apart',
-  plan: 'other plan',
-  unit: 'other unit',
-  per: 'other “per”',
-  absent: 'plan absent',
+  patient: say.markPatient,
+  frame: say.markFrame,
+  apart: say.markApart,
+  plan: say.markPlan,
+  unit: say.markUnit,
+  per: say.markPer,
+  absent: say.markAbsent,
 };
 const order = Object.keys(marks);
-const words = { image: 'Image', regions: 'Regions', dose: 'Dose', beam: 'Beam', tracks: 'Tracks' };
+/** Each kind alone, and within a sentence. */
+const words = {
+  image: [say.image, say.inImage],
+  regions: [say.regions, say.inRegions],
+  dose: [say.dose, say.inDose],
+  beam: [say.beam, say.inBeam],
+  tracks: [say.tracks, say.inTracks],
+};
 const lists = { image: 'images', dose: 'doses', beam: 'beams' };
 
 export const reasons = [
-  ['registered-elsewhere', 'Registered elsewhere'],
-  ['same-session', 'Same session and couch'],
-  ['compared-on-anatomy', 'Compared on the anatomy'],
-  ['other', 'Other'],
+  ['registered-elsewhere', say.registeredElsewhere, say.asRegisteredElsewhere],
+  ['same-session', say.sameSession, say.asSameSession],
+  ['compared-on-anatomy', say.comparedOnAnatomy, say.asComparedOnAnatomy],
+  ['other', say.other, say.asOther],
 ];
-export const reasonName = (id) => reasons.find(([known]) => known === id)?.[1] ?? id;
+const reasonOf = (id) =>
+  reasons.find(([known]) => known === id) ?? [id, id, ({ words: own }) => say.reasonWords({ reason: id, words: own })];
+export const reasonName = (id) => reasonOf(id)[1];
+/** The reason of an acceptance and what the person wrote, after "Because". */
+export const reasonWords = ({ reason, words: own }) => reasonOf(reason)[2]({ words: own });
 export const minLetters = 10;
 
 /** Counts letters like the server: letters and digits of ASCII, and every character beyond it. */
 export const nLetters = (text) => [...text].filter((letter) => /[0-9A-Za-z]/.test(letter) || letter >= '\u00c0').length;
 
 export const isRank = (relation) => order.indexOf(relation);
-export const markWords = (relation) => marks[relation] ?? 'does not fit';
+export const markWords = (relation) => marks[relation] ?? say.markOther;
 
 /** Acceptances that do not count any more, or not yet. */
 export const voidRows = (rows, counting) => [...rows.values()].filter(({ kind, id }) => kind === 'acceptance' && !counting.includes(id));
@@ -40,9 +52,9 @@ const isOfSource =
   (region) =>
     region.source === undefined || `regions:${region.source ?? 0}` === thing;
 const regionWords = ([first, ...others]) =>
-  !first ? '' : others.length ? `${first.name} and ${others.length} more` : first.name || first.id;
+  !first ? '' : others.length ? say.regionAndMore({ region: first.name, n: others.length }) : first.name || first.id;
 
-/** "dose:boost" as {kind, id, word, name}. */
+/** "dose:boost" as {kind, id, word, lower: the word within a sentence, name}. */
 export function partOf(plan, key) {
   const [kind, id = ''] = key.split(/:(.*)/);
   const regions = kind === 'regions' ? plan.regions.filter((region) => isOfSource({ thing: key })(region)) : [];
@@ -52,7 +64,8 @@ export function partOf(plan, key) {
     key,
     kind,
     id,
-    word: words[kind] ?? kind,
+    word: words[kind]?.[0] ?? kind,
+    lower: words[kind]?.[1] ?? kind,
     name: kind === 'regions' ? regionWords(regions) : image || part?.name || (kind === 'tracks' ? '' : id),
     part: part ?? null,
   };
@@ -61,7 +74,7 @@ export function partOf(plan, key) {
 /** Dose “Boost”, Regions, MR */
 export const partName = (plan, key) => {
   const { kind, word, name } = partOf(plan, key);
-  return kind === 'image' ? name : [word, name && `“${name}”`].filter(Boolean).join(' ');
+  return kind === 'image' ? name : name ? say.partNamed({ kind: word, name }) : word;
 };
 
 export { pairKey };
@@ -173,12 +186,9 @@ export function selectionOf(plan, use) {
 // ---- sums and comparisons -------------------------------------------------------------------------------------------------
 
 const joins = {
-  patient: 'another patient',
-  frame: 'does not fit',
-  apart: 'does not fit',
-  plan: 'another plan: compare only',
-  unit: 'another unit or kind',
-  absent: 'does not fit',
+  patient: say.joinPatient,
+  plan: say.joinPlan,
+  unit: say.joinUnit,
 };
 
 /**
@@ -189,8 +199,8 @@ export function joinReason(plan, scene, first, second, isSum, accepted) {
   const image = shownImage(plan, scene);
   const own = image && fitOf(plan, `dose:${second.id}`, `image:${image.id}`);
   const isOpen = (fit) => fit && fit.needs !== 'nothing' && !(fit.needs === 'acceptance' && accepted.has(pairKey(fit.thing, fit.with)));
-  if (isOpen(own)) return { words: 'does not fit', reason: own.reason };
+  if (isOpen(own)) return { words: say.markOther, reason: own.reason };
   const fit = fitOf(plan, `dose:${second.id}`, `dose:${first.id}`);
   if (!isOpen(fit) || fit.relation === 'per' || (fit.relation === 'plan' && !isSum)) return null;
-  return { words: joins[fit.relation] ?? 'does not fit', reason: fit.reason };
+  return { words: joins[fit.relation] ?? say.markOther, reason: fit.reason };
 }

@@ -14,6 +14,7 @@ import {
   partOf,
   questionsOf,
   reasonName,
+  reasonWords,
   reasons,
   selectedUse,
   selectionOf,
@@ -22,16 +23,17 @@ import {
 } from './fits.js';
 import { patientOf } from '../../room/identity.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 export { fitsTable, otherPatients, otherPatientsBar } from './fit_table.js';
 
-const onlyPresenter = 'Only who presents may have it used.';
 const retryMs = 1000;
 const tries = 20;
 const isOpen = signal(false); // the list of the bar
 const form = signal({ pair: '', reason: 'registered-elsewhere', words: '', error: '', isSent: false });
 
 const worldUses = ({ room }) => usesOf(room.plan.value, room.scene.value, room.accepted.value);
+const byAt = (row) => say.byAt({ author: row.author_name, time: time(row.created_ms) });
 const time = (ms) => new Date(ms).toLocaleString([], { day: 'numeric', month: 'short', hour: '2-digit', minute: '2-digit' });
 
 /** "Dose “Boost” is not used with MR:" in bold, what follows plain. */
@@ -50,12 +52,13 @@ export function fitBar(world) {
   if (!waiting.length) return nothing;
   const [first, ...others] = waiting;
   const line = (use) => html`<p>${sentence(use.reason)}</p>${buttons(world, use)}`;
-  return html`<div class="fit-bar" role="alert"><span class="warn">${icon('warning')}</span>${line(first)}${room.following.isPresenting.value ? nothing : html`<span class="note why">${onlyPresenter}</span>`}
+  return html`<div class="fit-bar" role="alert"><span class="warn">${icon('warning')}</span>${line(first)}
+    ${room.following.isPresenting.value ? nothing : html`<span class="note why">${say.onlyPresenter}</span>`}
     ${
       others.length
         ? html`<button class="ghost" aria-expanded=${isOpen.value} @click=${() => {
             isOpen.value = !isOpen.value;
-          }}>and ${others.length} more</button>`
+          }}>${say.andMore({ n: others.length })}</button>`
         : nothing
     }
     ${others.length && isOpen.value ? html`<ul>${others.map((use) => html`<li>${line(use)}</li>`)}</ul>` : nothing}</div>`;
@@ -63,8 +66,9 @@ export function fitBar(world) {
   function buttons(of, use) {
     const change = (event) => room.patchScene(leftOffPatch(plan, scene, use), { view: ui.active.value, at: event.timeStamp });
     const mayAccept = room.following.isPresenting.value;
-    return html`<button ?disabled=${!room.canChange.value || !mayAccept} title=${mayAccept ? '' : onlyPresenter} @click=${() => begin(of, use)}>Use it all the same …</button>
-      <button class="ghost" ?disabled=${!room.canChange.value} @click=${change}>Leave it off</button>`;
+    return html`<button ?disabled=${!room.canChange.value || !mayAccept} title=${mayAccept ? '' : say.onlyPresenter}
+        @click=${() => begin(of, use)}>${say.useAll}</button>
+      <button class="ghost" ?disabled=${!room.canChange.value} @click=${change}>${say.leaveOff}</button>`;
   }
 }
 
@@ -81,10 +85,10 @@ export function rowMark(world, kind, id) {
   const use = selectedUse(world.room.plan.value, worldUses(world), { kind, id });
   if (!use) return nothing;
   const text = useWords(use);
-  return html`<span class="fit-mark warn" title=${use.state === 'by-word' ? `${factOf(use.reason)} ${byWords(use)}` : use.reason}>${icon('warning', 12)} ${text}</span>`;
+  return html`<span class="fit-mark warn" title=${use.state === 'by-word' ? byWords(use) : use.reason}>${icon('warning', 12)} ${text}</span>`;
 }
 
-const useWords = (use) => (use.state === 'by-word' ? markWords(use.relation) : 'not used');
+const useWords = (use) => (use.state === 'by-word' ? markWords(use.relation) : say.notUsed);
 
 /** The words of that mark; '' where it has none. */
 export function rowWords(world, kind, id) {
@@ -92,7 +96,8 @@ export function rowWords(world, kind, id) {
   return use ? useWords(use) : '';
 }
 
-const byWords = ({ by }) => `Used by ${by.author_name}, ${time(by.created_ms)}: ${by.body.words}`;
+const byWords = ({ reason, by }) =>
+  say.factUsedBy({ fact: factOf(reason), author: by.author_name, time: time(by.created_ms), words: by.body.words });
 
 /** The marks of what is shown by a person's word, each once: of panes, legends, plots, numbers. kinds: of parts that it concerns; [] for all. */
 export function wordMark(world, kinds = []) {
@@ -103,7 +108,7 @@ export function wordMark(world, kinds = []) {
 }
 
 const mark = (used) =>
-  html`<span class="fit-mark warn" title=${used.map((use) => `${factOf(use.reason)} ${byWords(use)}`).join('\n')}>${icon('warning', 12)} ${markWords(used[0].relation)}</span>`;
+  html`<span class="fit-mark warn" title=${used.map(byWords).join('\n')}>${icon('warning', 12)} ${markWords(used[0].relation)}</span>`;
 
 const inNumbers = ({ room }) => inNumbersOf(room.plan.value, room.scene.value, worldUses({ room }));
 
@@ -113,11 +118,13 @@ export function numberMark(world) {
   return used.length ? mark(used) : nothing;
 }
 
+const withOther = (plan, use) => say.partWith({ part: partName(plan, use.thing), other: partName(plan, use.with) });
+
 /** Uses in the numbers as rows of a file: [name, parts, fact, who, words]. */
 export const usedRows = ({ room }) =>
   inNumbers({ room }).map((use) => [
-    'used though it does not fit',
-    `${partName(room.plan.value, use.thing)} with ${partName(room.plan.value, use.with)}`,
+    say.rowUsed,
+    withOther(room.plan.value, use),
     factOf(use.reason),
     `${use.by.author_name}, ${new Date(use.by.created_ms).toISOString()}`,
     use.by.body.words,
@@ -128,8 +135,12 @@ export function usedSheet({ room }) {
   const plan = room.plan.value;
   const rows = [...room.accepted.value.values()];
   if (!rows.length) return nothing;
-  return html`<h2>Parts used though they do not fit</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label="Parts used though they do not fit"><table class="numbers-table"><thead><tr><th scope="col">Parts</th><th scope="col">Fact</th><th scope="col">In words</th><th scope="col">By, at</th></tr></thead>
-    <tbody>${rows.map((row) => html`<tr><th scope="row">${partName(plan, row.body.thing)} with ${partName(plan, row.body.with)}</th><td>${factOf(row.body.fact)}</td><td>${reasonName(row.body.reason)}: ${row.body.words}</td><td>${row.author_name}, ${time(row.created_ms)}</td></tr>`)}</tbody></table></div>`;
+  const columns = [say.parts, say.fact, say.words, say.when];
+  const line = ({ body, ...row }) => html`<tr><th scope="row">${withOther(plan, body)}</th><td>${factOf(body.fact)}</td>
+      <td>${say.reasonWords({ reason: reasonName(body.reason), words: body.words })}</td><td>${byAt(row)}</td></tr>`;
+  return html`<h2>${say.partsUsed}</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label=${say.partsUsed}>
+    <table class="numbers-table"><thead><tr>${columns.map((word) => html`<th scope="col">${word}</th>`)}</tr></thead>
+    <tbody>${rows.map(line)}</tbody></table></div>`;
 }
 
 // ---- Selection ----------------------------------------------------------------------------------------------------------------
@@ -140,7 +151,8 @@ export function fitBlock(world) {
   const use = selectedUse(room.plan.value, worldUses(world), ui.selection.value);
   if (!use) return nothing;
   if (use.needs === 'never')
-    return html`<section class="block fit-block err"><h3>${icon('error')} ${partName(room.plan.value, use.thing)}</h3><p>${sentence(use.reason)} It is never used.</p></section>`;
+    return html`<section class="block fit-block err"><h3>${icon('error')} ${partName(room.plan.value, use.thing)}</h3>
+      <p>${sentence(use.reason)} ${say.itIsNever}</p></section>`;
   return use.state === 'by-word' ? usedBlock(world, use) : formBlock(world, use);
 }
 
@@ -149,14 +161,19 @@ function factsTable(plan, use) {
   const of = (part, word) =>
     ({ patient: patientOf(plan, part?.patient), frame: part?.frame ?? null, plan: plan.treatmentPlans[part?.plan]?.label ?? '' })[word];
   const isStated = (value) => value !== null && value !== undefined && value !== '';
-  const cell = (value, word) => (!isStated(value) ? 'not stated' : word === 'frame' ? `frame ${Number(value) + 1}` : value);
+  const cell = (value, word) => (!isStated(value) ? say.notStated : word === 'frame' ? say.frameNumber({ n: Number(value) + 1 }) : value);
   const rows = [
-    ['Patient', 'patient'],
-    ['Frame of reference', 'frame'],
-    ['Plan', 'plan'],
+    [say.patient, 'patient'],
+    [say.frame, 'frame'],
+    [say.plan, 'plan'],
   ].map(([name, word]) => [name, word, of(one.part, word), of(two.part, word)]);
-  return html`<table class="fit-facts"><thead><tr><td></td><th scope="col">${one.word.toLowerCase()}${one.name ? ` ‘${one.name}’` : ''}</th><th scope="col">${two.name}</th></tr></thead>
-    <tbody>${rows.map(([name, word, a, b]) => html`<tr class=${classMap({ warn: a !== b && (isStated(a) || isStated(b)) && word !== 'plan' })}><th scope="row">${name}</th><td>${cell(a, word)}</td><td>${cell(b, word)}</td></tr>`)}</tbody></table>`;
+  const line = ([name, word, a, b]) => {
+    const isWarned = a !== b && (isStated(a) || isStated(b)) && word !== 'plan';
+    return html`<tr class=${classMap({ warn: isWarned })}><th scope="row">${name}</th><td>${cell(a, word)}</td><td>${cell(b, word)}</td></tr>`;
+  };
+  const head = one.name ? say.partQuoted({ kind: one.lower, name: one.name }) : one.lower;
+  return html`<table class="fit-facts"><thead><tr><td></td><th scope="col">${head}</th><th scope="col">${two.name}</th></tr></thead>
+    <tbody>${rows.map(line)}</tbody></table>`;
 }
 
 function formBlock(world, use) {
@@ -173,15 +190,21 @@ function formBlock(world, use) {
     set({ words: '', error: '' });
     ui.showTab('probe');
   };
-  return html`<section class="block fit-block" aria-label="What does not fit"><h3 class="warn">${icon('warning')} ‘${partOf(plan, use.thing).name || partOf(plan, use.thing).word}’ does not fit ${partOf(plan, use.with).name}</h3>
+  const part = partOf(plan, use.thing);
+  return html`<section class="block fit-block" aria-label=${say.whatNot}>
+    <h3 class="warn">${icon('warning')} ${say.notWith({ part: part.name || part.word, other: partOf(plan, use.with).name })}</h3>
     <p class="note">${use.reason}</p>${factsTable(plan, use)}
-    <label class="fit-label" for="fit-reason">Why it may be used</label>
-    <select id="fit-reason" ?disabled=${!mayAccept || now.isSent} @change=${(event) => set({ reason: event.target.value })}>${reasons.map(([id, name]) => html`<option value=${id} ?selected=${id === now.reason}>${name}</option>`)}</select>
-    <label class="fit-label" for="fit-words">In your words, at least ${minLetters} letters</label>
-    <textarea id="fit-words" rows="2" maxlength="300" .value=${now.words} ?disabled=${!mayAccept || now.isSent} @input=${(event) => set({ words: event.target.value, error: '' })}></textarea>
-    <p class="note">Everybody in this room sees, counts and prints it with the mark ${icon('warning', 12)} and your name. Another image or file asks again.</p>
-    ${now.error ? html`<p class="note err" role="alert">${now.error}</p>` : nothing}${mayAccept ? nothing : html`<p class="note why">${icon('warning', 12)} ${onlyPresenter}</p>`}
-    <div class="buttons"><button class="primary" ?disabled=${!mayAccept || isShort || now.isSent} @click=${() => accept(world, use, now, set)}>Use it in this room</button><button class="ghost" @click=${cancel}>Cancel</button></div></section>
+    <label class="fit-label" for="fit-reason">${say.why}</label>
+    <select id="fit-reason" ?disabled=${!mayAccept || now.isSent} @change=${(event) => set({ reason: event.target.value })}>
+      ${reasons.map(([id, name]) => html`<option value=${id} ?selected=${id === now.reason}>${name}</option>`)}</select>
+    <label class="fit-label" for="fit-words">${say.inWords({ n: minLetters })}</label>
+    <textarea id="fit-words" rows="2" maxlength="300" .value=${now.words} ?disabled=${!mayAccept || now.isSent}
+      @input=${(event) => set({ words: event.target.value, error: '' })}></textarea>
+    <p class="note">${say.everybodySees({ mark: icon('warning', 12) })}</p>
+    ${now.error ? html`<p class="note err" role="alert">${now.error}</p>` : nothing}
+    ${mayAccept ? nothing : html`<p class="note why">${icon('warning', 12)} ${say.onlyPresenter}</p>`}
+    <div class="buttons"><button class="primary" ?disabled=${!mayAccept || isShort || now.isSent} @click=${() => accept(world, use, now, set)}>${say.use}</button>
+      <button class="ghost" @click=${cancel}>${say.cancel}</button></div></section>
     ${listBlock(world)}`;
 }
 
@@ -192,11 +215,10 @@ async function accept(world, use, { reason, words }, set) {
   for (let n = 1; ; n++) {
     try {
       const row = await room.items.put('acceptance', body);
-      undo?.noteAct({ name: `use of ${partName(room.plan.peek(), use.thing)}`, ...acts(room, row, body) });
+      undo?.noteAct({ name: say.undoUse({ part: partName(room.plan.peek(), use.thing) }), ...acts(room, row, body) });
       return void set({ isSent: false, words: '' });
     } catch (problem) {
-      if (problem.type !== '/problems/busy' || n === tries)
-        return void set({ isSent: false, error: problem.detail || 'The server refused it.' });
+      if (problem.type !== '/problems/busy' || n === tries) return void set({ isSent: false, error: problem.detail || say.refused });
       await new Promise((done) => clock.setTimeout(done, retryMs));
     }
   }
@@ -220,14 +242,14 @@ async function withdraw(world, row) {
     const body = { thing: row.body.thing, with: row.body.with, reason: row.body.reason, words: row.body.words };
     let again = row;
     undo?.noteAct({
-      name: 'withdrawal',
+      name: say.undoWithdrawal,
       undo: async () => {
         again = await room.items.put('acceptance', body);
       },
       redo: () => room.items.delete(again),
     });
   } catch (problem) {
-    room.notify('err', problem.detail || 'The server refused it.');
+    room.notify('err', problem.detail || say.refused);
   }
 }
 
@@ -245,9 +267,11 @@ export function listBlock(world) {
   const entry = (
     row,
     isVoid,
-  ) => html`<dl class=${classMap({ 'fit-used': true, void: isVoid })}><dt>${partOf(plan, row.body.thing).word}</dt><dd>${partOf(plan, row.body.thing).name}, with ${partOf(plan, row.body.with).name}</dd>
-      <dt>By</dt><dd>${row.author_name}, ${time(row.created_ms)}</dd><dt>Because</dt><dd>${reasonName(row.body.reason).toLowerCase()}: ${row.body.words}</dd></dl>
-    ${isVoid ? html`<p class="note">${room.acceptances.value.known ? 'Void: the plan’s files are others than those it was said of.' : 'Does not count yet: the plan’s files are being read.'}</p>` : nothing}
-    <div class="buttons"><button ?disabled=${!mayWithdraw} title=${mayWithdraw ? '' : 'Only who presents may withdraw it.'} @click=${() => withdraw(world, row)}>Withdraw</button></div>`;
-  return html`<section class="block"><h3>Used though it does not fit <span class="dim">${rows.length}</span></h3>${rows.map((row) => entry(row, false))}${old.map((row) => entry(row, true))}</section>`;
+  ) => html`<dl class=${classMap({ 'fit-used': true, void: isVoid })}><dt>${partOf(plan, row.body.thing).word}</dt>
+      <dd>${say.usedPart({ part: partOf(plan, row.body.thing).name, other: partOf(plan, row.body.with).name })}</dd>
+      <dt>${say.by}</dt><dd>${byAt(row)}</dd><dt>${say.because}</dt><dd>${reasonWords(row.body)}</dd></dl>
+    ${isVoid ? html`<p class="note">${room.acceptances.value.known ? say.isVoid : say.notYet}</p>` : nothing}
+    <div class="buttons"><button ?disabled=${!mayWithdraw} title=${mayWithdraw ? '' : say.onlyPresenterWithdraws}
+      @click=${() => withdraw(world, row)}>${say.withdraw}</button></div>`;
+  return html`<section class="block"><h3>${say.used} <span class="dim">${rows.length}</span></h3>${rows.map((row) => entry(row, false))}${old.map((row) => entry(row, true))}</section>`;
 }

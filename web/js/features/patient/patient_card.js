@@ -3,8 +3,10 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
 import { identityOf, shownPatient } from '../../room/identity.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
-const shownMs = 15 * 60 * 1000;
+const shownMinutes = 15;
+const shownMs = shownMinutes * 60 * 1000;
 const hiddenMs = 5 * 60 * 1000;
 
 /** {room: whose page, patient: of its plan, name, id, birth}; null: masked. */
@@ -58,10 +60,7 @@ async function show({ room, api }) {
       };
       timer = setTimeout(hide, shownMs);
     }
-    state.value = {
-      error: found ? '' : 'The files have changed since this page opened them. Open the plan again to read whose it is.',
-      isAsked: false,
-    };
+    state.value = { error: found ? '' : say.changed, isAsked: false };
   } catch (problem) {
     state.value = { error: problem.message, isAsked: false };
   }
@@ -70,12 +69,15 @@ async function show({ room, api }) {
 export function patientCard(world) {
   const known = shownIdentity(world);
   const { error, isAsked } = state.value;
-  return html`<div class="popover patient-card"><h3>Patient</h3>
+  return html`<div class="popover patient-card"><h3>${say.patient}</h3>
     ${
       known
-        ? html`<p><b>${known.name}</b></p><dl><dt>Id</dt><dd>${known.id || 'not given'}</dd><dt>Born</dt><dd>${known.birth || 'not given'}</dd></dl><div class="buttons"><button @click=${hide}>${icon('eyeOff')}<span>Mask it again</span></button></div>`
-        : html`<p class="note">Masked, as for everybody.</p><div class="buttons"><button class="primary" ?disabled=${isAsked} @click=${() => show(world)}>${icon('eye')}<span>Show to me</span></button></div>`
+        ? html`<p><b>${known.name}</b></p>
+          <dl><dt>${say.id}</dt><dd>${known.id || say.notGiven}</dd><dt>${say.born}</dt><dd>${known.birth || say.notGiven}</dd></dl>
+          <div class="buttons"><button @click=${hide}>${icon('eyeOff')}<span>${say.mask}</span></button></div>`
+        : html`<p class="note">${say.masked}</p><div class="buttons">
+          <button class="primary" ?disabled=${isAsked} @click=${() => show(world)}>${icon('eye')}<span>${say.show}</span></button></div>`
     }
     ${error ? html`<p class="note err" role="alert">${error}</p>` : nothing}
-    <p class="note">To you alone, until you leave the room, at most 15 min. The audit keeps who, when and from where.</p></div>`;
+    <p class="note">${say.alone({ n: shownMinutes })}</p></div>`;
 }

@@ -4,7 +4,8 @@ import { startMarks } from './point_marks.js';
 import { startPointing } from './point_gesture.js';
 import { startWatch } from '../watch/start_watch.js';
 
-export { askToLook, pointMenu } from './look_here.js';
+export { askToLook } from './look_here.js';
+export { pointTools } from './point_tools.js';
 
 /** @param {object} world {room, ui, api, clock, panes, storage, connection, decode} @returns {() => void} stops */
 export function start(world) {

@@ -5,6 +5,7 @@ import { crosshair, crosshairPatch, shownImage } from '../../room/plan.js';
 import { toPicture } from '../../parts/vec.js';
 import { checkbox } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 const topic = 'look';
 const shownMs = 60000; // LOOK_KEPT_S of the server
@@ -16,7 +17,7 @@ export function askToLook({ room, ui }) {
   const scene = room.scene.peek();
   if (!scene) return;
   const own = pointers.isPointing.peek() ? pointers.own.peek() : null;
-  if (!pointers.ask(own?.point ?? crosshair(scene))) ui.notify('warn', 'Not asked: the server does not answer.', topic);
+  if (!pointers.ask(own?.point ?? crosshair(scene))) ui.notify('warn', say.notAsked, topic);
 }
 
 /** The own view centres on the point; who follows stays with the presenter, whose view it is. */
@@ -57,9 +58,9 @@ export function startLook(world) {
         told = look.number;
         ui.notify(
           'ok',
-          `You ask to look here: ${look.came.length} of ${Math.max(n, look.came.length)} came`,
+          say.youAsk({ n: look.came.length, all: Math.max(n, look.came.length) }),
           topic,
-          { word: 'End', act: () => pointers.ask(null) },
+          { word: say.end, act: () => pointers.ask(null) },
           shownMs,
         );
       } else if (look.came.includes(room.member.peek())) {
@@ -67,13 +68,7 @@ export function startLook(world) {
         close();
       } else if (told !== look.number) {
         told = look.number;
-        ui.notify(
-          'ok',
-          `${pointers.nameOf(look.by)} asks you to look here`,
-          topic,
-          { word: 'Come', act: () => come(world, look) },
-          shownMs,
-        );
+        ui.notify('ok', say.asksYou({ name: pointers.nameOf(look.by) }), topic, { word: say.come, act: () => come(world, look) }, shownMs);
       }
     });
   });
@@ -93,10 +88,17 @@ export function pointMenu(world, isDock) {
     ui.popover.value = '';
     run();
   };
-  return html`<div class=${isDock ? 'popover point-menu up' : 'popover point-menu'} role="dialog" aria-label="Pointers">
+  const comeButton = () =>
+    html`<button @click=${act(() => come(world, look))}>${icon('crosshair')}<span>${say.comeTo({ name: pointers.nameOf(look.by) })}</span></button>`;
+  return html`<div class=${isDock ? 'popover point-menu up' : 'popover point-menu'} role="dialog" aria-label=${say.pointers}>
     <div class="menu">
-      ${pointers.mayPoint.value ? html`<button title="Asks everybody to look where you point, else at the crosshair" @click=${act(() => askToLook(world))}>${icon('target')}<span>Ask everybody to look here</span>${isDock ? nothing : html`<kbd>Shift P</kbd>`}</button>` : nothing}
-      ${look && look.by !== room.member.value ? html`<button @click=${act(() => come(world, look))}>${icon('crosshair')}<span>Come to ${pointers.nameOf(look.by)}’s point</span></button>` : nothing}
-      ${look && look.by === room.member.value ? html`<button @click=${act(() => pointers.ask(null))}>${icon('close')}<span>Ask no more</span></button>` : nothing}</div>
-    <div class="checks">${checkbox('Pointers of the others', !pointers.isHidden.value, false, (isOn) => pointers.hide(!isOn), 'Whether you see them; kept in this browser')}</div></div>`;
+      ${
+        pointers.mayPoint.value
+          ? html`<button title=${say.askIs} @click=${act(() => askToLook(world))}>
+        ${icon('target')}<span>${say.ask}</span>${isDock ? nothing : html`<kbd>Shift P</kbd>`}</button>`
+          : nothing
+      }
+      ${look && look.by !== room.member.value ? comeButton() : nothing}
+      ${look && look.by === room.member.value ? html`<button @click=${act(() => pointers.ask(null))}>${icon('close')}<span>${say.askNoMore}</span></button>` : nothing}</div>
+    <div class="checks">${checkbox(say.ofOthers, !pointers.isHidden.value, false, (isOn) => pointers.hide(!isOn), say.ofOthersIs)}</div></div>`;
 }

@@ -3,6 +3,7 @@ import { nothing, svg } from '../../../lib/lit-html.js';
 import { effect, signal, untracked } from '../../../lib/signals-core.js';
 import { heightOver, stepAcross } from '../../room/obliques.js';
 import { shownImage } from '../../room/plan.js';
+import { say } from './later_words.js';
 import { colorOf, fading, isBehind, labelled, lookInSlice, lookInSpace, placeOf } from './pointer_marks.js';
 import { isInSpace } from '../../room/kinds.js';
 import { mount } from '../../parts/mount.js';
@@ -23,7 +24,7 @@ function shown({ room }, number) {
   if (own && own.view !== number)
     list.push({
       id: own.member,
-      name: 'You',
+      name: say.you,
       color: colorOf(room.members.value.find(({ id }) => id === own.member) ?? { id: own.member }),
       point: own.point,
       movedAt: own.movedAt,
@@ -32,7 +33,7 @@ function shown({ room }, number) {
     const asker = room.members.value.find(({ id }) => id === look.by) ?? { id: look.by, name: look.by };
     list.push({
       id: `look-${look.number}`,
-      name: `${look.by === room.member.value ? 'You' : asker.name}: look here`,
+      name: look.by === room.member.value ? say.youLookHere : say.lookHere({ name: asker.name }),
       color: colorOf(asker),
       point: look.point,
       movedAt: null,

@@ -2,6 +2,7 @@
 import { dot, pictureAxes, subtract, toPicture } from '../../parts/vec.js';
 import { takenIn } from '../measures/measure_label.js';
 import { placeBeside } from '../../parts/place.js';
+import { say } from './later_words.js';
 
 export const fullMs = 3000; // a pointer that stops is drawn in full so long
 export const goneMs = 8000; // and is gone after this: POINTER_KEPT_MS of the server
@@ -35,7 +36,7 @@ export function lookInSlice(heightMm, halfSliceMm) {
   };
 }
 
-export const lookInSpace = (isHidden) => ({ size: 1, strength: isHidden ? hiddenStrength : 1, words: isHidden ? 'behind' : '' });
+export const lookInSpace = (isHidden) => ({ size: 1, strength: isHidden ? hiddenStrength : 1, words: isHidden ? say.behind : '' });
 
 /** Whether what is seen at the point's pixel lies nearer to the eye than the point. @param {ArrayLike<number>} matrix clip from LPS @param {number[]|null} seen */
 export function isBehind(matrix, point, seen) {

@@ -1,7 +1,8 @@
 // Recording the meeting, the list of recordings, and how a replay is moved: part of the popover of the room chip.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { effect, signal } from '../../../lib/signals-core.js';
-import { dayTime } from '../../parts/format.js';
+import { dayTime, listed } from '../../parts/format.js';
+import { say } from './later_words.js';
 
 const rates = [1, 2, 4, 8];
 const lists = new WeakMap(); // of each room: signal of the rows of GET recordings; null: not known yet
@@ -52,40 +53,49 @@ async function remove(room, api, ui, list, id) {
 }
 
 const row = ({ id, state, started_ms, length_ms, by_name }, { room, api, ui, list }) => {
-  const name = `the recording of ${dayTime(started_ms)}`;
-  return html`<li><span></span><span class="roster-who"><span class="clipped">${dayTime(started_ms)}</span>
-    <span class="dim">${[timeOf(length_ms), `by ${by_name}`, state === 'cut' ? 'cut off' : state === 'full' ? 'ended full' : ''].filter(Boolean).join(' · ')}</span></span>
-    <span class="roster-buttons"><button aria-label=${`Play ${name}`} title="In a room of its own, in a new tab" @click=${() => play(room, api, ui, id)}>Play</button>
-    ${room.control.may('control') ? html`<button aria-label=${`Delete ${name}`} @click=${() => remove(room, api, ui, list, id)}>Delete</button>` : nothing}</span></li>`;
+  const time = dayTime(started_ms);
+  const facts = [timeOf(length_ms), say.by({ name: by_name }), state === 'cut' ? say.cut : state === 'full' ? say.full : ''];
+  const drop = () => remove(room, api, ui, list, id);
+  return html`<li><span></span><span class="roster-who"><span class="clipped">${time}</span>
+    <span class="dim">${facts.filter(Boolean).join(' · ')}</span></span>
+    <span class="roster-buttons">
+    <button aria-label=${say.playOf({ time })} title=${say.playIs} @click=${() => play(room, api, ui, id)}>${say.play}</button>
+    ${room.control.may('control') ? html`<button aria-label=${say.deleteOf({ time })} @click=${drop}>${say.delete}</button>` : nothing}</span></li>`;
 };
+
+const markWords = (kind, name) => (kind === 'note' ? say.noteBy({ name }) : name ? say.presents({ name }) : say.nobodyPresents);
 
 /** In a room that plays a recording. */
 function transport({ recording, control }) {
   const { started_ms, length_ms, marks, plan_changed, report } = recording.replay.value;
   const at = recording.at.value ?? { state: 'waiting', t_ms: 0, rate: 1 };
   const isPlaying = at.state === 'playing';
-  const title = html`<h3 class="replay-title">Replay of a meeting of ${dayTime(started_ms)}</h3>
-    ${at.state === 'failed' ? html`<p class="warn" role="status">The recording cannot be read here. What is shown is not what the meeting saw at this time.</p>` : nothing}
-    ${plan_changed ? html`<p class="warn">The plan has changed since the meeting: pictures and numbers may differ.</p>${report.map(({ detail }) => html`<p class="dim">${detail}</p>`)}` : nothing}`;
-  if (!control.may('scene')) return html`${title}<p class="dim">${timeOf(at.t_ms)} of ${timeOf(length_ms)}</p>`;
-  return html`${title}<div class="replay-transport" role="group" aria-label="Replay">
-    <button @click=${() => (isPlaying ? recording.say('replay.pause') : recording.say('replay.play', { rate: at.rate }))}>${isPlaying ? 'Pause' : 'Play'}</button>
-    <input type="range" min="0" max=${length_ms} step="1000" .value=${String(Math.round(at.t_ms))} list="replay-marks" aria-label="Time of the meeting" aria-valuetext=${`${timeOf(at.t_ms)} of ${timeOf(length_ms)}`} @change=${(event) => recording.say('replay.seek', { t_ms: Number(event.target.value) })}>
-    <datalist id="replay-marks">${marks.map(([t_ms, kind, name]) => html`<option value=${t_ms} label=${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}></option>`)}</datalist>
+  const title = html`<h3 class="replay-title">${say.replayOf({ time: dayTime(started_ms) })}</h3>
+    ${at.state === 'failed' ? html`<p class="warn" role="status">${say.failed}</p>` : nothing}
+    ${plan_changed ? html`<p class="warn">${say.planChanged}</p>${report.map(({ detail }) => html`<p class="dim">${detail}</p>`)}` : nothing}`;
+  const atOfAll = say.timeOfAll({ time: timeOf(at.t_ms), all: timeOf(length_ms) });
+  if (!control.may('scene')) return html`${title}<p class="dim">${atOfAll}</p>`;
+  const line = ([t_ms, kind, name]) =>
+    html`<li><button @click=${() => recording.say('replay.seek', { t_ms })}>${timeOf(t_ms)}</button><span>${markWords(kind, name)}</span></li>`;
+  return html`${title}<div class="replay-transport" role="group" aria-label=${say.replay}>
+    <button @click=${() => (isPlaying ? recording.say('replay.pause') : recording.say('replay.play', { rate: at.rate }))}>${isPlaying ? say.pause : say.play}</button>
+    <input type="range" min="0" max=${length_ms} step="1000" .value=${String(Math.round(at.t_ms))} list="replay-marks"
+      aria-label=${say.timeOf} aria-valuetext=${atOfAll} @change=${(event) => recording.say('replay.seek', { t_ms: Number(event.target.value) })}>
+    <datalist id="replay-marks">${marks.map(([t_ms, kind, name]) => html`<option value=${t_ms} label=${markWords(kind, name)}></option>`)}</datalist>
     <span>${timeOf(at.t_ms)} / ${timeOf(length_ms)}</span>
-    <label>Rate <select @change=${(event) => recording.say('replay.play', { rate: Number(event.target.value) })}>${rates.map((rate) => html`<option value=${rate} ?selected=${rate === at.rate}>${rate}×</option>`)}</select></label>
-    <button title="The room becomes an ordinary one, from what it shows now" @click=${() => recording.say('replay.leave')}>Leave the replay</button></div>
-    ${marks.length ? html`<details><summary>${marks.length} marks</summary><ul>${marks.map(([t_ms, kind, name]) => html`<li><button @click=${() => recording.say('replay.seek', { t_ms })}>${timeOf(t_ms)}</button><span>${kind === 'note' ? `Note by ${name}` : `${name || 'Nobody'} presents`}</span></li>`)}</ul></details>` : nothing}`;
+    <label>${say.rate} <select @change=${(event) => recording.say('replay.play', { rate: Number(event.target.value) })}>
+      ${rates.map((rate) => html`<option value=${rate} ?selected=${rate === at.rate}>${rate}×</option>`)}</select></label>
+    <button title=${say.leaveIs} @click=${() => recording.say('replay.leave')}>${say.leave}</button></div>
+    ${marks.length ? html`<details><summary>${say.marks({ n: marks.length })}</summary><ul>${marks.map(line)}</ul></details>` : nothing}`;
 }
 
-const then = ({ presenting, connected }) =>
-  [presenting ? 'presented' : '', connected === false ? 'was away' : ''].filter(Boolean).join(', ') || 'was there';
+const then = ({ presenting, connected }) => listed(presenting && say.presented, connected === false && say.wasAway) || say.wasThere;
 
 /** People in the meeting at the time that is shown. */
 const people = ({ recording: { members } }, avatar) =>
   members.value.length
-    ? html`<h3 class="replay-title">In the meeting at this time</h3>
-  <ul aria-label="In the meeting at this time">${members.value.map(
+    ? html`<h3 class="replay-title">${say.inMeeting}</h3>
+  <ul aria-label=${say.inMeeting}>${members.value.map(
     (member) => html`<li data-was=${member.id} data-away=${member.connected === false}>${avatar(member)}
     <span class="roster-who"><span class="clipped" title=${member.name}>${member.name}</span><span class="dim">${[member.role, then(member)].filter(Boolean).join(' · ')}</span></span></li>`,
   )}</ul>`
@@ -102,11 +112,11 @@ export function recordings({ room, ui, api }, avatar) {
   return html`<div class="room-actions">${
     recording.running.value
       ? isOurs || room.control.may('control')
-        ? html`<button title="Everybody is told" @click=${() => recording.say('recording.stop')}>End recording</button>`
+        ? html`<button title=${say.endIs} @click=${() => recording.say('recording.stop')}>${say.end}</button>`
         : nothing
       : isOurs
-        ? html`<button title="Scene, shared views, pointers and notes can be replayed later; everybody sees that it is recorded" @click=${() => recording.say('recording.start')}>Record meeting</button>`
+        ? html`<button title=${say.recordIs} @click=${() => recording.say('recording.start')}>${say.record}</button>`
         : nothing
   }</div>
-    ${rows.length ? html`<h3 class="dim">Recordings</h3><ul aria-label="Recordings">${rows.map((one) => row(one, { room, api, ui, list }))}</ul>` : nothing}`;
+    ${rows.length ? html`<h3 class="dim">${say.recordings}</h3><ul aria-label=${say.recordings}>${rows.map((one) => row(one, { room, api, ui, list }))}</ul>` : nothing}`;
 }

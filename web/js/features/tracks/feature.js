@@ -1,5 +1,6 @@
 // Particle tracks.
 import { known, later } from '../../parts/lazy.js';
+import { say } from './words.js';
 
 const rows = later(() => import('./track_rows.js'), 'js/features/tracks/track.css');
 
@@ -8,7 +9,7 @@ const ofTracks = ({ plan, scene }) => (plan.value?.nTracks && scene.value?.track
 
 /** Key T: tracks on or off. */
 export function toggleTracks({ room, ui }, at) {
-  if (!room.plan.value?.nTracks) return void ui.notify('ok', 'This plan has no particle tracks.', 'tracks');
+  if (!room.plan.value?.nTracks) return void ui.notify('ok', say.none, 'tracks');
   room.patchScene({ tracks: { visible: !room.scene.value.tracks.visible } }, { view: ui.active.value, at });
 }
 
@@ -17,7 +18,7 @@ export const tracks = {
   sections: [
     {
       id: 'tracks',
-      name: 'Tracks',
+      name: say.section,
       icon: 'tracks',
       place: 6,
       has: (plan) => plan.nTracks,

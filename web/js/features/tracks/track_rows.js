@@ -6,6 +6,7 @@ import { classPatch, isShownClass, isWhole } from './tracks.js';
 import { number } from '../../parts/format.js';
 import { toggleTracks } from './feature.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
+import { say } from './later_words.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
 
@@ -17,8 +18,8 @@ export function trackSwatch({ color, dash, hasCross }) {
 
 export function trackNote({ room }) {
   const { tracks } = room.scene.value;
-  if (!tracks.visible) return 'off';
-  return isWhole(room.scene.value) ? '' : 'a part';
+  if (!tracks.visible) return say.off;
+  return isWhole(room.scene.value) ? '' : say.aPart;
 }
 
 export function trackRows(world) {
@@ -28,14 +29,13 @@ export function trackRows(world) {
 function allRow(world) {
   const { room } = world;
   const { visible } = room.scene.value.tracks;
-  const words = 'Particle tracks';
   const total = number(room.plan.value.nTracks);
   const toggle = (event) => toggleTracks(world, event.timeStamp);
   return treeRow(
     world,
-    { kind: 'tracks', id: '', words: [words, total], more: ['segments'], title: `${words} in 3-D (T)`, isOn: visible, toggle },
+    { kind: 'tracks', id: '', words: [say.tracks, total], more: [say.segmentsMore], title: say.inSpace, isOn: visible, toggle },
     html`
-    ${eye(visible, `Show ${words.toLowerCase()}`, `${visible ? 'Hide' : 'Show'} (T)`, !room.canChange.value, toggle)}${name(words)} <span class="tail">${total}</span>`,
+    ${eye(visible, say.showTracks, visible ? say.hideKey : say.showKey, !room.canChange.value, toggle)}${name(say.tracks)} <span class="tail">${total}</span>`,
   );
 }
 
@@ -44,12 +44,14 @@ function classRow(world, one) {
   const { id, n } = one;
   const isOn = isShownClass(room.scene.value, id);
   const words = className(id);
+  const ofClass = say.ofClass({ name: words, count: number(n), n });
   const toggle = (event) => room.patchScene(classPatch(id, !isShownClass(room.scene.value, id)), how(ui, event));
   return treeRow(
     world,
-    { kind: 'tracks', id, words: [words, number(n)], more: ['segments'], title: `${words}: ${number(n)} segments`, depth: 1, isOn, toggle },
+    { kind: 'tracks', id, words: [words, number(n)], more: [say.segmentsMore], title: ofClass, depth: 1, isOn, toggle },
     html`
-    <input type="checkbox" class="track-check" tabindex="-1" aria-label=${`Show ${words}`} .checked=${live(isOn)} ?disabled=${!room.canChange.value} @click=${(event) => event.stopPropagation()} @change=${toggle}>
+    <input type="checkbox" class="track-check" tabindex="-1" aria-label=${say.show({ name: words })} .checked=${live(isOn)}
+      ?disabled=${!room.canChange.value} @click=${(event) => event.stopPropagation()} @change=${toggle}>
     ${trackSwatch(one)}${name(words)} <span class="tail">${number(n)}</span>`,
   );
 }

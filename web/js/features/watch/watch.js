@@ -4,6 +4,7 @@ import { computed, effect, signal } from '../../../lib/signals-core.js';
 import { isDrafted } from '../beams/beams.js';
 import { views } from '../../room/layout.js';
 import { crosshair } from '../../room/plan.js';
+import { say } from './later_words.js';
 import { corners, liveness, watched } from './watching.js';
 import { isTilted } from '../../room/kinds.js';
 import { edgeLetters } from '../../pane/letters.js';
@@ -199,28 +200,34 @@ class Small {
       paintedAt: header ? this.#paintedAt : 0,
       isAway: who.isAway,
     });
-    const words = isFolded ? `${who.name} presents` : [live.text, who.name, shown ? nameOf(shown) : ''].filter(Boolean).join(' · ');
+    const words = isFolded
+      ? say.presents({ name: who.name })
+      : [live.text, who.name, shown ? nameOf(shown) : ''].filter(Boolean).join(' · ');
     queueMicrotask(() => this.#start(this.#host.querySelector('canvas')));
-    return html`<section class="watch" data-corner=${this.corner} data-state=${live.state} ?data-folded=${isFolded} aria-label="Picture of the presenter"
+    return html`<section class="watch" data-corner=${this.corner} data-state=${live.state} ?data-folded=${isFolded} aria-label=${say.picture}
       ${variables({ '--x': `${at.x}px`, '--y': `${at.y}px`, '--wide': `${at.width}px`, '--high': `${at.height}px`, ...this.#box() })}>
-      <div class="watch-head" @pointerdown=${(event) => this.#drag(event)}><p role="status" title=${[words, live.why].filter(Boolean).join('. ')}>${words}</p>
-        <button class="icon-button small" title="Move to the next corner" aria-label="Move the picture of the presenter to the next corner" @click=${() => this.#next()}>${icon('flip', 12)}</button>
+      <div class="watch-head" @pointerdown=${(event) => this.#drag(event)}>
+        <p role="status" title=${[words, live.why].filter(Boolean).join('. ')}>${words}</p>
+        <button class="icon-button small" title=${say.move} aria-label=${say.movePicture} @click=${() => this.#next()}>${icon('flip', 12)}</button>
         ${
           at.isTight
             ? nothing
-            : html`<button class="icon-button small" aria-expanded=${!isFolded} title=${isFolded ? 'Unfold' : 'Fold'} aria-label=${isFolded ? 'Unfold the picture of the presenter' : 'Fold the picture of the presenter'} @click=${() => {
+            : html`<button class="icon-button small" aria-expanded=${!isFolded} title=${isFolded ? say.unfold : say.fold}
+              aria-label=${isFolded ? say.unfoldPicture : say.foldPicture} @click=${() => {
                 watching.isFolded.value = !isFolded;
               }}>${icon(isFolded ? 'chevronLeft' : 'chevronDown', 12)}</button>`
         }
-        <button class="icon-button small" title="Close; the room chip shows it again" aria-label="Close the picture of the presenter" @click=${() => {
+        <button class="icon-button small" title=${say.close} aria-label=${say.closePicture} @click=${() => {
           watching.isClosed.value = true;
         }}>${icon('close', 12)}</button></div>
       ${
         isFolded
           ? nothing
-          : html`<button class="watch-picture" title=${`Return to ${who.name}`} @click=${() => room.following.return()}>
-        <canvas width="16" height="16" ?hidden=${!header}></canvas><svg class="overlay" aria-hidden="true">${header ? this.#overlay(header, shown, at) : nothing}</svg><span class="hidden">Return to ${who.name}; ${this.#spoken(header, shown)}</span></button>
-        ${this.#missing.value ? html`<p class="watch-missing">${icon('warning', 12)} ${this.#missing.value} region${this.#missing.value === 1 ? '' : 's'} not drawn</p>` : nothing}`
+          : html`<button class="watch-picture" title=${say.returnTo({ name: who.name })} @click=${() => room.following.return()}>
+        <canvas width="16" height="16" ?hidden=${!header}></canvas>
+        <svg class="overlay" aria-hidden="true">${header ? this.#overlay(header, shown, at) : nothing}</svg>
+        <span class="hidden">${say.returnToPicture({ name: who.name, picture: this.#spoken(header, shown) })}</span></button>
+        ${this.#missing.value ? html`<p class="watch-missing">${icon('warning', 12)} ${say.missing({ n: this.#missing.value })}</p>` : nothing}`
       }
     </section>`;
   }
@@ -238,10 +245,10 @@ class Small {
   }
 
   #spoken(header, shown) {
-    if (!header || !shown) return 'no picture yet';
+    if (!header || !shown) return say.noneYet;
     const { left, right, top, bottom } = edgeLetters(header.clip_from_lps_mm);
-    const draft = isDrafted(this.#world.room.plan.value, this.#world.room.sharedScene) ? ', of a draft beam' : '';
-    return `${nameOf(shown)}${draft}: left ${left}, right ${right}, top ${top}, bottom ${bottom}`;
+    const edges = isDrafted(this.#world.room.plan.value, this.#world.room.sharedScene) ? say.edgesDraft : say.edges;
+    return edges({ view: nameOf(shown), left, right, top, bottom });
   }
 
   #overlay(header, { kind }, { width, height }) {
@@ -250,7 +257,7 @@ class Small {
     const scale = Math.min(width / header.width_px, height / header.height_px);
     const box = { width: header.width_px * scale, height: header.height_px * scale };
     const hasPoint = scene && !isTilted(kind) && (plan?.images.length || plan?.regions.length);
-    const draft = isDrafted(plan, scene) ? svg`<text class="halo draft-word" x="6" y="16">Draft beam</text>` : nothing;
+    const draft = isDrafted(plan, scene) ? svg`<text class="halo draft-word" x="6" y="16">${say.draftBeam}</text>` : nothing;
     return svg`${draft}${overlay({ kind, header, box: { ...box, x: (width - box.width) / 2, y: (height - box.height) / 2 }, pane: [width, height], point: hasPoint ? crosshair(scene) : null, pxPerMm: 0, windowText: '' })}`;
   }
 

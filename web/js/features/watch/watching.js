@@ -1,5 +1,6 @@
 // The small picture of the presenter: in which corner it stands, whether it is folded or closed. Kept by the browser.
 import { effect, signal } from '../../../lib/signals-core.js';
+import { say } from './later_words.js';
 
 const key = 'beamroom watch';
 /** Clockwise. */
@@ -80,7 +81,7 @@ export function watched({ following, recording }) {
   if (following.isFollowing.value || following.isPresenting.value) return null;
   const presenter = following.presenter.value;
   if (presenter) return { name: presenter.name, isAway: presenter.connected === false };
-  return recording.replay.value ? { name: 'The replay', isAway: false } : null;
+  return recording.replay.value ? { name: say.theReplay, isAway: false } : null;
 }
 
 /**
@@ -89,12 +90,12 @@ export function watched({ following, recording }) {
  * @returns {{state: 'wait'|'live'|'old'|'lost', text: string, why: string}}
  */
 export function liveness({ link, renderer, isLate, paintedAt, isAway }) {
-  if (!paintedAt) return { state: 'wait', text: 'No picture yet', why: '' };
-  const old = (why, state = 'old') => ({ state, text: `Old, of ${new Date(paintedAt).toLocaleTimeString('en-GB')}`, why });
-  if (link.state !== 'open') return old('The connection to the server is lost', 'lost');
-  if (link.quietSince) return old('The server does not answer');
-  if (renderer !== 'ready') return old('The plan is not being drawn');
-  if (isLate) return old('What the presenter sees now has not come yet');
-  if (isAway) return { ...old('The presenter is away'), text: 'Away' };
-  return { state: 'live', text: 'Live', why: '' };
+  if (!paintedAt) return { state: 'wait', text: say.noPicture, why: '' };
+  const old = (why, state = 'old') => ({ state, text: say.old({ time: new Date(paintedAt).toLocaleTimeString('en-GB') }), why });
+  if (link.state !== 'open') return old(say.lost, 'lost');
+  if (link.quietSince) return old(say.noAnswer);
+  if (renderer !== 'ready') return old(say.notDrawn);
+  if (isLate) return old(say.notCome);
+  if (isAway) return { ...old(say.isAway), text: say.away };
+  return { state: 'live', text: say.live, why: '' };
 }

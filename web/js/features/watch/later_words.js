@@ -1,0 +1,32 @@
+// What a person reads of the small picture of the presenter.
+import { sentences } from '../../parts/sentences.js';
+
+export const say = sentences('watch.later', {
+  picture: 'Picture of the presenter',
+  presents: '{name} presents',
+  theReplay: 'The replay',
+  live: 'Live',
+  noPicture: 'No picture yet',
+  old: 'Old, of {time}',
+  away: 'Away',
+  lost: 'The connection to the server is lost',
+  noAnswer: 'The server does not answer',
+  notDrawn: 'The plan is not being drawn',
+  notCome: 'What the presenter sees now has not come yet',
+  isAway: 'The presenter is away',
+  move: 'Move to the next corner',
+  movePicture: 'Move the picture of the presenter to the next corner',
+  fold: 'Fold',
+  foldPicture: 'Fold the picture of the presenter',
+  unfold: 'Unfold',
+  unfoldPicture: 'Unfold the picture of the presenter',
+  close: 'Close; the room chip shows it again',
+  closePicture: 'Close the picture of the presenter',
+  returnTo: 'Return to {name}',
+  returnToPicture: 'Return to {name}; {picture}',
+  noneYet: 'no picture yet',
+  edges: '{view}: left {left}, right {right}, top {top}, bottom {bottom}',
+  edgesDraft: '{view}, of a draft beam: left {left}, right {right}, top {top}, bottom {bottom}',
+  draftBeam: 'Draft beam',
+  missing: '{n} {n|region|regions} not drawn',
+});
