@@ -9,6 +9,7 @@ export const say = sentences('pointers.later', {
   pointersMore: 'Look here, pointers of the others',
   ask: 'Ask everybody to look here',
   askIs: 'Asks everybody to look where you point, else at the crosshair',
+  shiftP: 'Shift P',
   comeTo: 'Come to {name}’s point',
   askNoMore: 'Ask no more',
   ofOthers: 'Pointers of the others',

@@ -95,7 +95,7 @@ export function pointMenu(world, isDock) {
       ${
         pointers.mayPoint.value
           ? html`<button title=${say.askIs} @click=${act(() => askToLook(world))}>
-        ${icon('target')}<span>${say.ask}</span>${isDock ? nothing : html`<kbd>Shift P</kbd>`}</button>`
+        ${icon('target')}<span>${say.ask}</span>${isDock ? nothing : html`<kbd>${say.shiftP}</kbd>`}</button>`
           : nothing
       }
       ${look && look.by !== room.member.value ? comeButton() : nothing}
