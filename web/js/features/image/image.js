@@ -7,7 +7,9 @@ import { numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { imageName, showImage } from './image_shown.js';
 import { slicesBlock } from './picture.js';
-import { colorBar, colorMapRow, windowFields } from './window_fields.js';
+import { colorBar } from './image_legend.js';
+import { colorMapRow, windowFields } from './window_fields.js';
+import { say } from './later_words.js';
 
 export function imageBlock(world, isDisabled, change) {
   const { room, ui } = world;
@@ -16,29 +18,29 @@ export function imageBlock(world, isDisabled, change) {
   if (!image) return nothing;
   const isShown = image === shownImage(plan, scene);
   const set = (window, event) => change(lookPatch(plan, scene, image, { window }), event);
-  return html`<section class="block"><h3>${icon('image')} Image ${image.name || image.modality} <span class="dim">${image.id}</span></h3>
-      ${isShown ? nothing : html`<p class="note">${blendedImage(plan, scene) === image ? 'Blended over the image shown.' : 'Not shown.'}</p><div class="buttons"><button ?disabled=${isDisabled} @click=${(event) => showImage(world, image, event)}>Show this image</button></div>`}
-      <dl><dt>Voxels</dt><dd>${image.size.join(' × ')}</dd></dl>
-      ${windowFields(world, image, '', isDisabled, set)}
+  return html`<section class="block"><h3>${icon('image')} ${say.imageNamed({ image: image.name || image.modality })} <span class="dim">${image.id}</span></h3>
+      ${isShown ? nothing : html`<p class="note">${blendedImage(plan, scene) === image ? say.blendedOver : say.notShown}</p><div class="buttons"><button ?disabled=${isDisabled} @click=${(event) => showImage(world, image, event)}>${say.showThis}</button></div>`}
+      <dl><dt>${say.voxels}</dt><dd>${image.size.join(' × ')}</dd></dl>
+      ${windowFields(world, image, false, isDisabled, set)}
       ${colorBar(world, image)}
-      <dl class="image-rows">${colorMapRow(world, image, '', isDisabled, change)}
+      <dl class="image-rows">${colorMapRow(world, image, false, isDisabled, change)}
         ${
           isShown
-            ? html`<dt>Low values</dt><dd>${segment(
-                'Low values',
+            ? html`<dt>${say.lowValues}</dt><dd>${segment(
+                say.lowValues,
                 [
-                  ['black', 'Black'],
-                  ['white', 'White', 'The values stay; only their greys go the other way'],
+                  ['black', say.black],
+                  ['white', say.white, say.whiteIs],
                 ],
                 isLowWhite(image, scene) ? 'white' : 'black',
                 isDisabled,
                 (low_values, event) => change({ image: { low_values } }, event),
               )}</dd>
-        <dt>Between voxels</dt><dd>${segment(
-          'Interpolation',
+        <dt>${say.betweenVoxels}</dt><dd>${segment(
+          say.interpolation,
           [
-            ['linear', 'Linear'],
-            ['nearest', 'Nearest'],
+            ['linear', say.linear],
+            ['nearest', say.nearest],
           ],
           scene.image.interpolation,
           isDisabled,
@@ -59,17 +61,17 @@ function blendBlock(world, image, isDisabled, change) {
   const percent = Math.round((scene.image.blend?.opacity ?? 0.5) * 100);
   const setOpacity = (value, event) =>
     Number.isFinite(value) && change({ image: { blend: { opacity: Math.min(Math.max(value, 0), 100) / 100 } } }, event);
-  const options = [['', 'None'], ...others.map((other) => [other.id, imageName(plan, other)])];
+  const options = [['', say.none], ...others.map((other) => [other.id, imageName(plan, other)])];
   const choose = (id, event) => change({ image: { blend: { id } } }, event);
-  return html`<section class="block"><h3>Second image over it</h3>
-    <select aria-label="Second image" ?disabled=${isDisabled} @change=${(event) => choose(event.target.value, event)}>${options.map(([id, name]) => html`<option value=${id} .selected=${live(id === (blended?.id ?? ''))}>${name}</option>`)}</select>
+  return html`<section class="block"><h3>${say.secondOver}</h3>
+    <select aria-label=${say.second} ?disabled=${isDisabled} @change=${(event) => choose(event.target.value, event)}>${options.map(([id, name]) => html`<option value=${id} .selected=${live(id === (blended?.id ?? ''))}>${name}</option>`)}</select>
     ${
       blended
-        ? html`<dl class="image-rows"><dt>Opacity</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(percent))} aria-label="Opacity of the second image" ?disabled=${isDisabled}
-        @input=${(event) => setOpacity(event.target.valueAsNumber, event)}>${numberField('Opacity of the second image in per cent', percent, '%', isDisabled, setOpacity)}</dd></dl>
-      ${windowFields(world, blended, 'Second image', isDisabled, (window, event) => change(lookPatch(plan, room.scene.value, blended, { window }), event))}
+        ? html`<dl class="image-rows"><dt>${say.opacity}</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(percent))} aria-label=${say.secondOpacity} ?disabled=${isDisabled}
+        @input=${(event) => setOpacity(event.target.valueAsNumber, event)}>${numberField(say.secondOpacityPercent, percent, '%', isDisabled, setOpacity)}</dd></dl>
+      ${windowFields(world, blended, true, isDisabled, (window, event) => change(lookPatch(plan, room.scene.value, blended, { window }), event))}
       ${colorBar(world, blended)}
-      <dl class="image-rows">${colorMapRow(world, blended, 'Second image', isDisabled, change)}</dl>`
+      <dl class="image-rows">${colorMapRow(world, blended, true, isDisabled, change)}</dl>`
         : nothing
     }</section>`;
 }

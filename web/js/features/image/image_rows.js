@@ -8,6 +8,7 @@ import { icon } from '../../parts/icons.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
 import { imageName, showImage } from './image_shown.js';
 import { volumeRow } from './volume_row.js';
+import { say } from './words.js';
 
 export function imageRows(world) {
   const { room } = world;
@@ -25,7 +26,7 @@ export function imageRows(world) {
         isShown && scene
           ? windowText(scene.image.window, '')
           : image === blended
-            ? `${number(scene.image.blend.opacity * 100)} % over it`
+            ? say.overIt({ percent: number(scene.image.blend.opacity * 100) })
             : '';
       return treeRow(
         world,
@@ -33,13 +34,13 @@ export function imageRows(world) {
           kind: 'image',
           id: image.id,
           words: [words, tail],
-          title: `${image.size.join(' × ')} voxels`,
+          title: say.voxels({ size: image.size.join(' × ') }),
           isOn: isShown,
           toggle: show,
           choose: show,
         },
         html`
-      ${plan.images.length > 1 ? eye(isShown, `Show ${words}`, 'Show this image', !room.canChange.value, show) : icon('image')}${name(words)}
+      ${plan.images.length > 1 ? eye(isShown, say.show({ image: words }), say.showThis, !room.canChange.value, show) : icon('image')}${name(words)}
       <span class="tail">${tail}</span>`,
       );
     });

@@ -6,16 +6,27 @@ import { shownImage } from '../../room/plan.js';
 import { numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { active3d } from '../../pane/pane_layouts.js';
+import { say } from './later_words.js';
 
 const sides = [
-  ['sagittal', 'Sagittal'],
-  ['coronal', 'Coronal'],
-  ['axial', 'Axial'],
+  ['sagittal', say.sagittal],
+  ['coronal', say.coronal],
+  ['axial', say.axial],
+];
+
+/** Where the camera can look from: word, name, tooltip. */
+const directions = [
+  ['anterior', say.anterior, say.fromAnterior],
+  ['posterior', say.posterior, say.fromPosterior],
+  ['left', say.left, say.fromLeft],
+  ['right', say.right, say.fromRight],
+  ['superior', say.superior, say.fromSuperior],
+  ['inferior', say.inferior, say.fromInferior],
 ];
 
 /** The slices of the image in the 3-D picture. */
 export function slicesBlock(scene, image, isDisabled, change) {
-  return html`<section class="block"><h3>Slices in the 3-D picture</h3><div class="checks" role="group" aria-label="Slices in 3-D">${sides.map(
+  return html`<section class="block"><h3>${say.slicesIn3d}</h3><div class="checks" role="group" aria-label=${say.slices3d}>${sides.map(
     ([id, name]) => html`<label><input type="checkbox" .checked=${live(scene.image.slices[id].visible)} ?disabled=${isDisabled}
     @change=${(event) => change({ image: { slices: { [id]: { visible: event.target.checked } } } }, event)}>${name}</label>`,
   )}</div>${cullRow(scene, image, isDisabled, change)}</section>`;
@@ -25,9 +36,9 @@ export function slicesBlock(scene, image, isDisabled, change) {
 function cullRow(scene, image, isDisabled, change) {
   const { cull_below: value } = scene.image;
   const isOn = value > cullsNothing;
-  return html`<div class="checks cull"><label title="Slices in the 3-D view leave out lower values"><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled}
-    @change=${(event) => change({ image: { cull_below: event.target.checked ? usualCull(image, scene.image.window) : cullsNothing } }, event)}>Leave out below</label>
-    ${isOn ? numberField('Leave out values below', Number(value.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
+  return html`<div class="checks cull"><label title=${say.leaveOutIs}><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled}
+    @change=${(event) => change({ image: { cull_below: event.target.checked ? usualCull(image, scene.image.window) : cullsNothing } }, event)}>${say.leaveOut}</label>
+    ${isOn ? numberField(say.leaveOutValues, Number(value.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ image: { cull_below } }, event)) : nothing}</div>`;
 }
 
 /** Camera and translucency of the 3-D picture. */
@@ -36,14 +47,14 @@ export function pictureBlock(world, isDisabled, change) {
   const scene = room.scene.value;
   const image = shownImage(room.plan.value, scene);
   const { cameras } = active3d(world).actions;
-  return html`<section class="block"><h3>${icon('cube')} 3-D picture</h3>
+  return html`<section class="block"><h3>${icon('cube')} ${say.picture}</h3>
       <dl>${
         room.view(1).document.value
-          ? html`<dt>Projection</dt><dd>${segment(
-              'Projection',
+          ? html`<dt>${say.projection}</dt><dd>${segment(
+              say.projection,
               [
-                ['perspective', 'Perspective'],
-                ['parallel', 'Parallel'],
+                ['perspective', say.perspective],
+                ['parallel', say.parallel],
               ],
               cameras.value.projection,
               isDisabled,
@@ -51,36 +62,29 @@ export function pictureBlock(world, isDisabled, change) {
             )}</dd>`
           : nothing
       }
-        <dt>Translucency</dt><dd>${segment(
-          'Translucency',
+        <dt>${say.translucency}</dt><dd>${segment(
+          say.translucency,
           [
-            ['rim', 'Rim'],
-            ['plain', 'Plain'],
+            ['rim', say.rim],
+            ['plain', say.plain],
           ],
           scene.surface.translucency,
           isDisabled,
           (translucency, event) => change({ surface: { translucency } }, event),
         )}</dd>
-        <dt>Overlaps</dt><dd>${segment(
-          'What lies before what',
+        <dt>${say.overlaps}</dt><dd>${segment(
+          say.whatBefore,
           [
-            ['exact', 'Exact', 'Each pixel in its own order, also where regions cross'],
-            ['hierarchy', 'By hierarchy', 'Whole regions, inner before outer, as Sera3d does'],
+            ['exact', say.exact, say.exactIs],
+            ['hierarchy', say.byHierarchy, say.byHierarchyIs],
           ],
           scene.surface.translucent_order,
           isDisabled,
           (translucent_order, event) => change({ surface: { translucent_order } }, event),
         )}</dd></dl>
-      <div class="buttons looks" role="group" aria-label="Look from">${[
-        'anterior',
-        'posterior',
-        'left',
-        'right',
-        'superior',
-        'inferior',
-      ].map(
-        (name) => html`<button ?disabled=${isDisabled} title=${`Look from ${name}`}
-        @click=${(event) => cameras.lookFrom(name, event.timeStamp)}>${name[0].toUpperCase()}${name.slice(1)}</button>`,
+      <div class="buttons looks" role="group" aria-label=${say.lookFrom}>${directions.map(
+        ([from, name, about]) => html`<button ?disabled=${isDisabled} title=${about}
+        @click=${(event) => cameras.lookFrom(from, event.timeStamp)}>${name}</button>`,
       )}</div></section>
     ${image ? slicesBlock(scene, image, isDisabled, change) : nothing}`;
 }

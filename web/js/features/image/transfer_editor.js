@@ -6,6 +6,7 @@ import { axisOf, bars, fromPlot, gapBeside, inserted, mostPoints, moved, nearest
 import { numberField } from '../../parts/fields.js';
 import { significant, unitText } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 const [mousePx, fingerPx] = [12, 26]; // how far from a point a press still takes it
 const keyStep = 0.01; // of the plot; with Shift a tenth of it
@@ -38,19 +39,19 @@ export function transferEditor(world, image, isDisabled, change) {
   return html`<div class="image-transfer">${plot(tools, points, histogram, image)}
       <p class="image-axis"><span>${significant(axis.low)}</span><span>${unitText(image.unit)}</span><span>${significant(axis.high)}</span></p></div>
     ${chosenPoint(tools, points, image)}
-    <details class="more image-points"><summary>${icon('chevronDown', 12)}<span>${points.length === 1 ? '1 point' : `${points.length} points`} as a table</span></summary>${table(tools, points, image)}</details>`;
+    <details class="more image-points"><summary>${icon('chevronDown', 12)}<span>${say.pointsTable({ n: points.length })}</span></summary>${table(tools, points, image)}</details>`;
 }
 
 const pointsNow = (room) => room.scene.peek().image.volume.points;
 const percentOf = (opacity) => Number((opacity * 100).toPrecision(3));
 const words = ({ value, opacity }, index, unit) =>
-  `Point ${index + 1}: ${significant(value)} ${unitText(unit)}, ${percentOf(opacity)} % stopped by 1 mm`.replace(' ,', ',');
+  say.pointIs({ n: index + 1, value: [significant(value), unitText(unit)].filter(Boolean).join(' '), percent: percentOf(opacity) });
 
 /** One tab stop: arrows move the chosen point, Page up and Page down choose another. */
 function plot(tools, points, histogram, image) {
   const { axis, at, isDisabled } = tools;
   const percent = (part) => `${100 * part}%`;
-  return html`<svg class="image-plot" role="listbox" tabindex="0" aria-label="Points of the transfer function" aria-activedescendant=${points.length ? `transfer-${at}` : nothing} aria-disabled=${isDisabled}
+  return html`<svg class="image-plot" role="listbox" tabindex="0" aria-label=${say.points} aria-activedescendant=${points.length ? `transfer-${at}` : nothing} aria-disabled=${isDisabled}
       @pointerdown=${(event) => press(event, tools)} @pointermove=${(event) => drag(event, tools)} @pointerup=${release} @pointercancel=${release}
       @dblclick=${(event) => insertAt(event, tools)} @keydown=${(event) => keys(event, tools)}>
     <g aria-hidden="true">
@@ -64,7 +65,7 @@ function plot(tools, points, histogram, image) {
             : nothing
         }
         ${points.length ? svg`<path class="fill" fill="url(#transfer-colors)" d=${`${curve(points, axis)}V1H0Z`} /><path class="curve under" d=${curve(points, axis)} /><path class="curve ink" d=${curve(points, axis)} />` : nothing}</svg>
-      ${opacityTicks.map((tick) => svg`<line class="tick" x1="0" x2="100%" y1=${percent(1 - Math.sqrt(tick))} y2=${percent(1 - Math.sqrt(tick))} /><text x="3" y=${percent(1 - Math.sqrt(tick))} dy=${tick === 1 ? 11 : -3}>${percentOf(tick)} %${tick === 1 ? ' stopped by 1 mm' : ''}</text>`)}</g>
+      ${opacityTicks.map((tick) => svg`<line class="tick" x1="0" x2="100%" y1=${percent(1 - Math.sqrt(tick))} y2=${percent(1 - Math.sqrt(tick))} /><text x="3" y=${percent(1 - Math.sqrt(tick))} dy=${tick === 1 ? 11 : -3}>${tick === 1 ? say.stopped({ percent: percentOf(tick) }) : `${percentOf(tick)} %`}</text>`)}</g>
     ${points.map((point, index) => {
       const [x, y] = toPlot(point, axis);
       return svg`<g role="option" id=${`transfer-${index}`} aria-selected=${index === at} aria-label=${words(point, index, image.unit)} class=${classMap({ chosen: index === at })}>
@@ -159,36 +160,36 @@ function keys(event, { room, axis, at, set, choose, insertBeside, remove }) {
 }
 
 const valueField = ({ room, axis, isDisabled, set }, points, index, unit) =>
-  numberField(`Value of point ${index + 1}`, Number(points[index].value.toPrecision(6)), unitText(unit), isDisabled, (value, event) =>
+  numberField(say.valueOf({ n: index + 1 }), Number(points[index].value.toPrecision(6)), unitText(unit), isDisabled, (value, event) =>
     set(moved(pointsNow(room), axis, index, { value }), event),
   );
 const opacityField = ({ room, axis, isDisabled, set }, points, index) =>
-  numberField(`Opacity of point ${index + 1} in per cent`, percentOf(points[index].opacity), '%', isDisabled, (percent, event) =>
+  numberField(say.opacityOf({ n: index + 1 }), percentOf(points[index].opacity), '%', isDisabled, (percent, event) =>
     set(moved(pointsNow(room), axis, index, { opacity: percent / 100 }), event),
   );
 const colorField = (
   { room, isDisabled, set },
   points,
   index,
-) => html`<input type="color" .value=${live(points[index].color)} aria-label=${`Colour of point ${index + 1}`} ?disabled=${isDisabled}
+) => html`<input type="color" .value=${live(points[index].color)} aria-label=${say.colourOf({ n: index + 1 })} ?disabled=${isDisabled}
   @input=${(event) => set(recolored(pointsNow(room), index, event.target.value), event)}>`;
 
 /** Adding, removing, and the colour of the chosen point. */
 function chosenPoint(tools, points, image) {
   const { at, isDisabled, insertBeside, remove } = tools;
   const point = points[at];
-  return html`<p class="image-chosen" role="status">${point ? words(point, at, image.unit) : 'No point: nothing is drawn.'}</p>
+  return html`<p class="image-chosen" role="status">${point ? words(point, at, image.unit) : say.noPoint}</p>
     <div class="buttons image-edit">${
       point
-        ? html`<label>Colour <input type="color" .value=${live(point.color)} aria-label="Colour of the chosen point" ?disabled=${isDisabled}
+        ? html`<label>${say.colour} <input type="color" .value=${live(point.color)} aria-label=${say.colourOfChosen} ?disabled=${isDisabled}
         @input=${(event) => tools.set(recolored(pointsNow(tools.room), at, event.target.value), event)}></label>`
         : nothing
     }
-      <button title="Add a point (double click, Insert)" ?disabled=${isDisabled || points.length >= mostPoints} @click=${insertBeside}>Add</button>
-      <button title="Remove the chosen point (Delete)" ?disabled=${isDisabled || !point} @click=${(event) => remove(at, event)}>Remove</button></div>`;
+      <button title=${say.addIs} ?disabled=${isDisabled || points.length >= mostPoints} @click=${insertBeside}>${say.add}</button>
+      <button title=${say.removeIs} ?disabled=${isDisabled || !point} @click=${(event) => remove(at, event)}>${say.remove}</button></div>`;
 }
 
 function table(tools, points, image) {
-  return html`<table><thead><tr><th scope="col">Value</th><th scope="col">Stopped by 1 mm</th><th scope="col">Colour</th></tr></thead>
+  return html`<table><thead><tr><th scope="col">${say.value}</th><th scope="col">${say.stoppedColumn}</th><th scope="col">${say.colour}</th></tr></thead>
     <tbody>${points.map((_, index) => html`<tr><td>${valueField(tools, points, index, image.unit)}</td><td>${opacityField(tools, points, index)}</td><td>${colorField(tools, points, index)}</td></tr>`)}</tbody></table>`;
 }

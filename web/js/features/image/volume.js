@@ -8,9 +8,15 @@ import { presetPoints, presetsOfImage } from './volume_presets.js';
 import { checkbox, numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { transferEditor } from './transfer_editor.js';
-import { methods } from './volume_row.js';
+import { say } from './later_words.js';
 
 const [fewest, most] = [2, 1024]; // slices: proto/scene.json
+const methods = [
+  ['ray', say.ray, say.rayIs],
+  ['slices', say.slices, say.slicesAre],
+  ['mip', say.maximum, say.maximumIs],
+  ['average', say.average, say.averageIs],
+];
 
 export function volumeBlock(world, isDisabled, changeScene) {
   const { room } = world;
@@ -19,16 +25,16 @@ export function volumeBlock(world, isDisabled, changeScene) {
   const volume = scene.image.volume;
   if (!image) return nothing;
   const change = (patch, event) => changeScene({ image: { volume: patch } }, event);
-  return html`<section class="block"><h3>${icon('cube')} Volume <span class="dim">of ${image.name || image.modality}, in 3-D</span></h3>
-      <div class="checks">${checkbox('Visible', volume.visible, isDisabled, (isOn, event) => changeScene(visiblePatch(plan, room.scene.value, isOn), event))}
-        ${checkbox('Cut by clip planes', volume.clipped, isDisabled, (clipped, event) => change({ clipped }, event))}</div>
-      <div class="shown-as"><span class="dim">Drawn by</span>${segment('Method of the volume', methods, volume.method, isDisabled, (method, event) => change({ method }, event))}</div>
-      <dl class="image-rows">${volume.method === 'slices' ? html`<dt>Slices</dt><dd>${numberField('Number of slices', volume.steps, '', isDisabled, (value, event) => change({ steps: Math.min(Math.max(Math.round(value), fewest), most) }, event))}</dd>` : nothing}
-        <dt>Between voxels</dt><dd>${segment(
-          'Volume between voxels',
+  return html`<section class="block"><h3>${icon('cube')} ${say.volume} <span class="dim">${say.volumeOf({ image: image.name || image.modality })}</span></h3>
+      <div class="checks">${checkbox(say.visible, volume.visible, isDisabled, (isOn, event) => changeScene(visiblePatch(plan, room.scene.value, isOn), event))}
+        ${checkbox(say.cutByPlanes, volume.clipped, isDisabled, (clipped, event) => change({ clipped }, event))}</div>
+      <div class="shown-as"><span class="dim">${say.drawnBy}</span>${segment(say.method, methods, volume.method, isDisabled, (method, event) => change({ method }, event))}</div>
+      <dl class="image-rows">${volume.method === 'slices' ? html`<dt>${say.slices}</dt><dd>${numberField(say.nSlices, volume.steps, '', isDisabled, (value, event) => change({ steps: Math.min(Math.max(Math.round(value), fewest), most) }, event))}</dd>` : nothing}
+        <dt>${say.betweenVoxels}</dt><dd>${segment(
+          say.volumeBetween,
           [
-            ['linear', 'Linear'],
-            ['nearest', 'Nearest'],
+            ['linear', say.linear],
+            ['nearest', say.nearest],
           ],
           volume.interpolation,
           isDisabled,
@@ -40,21 +46,22 @@ export function volumeBlock(world, isDisabled, changeScene) {
 
 function cullRow(image, scene, volume, isDisabled, change) {
   const isOn = volume.cull_below > cullsNothing;
-  return html`<div class="checks cull">${checkbox('Leave out below', isOn, isDisabled, (on, event) => change({ cull_below: on ? usualCull(image, scene.image.window) : cullsNothing }, event), 'Lower values are not drawn, by any method')}
-    ${isOn ? numberField('Leave out of the volume below', Number(volume.cull_below.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ cull_below }, event)) : nothing}</div>`;
+  return html`<div class="checks cull">${checkbox(say.leaveOut, isOn, isDisabled, (on, event) => change({ cull_below: on ? usualCull(image, scene.image.window) : cullsNothing }, event), say.leaveOutVolumeIs)}
+    ${isOn ? numberField(say.leaveOutVolume, Number(volume.cull_below.toPrecision(6)), image.unit, isDisabled, (cull_below, event) => change({ cull_below }, event)) : nothing}</div>`;
 }
+
+/** The presets of proto/volume_presets.json. */
+const presetNames = { Bone: say.bone, Skin: say.skin, 'Soft tissue': say.softTissue, Head: say.head, Brain: say.brain };
 
 /** Fields that only the method ray has: light, and the transfer function. */
 function rayBlock(world, image, isDisabled, change) {
   const { window, volume } = world.room.scene.value.image;
-  return html`<section class="block"><h3>Transfer function <span class="dim">of ${image.modality}</span></h3>
-    <div class="buttons looks image-presets" role="group" aria-label="Presets of the transfer function">${presetsOfImage(image).map(
-      (preset) => {
-        const points = presetPoints(preset, window);
-        const isOn = isSamePoints(volume.points, points);
-        return html`<button class=${classMap({ on: isOn })} aria-pressed=${isOn} ?disabled=${isDisabled} @click=${(event) => change({ points }, event)}>${preset.name}</button>`;
-      },
-    )}</div>
+  return html`<section class="block"><h3>${say.transfer} <span class="dim">${say.transferOf({ image: image.modality })}</span></h3>
+    <div class="buttons looks image-presets" role="group" aria-label=${say.transferPresets}>${presetsOfImage(image).map((preset) => {
+      const points = presetPoints(preset, window);
+      const isOn = isSamePoints(volume.points, points);
+      return html`<button class=${classMap({ on: isOn })} aria-pressed=${isOn} ?disabled=${isDisabled} @click=${(event) => change({ points }, event)}>${presetNames[preset.name] ?? preset.name}</button>`;
+    })}</div>
     ${transferEditor(world, image, isDisabled, change)}
-    <div class="checks">${checkbox('Shaded', volume.shaded, isDisabled, (shaded, event) => change({ shaded }, event), 'Lit by the direction in which the value changes')}</div></section>`;
+    <div class="checks">${checkbox(say.shaded, volume.shaded, isDisabled, (shaded, event) => change({ shaded }, event), say.shadedIs)}</div></section>`;
 }

@@ -1,0 +1,28 @@
+// The colours of an image: the bar of its window, and the legend of slice panes.
+import { html, nothing, svg } from '../../../lib/lit-html.js';
+import { blendedImage, colorMaps, endsOf, lookOf } from '../../room/image_look.js';
+import { isLowWhite, shownImage } from '../../room/plan.js';
+import { significant, unitText } from '../../parts/format.js';
+import { say } from './words.js';
+
+/** The colours of a window from its lower to its upper end. place: names the bar on the page. */
+export function colorBar({ room }, image, place = 'panel') {
+  const { window, color_map: chosen } = lookOf(room.plan.value, room.scene.value, image);
+  const [, , , stops] = colorMaps.find(([id]) => id === chosen) ?? colorMaps[0];
+  const isTurned = image === shownImage(room.plan.value, room.scene.value) ? isLowWhite(image, room.scene.value) : image.isInverted;
+  const { low, high } = endsOf(window);
+  const id = `image-bar-${place}-${image.id}`;
+  return html`<div class="image-bar"><svg viewBox="0 0 100 10" preserveAspectRatio="none" aria-hidden="true"><linearGradient id=${id} x1=${isTurned ? 1 : 0} x2=${isTurned ? 0 : 1}>${stops.map(([at, color]) => svg`<stop offset=${at} stop-color=${color} />`)}</linearGradient>
+    <rect width="100" height="10" fill=${`url(#${id})`} /></svg><p><span>${significant(low)}</span><span>${significant(high)} ${unitText(image.unit)}</span></p></div>`;
+}
+
+/** In a slice pane: the colours of the image shown where they are no greys, and of one that is blended over it. */
+export function imageLegend({ room }, place) {
+  const [plan, scene] = [room.plan.value, room.scene.value];
+  const blended = blendedImage(plan, scene);
+  const shown = shownImage(plan, scene);
+  const images = [shown, blended].filter((image) => image && (image === blended || lookOf(plan, scene, image).color_map !== 'grey'));
+  return images.length
+    ? html`<ul class="legend image-legend" aria-label=${say.colours}>${images.map((image) => html`<li><span>${image.modality}${image === blended ? ` ${Math.round(scene.image.blend.opacity * 100)} %` : ''}</span>${colorBar({ room }, image, place)}</li>`)}</ul>`
+    : nothing;
+}
