@@ -62,7 +62,7 @@ endif
 DCMTK_LIBS := -ldcmjpeg -lijg8 -lijg12 -lijg16 -ldcmjpls -ldcmtkcharls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
 CORE_LIBS := $(DCMTK_LIBS) -lopenjp2 -lturbojpeg -lspng -lfreetype -ldeflate -lz -lcjson -ldl -lm
 UNPACK_LIBS := -larchive
-SERVER_LIBS := -lmicrohttpd -Wl,--as-needed -lwebsockets -lev -Wl,--no-as-needed -lsqlite3 -lsodium -lcjson -lm
+SERVER_LIBS := -lmicrohttpd -Wl,--as-needed -lwebsockets -lev -lssl -lcrypto -Wl,--no-as-needed -lsqlite3 -lsodium -lcjson -lm
 
 c_files = $(if $(wildcard $(1)),$(sort $(shell find $(wildcard $(1)) -name '*.c')))
 
@@ -85,7 +85,7 @@ $(GEN)/trial.c $(GEN)/trial_gen.c: $(TRIAL_STAMP) ;
 # core: everything but the main()s; wire: JSON edge shared by daemon, renderer and command line; server: the daemon's own.
 CORE_SRC := $(call c_files,core) $(sort $(wildcard core/formats/dicom/*.cc))
 WIRE_SRC := $(call c_files,server/wire)
-SERVER_SRC := $(call c_files,server/room server/net server/front server/http server/ws server/fleet server/store server/auth)
+SERVER_SRC := $(call c_files,server/room server/net server/front server/http server/ws server/tls server/fleet server/store server/auth)
 DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
 UNPACK_SRC := $(filter-out %_run.c,$(sort $(wildcard server/renderer/unpack*.c)))

@@ -9,12 +9,14 @@
 #include "server/daemon/notify.h"
 #include "server/front/front.h"
 #include "server/net/net.h"
+#include "server/tls/tls.h"
 
-enum { NET, FRONT, N_THREADS };
+enum { NET, FRONT, TLS, N_THREADS };
 
 struct heartbeat {
     struct net *net;
     struct front *front;
+    struct tls *tls;
     atomic_bool has_moved[N_THREADS]; /* since the last round began */
     bool is_late;                     /* a late thread was logged in the last round */
 };
@@ -31,13 +33,18 @@ static void begin_round(struct heartbeat *heartbeat)
         atomic_store(&heartbeat->has_moved[i], false);
     net_post(heartbeat->net, mark, &heartbeat->has_moved[NET]);
     front_ping(heartbeat->front, &heartbeat->has_moved[FRONT]);
+    if (heartbeat->tls)
+        tls_ping(heartbeat->tls, &heartbeat->has_moved[TLS]);
+    else
+        atomic_store(&heartbeat->has_moved[TLS], true);
 }
 
-struct heartbeat *heartbeat_create(struct net *net, struct front *front)
+struct heartbeat *heartbeat_create(struct net *net, struct front *front, struct tls *tls)
 {
     struct heartbeat *heartbeat = mem_new(sizeof *heartbeat);
     heartbeat->net = net;
     heartbeat->front = front;
+    heartbeat->tls = tls;
     if (notify_watchdog_us() > 0)
         begin_round(heartbeat);
     return heartbeat;
@@ -56,7 +63,7 @@ int64_t heartbeat_wait_us(const struct heartbeat *heartbeat)
 
 void heartbeat_beat(struct heartbeat *heartbeat)
 {
-    static const char *const names[N_THREADS] = { "net", "front" };
+    static const char *const names[N_THREADS] = { "net", "front", "tls" };
     bool have_all_moved = true;
     for (int i = 0; i < N_THREADS; i++) {
         bool has_moved = atomic_load(&heartbeat->has_moved[i]);

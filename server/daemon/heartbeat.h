@@ -6,13 +6,14 @@
 
 struct net;
 struct front;
+struct tls;
 
 enum { HEARTBEAT_PARTS = 4 }; /* rounds within the manager's time limit */
 
 struct heartbeat;
 
-/* net and front outlive it. */
-struct heartbeat *heartbeat_create(struct net *net, struct front *front);
+/* net, front and tls outlive it. tls: NULL when there is none. */
+struct heartbeat *heartbeat_create(struct net *net, struct front *front, struct tls *tls);
 /* After all threads have ended. */
 void heartbeat_destroy(struct heartbeat *heartbeat);
 /* Time until the next heartbeat_beat; -1: there is no watchdog. */

@@ -26,13 +26,16 @@
 #include "server/net/net.h"
 #include "server/store/backup.h"
 #include "server/store/verify.h"
+#include "server/tls/tls.h"
 
 enum {
     PATH_SIZE = 4096,
     LISTED_EVERY_MS = 5,
     SLOW_LISTING_S = 10,
-    N_DESCRIPTORS =
-        4096 /* for all allowed connections, three each for HTTP and one for a WebSocket, and for the renderers */
+    /* for all allowed connections, three each for HTTP and one for a WebSocket, and for the renderers */
+    N_DESCRIPTORS = 4096,
+    N_DESCRIPTORS_WITH_TLS = 10240, /* two more for each, and one for each that waits for its handshake */
+    HTTPS_PORT = 443
 };
 
 static bool make_folders(const char *folder, struct error *err)
@@ -110,28 +113,43 @@ static bool fill_path(char **option, bool (*find)(char path[PATH_SIZE], struct e
     return true;
 }
 
+/* The port of --listen, 0 where the system chooses. */
+static int port_of(const struct options *options)
+{
+    const char *colon = options->listen ? strrchr(options->listen, ':') : NULL;
+    return colon ? (int)strtol(colon + 1, NULL, 10) : 8080;
+}
+
 /* Becomes an ordinary user. Replaces the options' paths by those that this user reaches. */
 static bool give_up_root(struct options *options, struct error *err)
 {
-    struct privilege_place places[OPTIONS_MAX_PLAN_FOLDERS + 3];
+    struct privilege_place places[OPTIONS_MAX_PLAN_FOLDERS + 5];
     size_t n = 0;
     for (size_t i = 0; i < options->n_plan_folders; i++)
         places[n++] = (struct privilege_place){ "--plans", options->plan_folders[i], R_OK | X_OK };
     places[n++] = (struct privilege_place){ "--data", options->data_folder, F_OK };
     places[n++] = (struct privilege_place){ "--web", options->web_folder, R_OK | X_OK };
     places[n++] = (struct privilege_place){ "--renderer", options->renderer_path, R_OK | X_OK };
-    const char *colon = options->listen ? strrchr(options->listen, ':') : NULL;
+    const size_t n_always = n;
+    if (options->tls_cert) {
+        places[n++] = (struct privilege_place){ "--tls-cert", options->tls_cert, R_OK };
+        places[n++] = (struct privilege_place){ "--tls-key", options->tls_key, R_OK };
+    }
     struct privilege_options wanted = { .user = options->user,
                                         .data_folder = options->data_folder,
-                                        .port = colon ? (int)strtol(colon + 1, NULL, 10) : 8080,
+                                        .port = port_of(options),
                                         .places = places,
                                         .n_places = n };
     bool ok = privilege_give_up(&wanted, err);
     for (size_t i = 0; i < options->n_plan_folders; i++)
         options->plan_folders[i] = places[i].path;
-    options->data_folder = places[n - 3].path;
-    options->web_folder = places[n - 2].path;
-    options->renderer_path = places[n - 1].path;
+    options->data_folder = places[n_always - 3].path;
+    options->web_folder = places[n_always - 2].path;
+    options->renderer_path = places[n_always - 1].path;
+    if (options->tls_cert) {
+        options->tls_cert = places[n_always].path;
+        options->tls_key = places[n_always + 1].path;
+    }
     return ok;
 }
 
@@ -147,16 +165,16 @@ static bool gl_is_known(const char *gl, struct error *err)
 
 /* Sets the limit on open files. The usual 1024 is for programs that use select(2); containers often allow a million,
  * and libwebsockets keeps a table of as many as are allowed. */
-static void set_descriptors(void)
+static void set_descriptors(rlim_t n_needed)
 {
     struct rlimit now;
     if (getrlimit(RLIMIT_NOFILE, &now) != 0)
         return;
-    now.rlim_cur = now.rlim_max < N_DESCRIPTORS ? now.rlim_max : N_DESCRIPTORS;
+    now.rlim_cur = now.rlim_max < n_needed ? now.rlim_max : n_needed;
     (void)setrlimit(RLIMIT_NOFILE, &now);
-    if (now.rlim_cur < N_DESCRIPTORS)
-        log_warn("%llu descriptors are allowed; %d are needed for every connection that may be open",
-                 (unsigned long long)now.rlim_cur, N_DESCRIPTORS);
+    if (now.rlim_cur < n_needed)
+        log_warn("%llu descriptors are allowed; %llu are needed for every connection that may be open",
+                 (unsigned long long)now.rlim_cur, (unsigned long long)n_needed);
 }
 
 /* Waits until the plan folders have been listed, so that "ready" means that all plans can be found. Returns false when
@@ -219,11 +237,75 @@ static bool is_loopback(const char *listen)
     return address_read(listen, strlen(listen), &address) && address_is_loopback(&address);
 }
 
-/* Hands a WebSocket from the front to the net thread. */
-static void adopt(void *net, int socket, const struct handshake *handshake, void (*ended)(void *argument),
+/* ---- serving ---------------------------------------------------------------------------------------------------- */
+
+/* What a connection passes through: TLS, if there is, gives decrypted streams to the front, which hands WebSockets to
+ * the net thread. */
+struct service {
+    struct tls *tls; /* NULL: the port speaks HTTP */
+    struct front *front;
+    struct net *net;
+};
+
+static void adopt(void *service, int socket, const struct handshake *handshake, void (*ended)(void *argument),
                   void *argument)
 {
-    net_adopt(net, socket, handshake, ended, argument);
+    net_adopt(((struct service *)service)->net, socket, handshake, ended, argument);
+}
+
+static void decrypt(void *service, int socket, const struct address *peer)
+{
+    tls_accept(((struct service *)service)->tls, socket, peer);
+}
+
+static void take_decrypted(void *service, int socket, const struct address *peer)
+{
+    front_take(((struct service *)service)->front, socket, peer);
+}
+
+static void take_plain(void *service, int socket, const struct address *peer)
+{
+    front_take_plain(((struct service *)service)->front, socket, peer);
+}
+
+/* On SIGHUP. */
+static void reload(struct tls *tls)
+{
+    struct error err = { 0 };
+    if (!tls)
+        log_info("nothing to read again on SIGHUP: there is no --tls-cert");
+    else if (!tls_reload(tls, &err))
+        log_error("TLS: the certificate in use stays: %s", err.text);
+}
+
+/* Until a signal to stop comes. The heartbeat is to be destroyed when all threads have ended. */
+static struct heartbeat *serve_on(const struct service *service)
+{
+    struct heartbeat *heartbeat = heartbeat_create(service->net, service->front, service->tls);
+    enum stop_signal found;
+    while ((found = stop_wait_or_reload(heartbeat_wait_us(heartbeat))) != STOP_STOPS) {
+        if (found == STOP_RELOADS)
+            reload(service->tls);
+        else
+            heartbeat_beat(heartbeat);
+    }
+    return heartbeat;
+}
+
+/* Where options ask for TLS. */
+static bool start_tls(struct service *service, const struct options *options, struct error *err)
+{
+    const struct tls_options tls_options = { .cert_file = options->tls_cert,
+                                             .key_file = options->tls_key,
+                                             .trusted = options->trusted_proxies,
+                                             .n_trusted = options->n_trusted_proxies,
+                                             .take = take_decrypted,
+                                             .take_plain = take_plain,
+                                             .context = service };
+    if (!options->tls_cert)
+        return true;
+    service->tls = tls_create(&tls_options, err);
+    return service->tls != NULL;
 }
 
 /* Serves until a signal comes. */
@@ -259,15 +341,20 @@ static bool serve(const struct options *options, struct error *err)
                                                .upload_folder = upload_folder,
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
+                                               .is_secure = options->tls_cert != NULL,
+                                               .is_secure_alone = options->tls_cert && port_of(options) == HTTPS_PORT,
                                                .is_alone = options->n_public_names == 0 && is_loopback(listen) };
-    struct net *net = net_create(&net_options, err);
+    struct service service = { 0 };
+    struct net *net = start_tls(&service, options, err) ? net_create(&net_options, err) : NULL;
     const struct front_options front_options = { .listen = listen,
                                                  .hosts = hosts,
                                                  .trusted = options->trusted_proxies,
                                                  .n_trusted = options->n_trusted_proxies,
+                                                 .decrypt = service.tls ? decrypt : NULL,
                                                  .adopt = adopt,
-                                                 .context = net };
-    struct front *front = net ? front_create(&front_options, err) : NULL;
+                                                 .context = &service };
+    service.net = net;
+    struct front *front = service.front = net ? front_create(&front_options, err) : NULL;
     struct http *http = front ? http_create(net, front, &http_options, err) : NULL;
     struct heartbeat *heartbeat = NULL;
     const bool ok = http != NULL;
@@ -277,9 +364,7 @@ static bool serve(const struct options *options, struct error *err)
             (void)fflush(stdout);
             log_info("serving on %s", front_url(front));
             notify_send("READY=1");
-            heartbeat = heartbeat_create(net, front);
-            while (!stop_wait(heartbeat_wait_us(heartbeat)))
-                heartbeat_beat(heartbeat);
+            heartbeat = serve_on(&service);
         }
         notify_send("STOPPING=1");
     }
@@ -287,9 +372,12 @@ static bool serve(const struct options *options, struct error *err)
         front_close(front);
         http_stop_posting(http);
     }
+    if (service.tls)
+        tls_close(service.tls);
     net_destroy(net);
     http_destroy(http);
     front_destroy(front);
+    tls_destroy(service.tls);
     heartbeat_destroy(heartbeat);
     hosts_destroy(hosts);
     return ok;
@@ -321,7 +409,7 @@ int main(int argc, char **argv)
     (void)setrlimit(RLIMIT_CORE, &no_core);
 
     notify_open();
-    set_descriptors();
+    set_descriptors(options.tls_cert ? N_DESCRIPTORS_WITH_TLS : N_DESCRIPTORS);
 
     bool ok = !options.gl || gl_is_known(options.gl, &err);
     if (options.backup) {

@@ -28,9 +28,12 @@ static const struct setting settings[] = {
       AT(data_folder), 0, 0 },
     { "web", "DIR", "the page's files; default: beside the program or ../share/beamroom/web", KIND_TEXT, AT(web_folder),
       0, 0 },
-    { "listen", "ADDRESS:PORT",
-      "default 127.0.0.1:8080; port 0 lets the system choose. There is no TLS here: put a proxy in front", KIND_TEXT,
-      AT(listen), 0, 0 },
+    { "listen", "ADDRESS:PORT", "default 127.0.0.1:8080; port 0 lets the system choose. HTTP, or HTTPS with --tls-cert",
+      KIND_TEXT, AT(listen), 0, 0 },
+    { "tls-cert", "FILE",
+      "the port speaks TLS: PEM of this server's certificate and those between it and its root; read again on SIGHUP",
+      KIND_TEXT, AT(tls_cert), 0, 0 },
+    { "tls-key", "FILE", "PEM of its key, without a passphrase; read again on SIGHUP", KIND_TEXT, AT(tls_key), 0, 0 },
     { "gl", "NAME", "auto (default), egl-device, egl-surfaceless, osmesa or soft", KIND_TEXT, AT(gl), 0, 0 },
     { "renderer", "FILE", "the renderer's program; default: beamroom-render beside this one", KIND_TEXT,
       AT(renderer_path), 0, 0 },
@@ -193,6 +196,15 @@ static bool read_file(struct options *options, const char *name, const bool *giv
     return ok;
 }
 
+/* True if no setting lacks the other that it needs. */
+static bool is_whole(const struct options *options, struct error *err)
+{
+    if (!options->tls_cert == !options->tls_key)
+        return true;
+    return error_set(err, ERROR_FORMAT, "--tls-%s is given without --tls-%s; expected both or neither",
+                     options->tls_cert ? "cert" : "key", options->tls_cert ? "key" : "cert");
+}
+
 bool options_read(struct options *options, int argc, char **argv, struct error *err)
 {
     bool given[N_SETTINGS] = { false };
@@ -241,7 +253,7 @@ bool options_read(struct options *options, int argc, char **argv, struct error *
         else
             given[setting - settings] = true;
     }
-    return !config || read_file(options, config, given, err);
+    return (!config || read_file(options, config, given, err)) && is_whole(options, err);
 }
 
 void options_finish(struct options *options)
@@ -253,6 +265,8 @@ void options_finish(struct options *options)
     free(options->data_folder);
     free(options->web_folder);
     free(options->listen);
+    free(options->tls_cert);
+    free(options->tls_key);
     free(options->gl);
     free(options->renderer_path);
     free(options->allowed_origin);
@@ -268,7 +282,8 @@ void options_print_help(void)
         "beamroomd: shows neutron capture therapy plans to browsers\n\n"
         "  beamroomd --plans DIR [--listen ADDRESS:PORT] [flags]\n\n"
         "Loads plans from the folders given, draws them here and streams the pictures to any browser that opens the\n"
-        "address it prints (\"ready http://...\"). Stops on SIGINT or SIGTERM. Research and plan review only.\n\n");
+        "address it prints (\"ready http://...\"). Stops on SIGINT or SIGTERM; reads the certificate of TLS again on SIGHUP.\n"
+        "Research and plan review only.\n\n");
     for (size_t i = 0; i < N_SETTINGS; i++) {
         char flag[64];
         (void)snprintf(flag, sizeof flag, "--%s%s%s", settings[i].name, settings[i].value_name ? " " : "",

@@ -19,6 +19,7 @@ struct options {
     char *backup;                    /* the file to copy the database to, instead of serving; NULL: not given */
     char *verify_audit, *audit_head; /* the database whose audit is checked instead; a hash that it must have; NULL: not
                                         given */
+    char *tls_cert, *tls_key;        /* files of PEM; both or neither; NULL: not given */
     char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not given */
     int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members,
         recording_speed;

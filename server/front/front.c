@@ -33,6 +33,7 @@ enum {
 struct taken { /* a socket of front_take that the thread has not taken yet */
     int socket;
     struct address peer;
+    bool is_plain; /* of front_take_plain */
 };
 
 static char wake_tag, library_tag, listener_tag; /* their addresses mark the events of these descriptors */
@@ -87,14 +88,25 @@ static void refuse_waiting(struct front_link *link)
     front_link_refuse(link, &problem, FRONT_MAX_DROPPED_FIRST);
 }
 
+static void refuse_plain(struct front_link *link)
+{
+    struct problem problem;
+    problem_set(
+        &problem, PROBLEM_REQUEST, "", "",
+        "the request came without encryption, and this port speaks TLS; use an address that begins with https:");
+    front_link_refuse(link, &problem, FRONT_MAX_DROPPED_FIRST);
+}
+
 /* A connection whose head is whole already waits for nothing: in a burst the places of those that wait are for slow
  * ones. */
-static void begin_link(struct front *front, int socket, const struct address *peer)
+static void begin_link(struct front *front, int socket, const struct address *peer, bool is_plain)
 {
     const bool may_wait = front_may_wait(front, peer);
     struct front_link *link = create_link(front, socket, peer);
     int on = 1;
     (void)setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on); /* answers are written in few large pieces */
+    if (is_plain)
+        refuse_plain(link);
     front_link_advance(link);
     if (link->state == LINK_HEAD && link->is_first && !may_wait)
         refuse_waiting(link);
@@ -121,7 +133,10 @@ static void accept_some(struct front *front)
         int socket = accept4(front->listener, (struct sockaddr *)&address, &n_address, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket >= 0) {
             struct address peer = address_of_peer(&address);
-            begin_link(front, socket, &peer);
+            if (front->options.decrypt)
+                front->options.decrypt(front->options.context, socket, &peer);
+            else
+                begin_link(front, socket, &peer, false);
         } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
             log_warn("front: %s", strerror(errno));
             (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, front->listener, NULL);
@@ -147,7 +162,7 @@ static void take_queued(struct front *front)
         if (atomic_load(&front->is_closed))
             (void)close(taken->socket);
         else
-            begin_link(front, taken->socket, &taken->peer);
+            begin_link(front, taken->socket, &taken->peer, taken->is_plain);
     }
 }
 
@@ -381,7 +396,7 @@ struct front *front_create(const struct front_options *options, struct error *er
 bool front_serve(struct front *front, const struct front_library *library, struct error *err)
 {
     front->library = *library;
-    front->listener = listener_open(front->options.listen, front->url, err);
+    front->listener = listener_open(front->options.listen, front->options.decrypt != NULL, front->url, err);
     if (front->listener < 0)
         return false;
     if (!watch(front, library->poll_fd, &library_tag) || !watch(front, front->listener, &listener_tag) ||
@@ -442,10 +457,10 @@ const char *front_url(const struct front *front)
     return front->url;
 }
 
-void front_take(struct front *front, int socket, const struct address *peer)
+static void take(struct front *front, int socket, const struct address *peer, bool is_plain)
 {
     struct taken *taken = mem_new(sizeof *taken);
-    *taken = (struct taken){ socket, *peer };
+    *taken = (struct taken){ socket, *peer, is_plain };
     if (queue_try_put(front->taken, taken)) {
         front_wake(front);
         return;
@@ -457,6 +472,16 @@ void front_take(struct front *front, int socket, const struct address *peer)
     (void)refusal_drain(socket, HEAD_MAX_BYTES);
     refusal_send(socket, &problem);
     taken_drop(taken);
+}
+
+void front_take(struct front *front, int socket, const struct address *peer)
+{
+    take(front, socket, peer, false);
+}
+
+void front_take_plain(struct front *front, int socket, const struct address *peer)
+{
+    take(front, socket, peer, true);
 }
 
 void front_ping(struct front *front, atomic_bool *beat)

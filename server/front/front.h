@@ -47,8 +47,11 @@ struct front;
 struct front_link; /* a client's connection */
 
 struct front_options {
-    const char *listen;        /* "127.0.0.1:8080", "[::1]:0"; a numeric address, port 0 lets the system choose */
-    const struct hosts *hosts; /* outlives the front, like all pointers here */
+    const char *listen; /* "127.0.0.1:8080", "[::1]:0"; a numeric address, port 0 lets the system choose */
+    /* The port speaks TLS: takes each accepted socket, of which nothing has been read, and gives decrypted streams to
+     * front_take. Called on the front's thread, not after front_stop. NULL: it speaks HTTP. */
+    void (*decrypt)(void *context, int socket, const struct address *peer);
+    const struct hosts *hosts;           /* outlives the front, like all pointers here */
     const struct address_range *trusted; /* proxies whose X-Forwarded-For is believed */
     size_t n_trusted;
     /* Takes the socket of a WebSocket, which begins with this handshake: nothing of it has been read. Calls
@@ -56,7 +59,7 @@ struct front_options {
      * front's thread, not after front_close. */
     void (*adopt)(void *context, int socket, const struct handshake *handshake, void (*ended)(void *argument),
                   void *argument);
-    void *context;
+    void *context; /* of decrypt and adopt */
 };
 
 /* The HTTP library. Called on the front's thread. */
@@ -79,13 +82,15 @@ NODISCARD bool front_serve(struct front *front, const struct front_library *libr
 void front_close(struct front *front);
 void front_stop(struct front *front);
 void front_destroy(struct front *front);
-/* "http://127.0.0.1:8080", with the port that the system chose; after front_serve. */
+/* "http://127.0.0.1:8080", or "https:" with decrypt, with the port that the system chose; after front_serve. */
 const char *front_url(const struct front *front);
 
 /* Takes a connected stream socket that did not come by the listener, as if it were accepted from this address: one end
  * of a pair behind which TLS is decrypted. Nothing of the stream has been read. Refuses it with 429 when too many wait
  * to be taken; closes it after front_close. Any thread, from front_serve on. */
 void front_take(struct front *front, int socket, const struct address *peer);
+/* The same for the socket of a client that speaks no TLS where it should: it is refused with 400. */
+void front_take_plain(struct front *front, int socket, const struct address *peer);
 void front_wake(struct front *front); /* any thread: has run called soon */
 /* Has the thread set *beat. Any thread; one call at a time. */
 void front_ping(struct front *front, atomic_bool *beat);

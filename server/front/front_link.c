@@ -276,6 +276,7 @@ static void hand_on(struct front_link *link, struct handshake *handshake, const 
         if (place) {
             (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, link->client, NULL); /* fails where the head came at once */
             address_write(client, handshake->client);
+            handshake->is_secure = front->options.decrypt != NULL;
             front->options.adopt(front->options.context, link->client, handshake, websocket_count_ended, place);
             link->client = -1;
         }
@@ -519,7 +520,8 @@ bool front_link_is_free(const struct front_link *link)
     if (link->state == LINK_DEAD || link->n_out > 0)
         return false;
     (void)ioctl(link->inner, FIONREAD, &n_inner);
-    (void)ioctl(link->client, SIOCOUTQNSD, &n_unsent);
+    if (ioctl(link->client, SIOCOUTQNSD, &n_unsent) != 0)
+        (void)ioctl(link->client, SIOCOUTQ, &n_unsent); /* a pair of sockets, behind which TLS is decrypted */
     return n_inner == 0 && n_unsent == 0;
 }
 

@@ -40,7 +40,7 @@ static bool bind_to(int listener, const struct addrinfo *found)
            bind(listener, found->ai_addr, found->ai_addrlen) == 0 && listen(listener, BACKLOG) == 0;
 }
 
-static bool write_url(int listener, const char *host, char url[LISTENER_MAX_URL])
+static bool write_url(int listener, const char *host, bool is_secure, char url[LISTENER_MAX_URL])
 {
     struct sockaddr_storage bound;
     socklen_t n_bound = sizeof bound;
@@ -49,11 +49,12 @@ static bool write_url(int listener, const char *host, char url[LISTENER_MAX_URL]
     const bool is_six = bound.ss_family == AF_INET6;
     unsigned port =
         ntohs(is_six ? ((struct sockaddr_in6 *)&bound)->sin6_port : ((struct sockaddr_in *)&bound)->sin_port);
-    (void)snprintf(url, LISTENER_MAX_URL, is_six ? "http://[%s]:%u" : "http://%s:%u", host, port);
+    (void)snprintf(url, LISTENER_MAX_URL, is_six ? "http%s://[%s]:%u" : "http%s://%s:%u", is_secure ? "s" : "", host,
+                   port);
     return true;
 }
 
-int listener_open(const char *listen_at, char url[LISTENER_MAX_URL], struct error *err)
+int listener_open(const char *listen_at, bool is_secure, char url[LISTENER_MAX_URL], struct error *err)
 {
     char host[80];
     const char *port = split(listen_at, host, err);
@@ -70,7 +71,7 @@ int listener_open(const char *listen_at, char url[LISTENER_MAX_URL], struct erro
     int listener = socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     bool ok = bind_to(listener, found);
     freeaddrinfo(found);
-    if (ok && write_url(listener, host, url))
+    if (ok && write_url(listener, host, is_secure, url))
         return listener;
     (void)error_set(err, ERROR_IO, "--listen %.80s: %s", listen_at, strerror(errno));
     if (listener >= 0)

@@ -169,7 +169,7 @@ bool call_origin_is_own(const struct call *call, struct problem *problem)
     if (call->method == CALL_GET || call->method == CALL_HEAD)
         return true;
     if (call->origin)
-        return origin_is_of_host(call->origin, call->host) ||
+        return origin_is_of_host(call->origin, call->host, call->is_secure) ||
                problem_set(problem, PROBLEM_FORBIDDEN, "", "", "the origin %.100s may not change anything here",
                            call->origin);
     /* browsers that send no Origin send Sec-Fetch-Site; programs send neither */

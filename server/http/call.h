@@ -33,6 +33,7 @@ struct call {
     struct call_pair query[CALL_MAX_QUERY];
     size_t n_query;
     char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member; /* NULL when not sent */
+    bool is_secure;  /* it came by TLS, which was decrypted here */
     char client[46]; /* address of the client, behind trusted proxies; "": not known */
     char *body;
     size_t n_body;

@@ -33,6 +33,7 @@ enum {
 
 struct http {
     struct net *net;
+    bool is_secure, is_secure_alone; /* as in http_options */
     struct api *api;
     struct files *files;
     struct intake *intake;
@@ -59,11 +60,16 @@ struct request {
 };
 
 /* The page runs only its own scripts and styles, and may not be framed. */
-static const char content_policy[] =
-    "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
+#define POLICY(sockets) \
+    "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' " sockets \
+    "; frame-ancestors 'none'; base-uri 'none'; form-action 'self'"
+static const char content_policy[] = POLICY("ws: wss:"), secure_content_policy[] = POLICY("wss:");
 
-static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned status, struct MHD_Response *response)
+static enum MHD_Result send_response(const struct http *http, struct MHD_Connection *connection, unsigned status,
+                                     struct MHD_Response *response)
 {
+    if (http->is_secure_alone)
+        MHD_add_response_header(response, "Strict-Transport-Security", "max-age=31536000");
     MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
     MHD_add_response_header(response, "Referrer-Policy", "no-referrer");
     MHD_add_response_header(response, "Cross-Origin-Resource-Policy", "same-origin");
@@ -72,7 +78,7 @@ static enum MHD_Result send_response(struct MHD_Connection *connection, unsigned
     return sent;
 }
 
-static enum MHD_Result send_file(struct MHD_Connection *connection, const struct file *file)
+static enum MHD_Result send_file(const struct http *http, struct MHD_Connection *connection, const struct file *file)
 {
     const char *accept = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Accept-Encoding");
     const char *known = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "If-None-Match");
@@ -91,8 +97,9 @@ static enum MHD_Result send_file(struct MHD_Connection *connection, const struct
     MHD_add_response_header(response, "Cache-Control",
                             file->is_immutable ? "public, max-age=31536000, immutable" : "no-cache");
     MHD_add_response_header(response, "Content-Type", file->media_type);
-    MHD_add_response_header(response, "Content-Security-Policy", content_policy);
-    return send_response(connection, is_fresh ? 304 : 200, response);
+    MHD_add_response_header(response, "Content-Security-Policy",
+                            http->is_secure ? secure_content_policy : content_policy);
+    return send_response(http, connection, is_fresh ? 304 : 200, response);
 }
 
 /* Called by libmicrohttpd for more bytes of an answer without an end. */
@@ -157,7 +164,7 @@ static enum MHD_Result send_answer(struct MHD_Connection *connection, struct req
     for (size_t i = 0; i < call->n_headers; i++)
         MHD_add_response_header(response, call->headers[i].name, call->headers[i].value);
     api_count(request->http->api, call->status, clock_now_us() - call->started_us);
-    return send_response(connection, (unsigned)call->status, response);
+    return send_response(request->http, connection, (unsigned)call->status, response);
 }
 
 static void wake_reader(void *front)
@@ -298,6 +305,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->finished = call_finished;
     call->wake = wake_reader;
     call->wake_context = http->front;
+    call->is_secure = http->is_secure;
     call->method = method_of(method);
     call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);
@@ -368,7 +376,7 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
             http->files && request->call->early.type == PROBLEM_NONE && (verb == CALL_GET || verb == CALL_HEAD);
         const struct file *file = is_for_file ? files_find(http->files, request->call->path) : NULL;
         if (file)
-            return send_file(connection, file);
+            return send_file(http, connection, file);
         finish_archive(request);
         request->is_posted = true;
         post_request(http, request);
@@ -455,6 +463,8 @@ struct http *http_create(struct net *net, struct front *front, const struct http
     struct http *http = mem_new(sizeof *http);
     http->net = net;
     http->front = front;
+    http->is_secure = options->is_secure;
+    http->is_secure_alone = options->is_secure_alone;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0, options->is_alone);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes
                                                                                      : HTTP_MIN_ARCHIVE_DROPPED;

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "core/base/clock.h"
-#include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/ws/library_log.h"
 
 struct sockets {
     const struct sockets_calls *calls;
@@ -56,15 +56,6 @@ static int handle(struct lws *lws, enum lws_callback_reasons reason, void *owner
     }
 }
 
-static void log_library(int level, const char *line)
-{
-    const int n = (int)strcspn(line, "\n");
-    if (level & LLL_ERR)
-        log_warn("libwebsockets: %.*s", n, line);
-    else
-        log_debug("libwebsockets: %.*s", n, line);
-}
-
 static bool start_library(struct sockets *sockets)
 {
     void *loops[1] = { sockets->loop };
@@ -98,7 +89,7 @@ struct sockets *sockets_create(const struct sockets_calls *calls, struct error *
     sockets->calls = calls;
     sockets->protocols[0] = (struct lws_protocols){ .name = "raw", .callback = handle };
     sockets->armed_us = INT64_MAX;
-    lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
+    library_log_start();
     sockets->loop = ev_loop_new(EVBACKEND_EPOLL | EVFLAG_NOENV);
     if (sockets->loop && start_library(sockets) && add_timer(sockets))
         return sockets;

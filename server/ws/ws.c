@@ -43,7 +43,7 @@ static bool origin_is_allowed(const struct ws *ws, const struct handshake *hands
     const char *origin = handshake->origin;
     if (!origin[0] || (ws->allowed_origin && strcasecmp(origin, ws->allowed_origin) == 0))
         return true;
-    return handshake->host[0] && origin_is_of_host(origin, handshake->host);
+    return handshake->host[0] && origin_is_of_host(origin, handshake->host, handshake->is_secure);
 }
 
 /* Answers with the problem. Takes the socket. */

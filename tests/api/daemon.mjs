@@ -37,7 +37,7 @@ export async function startDaemon({ plans = [demo], args = [], data: given, cwd,
   });
   const url = await new Promise((ready, failed) => {
     createInterface({ input: child.stdout }).on('line', (line) => {
-      const found = /^ready (http:\S+)$/.exec(line);
+      const found = /^ready (https?:\S+)$/.exec(line);
       if (found) ready(found[1]);
     });
     child.on('exit', (code) => failed(new Error(`beamroomd ended with ${code}: ${log}`)));

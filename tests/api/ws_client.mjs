@@ -1,6 +1,7 @@
 // A small WebSocket client over a plain socket: node 18 has none, and this one can also misbehave (fragments, bad masks, not reading).
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
+import { connect as connectSecurely } from 'node:tls';
 import { parseStrict } from './strict_json.mjs';
 
 const TEXT = 1,
@@ -57,9 +58,10 @@ export class Client {
   /** Resolves when the server has answered the handshake, also when it refused. socket: a connection that was used before; else a new one. */
   static async open(url, path, headers = {}, socket = null) {
     const client = new Client();
-    const { hostname, port, host } = new URL(url);
+    const { hostname, port, host, protocol } = new URL(url);
     const key = randomBytes(16).toString('base64');
-    client.#socket = socket ?? connect({ host: hostname, port: Number(port) });
+    const to = { host: hostname, port: Number(port) };
+    client.#socket = socket ?? (protocol === 'https:' ? connectSecurely({ ...to, rejectUnauthorized: false }) : connect(to));
     client.#socket.on('error', () => {});
     client.#socket.on('data', (bytes) => client.#take(bytes, key));
     client.#socket.on('close', () => {

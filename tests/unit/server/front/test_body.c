@@ -150,7 +150,15 @@ static void only_http_and_https_with_the_own_name_are_the_own_origin(void **stat
                   { NULL, "beamroom.example", false },
                   { "http://beamroom.example", NULL, false } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
-        assert_int_equal(origin_is_of_host(cases[i].origin, cases[i].host), cases[i].is_own);
+        assert_int_equal(origin_is_of_host(cases[i].origin, cases[i].host, false), cases[i].is_own);
+}
+
+static void behind_our_own_tls_http_is_another_origin(void **state)
+{
+    (void)state;
+    assert_true(origin_is_of_host("https://beamroom.example", "beamroom.example", true));
+    assert_false(origin_is_of_host("http://beamroom.example", "beamroom.example", true));
+    assert_false(origin_is_of_host("https://evil.example", "beamroom.example", true));
 }
 
 int main(void)
@@ -162,6 +170,7 @@ int main(void)
         cmocka_unit_test(lines_of_chunks_and_trailers_have_their_limits_to_the_byte),
         cmocka_unit_test(a_condition_names_each_tag_of_its_list),
         cmocka_unit_test(only_http_and_https_with_the_own_name_are_the_own_origin),
+        cmocka_unit_test(behind_our_own_tls_http_is_another_origin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
