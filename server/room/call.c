@@ -20,9 +20,10 @@ static struct member *find_caller(const struct room *room, const char *member)
     char id[64];
     const size_t n = member ? strcspn(member, " ") : 0;
     (void)snprintf(id, sizeof id, "%.*s", (int)(n < sizeof id ? n : 0), member ? member : "");
-    for (int i = 0; i < room->n_members && member && member[n] == ' '; i++)
-        if (strcmp(room->members[i]->id, id) == 0 && secret_matches(member + n + 1, room->members[i]->secret_hash))
-            return room->members[i];
+    for (int i = 0; i < room->members.n && member && member[n] == ' '; i++)
+        if (strcmp(room->members.list[i]->id, id) == 0 &&
+            secret_matches(member + n + 1, room->members.list[i]->secret_hash))
+            return room->members.list[i];
     return NULL;
 }
 
@@ -50,11 +51,11 @@ bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller,
     room_enter(room, now_us);
     if (!replay_allows(room, MESSAGE_SCENE_PATCH, problem))
         return false;
-    room->caller = find_caller(room, caller);
-    room->caller_address = address;
+    room->call.by = find_caller(room, caller);
+    room->call.address = address;
     const bool ok = scene_apply_patch(room, patch, NULL, 0, problem);
-    room->caller_address = NULL;
-    room->caller = NULL;
+    room->call.address = NULL;
+    room->call.by = NULL;
     room_leave(room);
     return ok;
 }
@@ -114,7 +115,7 @@ static cJSON *make_document(const char *id, const char *plan_id, uint32_t revisi
 
 cJSON *room_document(const struct room *room)
 {
-    return make_document(room->id, room->plan_id, room->revision, room->state, room->created_at_s, false,
+    return make_document(room->id, room->plan_id, room->revision, room->renderer.state, room->created_at_s, false,
                          room_members(room));
 }
 

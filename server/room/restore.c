@@ -18,14 +18,14 @@
 
 static bool write_members(const struct room *room, struct store_room *kept)
 {
-    size_t n = (size_t)(room->n_members + room->known->n);
+    size_t n = (size_t)(room->members.n + room->known->n);
     kept->members = mem_array(n, sizeof kept->members[0], 1 << 20, NULL);
     if (!kept->members)
         return false;
     for (int i = 0; i < room->known->n; i++)
         kept->members[kept->n_members++] = room->known->list[i];
-    for (int i = 0; i < room->n_members; i++)
-        known_write(room->members[i], &kept->members[kept->n_members++]);
+    for (int i = 0; i < room->members.n; i++)
+        known_write(room->members.list[i], &kept->members[kept->n_members++]);
     return true;
 }
 
@@ -34,7 +34,7 @@ bool room_keep(const struct room *room, unsigned parts, struct store_room *kept)
     const cJSON *scene = room->scene ? room->scene : room->restored;
     *kept = (struct store_room){ .created_ms = room->created_at_s * 1000,
                                  .revision = room->revision,
-                                 .n_named = room->n_named,
+                                 .n_named = room->members.n_named,
                                  .has_links = links_were_made(room) };
     (void)snprintf(kept->id, sizeof kept->id, "%s", room->id);
     (void)snprintf(kept->plan, sizeof kept->plan, "%s", room->plan_id);
@@ -83,14 +83,14 @@ static void read_members(struct room *room, const struct store_room *kept)
         const struct store_member *from = &kept->members[i];
         if (!id_is_valid(from->id))
             continue;
-        if (from->has_left || room->n_members == room->max_members) {
+        if (from->has_left || room->members.n == room->members.max) {
             known_add(room, from);
             continue;
         }
         struct member *member = mem_new(sizeof *member);
         known_read(from, member);
         member->away_us = room->now_us;
-        room->members[room->n_members++] = member;
+        room->members.list[room->members.n++] = member;
         if (strcmp(member->id, kept->presenter) == 0)
             room->presenter = member;
     }
@@ -101,7 +101,8 @@ void room_restore(struct room *room, const struct store_room *kept, int64_t now_
     room_enter(room, now_us);
     room->created_at_s = kept->created_ms / 1000;
     room->revision = kept->revision;
-    room->n_named = kept->n_named > room->n_named ? kept->n_named : room->n_named; /* items were restored before */
+    room->members.n_named =
+        kept->n_named > room->members.n_named ? kept->n_named : room->members.n_named; /* items were restored before */
     room->is_changed = true;
     cJSON *scene = read_json(room, kept->scene, "the scene");
     if (cJSON_IsObject(scene))

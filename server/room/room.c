@@ -54,7 +54,7 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
     (void)snprintf(room->id, sizeof room->id, "%s", id);
     (void)snprintf(room->plan_id, sizeof room->plan_id, "%s", plan_id);
     room->callbacks = *callbacks;
-    room->max_members = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS
+    room->members.max = limits && limits->max_members > 0 && limits->max_members < ROOM_MAX_MEMBERS
                             ? limits->max_members
                             : ROOM_MAX_MEMBERS;
     room->created_at_s = (int64_t)time(NULL); /* wall clock, only to be displayed */
@@ -84,12 +84,13 @@ void room_destroy(struct room *room)
     if (!room)
         return;
     recordings_finish(room);
-    for (int i = 0; i < room->n_members; i++)
-        if (room->members[i]->connection)
-            send_bye(room, room->members[i]->connection, -1, room->end_reason[0] ? room->end_reason : room_is_closed);
+    for (int i = 0; i < room->members.n; i++)
+        if (room->members.list[i]->connection)
+            send_bye(room, room->members.list[i]->connection, -1,
+                     room->end_reason[0] ? room->end_reason : room_is_closed);
     members_free(room);
-    while (room->streams)
-        stream_destroy(room, room->streams);
+    while (room->streams.first)
+        stream_destroy(room, room->streams.first);
     forget_plan(room);
     items_forget_keeping(room);
     items_free(room);
@@ -126,12 +127,12 @@ void room_end_because(struct room *room, const char *reason)
 
 bool room_was_used(const struct room *room)
 {
-    return !room->replay && (room->n_named > 0 || links_were_made(room) || room->is_changed);
+    return !room->replay && (room->members.n_named > 0 || links_were_made(room) || room->is_changed);
 }
 
 uint32_t room_n_named(const struct room *room)
 {
-    return room->n_named;
+    return room->members.n_named;
 }
 
 size_t room_n_decided(const struct room *room)
@@ -186,10 +187,10 @@ static bool replace_plan(struct room *room, const cJSON *plan_document, const cJ
 static void set_state(struct room *room, enum wire_renderer_state state, const char *phase, double percent,
                       const struct problem *problem)
 {
-    room->state = state;
-    room->percent = percent >= 0 && percent <= 100 ? percent : 0;
-    (void)snprintf(room->phase, sizeof room->phase, "%s", phase ? phase : "");
-    room->problem = problem ? *problem : (struct problem){ 0 };
+    room->renderer.state = state;
+    room->renderer.percent = percent >= 0 && percent <= 100 ? percent : 0;
+    (void)snprintf(room->renderer.phase, sizeof room->renderer.phase, "%s", phase ? phase : "");
+    room->renderer.problem = problem ? *problem : (struct problem){ 0 };
 }
 
 bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
@@ -202,9 +203,9 @@ bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
         room_renderer_state(room, WIRE_RENDERER_STATE_FAILED, NULL, 0, &problem, now_us);
         return false;
     }
-    (void)snprintf(room->gl, sizeof room->gl, "%s", gl ? gl : "");
-    if (room->is_software != is_software) {
-        room->is_software = is_software;
+    (void)snprintf(room->renderer.gl, sizeof room->renderer.gl, "%s", gl ? gl : "");
+    if (room->renderer.is_software != is_software) {
+        room->renderer.is_software = is_software;
         streams_restart_pace(room);
     }
     set_state(room, WIRE_RENDERER_STATE_READY, NULL, 0, NULL);
@@ -224,7 +225,7 @@ void room_renderer_state(struct room *room, enum wire_renderer_state state, cons
                          const struct problem *problem, int64_t now_us)
 {
     room_enter(room, now_us);
-    bool was_ready = room->state == WIRE_RENDERER_STATE_READY;
+    bool was_ready = room->renderer.state == WIRE_RENDERER_STATE_READY;
     set_state(room, state, phase, percent, problem);
     if (state != WIRE_RENDERER_STATE_READY) {
         streams_forget_requests(room);
@@ -457,7 +458,7 @@ int64_t room_text_came(struct room *room, void *connection, const char *text, si
 {
     room_enter(room, now_us);
     struct member *member = member_who_speaks(room, connection);
-    const bool is_shown = take_text(room, member, connection, text, n) && !room->has_lost;
+    const bool is_shown = take_text(room, member, connection, text, n) && !room->members.has_lost;
     const int64_t due_us = is_shown ? settle_shown(room, member) : now_us;
     if (!is_shown)
         (void)settle(room, true);

@@ -115,8 +115,8 @@ static bool take_kind(const cJSON *row, enum wire_item_kind *kind, struct proble
 static void pass_id(struct room *room, const char *author)
 {
     unsigned number;
-    if (sscanf(author, "m%9u", &number) == 1 && number > room->n_named)
-        room->n_named = number;
+    if (sscanf(author, "m%9u", &number) == 1 && number > room->members.n_named)
+        room->members.n_named = number;
 }
 
 bool room_restore_item(struct room *room, const char *bytes, size_t n, struct problem *problem)

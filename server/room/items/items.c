@@ -48,10 +48,10 @@ static void tell_members(struct room *room, const char *id, const char *row, con
     (void)snprintf(message.item.id, sizeof message.item.id, "%s", id);
     (void)snprintf(message.item.by, sizeof message.item.by, "%s", by);
     room_event(room, ROOM_ITEMS, id);
-    for (int i = 0; i < room->n_members; i++) {
-        const bool is_own = strcmp(room->members[i]->id, by) == 0;
+    for (int i = 0; i < room->members.n; i++) {
+        const bool is_own = strcmp(room->members.list[i]->id, by) == 0;
         message.item.input = is_own ? input : 0; /* the input number is only for its sender */
-        send_to_member(room, room->members[i], &message);
+        send_to_member(room, room->members.list[i], &message);
     }
     message_finish(&message);
 }
@@ -183,9 +183,9 @@ void items_written(struct room *room, uint64_t number, const struct problem *pro
         return;
     *at = keeping->next;
     if (problem) {
-        for (int i = 0; i < room->n_members; i++)
-            if (strcmp(room->members[i]->id, keeping->member) == 0 && room->members[i]->connection)
-                (void)send_problem(room, room->members[i]->connection, "item.put", 0, keeping->input, problem);
+        for (int i = 0; i < room->members.n; i++)
+            if (strcmp(room->members.list[i]->id, keeping->member) == 0 && room->members.list[i]->connection)
+                (void)send_problem(room, room->members.list[i]->connection, "item.put", 0, keeping->input, problem);
         free(keeping->item.row);
     } else {
         struct item *before = keeping->is_change ? items_find(room, keeping->item.id) : NULL;

@@ -17,8 +17,8 @@
 cJSON *recorded_members(const struct room *room)
 {
     cJSON *entries = cJSON_CreateObject();
-    for (int i = 0; i < room->n_members; i++) {
-        const struct member *member = room->members[i];
+    for (int i = 0; i < room->members.n; i++) {
+        const struct member *member = room->members.list[i];
         cJSON *entry = cJSON_CreateObject();
         char color[8];
         (void)snprintf(color, sizeof color, "#%06x", color_rgb(member->color) & 0xffffffU);
@@ -36,7 +36,7 @@ cJSON *recorded_members(const struct room *room)
 cJSON *recorded_views(const struct room *room)
 {
     cJSON *entries = cJSON_CreateObject();
-    for (const struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (const struct stream *stream = room->streams.first; stream; stream = stream->next) {
         const char *kind = json_text(stream->view, "kind"), *plane = json_text(stream->view, "plane");
         const bool is_oblique = stream->kind == SCENE_KIND_OBLIQUE;
         char id[160];
@@ -56,15 +56,15 @@ cJSON *recorded_views(const struct room *room)
 cJSON *recorded_pointers(const struct room *room)
 {
     cJSON *entries = cJSON_CreateObject();
-    for (int i = 0; i < room->n_members; i++) {
-        const struct pointing *pointing = &room->members[i]->pointing;
+    for (int i = 0; i < room->members.n; i++) {
+        const struct pointing *pointing = &room->members.list[i]->pointing;
         if (!pointing->is_on)
             continue;
         const double point_mm[] = { pointing->point_mm.x, pointing->point_mm.y, pointing->point_mm.z };
         cJSON *entry = cJSON_CreateObject();
         cJSON_AddNumberToObject(entry, "view", pointing->view);
         json_add(entry, "point_mm", cJSON_CreateDoubleArray(point_mm, 3));
-        json_add(entries, room->members[i]->id, entry);
+        json_add(entries, room->members.list[i]->id, entry);
     }
     return entries;
 }

@@ -474,7 +474,7 @@ void replay_begin(struct room *room, const char *of_room, uint32_t n_named, cons
     };
     (void)snprintf(replay->of_room, sizeof replay->of_room, "%s", of_room);
     replay->facts.marks = recording->marks ? cJSON_Duplicate(recording->marks, true) : NULL;
-    room->n_named = n_named;
+    room->members.n_named = n_named;
     room->replay = replay;
     if (room->scene)
         replay_plan_ready(room);

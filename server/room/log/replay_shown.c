@@ -83,7 +83,7 @@ void shown_views(struct room *room, const cJSON *state)
             log_error("room %s: a recorded view is left out: %s", room->id, problem.detail);
     }
     if (n_moved == 1) /* somebody moved this one; where all are shown anew, nobody did */
-        room->main = moved;
+        room->streams.main = moved;
 }
 
 /* ---- items ------------------------------------------------------------------------------------------------------ */

@@ -334,7 +334,7 @@ void audit_scene(struct room *room, const cJSON *before, const struct member *by
 {
     const cJSON *old = draft_of(before), *new = draft_of(room->scene);
     struct audit_act act = { .by = by,
-                             .address = room->caller_address,
+                             .address = room->call.address,
                              .before = (int64_t)room->revision - 1,
                              .after = room->revision,
                              .action = "weights" };

@@ -22,7 +22,7 @@ static bool send_text(struct room *room, void *connection, const char *text)
     struct member *member = member_of_connection(room, connection);
     if (member) {
         member->connection = NULL;
-        member->is_lost = room->has_lost = true;
+        member->is_lost = room->members.has_lost = true;
         member->away_us = room->now_us;
     }
     room->callbacks.close(room->callbacks.context, connection);
@@ -63,18 +63,18 @@ void send_latest(struct room *room, struct member *member, uint32_t key, const s
 void send_latest_to_others(struct room *room, const struct member *but, uint32_t key, const struct message *message)
 {
     char *text = message_write(message); /* written once for all */
-    for (int i = 0; i < room->n_members; i++)
-        if (room->members[i] != but)
-            send_latest_text(room, room->members[i], key, text);
+    for (int i = 0; i < room->members.n; i++)
+        if (room->members.list[i] != but)
+            send_latest_text(room, room->members.list[i], key, text);
     free(text);
 }
 
 void send_to_all(struct room *room, const struct message *message)
 {
     char *text = message_write(message); /* written once for all */
-    for (int i = 0; i < room->n_members; i++)
-        if (room->members[i]->connection)
-            (void)send_text(room, room->members[i]->connection, text);
+    for (int i = 0; i < room->members.n; i++)
+        if (room->members.list[i]->connection)
+            (void)send_text(room, room->members.list[i]->connection, text);
     free(text);
 }
 
@@ -93,38 +93,38 @@ static void send_members_now(struct room *room, struct member *only)
 void send_members(struct room *room)
 {
     room_event(room, ROOM_MEMBERS, NULL);
-    int64_t due_us = room->members_sent_us + MEMBERS_EVERY_US * (int64_t)room->n_members;
-    if (room->n_members > FEW_MEMBERS && room->now_us < due_us) {
-        room->members_due_us = due_us;
+    int64_t due_us = room->members.sent_us + MEMBERS_EVERY_US * (int64_t)room->members.n;
+    if (room->members.n > FEW_MEMBERS && room->now_us < due_us) {
+        room->members.due_us = due_us;
         return;
     }
-    room->members_sent_us = room->now_us;
-    room->members_due_us = 0;
+    room->members.sent_us = room->now_us;
+    room->members.due_us = 0;
     send_members_now(room, NULL);
 }
 
 void send_members_to_newcomer(struct room *room, struct member *newcomer)
 {
     send_members(room);
-    if (room->members_due_us)
+    if (room->members.due_us)
         send_members_now(room, newcomer);
 }
 
 int64_t send_members_due(struct room *room)
 {
-    if (room->members_due_us && room->now_us >= room->members_due_us)
+    if (room->members.due_us && room->now_us >= room->members.due_us)
         send_members(room);
-    return room->members_due_us ? room->members_due_us : INT64_MAX;
+    return room->members.due_us ? room->members.due_us : INT64_MAX;
 }
 
 void send_renderer_state(struct room *room, struct member *member)
 {
     struct message message = { .type = MESSAGE_RENDERER };
-    message.renderer.state = room->state;
-    message.renderer.percent = room->percent;
-    mem_put_text(message.renderer.phase, sizeof message.renderer.phase, room->phase);
-    if (room->problem.type != PROBLEM_NONE)
-        message.renderer.problem = problem_to_json(&room->problem);
+    message.renderer.state = room->renderer.state;
+    message.renderer.percent = room->renderer.percent;
+    mem_put_text(message.renderer.phase, sizeof message.renderer.phase, room->renderer.phase);
+    if (room->renderer.problem.type != PROBLEM_NONE)
+        message.renderer.problem = problem_to_json(&room->renderer.problem);
     if (member)
         send_to_member(room, member, &message);
     else
@@ -138,7 +138,7 @@ void send_plan(struct room *room)
     message.plan.plan = room->plan;
     message.plan.scene = room->scene;
     message.plan.revision = room->revision;
-    mem_put_text(message.plan.gl, sizeof message.plan.gl, room->gl);
+    mem_put_text(message.plan.gl, sizeof message.plan.gl, room->renderer.gl);
     send_to_all(room, &message);
 }
 
@@ -161,8 +161,8 @@ void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32
     struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = patch } };
     if (by)
         mem_put_text(message.scene.by, sizeof message.scene.by, by->id);
-    for (int i = 0; i < room->n_members; i++) {
-        struct member *member = room->members[i];
+    for (int i = 0; i < room->members.n; i++) {
+        struct member *member = room->members.list[i];
         if (member != by && !to_all)
             continue;
         message.scene.input = member == by ? input : 0; /* the input number is only for its sender */

@@ -26,8 +26,8 @@ static cJSON *requests_list(const struct room *room)
     cJSON *list = cJSON_CreateArray();
     for (uint64_t after = 0;;) {
         const struct member *next = NULL;
-        for (int i = 0; i < room->n_members; i++) {
-            const struct member *member = room->members[i];
+        for (int i = 0; i < room->members.n; i++) {
+            const struct member *member = room->members.list[i];
             if (member->request > after && (!next || member->request < next->request))
                 next = member;
         }
@@ -57,9 +57,9 @@ void control_send(struct room *room, struct member *member)
 
 static const struct member *find(const struct room *room, const char *id)
 {
-    for (int i = 0; i < room->n_members; i++)
-        if (strcmp(room->members[i]->id, id) == 0)
-            return room->members[i];
+    for (int i = 0; i < room->members.n; i++)
+        if (strcmp(room->members.list[i]->id, id) == 0)
+            return room->members.list[i];
     return NULL;
 }
 
@@ -107,9 +107,9 @@ void control_pass(struct room *room, struct member *member)
         return;
     room->presenter = member;
     room->control->is_locked = false;
-    for (int i = 0; i < room->n_members; i++)
-        if (!member || room->members[i] == member)
-            room->members[i]->request = 0;
+    for (int i = 0; i < room->members.n; i++)
+        if (!member || room->members.list[i] == member)
+            room->members.list[i]->request = 0;
     control_note(room, member ? WIRE_CONTROL_ACT_TAKEN : WIRE_CONTROL_ACT_LEFT, member, member);
 }
 

@@ -35,9 +35,9 @@ static bool pass_on(struct room *room, struct member *member, enum wire_control_
 
 static struct member *find(const struct room *room, const char *id, struct problem *problem)
 {
-    for (int i = 0; i < room->n_members; i++)
-        if (strcmp(room->members[i]->id, id) == 0)
-            return room->members[i];
+    for (int i = 0; i < room->members.n; i++)
+        if (strcmp(room->members.list[i]->id, id) == 0)
+            return room->members.list[i];
     problem_set(problem, PROBLEM_NOT_FOUND, "/member", "", "there is no member \"%.63s\" in this room", id);
     return NULL;
 }

@@ -110,7 +110,7 @@ struct member *known_back(struct room *room, const char *id, const char *secret)
 
 enum wire_member_role role_of_newcomer(const struct room *room)
 {
-    bool is_first = room->n_members == 0;
+    bool is_first = room->members.n == 0;
     for (int i = 0; is_first && i < room->known->n; i++)
         is_first = strcmp(room->known->list[i].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) != 0;
     return is_first ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_REVIEWER;

@@ -40,9 +40,9 @@ static void fill_in(const struct room *room, struct message *message)
     message->look.has_point_mm = look->is_on;
     message->look.point_mm = look->point_mm;
     message->look.came = cJSON_CreateArray();
-    for (int i = 0; i < room->n_members && look->is_on; i++)
-        if (room->members[i]->came_to == look->number)
-            json_append(message->look.came, cJSON_CreateString(room->members[i]->id));
+    for (int i = 0; i < room->members.n && look->is_on; i++)
+        if (room->members.list[i]->came_to == look->number)
+            json_append(message->look.came, cJSON_CreateString(room->members.list[i]->id));
 }
 
 static void tell(struct room *room)

@@ -31,18 +31,18 @@ enum { FULL_RETRY_MS = 30000, UNRECORDED_RETRY_MS = 10000 };
 
 static void member_free(struct room *room, int index)
 {
-    struct member *member = room->members[index];
+    struct member *member = room->members.list[index];
     views_close(room, member);
     if (member_presents(room, member))
         room->presenter = NULL;
     free(member);
-    room->members[index] = room->members[--room->n_members];
+    room->members.list[index] = room->members.list[--room->members.n];
 }
 
 void members_free(struct room *room)
 {
-    while (room->n_members)
-        member_free(room, room->n_members - 1);
+    while (room->members.n)
+        member_free(room, room->members.n - 1);
 }
 
 int64_t members_settle_away(struct room *room)
@@ -50,8 +50,8 @@ int64_t members_settle_away(struct room *room)
     const int64_t kept_us = ROOM_MEMBER_KEPT_S * INT64_C(1000000);
     int64_t again_us = INT64_MAX;
     bool has_changed = false;
-    for (int i = room->n_members - 1; i >= 0; i--) {
-        const struct member *member = room->members[i];
+    for (int i = room->members.n - 1; i >= 0; i--) {
+        const struct member *member = room->members.list[i];
         if (member->connection)
             continue;
         int64_t due_us = member->away_us + kept_us;
@@ -70,14 +70,14 @@ int64_t members_settle_away(struct room *room)
 
 int64_t members_settle_lost(struct room *room)
 {
-    if (!room->has_lost)
+    if (!room->members.has_lost)
         return INT64_MAX;
-    for (int i = 0; i < room->n_members; i++) /* saying who is there may lose others */
-        if (room->members[i]->is_lost) {
-            member_disconnected(room, room->members[i], room->now_us);
+    for (int i = 0; i < room->members.n; i++) /* saying who is there may lose others */
+        if (room->members.list[i]->is_lost) {
+            member_disconnected(room, room->members.list[i], room->now_us);
             i = -1;
         }
-    room->has_lost = false;
+    room->members.has_lost = false;
     return INT64_MAX;
 }
 
@@ -108,8 +108,8 @@ void member_disconnected(struct room *room, struct member *member, int64_t heard
 
 static bool name_is_taken(const struct room *room, const char *name)
 {
-    for (int i = 0; i < room->n_members; i++)
-        if (strcmp(room->members[i]->name, name) == 0)
+    for (int i = 0; i < room->members.n; i++)
+        if (strcmp(room->members.list[i]->name, name) == 0)
             return true;
     return false;
 }
@@ -118,16 +118,16 @@ static bool name_is_taken(const struct room *room, const char *name)
  * none. */
 static bool make_place(struct room *room)
 {
-    if (room->n_members < room->max_members)
+    if (room->members.n < room->members.max)
         return true;
     int longest = -1;
-    for (int i = 0; i < room->n_members; i++)
-        if (!room->members[i]->connection && !member_presents(room, room->members[i]) &&
-            (longest < 0 || room->members[i]->away_us < room->members[longest]->away_us))
+    for (int i = 0; i < room->members.n; i++)
+        if (!room->members.list[i]->connection && !member_presents(room, room->members.list[i]) &&
+            (longest < 0 || room->members.list[i]->away_us < room->members.list[longest]->away_us))
             longest = i;
     if (longest < 0)
         return false;
-    known_add_member(room, room->members[longest]);
+    known_add_member(room, room->members.list[longest]);
     member_free(room, longest);
     return true;
 }
@@ -135,7 +135,7 @@ static bool make_place(struct room *room)
 static struct member *member_create(struct room *room, const char *name, enum wire_member_role role)
 {
     struct member *member = mem_new(sizeof *member);
-    member->number = room->n_named = marks_next_number(room);
+    member->number = room->members.n_named = marks_next_number(room);
     (void)snprintf(member->id, sizeof member->id, "m%u", member->number);
     (void)snprintf(member->name, sizeof member->name, "%s", name);
     for (int number = 1; member->name[0] == 0 || (name[0] == 0 && name_is_taken(room, member->name)); number++)
@@ -144,7 +144,7 @@ static struct member *member_create(struct room *room, const char *name, enum wi
     member->role = role;
     member->color = color_of_newcomer(room);
     secret_hash(member->secret, member->secret_hash);
-    room->members[room->n_members++] = member;
+    room->members.list[room->members.n++] = member;
     return member;
 }
 
@@ -192,7 +192,7 @@ static void welcome_member(struct room *room, struct member *member)
     welcome->plan = room->plan;
     welcome->scene = room->scene;
     welcome->revision = room->revision;
-    (void)snprintf(welcome->gl, sizeof welcome->gl, "%s", room->gl);
+    (void)snprintf(welcome->gl, sizeof welcome->gl, "%s", room->renderer.gl);
     cJSON *items = items_rows(room);
     welcome->items = items;
     send_to_member(room, member, &message);
@@ -206,10 +206,10 @@ struct member *member_hello(struct room *room, void *connection, const struct me
         return NULL;
     }
     struct member *member = NULL;
-    for (int i = 0; i < room->n_members && hello->member[0]; i++)
-        if (strcmp(room->members[i]->id, hello->member) == 0 &&
-            secret_matches(hello->secret, room->members[i]->secret_hash))
-            member = room->members[i];
+    for (int i = 0; i < room->members.n && hello->member[0]; i++)
+        if (strcmp(room->members.list[i]->id, hello->member) == 0 &&
+            secret_matches(hello->secret, room->members.list[i]->secret_hash))
+            member = room->members.list[i];
     enum wire_member_role role = role_of_newcomer(room);
     struct link *link = NULL;
     const char *refusal = NULL;
@@ -235,7 +235,7 @@ struct member *member_hello(struct room *room, void *connection, const struct me
         member = known_back(room, hello->member, hello->secret);
         as = member ? "back" : as;
         if (member)
-            room->members[room->n_members++] = member;
+            room->members.list[room->members.n++] = member;
         else
             member = member_create(room, hello->name, link ? link->role : role);
         (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));

@@ -12,9 +12,9 @@ static const int64_t kept_us = POINTER_KEPT_MS * INT64_C(1000);
 static int64_t every_us(const struct room *room)
 {
     int n = 0;
-    for (int i = 0; i < room->n_members; i++)
-        n += room->members[i]->pointing.is_on;
-    int64_t load = (int64_t)n * room->n_members;
+    for (int i = 0; i < room->members.n; i++)
+        n += room->members.list[i]->pointing.is_on;
+    int64_t load = (int64_t)n * room->members.n;
     return POINTER_EVERY_MS * INT64_C(1000) * (load > POINTER_FULL_RATE ? load : POINTER_FULL_RATE) / POINTER_FULL_RATE;
 }
 
@@ -71,8 +71,8 @@ void pointer_end(struct room *room, struct member *member)
 
 void pointers_show(struct room *room, struct member *member)
 {
-    for (int i = 0; i < room->n_members; i++) {
-        const struct member *other = room->members[i];
+    for (int i = 0; i < room->members.n; i++) {
+        const struct member *other = room->members.list[i];
         struct message message;
         if (other == member || !other->pointing.is_on)
             continue;
@@ -85,8 +85,8 @@ int64_t pointers_settle(struct room *room)
 {
     const int64_t pause_us = every_us(room);
     int64_t again_us = INT64_MAX;
-    for (int i = 0; i < room->n_members; i++) {
-        struct member *member = room->members[i];
+    for (int i = 0; i < room->members.n; i++) {
+        struct member *member = room->members.list[i];
         struct pointing *pointing = &member->pointing;
         if (pointing->is_on && room->now_us >= pointing->moved_us + kept_us)
             pointer_end(room, member);

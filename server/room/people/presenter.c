@@ -70,9 +70,9 @@ bool presenter_show_everyone(struct room *room, struct member *member, const str
     if (!share(room, member, (uint32_t)message->show_everyone.input, problem))
         return false;
     bool is_done = true;
-    for (int i = 0; i < room->n_members; i++)
-        if (room->members[i] != member)
-            is_done = views_follow(room, room->members[i], 0, problem) && is_done;
+    for (int i = 0; i < room->members.n; i++)
+        if (room->members.list[i] != member)
+            is_done = views_follow(room, room->members.list[i], 0, problem) && is_done;
     send_members(room);
     return is_done;
 }
@@ -80,12 +80,12 @@ bool presenter_show_everyone(struct room *room, struct member *member, const str
 static struct member *only_connected(const struct room *room)
 {
     struct member *only = NULL;
-    for (int i = 0; i < room->n_members; i++) {
-        if (!room->members[i]->connection)
+    for (int i = 0; i < room->members.n; i++) {
+        if (!room->members.list[i]->connection)
             continue;
         if (only)
             return NULL;
-        only = room->members[i];
+        only = room->members.list[i];
     }
     return only && role_has_right(only->role, WIRE_RIGHT_SCENE) ? only : NULL;
 }

@@ -8,20 +8,20 @@
 
 struct member *member_of_connection(const struct room *room, const void *connection)
 {
-    for (int i = 0; i < room->n_members; i++)
-        if (connection && room->members[i]->connection == connection)
-            return room->members[i];
+    for (int i = 0; i < room->members.n; i++)
+        if (connection && room->members.list[i]->connection == connection)
+            return room->members.list[i];
     return NULL;
 }
 
 struct member *member_who_speaks(struct room *room, const void *connection)
 {
-    for (int i = 0, at = room->spoke; connection && i < room->n_members; i++) {
-        at = at + 1 < room->n_members ? at + 1 : 0;
-        if (room->members[at]->connection != connection)
+    for (int i = 0, at = room->members.spoke; connection && i < room->members.n; i++) {
+        at = at + 1 < room->members.n ? at + 1 : 0;
+        if (room->members.list[at]->connection != connection)
             continue;
-        room->spoke = at;
-        return room->members[at];
+        room->members.spoke = at;
+        return room->members.list[at];
     }
     return NULL;
 }
@@ -57,8 +57,8 @@ static bool is_blank(const char *text)
 static int n_tabs(const struct room *room, const struct member *member)
 {
     int n = 1;
-    for (int i = 0; i < room->n_members && member->person[0]; i++) {
-        const struct member *other = room->members[i];
+    for (int i = 0; i < room->members.n && member->person[0]; i++) {
+        const struct member *other = room->members.list[i];
         n += other != member && other->connection && strcmp(other->person, member->person) == 0;
     }
     return n;
@@ -67,8 +67,8 @@ static int n_tabs(const struct room *room, const struct member *member)
 cJSON *room_members(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
-    for (int i = 0; i < room->n_members; i++) {
-        const struct member *member = room->members[i];
+    for (int i = 0; i < room->members.n; i++) {
+        const struct member *member = room->members.list[i];
         cJSON *item = cJSON_CreateObject();
         char color[8];
         cJSON_AddStringToObject(item, "id", member->id);
@@ -89,7 +89,7 @@ cJSON *room_members(const struct room *room)
 size_t room_n_connected(const struct room *room)
 {
     size_t n = 0;
-    for (int i = 0; i < room->n_members; i++)
-        n += room->members[i]->connection != NULL;
+    for (int i = 0; i < room->members.n; i++)
+        n += room->members.list[i]->connection != NULL;
     return n;
 }

@@ -94,9 +94,9 @@ void presence_left(struct room *room, const struct member *member)
 
 static bool is_here(const struct room *room, const struct presence *stay)
 {
-    for (int i = 0; i < room->n_members; i++)
-        if (strcmp(room->members[i]->id, stay->member) == 0)
-            return room->members[i]->connection && !stay->left_ms;
+    for (int i = 0; i < room->members.n; i++)
+        if (strcmp(room->members.list[i]->id, stay->member) == 0)
+            return room->members.list[i]->connection && !stay->left_ms;
     return false;
 }
 

@@ -31,8 +31,8 @@ bool role_check(enum wire_member_role role, enum wire_right right, struct proble
 int color_of_newcomer(const struct room *room)
 {
     int n_of[ROLES_N_COLORS] = { 0 }, best = 0;
-    for (int i = 0; i < room->n_members; i++)
-        n_of[room->members[i]->color]++;
+    for (int i = 0; i < room->members.n; i++)
+        n_of[room->members.list[i]->color]++;
     for (int i = 1; i < ROLES_N_COLORS; i++)
         if (n_of[i] < n_of[best])
             best = i;

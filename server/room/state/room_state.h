@@ -132,7 +132,42 @@ static inline bool view_is_watch(const struct member_view *view)
     return view->member && view == &view->member->views[ROOM_WATCH - 1];
 }
 
-struct plan_files {
+struct room_renderer { /* as members are told */
+    enum wire_renderer_state state;
+    char phase[160];
+    double percent;
+    struct problem problem; /* when failed */
+    char gl[200];
+    bool is_software;
+};
+
+struct members {
+    struct member *list[ROOM_MAX_MEMBERS];
+    int n, max;
+    int spoke;               /* index of the one that member_who_speaks found last */
+    bool has_lost;           /* some is_lost */
+    uint32_t n_named;        /* members ever made, for ids */
+    int64_t sent_us, due_us; /* the list, to all; due: 0: what was sent is true */
+};
+
+struct streams {
+    struct stream *first;
+    struct stream
+        *main; /* of them: what watch and displays show; of the last presenter when there is none; NULL: none */
+    uint64_t n_requests;
+};
+
+struct beginning { /* the bookmark that the room was made from; all NULL: none */
+    cJSON *bookmark, *views;
+    cJSON *opened; /* without the scene; NULL before the plan is ready */
+};
+
+struct scene_call {          /* while a call over HTTP changes the scene */
+    const struct member *by; /* NULL: nobody of the room */
+    const char *address;     /* NULL: no call */
+};
+
+struct plan_files {              /* of the room's plan */
     char revision[65];           /* "": not known */
     int64_t changed_ms, read_ms; /* room_files */
 };
@@ -155,36 +190,24 @@ struct saved;
 struct room {
     char id[64], plan_id[64];
     struct room_callbacks callbacks;
-    int max_members;
     int64_t now_us; /* the time last passed in: room_enter */
     int64_t due_us; /* when room_settle is due */
     int64_t created_at_s;
 
-    enum wire_renderer_state state;
-    char phase[160];
-    double percent;
-    struct problem problem;           /* when failed */
-    cJSON *plan, *defaults, *scene;   /* NULL before the plan is ready */
-    cJSON *begins_with, *first_views; /* the bookmark that the room was made from, and its views; NULL: none */
-    cJSON *begun;                     /* what was opened of it, without the scene; NULL before the plan is ready */
-    cJSON *restored;                  /* the scene as it was kept, until the plan is ready; else NULL */
+    struct room_renderer renderer;
+    struct plan_files files;
+    cJSON *plan, *defaults, *scene; /* NULL before the plan is ready */
+    struct beginning beginning;
+    cJSON *restored; /* the scene as it was kept, until the plan is ready; else NULL */
     uint32_t revision;
     bool is_changed; /* the scene was changed since the room was made */
-    char gl[200];
-    bool is_software;
 
-    struct member *members[ROOM_MAX_MEMBERS];
-    int n_members;
-    int spoke;                /* index of the one that member_who_speaks found last */
-    bool has_lost;            /* some is_lost */
+    struct members members;
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
     char end_reason[200];     /* "": the room is closed */
-    struct plan_files files;
     struct presences *presences; /* state/presence.h */
-    const struct member *caller; /* while a call over HTTP changes the scene: who makes it; NULL: nobody of the room */
-    const char *caller_address;  /* and from where; NULL: no call */
-    uint32_t n_named;            /* members ever made, for ids */
-    struct items *items;         /* items/item_list.h */
+    struct scene_call call;
+    struct items *items;             /* items/item_list.h */
     struct acceptances *acceptances; /* items/acceptance.h */
     struct look *look;               /* people/look.h */
     struct audit *audit;             /* out/audit.h */
@@ -197,10 +220,6 @@ struct room {
     struct recorder *recorder;       /* NULL: no recording runs */
     struct replay *replay;           /* NULL: the room plays none */
 
-    struct stream *streams;
-    struct stream
-        *main; /* of them: what watch and displays show; of the last presenter when there is none; NULL: none */
-    int64_t members_sent_us, members_due_us; /* due: 0: what was sent is true */
-    uint64_t n_requests;
+    struct streams streams;
     struct room_counters counters;
 };

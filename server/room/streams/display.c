@@ -82,7 +82,7 @@ static void tell_late(const struct stream *stream, bool is_late)
 int64_t displays_settle(struct room *room)
 {
     int64_t due_us = INT64_MAX;
-    for (const struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (const struct stream *stream = room->streams.first; stream; stream = stream->next) {
         if (!stream->displays)
             continue;
         int64_t late_us = stream->behind_us ? stream->behind_us + DISPLAY_LATE_US : INT64_MAX;

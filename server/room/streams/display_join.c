@@ -24,7 +24,7 @@ static struct stream *presented(const struct room *room, int kind)
 static struct stream *shared_of_kind(const struct room *room, int kind)
 {
     struct stream *first = NULL;
-    for (struct stream *stream = room->streams; stream; stream = stream->next)
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next)
         if (is_of_kind(stream, kind) &&
             (!first || json_number(stream->view, "number", 1) < json_number(first->view, "number", 1)))
             first = stream;
@@ -47,17 +47,17 @@ static void show(struct room *room, struct room_display *display, struct stream 
 
 int64_t displays_follow(struct room *room)
 {
-    struct stream *stream = room->streams;
-    while (room->main && stream) {
-        struct room_display **at = stream == room->main ? NULL : find_main(stream), *display = at ? *at : NULL;
+    struct stream *stream = room->streams.first;
+    while (room->streams.main && stream) {
+        struct room_display **at = stream == room->streams.main ? NULL : find_main(stream), *display = at ? *at : NULL;
         if (!display) {
             stream = stream->next;
             continue;
         }
         *at = display->next;
-        show(room, display, room->main);
+        show(room, display, room->streams.main);
         stream_left(room, stream);
-        stream = room->streams; /* that one may be gone */
+        stream = room->streams.first; /* that one may be gone */
     }
     return INT64_MAX;
 }
@@ -86,8 +86,8 @@ static struct stream *make_shared(struct room *room, int kind, struct problem *p
 static struct stream *choose(struct room *room, const char *word, struct problem *problem)
 {
     int kind = SCENE_KIND_3D;
-    if (!word && room->main)
-        return room->main;
+    if (!word && room->streams.main)
+        return room->streams.main;
     for (size_t i = 0; word && i < scene_kind_words.n; i++)
         if (strcmp(word, scene_kind_words.words[i]) == 0) {
             kind = (int)i;
@@ -107,7 +107,7 @@ struct room_display *display_add(struct room *room, const char *view, const stru
                                  struct problem *problem)
 {
     int n = 0;
-    for (const struct stream *stream = room->streams; stream; stream = stream->next)
+    for (const struct stream *stream = room->streams.first; stream; stream = stream->next)
         for (const struct room_display *display = stream->displays; display; display = display->next)
             n++;
     if (n >= ROOM_MAX_DISPLAYS) {

@@ -8,7 +8,7 @@
 char *streams_write(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
-    for (const struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (const struct stream *stream = room->streams.first; stream; stream = stream->next) {
         if (!stream->is_shared || stream->is_of_display)
             continue;
         cJSON *item = cJSON_CreateObject();

@@ -38,8 +38,8 @@ static enum wire_member_lag lag_of(const struct room *room, const struct member 
 int64_t lags_settle(struct room *room, bool *has_changed)
 {
     int64_t next_us = INT64_MAX;
-    for (int i = 0; i < room->n_members; i++) {
-        struct member *member = room->members[i];
+    for (int i = 0; i < room->members.n; i++) {
+        struct member *member = room->members.list[i];
         enum wire_member_lag lag = lag_of(room, member, &next_us);
         if (lag != WIRE_MEMBER_LAG_NONE) {
             member->lag_until_us = room->now_us + LAG_KEPT_US;

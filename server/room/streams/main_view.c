@@ -44,7 +44,7 @@ static struct stream *shown_by(const struct member *presenter)
 static struct stream *any_shared(const struct room *room)
 {
     struct stream *best = NULL;
-    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next) {
         if (!stream->is_shared || stream->is_of_display)
             continue;
         const bool is_space = stream->kind == SCENE_KIND_3D, best_is = best && best->kind == SCENE_KIND_3D;
@@ -59,8 +59,8 @@ int64_t main_view_settle(struct room *room)
 {
     struct stream *shown = room->presenter ? shown_by(room->presenter) : NULL;
     if (shown)
-        room->main = shown;
-    if (!room->main)
-        room->main = any_shared(room);
+        room->streams.main = shown;
+    if (!room->streams.main)
+        room->streams.main = any_shared(room);
     return INT64_MAX;
 }

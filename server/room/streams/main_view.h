@@ -9,6 +9,6 @@ void main_view_acted(struct member *member, int number);
 void main_view_patched(struct member *member, int number, const cJSON *patch);
 /* The member reports that they work in the view. From then on main_view_acted and main_view_patched change nothing. */
 void main_view_active(struct member *member, int number);
-/* Chooses room->main: the presenter's view in which they acted last, as long as it is open, else the first open one.
- * While the presenter is away, or there is none, it stays what it was. Returns INT64_MAX. */
+/* Chooses room->streams.main: the presenter's view in which they acted last, as long as it is open, else the first open
+ * one. While the presenter is away, or there is none, it stays what it was. Returns INT64_MAX. */
 int64_t main_view_settle(struct room *room);

@@ -24,7 +24,7 @@ static const int64_t acted_for_us = 500000;
 
 struct stream *stream_shared(const struct room *room, const cJSON *view)
 {
-    for (struct stream *stream = room->streams; stream; stream = stream->next)
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next)
         if (stream->is_shared && views_are_alike(stream->view, view))
             return stream;
     return NULL;
@@ -32,7 +32,7 @@ struct stream *stream_shared(const struct room *room, const cJSON *view)
 
 static void start_pace(struct room *room, struct stream *stream)
 {
-    pace_start(&stream->pace, room->is_software);
+    pace_start(&stream->pace, room->renderer.is_software);
 }
 
 static void stream_changed(struct room *room, struct stream *stream)
@@ -64,7 +64,7 @@ void stream_again(struct room *room, struct stream *stream)
 
 static void destroy_unseen_obliques(struct room *room)
 {
-    for (struct stream *stream = room->streams, *next; stream; stream = next) {
+    for (struct stream *stream = room->streams.first, *next; stream; stream = next) {
         next = stream->next;
         if (stream->is_shared && stream->kind == SCENE_KIND_OBLIQUE && !stream->viewers && !stream->displays)
             stream_destroy(room, stream);
@@ -80,8 +80,8 @@ struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
     stream->kind = view_kind(view);
     stream->is_shared = is_shared;
     stream->scene_is_stale = true;
-    stream->next = room->streams;
-    room->streams = stream;
+    stream->next = room->streams.first;
+    room->streams.first = stream;
     start_pace(room, stream);
     stream_reached(room, stream);
     if (is_shared)
@@ -150,12 +150,12 @@ void stream_destroy(struct room *room, struct stream *stream)
 {
     displays_end(stream);
     (void)forget_requests(room, stream);
-    struct stream **at = &room->streams;
+    struct stream **at = &room->streams.first;
     while (*at != stream)
         at = &(*at)->next;
     *at = stream->next;
-    if (room->main == stream)
-        room->main = NULL;
+    if (room->streams.main == stream)
+        room->streams.main = NULL;
     frame_unref(stream->latest);
     send_view_forget(stream);
     cJSON_Delete(stream->view);
@@ -186,7 +186,7 @@ bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
 
 void streams_changed(struct room *room, bool scene_is_new)
 {
-    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next) {
         stream->scene_is_stale = stream->scene_is_stale || scene_is_new;
         stream_reached(room, stream);
     }
@@ -194,7 +194,7 @@ void streams_changed(struct room *room, bool scene_is_new)
 
 void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *patch)
 {
-    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next) {
         stream->is_reached =
             view_has_override(stream->view) || change_reaches(stream->view, before, room->scene, patch);
         stream->scene_is_stale = true;
@@ -205,7 +205,7 @@ void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *
 
 void streams_forget_requests(struct room *room)
 {
-    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next) {
         memset(stream->requests, 0, sizeof stream->requests);
         stream->requested_version = stream->still_requested_version = 0;
         stream->refused_version = 0;
@@ -229,7 +229,7 @@ static void report_removed_override(struct room *room, const struct stream *stre
 
 void streams_remove_bad_overrides(struct room *room)
 {
-    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next) {
         struct problem problem = { 0 };
         if (override_is_valid(room, stream->view, &problem) || problem.type == PROBLEM_INTERNAL)
             continue; /* without memory nothing is known of it; a request that finds it bad says so */
@@ -243,7 +243,7 @@ void streams_remove_bad_overrides(struct room *room)
 
 void streams_restart_pace(struct room *room)
 {
-    for (struct stream *stream = room->streams; stream; stream = stream->next)
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next)
         start_pace(room, stream);
 }
 
@@ -289,7 +289,7 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
         return false;
     }
     struct request *request = stream->requests[0].number ? &stream->requests[1] : &stream->requests[0];
-    *request = (struct request){ .number = ++room->n_requests,
+    *request = (struct request){ .number = ++room->streams.n_requests,
                                  .version = stream->version,
                                  .requested_us = room->now_us,
                                  .is_still = is_still,
@@ -357,9 +357,9 @@ static int64_t request_due(struct room *room, struct stream *stream)
 int64_t streams_request_due(struct room *room)
 {
     int64_t again_us = INT64_MAX;
-    if (room->state != WIRE_RENDERER_STATE_READY || !room->scene)
+    if (room->renderer.state != WIRE_RENDERER_STATE_READY || !room->scene)
         return again_us;
-    for (struct stream *stream = room->streams; stream; stream = stream->next) {
+    for (struct stream *stream = room->streams.first; stream; stream = stream->next) {
         int64_t us = request_due(room, stream);
         again_us = us < again_us ? us : again_us;
     }
@@ -484,7 +484,7 @@ void stream_acknowledged(struct room *room, struct member_view *view, uint32_t s
 
 static struct stream *remove_request(struct room *room, uint64_t number, struct request *request)
 {
-    for (struct stream *stream = room->streams; stream && number; stream = stream->next)
+    for (struct stream *stream = room->streams.first; stream && number; stream = stream->next)
         for (int i = 0; i < 2; i++)
             if (stream->requests[i].number == number) {
                 *request = stream->requests[i];

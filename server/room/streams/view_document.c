@@ -38,7 +38,7 @@ static bool has_camera(const cJSON *document)
 cJSON *stream_first_view(const struct room *room, cJSON *document)
 {
     const cJSON *entry;
-    cJSON_ArrayForEach(entry, room->first_views)
+    cJSON_ArrayForEach(entry, room->beginning.views)
     {
         const cJSON *saved = cJSON_GetObjectItemCaseSensitive(entry, "document");
         if (!views_are_alike(saved, document) || has_camera(document))

@@ -26,7 +26,7 @@ bool watch_set(struct room *room, struct member *member, const struct message *m
 static struct stream *to_show(const struct room *room, const struct member *member)
 {
     const bool is_shown = member->watch.is_wanted && member->connection && !member_presents(room, member);
-    return is_shown && (room->presenter || room->replay) ? room->main : NULL;
+    return is_shown && (room->presenter || room->replay) ? room->streams.main : NULL;
 }
 
 static void tell(struct room *room, struct member *member)
@@ -55,8 +55,8 @@ static void show(struct room *room, struct member *member, struct stream *stream
 
 int64_t watches_follow(struct room *room)
 {
-    for (int i = 0; i < room->n_members; i++) {
-        struct member *member = room->members[i];
+    for (int i = 0; i < room->members.n; i++) {
+        struct member *member = room->members.list[i];
         struct stream *stream = to_show(room, member);
         if (view_of(member)->stream != stream)
             show(room, member, stream);
@@ -101,8 +101,8 @@ int64_t watch_settle(struct room *room, struct member *member)
 int64_t watches_settle(struct room *room)
 {
     int64_t again_us = INT64_MAX;
-    for (int i = 0; i < room->n_members; i++) {
-        const int64_t member_us = watch_settle(room, room->members[i]);
+    for (int i = 0; i < room->members.n; i++) {
+        const int64_t member_us = watch_settle(room, room->members.list[i]);
         again_us = member_us < again_us ? member_us : again_us;
     }
     return again_us;

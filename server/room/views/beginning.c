@@ -50,39 +50,41 @@ bool room_begin_with(struct room *room, const cJSON *body, struct problem *probl
         return json_no_memory(problem, "a bookmark");
     }
     beginning_free(room);
-    room->begins_with = copy;
-    room->first_views = views;
+    room->beginning.bookmark = copy;
+    room->beginning.views = views;
     return true;
 }
 
 void beginning_free(struct room *room)
 {
-    cJSON_Delete(room->begins_with);
-    cJSON_Delete(room->first_views);
-    cJSON_Delete(room->begun);
-    room->begins_with = room->first_views = room->begun = NULL;
+    cJSON_Delete(room->beginning.bookmark);
+    cJSON_Delete(room->beginning.views);
+    cJSON_Delete(room->beginning.opened);
+    room->beginning.bookmark = room->beginning.views = room->beginning.opened = NULL;
 }
 
 cJSON *beginning_scene(struct room *room, const cJSON *plan, const cJSON *defaults)
 {
-    if (!room->begins_with)
+    if (!room->beginning.bookmark)
         return cJSON_Duplicate(defaults, true);
-    cJSON *begun = bookmark_open(room->begins_with, plan, defaults, NULL);
+    cJSON *begun = bookmark_open(room->beginning.bookmark, plan, defaults, NULL);
     if (!begun)
         return NULL;
-    cJSON_Delete(room->begun);
-    room->begun = begun;
+    cJSON_Delete(room->beginning.opened);
+    room->beginning.opened = begun;
     return cJSON_DetachItemFromObjectCaseSensitive(begun, "scene");
 }
 
 cJSON *room_beginning(const struct room *room)
 {
     static const char *const shown[] = { "name", "layout", "views", "report", "n_report" };
-    if (!room->begins_with)
+    if (!room->beginning.bookmark)
         return NULL;
     cJSON *answer = cJSON_CreateObject();
     for (size_t i = 0; i < sizeof shown / sizeof shown[0]; i++) {
-        const cJSON *item = cJSON_GetObjectItemCaseSensitive(room->begun ? room->begun : room->begins_with, shown[i]);
+        const cJSON *item =
+            cJSON_GetObjectItemCaseSensitive(room->beginning.opened ? room->beginning.opened : room->beginning.bookmark,
+                                             shown[i]);
         if (item)
             json_add(answer, shown[i], cJSON_Duplicate(item, true));
     }

@@ -65,9 +65,9 @@ static uint32_t number_of(const char *id)
 uint32_t marks_next_number(const struct room *room)
 {
     const cJSON *scene = room->scene ? room->scene : room->restored, *mark;
-    uint32_t greatest = room->n_named;
+    uint32_t greatest = room->members.n_named;
     if (!scene)
-        scene = cJSON_GetObjectItemCaseSensitive(room->begins_with, "scene");
+        scene = cJSON_GetObjectItemCaseSensitive(room->beginning.bookmark, "scene");
     for (int i = 0; i < N_KINDS; i++)
         cJSON_ArrayForEach(mark, cJSON_GetObjectItemCaseSensitive(scene, kinds[i]))
         {

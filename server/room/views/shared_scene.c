@@ -42,7 +42,7 @@ static bool apply(struct room *room, const cJSON *patch, struct member *by, uint
         room->is_changed = true;
         room_event(room, ROOM_SCENE, NULL);
         if (is_audited)
-            audit_scene(room, before, by ? by : room->caller);
+            audit_scene(room, before, by ? by : room->call.by);
         streams_scene_changed(room, before, patch);
         room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
     }
@@ -89,7 +89,7 @@ bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by,
             problem->retry_after_ms = 500;
         return false;
     }
-    const struct member *author = by ? by : room->caller;
+    const struct member *author = by ? by : room->call.by;
     cJSON *authored = author ? marks_authored(room, author, patch) : NULL;
     if (author && !authored)
         return json_no_memory(problem, "a scene");

@@ -43,9 +43,9 @@ static void differs(const char *format, ...)
 
 static struct member *member_of(int who)
 {
-    for (int m = 0; m < fake.room->n_members; m++)
-        if (meeting.seats[who].is_member && strcmp(fake.room->members[m]->id, people[who].id) == 0)
-            return fake.room->members[m];
+    for (int m = 0; m < fake.room->members.n; m++)
+        if (meeting.seats[who].is_member && strcmp(fake.room->members.list[m]->id, people[who].id) == 0)
+            return fake.room->members.list[m];
     return NULL;
 }
 
@@ -132,8 +132,8 @@ static void check_members_heard(int listener)
                             json_flag(item, "connected", false));
             }
     }
-    if (n_presenting > 1 || n != fake.room->n_members)
-        differs("%d is told of %d members of %d, %d present", listener, n, fake.room->n_members, n_presenting);
+    if (n_presenting > 1 || n != fake.room->members.n)
+        differs("%d is told of %d members of %d, %d present", listener, n, fake.room->members.n, n_presenting);
     cJSON_Delete(said);
 }
 
@@ -488,9 +488,9 @@ static void call_back(int who)
     expected = meeting.presenter == who ? NULL : "/problems/not-presenter";
     if (!expected) {
         meeting_share(&meeting, who);
-        for (int m = 0; m < fake.room->n_members; m++) /* of several who show a new kind, the room's first makes it */
+        for (int m = 0; m < fake.room->members.n; m++) /* of several who show a new kind, the room's first makes it */
             for (int i = 0; i < N_PEOPLE; i++)
-                if (i != who && meeting.seats[i].is_connected && member_of(i) == fake.room->members[m])
+                if (i != who && meeting.seats[i].is_connected && member_of(i) == fake.room->members.list[m])
                     meeting_follow(&meeting, i);
     }
     say(who, "{\"type\":\"show.everyone\"}");

@@ -13,14 +13,14 @@ static void open_oblique(struct fake_page *page, int view, const char *plane, bo
 /* The stream that a view of the n-th member shows. */
 static const struct stream *stream_of(int member, int view)
 {
-    assert_in_range(member, 0, fake.room->n_members - 1);
-    return fake.room->members[member]->views[view - 1].stream;
+    assert_in_range(member, 0, fake.room->members.n - 1);
+    return fake.room->members.list[member]->views[view - 1].stream;
 }
 
 static size_t n_shared_obliques(void)
 {
     size_t n = 0;
-    for (const struct stream *stream = fake.room->streams; stream; stream = stream->next)
+    for (const struct stream *stream = fake.room->streams.first; stream; stream = stream->next)
         n += stream->is_shared && stream->kind == SCENE_KIND_OBLIQUE;
     return n;
 }

@@ -194,7 +194,7 @@ static void an_observer_does_not_point_and_does_not_ask_but_comes(void **state)
 {
     (void)state;
     meet();
-    fake.room->members[1]->role = WIRE_MEMBER_ROLE_OBSERVER;
+    fake.room->members.list[1]->role = WIRE_MEMBER_ROLE_OBSERVER;
     point(&ben, 1);
     assert_string_equal(refused(&ben), "403 ");
     ask(&ben, 1);
