@@ -36,13 +36,13 @@ const char *room_caller_name(const struct room *room, const char *member)
 const cJSON *room_scene(const struct room *room, uint32_t *revision)
 {
     if (revision)
-        *revision = room->revision;
-    return room->scene;
+        *revision = room->shared.revision;
+    return room->shared.scene;
 }
 
 cJSON *room_scene_for_view(const struct room *room, const cJSON *view, struct problem *problem)
 {
-    return scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
+    return scene_document_for_view(room->shared.plan, room->shared.defaults, room->shared.scene, view, problem);
 }
 
 bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller, const char *address, int64_t now_us,
@@ -71,7 +71,7 @@ void room_audit_call(struct room *room, const char *member, const char *address,
                                    .detail = detail,
                                    .is_refused = is_refused,
                                    .before = -1,
-                                   .after = room->revision };
+                                   .after = room->shared.revision };
     room_enter(room, now_us);
     audit_tell(room, &act);
     room_leave(room);
@@ -115,8 +115,8 @@ static cJSON *make_document(const char *id, const char *plan_id, uint32_t revisi
 
 cJSON *room_document(const struct room *room)
 {
-    return make_document(room->id, room->plan_id, room->revision, room->renderer.state, room->created_at_s, false,
-                         room_members(room));
+    return make_document(room->id, room->plan_id, room->shared.revision, room->renderer.state, room->created_at_s,
+                         false, room_members(room));
 }
 
 cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,

@@ -31,9 +31,9 @@ static bool write_members(const struct room *room, struct store_room *kept)
 
 bool room_keep(const struct room *room, unsigned parts, struct store_room *kept)
 {
-    const cJSON *scene = room->scene ? room->scene : room->restored;
+    const cJSON *scene = room->shared.scene ? room->shared.scene : room->shared.restored;
     *kept = (struct store_room){ .created_ms = room->created_at_s * 1000,
-                                 .revision = room->revision,
+                                 .revision = room->shared.revision,
                                  .n_named = room->members.n_named,
                                  .has_links = links_were_made(room) };
     (void)snprintf(kept->id, sizeof kept->id, "%s", room->id);
@@ -100,13 +100,13 @@ void room_restore(struct room *room, const struct store_room *kept, int64_t now_
 {
     room_enter(room, now_us);
     room->created_at_s = kept->created_ms / 1000;
-    room->revision = kept->revision;
+    room->shared.revision = kept->revision;
     room->members.n_named =
         kept->n_named > room->members.n_named ? kept->n_named : room->members.n_named; /* items were restored before */
-    room->is_changed = true;
+    room->shared.is_changed = true;
     cJSON *scene = read_json(room, kept->scene, "the scene");
     if (cJSON_IsObject(scene))
-        room->restored = scene;
+        room->shared.restored = scene;
     else
         cJSON_Delete(scene);
     read_members(room, kept);

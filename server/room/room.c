@@ -74,9 +74,9 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
 
 static void forget_plan(struct room *room)
 {
-    cJSON_Delete(room->plan);
-    cJSON_Delete(room->defaults);
-    room->plan = room->defaults = NULL;
+    cJSON_Delete(room->shared.plan);
+    cJSON_Delete(room->shared.defaults);
+    room->shared.plan = room->shared.defaults = NULL;
 }
 
 void room_destroy(struct room *room)
@@ -101,8 +101,8 @@ void room_destroy(struct room *room)
     look_free(room);
     links_free(room);
     control_free(room);
-    cJSON_Delete(room->scene);
-    cJSON_Delete(room->restored);
+    cJSON_Delete(room->shared.scene);
+    cJSON_Delete(room->shared.restored);
     known_free(room);
     saved_free(room);
     presence_free(room);
@@ -127,7 +127,7 @@ void room_end_because(struct room *room, const char *reason)
 
 bool room_was_used(const struct room *room)
 {
-    return !room->replay && (room->members.n_named > 0 || links_were_made(room) || room->is_changed);
+    return !room->replay && (room->members.n_named > 0 || links_were_made(room) || room->shared.is_changed);
 }
 
 uint32_t room_n_named(const struct room *room)
@@ -161,7 +161,7 @@ static bool replace_plan(struct room *room, const cJSON *plan_document, const cJ
 {
     cJSON *plan = cJSON_Duplicate(plan_document, true), *defaults = cJSON_Duplicate(default_scene, true);
     cJSON *scene = NULL;
-    const cJSON *before = room->scene ? room->scene : room->restored;
+    const cJSON *before = room->shared.scene ? room->shared.scene : room->shared.restored;
     if (plan && defaults)
         scene = before ? scene_document_renew(plan, defaults, before) : beginning_scene(room, plan, defaults);
     if (!scene) {
@@ -170,16 +170,16 @@ static bool replace_plan(struct room *room, const cJSON *plan_document, const cJ
         return false;
     }
     forget_plan(room);
-    room->plan = plan;
-    room->defaults = defaults;
+    room->shared.plan = plan;
+    room->shared.defaults = defaults;
     if (!before || !json_equal(scene, before)) {
-        room->revision++;
+        room->shared.revision++;
         room_event(room, ROOM_SCENE, NULL);
     }
-    cJSON_Delete(room->scene);
-    cJSON_Delete(room->restored);
-    room->scene = scene;
-    room->restored = NULL;
+    cJSON_Delete(room->shared.scene);
+    cJSON_Delete(room->shared.restored);
+    room->shared.scene = scene;
+    room->shared.restored = NULL;
     room_event(room, ROOM_PLAN, NULL);
     return true;
 }
@@ -215,7 +215,7 @@ bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
     send_plan(room);
     streams_remove_bad_overrides(room);
     send_renderer_state(room, NULL);
-    room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+    room->callbacks.scene_changed(room->callbacks.context, room, room->shared.scene, room->shared.revision);
     replay_plan_ready(room);
     room_leave(room);
     return true;

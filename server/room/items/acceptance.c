@@ -80,11 +80,11 @@ cJSON *acceptance_read(const struct room *room, const cJSON *body, const struct 
     static const char *const names[] = { "thing", "with", "reason", "words", "fact", "plan_revision", "role", NULL };
     (void)before; /* never changed */
     if (!body_names_are(body, names, "/body", problem) ||
-        !acceptance_check(is_restored ? NULL : room->plan, body, "/body", problem) ||
+        !acceptance_check(is_restored ? NULL : room->shared.plan, body, "/body", problem) ||
         (!is_restored && !check_others(room, body, problem)))
         return NULL;
     const cJSON *fit =
-        is_restored ? NULL : acceptance_fit(room->plan, json_text(body, "thing"), json_text(body, "with"));
+        is_restored ? NULL : acceptance_fit(room->shared.plan, json_text(body, "thing"), json_text(body, "with"));
     const char *revision = is_restored ? json_text(body, "plan_revision") : room->acceptances->revision;
     const char *role = is_restored           ? json_text(body, "role")
                        : room->items->writer ? wire_member_role_words.words[room->items->writer->role]
@@ -127,7 +127,7 @@ bool acceptance_may_write(const struct room *room, const struct member *member, 
                            "an acceptance stays as it was made: withdraw it and make another");
     if (!acceptance_may(room, member, kind, problem))
         return false;
-    if (room->acceptances->revision[0] && room->plan)
+    if (room->acceptances->revision[0] && room->shared.plan)
         return true;
     problem_set(problem, PROBLEM_BUSY, "", "",
                 "the revision of the plan's files is not known yet: GET /api/v1/plans/%s/revision", room->plan_id);
@@ -144,7 +144,7 @@ void acceptance_audit(struct room *room, const struct item *item, const struct m
                              .action = is_withdrawn ? "withdrawal" : "acceptance",
                              .detail = cJSON_CreateObject(),
                              .before = -1,
-                             .after = room->revision };
+                             .after = room->shared.revision };
     const char *words = json_text(body, "words");
     char hex[DIGEST_TEXT];
     digest_text(item->row, hex);
@@ -229,11 +229,11 @@ void acceptances_settle(struct room *room)
     room->acceptances->list = list;
     room->acceptances->ids = ids;
     room->acceptances->is_known = is_known;
-    if (has_changed && room->scene) {
-        room->revision++;
+    if (has_changed && room->shared.scene) {
+        room->shared.revision++;
         room_event(room, ROOM_SCENE, NULL);
         streams_changed(room, false);
-        room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+        room->callbacks.scene_changed(room->callbacks.context, room, room->shared.scene, room->shared.revision);
         send_scene_patch(room, cJSON_CreateObject(), NULL, 0, true);
     }
     if (is_news)
@@ -243,9 +243,9 @@ void acceptances_settle(struct room *room)
 bool acceptances_want_revision(const struct room *room)
 {
     const cJSON *fit;
-    if (room->acceptances->revision[0] || room->replay || !room->plan)
+    if (room->acceptances->revision[0] || room->replay || !room->shared.plan)
         return false;
-    cJSON_ArrayForEach(fit, cJSON_GetObjectItemCaseSensitive(room->plan, "fits"))
+    cJSON_ArrayForEach(fit, cJSON_GetObjectItemCaseSensitive(room->shared.plan, "fits"))
     {
         const char *needs = json_text(fit, "needs");
         if (needs && strcmp(needs, "acceptance") == 0)

@@ -69,17 +69,18 @@ static bool give_scene(const struct room *room, cJSON *read, struct problem *pro
         ok = !override || refuse(problem, "/override", "unknown-field", "override goes with a bookmark without scene");
     } else if (override && !cJSON_IsObject(override)) {
         (void)refuse(problem, "/override", "type", "override must be a merge patch on the scene");
-    } else if (!room->scene) {
+    } else if (!room->shared.scene) {
         problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
         problem->retry_after_ms = 500;
     } else {
         if (override) {
-            shown = scene_document_patch(room->plan, room->defaults, room->scene, override, problem);
+            shown =
+                scene_document_patch(room->shared.plan, room->shared.defaults, room->shared.scene, override, problem);
             if (!shown)
                 problem_below(problem, "/override");
         }
         if (!override || shown)
-            patch = bookmark_difference(room->defaults, shown ? shown : room->scene);
+            patch = bookmark_difference(room->shared.defaults, shown ? shown : room->shared.scene);
         if (patch) {
             cJSON_DeleteItemFromObjectCaseSensitive(read, "scene");
             json_add(read, "scene", patch);

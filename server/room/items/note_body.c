@@ -165,7 +165,7 @@ cJSON *note_body_read(const struct room *room, const cJSON *body, const struct i
                     "a reply has the place of its note, and only the note is resolved");
         return NULL;
     }
-    cJSON *place = read_anchor(anchor, is_restored ? NULL : room->plan, problem);
+    cJSON *place = read_anchor(anchor, is_restored ? NULL : room->shared.plan, problem);
     cJSON *mentions = place ? read_mentions(cJSON_GetObjectItemCaseSensitive(body, "mentions"), problem) : NULL;
     if (!mentions) {
         cJSON_Delete(place);

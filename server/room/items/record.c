@@ -88,7 +88,7 @@ static cJSON *describe_saved(const struct room *room)
 
 char *record_of(const struct room *room, const struct item *item, struct problem *problem)
 {
-    const cJSON *scene = room->scene ? room->scene : room->restored;
+    const cJSON *scene = room->shared.scene ? room->shared.scene : room->shared.restored;
     if (!record_is_wanted(item->kind))
         return NULL;
     char *scene_text = scene ? json_print(scene) : NULL, *views_text = streams_write(room);
@@ -122,7 +122,7 @@ cJSON *room_record(const struct room *room)
     cJSON_AddStringToObject(json, "room", room->id);
     cJSON_AddStringToObject(json, "plan", room->plan_id);
     cJSON_AddStringToObject(json, "plan_revision", room->files.revision);
-    cJSON_AddNumberToObject(json, "revision", room->revision);
+    cJSON_AddNumberToObject(json, "revision", room->shared.revision);
     cJSON_AddNumberToObject(json, "made_ms", (double)clock_wall_ms());
     cJSON_AddNumberToObject(json, "created_ms", (double)room->created_at_s * 1000);
     json_add(json, "present", presence_list(room));

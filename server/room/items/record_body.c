@@ -225,7 +225,7 @@ static struct audit_act act_of(const struct room *room, const struct item *item,
                                    .action = wire_item_kind_words.words[item->kind],
                                    .detail = cJSON_CreateObject(),
                                    .before = -1,
-                                   .after = room->revision };
+                                   .after = room->shared.revision };
     cJSON_AddStringToObject(act.detail, "item", item->id);
     cJSON_AddNumberToObject(act.detail, "version", item->version);
     return act;

@@ -80,8 +80,8 @@ cJSON *recorded_items(const struct room *room)
 cJSON *recorded_scene(const struct room *room)
 {
     cJSON *entry = cJSON_CreateObject();
-    cJSON_AddNumberToObject(entry, "revision", room->revision);
-    json_add(entry, "scene", cJSON_Duplicate(room->scene, true));
+    cJSON_AddNumberToObject(entry, "revision", room->shared.revision);
+    json_add(entry, "scene", cJSON_Duplicate(room->shared.scene, true));
     return entry;
 }
 
@@ -90,7 +90,7 @@ cJSON *recorded_state(const struct room *room)
     struct meeting_log *log = meeting_log_create();
     if (!log)
         return NULL;
-    if (room->scene)
+    if (room->shared.scene)
         meeting_log_put(log, 0, LOG_SCENE, "scene", recorded_scene(room));
     meeting_log_put_all(log, 0, LOG_VIEWS, recorded_views(room));
     meeting_log_put_all(log, 0, LOG_POINTERS, recorded_pointers(room));

@@ -112,7 +112,7 @@ void recording_show(struct room *room, struct member *member)
 bool recording_plan_mark(const struct room *room, char mark[20])
 {
     (void)json_no_memory(NULL, "what came before");
-    cJSON *plan = room->plan ? cJSON_Duplicate(room->plan, true) : NULL;
+    cJSON *plan = room->shared.plan ? cJSON_Duplicate(room->shared.plan, true) : NULL;
     cJSON_DeleteItemFromObjectCaseSensitive(plan, "load_ms"); /* measured: another one each time */
     char *text = plan ? json_print(plan) : NULL;
     cJSON_Delete(plan);
@@ -188,7 +188,7 @@ static void sample(struct room *room)
         meeting_log_put_all(log, t_ms, LOG_MEMBERS, recorded_members(room));
         mark_presenter(room, recorder, t_ms);
     }
-    if ((dirty & ROOM_SCENE) && room->scene)
+    if ((dirty & ROOM_SCENE) && room->shared.scene)
         meeting_log_put(log, t_ms, LOG_SCENE, "scene", recorded_scene(room));
     if (dirty & (ROOM_SCENE | ROOM_VIEWS))
         meeting_log_put_all(log, t_ms, LOG_VIEWS, recorded_views(room));
@@ -323,7 +323,7 @@ static bool may_start(const struct room *room, const struct member *member, stru
                            "this server keeps no rooms (--data is not given), so there is no place for a recording");
     if (room->recorder)
         return problem_set(problem, PROBLEM_CONFLICT, "", "", "the meeting is being recorded already");
-    if (!room->scene) {
+    if (!room->shared.scene) {
         problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
         if (problem)
             problem->retry_after_ms = 500;

@@ -78,7 +78,7 @@ static enum wire_replay_state state_of(const struct room *room)
     const struct replay *replay = room->replay;
     if (replay->has_failed)
         return WIRE_REPLAY_STATE_FAILED;
-    if (!room->scene || !replay->state)
+    if (!room->shared.scene || !replay->state)
         return WIRE_REPLAY_STATE_WAITING;
     if (replay->is_playing)
         return WIRE_REPLAY_STATE_PLAYING;
@@ -308,7 +308,7 @@ int64_t replay_settle(struct room *room)
     struct replay *replay = room->replay;
     if (!replay)
         return INT64_MAX;
-    if (!room->scene) {
+    if (!room->shared.scene) {
         set_time(room, replay->t_ms, replay->is_playing); /* the clock waits for the plan */
         return INT64_MAX;
     }
@@ -393,7 +393,7 @@ bool replay_leave(struct room *room, struct member *member, const struct message
     struct replay *replay = room->replay;
     if (!replay)
         return refuse_ordinary(problem);
-    if (!room->scene)
+    if (!room->shared.scene)
         return problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
     room->replay = NULL;
     if (!presenter_take_over(room, member, (uint32_t)message->replay_leave.input, problem)) {
@@ -408,7 +408,7 @@ bool replay_leave(struct room *room, struct member *member, const struct message
     send_to_all(room, &left);
     room->replay = replay;
     replay_free(room);
-    room->is_changed = true;
+    room->shared.is_changed = true;
     room_event(room, ROOM_ALL_PARTS, NULL);
     for (const struct item *item = room->items->first; item && room->callbacks.item_changed; item = item->next)
         room->callbacks.item_changed(room->callbacks.context, room, item->row, item->id);
@@ -447,7 +447,7 @@ void replay_revision_came(struct room *room, const char *revision)
     if (!replay)
         return;
     (void)snprintf(replay->plan_revision, sizeof replay->plan_revision, "%s", revision);
-    if (room->scene && has_other_plan(room) != replay->plan_changed)
+    if (room->shared.scene && has_other_plan(room) != replay->plan_changed)
         replay_plan_ready(room);
 }
 
@@ -476,7 +476,7 @@ void replay_begin(struct room *room, const char *of_room, uint32_t n_named, cons
     replay->facts.marks = recording->marks ? cJSON_Duplicate(recording->marks, true) : NULL;
     room->members.n_named = n_named;
     room->replay = replay;
-    if (room->scene)
+    if (room->shared.scene)
         replay_plan_ready(room);
 }
 

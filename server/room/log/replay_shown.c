@@ -26,8 +26,8 @@ static cJSON *scene_of_changed_plan(const struct room *room, const cJSON *record
 {
     cJSON *body = cJSON_CreateObject();
     cJSON_AddStringToObject(body, "name", "");
-    json_add(body, "scene", bookmark_difference(room->defaults, recorded));
-    cJSON *opened = bookmark_open(body, room->plan, room->defaults, NULL);
+    json_add(body, "scene", bookmark_difference(room->shared.defaults, recorded));
+    cJSON *opened = bookmark_open(body, room->shared.plan, room->shared.defaults, NULL);
     cJSON *scene = cJSON_DetachItemFromObjectCaseSensitive(opened, "scene");
     cJSON_Delete(*report);
     *report = cJSON_DetachItemFromObjectCaseSensitive(opened, "report");
@@ -43,7 +43,7 @@ bool shown_scene(struct room *room, const cJSON *state, cJSON **report)
     if (!cJSON_IsObject(recorded))
         return true;
     cJSON *scene = report ? scene_of_changed_plan(room, recorded, report)
-                          : scene_document_renew(room->plan, room->defaults, recorded);
+                          : scene_document_renew(room->shared.plan, room->shared.defaults, recorded);
     return scene && scene_show(room, scene);
 }
 

@@ -332,16 +332,16 @@ bool audit_is_of_scene(const cJSON *before, const cJSON *after)
 
 void audit_scene(struct room *room, const cJSON *before, const struct member *by)
 {
-    const cJSON *old = draft_of(before), *new = draft_of(room->scene);
+    const cJSON *old = draft_of(before), *new = draft_of(room->shared.scene);
     struct audit_act act = { .by = by,
                              .address = room->call.address,
-                             .before = (int64_t)room->revision - 1,
-                             .after = room->revision,
+                             .before = (int64_t)room->shared.revision - 1,
+                             .after = room->shared.revision,
                              .action = "weights" };
     char key[sizeof room->audit->gathered[0].key];
     if (!room->callbacks.audited)
         return;
-    act.detail = weights_changed(before, room->scene);
+    act.detail = weights_changed(before, room->shared.scene);
     if (act.detail) {
         name_fields(act.detail, key, sizeof key);
         act.key = key;

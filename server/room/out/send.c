@@ -135,9 +135,9 @@ void send_renderer_state(struct room *room, struct member *member)
 void send_plan(struct room *room)
 {
     struct message message = { .type = MESSAGE_PLAN };
-    message.plan.plan = room->plan;
-    message.plan.scene = room->scene;
-    message.plan.revision = room->revision;
+    message.plan.plan = room->shared.plan;
+    message.plan.scene = room->shared.scene;
+    message.plan.revision = room->shared.revision;
     mem_put_text(message.plan.gl, sizeof message.plan.gl, room->renderer.gl);
     send_to_all(room, &message);
 }
@@ -158,7 +158,7 @@ static cJSON *unreached_views(const struct member *member)
 
 void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32_t input, bool to_all)
 {
-    struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->revision, .patch = patch } };
+    struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->shared.revision, .patch = patch } };
     if (by)
         mem_put_text(message.scene.by, sizeof message.scene.by, by->id);
     for (int i = 0; i < room->members.n; i++) {

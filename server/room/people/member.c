@@ -152,7 +152,7 @@ static struct member *member_create(struct room *room, const char *name, enum wi
 static void audit_entered(struct room *room, const struct member *member, const char *as)
 {
     const struct audit_act row = {
-        .by = member, .action = "open", .detail = cJSON_CreateObject(), .before = -1, .after = room->revision
+        .by = member, .action = "open", .detail = cJSON_CreateObject(), .before = -1, .after = room->shared.revision
     };
     cJSON_AddStringToObject(row.detail, "as", as);
     audit_tell(room, &row);
@@ -189,9 +189,9 @@ static void welcome_member(struct room *room, struct member *member)
     (void)snprintf(welcome->secret, sizeof welcome->secret, "%s", member->secret);
     (void)snprintf(welcome->name, sizeof welcome->name, "%s", member->name);
     (void)snprintf(welcome->plan_id, sizeof welcome->plan_id, "%s", room->plan_id);
-    welcome->plan = room->plan;
-    welcome->scene = room->scene;
-    welcome->revision = room->revision;
+    welcome->plan = room->shared.plan;
+    welcome->scene = room->shared.scene;
+    welcome->revision = room->shared.revision;
     (void)snprintf(welcome->gl, sizeof welcome->gl, "%s", room->renderer.gl);
     cJSON *items = items_rows(room);
     welcome->items = items;

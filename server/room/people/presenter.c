@@ -38,7 +38,7 @@ static bool share_overrides(struct room *room, struct member *member, uint32_t i
 /* The member's own views become the room's. */
 static bool share(struct room *room, struct member *member, uint32_t input, struct problem *problem)
 {
-    const bool keep_override = !room->scene; /* without a plan it can be neither checked nor applied */
+    const bool keep_override = !room->shared.scene; /* without a plan it can be neither checked nor applied */
     return (keep_override || share_overrides(room, member, input, problem)) &&
            views_share(room, member, keep_override, input, problem);
 }

@@ -157,6 +157,13 @@ struct streams {
     uint64_t n_requests;
 };
 
+struct shared_documents {           /* documents that all members have */
+    cJSON *plan, *defaults, *scene; /* NULL before the plan is ready */
+    cJSON *restored;                /* the scene as it was kept, until the plan is ready; else NULL */
+    uint32_t revision;              /* of the scene */
+    bool is_changed;                /* the scene was changed since the room was made */
+};
+
 struct beginning { /* the bookmark that the room was made from; all NULL: none */
     cJSON *bookmark, *views;
     cJSON *opened; /* without the scene; NULL before the plan is ready */
@@ -189,37 +196,33 @@ struct saved;
 
 struct room {
     char id[64], plan_id[64];
+    int64_t created_at_s;
+    char end_reason[200]; /* "": the room is closed */
     struct room_callbacks callbacks;
+    struct room_counters counters;
     int64_t now_us; /* the time last passed in: room_enter */
     int64_t due_us; /* when room_settle is due */
-    int64_t created_at_s;
 
     struct room_renderer renderer;
     struct plan_files files;
-    cJSON *plan, *defaults, *scene; /* NULL before the plan is ready */
+    struct shared_documents shared;
     struct beginning beginning;
-    cJSON *restored; /* the scene as it was kept, until the plan is ready; else NULL */
-    uint32_t revision;
-    bool is_changed; /* the scene was changed since the room was made */
-
+    struct scene_call call;
+    struct streams streams;
     struct members members;
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */
-    char end_reason[200];     /* "": the room is closed */
-    struct presences *presences; /* state/presence.h */
-    struct scene_call call;
+
+    struct events *events;           /* state/event.h */
+    struct presences *presences;     /* state/presence.h */
+    struct audit *audit;             /* out/audit.h */
+    struct saved *saved;             /* out/saved.h */
     struct items *items;             /* items/item_list.h */
     struct acceptances *acceptances; /* items/acceptance.h */
-    struct look *look;               /* people/look.h */
-    struct audit *audit;             /* out/audit.h */
     struct known *known;             /* people/known.h */
     struct control *control;         /* people/control.h */
-    struct events *events;           /* state/event.h */
-    struct saved *saved;             /* out/saved.h */
     struct links *links;             /* people/links.h */
+    struct look *look;               /* people/look.h */
     struct recordings *recordings;   /* log/recording.h */
     struct recorder *recorder;       /* NULL: no recording runs */
     struct replay *replay;           /* NULL: the room plays none */
-
-    struct streams streams;
-    struct room_counters counters;
 };

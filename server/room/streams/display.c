@@ -31,10 +31,10 @@ bool displays_have_credit(const struct stream *stream, uint32_t n_coming, int64_
  */
 static bool shows_draft(const struct room *room, const struct stream *stream)
 {
-    const cJSON *scene = stream->scene ? stream->scene : room->scene,
+    const cJSON *scene = stream->scene ? stream->scene : room->shared.scene,
                 *beam = cJSON_GetObjectItemCaseSensitive(scene, "beam"),
                 *draft = cJSON_GetObjectItemCaseSensitive(beam, "draft");
-    const bool has_planned = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(room->plan, "beams")) > 0;
+    const bool has_planned = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(room->shared.plan, "beams")) > 0;
     return json_flag(draft, "enabled", false) && !(has_planned && json_flag(draft, "shows_planned", false));
 }
 

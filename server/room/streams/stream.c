@@ -54,7 +54,8 @@ static void stream_reached(struct room *room, struct stream *stream)
  * is. */
 static uint32_t revision_held(const struct room *room, const struct stream *stream)
 {
-    return stream->latest_version >= stream->scene_version ? room->revision : stream->latest->header.scene_revision;
+    return stream->latest_version >= stream->scene_version ? room->shared.revision
+                                                           : stream->latest->header.scene_revision;
 }
 
 void stream_again(struct room *room, struct stream *stream)
@@ -196,7 +197,7 @@ void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *
 {
     for (struct stream *stream = room->streams.first; stream; stream = stream->next) {
         stream->is_reached =
-            view_has_override(stream->view) || change_reaches(stream->view, before, room->scene, patch);
+            view_has_override(stream->view) || change_reaches(stream->view, before, room->shared.scene, patch);
         stream->scene_is_stale = true;
         if (stream->is_reached)
             stream_reached(room, stream);
@@ -303,7 +304,7 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
     struct room_render render = { .request = request->number,
                                   .view = stream->view,
                                   .scene = stream->scene,
-                                  .scene_revision = room->revision,
+                                  .scene_revision = room->shared.revision,
                                   .scale_percent = choice.scale_percent,
                                   .quality = choice.quality,
                                   .is_still = is_still,
@@ -357,7 +358,7 @@ static int64_t request_due(struct room *room, struct stream *stream)
 int64_t streams_request_due(struct room *room)
 {
     int64_t again_us = INT64_MAX;
-    if (room->renderer.state != WIRE_RENDERER_STATE_READY || !room->scene)
+    if (room->renderer.state != WIRE_RENDERER_STATE_READY || !room->shared.scene)
         return again_us;
     for (struct stream *stream = room->streams.first; stream; stream = stream->next) {
         int64_t us = request_due(room, stream);

@@ -64,9 +64,9 @@ bool view_has_override(const cJSON *view)
 
 bool override_is_valid(const struct room *room, const cJSON *view, struct problem *problem)
 {
-    if (!room->scene || !view_has_override(view))
+    if (!room->shared.scene || !view_has_override(view))
         return true; /* not known before the plan is; checked then by streams_remove_bad_overrides */
-    cJSON *shown = scene_document_for_view(room->plan, room->defaults, room->scene, view, problem);
+    cJSON *shown = scene_document_for_view(room->shared.plan, room->shared.defaults, room->shared.scene, view, problem);
     cJSON_Delete(shown);
     return shown != NULL;
 }
@@ -77,9 +77,9 @@ static bool make_scene(struct room *room, struct stream *stream)
     if (!stream->scene_is_stale)
         return true;
     struct problem problem = { 0 };
-    cJSON *scene = view_has_override(stream->view)
-                       ? scene_document_for_view(room->plan, room->defaults, room->scene, stream->view, &problem)
-                       : NULL;
+    cJSON *scene = view_has_override(stream->view) ? scene_document_for_view(room->shared.plan, room->shared.defaults,
+                                                                             room->shared.scene, stream->view, &problem)
+                                                   : NULL;
     if (problem.type == PROBLEM_INTERNAL)
         return false;
     if (problem.type != PROBLEM_NONE) /* a bug: overrides are checked when they are set and when a plan is loaded */
@@ -92,7 +92,7 @@ static bool make_scene(struct room *room, struct stream *stream)
 
 const cJSON *stream_scene(struct room *room, struct stream *stream)
 {
-    if (!room->scene || !make_scene(room, stream))
+    if (!room->shared.scene || !make_scene(room, stream))
         return NULL;
-    return stream->scene ? stream->scene : room->scene;
+    return stream->scene ? stream->scene : room->shared.scene;
 }

@@ -33,8 +33,8 @@ cJSON *room_bookmark_of_token(const struct room *room, const char *token)
 
 cJSON *room_bookmark_open(const struct room *room, const cJSON *body, struct problem *problem)
 {
-    if (room->plan)
-        return bookmark_open(body, room->plan, room->defaults, problem);
+    if (room->shared.plan)
+        return bookmark_open(body, room->shared.plan, room->shared.defaults, problem);
     problem_set(problem, PROBLEM_BUSY, "", "", "the plan of this room is not loaded yet");
     problem->retry_after_ms = 500;
     return NULL;

@@ -64,7 +64,7 @@ static uint32_t number_of(const char *id)
 
 uint32_t marks_next_number(const struct room *room)
 {
-    const cJSON *scene = room->scene ? room->scene : room->restored, *mark;
+    const cJSON *scene = room->shared.scene ? room->shared.scene : room->shared.restored, *mark;
     uint32_t greatest = room->members.n_named;
     if (!scene)
         scene = cJSON_GetObjectItemCaseSensitive(room->beginning.bookmark, "scene");
@@ -96,7 +96,7 @@ cJSON *marks_authored(const struct room *room, const struct member *member, cons
     {
         if (!cJSON_IsObject(authored) || !is_kind(kind->string))
             continue;
-        const cJSON *before = cJSON_GetObjectItemCaseSensitive(room->scene, kind->string);
+        const cJSON *before = cJSON_GetObjectItemCaseSensitive(room->shared.scene, kind->string);
         cJSON_ArrayForEach(mark, kind)
         {
             if (cJSON_IsObject(kind) && cJSON_IsObject(mark))

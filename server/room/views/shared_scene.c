@@ -21,30 +21,30 @@ static bool may_be_audited(const cJSON *patch)
 
 static bool apply(struct room *room, const cJSON *patch, struct member *by, uint32_t input, struct problem *problem)
 {
-    cJSON *scene = scene_document_patch(room->plan, room->defaults, room->scene, patch, problem);
+    cJSON *scene = scene_document_patch(room->shared.plan, room->shared.defaults, room->shared.scene, patch, problem);
     if (!scene)
         return false;
-    bool has_changed = !json_equal(scene, room->scene);
-    const bool is_audited = has_changed && may_be_audited(patch) && audit_is_of_scene(room->scene, scene);
+    bool has_changed = !json_equal(scene, room->shared.scene);
+    const bool is_audited = has_changed && may_be_audited(patch) && audit_is_of_scene(room->shared.scene, scene);
     if (is_audited && !audit_has_place(room, problem)) {
         cJSON_Delete(scene);
         return false;
     }
-    cJSON *told = patch_told(room->scene, scene, patch);
+    cJSON *told = patch_told(room->shared.scene, scene, patch);
     if (!told) {
         cJSON_Delete(scene);
         return json_no_memory(problem, "a scene");
     }
-    cJSON *before = room->scene;
-    room->scene = scene;
+    cJSON *before = room->shared.scene;
+    room->shared.scene = scene;
     if (has_changed) {
-        room->revision++;
-        room->is_changed = true;
+        room->shared.revision++;
+        room->shared.is_changed = true;
         room_event(room, ROOM_SCENE, NULL);
         if (is_audited)
             audit_scene(room, before, by ? by : room->call.by);
         streams_scene_changed(room, before, patch);
-        room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+        room->callbacks.scene_changed(room->callbacks.context, room, room->shared.scene, room->shared.revision);
     }
     cJSON_Delete(before);
     for (int i = 0; by && i < ROOM_MAX_VIEWS; i++) {
@@ -60,18 +60,18 @@ static bool apply(struct room *room, const cJSON *patch, struct member *by, uint
 
 bool scene_show(struct room *room, cJSON *scene)
 {
-    cJSON *told = bookmark_difference(room->scene, scene);
+    cJSON *told = bookmark_difference(room->shared.scene, scene);
     if (!told) {
         cJSON_Delete(scene);
         return false;
     }
-    cJSON *before = room->scene;
-    room->scene = scene;
+    cJSON *before = room->shared.scene;
+    room->shared.scene = scene;
     if (told->child) {
-        room->revision++;
+        room->shared.revision++;
         room_event(room, ROOM_SCENE, NULL);
         streams_scene_changed(room, before, told);
-        room->callbacks.scene_changed(room->callbacks.context, room, room->scene, room->revision);
+        room->callbacks.scene_changed(room->callbacks.context, room, room->shared.scene, room->shared.revision);
         send_scene_patch(room, told, NULL, 0, true);
     } else {
         cJSON_Delete(told);
@@ -83,7 +83,7 @@ bool scene_show(struct room *room, cJSON *scene)
 bool scene_apply_patch(struct room *room, const cJSON *patch, struct member *by, uint32_t input,
                        struct problem *problem)
 {
-    if (!room->scene) {
+    if (!room->shared.scene) {
         problem_set(problem, PROBLEM_BUSY, "", "", "the plan is not loaded yet");
         if (problem)
             problem->retry_after_ms = 500;
