@@ -1,6 +1,6 @@
 // The figures of one region by every method, requested one after the other.
 import { computed, effect, signal } from '../../../lib/signals-core.js';
-import { methods } from './shapes.js';
+import { methods } from './representations.js';
 
 /** Requests the figures of one method after the other; starting again drops the answers of the run before. */
 export class Comparison {

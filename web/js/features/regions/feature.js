@@ -6,9 +6,10 @@ import { later } from '../../parts/lazy.js';
 import { askRefusals, liveShape, shapeNow } from './asking.js';
 import { Refusals } from './refusals.js';
 import { regionRows, regionTools } from './region_rows.js';
+import { say } from './words.js';
 
 const blocks = later(() => import('./later_blocks.js'));
-const hierarchyWords = { file: 'hierarchy from file', derived: 'hierarchy derived', none: '' };
+const hierarchyWords = { file: say.fromFile, derived: say.derived, none: '' };
 
 /** Comparing representations begins with what is loaded for it. @returns {() => void} stops */
 function compareLater(world) {
@@ -39,7 +40,7 @@ export const regions = {
   sections: [
     {
       id: 'regions',
-      name: 'Regions',
+      name: say.section,
       icon: 'layers',
       place: 3,
       has: (plan, scene) => (scene ? ownRegions(plan, scene) : plan.regions).length,

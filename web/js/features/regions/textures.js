@@ -1,12 +1,13 @@
 // Colours of regions in 3-D: their own colour, the image, or the dose. Pure.
+import { say } from './later_words.js';
 
 /** Representations that are made of triangles; others have their own colour alone. */
 const withTriangles = ['surface', 'univels', 'nurbs', 'fan'];
 
 const words = {
-  none: ['Own', 'Its own colour'],
-  image: ['Image', 'By the image at each point, with its window'],
-  dose: ['Dose', 'Its own colour, and over it the wash of the dose at each point'],
+  none: [say.own, say.ownIs],
+  image: [say.image, say.imageIs],
+  dose: [say.dose, say.doseIs],
 };
 
 /** The choices that the plan has, for a segment. @param {string} now is among them in any case */
@@ -37,9 +38,19 @@ export function withInner(plan, region) {
 export function textureNote(scene, region) {
   const { texture = 'none', representation, visible } = scene.regions[region.id] ?? {};
   if (texture === 'none' || !visible) return '';
-  if (!withTriangles.includes(representation)) return 'Only surfaces, univels, splines and fans show it: this one has its own colour.';
+  if (!withTriangles.includes(representation)) return say.withoutTriangles;
+  return isWashOff(scene, region) ? say.washIsOff : '';
+}
+
+/** True for a region that the dose would colour, if its wash were shown. */
+export function isWashOff(scene, { id }) {
+  const { texture, representation, visible } = scene.regions[id] ?? {};
   const { wash, compare } = scene.dose;
-  if (texture === 'dose' && !wash.visible && !['difference', 'gamma'].includes(compare.mode))
-    return 'The wash is off: nothing of the dose shows.';
-  return '';
+  return (
+    texture === 'dose' &&
+    visible &&
+    withTriangles.includes(representation) &&
+    !wash.visible &&
+    !['difference', 'gamma'].includes(compare.mode)
+  );
 }

@@ -4,7 +4,8 @@ import { test } from 'node:test';
 import { load } from '../../page.mjs';
 
 const { csvText } = await load('parts/csv.js');
-const { figureRows, isExportable, methods, representations, shapeQuery, volumeDifference } = await load('features/regions/shapes.js');
+const { figureRows, methods, representations } = await load('features/regions/representations.js');
+const { isExportable, shapeQuery, volumeDifference } = await load('features/regions/shapes.js');
 const { Comparison } = await load('features/regions/comparison.js');
 const { Refusals, inQuestion } = await load('features/regions/refusals.js');
 const { nameSome } = await load('parts/format.js');

@@ -1,0 +1,30 @@
+// What a person reads of regions in the tree.
+import { sentences } from '../../parts/sentences.js';
+
+export const say = sentences('regions', {
+  section: 'Regions',
+  fromFile: 'hierarchy from file',
+  derived: 'hierarchy derived',
+  noneNamed: 'No region has such a name.',
+  find: 'Find a region',
+  all: 'All regions',
+  hideAllIs: 'Hide all regions',
+  showAllIs: 'Show all regions',
+  hideAll: 'Hide all',
+  showAll: 'Show all',
+  onlyTargets: 'Show only targets',
+  only: 'Show only {regions}',
+  onlyN: 'Show only {count} {n|target|targets}',
+  noTarget: 'No region is a target by its name',
+  targets: 'Targets',
+  empty: 'empty',
+  opacityIs: 'opacity {percent} %',
+  show: 'Show {region}',
+  showOrHide: 'Show or hide (Alt: only this one)',
+  colourOf: 'Colour of {region}',
+  colour: 'Colour',
+  refused: 'Not in the 3-D picture: {reason}',
+  opacityOf: 'Opacity of {region}',
+  opacity: 'Opacity',
+  opacityPercent: 'Opacity of {region} in per cent',
+});
