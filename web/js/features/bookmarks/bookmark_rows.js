@@ -6,6 +6,7 @@ import { Bookmarks, bookmarksOf } from './bookmarks.js';
 import { toldOfMerge } from '../../room/saved_merge.js';
 import { icon } from '../../parts/icons.js';
 import { name, treeRow } from '../../parts/tree_row.js';
+import { say } from './later_words.js';
 
 export const blocks = { bookmark: bookmarkBlock };
 
@@ -24,31 +25,29 @@ export async function attempt({ ui }, run, done = '') {
     if (done) ui.notify('ok', done, 'saved');
     return result;
   } catch (error) {
-    ui.notify('err', error.message ?? error.detail ?? 'The server refused it.', 'saved'); // an Error, or a problem of the server
+    ui.notify('err', error.message ?? error.detail ?? say.refused, 'saved'); // an Error, or a problem of the server
     return null;
   }
 }
 
 /** A sentence about the parts of a saved view that could not be shown; '' when it is whole. */
-const lost = ({ report, n_report: all }) =>
-  all ? `${all === 1 ? 'One thing' : `${all} things`} of it cannot be shown: ${report[0].detail}${all > 1 ? ', …' : ''}.` : '';
+const lost = ({ report, n_report: all }) => (all ? (all > 1 ? say.lost : say.oneLost)({ n: all, detail: report[0].detail }) : '');
 
 function told(world, opened, isQuiet = false) {
   if (!opened) return;
   const isReported = opened.n_report > 0;
   const why = [lost(opened), toldOfMerge(opened.merge)].filter(Boolean).join(' ');
-  const who = world.room.following.isPresenting.value ? '' : ' In your own view.';
   if (why)
     world.ui.notify(
       'warn',
-      `“${opened.name}”: ${why}`,
+      say.openedBut({ name: opened.name, why }),
       'saved',
-      isReported ? { word: 'All', act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) } : null,
+      isReported ? { word: say.all, act: () => world.ui.choose('bookmark', bookmarksIn(world).shown.value) } : null,
     );
-  else if (who && !isQuiet)
-    world.ui.notify('ok', `“${opened.name}”.${who}`, 'saved', {
-      word: 'Return',
-      keys: 'Esc or F',
+  else if (!world.room.following.isPresenting.value && !isQuiet)
+    world.ui.notify('ok', say.openedOwn({ name: opened.name }), 'saved', {
+      word: say.return,
+      keys: say.escOrF,
       act: () => world.room.following.return(),
     });
 }
@@ -72,19 +71,20 @@ export function bookmarkRows(world) {
       const { name: words } = row.body;
       const isShown = shown.value === row.id;
       const toggle = () => void show(world, row);
-      const about = room.following.isPresenting.value ? 'Show to everybody' : 'Show in your own view';
+      const about = room.following.isPresenting.value ? say.showAll : say.showOwn;
       return treeRow(
         world,
         {
           kind: 'bookmark',
           id: row.id,
           words: [words],
-          more: [...(isShown ? ['shown last'] : [])],
-          title: `${words}, saved by ${row.author_name}`,
+          more: [...(isShown ? [say.shownLast] : [])],
+          title: say.savedBy({ name: words, author: row.author_name }),
           toggle,
         },
         html`
-      ${pictureOf(world, row)}${name(words)}<button class="eye bookmark-show" tabindex="-1" aria-label=${`Show ${words}`} title=${about} ?disabled=${!room.canChange.value}
+      ${pictureOf(world, row)}${name(words)}<button class="eye bookmark-show" tabindex="-1"
+        aria-label=${say.show({ name: words })} title=${about} ?disabled=${!room.canChange.value}
         @click=${(event) => {
           event.stopPropagation();
           toggle();
@@ -133,12 +133,15 @@ export function playBar(world) {
   const { room } = world;
   const rows = bookmarksOf(room);
   const at = bookmarks.position(rows);
-  const who = room.following.isPresenting.value ? 'everybody sees it' : 'in your own view';
-  return html`<div class="bookmark-bar" role="group" aria-label="Saved views as a presentation">
-    <button class="icon-button" aria-label="View before" title="Page up" ?disabled=${at <= 0} @click=${() => void step(world, -1)}>${icon('chevronLeft')}</button>
-    <p role="status"><b>${at < 0 ? `– of ${rows.length}` : `${at + 1} of ${rows.length}`}</b> <span class="clipped">${rows[at]?.body.name ?? ''}</span> <span class="dim">${who}</span></p>
-    <button class="icon-button" aria-label="Next view" title="Page down" ?disabled=${at >= rows.length - 1} @click=${() => void step(world, 1)}>${icon('chevronRight')}</button>
-    <button class="icon-button" aria-label="End the presentation" title="End" @click=${endPlaying}>${icon('close')}</button></div>`;
+  const who = room.following.isPresenting.value ? say.allSee : say.ownSees;
+  return html`<div class="bookmark-bar" role="group" aria-label=${say.presentation}>
+    <button class="icon-button" aria-label=${say.before} title=${say.pageUp} ?disabled=${at <= 0}
+      @click=${() => void step(world, -1)}>${icon('chevronLeft')}</button>
+    <p role="status"><b>${at < 0 ? say.noneOf({ all: rows.length }) : say.place({ n: at + 1, all: rows.length })}</b>
+      <span class="clipped">${rows[at]?.body.name ?? ''}</span> <span class="dim">${who}</span></p>
+    <button class="icon-button" aria-label=${say.next} title=${say.pageDown} ?disabled=${at >= rows.length - 1}
+      @click=${() => void step(world, 1)}>${icon('chevronRight')}</button>
+    <button class="icon-button" aria-label=${say.endPresentation} title=${say.end} @click=${endPlaying}>${icon('close')}</button></div>`;
 }
 
 // ---- a room that was made from one --------------------------------------------------------------------------------------
@@ -152,8 +155,8 @@ export async function begin(world) {
   bookmarksIn(world).begin(saved);
   world.ui.notify(
     why ? 'warn' : 'ok',
-    `“${saved.name}” in a new room of its own.${why ? ` ${why}` : ''}`,
+    (why ? say.begunBut : say.begun)({ name: saved.name, why }),
     'saved',
-    why ? { word: 'All', act: () => world.ui.choose('bookmark', 'begun') } : null,
+    why ? { word: say.all, act: () => world.ui.choose('bookmark', 'begun') } : null,
   );
 }

@@ -4,6 +4,7 @@ import { readDocument } from '../../wire/check.js';
 import { isObject } from '../../wire/merge.js';
 import { layouts } from '../../room/layout.js';
 import { mergedScene } from '../../room/saved_merge.js';
+import { say } from './later_words.js';
 
 export const maxName = 80; // characters
 const mostPictures = 60; // kept in this tab; never written to the disk of this computer: they show patients
@@ -54,7 +55,10 @@ export function stateNow({ room, ui }) {
 const lastOrder = (rows) => rows.reduce((most, { body }) => Math.max(most, body.order ?? 0), 0);
 
 export const freeName = (rows) => {
-  for (let n = rows.length + 1; ; n++) if (!rows.some(({ body }) => body.name === `View ${n}`)) return `View ${n}`;
+  for (let n = rows.length + 1; ; n++) {
+    const name = say.freeName({ n });
+    if (!rows.some(({ body }) => body.name === name)) return name;
+  }
 };
 
 export function save(world, name) {
@@ -191,7 +195,7 @@ export class Bookmarks {
   async show(row) {
     const { room, api } = this.#world;
     const opened = await api.bookmark(room.id, row.id);
-    if (!room.canChange.value) throw new Error('The server does not answer now: try again.');
+    if (!room.canChange.value) throw new Error(say.noAnswer);
     return { ...opened, merge: this.showOpened(opened, row.id) };
   }
 

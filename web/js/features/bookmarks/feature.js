@@ -4,17 +4,14 @@ import { effect } from '../../../lib/signals-core.js';
 import { icon } from '../../parts/icons.js';
 import { known, later } from '../../parts/lazy.js';
 import { name, treeRow } from '../../parts/tree_row.js';
+import { say } from './words.js';
 
 const parts = later(() => import('./bookmark_rows.js'), 'js/features/bookmarks/bookmark.css');
 
 const n = ({ room }) => [...room.items.rows.value.values()].filter(({ kind }) => kind === 'bookmark').length;
 
 const newRow = (world) =>
-  treeRow(
-    world,
-    { kind: 'bookmark', id: '', words: ['Save this view', '…'], title: 'Keeps scene, cameras and panes as they are now' },
-    html`${icon('plus')}${name('Save this view …')}`,
-  );
+  treeRow(world, { kind: 'bookmark', id: '', words: [say.save, '…'], title: say.keeps }, html`${icon('plus')}${name(say.saveMore)}`);
 
 const pendingKey = (room) => `saved ${room}`;
 
@@ -42,7 +39,7 @@ export const bookmarks = {
   sections: [
     {
       id: 'saved',
-      name: 'Saved views',
+      name: say.section,
       icon: 'bookmark',
       place: 9,
       has: (plan, scene) => Boolean(scene), // scene and views can be saved once they are there

@@ -5,6 +5,7 @@ import { beginWith } from './feature.js';
 import { icon } from '../../parts/icons.js';
 import { styled } from '../../parts/lazy.js';
 import { mount } from '../../parts/mount.js';
+import { say } from './later_words.js';
 
 /**
  * @param {HTMLElement} host @param {string} token @param {object} world {api, enter: goes to the room in place of this page}
@@ -28,9 +29,9 @@ export function permalinkPage(host, token, { api, enter }) {
   const unmount = mount(
     host,
     () =>
-      html`<main class="permalink">${problem.value ? refused(problem.value, open) : html`<p class="empty" role="status">Opening the saved view …</p>`}</main>`,
+      html`<main class="permalink">${problem.value ? refused(problem.value, open) : html`<p class="empty" role="status">${say.opening}</p>`}</main>`,
   );
-  document.title = 'Saved view – Beamroom';
+  document.title = say.pageTitle;
   void open();
   return () => {
     isLeft = true;
@@ -41,7 +42,8 @@ export function permalinkPage(host, token, { api, enter }) {
 
 function refused(problem, again) {
   const isGone = problem.type === '/problems/not-found';
-  return html`<section class="card" role="alert">${icon(isGone ? 'bookmark' : 'error', 20)}<div><h1>${isGone ? 'Nothing is saved under this link' : 'The saved view cannot be opened now'}</h1>
-    <p>${isGone ? 'It was deleted, or the link is not complete. Who sent it can make a new one.' : problem.message}</p>
-    <div class="buttons">${isGone ? '' : html`<button class="primary" @click=${again}>Try again</button>`}<a class="button" href="#/">All plans</a></div></div></section>`;
+  return html`<section class="card" role="alert">${icon(isGone ? 'bookmark' : 'error', 20)}<div><h1>${isGone ? say.gone : say.notNow}</h1>
+    <p>${isGone ? say.goneIs : problem.message}</p>
+    <div class="buttons">${isGone ? '' : html`<button class="primary" @click=${again}>${say.again}</button>`}
+      <a class="button" href="#/">${say.plans}</a></div></div></section>`;
 }

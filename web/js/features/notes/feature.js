@@ -2,6 +2,7 @@
 import { effect, untracked } from '../../../lib/signals-core.js';
 import { crosshair } from '../../room/plan.js';
 import { known, later } from '../../parts/lazy.js';
+import { say } from './words.js';
 
 const parts = later(() => import('./later.js'), 'js/features/notes/notes.css');
 
@@ -32,7 +33,7 @@ export const notes = {
   tabs: [
     {
       id: 'notes',
-      name: 'Notes',
+      name: say.tab,
       count: ({ room }) => room.items.nOpen.value,
       draw: (world) => parts.draw(({ notesTab }) => notesTab(world)),
     },

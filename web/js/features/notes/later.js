@@ -1,5 +1,6 @@
 // All of notes that is loaded with the first one: the inspector's tab, the pins on the pictures, what is told of mentions.
 import { effect } from '../../../lib/signals-core.js';
+import { say } from './later_words.js';
 import { mentions } from './threads.js';
 import { meIn } from './note_words.js';
 
@@ -20,8 +21,8 @@ export function watch({ room, ui }) {
   });
   const end = room.items.listen((item) => {
     if (item.kind === 'note' && mentions(item, meIn(room)))
-      ui.notify('ok', `${item.author_name} mentions you in a note.`, `note ${item.id}`, {
-        word: 'Show',
+      ui.notify('ok', say.mentionsYou({ name: item.author_name }), `note ${item.id}`, {
+        word: say.show,
         act: () => openNote(ui, item.body.parent || item.id),
       });
   });

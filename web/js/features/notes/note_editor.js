@@ -1,6 +1,7 @@
 // The field in which a note, a reply or a change of one is written: @names with completion; what was written stays until the server has it.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
+import { say } from './later_words.js';
 import { completion, maxText, mentionsIn } from './threads.js';
 import { meIn } from './note_words.js';
 
@@ -41,6 +42,13 @@ export function leftOver(room, ids) {
 /** Moves the focus into the field, once it is drawn. */
 export const focusField = (key) => requestAnimationFrame(() => document.querySelector(`#note-field-${key}`)?.focus());
 
+function hint(left) {
+  if (left < 0) return say.tooMany({ n: -left });
+  if (left < 200) return say.charactersLeft({ n: left });
+  const [ctrl, enter] = [html`<kbd>${say.ctrl}</kbd>`, html`<kbd>${say.enter}</kbd>`];
+  return html`${say.atNames}<span class="note-keys"> · ${say.keysSend({ ctrl, enter })}</span>`;
+}
+
 /**
  * @param {object} world @param {object} what
  * @param {string} what.key of the draft; of letters, digits and "-"
@@ -74,7 +82,7 @@ export function noteEditor({ room, ui }, { key, label, word, save, cancel = null
       draft.value = empty;
       cancel?.();
     } catch (problem) {
-      set({ isSending: false, error: problem?.detail || 'The server refused it.' });
+      set({ isSending: false, error: problem?.detail || say.refused });
     }
   };
   const stop = () => {
@@ -95,11 +103,12 @@ export function noteEditor({ room, ui }, { key, label, word, save, cancel = null
   const list = `note-names-${key}`;
   return html`<div class="note-editor">
     <label class="note-label" for=${`note-field-${key}`}>${label}</label>
-    <textarea id=${`note-field-${key}`} rows="3" .value=${text} ?readonly=${isSending} aria-autocomplete="list" aria-controls=${names ? list : nothing} aria-activedescendant=${names ? `${list}-${chosen}` : nothing}
+    <textarea id=${`note-field-${key}`} rows="3" .value=${text} ?readonly=${isSending} aria-autocomplete="list"
+      aria-controls=${names ? list : nothing} aria-activedescendant=${names ? `${list}-${chosen}` : nothing}
       aria-describedby=${`note-hint-${key}`} @input=${look} @keydown=${onKey} @blur=${() => setTimeout(() => set({ names: null }), 200)}></textarea>
     ${
       names
-        ? html`<ul class="note-names" role="listbox" id=${list} aria-label="Members">${names.names.map(
+        ? html`<ul class="note-names" role="listbox" id=${list} aria-label=${say.members}>${names.names.map(
             (name, at) => html`<li role="option" id=${`${list}-${at}`} aria-selected=${at === chosen}
       @pointerdown=${(event) => {
         event.preventDefault();
@@ -109,7 +118,8 @@ export function noteEditor({ room, ui }, { key, label, word, save, cancel = null
         : nothing
     }
     ${error ? html`<p class="note-error" role="alert">${error}</p>` : nothing}
-    <p class="note-hint" id=${`note-hint-${key}`}>${isSending && room.link.value.state !== 'open' ? 'Kept, and sent when the connection is back' : left < 200 ? (left < 0 ? `${-left} characters too many` : `${left} characters left`) : html`@ names a member<span class="note-keys"> · <kbd>Ctrl</kbd> + <kbd>Enter</kbd> sends</span>`}</p>
-    <div class="note-buttons"><button class="note-send" ?disabled=${isSending || !text.trim() || left < 0} @click=${send}>${isSending ? 'Sending …' : word}</button>
-      ${cancel ? html`<button ?disabled=${isSending} @click=${stop}>Cancel</button>` : nothing}</div></div>`;
+    <p class="note-hint" id=${`note-hint-${key}`}>${isSending && room.link.value.state !== 'open' ? say.kept : hint(left)}</p>
+    <div class="note-buttons">
+      <button class="note-send" ?disabled=${isSending || !text.trim() || left < 0} @click=${send}>${isSending ? say.sending : word}</button>
+      ${cancel ? html`<button ?disabled=${isSending} @click=${stop}>${say.cancel}</button>` : nothing}</div></div>`;
 }

@@ -2,10 +2,15 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { heightOver } from '../../room/obliques.js';
 import { isResolved, pinStrength, pointOf, threadsOf } from './threads.js';
+import { say } from './later_words.js';
+import { listed } from '../../parts/format.js';
 import { toPicture } from '../../parts/vec.js';
 import { variables } from '../../parts/mount.js';
 
 const mostPins = 200; // nearest notes first beyond that, so that a picture stays one
+
+const labelOf = ({ note, number, replies: { length: n }, strength }) =>
+  listed(say.pin({ number, name: note.author_name }), n && say.nReplies({ n }), strength < 1 && say.beside);
 
 /** @param {{room, ui}} world @param {{header: object|null, box: object, pane: number[], plane: object|null, tolerance: number}} place plane null: in space */
 export function notePins({ room, ui }, { header, box, pane, plane, tolerance }) {
@@ -39,7 +44,7 @@ export function notePins({ room, ui }, { header, box, pane, plane, tolerance }) 
       y,
       strength,
     }) => html`<button class="note-pin" tabindex="-1" data-note=${note.id} data-chosen=${ui.note.value === note.id} data-off=${strength < 1}
-    title=${`${note.author_name}: ${note.body.text.slice(0, 120)}`} aria-label=${`Note ${number} by ${note.author_name}${replies.length ? `, ${replies.length} replies` : ''}${strength < 1 ? ', beside this slice' : ''}`}
+    title=${say.pinIs({ name: note.author_name, text: note.body.text.slice(0, 120) })} aria-label=${labelOf({ note, number, replies, strength })}
     ${variables({ '--x': `${x.toFixed(1)}px`, '--y': `${y.toFixed(1)}px`, '--strength': String(strength.toFixed(2)), '--author': note.author_color })}
     @pointerdown=${keep} @pointerup=${keep} @dblclick=${keep} @keydown=${keep} @click=${() => open(note.id)}>${number}</button>`,
   )}</div>`;

@@ -1,4 +1,5 @@
 // The notes of a room as a text for people: what remains of them where the room was deleted. Loaded when it is asked for.
+import { say } from './later_words.js';
 import { threadsOf } from './threads.js';
 
 const placeOf = (anchor, plan) => {
@@ -9,9 +10,10 @@ const placeOf = (anchor, plan) => {
       .map((letter, axis) => `${letter} ${anchor.point_mm[axis].toFixed(1)}`)
       .join('  ')
       .concat(' mm');
-  return [region, point].filter(Boolean).join(', ') || 'the plan as a whole';
+  return [region, point].filter(Boolean).join(', ') || say.wholePlan;
 };
-const headOf = ({ author_name: name, created_ms: ms }) => `${name}, ${new Date(ms).toISOString().slice(0, 16).replace('T', ' ')} UTC`;
+const headOf = ({ author_name: name, created_ms: ms }) =>
+  say.byAt({ name, time: new Date(ms).toISOString().slice(0, 16).replace('T', ' ') });
 const indented = (text, by) =>
   text
     .split('\n')
@@ -21,10 +23,10 @@ const indented = (text, by) =>
 /** @param {object} room {id, planId, plan, rows: item rows of kind note} */
 export const notesText = ({ id, planId, plan, rows }) =>
   [
-    `Notes of the room ${id} on ${plan?.name ?? planId}`,
+    say.notesOfRoom({ room: id, plan: plan?.name ?? planId }),
     ...threadsOf(rows).map(({ note, number, replies }) =>
       [
-        `${number}. ${headOf(note)}, at ${placeOf(note.body.anchor, plan)}${note.body.resolved ? ', resolved' : ''}`,
+        (note.body.resolved ? say.noteAtResolved : say.noteAt)({ number, head: headOf(note), place: placeOf(note.body.anchor, plan) }),
         indented(note.body.text, '   '),
         ...replies.flatMap((reply) => [`   ${headOf(reply)}`, indented(reply.body.text, '      ')]),
       ].join('\n'),

@@ -7,6 +7,7 @@ import { authorsOf, filtered, isResolved, noFilter, pointOf, threadsOf } from '.
 import { crosshairPatch, shownImage } from '../../room/plan.js';
 import { position } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 import { beginWith, focusField, leftOver, noteEditor } from './note_editor.js';
 import { byline, mayChange, mayWrite, meIn, words } from './note_words.js';
 import { noteHere } from './feature.js';
@@ -16,15 +17,13 @@ const editing = signal(''); // id of the row that is being changed
 const deleting = signal(''); // id of the row whose deletion is to be confirmed
 let focusedFor = null; // the new note whose field has had the focus
 
-const regionName = (room, id) => room.plan.value.regions.find((region) => region.id === id)?.name ?? `${id} (not in this plan)`;
+const regionName = (room, id) => room.plan.value.regions.find((region) => region.id === id)?.name ?? say.notInPlan({ region: id });
 
 /** "L 1.0  P 2.0  S 3.0 mm", "Brain", "Plan". */
 function placeWords(room, anchor) {
-  if (!anchor) return 'The plan as a whole';
+  if (!anchor) return say.planAsWhole;
   return [anchor.region && regionName(room, anchor.region), anchor.point_mm && position(anchor.point_mm)].filter(Boolean).join(' · ');
 }
-
-const nReplies = ({ length }) => (length === 1 ? '1 reply' : `${length} replies`);
 
 export function notesTab(world) {
   const { room, ui } = world;
@@ -36,28 +35,29 @@ export function notesTab(world) {
   return html`${head(world)}${left(world, rows)}${threads.length ? filters(room, rows, threads) : nothing}
     ${
       shown.length
-        ? html`<ol class="notes" aria-label="Notes">${repeat(
+        ? html`<ol class="notes" aria-label=${say.notes}>${repeat(
             shown,
             ({ note }) => note.id,
             (thread) => item(world, thread, thread === opened),
           )}</ol>`
-        : html`<p class="empty">${threads.length ? 'No note passes the filter.' : 'No notes yet. A note stands at a point or a region, for everybody in the room.'}</p>`
+        : html`<p class="empty">${threads.length ? say.nonePasses : say.none}</p>`
     }`;
 }
 
 function head(world) {
   const { room, ui } = world;
   if (!mayWrite(room))
-    return html`<section class="block"><p class="note">${room.link.value.state === 'ended' ? 'The room has ended: its notes can be read here until you leave this page.' : 'As an observer you read notes; presenters and reviewers write them.'}</p></section>`;
+    return html`<section class="block"><p class="note">${room.link.value.state === 'ended' ? say.ended : say.observer}</p></section>`;
   const region = ui.region.value;
   const anchor = ui.newNote.value;
   if (!anchor)
-    return html`<section class="block note-new"><button @click=${() => noteHere(world)}>${icon('plus', 12)} Note at the crosshair <kbd>N</kbd></button>
+    return html`<section class="block note-new">
+      <button @click=${() => noteHere(world)}>${icon('plus', 12)} ${say.atCrosshair({ key: html`<kbd>N</kbd>` })}</button>
       ${
         region
           ? html`<button @click=${() => {
               ui.newNote.value = { region };
-            }}>${icon('plus', 12)} On ${regionName(room, region)}</button>`
+            }}>${icon('plus', 12)} ${say.onRegion({ region: regionName(room, region) })}</button>`
           : nothing
       }</section>`;
   if (focusedFor !== anchor) {
@@ -70,8 +70,8 @@ function head(world) {
   };
   return html`<section class="block">${noteEditor(world, {
     key: 'new',
-    label: `New note · ${placeWords(room, anchor)}`,
-    word: 'Add note',
+    label: say.newNote({ place: placeWords(room, anchor) }),
+    word: say.add,
     save,
     cancel: () => {
       ui.newNote.value = null;
@@ -87,8 +87,9 @@ function left({ room, ui }, rows) {
       drop();
       noteHere({ room, ui });
     };
-    return html`<section class="block" role="status"><p class="note-error">The note that you wrote this for was deleted.</p><p class="note-words">${text}</p>
-      <div class="note-buttons">${mayWrite(room) && !ui.newNote.value ? html`<button @click=${again}>As a new note</button>` : nothing}<button @click=${drop}>Discard</button></div></section>`;
+    return html`<section class="block" role="status"><p class="note-error">${say.lostNote}</p><p class="note-words">${text}</p>
+      <div class="note-buttons">${mayWrite(room) && !ui.newNote.value ? html`<button @click=${again}>${say.asNew}</button>` : nothing}
+        <button @click=${drop}>${say.discard}</button></div></section>`;
   });
 }
 
@@ -98,15 +99,17 @@ function filters(room, rows, threads) {
   };
   const { text, author, who, hasResolved } = filter.value;
   const nResolved = threads.filter(isResolved).length;
-  return html`<section class="block note-filter" role="group" aria-label="Which notes">
-    <input type="search" placeholder="Filter" aria-label="Text in notes" .value=${text} @input=${({ target }) => set({ text: target.value })}>
-    <select aria-label="Whose notes" @change=${({ target }) => set({ who: target.value })}>${[
-      ['all', 'All'],
-      ['mine', 'Mine'],
-      ['mentions', 'Mention me'],
+  return html`<section class="block note-filter" role="group" aria-label=${say.which}>
+    <input type="search" placeholder=${say.filter} aria-label=${say.textIn} .value=${text} @input=${({ target }) => set({ text: target.value })}>
+    <select aria-label=${say.whose} @change=${({ target }) => set({ who: target.value })}>${[
+      ['all', say.all],
+      ['mine', say.mine],
+      ['mentions', say.mentionMe],
     ].map(([id, name]) => html`<option value=${id} ?selected=${who === id}>${name}</option>`)}</select>
-    <select aria-label="Author" @change=${({ target }) => set({ author: target.value })}><option value="" ?selected=${!author}>By anybody</option>${authorsOf(rows).map((name) => html`<option value=${name} ?selected=${author === name}>${name}</option>`)}</select>
-    <label class="note-check"><input type="checkbox" .checked=${hasResolved} @change=${({ target }) => set({ hasResolved: target.checked })}> Resolved${nResolved ? ` (${nResolved})` : ''}</label></section>`;
+    <select aria-label=${say.author} @change=${({ target }) => set({ author: target.value })}><option value="" ?selected=${!author}>${say.byAnybody}</option>
+      ${authorsOf(rows).map((name) => html`<option value=${name} ?selected=${author === name}>${name}</option>`)}</select>
+    <label class="note-check"><input type="checkbox" .checked=${hasResolved} @change=${({ target }) => set({ hasResolved: target.checked })}>
+      ${nResolved ? say.resolvedCount({ n: nResolved }) : say.resolved}</label></section>`;
 }
 
 function item(world, thread, isOpen) {
@@ -118,22 +121,23 @@ function item(world, thread, isOpen) {
     ui.note.value = isOpen ? '' : note.id;
     deleting.value = '';
   };
+  const answer = (text, mentions) => room.items.put('note', { text, mentions, parent: note.id });
   return html`<li class=${classMap({ open: isOpen, resolved: isDone })} data-note=${note.id}>
     <button class="note-head" aria-expanded=${isOpen} aria-controls=${isOpen ? id : nothing} @click=${toggle}>
-      <span class="note-number">${isDone ? icon('check', 12) : number}<span class="hidden">${isDone ? ` Note ${number}, resolved` : ''}</span></span>
+      <span class="note-number">${isDone ? icon('check', 12) : number}<span class="hidden">${isDone ? html` ${say.noteResolved({ number })}` : ''}</span></span>
       <span class="note-line"><span class="note-text">${words(note)}</span>
-        <span class="note-facts">${byline(note)}${replies.length ? html`<span class="dim">${nReplies(replies)}</span>` : nothing}</span></span></button>
+        <span class="note-facts">${byline(note)}${replies.length ? html`<span class="dim">${say.nReplies({ n: replies.length })}</span>` : nothing}</span></span></button>
     ${
       isOpen
         ? html`<div class="note-thread" id=${id}><p class="dim note-place">${placeWords(room, note.body.anchor)}</p>${actions(world, thread)}
       ${editing.value === note.id ? editor(world, note) : nothing}
-      <ol class="note-replies" aria-label="Replies">${repeat(
+      <ol class="note-replies" aria-label=${say.replies}>${repeat(
         replies,
         (reply) => reply.id,
         (reply) => html`<li data-note=${reply.id}>${byline(reply)}
         ${editing.value === reply.id ? editor(world, reply) : html`<p class="note-words">${words(reply)}</p>${rowActions(world, reply, [])}`}</li>`,
       )}</ol>
-      ${mayWrite(room) ? noteEditor(world, { key: `re-${note.id}`, label: 'Reply', word: 'Reply', save: (text, mentions) => room.items.put('note', { text, mentions, parent: note.id }) }) : nothing}</div>`
+      ${mayWrite(room) ? noteEditor(world, { key: `re-${note.id}`, label: say.reply, word: say.reply, save: answer }) : nothing}</div>`
         : nothing
     }</li>`;
 }
@@ -152,8 +156,11 @@ function actions(world, thread) {
       at: event.timeStamp,
     });
   };
-  return html`<div class="note-buttons">${point ? html`<button ?disabled=${!room.canChange.value} title=${isForAll ? 'Moves the crosshair of the room, for everybody who follows' : 'Moves your crosshair; nobody else is moved'} @click=${jump}>${icon('target', 12)} ${isForAll ? 'Jump, for everybody' : 'Jump, in my view'}</button>` : nothing}
-    ${mayChange(room, note) ? html`<button @click=${() => change(world, note, { resolved: !note.body.resolved })}>${icon('check', 12)} ${note.body.resolved ? 'Reopen' : 'Resolve'}</button>` : nothing}
+  const jumpButton = () => html`<button ?disabled=${!room.canChange.value} title=${isForAll ? say.jumpAllIs : say.jumpOwnIs}
+      @click=${jump}>${icon('target', 12)} ${isForAll ? say.jumpAll : say.jumpOwn}</button>`;
+  const resolve = () => change(world, note, { resolved: !note.body.resolved });
+  return html`<div class="note-buttons">${point ? jumpButton() : nothing}
+    ${mayChange(room, note) ? html`<button @click=${resolve}>${icon('check', 12)} ${note.body.resolved ? say.reopen : say.resolve}</button>` : nothing}
     ${rowActions(world, note, replies)}</div>`;
 }
 
@@ -174,8 +181,10 @@ function rowActions(world, row, replies) {
       ui.notify('err', problem.detail, 'notes');
     }
   };
-  const sure = replies.length ? `Delete with ${nReplies(replies)}?` : 'Delete for everybody?';
-  return html`<span class="note-row"><button class="link" @click=${edit}>Edit</button><button class=${classMap({ link: true, sure: deleting.value === row.id })} @click=${remove}>${deleting.value === row.id ? sure : 'Delete'}</button></span>`;
+  const isAsked = deleting.value === row.id;
+  const sure = replies.length ? say.deleteWith({ n: replies.length }) : say.deleteAll;
+  return html`<span class="note-row"><button class="link" @click=${edit}>${say.edit}</button><button class=${classMap({ link: true, sure: isAsked })}
+    @click=${remove}>${isAsked ? sure : say.delete}</button></span>`;
 }
 
 /** Writes another body; a refusal is told. */
@@ -193,17 +202,15 @@ function editor(world, row) {
   const save = (text, mentions) =>
     room.items.put('note', { ...row.body, text, mentions }, bases.get(row.id) ?? row).catch((problem) => {
       bases.delete(row.id);
-      throw problem.type === '/problems/conflict'
-        ? { detail: `${problem.detail}. The newest text stands above; save again to replace it.` }
-        : problem;
+      throw problem.type === '/problems/conflict' ? { detail: say.conflict({ detail: problem.detail }) } : problem;
     });
   if (!bases.has(row.id)) bases.set(row.id, row);
-  return html`${bases.get(row.id) !== row ? html`<p class="note-error" role="status">Changed by ${row.changed_name} meanwhile.</p>` : nothing}${noteEditor(
+  return html`${bases.get(row.id) !== row ? html`<p class="note-error" role="status">${say.changedMeanwhile({ name: row.changed_name })}</p>` : nothing}${noteEditor(
     world,
     {
       key: `edit-${row.id}`,
-      label: 'Change the text',
-      word: 'Save',
+      label: say.change,
+      word: say.save,
       save,
       before: row.body.mentions,
       cancel: () => {
