@@ -1,35 +1,35 @@
 // The checklist of a plan review, and the words of the record. Pure.
+import { say } from './later_words.js';
 
 /** [id, words]: an entry's words are kept with what members say about it. */
 export const checklist = [
-  ['identity', 'Plan, patient position and treated side are those of the prescription'],
-  ['registration', 'Images are registered, and oriented as the patient lies'],
-  ['regions', 'Targets and organs at risk are complete and rightly named'],
-  ['boron', 'Boron concentrations, ratios and biological weights are as prescribed'],
-  ['dose', 'Dose is plausible by component and in total; unit and fraction are clear'],
-  ['constraints', 'Constraints of organs at risk and the coverage of the target are met'],
-  ['beam', 'Beam, aperture, gap and irradiation time are as planned'],
-  ['positioning', 'The position can be set up, and checked at the beam'],
-  ['deviations', 'Deviations from the protocol are named and justified'],
+  ['identity', say.identity],
+  ['registration', say.registration],
+  ['regions', say.regions],
+  ['boron', say.boron],
+  ['dose', say.dose],
+  ['constraints', say.constraints],
+  ['beam', say.beam],
+  ['positioning', say.positioning],
+  ['deviations', say.deviations],
 ];
 export const states = [
-  ['open', 'Open'],
-  ['ok', 'OK'],
-  ['issue', 'Issue'],
+  ['open', say.open],
+  ['ok', say.ok],
+  ['issue', say.issue],
 ];
 export const decisions = [
-  ['accept', 'Accept'],
-  ['accept-with-changes', 'Accept with changes'],
-  ['reject', 'Reject'],
-  ['defer', 'Defer'],
+  ['accept', say.accept],
+  ['accept-with-changes', say.acceptWithChanges],
+  ['reject', say.reject],
+  ['defer', say.defer],
 ];
 export const meanings = [
-  ['reviewed', 'Reviewed'],
-  ['approved', 'Approved'],
-  ['seen', 'Seen'],
+  ['reviewed', say.reviewed],
+  ['approved', say.approved],
+  ['seen', say.seen],
 ];
 export const wordOf = (words, id) => words.find(([word]) => word === id)?.[1] ?? id;
-export const legal = 'Names are as members gave them; these lines are not electronic signatures in the legal sense.';
 
 const entryOf = (row) => row.body.entry || row.id;
 

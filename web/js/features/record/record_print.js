@@ -2,12 +2,12 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
 import { fetchRecord } from '../../net/record.js';
-import { decisions, entriesOf, legal, linesOf, meanings, states, wordOf } from './checklist.js';
+import { decisions, entriesOf, linesOf, meanings, states, wordOf } from './checklist.js';
 import { printable } from '../../room/exports.js';
 import { number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
-const research = 'Research use only. Not a medical device; not for diagnosis or treatment decisions.';
 const shown = signal(null); // {record, pictures: [{name, url}]}
 const time = (ms) => new Date(ms).toISOString().slice(0, 16).replace('T', ' ');
 
@@ -36,31 +36,37 @@ function recordDialog(world) {
     for (const { url } of shown.peek().pictures) if (url) URL.revokeObjectURL(url);
     shown.value = null;
   };
-  return html`<section class="printout record-print" role="dialog" aria-modal="true" tabindex="-1" aria-label="Record to print">
-    <div class="printout-bar"><b>Record to print</b><span class="grow"></span><button class="primary" @click=${printable(world, 'printed-record', `record of room ${shown.value.record.room}`)}>${icon('print')}<span>Print or save as PDF</span></button>
-      <button class="icon-button" aria-label="Close" @click=${close}>${icon('close')}</button></div>${sheet(world, shown.value)}</section>`;
+  const print = printable(world, 'printed-record', `record of room ${shown.value.record.room}`); // in the audit's language
+  return html`<section class="printout record-print" role="dialog" aria-modal="true" tabindex="-1" aria-label=${say.toPrint}>
+    <div class="printout-bar"><b>${say.toPrint}</b><span class="grow"></span>
+      <button class="primary" @click=${print}>${icon('print')}<span>${say.print}</span></button>
+      <button class="icon-button" aria-label=${say.close} @click=${close}>${icon('close')}</button></div>${sheet(world, shown.value)}</section>`;
 }
 
 function sheet({ printout }, { record, pictures }) {
   const figures = [
-    ...printout.entries.value.map(({ url, caption }) => ({ url, name: caption || 'Chosen snapshot' })),
+    ...printout.entries.value.map(({ url, caption }) => ({ url, name: caption || say.chosen })),
     ...pictures.filter(({ url }) => url),
   ];
+  const figure = ({ name, url }, at) =>
+    html`<figure><img src=${url} alt=${name}><figcaption><b>${say.figure({ n: at + 1 })}</b> ${name}</figcaption></figure>`;
+  const made = { plan: record.plan, revision: record.plan_revision.slice(0, 12), room: record.room, time: time(record.made_ms) };
   return html`<article class="sheet"><div class="sheet-body">${head(record)}${parts(record)}
-      ${figures.length ? html`<h2>Pictures</h2>${figures.map(({ name, url }, at) => html`<figure><img src=${url} alt=${name}><figcaption><b>Figure ${at + 1}.</b> ${name}</figcaption></figure>`)}` : nothing}</div>
-    <footer class="sheet-foot"><div>Plan ${record.plan}, revision ${record.plan_revision.slice(0, 12)} · room ${record.room} · made ${time(record.made_ms)} UTC<br><b>${research}</b></div></footer></article>`;
+      ${figures.length ? html`<h2>${say.pictures}</h2>${figures.map(figure)}` : nothing}</div>
+    <footer class="sheet-foot"><div>${say.foot(made)}<br><b>${say.research}</b></div></footer></article>`;
 }
 
 const row = (name, value) => html`<tr><th scope="row">${name}</th><td>${value}</td></tr>`;
 
 function head(record) {
   const { audit } = record;
-  return html`<h1>Record of a plan review</h1><table class="facts"><tbody>
-    ${row('Plan', html`<code>${record.plan}</code>`)}
-    ${row('Plan revision', html`<code>${record.plan_revision}</code><br>SHA-256 over the names and contents of ${record.n_files} files`)}
-    ${row('Room', html`<code>${record.room}</code>, made ${time(record.created_ms)} UTC; scene revision ${record.revision}`)}
-    ${row('Audit', html`row ${audit.rows}, head <code>${audit.head}</code>`)}
-    ${row('Program', `Beamroom ${record.server}; record version ${record.version}`)}</tbody></table>`;
+  const code = (text) => html`<code>${text}</code>`;
+  return html`<h1>${say.title}</h1><table class="facts"><tbody>
+    ${row(say.plan, code(record.plan))}
+    ${row(say.planRevision, html`${code(record.plan_revision)}<br>${say.hashOver({ n: record.n_files })}`)}
+    ${row(say.room, say.roomIs({ room: code(record.room), time: time(record.created_ms), revision: record.revision }))}
+    ${row(say.audit, say.auditIs({ row: audit.rows, head: code(audit.head) }))}
+    ${row(say.program, say.programIs({ server: record.server, version: record.version }))}</tbody></table>`;
 }
 
 /** Items of the record as the page's rows have them. */
@@ -69,29 +75,28 @@ const asRows = (list, kind) => list.map((item) => ({ ...item, kind, body: item }
 function parts(record) {
   const rows = [...asRows(record.checklist, 'check'), ...asRows(record.decisions, 'decision'), ...asRows(record.signatures, 'signature')];
   const revisions = [...new Set([record.plan_revision, ...rows.map(({ body }) => body.plan_revision).reverse()])];
-  return html`${revisions.map((revision, at) => html`${at ? html`<h2>Earlier revision <code>${revision.slice(0, 12)}</code></h2><p class="values">Written before the plan’s files were changed.</p>` : nothing}${under(rows, revision, at > 0)}`)}
+  const title = (revision) => html`<h2>${say.earlierRevision({ revision: html`<code>${revision.slice(0, 12)}</code>` })}</h2>
+    <p class="values">${say.writtenBefore}</p>`;
+  return html`${revisions.map((revision, at) => html`${at ? title(revision) : nothing}${under(rows, revision, at > 0)}`)}
     ${accepted(record)}${present(record)}${notes(record)}`;
 }
 
 function under(rows, revision, isEarlier) {
   const checks = entriesOf(rows, revision).filter((entry) => entry.row || !isEarlier);
   const [decided, signed] = [linesOf(rows, 'decision', revision), linesOf(rows, 'signature', revision)];
-  const by = ({ row: { changed_name: name, changed_ms: ms } }) => `${name}, ${time(ms)}`;
-  return html`<h2>Decision</h2>${
+  const by = ({ row: { changed_name: name, changed_ms: ms } }) => say.byAt({ name, time: time(ms) });
+  const corrected = (text, { isCorrected }) => (isCorrected ? say.correctedBelow({ text }) : text);
+  return html`<h2>${say.decision}</h2>${
     decided.length
       ? table(
-          ['Decision', 'In words', 'By, at (UTC)'],
+          [say.decision, say.inWords, say.byAtUtc],
           [20, 50, 30],
-          decided.map((line) => [
-            html`${wordOf(decisions, line.row.body.decision)}${line.isCorrected ? ' (corrected below)' : ''}`,
-            line.row.body.text,
-            by(line),
-          ]),
+          decided.map((line) => [corrected(wordOf(decisions, line.row.body.decision), line), line.row.body.text, by(line)]),
         )
-      : html`<p class="values">None.</p>`
+      : html`<p class="values">${say.none}</p>`
   }
-    <h2>Checklist</h2>${table(
-      ['Entry', 'State', 'What is wrong', 'By, at (UTC)'],
+    <h2>${say.checklist}</h2>${table(
+      [say.entry, say.state, say.whatIsWrong, say.byAtUtc],
       [32, 9, 34, 25],
       checks.map((entry) => [
         entry.text,
@@ -100,73 +105,75 @@ function under(rows, revision, isEarlier) {
         entry.row ? by(entry) : '',
       ]),
     )}
-    <h2>Signatures</h2>${
+    <h2>${say.signatures}</h2>${
       signed.length
         ? table(
-            ['Name', 'Meaning', 'Role', 'By, at (UTC)'],
+            [say.name, say.meaning, say.role, say.byAtUtc],
             [38, 16, 16, 30],
             signed.map((line) => [
-              html`${line.row.body.name}${line.isCorrected ? ' (corrected below)' : ''}`,
+              corrected(line.row.body.name, line),
               wordOf(meanings, line.row.body.meaning),
               line.row.body.role,
               by(line),
             ]),
           )
-        : html`<p class="values">None.</p>`
-    }<p class="values">${legal}</p>`;
+        : html`<p class="values">${say.none}</p>`
+    }<p class="values">${say.legal}</p>`;
 }
 
 /** @param {number[]} widths of the columns, in per cent: by their contents a long text would leave a few letters for a name */
 const table = (names, widths, rows) =>
-  html`<table class="record-table"><colgroup>${widths.map((width) => html`<col width=${`${width}%`}>`)}</colgroup><thead><tr>${names.map((name) => html`<th scope="col">${name}</th>`)}</tr></thead><tbody>${rows.map(([first, ...rest]) => html`<tr><th scope="row">${first}</th>${rest.map((value) => html`<td>${value}</td>`)}</tr>`)}</tbody></table>`;
+  html`<table class="record-table"><colgroup>${widths.map((width) => html`<col width=${`${width}%`}>`)}</colgroup>
+    <thead><tr>${names.map((name) => html`<th scope="col">${name}</th>`)}</tr></thead>
+    <tbody>${rows.map(([first, ...rest]) => html`<tr><th scope="row">${first}</th>${rest.map((value) => html`<td>${value}</td>`)}</tr>`)}</tbody></table>`;
 
 function accepted({ acceptances: rows = [] }) {
   if (!rows.length) return nothing;
-  const reason = {
-    'registered-elsewhere': 'registered elsewhere',
-    'same-session': 'same session and couch',
-    'compared-on-anatomy': 'compared on the anatomy',
-    other: 'other',
+  const reasons = {
+    'registered-elsewhere': say.registeredElsewhere,
+    'same-session': say.sameSession,
+    'compared-on-anatomy': say.comparedOnAnatomy,
+    other: say.other,
   };
-  return html`<h2>Parts used though they do not fit</h2>${table(
-    ['Parts', 'Fact', 'In words', 'By, at (UTC)'],
+  return html`<h2>${say.partsUsed}</h2>${table(
+    [say.parts, say.fact, say.inWords, say.byAtUtc],
     [18, 34, 28, 20],
     rows.map((row) => [
-      `${row.thing} with ${row.with}${row.counts ? '' : ' (void: other files)'}`,
+      (row.counts ? say.partWith : say.partWithVoid)({ part: row.thing, other: row.with }),
       row.fact,
-      `${reason[row.reason] ?? row.reason}: ${row.words}`,
-      `${row.author_name}, ${time(row.created_ms)}`,
+      (reasons[row.reason] ?? say.reasonWords)(row),
+      say.byAt({ name: row.author_name, time: time(row.created_ms) }),
     ]),
   )}`;
 }
 
-const present = ({ present: stays, n_present_dropped: nDropped }) => html`<h2>Present</h2>${table(
-  ['Name', 'Role', 'From (UTC)', 'To'],
+const present = ({ present: stays, n_present_dropped: nDropped }) => html`<h2>${say.present}</h2>${table(
+  [say.name, say.role, say.from, say.to],
   [40, 16, 22, 22],
   stays.map(({ name, role, entered_ms: from, left_ms: to, here }) => [
     name,
     role,
     time(from),
-    to ? time(to) : here ? 'still there' : 'until the server ended',
+    to ? time(to) : here ? say.stillThere : say.untilEnded,
   ]),
 )}
-  ${nDropped ? html`<p class="values">${nDropped} earlier stays are not kept.</p>` : nothing}`;
+  ${nDropped ? html`<p class="values">${say.notKept({ n: nDropped })}</p>` : nothing}`;
 
 function notes({ notes: list }) {
   if (!list.length) return nothing;
   const place = ({ anchor, parent }) =>
     parent
-      ? 'reply'
+      ? say.reply
       : [anchor?.region, anchor?.point_mm && `(${anchor.point_mm.map((mm) => number(mm, 1)).join(', ')})`].filter(Boolean).join(' ') ||
-        'plan';
-  return html`<h2>Notes</h2>${table(
-    ['Note', 'Place, LPS mm', 'By, at (UTC)', 'Resolved'],
+        say.wholePlan;
+  return html`<h2>${say.notes}</h2>${table(
+    [say.note, say.placeLps, say.byAtUtc, say.resolved],
     [42, 20, 26, 12],
     list.map((note) => [
       note.text,
       place(note),
-      `${note.author_name}, ${time(note.created_ms)}`,
-      note.parent ? '' : note.resolved ? 'yes' : 'no',
+      say.byAt({ name: note.author_name, time: time(note.created_ms) }),
+      note.parent ? '' : note.resolved ? say.yes : say.no,
     ]),
   )}`;
 }
