@@ -5,14 +5,14 @@ import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import { basename, dirname, join, normalize } from 'node:path';
 import { ancestor } from 'acorn-walk';
 import { parse } from 'acorn';
+import { pathToFileURL } from 'node:url';
 
-const root = process.argv[2] ?? '.';
 const top = 'web/js';
 const entry = `${top}/main.js`;
 const mechanism = `${top}/parts/sentences.js`;
 const readAttributes = ['title', 'aria-label', 'aria-description', 'aria-valuetext', 'aria-roledescription', 'placeholder', 'alt', 'label'];
 const units =
-  /\b(mm|cm|dm|Gy|HU|px|keV|MeV|eV|ppm|ug|ml|kg|min|ms|kB|MB|GB|SUV|Beamroom|CT|MR|PET|DICOM|RTSTRUCT|SEG|NIfTI|NRRD|CSV|PNG|JSON|PDF|RBE|CBE|OER)\b|&\w+;/g;
+  /\b(mm|cm|dm|Gy|HU|px|keV|MeV|eV|ppm|ug|ml|kg|min|ms|kB|MB|GB|SUV|Beamroom|CT|MR|PET|DICOM|RTSTRUCT|SEG|NIfTI|NRRD|CSV|PNG|JSON|PDF|GLB|PLY|STL|fps|[LRAPSI]{2,3}|RBE|CBE|OER)\b|&\w+;/g;
 
 /** "path", "path text": files and strings. @returns {{files: Set<string>, strings: Map<string, string[]>}} */
 function readAllowed(text) {
@@ -25,13 +25,13 @@ function readAllowed(text) {
   return { files: new Set(lines.filter((line) => !line.includes(': '))), strings };
 }
 
-const scripts = (folder) =>
+const scriptsIn = (root, folder) =>
   readdirSync(join(root, folder), { withFileTypes: true }).flatMap((one) =>
-    one.isDirectory() ? scripts(`${folder}/${one.name}`) : one.name.endsWith('.js') ? [`${folder}/${one.name}`] : [],
+    one.isDirectory() ? scriptsIn(root, `${folder}/${one.name}`) : one.name.endsWith('.js') ? [`${folder}/${one.name}`] : [],
   );
 
-/** Letters but units, and letters that stand alone (L R A P S I, keys, axes). */
-const isRead = (text) => /\p{L}\p{L}/u.test(text.replace(units, ' '));
+/** True of letters other than units, and letters that stand alone (L R A P S I, keys, axes). */
+export const isRead = (text) => /\p{L}\p{L}/u.test(text.replace(units, ' '));
 /** A name for the program (a class, a field, an icon) is one word without a capital at its beginning. */
 const isSentence = (text) => isRead(text) && (/\p{L}\p{L}+[,:;.]? [\p{L}({]/u.test(text) || /^\p{Lu}\p{Ll}+([ .,:…]|$)/u.test(text.trim()));
 
@@ -67,12 +67,14 @@ function placesOf(quasis) {
   return { texts, values };
 }
 
-const skipped = /^(querySelector|querySelectorAll|closest|matches|import|setAttribute|getAttribute|styled|error|warn|debug)$/;
+const skipped =
+  /^(matchMedia|startsWith|endsWith|includes|split|join|querySelector|querySelectorAll|closest|matches|import|setAttribute|getAttribute|styled|error|warn|debug)$/;
 /** True of a text that never reaches a person: a key of an event, a selector, a name that is compared, an error of the program. */
 function isForProgram(parents) {
   const [own, parent, above] = parents;
   if (parent.type === 'BinaryExpression' && parent.operator !== '+') return true;
   if (parent.type === 'Property' && parent.key === own) return true;
+  if (/^beamroom /.test(own.value ?? '')) return true; // what the browser keeps
   if (parent.type === 'MemberExpression' || parent.type === 'SwitchCase' || parent.source === own) return true;
   if (parents.some(({ callee }) => skipped.test(callee?.property?.name ?? callee?.name ?? ''))) return true;
   return parent.type === 'ArrayExpression' && above?.type === 'MemberExpression'; // ['one', 'two'].includes(…)
@@ -137,88 +139,119 @@ function tableOf(tree) {
   return table;
 }
 
-const trees = new Map();
-const sources = new Map();
-for (const path of scripts(top)) {
-  sources.set(path, readFileSync(join(root, path), 'utf8'));
-  trees.set(path, parse(sources.get(path), { ecmaVersion: 'latest', sourceType: 'module', locations: true }));
-}
-const faults = [];
-const tables = new Map();
-for (const [path, tree] of trees) {
-  const table = path === mechanism ? null : tableOf(tree);
-  if (table) tables.set(path, table);
-}
-
-const rules = join(root, 'tests/page_words.txt');
-const allowed = readAllowed(existsSync(rules) ? readFileSync(rules, 'utf8') : '');
-const folderOf = (path) =>
-  dirname(path)
-    .replace(`${top}/`, '')
-    .replace(/^features\//, '')
-    .replace(top, 'page');
-const groups = new Map();
-for (const [path, { group }] of tables) {
-  const own = folderOf(path);
-  if (basename(path) === 'words.js' ? group !== own : !group.startsWith(`${own.split('/')[0]}.`) || !path.endsWith('_words.js'))
-    faults.push(`${path}: its group is "${group}"`);
-  if (groups.has(group)) faults.push(`${path}: ${groups.get(group)} has the group "${group}"`);
-  groups.set(group, path);
+/** The scripts of a tree, parsed, their tables, and what is left out. */
+function readPage(root) {
+  const scripts = scriptsIn(root, top).map((path) => {
+    const source = readFileSync(join(root, path), 'utf8');
+    return { path, source, tree: parse(source, { ecmaVersion: 'latest', sourceType: 'module', locations: true }) };
+  });
+  const found = scripts.filter(({ path }) => path !== mechanism).map(({ path, tree }) => [path, tableOf(tree)]);
+  const rules = join(root, 'tests/page_words.txt');
+  return {
+    scripts: new Map(scripts.map((script) => [script.path, script])),
+    tables: new Map(found.filter(([, table]) => table)),
+    allowed: readAllowed(existsSync(rules) ? readFileSync(rules, 'utf8') : ''),
+  };
 }
 
-/** Imports with their names. @returns {{path: string, names: [string, string][]}[]} the table's name and its own */
-const importsOf = (path) =>
-  trees
-    .get(path)
-    .body.filter(({ source }) => source)
-    .map(({ source, specifiers = [], loc }) => ({
+/** What a script imports at once, with the names there and here. @returns {{path: string, names: [string, string][]}[]} */
+const importsOf = ({ path, tree }) =>
+  tree.body
+    .filter(({ source }) => source)
+    .map(({ source, specifiers = [] }) => ({
       path: normalize(join(dirname(path), source.value)),
       names: specifiers.map(({ imported, local }) => [imported?.name ?? '*', local.name]),
-      line: loc.start.line,
     }));
 
-const used = new Map([...tables.keys()].map((path) => [path, new Set()]));
-for (const [path, tree] of trees)
-  for (const { path: other, names } of importsOf(path)) {
-    const table = tables.get(other);
-    for (const [, own] of table ? names : []) {
-      ancestor(tree, {
-        MemberExpression({ object, property, computed, loc }) {
-          if (object.type !== 'Identifier' || object.name !== own) return;
-          const keys = computed ? (property.type === 'Literal' ? [property.value] : [...table.keys.keys()]) : [property.name];
-          for (const key of keys) {
-            used.get(other).add(key);
-            if (!table.keys.has(key)) faults.push(`${path}:${loc.start.line}: ${other} has no "${key}"`);
-          }
-        },
-      });
-    }
+/** The group of a table is its folder; what is loaded later has a name behind it. */
+function groupFaults({ tables }) {
+  const faults = [];
+  const groups = new Map();
+  for (const [path, { group }] of tables) {
+    const own =
+      dirname(path)
+        .slice(top.length + 1)
+        .replace(/^features\//, '')
+        .replaceAll('/', '.') || 'page';
+    const isRight = basename(path) === 'words.js' ? group === own : path.endsWith('_words.js') && group.startsWith(`${own}.`);
+    if (!isRight) faults.push(`${path}: its group is "${group}", not "${own}" or, for ..._words.js, "${own}.…"`);
+    if (groups.has(group)) faults.push(`${path}: ${groups.get(group)} has the group "${group}"`);
+    groups.set(group, path);
   }
-for (const [path, { keys }] of tables)
-  for (const [key, line] of keys) if (!used.get(path).has(key)) faults.push(`${path}:${line}: nothing reads "${key}"`);
-
-const atOnce = new Set();
-const visit = (path, from) => {
-  if (tables.has(path) && basename(path) !== 'words.js') faults.push(`${from} is loaded at once, and imports ${path}`);
-  if (atOnce.has(path) || !trees.has(path)) return;
-  atOnce.add(path);
-  for (const { path: other } of importsOf(path)) visit(other, path);
-};
-visit(entry, '');
-
-let n = 0;
-for (const [path, tree] of trees) {
-  if (tables.has(path)) continue;
-  const strings = allowed.strings.get(path) ?? [];
-  const found = readIn(sources.get(path), tree);
-  const left = found.filter(({ text }) => !strings.includes(text));
-  n += left.length;
-  for (const text of strings) if (!found.some((one) => one.text === text)) faults.push(`${rules}: ${path} has no "${text}" any more`);
-  if (allowed.files.has(path) && !left.length) faults.push(`${rules}: ${path} has its sentences in a table: take it off`);
-  if (!allowed.files.has(path))
-    faults.push(...left.map(({ line, text }) => `${path}:${line}: stands outside of a table of words: ${text}`));
+  return faults;
 }
-for (const path of allowed.files) if (!trees.has(path)) faults.push(`${rules}: ${path} is not there`);
-for (const fault of faults) console.log(fault);
-if (process.env.COUNT) console.log(`${n} texts outside, ${[...tables.values()].reduce((sum, { keys }) => sum + keys.size, 0)} in tables`);
-process.exitCode = faults.length ? 1 : 0;
+
+function keyFaults({ scripts, tables }) {
+  const faults = [];
+  const used = new Map([...tables.keys()].map((path) => [path, new Set()]));
+  const look = (script, other, own) => {
+    const { keys } = tables.get(other);
+    ancestor(script.tree, {
+      MemberExpression({ object, property, computed, loc }) {
+        if (object.type !== 'Identifier' || object.name !== own) return;
+        const read = !computed ? [property.name] : property.type === 'Literal' ? [property.value] : [...keys.keys()];
+        for (const key of read) {
+          used.get(other).add(key);
+          if (!keys.has(key)) faults.push(`${script.path}:${loc.start.line}: ${other} has no "${key}"`);
+        }
+      },
+    });
+  };
+  for (const script of scripts.values())
+    for (const { path, names } of importsOf(script)) if (tables.has(path)) for (const [, own] of names) look(script, path, own);
+  for (const [path, { keys }] of tables)
+    for (const [key, line] of keys) if (!used.get(path).has(key)) faults.push(`${path}:${line}: nothing reads "${key}"`);
+  return faults;
+}
+
+function laterFaults({ scripts, tables }) {
+  const faults = [];
+  const atOnce = new Set();
+  const visit = (path, from) => {
+    if (tables.get(path)?.group.includes('.')) faults.push(`${from} is loaded at once, and imports ${path}`);
+    if (atOnce.has(path) || !scripts.has(path)) return;
+    atOnce.add(path);
+    for (const { path: other } of importsOf(scripts.get(path))) visit(other, path);
+  };
+  visit(entry, '');
+  return faults;
+}
+
+/** What stands outside of tables, without the strings that are left out. @returns {Map<string, {line: number, text: string}[]>} by path */
+function outsideOf({ scripts, tables, allowed }) {
+  const own = [...scripts.values()].filter(({ path }) => !tables.has(path) && path !== mechanism);
+  return new Map(
+    own.map(({ path, source, tree }) => [path, readIn(source, tree).filter(({ text }) => !allowed.strings.get(path)?.includes(text))]),
+  );
+}
+
+function textFaults(page) {
+  const { scripts, tables, allowed } = page;
+  const rules = 'tests/page_words.txt';
+  const faults = [];
+  for (const [path, found] of outsideOf(page)) {
+    if (!allowed.files.has(path))
+      faults.push(...found.map(({ line, text }) => `${path}:${line}: stands outside of a table of words: ${text}`));
+    else if (!found.length) faults.push(`${rules}: ${path} has its sentences in a table: take it off`);
+  }
+  for (const [path, strings] of allowed.strings) {
+    const { source = '', tree } = scripts.get(path) ?? {};
+    const found = tree ? readIn(source, tree) : [];
+    for (const text of strings) if (!found.some((one) => one.text === text)) faults.push(`${rules}: ${path} has no "${text}" any more`);
+  }
+  for (const path of allowed.files) if (!scripts.has(path) || tables.has(path)) faults.push(`${rules}: ${path} is not there, or a table`);
+  return faults;
+}
+
+/** The texts of the files whose sentences do not all stand in a table yet, {} for each value. @returns {string[]} */
+export function textsLeft(root) {
+  const page = readPage(root);
+  return [...outsideOf(page)].flatMap(([path, found]) => (page.allowed.files.has(path) ? found.map(({ text }) => text) : []));
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href) {
+  const page = readPage(process.argv[2] ?? '.');
+  const faults = [...groupFaults(page), ...keyFaults(page), ...laterFaults(page), ...textFaults(page)];
+  if (faults.length) console.log(faults.join('\n'));
+  process.exitCode = faults.length ? 1 : 0;
+}

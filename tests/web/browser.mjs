@@ -34,10 +34,10 @@ export async function startBrowser() {
   return chromium.launchServer({ executablePath: chromiumPath, headless: true, args: flags });
 }
 
-/** @param {{plans?: string[], args?: string[], data?: string}} how data: a state folder, kept afterwards */
-export async function startWorld({ plans = [], args = [], data } = {}) {
+/** @param {{plans?: string[], args?: string[], data?: string}} how data: a state folder, kept afterwards; folders: programs and page */
+export async function startWorld({ plans = [], args = [], data, folders } = {}) {
   mkdirSync(artifacts, { recursive: true });
-  const daemon = await startDaemon({ plans: [demo, ...plans], args, data });
+  const daemon = await startDaemon({ plans: [demo, ...plans], args, data, folders });
   const { chromium } = await import('playwright-core');
   const shared = process.env.BEAMROOM_BROWSER;
   const browser = await (shared

@@ -1,5 +1,6 @@
 // The beam that a scene chooses, as it is drawn: core/scene/beam_shown.h. Pure; LPS, mm.
 import { add, cross, dot, length, scale, subtract, unit } from '../parts/vec.js';
+import { say } from './words.js';
 
 const leastMm = 1e-3; // a shorter draft is none
 const pole = 0.01; // sine of the angle to the patient's axis, under which anterior is up
@@ -23,7 +24,7 @@ export function beamShown(plan, scene, id = '') {
   const line = subtract(target, entry);
   return {
     id: planned?.id ?? '',
-    name: (isDraft && draft.line.name) || planned?.name || planned?.id || 'Draft',
+    name: (isDraft && draft.line.name) || planned?.name || planned?.id || say.draft,
     isDraft,
     entry,
     target,

@@ -1,5 +1,6 @@
 // Cameras: position, target and up direction in patient LPS mm. Pure functions that return new cameras.
 import { add, cross, dot, length, rotate, scale, subtract, unit } from '../parts/vec.js';
+import { say } from './words.js';
 
 const superior = [0, 0, 1];
 const minDistanceMm = 5;
@@ -164,10 +165,10 @@ export function linkedSlice(camera, plane, sizePx, other, otherPlane, otherPx, c
 export function describe(camera) {
   const { forward } = axes(camera);
   const elevation = Math.asin(clamp(-forward[2], -1, 1)) / degrees;
-  if (elevation > 89) return `${camera.projection}, from superior`;
-  if (elevation < -89) return `${camera.projection}, from inferior`;
+  const projection = camera.projection === 'parallel' ? say.parallel : say.perspective;
+  if (elevation > 89) return say.fromSuperior({ projection });
+  if (elevation < -89) return say.fromInferior({ projection });
   const turned = Math.round(Math.abs(Math.atan2(-forward[0], forward[1]) / degrees));
-  const side = { 0: 'from anterior', 180: 'from posterior' }[turned];
-  if (side) return `${camera.projection}, ${side}`;
-  return `${camera.projection}, ${turned}° ${forward[0] < 0 ? 'left' : 'right'} of anterior`;
+  const words = { 0: say.fromAnterior, 180: say.fromPosterior }[turned] ?? (forward[0] < 0 ? say.leftOfAnterior : say.rightOfAnterior);
+  return words({ projection, n: turned });
 }

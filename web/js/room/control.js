@@ -1,6 +1,7 @@
 // Control of the room: who requests it, whether it is locked, what this member may do about it. Who presents: following.js.
 import { computed, signal } from '../../lib/signals-core.js';
 import { roles } from '../../gen/wire.js';
+import { say } from './words.js';
 
 const topic = 'following';
 
@@ -44,39 +45,39 @@ export class Control {
   // ---- acts of the user -------------------------------------------------------------------------------------------
 
   request() {
-    if (this.#say({ type: 'control.request' }))
-      this.#room.notify('ok', `You have asked ${this.#presenter()} for control.`, topic, { word: 'Withdraw', act: () => this.withdraw() });
+    const presenter = this.#room.following.presenter.value;
+    if (this.#send({ type: 'control.request' }))
+      this.#room.notify('ok', presenter ? say.asked(presenter) : say.askedPresenter, topic, {
+        word: say.withdraw,
+        act: () => this.withdraw(),
+      });
   }
 
   withdraw() {
-    this.#say({ type: 'control.request', wanted: false });
+    this.#send({ type: 'control.request', wanted: false });
   }
 
   give(member) {
-    this.#say({ type: 'control.give', member });
+    this.#send({ type: 'control.give', member });
   }
 
   refuse(member) {
-    this.#say({ type: 'control.refuse', member });
+    this.#send({ type: 'control.refuse', member });
   }
 
   take() {
     if (!this.#room.following.presenter.value) this.#room.following.present();
-    else this.#say({ type: 'control.take' });
+    else this.#send({ type: 'control.take' });
   }
 
   lock(locked) {
-    this.#say({ type: 'control.lock', locked });
+    this.#send({ type: 'control.lock', locked });
   }
 
-  #say(message) {
+  #send(message) {
     if (this.#tell(message)) return true;
-    this.#room.notify('warn', 'Not sent: there is no connection to the server.', topic);
+    this.#room.notify('warn', say.notSent, topic);
     return false;
-  }
-
-  #presenter() {
-    return this.#room.following.presenter.value?.name ?? 'the presenter';
   }
 
   // ---- messages of the server -------------------------------------------------------------------------------------
@@ -86,7 +87,10 @@ export class Control {
     this.isLocked.value = locked;
     if (Array.isArray(requests)) this.requested.value = requests;
     if (presenter === own && ['given', 'taken'].includes(act)) this.#room.following.gotControl();
-    if (act === 'refused' && member === own) this.#room.notify('warn', `${this.#presenter()} keeps control for now.`, topic);
+    if (act === 'refused' && member === own) {
+      const presenter = this.#room.following.presenter.value;
+      this.#room.notify('warn', presenter ? say.keepsControl(presenter) : say.presenterKeepsControl, topic);
+    }
   }
 
   /** Names in place of the ids in a sentence of the server. */

@@ -1,27 +1,30 @@
 // The dose that a scene shows: its quantities, its basis in words, the patches that change it. Pure.
 import { number, unitText } from '../parts/format.js';
 import { unitFactor, unitPatch } from './dose_units.js';
+import { say } from './words.js';
 
 const names = {
-  weighted: 'Weighted total',
-  total: 'Physical total',
-  boron: 'Boron',
-  nitrogen: 'Nitrogen',
-  fast: 'Fast neutron',
-  gamma: 'Gamma',
-  other: 'Other recoils',
-  'blood-boron': 'Blood boron',
-  'weighted-total': 'Weighted total of the file',
-  isoeffective: 'Photon-isoeffective',
-  'fast-fluence': 'Fast fluence',
-  'epithermal-fluence': 'Epithermal fluence',
-  'thermal-fluence': 'Thermal fluence',
+  weighted: [say.weighted, say.weightedWithin],
+  total: [say.total, say.totalWithin],
+  boron: [say.boron, say.boronWithin],
+  nitrogen: [say.nitrogen, say.nitrogenWithin],
+  fast: [say.fast, say.fastWithin],
+  gamma: [say.gamma, say.gammaWithin],
+  other: [say.other, say.otherWithin],
+  'blood-boron': [say.bloodBoron, say.bloodBoronWithin],
+  'weighted-total': [say.weightedTotal, say.weightedTotalWithin],
+  isoeffective: [say.isoeffective, say.isoeffectiveWithin],
+  'fast-fluence': [say.fastFluence, say.fastFluenceWithin],
+  'epithermal-fluence': [say.epithermalFluence, say.epithermalFluenceWithin],
+  'thermal-fluence': [say.thermalFluence, say.thermalFluenceWithin],
 };
 /** Summands of physical and weighted totals; a complete dose has the first four. */
 const summands = ['boron', 'nitrogen', 'fast', 'gamma', 'other'];
 const sums = ['weighted', 'total', 'isoeffective'];
 
-export const quantityName = (quantity) => names[quantity] ?? quantity;
+export const quantityName = (quantity) => names[quantity]?.[0] ?? quantity;
+/** Within a sentence, or behind a comma. */
+export const quantityWithin = (quantity) => names[quantity]?.[1] ?? quantity.toLowerCase();
 export const isFluence = (quantity) => quantity.endsWith('fluence');
 
 /** The dose that the scene shows; null: the plan has none. */
@@ -48,8 +51,7 @@ export function missingOf(dose, quantity) {
 }
 
 /** "without nitrogen, fast neutrons"; '' when nothing is missing. */
-export const missingWords = (missing) =>
-  missing.length ? `without ${missing.map((quantity) => quantityName(quantity).toLowerCase()).join(', ')}` : '';
+export const missingWords = (missing) => (missing.length ? say.without({ quantities: missing.map(quantityWithin).join(', ') }) : '');
 
 /** The unit of a quantity of a dose, for people. */
 export function unitOf(dose, quantity) {
@@ -125,25 +127,26 @@ export function toggledPatch(plan, scene, dose, isShown) {
 // ---- words --------------------------------------------------------------------------------------------------------------
 
 const regionName = (plan, id) =>
-  plan.regions.find((region) => region.id === id)?.name ?? plan.regions.find(({ is_target: is }) => is)?.name ?? 'region';
+  plan.regions.find((region) => region.id === id)?.name ?? plan.regions.find(({ is_target: is }) => is)?.name ?? say.region;
 
 /** "brain max", "body max", "prescription": what 100 % is, in a few words. */
 export function referenceWords(plan, { kind, region }) {
   return {
-    body: () => 'body max',
-    point: () => 'value at point',
-    'region-max': () => `${regionName(plan, region)} max`,
-    'region-mean': () => `${regionName(plan, region)} mean`,
-    value: () => 'prescription',
-    file: () => "file's reference",
+    body: () => say.bodyMax,
+    point: () => say.valueAtPoint,
+    'region-max': () => say.maxOf({ region: regionName(plan, region) }),
+    'region-mean': () => say.meanOf({ region: regionName(plan, region) }),
+    value: () => say.prescription,
+    file: () => say.ofFile,
   }[kind]();
 }
 
 /** " per fraction"; with a factor " for 30 × fraction". */
 function perWords(per, factor) {
-  const words = unitText(per.replace(/^per /, ''));
-  if (factor === 1) return words ? ` per ${words}` : '';
-  return ` for ${number(factor, factor % 1 ? 2 : 0)} × ${words || "the file's"}`;
+  const what = unitText(per.replace(/^per /, ''));
+  if (factor === 1) return what ? ` ${say.per({ what })}` : '';
+  const n = number(factor, factor % 1 ? 2 : 0);
+  return ` ${what ? say.forTimes({ n, what }) : say.forTimesFile({ n })}`;
 }
 
 /** "Gy(w) per 250 kW-min · blood 15 ppm · weights: BPA example · isodose as brain": what stands behind every number of dose. */
@@ -157,11 +160,11 @@ export function basisParts(plan, scene) {
     unit: unitOf(dose, quantity),
     rest: [
       perWords(dose.per, factor),
-      quantity === 'weighted' ? '' : quantityName(quantity).toLowerCase(),
-      dependsOnBlood(dose, quantity) ? `blood ${number(ppm, ppm % 1 ? 1 : 0)} ppm` : '',
-      isWeighted(quantity) ? `weights: ${set || 'edited'}` : '',
-      tissue && (isWeighted(quantity) || dependsOnBlood(dose, quantity)) ? `isodose as ${regionName(plan, tissue)}` : '',
-      parts.length > 1 ? `sum of ${parts.length} doses` : '',
+      quantity === 'weighted' ? '' : quantityWithin(quantity),
+      dependsOnBlood(dose, quantity) ? say.bloodPpm({ n: number(ppm, ppm % 1 ? 1 : 0) }) : '',
+      isWeighted(quantity) ? (set ? say.weightsOf({ name: set }) : say.weightsEdited) : '',
+      tissue && (isWeighted(quantity) || dependsOnBlood(dose, quantity)) ? say.isodoseAs({ region: regionName(plan, tissue) }) : '',
+      parts.length > 1 ? say.sumOf({ n: parts.length }) : '',
       missingWords(missing),
     ],
   };

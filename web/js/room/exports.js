@@ -1,6 +1,7 @@
 // Files and printouts that the page makes by itself. The server is told first and records each in the audit; what it has not acknowledged is not made.
 import { ofMember } from '../net/api.js';
 import { csvText } from '../parts/csv.js';
+import { say } from './later_words.js';
 
 const busyMs = 500;
 const mostBusy = 240; // two minutes: the revision of a large plan's files is being found out
@@ -23,7 +24,7 @@ async function made(world, what, name, make) {
     await tell(world, what, name);
     make();
   } catch (problem) {
-    world.ui.notify('err', `Not saved: ${problem.message}`, 'export');
+    world.ui.notify('err', say.notSaved({ reason: problem.message }), 'export');
   }
 }
 
@@ -60,6 +61,6 @@ export async function savePicture({ api, room, ui }, view, document) {
   try {
     saveBlob(`${room.planId.value}-${view.kind}.png`, await api.snapshot(room, document));
   } catch (problem) {
-    ui.notify('err', `No snapshot: ${problem.message}`, 'snapshot');
+    ui.notify('err', say.noSnapshot({ reason: problem.message }), 'snapshot');
   }
 }

@@ -5,6 +5,7 @@ import { asShown, ownBeam, wholeCamera, widen, widening } from './own_camera.js'
 import { mergePatch } from '../wire/merge.js';
 import { beamShown } from './beam_line.js';
 import { leftBehind } from './marks.js';
+import { say } from './words.js';
 
 const usualSize = [1024, 768]; // of a pane that was never shown
 
@@ -60,7 +61,7 @@ export class Following {
     });
     this.hasLostControl = false;
     this.#act(false);
-    notify('ok', 'On your own.', 'following', { word: 'Return', keys: 'Esc or F', act: () => this.return() });
+    notify('ok', say.onYourOwn, 'following', { word: say.return, keys: say.returnKeys, act: () => this.return() });
     return true;
   }
 
@@ -72,10 +73,10 @@ export class Following {
     this.#room.returned();
     this.#act(true);
     const name = this.presenter.value?.name;
-    const words = name ? `Following ${name}.` : 'Back in the shared view.';
+    const words = name ? say.following({ name }) : say.backShared;
     if (n && this.#room.control.may('scene'))
-      this.#room.notify('warn', `${words} What you marked for yourself stays behind.`, 'following', {
-        word: n > 1 ? `Give ${n} marks to the room` : 'Give it to the room',
+      this.#room.notify('warn', say.stayBehind({ where: words }), 'following', {
+        word: n > 1 ? say.giveMarks({ n }) : say.giveMark,
         act: () => this.#room.patchScene(patch),
       });
     else this.#room.notify('ok', words, 'following');
@@ -84,7 +85,7 @@ export class Following {
 
   /** Key F. */
   toggle() {
-    if (this.isPresenting.value) this.#room.notify('ok', 'You are presenting: the others follow you.', 'following');
+    if (this.isPresenting.value) this.#room.notify('ok', say.youArePresenting, 'following');
     else if (!this.return()) this.leave();
   }
 
@@ -97,7 +98,7 @@ export class Following {
   showEveryone() {
     if (!this.isPresenting.value) return;
     this.#tell({ type: 'show.everyone' });
-    this.#room.notify('ok', 'Everybody sees your view.', 'following');
+    this.#room.notify('ok', say.everybodySees, 'following');
   }
 
   /** The scene patch as an override of all own views. */
@@ -133,15 +134,14 @@ export class Following {
     if (wasPresenting !== own.presenting) this.hasLostControl = wasPresenting;
     if (own.presenting && !wasPresenting) {
       const isAlone = !members.some(({ id, connected }) => id !== own.id && connected !== false);
-      if (before || !isAlone)
-        this.#room.notify('ok', isAlone ? 'You are alone here, and present now.' : 'You present: the others follow you.', 'following');
+      if (before || !isAlone) this.#room.notify('ok', isAlone ? say.alone : say.youPresent, 'following');
       return true;
     }
     if (wasPresenting && !own.presenting && this.presenter.value)
-      this.#room.notify('warn', `${this.presenter.value.name} presents now. You follow.`, 'following');
+      this.#room.notify('warn', say.presentsNow(this.presenter.value), 'following');
     if (before && !this.presenter.value)
-      this.#room.notify('warn', 'Nobody presents any more. What you see stays.', 'following', {
-        word: 'Take over',
+      this.#room.notify('warn', say.nobodyPresents, 'following', {
+        word: say.takeOver,
         act: () => this.present(),
       });
     return false;
@@ -177,7 +177,7 @@ export class Following {
       // a presenter who is away did not call: the list of members that says who presents now is still to come
       if (this.presenter.value && this.presenter.value.connected !== false && !this.isPresenting.value) {
         this.#room.returned();
-        this.#room.notify('ok', `${this.presenter.value.name} shows everybody the same view. You follow again.`, 'following');
+        this.#room.notify('ok', say.showsEverybody(this.presenter.value), 'following');
       }
     }
     return true;

@@ -1,8 +1,9 @@
 // Identity of a plan: the masked patient, the shown treatment plan and its approval. The full name is never here. Pure.
 import { shownDose } from './dose.js';
 import { shownImage } from './plan.js';
+import { say } from './words.js';
 
-export const unknownWords = 'no patient identity in these files';
+export const unknownWords = say.noIdentity;
 
 /** "A. V. …417" of a number of the plan's patients; '' where the files do not say. */
 export const patientOf = (plan, index) => plan.patients[index]?.masked ?? '';
@@ -55,12 +56,12 @@ export function shownTreatmentPlan(plan, scene) {
 }
 
 const approvals = {
-  APPROVED: ['Approved', 'ok', 'check'],
-  UNAPPROVED: ['Unapproved', 'warn', 'warning'],
-  REJECTED: ['Rejected', 'err', 'error'],
+  APPROVED: [say.approved, 'ok', 'check', say.approvedWithin],
+  UNAPPROVED: [say.unapproved, 'warn', 'warning', say.unapprovedWithin],
+  REJECTED: [say.rejected, 'err', 'error', say.rejectedWithin],
 };
-/** [word, class, icon] */
-export const approvalOf = (treatment) => approvals[(treatment?.approval ?? '').toUpperCase()] ?? ['approval not stated', 'dim', ''];
+/** [word, class, icon, word within a sentence] */
+export const approvalOf = (treatment) => approvals[(treatment?.approval ?? '').toUpperCase()] ?? [say.notStated, 'dim', '', say.notStated];
 
 /** "20261112" as 2026-11-12. */
 export const dateWords = (date) => (/^\d{8}$/.test(date ?? '') ? `${date.slice(0, 4)}-${date.slice(4, 6)}-${date.slice(6)}` : (date ?? ''));

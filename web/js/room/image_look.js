@@ -1,5 +1,6 @@
 // How an image is shown: window, colour map, presets by modality; showing another image; a second image blended over it. Pure.
 import { shownImage } from './plan.js';
+import { say } from './words.js';
 
 export const cullsNothing = -1e12; // proto/scene.json
 const narrowest = 1e-15;
@@ -9,8 +10,8 @@ const farthest = 1e12; // of a window's centre
 export const colorMaps = [
   [
     'grey',
-    'Grey',
-    'Black to white',
+    say.grey,
+    say.greyIs,
     [
       [0, '#000000'],
       [1, '#ffffff'],
@@ -18,8 +19,8 @@ export const colorMaps = [
   ],
   [
     'hot-iron',
-    'Hot iron',
-    'Black, red, yellow, white',
+    say.hotIron,
+    say.hotIronIs,
     [
       [0, '#000000'],
       [0.5, '#ff0000'],
@@ -29,8 +30,8 @@ export const colorMaps = [
   ],
   [
     'rainbow',
-    'Rainbow',
-    'Blue, cyan, green, yellow, red',
+    say.rainbow,
+    say.rainbowIs,
     [
       [0, '#0000ff'],
       [0.25, '#00ffff'],
@@ -84,16 +85,16 @@ export function blendedImage(plan, scene) {
 }
 
 const hounsfield = [
-  ['1', 'Soft tissue', 40, 400],
-  ['2', 'Lung', -600, 1500],
-  ['3', 'Brain', 40, 80],
-  ['4', 'Bone', 480, 2500],
+  ['1', say.softTissue, 40, 400],
+  ['2', say.lung, -600, 1500],
+  ['3', say.brain, 40, 80],
+  ['4', say.bone, 480, 2500],
 ];
 const moreHounsfield = [
-  ['Head', 45, 125],
-  ['Spine', 30, 300],
-  ['Abdomen', 40, 350],
-  ['CT bone', 400, 1000],
+  [say.head, 45, 125],
+  [say.spine, 30, 300],
+  [say.abdomen, 40, 350],
+  [say.ctBone, 400, 1000],
 ];
 const shares = [
   ['1', '0.1', '99.9'],
@@ -109,14 +110,14 @@ const between = (low, high) => ({ center: (low + high) / 2, width: Math.max(high
  */
 export function windowPresets(image, histogram = null) {
   if (!image) return [];
-  const full = { key: '5', name: 'Full range', center: (image.low + image.high) / 2, width: Math.max(image.high - image.low, 0.001) };
+  const full = { key: '5', name: say.fullRange, center: (image.low + image.high) / 2, width: Math.max(image.high - image.low, 0.001) };
   const preset = ([key, name, center, width]) => ({ key, name, center, width });
   if (isCt(image)) return [...hounsfield.map(preset), full, ...moreHounsfield.map(([name, center, width]) => ({ name, center, width }))];
   const at = histogram?.percentiles ?? {};
   const known = shares.filter(([, low, high]) => at[high] > at[low]);
   return [
     ...known.map(([key, low, high]) => ({ key, name: `${low}–${high} %`, ...between(at[low], at[high]) })),
-    { key: '3', name: 'As stored', ...image.window },
+    { key: '3', name: say.asStored, ...image.window },
     full,
   ];
 }

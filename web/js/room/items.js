@@ -1,5 +1,6 @@
 // The items of a room, which are notes, replies and bookmarks: the server's rows, and the own commands that it has not answered.
 import { computed, signal } from '../../lib/signals-core.js';
+import { say } from './words.js';
 
 const mostUntold = 20;
 
@@ -83,7 +84,7 @@ export class Items {
   end() {
     const left = this.#own;
     this.#keep([]);
-    for (const { failed } of left) failed({ detail: 'The room has ended: this was not saved. Copy it if you need it.' });
+    for (const { failed } of left) failed({ detail: say.notSaved });
     return left.length > 0;
   }
 

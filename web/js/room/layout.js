@@ -1,18 +1,19 @@
 // How this person has arranged the panes: the layout, which view stands in which pane, what moves together. Kept by the browser.
 import { effect, signal } from '../../lib/signals-core.js';
+import { say } from './words.js';
 
 const key = 'beamroom panes';
 
-/** Every view of a room by its number; a pane shows one of them. `number` is that of the view document. */
+/** Every view of a room by its number; a pane shows one of them. `nameWithin` is the name within a sentence, `number` that of the view document. */
 export const views = [
-  { kind: '3d', name: '3-D' },
-  { kind: 'axial', name: 'Axial' },
-  { kind: 'sagittal', name: 'Sagittal' },
-  { kind: 'coronal', name: 'Coronal' },
-  { kind: 'oblique', name: 'Oblique' },
-  { kind: '3d', name: '3-D 2', number: 2 },
-  { kind: 'beam', name: "Beam's eye" },
-  { kind: 'beam-slice', name: 'Beam slice' },
+  { kind: '3d', name: '3-D', nameWithin: '3-D' },
+  { kind: 'axial', name: say.axial, nameWithin: say.axialWithin },
+  { kind: 'sagittal', name: say.sagittal, nameWithin: say.sagittalWithin },
+  { kind: 'coronal', name: say.coronal, nameWithin: say.coronalWithin },
+  { kind: 'oblique', name: say.oblique, nameWithin: say.obliqueWithin },
+  { kind: '3d', name: '3-D 2', nameWithin: '3-D 2', number: 2 },
+  { kind: 'beam', name: say.beam, nameWithin: say.beamWithin },
+  { kind: 'beam-slice', name: say.beamSlice, nameWithin: say.beamSliceWithin },
 ];
 export const obliqueView = 5;
 export const beamView = 7;
@@ -21,13 +22,13 @@ const standard = { two: [1, 2], four: [1, 2, 3, 4] };
 
 /** In the order of the strip and of the keys Shift + 1 to 7, the last in plans with a beam. @type {{id: string, name: string, icon: string, layout: string, two?: number[]}[]} */
 export const layouts = [
-  { id: 'row', name: 'Three panes in a row', icon: 'row', layout: 'row' },
-  { id: '2x2', name: 'Four panes', icon: 'grid', layout: '2x2' },
-  { id: '1+3', name: 'One large, three small', icon: 'oneThree', layout: '1+3' },
-  { id: '2x1', name: 'Two panes', icon: 'two', layout: '2x1', two: [1, 2] },
-  { id: 'oblique', name: '3-D and oblique', icon: 'twoOblique', layout: '2x1', two: [1, obliqueView] },
-  { id: 'single', name: 'One pane', icon: 'single', layout: 'single' },
-  { id: 'beam', name: "Beam's eye and beam slice", icon: 'twoBeam', layout: '2x1', two: [beamView, beamSliceView] },
+  { id: 'row', name: say.row, icon: 'row', layout: 'row' },
+  { id: '2x2', name: say.four, icon: 'grid', layout: '2x2' },
+  { id: '1+3', name: say.oneThree, icon: 'oneThree', layout: '1+3' },
+  { id: '2x1', name: say.two, icon: 'two', layout: '2x1', two: [1, 2] },
+  { id: 'oblique', name: say.twoOblique, icon: 'twoOblique', layout: '2x1', two: [1, obliqueView] },
+  { id: 'single', name: say.one, icon: 'single', layout: 'single' },
+  { id: 'beam', name: say.twoBeam, icon: 'twoBeam', layout: '2x1', two: [beamView, beamSliceView] },
 ];
 
 /** The panes' views after the pane that shows one view is to show another: where that one stands already, they change places. */

@@ -2,6 +2,7 @@
 import { add, cross, dot, length, rotate, scale, subtract, unit } from '../parts/vec.js';
 import { beamPlane, beamShown } from './beam_line.js';
 import { crosshair } from './plan.js';
+import { say } from './words.js';
 
 /**
  * @typedef {object} Plane as struct plane in core/scene/plane.h: right, up and normal are unit vectors at right angles
@@ -154,16 +155,16 @@ export function freeId(obliques) {
 }
 
 /** "Plane 2" for the id plane-2, when it was given no name. */
-export const obliqueName = (id, { name = '' } = {}) => name || id.replace(/^plane-(\d+)$/, 'Plane $1');
+export const obliqueName = (id, { name = '' } = {}) => name || id.replace(/^plane-(\d+)$/, (_, n) => say.plane({ n }));
 
 /** "Faces 30° left of anterior, 12° up". */
 export function facing(direction) {
   const { turn, tilt } = anglesOf(direction);
   const level = Math.round(tilt);
-  if (Math.abs(level) === 90) return level > 0 ? 'superior' : 'inferior';
+  if (Math.abs(level) === 90) return level > 0 ? say.superior : say.inferior;
   const side = Math.round(turn);
   const words =
-    { 0: 'anterior', 90: 'left', 180: 'posterior', '-180': 'posterior', '-90': 'right' }[side] ??
-    `${Math.abs(side)}° ${side > 0 ? 'left' : 'right'} of anterior`;
-  return level ? `${words}, ${Math.abs(level)}° ${level > 0 ? 'up' : 'down'}` : words;
+    { 0: say.anterior, 90: say.left, 180: say.posterior, '-180': say.posterior, '-90': say.right }[side] ??
+    (side > 0 ? say.leftBy : say.rightBy)({ n: Math.abs(side) });
+  return level ? (level > 0 ? say.upBy : say.downBy)({ direction: words, n: Math.abs(level) }) : words;
 }

@@ -1,5 +1,6 @@
 // The plan as the panels need it, made from the server's description. Never changed afterwards.
 
+import { say } from './words.js';
 const axisNames = ['L', 'P', 'S'];
 
 /** Voxel spacing in mm along each patient axis, taken from the grid axis closest to it. */
@@ -28,7 +29,7 @@ function readImage(image) {
   return {
     id: image.id,
     name: image.name ?? '',
-    modality: image.modality || 'Image',
+    modality: image.modality || say.image,
     unit: image.unit ?? '',
     patient: image.patient ?? null,
     frame: image.frame ?? null,
@@ -106,13 +107,16 @@ export function readReport(report) {
   return { lines, dropped: report?.dropped ?? 0 };
 }
 
+const severities = { error: say.errors, warning: say.warnings, note: say.notes };
+
+function counted(lines, wanted) {
+  const numbers = wanted.map((severity) => [severity, lines.filter((line) => line.severity === severity).length]);
+  return numbers.flatMap(([severity, n]) => (n ? [severities[severity]({ n })] : [])).join(', ');
+}
+
 /** "3 warnings, 2 notes", "no remarks" */
 export function reportSummary({ lines }) {
-  const parts = ['error', 'warning', 'note'].flatMap((severity) => {
-    const n = lines.filter((line) => line.severity === severity).length;
-    return n ? [`${n} ${severity}${n > 1 ? 's' : ''}`] : [];
-  });
-  return parts.join(', ') || 'no remarks';
+  return counted(lines, ['error', 'warning', 'note']) || say.noRemarks;
 }
 
 /** The first image that is not of another patient, as the server takes it; null: none. */
@@ -180,12 +184,7 @@ export const showPatch = (regions, test) => ({
 
 /** "1 error, 2 warnings"; '' when there is neither. */
 export function troubles({ lines }) {
-  return ['error', 'warning']
-    .flatMap((severity) => {
-      const n = lines.filter((line) => line.severity === severity).length;
-      return n ? [`${n} ${severity}${n > 1 ? 's' : ''}`] : [];
-    })
-    .join(', ');
+  return counted(lines, ['error', 'warning']);
 }
 
 /** "Neutron high" for the class of tracks "neutron-high". */
@@ -193,25 +192,23 @@ export const className = (id) => `${id[0].toUpperCase()}${id.slice(1).replaceAll
 
 /** "Gy per fraction, total" for a dose; unknown parts are left out. */
 export function doseWords(dose) {
-  const per = dose.per ? ` per ${dose.per.replace(/^per /, '')}` : '';
+  const unit = dose.unit || say.noUnit;
   const quantities = dose.components.map(({ quantity, per_ppm: perPpm, boron_ppm: ppm }) =>
-    perPpm ? `${quantity} per ppm` : Number.isFinite(ppm) ? `${quantity} with boron at ${ppm} ppm` : quantity,
+    perPpm ? say.perPpm({ quantity }) : Number.isFinite(ppm) ? say.withBoron({ quantity, n: ppm }) : quantity,
   );
-  return [`${dose.unit || 'no unit'}${per}`, ...quantities].join(', ');
+  return [dose.per ? say.unitPer({ unit, what: dose.per.replace(/^per /, '') }) : unit, ...quantities].join(', ');
 }
 
 /** A sentence when a dose may be shifted against the image; '' otherwise. */
 export function frameWords({ frame_of_reference: frame }) {
-  if (frame === 'differs') return 'In another frame of reference than the image: the dose may be shifted against it.';
-  return frame === 'unknown' ? 'Nothing says that dose and image share a frame of reference.' : '';
+  if (frame === 'differs') return say.otherFrame;
+  return frame === 'unknown' ? say.unknownFrame : '';
 }
 
 /** "gantry 90°, 120 mm" for a beam. */
 export function beamWords(beam) {
   const { delivery: d } = beam;
-  const gantry =
-    d &&
-    d.gantry_deg !== null &&
-    `gantry ${d.gantry_deg}°${d.gantry_stop_deg !== null && d.gantry_stop_deg !== d.gantry_deg ? ` to ${d.gantry_stop_deg}°` : ''}`;
-  return [d?.radiation?.toLowerCase(), gantry, beam.aperture_mm && `aperture ${beam.aperture_mm} mm`].filter(Boolean).join(', ');
+  const [n, end] = [d?.gantry_deg ?? null, d?.gantry_stop_deg ?? null];
+  const gantry = n !== null && (end !== null && end !== n ? say.gantryTo({ n, end }) : say.gantry({ n }));
+  return [d?.radiation?.toLowerCase(), gantry, beam.aperture_mm && say.aperture({ n: beam.aperture_mm })].filter(Boolean).join(', ');
 }

@@ -2,6 +2,7 @@
 import { batch, computed, signal } from '../../lib/signals-core.js';
 import { Problem } from '../net/api.js';
 import { readReport } from './plan.js';
+import { say } from './words.js';
 
 const listMs = 4000;
 const jobMs = 150;
@@ -140,7 +141,7 @@ export class PlansState {
       this.#setJob(id, job);
       if (job.state === 'done') return job;
       if (job.state === 'cancelled') return null;
-      if (job.state === 'failed') throw new Problem(job.problem ?? { detail: 'The plan cannot be loaded.' });
+      if (job.state === 'failed') throw new Problem(job.problem ?? { detail: say.notLoadable });
       await new Promise((resolve) => {
         this.#clock.setTimeout(resolve, jobMs);
       });

@@ -15,6 +15,7 @@ import { Replica } from './replica.js';
 import { Saved } from './saved.js';
 import { Sending } from './sending.js';
 import { ViewState } from './view.js';
+import { say } from './words.js';
 
 export class RoomState {
   #connection;
@@ -238,7 +239,7 @@ export class RoomState {
     const answered = this.view(header.view).paint(header, this.#clock.now());
     if (this.#restored && this.renderer.value.state === 'ready') {
       this.#restored = false;
-      this.notify('ok', 'Picture restored', 'renderer');
+      this.notify('ok', say.restored, 'renderer');
     }
     return answered;
   }
@@ -378,11 +379,7 @@ export class RoomState {
     if (this.following.isFollowing.value) for (const view of this.views) if (view.isPending) view.drop();
     this.#showScene();
     const { presenter } = this.following;
-    if (isLost)
-      this.notify(
-        'err',
-        `Your changes since the connection was lost are lost: ${presenter.value ? `${presenter.value.name} presents` : 'you do not present'} now.`,
-      );
+    if (isLost) this.notify('err', presenter.value ? say.lostPresented(presenter.value) : say.lostNotPresenting);
   }
 
   #loaded(message) {
@@ -418,7 +415,7 @@ export class RoomState {
     this.renderer.value = { state, phase, percent, problem };
     if (state === 'restarting' && before !== 'restarting') {
       this.#restored = true;
-      this.notify('warn', 'Renderer restarting. The last picture stays until the new one is here.', 'renderer');
+      this.notify('warn', say.restarting, 'renderer');
     }
   }
 
@@ -437,20 +434,19 @@ export class RoomState {
     if (to === 'follow') this.following.refused();
     if (this.scene.value) this.#showScene();
     if (problem?.type === '/problems/not-presenter' && this.following.isOvertaken(to)) {
-      const name = this.following.presenter.value?.name ?? 'Nobody';
-      if (to === 'present') this.notify('ok', `${name} has taken over.`, 'following');
+      const presenter = this.following.presenter.value;
+      if (to === 'present') this.notify('ok', presenter ? say.hasTakenOver(presenter) : say.nobodyHasTakenOver, 'following');
       else if (to === 'scene.patch' || (to === 'view.patch' && this.following.hasLostControl))
-        this.notify('warn', `${name} presents now: your last change was not made.`, 'following');
+        this.notify('warn', presenter ? say.notMade(presenter) : say.notMadeNobody, 'following');
       return;
     }
-    if (to === '' && this.view(view)) this.view(view).refuseToDraw(problem?.detail || 'The server gave no reason.');
-    if (to === 'control.request' && problem?.retry_after_ms)
-      return void this.notify(
-        'warn',
-        `${this.following.presenter.value?.name ?? 'The presenter'} keeps control for now. Ask again in ${Math.ceil(problem.retry_after_ms / 1000)} s.`,
-        'following',
-      );
-    this.notify('err', problem?.detail ? this.control.named(problem.detail) : `The server refused ${to || 'a message'}.`);
+    if (to === '' && this.view(view)) this.view(view).refuseToDraw(problem?.detail || say.noReason);
+    if (to === 'control.request' && problem?.retry_after_ms) {
+      const [name, n] = [this.following.presenter.value?.name, Math.ceil(problem.retry_after_ms / 1000)];
+      return void this.notify('warn', name ? say.askAgain({ name, n }) : say.askPresenterAgain({ n }), 'following');
+    }
+    const refused = to ? say.refusedMessage({ message: to }) : say.refusedAny;
+    this.notify('err', problem?.detail ? this.control.named(problem.detail) : refused);
   }
 
   #lose(retryMs) {
@@ -471,7 +467,7 @@ export class RoomState {
 
   #tooLarge() {
     this.#showScene();
-    this.notify('err', 'This change is too large to be sent; it was taken back.');
+    this.notify('err', say.tooLarge);
   }
 
   #setLink(state, more = {}) {

@@ -1,9 +1,10 @@
 // Whether what was said in the room is on the server's disk. Nothing is called saved before the server has said so.
 import { computed, signal } from '../../lib/signals-core.js';
+import { say } from './words.js';
 
 const problems = {
-  full: "The server's disk is full: what is changed now is not kept",
-  write: 'The server cannot write to its disk: what is changed now is not kept',
+  full: say.diskFull,
+  write: say.diskWrite,
 };
 
 export class Saved {

@@ -1,14 +1,15 @@
 // Merges a saved view or a picture into the room: things that people made since may be hidden, and are never removed.
 import { objects } from '../../gen/wire.js';
+import { say } from './later_words.js';
 
 /** Maps of the scene whose entries people make. isMark: an entry stays as it is now, also where the saved view has an older one. */
 const made = [
-  { at: ['measures'], isMark: true, words: ['measure', 'measures'] },
-  { at: ['probes'], isMark: true, words: ['pinned probe', 'pinned probes'] },
-  { at: ['constraints'], isMark: true, words: ['limit', 'limits'] },
-  { at: ['beam', 'kept'], isMark: true, words: ['kept draft', 'kept drafts'] },
-  { at: ['image', 'obliques'], words: ['oblique plane', 'oblique planes'] },
-  { at: ['dose', 'levels'], words: ['isodose level', 'isodose levels'] },
+  { at: ['measures'], isMark: true, words: say.measures },
+  { at: ['probes'], isMark: true, words: say.probes },
+  { at: ['constraints'], isMark: true, words: say.limits },
+  { at: ['beam', 'kept'], isMark: true, words: say.drafts },
+  { at: ['image', 'obliques'], words: say.planes },
+  { at: ['dose', 'levels'], words: say.levels },
 ];
 /** The description of a field of the scene. */
 const fieldAt = (path) => path.reduce((field, name) => objects[field.object].find((other) => other.name === name), { object: 'scene' });
@@ -19,7 +20,6 @@ const replaced = (document, [name, ...rest], value) => ({
   ...document,
   [name]: rest.length ? replaced(document[name], rest, value) : value,
 });
-const counted = (n, [one, many]) => `${n} ${n === 1 ? one : many}`;
 const own = (map, id) => (Object.hasOwn(map, id) ? map[id] : undefined);
 const withoutVisible = ({ visible, ...rest }) => JSON.stringify(rest);
 
@@ -60,12 +60,12 @@ export function mergedScene(now, wanted) {
     if (!before || !after) continue;
     const found = mergedMap(before, after, kind);
     scene = replaced(scene, kind.at, found.map);
-    for (const what of Object.keys(told)) if (found[what]) told[what].push(counted(found[what], kind.words));
+    for (const what of Object.keys(told)) if (found[what]) told[what].push(kind.words({ n: found[what] }));
   }
   const [draft, saved] = [now.beam?.draft, wanted.beam?.draft];
   if (draft && saved && !saved.enabled) {
     scene = replaced(scene, ['beam', 'draft'], { ...draft, enabled: false });
-    if (draft.enabled) told.hidden.push('the draft beam');
+    if (draft.enabled) told.hidden.push(say.draftBeam);
   }
   return { scene, ...told };
 }
@@ -73,8 +73,8 @@ export function mergedScene(now, wanted) {
 /** The merge in sentences; '' when there is nothing to say. */
 export function toldOfMerge({ hidden, changed, left }) {
   const sentences = [];
-  if (hidden.length) sentences.push(`Hidden, not deleted: ${hidden.join(', ')}.`);
-  if (changed.length) sentences.push(`Changed since, and left so: ${changed.join(', ')}.`);
-  if (left.length) sentences.push(`No place is left for ${left.join(', ')} of it.`);
+  if (hidden.length) sentences.push(say.hidden({ what: hidden.join(', ') }));
+  if (changed.length) sentences.push(say.changed({ what: changed.join(', ') }));
+  if (left.length) sentences.push(say.left({ what: left.join(', ') }));
   return sentences.join(' ');
 }

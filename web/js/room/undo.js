@@ -1,6 +1,7 @@
 // Undo and redo of what this person changed: the scene, and the cameras of the views.
 import { batch, effect, signal } from '../../lib/signals-core.js';
 import { isObject, mergePatch } from '../wire/merge.js';
+import { say } from './words.js';
 
 /** Steps that are kept; the oldest is forgotten first. */
 export const maxSteps = 100;
@@ -73,11 +74,11 @@ export class Undo {
   }
 
   undo() {
-    this.#move(this.#done, this.#undone, 'before', 'after', 'undone');
+    this.#move(this.#done, this.#undone, 'before', 'after', [say.partlyUndone, say.notUndone]);
   }
 
   redo() {
-    this.#move(this.#undone, this.#done, 'after', 'before', 'redone');
+    this.#move(this.#undone, this.#done, 'after', 'before', [say.partlyRedone, say.notRedone]);
   }
 
   /** Notes a change before it is applied. */
@@ -125,7 +126,7 @@ export class Undo {
   }
 
   /** Restores the fields of the newest step that still differ; a field that somebody else has changed since is left. */
-  #move(from, to, wanted, left, word) {
+  #move(from, to, wanted, left, [inPart, not]) {
     if (!this.#room.canChange.value) return;
     let step = null;
     let open = [];
@@ -139,14 +140,7 @@ export class Undo {
     if (mine.length) this.#restore(mine, wanted, step.place === 'mark');
     if (mine.length)
       to.push({ changes: new Map(mine.map((change) => [keyOf(change), change])), gesture: 0, at: -Infinity, place: step.place });
-    if (mine.length < open.length)
-      this.#notify(
-        'warn',
-        mine.length
-          ? `Only in part ${word}: the rest was changed by somebody else since.`
-          : `Not ${word}: it was changed by somebody else since.`,
-        'undo',
-      );
+    if (mine.length < open.length) this.#notify('warn', mine.length ? inPart : not, 'undo');
     this.#tell();
   }
 
@@ -159,7 +153,7 @@ export class Undo {
         to.push(step);
         this.#tell();
       },
-      (problem) => this.#notify('warn', problem?.detail || 'The server refused it.', 'undo'),
+      (problem) => this.#notify('warn', problem?.detail || say.refused, 'undo'),
     );
     this.#tell();
   }

@@ -13,12 +13,13 @@ export class ViewState {
   #sameSince = 0; // the oldest revision of the scene with the same picture as that
   #unanswered = []; // {input, at, sentAt}; at: time of the input event, 0: not an input in this pane
 
-  /** @param {number} number in messages and frames @param {string} kind of scene.json @param {object} more the document's number; name for people */
-  constructor(number, kind, { number: ofKind = 1, name = kind } = {}) {
+  /** @param {number} number in messages and frames @param {string} kind of scene.json @param {object} more the document's number; name for people, and within a sentence */
+  constructor(number, kind, { number: ofKind = 1, name = kind, nameWithin = name } = {}) {
     this.number = number;
     this.kind = kind;
     this.ofKind = ofKind;
     this.name = name;
+    this.nameWithin = nameWithin;
     this.document = signal(ofKind > 1 ? { kind, number: ofKind } : { kind });
     this.isOpen = signal(false);
     this.ownSize = null; // [width, height] in px, as last measured in the page; the shared document has the presenter's

@@ -9,9 +9,10 @@ import { variables } from '../parts/mount.js';
 import { roomChip } from './room_chip.js';
 import { roving } from '../parts/roving.js';
 import { stripEnd } from './tools.js';
+import { say } from './words.js';
 
 export const brand = () =>
-  html`<a class="brand" href="#/" title="All plans" aria-label="Beamroom, all plans">${icon('logo', 20)}<b>Beamroom</b></a>`;
+  html`<a class="brand" href="#/" title=${say.allPlans} aria-label=${say.brand}>${icon('logo', 20)}<b>Beamroom</b></a>`;
 
 const invite = later(() => import('./invite.js'), 'js/shell/invite.css');
 
@@ -22,9 +23,9 @@ async function copyLink(ui) {
     // a page not served securely has no clipboard; the link is selected and can be copied by hand
     await navigator.clipboard.writeText(location.href);
     ui.popover.value = '';
-    ui.notify('ok', 'Link copied. Who has it can join this room.');
+    ui.notify('ok', say.copied);
   } catch {
-    ui.notify('warn', 'Press Ctrl+C to copy the selected link.');
+    ui.notify('warn', say.pressCopy);
   }
 }
 
@@ -34,7 +35,7 @@ function warnings({ room, ui }) {
   const words = report && troubles(report);
   if (!words) return nothing;
   const isError = report.lines.some(({ severity }) => severity === 'error');
-  return html`<button class="chip" title="Open the load report" aria-label=${`${words}: open the load report`} @click=${() => ui.showTab('plan')}><span class=${`pill ${isError ? 'err' : 'warn'}`}>${icon(isError ? 'error' : 'warning')}<span>${words}</span></span></button>`;
+  return html`<button class="chip" title=${say.openReport} aria-label=${say.troubles({ troubles: words })} @click=${() => ui.showTab('plan')}><span class=${`pill ${isError ? 'err' : 'warn'}`}>${icon(isError ? 'error' : 'warning')}<span>${words}</span></span></button>`;
 }
 
 export function banner(world) {
@@ -47,26 +48,26 @@ export function banner(world) {
   const others = members.filter((member) => member.id !== you);
   return html`${brand()}<i class="rule"></i>${partsOf('bannerStart', world)}
     <div class="plan-name"><h1 title=${plan?.name ?? ''}><span>${plan?.name ?? room.planId.value}</span></h1>
-      <span class="dim plan-id">Plan <code>${room.planId.value}</code></span>${partsOf('bannerName', world)}</div>
+      <span class="dim plan-id">${say.planId({ id: html`<code>${room.planId.value}</code>` })}</span>${partsOf('bannerName', world)}</div>
     ${partsOf('bannerFacts', world)}
     ${warnings(world)}
     <span class="grow"></span>
     ${
       own
-        ? html`<div class="you" title=${`${own.name} (you)`}><span class="avatar own">${initials(own.name)}</span><span class="you-words"><b>${own.name} (you)</b>
-      <span class="dim">${others.length ? `${others.length} more in this room` : 'alone in this room'}</span></span></div>`
+        ? html`<div class="you" title=${say.you(own)}><span class="avatar own">${initials(own.name)}</span><span class="you-words"><b>${say.you(own)}</b>
+      <span class="dim">${others.length ? say.others({ n: others.length }) : say.alone}</span></span></div>`
         : nothing
     }
-    <div class="members" role="group" aria-label="Members">${others.slice(0, 6).map((member) => html`<span class="avatar member" ${variables({ '--member': member.color ?? '#929ba6' })} title=${member.name}>${initials(member.name)}</span>`)}
+    <div class="members" role="group" aria-label=${say.members}>${others.slice(0, 6).map((member) => html`<span class="avatar member" ${variables({ '--member': member.color ?? '#929ba6' })} title=${member.name}>${initials(member.name)}</span>`)}
       ${others.length > 6 ? html`<span class="dim">+${others.length - 6}</span>` : nothing}</div>
     ${roomChip(world, 'banner')}
-    ${isTouch ? html`<div class="strip-end" role="toolbar" aria-label="This picture" @keydown=${roving}>${stripEnd(world)}</div>` : nothing}
-    <span class="anchor"><button class="invite-button" @click=${() => ui.toggle('invite')} aria-label="Invite" aria-expanded=${ui.popover.value === 'invite'}>${icon('invite')}<span>Invite</span></button>
+    ${isTouch ? html`<div class="strip-end" role="toolbar" aria-label=${say.thisPicture} @keydown=${roving}>${stripEnd(world)}</div>` : nothing}
+    <span class="anchor"><button class="invite-button" @click=${() => ui.toggle('invite')} aria-label=${say.invite} aria-expanded=${ui.popover.value === 'invite'}>${icon('invite')}<span>${say.invite}</span></button>
       ${
         ui.popover.value === 'invite'
-          ? html`<div class="popover invite"><label for="invite-link">Link to this room <code>${room.id}</code></label>
-        <div class="pair"><input id="invite-link" readonly .value=${location.href}><button class="primary" @click=${() => copyLink(ui)}>Copy</button></div>${room.control.may('control') ? invite.draw((loaded) => loaded.inviteForm(world)) : nothing}</div>`
+          ? html`<div class="popover invite"><label for="invite-link">${say.linkTo({ room: html`<code>${room.id}</code>` })}</label>
+        <div class="pair"><input id="invite-link" readonly .value=${location.href}><button class="primary" @click=${() => copyLink(ui)}>${say.copy}</button></div>${room.control.may('control') ? invite.draw((loaded) => loaded.inviteForm(world)) : nothing}</div>`
           : nothing
       }</span>
-    <button class="icon-button" title="Keys and mouse (?)" aria-label="Help" aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
+    <button class="icon-button" title=${say.keysTip} aria-label=${say.help} aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
 }

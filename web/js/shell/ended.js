@@ -4,8 +4,9 @@ import { effect } from '../../lib/signals-core.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from '../parts/icons.js';
 import { whoIn } from '../features/start/lobby.js';
+import { say } from './words.js';
 
-const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : 'The server gave no reason.');
+const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : say.noReason);
 
 /** The notes are in this page alone by now, when the room was deleted. */
 async function saveNotes(world) {
@@ -23,13 +24,13 @@ export function ended(world) {
   const plan = after.plan.value;
   const rooms = after.rooms.value.slice(0, 3);
   return html`<section class=${classMap({ card: true, ended: true, unknown: !wasIn })} role="alert">${icon('disconnected')}
-    <div>${wasIn ? html`<b>You are no longer in this room</b>` : html`<h1>${room.link.value.isRefused ? 'You cannot enter this room' : 'There is no room at this address'}</h1>`}<p>${sentence(room.link.value.reason)}</p>
-      ${after.isPlanGone.value ? html`<p>Its plan is no longer on this server.</p>` : nothing}
+    <div>${wasIn ? html`<b>${say.youLeft}</b>` : html`<h1>${room.link.value.isRefused ? say.refused : say.noRoom}</h1>`}<p>${sentence(room.link.value.reason)}</p>
+      ${after.isPlanGone.value ? html`<p>${say.planGone}</p>` : nothing}
       ${after.error.value ? html`<p class="err">${icon('error')} ${after.error.value}</p>` : nothing}
-      ${wasIn && room.lostAtEnd.value ? html`<p class="err">${icon('error')} Your last changes did not reach it.</p>` : nothing}
-      <div class="buttons">${wasIn && room.items.notes.value.length ? html`<button @click=${() => void saveNotes(world)}>Save its notes as a file</button>` : nothing}${rooms.map((other) => html`<button @click=${() => after.join(other)}>Join ${other.id}: ${whoIn(other)}</button>`)}
-        ${plan ? html`<button class="primary" ?disabled=${after.isBusy.value} @click=${() => after.reopen()}>Open ${plan.name} in a new room</button>` : nothing}
-        <a class="button" href="#/">All plans</a></div></div></section>`;
+      ${wasIn && room.lostAtEnd.value ? html`<p class="err">${icon('error')} ${say.changesLost}</p>` : nothing}
+      <div class="buttons">${wasIn && room.items.notes.value.length ? html`<button @click=${() => void saveNotes(world)}>${say.saveNotes}</button>` : nothing}${rooms.map((other) => html`<button @click=${() => after.join(other)}>${say.join({ room: other.id, who: whoIn(other) })}</button>`)}
+        ${plan ? html`<button class="primary" ?disabled=${after.isBusy.value} @click=${() => after.reopen()}>${say.openNew({ plan: plan.name })}</button>` : nothing}
+        <a class="button" href="#/">${say.allPlans}</a></div></div></section>`;
 }
 
 /** Looks for ways on as soon as the room has ended. @param {string} plan as far as the address knows it @returns {() => void} stops */

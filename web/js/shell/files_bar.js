@@ -2,6 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { icon } from '../parts/icons.js';
 import { styled } from '../parts/lazy.js';
+import { say } from './words.js';
 
 const time = (ms) => new Date(ms).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit' });
 
@@ -10,7 +11,7 @@ async function readAnew({ room, ui }) {
   const plan = `api/v1/plans/${encodeURIComponent(room.planId.peek())}`;
   for (const act of ['close', 'open']) {
     const answer = await fetch(`${plan}/${act}`, { method: 'POST' }).catch(() => null);
-    if (!answer?.ok) return void ui.notify('err', 'The plan could not be read anew: the server refused or does not answer.', 'files');
+    if (!answer?.ok) return void ui.notify('err', say.notReadAnew, 'files');
   }
 }
 
@@ -18,6 +19,7 @@ export function filesBar(world) {
   const files = world.room.files.value;
   if (!files) return nothing;
   void styled('js/features/fits/fit.css');
-  return html`<div class="fit-bar err" role="alert"><span class="err">${icon('error')}</span><p><b>The plan’s files changed on the disk at ${time(files.changed_ms)}.</b> Shown is what was read at ${time(files.read_ms)}. Nothing is decided or signed until it is read anew.</p>
-    <button @click=${() => void readAnew(world)}>Read anew</button></div>`;
+  const changed = html`<b>${say.filesChanged({ time: time(files.changed_ms) })}</b>`;
+  return html`<div class="fit-bar err" role="alert"><span class="err">${icon('error')}</span><p>${say.filesRead({ changed, time: time(files.read_ms) })}</p>
+    <button @click=${() => void readAnew(world)}>${say.readAnew}</button></div>`;
 }

@@ -7,12 +7,13 @@ import { planTab } from './plan_tab.js';
 import { probe } from './probe.js';
 import { roving } from '../parts/roving.js';
 import { selection } from './selection.js';
+import { say } from './words.js';
 
 /** @type {import('../features/index.js').Tab[]} */
 const own = [
-  { id: 'probe', name: 'Probe', draw: probe },
-  { id: 'selection', name: 'Selection', draw: selection },
-  { id: 'plan', name: 'Plan', draw: planTab },
+  { id: 'probe', name: say.probe, draw: probe },
+  { id: 'selection', name: say.selection, draw: selection },
+  { id: 'plan', name: say.plan, draw: planTab },
 ];
 
 /** In a sheet, which has the place of the drawer, with the tabs that stand only there. */
@@ -28,7 +29,7 @@ export function inspector(world) {
   const isSheet = sheet === 'inspector';
   if (!place && !isSheet) return nothing;
   if (place === 'folded')
-    return html`<button class="icon-button unfold" title="Show the inspector" aria-label="Show the inspector" @click=${() => {
+    return html`<button class="icon-button unfold" title=${say.showInspector} aria-label=${say.showInspector} @click=${() => {
       ui.isInspectorOpen.value = true;
     }}>${icon('panel')}</button>`;
   const shown = tabsOf(room.plan.value, isSheet);
@@ -38,7 +39,7 @@ export function inspector(world) {
     else ui.isInspectorOpen.value = false;
   };
   const { kind, id: of } = ui.selection.value;
-  return html`${isSheet ? html`<i class="grip"></i>` : nothing}<div class="tabs"><div role="tablist" aria-label="Inspector" @keydown=${roving}>
+  return html`${isSheet ? html`<i class="grip"></i>` : nothing}<div class="tabs"><div role="tablist" aria-label=${say.inspector} @keydown=${roving}>
       ${shown.map(
         ({
           id,
@@ -49,11 +50,11 @@ export function inspector(world) {
           ui.tab.value = id;
         }}>${name}${count?.(world) ? html` <span class="dim">${count(world)}</span>` : nothing}</button>`,
       )}</div><span class="grow"></span>
-      <button class="icon-button" title=${isSheet ? 'Close' : 'Fold'} aria-label=${isSheet ? 'Close the sheet' : 'Fold the inspector'} @click=${fold}>${icon(isSheet ? 'chevronDown' : 'chevronRight')}</button></div>
+      <button class="icon-button" title=${isSheet ? say.close : say.fold} aria-label=${isSheet ? say.closeSheet : say.foldInspector} @click=${fold}>${icon(isSheet ? 'chevronDown' : 'chevronRight')}</button></div>
     ${repeat(
       [tab === 'selection' ? `${kind} ${of}` : tab],
       (key) => key,
       () => html`<div class="scroll" role="tabpanel" id="tab-panel" tabindex="0" aria-labelledby=${`tab-${tab}`}>
-      ${room.plan.value && room.scene.value ? draw(world) : html`<p class="empty">The plan is being loaded.</p>`}</div>`,
+      ${room.plan.value && room.scene.value ? draw(world) : html`<p class="empty">${say.loading}</p>`}</div>`,
     )}`;
 }

@@ -1,16 +1,18 @@
 // Invites others by a link that gives a role. Loaded when it is first opened.
 import { html, nothing } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
+import { say } from './later_words.js';
+import { say as sayAtOnce } from './words.js';
 
 const kinds = [
-  ['reviewer', 'Reviewer: points, writes notes, requests control'],
-  ['observer', 'Observer: looks and follows'],
-  ['presenter', 'Presenter: takes control, invites'],
+  ['reviewer', say.reviewer],
+  ['observer', say.observer],
+  ['presenter', say.presenter],
 ];
 const times = [
-  [3600, 'for an hour'],
-  [86400, 'for a day'],
-  [604800, 'for a week'],
+  [3600, say.forHour],
+  [86400, say.forDay],
+  [604800, say.forWeek],
 ];
 const made = signal({ url: '', words: '', error: '', isBusy: false });
 
@@ -25,9 +27,9 @@ async function copy(text) {
   field?.select();
   try {
     await navigator.clipboard.writeText(text); // a page not served securely has no clipboard
-    made.value = { ...made.peek(), words: 'Copied.' };
+    made.value = { ...made.peek(), words: say.copied };
   } catch {
-    made.value = { ...made.peek(), words: 'Press Ctrl+C to copy the selected link.' };
+    made.value = { ...made.peek(), words: sayAtOnce.pressCopy };
   }
 }
 
@@ -51,12 +53,14 @@ async function make(event, { room, api }) {
 /** @param {object} world {room, api} */
 export function inviteForm(world) {
   const { url, words, error, isBusy } = made.value;
+  const display = displayOf(world.room);
+  const address = html`<a href=${display} target="_blank" rel="noopener">${display.replace(/^https?:\/\//, '')}</a>`;
   return html`<form class="invite-form" @submit=${(event) => make(event, world)}>
-    <label for="invite-role">Link with a role</label><select id="invite-role" name="role">${kinds.map(([value, text]) => html`<option value=${value}>${text}</option>`)}</select>
-    <div class="pair"><label for="invite-expires">Lets people in</label><select id="invite-expires" name="expires">${times.map(([value, text]) => html`<option value=${value} ?selected=${value === 86400}>${text}</option>`)}</select></div>
-    <label class="invite-one"><input type="checkbox" name="one"> For one person only</label>
-    <button class="primary" ?disabled=${isBusy}>Make link</button>
-    ${url ? html`<div class="pair"><input id="invite-made" readonly aria-label="Link with a role" .value=${url}><button type="button" @click=${() => copy(url)}>Copy</button></div>` : nothing}
-    <p class="dim">On the screen of a meeting room open <a href=${displayOf(world.room)} target="_blank" rel="noopener">${displayOf(world.room).replace(/^https?:\/\//, '')}</a>: the presenter's 3-D view, for whoever knows this address.</p>
+    <label for="invite-role">${say.linkWithRole}</label><select id="invite-role" name="role">${kinds.map(([value, text]) => html`<option value=${value}>${text}</option>`)}</select>
+    <div class="pair"><label for="invite-expires">${say.lasts}</label><select id="invite-expires" name="expires">${times.map(([value, text]) => html`<option value=${value} ?selected=${value === 86400}>${text}</option>`)}</select></div>
+    <label class="invite-one"><input type="checkbox" name="one"> ${say.forOne}</label>
+    <button class="primary" ?disabled=${isBusy}>${say.makeLink}</button>
+    ${url ? html`<div class="pair"><input id="invite-made" readonly aria-label=${say.linkWithRole} .value=${url}><button type="button" @click=${() => copy(url)}>${sayAtOnce.copy}</button></div>` : nothing}
+    <p class="dim">${say.onScreen({ address })}</p>
     <p role="status" class="dim">${words}</p>${error ? html`<p role="alert" class="err">${error}</p>` : nothing}</form>`;
 }

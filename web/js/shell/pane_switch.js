@@ -3,12 +3,13 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { segment } from '../parts/fields.js';
 import { roving } from '../parts/roving.js';
 import { undoButtons } from './undo_buttons.js';
+import { say } from './words.js';
 
 export function paneSwitch(world) {
   const { room, ui } = world;
   if (ui.arrangement.value.size !== 'phone') return nothing;
   const panes = segment(
-    'Pane',
+    say.pane,
     ui.panes.four.value.map((number) => [number, room.view(number).name]),
     ui.visible.value[0],
     false,
@@ -17,5 +18,5 @@ export function paneSwitch(world) {
       ui.active.value = number;
     },
   );
-  return html`${panes}<div class="steps" role="toolbar" aria-label="Steps" @keydown=${roving}>${undoButtons(world)}</div>`;
+  return html`${panes}<div class="steps" role="toolbar" aria-label=${say.steps} @keydown=${roving}>${undoButtons(world)}</div>`;
 }

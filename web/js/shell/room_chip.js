@@ -4,33 +4,33 @@ import { effect, untracked } from '../../lib/signals-core.js';
 import { dayTime } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { known, later } from '../parts/lazy.js';
+import { say } from './words.js';
 
 const marks = { presenting: 'people', following: 'people', own: 'person', away: 'phase', none: 'warning' };
 
 function words({ following, control, recording }) {
   const { started_ms, plan_changed } = recording.replay.value ?? {};
-  const trouble = recording.at.value?.state === 'failed' ? 'unreadable here' : plan_changed && 'plan changed'; // the popover says when the meeting was
-  const replay = started_ms && (trouble ? `Replay, ${trouble}` : `Replay ${dayTime(started_ms)}`);
+  const trouble = recording.at.value?.state === 'failed' ? say.unreadable : plan_changed && say.planChanged; // the popover says when the meeting was
+  const replay = started_ms && (trouble || say.replay({ time: dayTime(started_ms) }));
   const name = following.presenter.value?.name ?? '';
   const n = following.nFollowers.value;
   switch (following.standing.value) {
     case 'presenting':
-      return { text: control.isLocked.value ? 'Presenting, locked' : 'Presenting', more: n ? `· ${n} follow${n === 1 ? 's' : ''}` : '' };
+      return { text: control.isLocked.value ? say.locked : say.presenting, more: n ? say.followers({ n }) : '' };
     case 'own':
       return {
-        text: replay ?? 'On my own',
-        act: { word: 'Return', keys: 'F', about: name ? `Return to ${name}` : 'Return to the shared view', do: () => following.return() },
+        text: replay ?? say.onMyOwn,
+        act: { word: say.return, keys: 'F', about: name ? say.returnTo({ name }) : say.returnToShared, do: () => following.return() },
       };
     case 'away':
-      return { text: `${name} is away` };
+      return { text: say.away({ name }) };
     case 'none':
       return {
-        text: replay ?? 'No presenter',
-        act: !replay &&
-          control.may('scene') && { word: 'Take over', about: "Take over: your view becomes the room's", do: () => following.present() },
+        text: replay ?? say.noPresenter,
+        act: !replay && control.may('scene') && { word: say.takeOver, about: say.takeOverIs, do: () => following.present() },
       };
     default:
-      return { text: replay ?? (name ? `Following ${name}` : 'Following') };
+      return { text: replay ?? (name ? say.following({ name }) : say.followingNobody) };
   }
 }
 
@@ -62,7 +62,7 @@ export function offerName({ room, ui, ownName }) {
     if (isDone || !members.length) return;
     isDone = true;
     if (members.some(({ id, connected }) => id !== room.member.value && connected !== false))
-      untracked(() => ui.notify('ok', `You are ${room.identity.name} here.`, topic, { word: 'Give your name', act: () => askName(ui) }));
+      untracked(() => ui.notify('ok', say.youAre(room.identity), topic, { word: say.giveName, act: () => askName(ui) }));
   });
 }
 
@@ -74,10 +74,10 @@ export function roomChip(world, place) {
   const isOpen = ui.popover.value === name;
   const { text, more, act } = words(room);
   const keep = (event) => event.stopPropagation(); // the arrow keys of the tool bar stay out of the chip
-  return html`<span class="anchor room-chip in-${place}" role="group" aria-label="Room" data-standing=${room.following.standing.value} ?data-replay=${room.recording.replay.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
-    <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title="Who is in this room" @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
-      ${room.recording.running.value ? html`<b class="chip-recorded">● Recorded</b>` : nothing}
+  return html`<span class="anchor room-chip in-${place}" role="group" aria-label=${say.room} data-standing=${room.following.standing.value} ?data-replay=${room.recording.replay.value} @keydown=${(event) => event.key.startsWith('Arrow') && keep(event)}>
+    <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title=${say.whoIsHere} @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
+      ${room.recording.running.value ? html`<b class="chip-recorded">${say.recorded}</b>` : nothing}
       <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
     ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
-    ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label="Members of this room">${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;
+    ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label=${say.membersOf}>${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;
 }

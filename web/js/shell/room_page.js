@@ -26,6 +26,7 @@ import { loadBlocks } from './selection.js';
 import { status } from './status.js';
 import { toolStrip } from './tools.js';
 import { tree } from './tree.js';
+import { say } from './words.js';
 
 const probeMs = 60;
 const tickMs = 250;
@@ -36,11 +37,11 @@ const dialogs = ['help', ...features.flatMap((feature) => feature.dialogs ?? [])
 const floating = (world) => html`${help(world)}${ended(world)}${partsOf('dialog', world)}`;
 
 const frame = () => html`<div class="room">
-  <a class="skip" href="#picture-1">To the panes</a>
-  <header class="banner"></header><aside class="tree" aria-label="Plan"></aside>
-  <section class="strip" aria-label="Tools"></section>
-  <main><div class="switch"></div><div class="dose-bars"></div><div class="panes">${views.map(({ kind }, index) => html`<section class="pane" data-view=${index + 1} data-kind=${kind}></section>`)}</div><section class="chart-drawer" aria-label="Plots of dose"></section><div class="toasts"></div></main>
-  <aside class="inspector" aria-label="Inspector"></aside><footer class="status"></footer><div class="floating"></div></div>`;
+  <a class="skip" href="#picture-1">${say.toPanes}</a>
+  <header class="banner"></header><aside class="tree" aria-label=${say.plan}></aside>
+  <section class="strip" aria-label=${say.tools}></section>
+  <main><div class="switch"></div><div class="dose-bars"></div><div class="panes">${views.map(({ kind }, index) => html`<section class="pane" data-view=${index + 1} data-kind=${kind}></section>`)}</div><section class="chart-drawer" aria-label=${say.plots}></section><div class="toasts"></div></main>
+  <aside class="inspector" aria-label=${say.inspector}></aside><footer class="status"></footer><div class="floating"></div></div>`;
 
 /**
  * @param {HTMLElement} host @param {string} id of the room

@@ -6,18 +6,21 @@ import { maxName } from '../room/own_name.js';
 import { icon } from '../parts/icons.js';
 import { recordings } from '../features/recordings/recordings.js';
 import { variables } from '../parts/mount.js';
+import { say } from './later_words.js';
+import { say as sayAtOnce } from './words.js';
 
 const topic = 'following';
+const roles = { presenter: say.isPresenter, reviewer: say.isReviewer, observer: say.isObserver };
 const lags = {
-  link: { word: 'slow link', about: 'Pictures are not acknowledged within a second: the link is slow, or the page is in the background' },
-  renderer: { word: 'waits for pictures', about: 'The server does not draw the pictures within a second' },
+  link: { word: say.slowLink, about: say.slowLinkIs },
+  renderer: { word: say.waitsForPictures, about: say.waitsForPicturesIs },
 };
 
 function doing({ presenting, following, connected }, presenter) {
-  if (presenting) return connected === false ? 'presents, is away' : 'presents';
-  if (connected === false) return 'is away';
-  if (!following) return 'on their own';
-  return presenter ? `follows ${presenter.name}` : 'follows';
+  if (presenting) return connected === false ? say.presentsAway : say.presents;
+  if (connected === false) return say.isAway;
+  if (!following) return say.onTheirOwn;
+  return presenter ? say.follows(presenter) : say.followsNobody;
 }
 
 export const avatar = (member, size = 'small') =>
@@ -28,8 +31,8 @@ function buttonsFor(member, { following, control }) {
   if (!following.isPresenting.value || member.presenting || member.connected === false || !control.may('scene', member.role))
     return nothing;
   const isAsking = control.requested.value.includes(member.id);
-  return html`<span class="roster-buttons"><button aria-label=${`Give control to ${member.name}`} @click=${() => control.give(member.id)}>Give control</button>
-    ${isAsking ? html`<button aria-label=${`Refuse control to ${member.name}`} @click=${() => control.refuse(member.id)}>Refuse</button>` : nothing}</span>`;
+  return html`<span class="roster-buttons"><button aria-label=${say.giveTo(member)} @click=${() => control.give(member.id)}>${say.giveControl}</button>
+    ${isAsking ? html`<button aria-label=${say.refuseTo(member)} @click=${() => control.refuse(member.id)}>${say.refuse}</button>` : nothing}</span>`;
 }
 
 function row(member, room) {
@@ -37,45 +40,45 @@ function row(member, room) {
   const lag = member.connected === false ? null : lags[member.lag];
   const isAsking = control.requested.value.includes(member.id);
   return html`<li data-member=${member.id} data-away=${member.connected === false}>${avatar(member)}
-    <span class="roster-who"><span class="clipped" title=${member.name}>${member.name}${member.id === room.member.value ? ' (you)' : ''}</span>
-      <span class="dim">${[member.role, doing(member, following.presenter.value)].filter(Boolean).join(' · ')}</span>
-      ${isAsking ? html`<span class="roster-mark">${icon('people', 12)} requests control</span>` : nothing}
+    <span class="roster-who"><span class="clipped" title=${member.name}>${member.id === room.member.value ? sayAtOnce.you(member) : member.name}</span>
+      <span class="dim">${[roles[member.role], doing(member, following.presenter.value)].filter(Boolean).join(' · ')}</span>
+      ${isAsking ? html`<span class="roster-mark">${icon('people', 12)} ${say.requests}</span>` : nothing}
       ${lag ? html`<span class="roster-mark warn" title=${lag.about}>${icon('phase', 12)} ${lag.word}</span>` : nothing}
-      ${member.tabs > 1 ? html`<span class="roster-mark dim" title="The same browser has this room open more than once">${icon('layers', 12)} one of ${member.tabs} tabs of the same person</span>` : nothing}</span>
+      ${member.tabs > 1 ? html`<span class="roster-mark dim" title=${say.tabsIs}>${icon('layers', 12)} ${say.tabs({ n: member.tabs })}</span>` : nothing}</span>
     ${buttonsFor(member, room)}</li>`;
 }
 
 const actions = ({ following, control, recording: { replay } }, watching) =>
   [
-    following.isPresenting.value && { word: 'Show everyone', about: 'Everybody follows you again', do: () => following.showEveryone() },
+    following.isPresenting.value && { word: say.showEveryone, about: say.showEveryoneIs, do: () => following.showEveryone() },
     following.isPresenting.value &&
       control.may('control') &&
       (control.isLocked.value
-        ? { word: 'Unlock', about: 'Presenters may take control again', do: () => control.lock(false) }
-        : { word: 'Lock control', about: 'Nobody takes control: you can only give it', do: () => control.lock(true) }),
+        ? { word: say.unlock, about: say.unlockIs, do: () => control.lock(false) }
+        : { word: say.lock, about: say.lockIs, do: () => control.lock(true) }),
     !replay.value &&
       control.canTake.value && {
-        word: following.presenter.value ? 'Take control' : 'Take over',
-        about: following.presenter.value ? 'You present what the room shows now' : "Your view becomes the room's",
+        word: following.presenter.value ? say.take : sayAtOnce.takeOver,
+        about: following.presenter.value ? say.takeIs : say.takeOverIs,
         do: () => control.take(),
       },
     control.canRequest.value &&
       (control.isRequesting.value
-        ? { word: 'Withdraw request', about: 'You do not want control any more', do: () => control.withdraw() }
-        : { word: 'Request control', about: 'The presenter is asked to give you control', do: () => control.request() }),
+        ? { word: say.withdraw, about: say.withdrawIs, do: () => control.withdraw() }
+        : { word: say.request, about: say.requestIs, do: () => control.request() }),
     !following.isFollowing.value &&
       watching?.isClosed.value && {
-        word: "Show presenter's picture",
-        about: 'What the presenter works in, small, in a corner of your panes',
+        word: say.watch,
+        about: say.watchIs,
         do: () => {
           watching.isClosed.value = false;
         },
       },
-    !following.isFollowing.value && { word: 'Return', about: 'Follow with all panes again', do: () => following.return() },
+    !following.isFollowing.value && { word: sayAtOnce.return, about: say.returnIs, do: () => following.return() },
     following.isFollowing.value &&
       !following.isPresenting.value && {
-        word: 'Look for yourself',
-        about: 'Your panes alone, from what they show now',
+        word: say.leave,
+        about: say.leaveIs,
         do: () => following.leave(),
       },
   ].filter(Boolean);
@@ -93,10 +96,10 @@ function nameForm({ room, ui, ownName }) {
     main.focus();
     if (ownName.value.value === before && room.identity.name === before) return;
     room.rename(ownName.value.value);
-    ui.notify('ok', `The others see you as ${ownName.value.value}.`, topic);
+    ui.notify('ok', say.seenAs({ name: ownName.value.value }), topic);
   };
-  return html`<form class="own-name" @submit=${save}><label for="room-name">Your name</label>
-    <input id="room-name" name="name" required maxlength=${maxName} autocomplete="name" placeholder=${room.identity.name} .value=${ownName.value.value}><button>Save</button></form>`;
+  return html`<form class="own-name" @submit=${save}><label for="room-name">${say.yourName}</label>
+    <input id="room-name" name="name" required maxlength=${maxName} autocomplete="name" placeholder=${room.identity.name} .value=${ownName.value.value}><button>${say.save}</button></form>`;
 }
 
 /** Contents of the room chip's popover. @param {object} world {room, ui, ownName, api, watching} */
@@ -113,7 +116,7 @@ export function roster({ room, ui, ownName, api, watching }) {
     ({ id }) => id,
     (member) => row(member, room),
   )}</ul>
-    ${locked ? html`<p class="dim roster-locked">Control is locked: it can only be given.</p>` : nothing}
+    ${locked ? html`<p class="dim roster-locked">${say.lockedNote}</p>` : nothing}
     <div class="room-actions">${actions(room, watching).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
     ${recordings({ room, ui, api }, avatar)}
     ${nameForm({ room, ui, ownName })}`;
@@ -125,8 +128,8 @@ export function requestLines({ room: { control } }) {
   return html`${repeat(
     asking.slice(0, 2),
     ({ id }) => id,
-    (member) => html`<div class="request-line" role="status">${avatar(member)}<span class="clipped">${member.name} requests control</span>
-    <button @click=${() => control.give(member.id)} aria-label=${`Give control to ${member.name}`}>Give</button><button class="ghost" @click=${() => control.refuse(member.id)} aria-label=${`Refuse control to ${member.name}`}>Refuse</button></div>`,
+    (member) => html`<div class="request-line" role="status">${avatar(member)}<span class="clipped">${say.asks(member)}</span>
+    <button @click=${() => control.give(member.id)} aria-label=${say.giveTo(member)}>${say.give}</button><button class="ghost" @click=${() => control.refuse(member.id)} aria-label=${say.refuseTo(member)}>${say.refuse}</button></div>`,
   )}
-    ${asking.length > 2 ? html`<div class="request-line" role="status">${asking.length - 2} more request control: see the members</div>` : nothing}`;
+    ${asking.length > 2 ? html`<div class="request-line" role="status">${say.moreAsk({ n: asking.length - 2 })}</div>` : nothing}`;
 }

@@ -1,12 +1,13 @@
 // The room's state on the server's disk, in the status bar; while nothing can be written, a line over the panes as well.
 import { html, nothing } from '../../lib/lit-html.js';
 import { icon } from '../parts/icons.js';
+import { say } from './words.js';
 
 const words = {
-  saved: ['Saved', "The scene, notes and saved views are on the server's disk."],
-  saving: ['Saving…', "The newest change is not on the server's disk yet."],
-  failing: ['Not saved', "What is changed now is not on the server's disk; it is tried again and again."],
-  unkept: ['Not kept', 'This server keeps no rooms: all of this ends with the room.'],
+  saved: [say.saved, say.savedIs],
+  saving: [say.saving, say.savingIs],
+  failing: [say.failing, say.failingIs],
+  unkept: [say.unkept, say.unkeptIs],
 };
 
 export function savedMark({ saved, link }) {

@@ -10,13 +10,14 @@ import { roving } from '../parts/roving.js';
 import { roomChip } from './room_chip.js';
 import { sectionsOf } from './sections.js';
 import { undoButtons } from './undo_buttons.js';
+import { say } from './words.js';
 
 const tools = [
-  ['crosshair', 'Crosshair', 'Crosshair in slices, turn in 3-D'],
-  ['window', 'Window', 'Window and level by dragging in a slice (W)'],
-  ['pan', 'Pan', 'Move the picture (middle button, Shift)'],
-  ['zoom', 'Zoom', 'Zoom (right button, Z)'],
-  ['measure', 'Measure', 'Distance, angle, polyline or ellipse in a slice (M)'],
+  ['crosshair', say.crosshair, say.crosshairIs],
+  ['window', say.window, say.windowIs],
+  ['pan', say.pan, say.panIs],
+  ['zoom', say.zoom, say.zoomIs],
+  ['measure', say.measure, say.measureIs],
 ];
 
 /** With the tool comes the choice of what is measured. */
@@ -41,13 +42,13 @@ export function toolStrip(world) {
 function strip(world) {
   const { ui } = world;
   const isPicture = ui.tab.value === 'selection' && ui.selection.value.kind === 'view' && ui.isInspectorOpen.value;
-  return html`<div class="tools" role="toolbar" aria-label="Tools" @keydown=${roving}>
+  return html`<div class="tools" role="toolbar" aria-label=${say.tools} @keydown=${roving}>
     ${tools.map((row) => tool(ui, row))}${stripOf('mode', world)}
     <i class="rule"></i>
     ${layoutButtons(world)}${panesMenu(world)}
     <i class="rule"></i>
-    ${stripOf('show', world)}<button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title="Projection, translucency and slices of the 3-D picture" aria-label="3-D picture" aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
-    ${hasDrawer(world.room.plan.value) ? html`<button class=${classMap({ tool: true, plain: true, on: ui.isDrawerOpen.value })} tabindex="-1" title="Plots of dose: histograms, depth profile (V)" aria-label="Plots of dose" aria-pressed=${ui.isDrawerOpen.value} @click=${() => ui.toggleDrawer()}>${icon('drawer')}</button>` : nothing}
+    ${stripOf('show', world)}<button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title=${say.pictureIs} aria-label=${say.picture} aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
+    ${hasDrawer(world.room.plan.value) ? html`<button class=${classMap({ tool: true, plain: true, on: ui.isDrawerOpen.value })} tabindex="-1" title=${say.plotsIs} aria-label=${say.plots} aria-pressed=${ui.isDrawerOpen.value} @click=${() => ui.toggleDrawer()}>${icon('drawer')}</button>` : nothing}
     <span class="grow"></span>
     ${stripOf('meet', world)}${roomChip(world, 'strip')}
     ${stripEnd(world)}
@@ -60,7 +61,7 @@ export function stripEnd(world) {
   const active = panes()[ui.active.value - 1];
   return html`
     ${undoButtons(world)}
-    <button class="tool plain" tabindex="-1" title="Reset this view (R)" aria-label="Reset view" ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
+    <button class="tool plain" tabindex="-1" title=${say.resetIs} aria-label=${say.reset} ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
     ${stripOf('end', world)}`;
 }
 
@@ -80,13 +81,13 @@ function dock(world) {
   };
   const button = (picture, name, isOn, act) =>
     html`<button class=${classMap({ tool: true, on: isOn })} tabindex="-1" aria-expanded=${isOn} @click=${act}>${icon(picture, 20)}<span class="word">${name}</span></button>`;
-  return html`<div class="tools dock" role="toolbar" aria-label="Tools" @keydown=${roving}>
+  return html`<div class="tools dock" role="toolbar" aria-label=${say.tools} @keydown=${roving}>
     ${tools.filter(([id]) => (size !== 'phone' && !plan?.doses.length) || ['crosshair', 'window', 'measure'].includes(id)).map((row) => tool(ui, row))}
     ${size === 'phone' ? nothing : html`<i class="rule"></i>`}
-    ${sectionsOf(plan, scene).length ? button('tree', 'Parts', sheet === 'tree', () => ui.openSheet('tree')) : nothing}
-    ${stripOf('show', world, size)}${button('target', 'Probe', isTab('probe'), open('probe'))}
+    ${sectionsOf(plan, scene).length ? button('tree', say.parts, sheet === 'tree', () => ui.openSheet('tree')) : nothing}
+    ${stripOf('show', world, size)}${button('target', say.probe, isTab('probe'), open('probe'))}
     ${size === 'phone' ? nothing : sheetTabs.filter(({ inSheet }) => inSheet(plan)).map(({ id, name }) => button('curve', name, isTab(id), open(id)))}
-    ${button('panel', 'Selection', isTab('selection'), open('selection'))}
+    ${button('panel', say.selection, isTab('selection'), open('selection'))}
     ${
       size === 'phone'
         ? nothing

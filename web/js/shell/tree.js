@@ -5,8 +5,9 @@ import { icon } from '../parts/icons.js';
 import { roving } from '../parts/roving.js';
 import { sectionOf, sectionsOf } from './sections.js';
 import { treeKeys } from './tree_keys.js';
+import { say } from './words.js';
 
-const loading = html`<p class="empty">The plan is being loaded.</p>`;
+const loading = html`<p class="empty">${say.loading}</p>`;
 
 export function tree(world) {
   const { ui } = world;
@@ -19,15 +20,15 @@ export function tree(world) {
 function whole(world) {
   const { room, ui } = world;
   const plan = room.plan.value;
-  return html`<header class="panel-head"><h2>Plan</h2><span class="grow"></span>
-      <button class="icon-button" title="Fold" aria-label="Fold the plan's parts" @click=${() => {
+  return html`<header class="panel-head"><h2>${say.plan}</h2><span class="grow"></span>
+      <button class="icon-button" title=${say.fold} aria-label=${say.foldParts} @click=${() => {
         ui.isTreeOpen.value = false;
       }}>${icon('chevronLeft')}</button></header>
     ${
       plan
         ? html`${sectionsOf(plan, room.scene.value).map(({ tools }) => tools?.(world))}<div class="scroll">${list(
             world,
-            'Parts of the plan',
+            say.partsOf,
             sectionsOf(plan, room.scene.value).map((section) => folding(world, section)),
             sectionsOf(plan, room.scene.value).filter(({ id }) => !ui.folded.value.has(id)),
             true,
@@ -76,10 +77,10 @@ function rail(world) {
   const sections = sectionsOf(room.plan.value, room.scene.value);
   const open = sections.find(({ id }) => id === ui.section.value);
   const { size, overlay } = ui.arrangement.value;
-  return html`<div class="rail" role="toolbar" aria-orientation="vertical" aria-label="Parts of the plan" @keydown=${roving}>
+  return html`<div class="rail" role="toolbar" aria-orientation="vertical" aria-label=${say.partsOf} @keydown=${roving}>
       ${
         size === 'wide'
-          ? html`<button class="icon-button" tabindex="0" title="Show the plan's parts" aria-label="Show the plan's parts" @click=${() => {
+          ? html`<button class="icon-button" tabindex="0" title=${say.showParts} aria-label=${say.showParts} @click=${() => {
               ui.isTreeOpen.value = true;
               ui.isDrawerRight.value = false;
             }}>${icon('tree')}</button>`
@@ -95,10 +96,10 @@ function rail(world) {
     ${
       open
         ? html`<div class=${`section-pane ${overlay}`}><header class="panel-head"><h2>${open.name}</h2><span class="note">${open.note(world)}</span><span class="grow"></span>
-        <button class=${classMap({ 'icon-button': true, on: ui.isPinned.value })} aria-pressed=${ui.isPinned.value} title="Keep beside the pictures" aria-label="Pin" @click=${() => {
+        <button class=${classMap({ 'icon-button': true, on: ui.isPinned.value })} aria-pressed=${ui.isPinned.value} title=${say.keepBeside} aria-label=${say.pin} @click=${() => {
           ui.isPinned.value = !ui.isPinned.value;
         }}>${icon('pin')}</button>
-        <button class="icon-button" title="Close" aria-label=${`Close ${open.name}`} @click=${() => {
+        <button class="icon-button" title=${say.close} aria-label=${say.closeOf({ section: open.name })} @click=${() => {
           ui.section.value = '';
         }}>${icon('close')}</button></header>
       ${open.tools?.(world)}<div class="scroll">${list(world, open.name, open.rows(world), [open])}</div></div>`
@@ -110,14 +111,14 @@ function inSheet(world) {
   const { room, ui } = world;
   const sections = sectionsOf(room.plan.value, room.scene.value);
   const shown = sections.find(({ id }) => id === ui.sheetSection.value) ?? sections[0];
-  return html`<i class="grip"></i><div class="tabs"><div role="tablist" aria-label="Parts of the plan" @keydown=${roving}>${sections.map(
+  return html`<i class="grip"></i><div class="tabs"><div role="tablist" aria-label=${say.partsOf} @keydown=${roving}>${sections.map(
     ({ id, name }) => html`<button role="tab" id=${`part-${id}`} aria-selected=${id === shown.id}
       aria-controls=${id === shown.id ? 'part-panel' : nothing} tabindex=${id === shown.id ? 0 : -1} @click=${({ currentTarget }) => {
         ui.sheetSection.value = id;
         currentTarget.scrollIntoView({ block: 'nearest', inline: 'nearest' });
       }}>${name}</button>`,
   )}</div><span class="grow"></span>
-      <button class="icon-button" aria-label="Close the sheet" @click=${() => {
+      <button class="icon-button" aria-label=${say.closeSheet} @click=${() => {
         ui.sheet.value = '';
       }}>${icon('chevronDown')}</button></div>
     ${

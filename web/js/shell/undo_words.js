@@ -2,6 +2,8 @@
 import { undoWords } from '../../gen/undo_words.js';
 import { shownImage } from '../room/plan.js';
 import { number, significant, windowText } from '../parts/format.js';
+import { say as fieldNames } from './field_words.js';
+import { say } from './words.js';
 
 const units = { _mm: 'mm', _px: 'px', _deg: '°' };
 
@@ -13,16 +15,20 @@ function wordsOf(document, path) {
   let [tree, words] = [undoWords[document]];
   for (const name of path) {
     tree = Object.hasOwn(tree, name) ? tree[name] : tree['*'];
-    if (typeof tree !== 'object') return tree ?? words;
+    if (typeof tree !== 'object') return fieldNames[tree ?? words];
     words = tree[''] ?? words;
   }
-  return words;
+  return fieldNames[words];
 }
+
+/** "window", "window and wash"; of more than two the short form. @param {string[]} names @param {(names: string[]) => string} short */
+const joined = (names, short) =>
+  names.length < 2 ? (names[0] ?? '') : names.length === 2 ? say.and({ one: names[0], two: names[1] }) : short(names);
 
 /** "opacity of brain", "window", "camera of 3-D", "crosshair", "visibility of 4 regions". @param {import('../room/undo.js').Change[]} changes */
 export function stepName(changes, room) {
   if (changes[0]?.of === 'act') return changes[0].path[0];
-  if (changes.some(({ path }) => path.join('.') === 'image.id')) return 'image shown'; // its window and colours went with it
+  if (changes.some(({ path }) => path.join('.') === 'image.id')) return say.imageShown; // its window and colours went with it
   const views = changes.filter(({ of }) => of !== 'scene');
   const [regions, rest] = [true, false].map((isRegion) =>
     changes.filter(({ of, path }) => of === 'scene' && (path[0] === 'regions') === isRegion),
@@ -31,16 +37,16 @@ export function stepName(changes, room) {
   if (regions.length) {
     const ids = unique(regions.map(({ path }) => path[1]));
     const fields = unique(regions.map(({ path }) => wordsOf('scene', path) ?? path[2]?.replaceAll('_', ' ')));
-    const who = ids.length > 1 ? `${ids.length} regions` : (room.plan.value?.regions.find(({ id }) => id === ids[0])?.name ?? ids[0]);
-    names.push(`${fields.length > 2 ? 'style' : fields.join(' and ')} of ${who}`);
+    const what =
+      ids.length > 1 ? say.nRegions({ n: ids.length }) : (room.plan.value?.regions.find(({ id }) => id === ids[0])?.name ?? ids[0]);
+    names.push(say.stepOf({ fields: joined(fields, () => say.style), what }));
   }
   names.push(...unique(rest.map(fieldName)));
-  const panes = unique(views.map(({ of }) => room.view(of).name)).map((name) => (name.startsWith('3-D') ? name : name.toLowerCase()));
-  if (panes.length)
-    names.push(
-      `${views.every(({ path }) => path[0] === views[0].path[0]) ? (wordsOf('view', views[0].path) ?? 'camera') : 'camera'} of ${panes.join(', ')}`,
-    );
-  return names.length > 2 ? `${names[0]} and ${names.length - 1} more` : names.join(' and ');
+  const panes = unique(views.map(({ of }) => room.view(of).nameWithin));
+  const isOne = views.every(({ path }) => path[0] === views[0].path[0]);
+  const field = (isOne && wordsOf('view', views[0]?.path ?? [])) || say.camera;
+  if (panes.length) names.push(say.stepOf({ fields: field, what: panes.join(', ') }));
+  return joined(names, () => say.andMore({ one: names[0], n: names.length - 1 }));
 }
 
 function fieldName({ path }) {
@@ -62,9 +68,16 @@ function valueText(change, wanted, room) {
   return unit ? `${significant(value)} ${unit}` : significant(value);
 }
 
-/** "Undo: opacity of brain, to 100 % (Ctrl+Z)" */
-export function stepTitle(verb, keys, changes, wanted, room) {
-  if (!changes) return `${verb} (${keys})`;
+const ways = {
+  undo: { keys: 'Ctrl+Z', wanted: 'before', none: say.undoNone, step: say.undo, stepTo: say.undoTo },
+  redo: { keys: 'Ctrl+Shift+Z', wanted: 'after', none: say.redoNone, step: say.redo, stepTo: say.redoTo },
+};
+
+/** "Undo: opacity of brain, to 100 % (Ctrl+Z)" @param {'undo'|'redo'} way */
+export function stepTitle(way, changes, room) {
+  const { keys, wanted, none, step, stepTo } = ways[way];
+  if (!changes) return none({ keys });
   const value = changes.length === 1 ? valueText(changes[0], wanted, room) : '';
-  return `${verb}: ${stepName(changes, room)}${value ? `, to ${value}` : ''} (${keys})`;
+  const name = stepName(changes, room);
+  return value ? stepTo({ step: name, value, keys }) : step({ step: name, keys });
 }

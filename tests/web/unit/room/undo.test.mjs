@@ -12,8 +12,8 @@ function world() {
   let now = 1000;
   const told = [];
   const views = [
-    { name: '3-D', document: { value: { kind: '3d', size_px: [10, 10] } } },
-    { name: 'Axial', document: { value: { kind: 'axial' } } },
+    { name: '3-D', nameWithin: '3-D', document: { value: { kind: '3d', size_px: [10, 10] } } },
+    { name: 'Axial', nameWithin: 'axial', document: { value: { kind: 'axial' } } },
   ];
   const room = {
     canChange: { value: true },
@@ -305,7 +305,7 @@ test('keys undo and redo, but not while a text field has the focus', () => {
 
 test('steps are named, with the value and its unit', () => {
   const { room, undo, opacity, wait } = world();
-  const title = () => stepTitle('Undo', 'Ctrl+Z', undo.next.value, 'before', room);
+  const title = () => stepTitle('undo', undo.next.value, room);
   assert.equal(title(), 'Undo (Ctrl+Z)');
   opacity(0.5);
   assert.equal(title(), 'Undo: opacity of brain, to 100 % (Ctrl+Z)');
