@@ -239,8 +239,8 @@ static bool is_loopback(const char *listen)
 
 /* ---- serving ---------------------------------------------------------------------------------------------------- */
 
-/* What a connection passes through: TLS, if there is, gives decrypted streams to the front, which hands WebSockets to
- * the net thread. */
+/* A connection passes through these: TLS, where there is, gives decrypted streams to the front, which hands WebSockets
+ * to the net thread. */
 struct service {
     struct tls *tls; /* NULL: the port speaks HTTP */
     struct front *front;

@@ -18,6 +18,6 @@ enum {
 NODISCARD bool stop_watch(struct error *err);
 /* Waits at most wait_us for a signal to stop; negative: for ever. Returns true when one has come. Main thread. */
 bool stop_wait(int64_t wait_us);
-/* The same, for a signal to reload, too, which is reported once. */
+/* Waits like stop_wait, for a signal to reload, too, which is reported once. */
 enum stop_signal { STOP_NO_SIGNAL, STOP_STOPS, STOP_RELOADS };
 enum stop_signal stop_wait_or_reload(int64_t wait_us);

@@ -89,7 +89,7 @@ const char *front_url(const struct front *front);
  * of a pair behind which TLS is decrypted. Nothing of the stream has been read. Refuses it with 429 when too many wait
  * to be taken; closes it after front_close. Any thread, from front_serve on. */
 void front_take(struct front *front, int socket, const struct address *peer);
-/* The same for the socket of a client that speaks no TLS where it should: it is refused with 400. */
+/* Takes likewise the socket of a client that speaks no TLS where it should: it is refused with 400. */
 void front_take_plain(struct front *front, int socket, const struct address *peer);
 void front_wake(struct front *front); /* any thread: has run called soon */
 /* Has the thread set *beat. Any thread; one call at a time. */

@@ -24,7 +24,7 @@ export function makeCertificate(folder, name, kind = 'ec') {
   return { cert, key };
 }
 
-/** The same key behind a passphrase. */
+/** Writes the key behind a passphrase. */
 export const encryptKey = (key, file) => openssl('pkey', '-in', key, '-aes256', '-passout', 'pass:test', '-out', file);
 
 /** Shakes hands. @returns {Promise<{socket: import('node:tls').TLSSocket, name: string, version: string, cipher: string, alpn: string | false}>} */

@@ -8,7 +8,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { ask, encryptKey, makeCertificate, makeWeak, shakeHands } from './certificates.mjs';
 import { bin, call, openPlan, sleep, startDaemon, until, web } from './daemon.mjs';
-import { FIRST, HOST, open, statuses } from './plain_connection.mjs';
+import { FIRST, open, statuses } from './plain_connection.mjs';
 import { Client } from './ws_client.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'beamroom-tls-'));
@@ -262,7 +262,10 @@ describe('the start ends with a sentence', () => {
   const data = mkdtempSync(join(tmpdir(), 'beamroom-tls-data-'));
   after(() => rmSync(data, { recursive: true, force: true }));
   const start = (...args) =>
-    spawnSync(join(bin, 'beamroomd'), ['--stub', '--data', data, '--web', web, '--listen', '127.0.0.1:0', ...args], { encoding: 'utf8', timeout: 60000 });
+    spawnSync(join(bin, 'beamroomd'), ['--stub', '--data', data, '--web', web, '--listen', '127.0.0.1:0', ...args], {
+      encoding: 'utf8',
+      timeout: 60000,
+    });
   const encrypted = join(folder, 'encrypted.key'),
     text = join(folder, 'text.pem'),
     weak = { cert: join(folder, 'weak.pem'), key: join(folder, 'weak.key') };
@@ -274,13 +277,29 @@ describe('the start ends with a sentence', () => {
   const cases = [
     ['a certificate without a key', ['--tls-cert', first.cert], /--tls-cert is given without --tls-key; expected both or neither/],
     ['a key without a certificate', ['--tls-key', first.key], /--tls-key is given without --tls-cert; expected both or neither/],
-    ['a certificate that is not there', ['--tls-cert', join(folder, 'none.pem'), '--tls-key', first.key], /--tls-cert .*none\.pem: No such file or directory/],
-    ['a key that is not there', ['--tls-cert', first.cert, '--tls-key', join(folder, 'none.key')], /--tls-key .*none\.key: No such file or directory/],
+    [
+      'a certificate that is not there',
+      ['--tls-cert', join(folder, 'none.pem'), '--tls-key', first.key],
+      /--tls-cert .*none\.pem: No such file or directory/,
+    ],
+    [
+      'a key that is not there',
+      ['--tls-cert', first.cert, '--tls-key', join(folder, 'none.key')],
+      /--tls-key .*none\.key: No such file or directory/,
+    ],
     ['a folder', ['--tls-cert', folder, '--tls-key', first.key], /--tls-cert .*: expected a file/],
     ['a text', ['--tls-cert', text, '--tls-key', first.key], /--tls-cert .*: no certificate can be read .*; expected PEM/],
     ['a text for the key', ['--tls-cert', first.cert, '--tls-key', text], /--tls-key .*: no private key can be read .*; expected PEM/],
-    ['the key of another', ['--tls-cert', first.cert, '--tls-key', second.key], /--tls-key .* is not the key of the certificate in --tls-cert .*; expected a pair/],
-    ['an encrypted key', ['--tls-cert', first.cert, '--tls-key', encrypted], /--tls-key .*: the key is encrypted; expected one without a passphrase/],
+    [
+      'the key of another',
+      ['--tls-cert', first.cert, '--tls-key', second.key],
+      /--tls-key .* is not the key of the certificate in --tls-cert .*; expected a pair/,
+    ],
+    [
+      'an encrypted key',
+      ['--tls-cert', first.cert, '--tls-key', encrypted],
+      /--tls-key .*: the key is encrypted; expected one without a passphrase/,
+    ],
     ['a weak key', ['--tls-cert', weak.cert, '--tls-key', weak.key], /--tls-cert .* cannot be used: .*key too small/],
   ];
   for (const [what, args, words] of cases)
