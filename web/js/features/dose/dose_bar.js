@@ -2,6 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { basisParts } from '../../room/dose.js';
 import { ofFits } from '../fits/feature.js';
+import { say } from './row_words.js';
 
 /** "Gy(w) per 250 kW-min · blood 15 ppm · weights: BPA example · isodose as brain" */
 export function doseBasis({ room }, place) {
@@ -10,6 +11,6 @@ export function doseBasis({ room }, place) {
   if (!basis) return nothing;
   const rest = [basis.rest[0], ...basis.rest.slice(1).map((part) => part && ` · ${part}`)].join('');
   const mark = ofFits(room)?.wordMark({ room }, ['dose']) ?? nothing;
-  return html`<div class=${`dose-basis ${place}`} title=${`${basis.unit}${rest}`}>${place === 'aside' ? html`<span class="dim">Dose basis</span>` : nothing}
+  return html`<div class=${`dose-basis ${place}`} title=${`${basis.unit}${rest}`}>${place === 'aside' ? html`<span class="dim">${say.basis}</span>` : nothing}
     <span class="dose-basis-words">${mark === nothing ? nothing : html`${mark} · `}<b>${basis.unit}</b>${rest}</span></div>`;
 }

@@ -10,6 +10,7 @@ import { ofFits } from '../fits/feature.js';
 import { number, significant } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { variables } from '../../parts/mount.js';
+import { say } from './drawn_words.js';
 
 const rowPx = 16;
 const [narrow, narrowest] = [320, 240]; // px: of a pane with the legend at its foot, and with one only while it is active
@@ -46,11 +47,11 @@ export function doseLegend({ room, ui, doses }, view, [width, height], isLeftTak
   const mark = ofFits(room)?.wordMark({ room }, ['dose']) ?? nothing;
   const isLeft = !isLeftTaken && isAtRight(plan, view);
   const place = width < narrow ? 'foot' : isLeft ? 'left' : '';
-  return html`<div class=${`legend dose-legend ${place}${scale ? ' scaled' : ''}${isOld ? ' old' : ''}`} role="group" aria-label="Dose">
+  return html`<div class=${`legend dose-legend ${place}${scale ? ' scaled' : ''}${isOld ? ' old' : ''}`} role="group" aria-label=${say.dose}>
     ${mark === nothing ? nothing : html`<p>${mark}</p>`}${notes.map((text) => html`<p class="warn">${icon('warning', 12)} ${text}</p>`)}${scale ? scaleLegend(scale, doses.gamma.value) : nothing}
-    ${all.length ? html`<p class="dose-legend-head"><span>% of ${words}</span> <span>${unit}</span></p>` : nothing}
+    ${all.length ? html`<p class="dose-legend-head"><span>${say.percentOf({ reference: words })}</span> <span>${unit}</span></p>` : nothing}
     <ul>${levels.map((level) => html`<li><i class=${level.wash && isWash ? 'area' : 'line'} ${variables({ '--color': level.color })}></i><span>${number(percentOf(level, reference), isWhole(percentOf(level, reference)) ? 0 : 1)} %</span><span>${significant(doseOf(level, reference))}</span></li>`)}
-      ${all.length > levels.length ? html`<li class="dim">and ${all.length - levels.length} lower</li>` : nothing}</ul>
+      ${all.length > levels.length ? html`<li class="dim">${say.lower({ n: all.length - levels.length })}</li>` : nothing}</ul>
     ${compareWords(compare, plan)}</div>`;
 }
 
@@ -84,15 +85,15 @@ function isShown(scene, is3d) {
 /** Names the second dose, whose lines are dashed. */
 function compareWords({ id, mode }, plan) {
   const second = plan.doses.find((dose) => dose.id === id);
-  return second && (mode === 'lines' || mode === 'difference') ? html`<p>dashed: ${doseName(second)}</p>` : nothing;
+  return second && (mode === 'lines' || mode === 'difference') ? html`<p>${say.dashed({ dose: doseName(second) })}</p>` : nothing;
 }
 
 /** The colours of a wash that is none of levels, with their ends; of how many voxels, once the server has counted them. */
 function scaleLegend({ kind, title, ends, about, more }, { result, error, isOld }) {
   const why = kind === 'error' ? '' : error || (!isOld && result?.comparison_reason) || '';
-  if (why) return html`<p class="warn">${icon('warning', 12)} Not compared: ${why}</p>`;
+  if (why) return html`<p class="warn">${icon('warning', 12)} ${say.notCompared({ reason: why })}</p>`;
   const domain = isOld || kind === 'error' ? null : result?.domain;
-  const counted = domain ? `; ${number(domain.voxels)} of ${number(domain.all_voxels)} voxels` : '';
+  const words = domain ? say.counted({ about, n: number(domain.voxels), all: number(domain.all_voxels) }) : about;
   return html`<p class="dose-scale-title" title=${more || nothing}>${title}</p><i class="dose-scale" ${variables({ '--scale': gradientOf(kind) })}></i>
-    <p class="dose-scale-ends">${ends.map((words) => html`<span>${words}</span>`)}</p>${about ? html`<p class="dim">${about}${counted}</p><span class="hidden">${more}</span>` : nothing}`;
+    <p class="dose-scale-ends">${ends.map((end) => html`<span>${end}</span>`)}</p>${about ? html`<p class="dim">${words}</p><span class="hidden">${more}</span>` : nothing}`;
 }

@@ -6,6 +6,7 @@ import { levelTables, tableOf, tablePatch } from './dose_tables.js';
 import { addLevel, levelContext, levelParts, levelWords, otherText } from './dose_levels.js';
 import { checkbox, numberField, segment } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
 
@@ -16,8 +17,8 @@ export function tableSelect({ room, ui }, { tabindex }) {
     const table = levelTables.find(({ name }) => name === event.target.value);
     if (table) room.patchScene(tablePatch(scene, table), how(ui, event));
   };
-  return html`<select class="dose-select" aria-label="Table of levels" title=${now ? `Levels: ${now.name}, ${now.source}` : 'Tables of levels'} tabindex=${tabindex} ?disabled=${!room.canChange.value} @change=${change}>
-    <option value="" ?selected=${!now} .selected=${live(!now)} disabled>Presets</option>
+  return html`<select class="dose-select" aria-label=${say.table} title=${now ? say.levelsAre({ table: now.name, source: now.source }) : say.tables} tabindex=${tabindex} ?disabled=${!room.canChange.value} @change=${change}>
+    <option value="" ?selected=${!now} .selected=${live(!now)} disabled>${say.presets}</option>
     ${levelTables.map(({ name, source }) => html`<option value=${name} title=${source} ?selected=${now?.name === name} .selected=${live(now?.name === name)}>${name}</option>`)}</select>`;
 }
 
@@ -27,7 +28,7 @@ export function levelBlock(world, isDisabled, changeScene) {
   const { ui } = world;
   const { id } = ui.selection.value;
   const level = scene.dose.levels[id];
-  if (!level) return html`<p class="empty">This level is gone.</p>`;
+  if (!level) return html`<p class="empty">${say.gone}</p>`;
   const change = (patch, event) => changeScene(levelPatch(id, patch), event);
   const turn = (to, event) => {
     const converted = convertedLevel(level, to, reference);
@@ -37,11 +38,12 @@ export function levelBlock(world, isDisabled, changeScene) {
     changeScene(levelPatch(id, null), event);
     ui.choose('dosing', 'levels');
   };
-  const other = level.unit === 'percent' ? `${otherText(level, reference)} ${unit}` : `${otherText(level, reference)} % of the reference`;
-  return html`<section class="block"><h3>${icon('dose')} Level ${levelWords(level, unit)} <span class="dim">${other}</span></h3>
-    <dl><dt>Value</dt><dd class="dose-pair">${numberField('Value of the level', Number(level.value.toPrecision(6)), '', isDisabled, (value, event) => value >= 0 && change({ value }, event))}
+  const other =
+    level.unit === 'percent' ? `${otherText(level, reference)} ${unit}` : say.percentOf({ percent: otherText(level, reference) });
+  return html`<section class="block"><h3>${icon('dose')} ${say.level({ level: levelWords(level, unit) })} <span class="dim">${other}</span></h3>
+    <dl><dt>${say.value}</dt><dd class="dose-pair">${numberField(say.levelValue, Number(level.value.toPrecision(6)), '', isDisabled, (value, event) => value >= 0 && change({ value }, event))}
         ${segment(
-          'Unit of the level',
+          say.levelUnit,
           [
             ['percent', '%'],
             ['dose', unit],
@@ -50,13 +52,13 @@ export function levelBlock(world, isDisabled, changeScene) {
           isDisabled,
           turn,
         )}</dd>
-      <dt>Colour</dt><dd><input type="color" class="dose-swatch" .value=${live(level.color)} aria-label="Colour" ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}></dd>
-      <dt>Opacity of surface</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(level.opacity * 100)))} aria-label="Opacity of the surface" ?disabled=${isDisabled}
-        @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField('Opacity in per cent', Math.round(level.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd></dl>
-    <div class="checks">${checkbox('Shown', level.visible, isDisabled, (visible, event) => change({ visible }, event))}
+      <dt>${say.colour}</dt><dd><input type="color" class="dose-swatch" .value=${live(level.color)} aria-label=${say.colour} ?disabled=${isDisabled} @input=${(event) => change({ color: event.target.value }, event)}></dd>
+      <dt>${say.surfaceOpacity}</dt><dd class="pair"><input type="range" min="0" max="100" step="1" .value=${live(String(Math.round(level.opacity * 100)))} aria-label=${say.surfaceOpacityIs} ?disabled=${isDisabled}
+        @input=${(event) => change({ opacity: event.target.valueAsNumber / 100 }, event)}>${numberField(say.opacityPercent, Math.round(level.opacity * 100), '%', isDisabled, (value, event) => change({ opacity: Math.min(Math.max(value, 0), 100) / 100 }, event))}</dd></dl>
+    <div class="checks">${checkbox(say.shown, level.visible, isDisabled, (visible, event) => change({ visible }, event))}
       ${levelParts.map(([part, , about]) => checkbox(about, level[part], isDisabled, (on, event) => change({ [part]: on }, event)))}</div>
-    <div class="buttons"><button ?disabled=${isDisabled || Object.keys(scene.dose.levels).length >= maxLevels} @click=${(event) => addLevel(world, event)}>${icon('plus')}Level</button>
-      <button ?disabled=${isDisabled} @click=${remove}>${icon('trash')}Remove</button></div></section>
+    <div class="buttons"><button ?disabled=${isDisabled || Object.keys(scene.dose.levels).length >= maxLevels} @click=${(event) => addLevel(world, event)}>${icon('plus')}${say.addLevel}</button>
+      <button ?disabled=${isDisabled} @click=${remove}>${icon('trash')}${say.remove}</button></div></section>
     ${hint(scene, level)}`;
 }
 
@@ -64,11 +66,11 @@ export function levelBlock(world, isDisabled, changeScene) {
 function hint(scene, level) {
   const { lines, wash, surfaces } = scene.dose;
   const off = [
-    [level.line, lines, 'lines'],
-    [level.wash, wash, 'the wash'],
-    [level.surface, surfaces, 'surfaces'],
+    [level.line, lines, say.offLines],
+    [level.wash, wash, say.offWash],
+    [level.surface, surfaces, say.offSurfaces],
   ]
     .filter(([on, part]) => on && !part.visible)
     .map(([, , words]) => words);
-  return level.visible && off.length ? html`<p class="note dose-hint">Switched off for all levels: ${off.join(', ')}.</p>` : nothing;
+  return level.visible && off.length ? html`<p class="note dose-hint">${say.off({ parts: off.join(', ') })}</p>` : nothing;
 }

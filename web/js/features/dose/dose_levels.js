@@ -8,13 +8,15 @@ import { typed } from '../../parts/fields.js';
 import { number, significant } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { eye, treeRow } from '../../parts/tree_row.js';
+import { say } from './row_words.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
 const still = (event) => event.stopPropagation();
+/** Parts of a level: word, icon, name, name in lower case, name with its level. */
 export const levelParts = [
-  ['line', 'isoline', 'Line'],
-  ['wash', 'wash', 'Wash'],
-  ['surface', 'globe', 'Surface in 3-D'],
+  ['line', 'isoline', say.line, say.lineWord, say.lineOf],
+  ['wash', 'wash', say.wash, say.washWord, say.washOf],
+  ['surface', 'globe', say.surface, say.surfaceWord, say.surfaceOf],
 ];
 
 /** "90", "1.25": a level's number as it was given. */
@@ -51,16 +53,16 @@ function levelRow(world, level, reference, unit) {
       kind: 'level',
       id,
       words: [words, other],
-      more: levelParts.filter(([part]) => isUsed(part)).map(([, , about]) => about.toLowerCase()),
+      more: levelParts.filter(([part]) => isUsed(part)).map(([, , , word]) => word),
       title: `${words}: ${other}`,
       isOn: level.visible,
       toggle,
       step: (by, event) => setValue(Math.max(level.value + by * (level.unit === 'percent' ? 1 : level.value / 100), 0), event),
     },
     html`
-    ${eye(level.visible, `Level ${words}`, 'Show or hide this level', isDisabled, toggle)}
-    <input type="color" tabindex="-1" .value=${live(level.color)} aria-label=${`Colour of level ${words}`} ?disabled=${isDisabled} @click=${still} @input=${(event) => change({ color: event.target.value }, event)}>
-    <span class="field dose-value" @click=${still}><input type="number" step="any" min="0" tabindex="-1" .value=${typed(plain(level.value))} aria-label=${`Level in ${level.unit === 'percent' ? 'per cent' : unit}`} ?disabled=${isDisabled}
+    ${eye(level.visible, say.level({ level: words }), say.showOrHide, isDisabled, toggle)}
+    <input type="color" tabindex="-1" .value=${live(level.color)} aria-label=${say.colourOf({ level: words })} ?disabled=${isDisabled} @click=${still} @input=${(event) => change({ color: event.target.value }, event)}>
+    <span class="field dose-value" @click=${still}><input type="number" step="any" min="0" tabindex="-1" .value=${typed(plain(level.value))} aria-label=${level.unit === 'percent' ? say.levelPercent : say.levelIn({ unit })} ?disabled=${isDisabled}
       @change=${(event) => setValue(event.target.valueAsNumber, event)}></span><span class="dose-unit">${level.unit === 'percent' ? '%' : unit}</span>
     <button class="name dose-other" tabindex="-1" title=${other}>${otherText(level, reference)}${level.unit === 'percent' ? '' : ' %'}</button>
     ${levelParts.map(
@@ -68,7 +70,9 @@ function levelRow(world, level, reference, unit) {
         part,
         picture,
         about,
-      ]) => html`<button class=${classMap({ 'dose-toggle': true, on: isUsed(part) })} tabindex="-1" aria-pressed=${level[part]} aria-label=${`${about} of level ${words}`} title=${about} ?disabled=${isDisabled}
+        ,
+        of,
+      ]) => html`<button class=${classMap({ 'dose-toggle': true, on: isUsed(part) })} tabindex="-1" aria-pressed=${level[part]} aria-label=${of({ level: words })} title=${about} ?disabled=${isDisabled}
       @click=${(event) => {
         still(event);
         change({ [part]: !level[part] }, event);
@@ -84,10 +88,10 @@ export function levelActions(world) {
   const isFull = Object.keys(room.scene.value.dose.levels).length >= maxLevels;
   const isDisabled = !room.canChange.value;
   const enter = (event) => event.currentTarget.querySelector('button')?.focus();
-  return html`<li class=${`row dose-control dose-actions${ui.row.value === key ? ' current' : ''}`} role="treeitem" id=${`row-${key}`} data-key=${key} aria-level="2" aria-selected="false" aria-label="Level Presets"
+  return html`<li class=${`row dose-control dose-actions${ui.row.value === key ? ' current' : ''}`} role="treeitem" id=${`row-${key}`} data-key=${key} aria-level="2" aria-selected="false" aria-label=${say.levelPresets}
     @click=${() => {
       ui.row.value = key;
-    }} @row-toggle=${enter}><button tabindex="-1" ?disabled=${isDisabled || isFull} @click=${(event) => addLevel(world, event)}>${icon('plus')}Level</button> <button tabindex="-1" title="Tables of levels, in Selection" @click=${() => ui.choose('dosing', 'levels')}>Presets</button></li>`;
+    }} @row-toggle=${enter}><button tabindex="-1" ?disabled=${isDisabled || isFull} @click=${(event) => addLevel(world, event)}>${icon('plus')}${say.addLevel}</button> <button tabindex="-1" title=${say.tables} @click=${() => ui.choose('dosing', 'levels')}>${say.presets}</button></li>`;
 }
 
 export function addLevel(world, event) {

@@ -1,6 +1,6 @@
 // Pinned probes: the table in the Probe, its file, and their marks on the pictures.
 import { html, nothing, svg } from '../../../lib/lit-html.js';
-import { basisWords, quantityName } from '../../room/dose.js';
+import { basisWords } from '../../room/dose.js';
 import { heightOver } from '../../room/obliques.js';
 import { pinsOf } from './pins.js';
 import { crosshairPatch, shownImage } from '../../room/plan.js';
@@ -8,10 +8,28 @@ import { toPicture } from '../../parts/vec.js';
 import { exportRows } from '../../room/exports.js';
 import { imageValue, number, significant, unitText } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './drawn_words.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
 
 const nameOf = (plan, answer) => plan.regions.find(({ id }) => id === answer?.regions?.[0])?.name ?? '';
+
+/** Quantities in lower case. */
+const quantityWords = {
+  weighted: say.ofWeighted,
+  total: say.ofTotal,
+  boron: say.ofBoron,
+  nitrogen: say.ofNitrogen,
+  fast: say.ofFast,
+  gamma: say.ofGamma,
+  other: say.ofOther,
+  'blood-boron': say.ofBloodBoron,
+  'weighted-total': say.ofWeightedTotal,
+  isoeffective: say.ofIsoeffective,
+  'fast-fluence': say.ofFastFluence,
+  'epithermal-fluence': say.ofEpithermalFluence,
+  'thermal-fluence': say.ofThermalFluence,
+};
 
 export function pinsBlock(world) {
   const { room, ui, doses } = world;
@@ -30,15 +48,15 @@ export function pinsBlock(world) {
     ({ id }) =>
     (event) =>
       room.patchScene({ probes: { [id]: null } }, how(ui, event));
-  return html`<section class="block"><h3 class="dose-head">Pinned <span class="dim">${plan.doses.length ? quantityName(scene.dose.quantity).toLowerCase() : ''}</span><span class="grow"></span><button class="dose-small" @click=${() => exportRows(world, 'probes', `${room.planId.value}-probes.csv`, pinRows(plan, scene, known))}>CSV</button></h3>
-    <table class="dose-pins"><thead><tr><th scope="col">Pin</th><th scope="col">in</th>${image ? html`<th scope="col">${image.modality}</th>` : nothing}${plan.doses.length ? html`<th scope="col">${unitText(unit ?? '')}</th><th scope="col">%</th>` : nothing}<th scope="col"><span class="hidden">Remove</span></th></tr></thead>
+  return html`<section class="block"><h3 class="dose-head">${say.pins} <span class="dim">${plan.doses.length ? (quantityWords[scene.dose.quantity] ?? scene.dose.quantity) : ''}</span><span class="grow"></span><button class="dose-small" @click=${() => exportRows(world, 'probes', `${room.planId.value}-probes.csv`, pinRows(plan, scene, known))}>CSV</button></h3>
+    <table class="dose-pins"><thead><tr><th scope="col">${say.pinColumn}</th><th scope="col">${say.inColumn}</th>${image ? html`<th scope="col">${image.modality}</th>` : nothing}${plan.doses.length ? html`<th scope="col">${unitText(unit ?? '')}</th><th scope="col">%</th>` : nothing}<th scope="col"><span class="hidden">${say.remove}</span></th></tr></thead>
     <tbody>${pins.map((pin) => {
       const answer = known[pin.id]?.result;
       const found = image && answer?.images.find(({ id }) => id === image.id);
-      return html`<tr><td><button class="link" title=${`Crosshair to ${words(pin.at_mm)}${pin.author ? `, pinned by ${pin.author}` : ''}`} ?disabled=${isDisabled} @click=${go(pin)}>${pin.label}</button></td><td class="dose-in" title=${words(pin.at_mm)}>${nameOf(plan, answer) || '–'}</td>
+      return html`<tr><td><button class="link" title=${(pin.author ? say.crosshairToBy : say.crosshairTo)({ place: words(pin.at_mm), author: pin.author })} ?disabled=${isDisabled} @click=${go(pin)}>${pin.label}</button></td><td class="dose-in" title=${words(pin.at_mm)}>${nameOf(plan, answer) || '–'}</td>
         ${image ? html`<td>${found && found.value !== null ? imageValue(found.value, '').text : '–'}</td>` : nothing}
         ${plan.doses.length ? html`<td title=${answer?.value_reason ?? nothing}>${answer && Number.isFinite(answer.value) ? significant(answer.value) : '–'}</td><td>${answer && Number.isFinite(answer.percent) ? number(answer.percent, 1) : '–'}</td>` : nothing}
-        <td><button class="icon-button small" aria-label=${`Remove pin ${pin.label}`} title="Remove" ?disabled=${isDisabled} @click=${remove(pin)}>${icon('close', 12)}</button></td></tr>`;
+        <td><button class="icon-button small" aria-label=${say.removePin({ pin: pin.label })} title=${say.remove} ?disabled=${isDisabled} @click=${remove(pin)}>${icon('close', 12)}</button></td></tr>`;
     })}</tbody></table></section>`;
 }
 
@@ -55,15 +73,15 @@ export function pinRows(plan, scene, known) {
   const unitOfPart = (quantity) => answers.map((answer) => partOf(answer, quantity)).find(Boolean)?.unit ?? '';
   return [
     [
-      'pin',
+      say.csvPin,
       'L_mm',
       'P_mm',
       'S_mm',
-      'region',
-      ...images.map((id) => `image ${id}`),
-      ...(first ? [`${first.quantity} (${first.unit})`, 'percent of reference', 'reference', 'weights of', 'reason'] : []),
+      say.csvRegion,
+      ...images.map((id) => say.csvImage({ image: id })),
+      ...(first ? [`${first.quantity} (${first.unit})`, say.csvPercent, say.csvReference, say.csvWeights, say.csvReason] : []),
       ...quantities.map((quantity) => `${quantity} (${unitOfPart(quantity)})`),
-      'basis',
+      say.csvBasis,
     ],
     ...pins.map((pin, index) => {
       const answer = answers[index];

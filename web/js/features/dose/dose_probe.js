@@ -2,17 +2,25 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { doseName, isFluence, missingWords, quantityName, referenceWords, shownDose } from '../../room/dose.js';
-import { count, number, significant, unitText } from '../../parts/format.js';
+import { number, significant, unitText } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './row_words.js';
 
 const totalsFirst = ['weighted', 'isoeffective', 'total', 'weighted-total'];
 const order = ['boron', 'gamma', 'nitrogen', 'fast', 'other'];
 
-/** "Boron", "Nitrogen", ...: the physical components of a dose, for a sentence. */
+const componentWords = { boron: say.boron, nitrogen: say.nitrogen, fast: say.fast, gamma: say.gamma, other: say.other };
+const fluenceNames = {
+  'fast-fluence': say.fastFluence,
+  'epithermal-fluence': say.epithermalFluence,
+  'thermal-fluence': say.thermalFluence,
+};
+
+/** "Boron", "nitrogen", ...: the physical components of a dose, for a sentence. */
 export const componentNames = (dose) =>
   ['boron', 'nitrogen', 'fast', 'gamma', 'other']
     .filter((quantity) => dose.components.some((part) => part.quantity === quantity))
-    .map((quantity, index) => (index ? quantityName(quantity).toLowerCase() : quantityName(quantity)));
+    .map((quantity, index) => (index ? componentWords[quantity] : quantityName(quantity)));
 
 /** The value of the shown quantity at a point as words: "4.82 Gy(w)", "outside the dose grid"; '' before there is an answer. */
 export function valueWords(answer) {
@@ -35,12 +43,12 @@ export function doseAtCrosshair({ room, doses, probed }) {
   const { result, error, isOld } = doses.here.value;
   const others = plan.doses.filter((other) => other !== dose);
   const raw = probed.value.result?.doses ?? [];
-  return html`<section class="block"><h3>Dose <span class="dim">${doseName(dose)}</span></h3>
+  return html`<section class="block"><h3>${say.dose} <span class="dim">${doseName(dose)}</span></h3>
       ${error ? html`<p class="err">${icon('error')} ${error}</p>` : doses.isOfScene(result) ? table(plan, scene, result, isOld) : html`<p class="dim">…</p>`}${marks(plan, scene, result)}</section>
     ${
       others.length && probed.value.result
-        ? html`<details class="block more"><summary>${icon('chevronDown', 12)}<span>${others.length === 1 ? `1 more dose, ${doseName(others[0])}` : count(others.length, 'more dose')}</span></summary>
-      ${others.map((other) => html`${others.length > 1 ? html`<h3>Dose <span class="dim">${doseName(other)}</span></h3>` : nothing}${rawTable(raw.filter(({ id }) => id === other.id))}`)}</details>`
+        ? html`<details class="block more"><summary>${icon('chevronDown', 12)}<span>${others.length === 1 ? say.oneMore({ dose: doseName(others[0]) }) : say.moreDoses({ n: others.length, count: number(others.length) })}</span></summary>
+      ${others.map((other) => html`${others.length > 1 ? html`<h3>${say.dose} <span class="dim">${doseName(other)}</span></h3>` : nothing}${rawTable(raw.filter(({ id }) => id === other.id))}`)}</details>`
         : nothing
     }`;
 }
@@ -60,9 +68,9 @@ function table(plan, scene, answer, isOld) {
   return html`${valueLine(plan, scene, answer)}${componentTable(answer, sums, parts, hasWeights, isShown, isOld)}
     ${
       fluences.length
-        ? html`<details class="more" ?open=${isFluence(answer.quantity)}><summary>${icon('chevronDown', 12)}<span>${count(fluences.length, 'fluence')}</span></summary>
-      <table><thead><tr><th scope="col">Fluence</th><th scope="col">${unitText(fluences[0].unit)}</th></tr></thead>
-      <tbody>${fluences.map((part) => html`<tr><td>${quantityName(part.quantity).replace(' fluence', '')}</td><td>${part.value === null ? part.reason : significant(part.value)}</td></tr>`)}</tbody></table></details>`
+        ? html`<details class="more" ?open=${isFluence(answer.quantity)}><summary>${icon('chevronDown', 12)}<span>${say.nFluences({ n: fluences.length, count: number(fluences.length) })}</span></summary>
+      <table><thead><tr><th scope="col">${say.fluence}</th><th scope="col">${unitText(fluences[0].unit)}</th></tr></thead>
+      <tbody>${fluences.map((part) => html`<tr><td>${fluenceNames[part.quantity] ?? quantityName(part.quantity)}</td><td>${part.value === null ? part.reason : significant(part.value)}</td></tr>`)}</tbody></table></details>`
         : nothing
     }
     <p class="note">${noteWords(plan, answer, hasWeights)}</p>`;
@@ -72,8 +80,11 @@ function table(plan, scene, answer, isOld) {
 function valueLine(plan, scene, answer) {
   const rows = [
     [quantityName(answer.quantity), html`<b>${valueWords(answer) || '–'}</b>`],
-    Number.isFinite(answer.percent) && [`of ${referenceWords(plan, scene.dose.reference)}`, `${number(answer.percent, 1)} %`],
-    Number.isFinite(answer.error_percent) && ['Statistical error', `${significant(answer.error_percent)} %`],
+    Number.isFinite(answer.percent) && [
+      say.of({ reference: referenceWords(plan, scene.dose.reference) }),
+      `${number(answer.percent, 1)} %`,
+    ],
+    Number.isFinite(answer.error_percent) && [say.statisticalError, `${significant(answer.error_percent)} %`],
   ];
   return html`<dl class="dose-value-list">${rows.filter(Boolean).map(([name, value]) => html`<dt>${name}</dt><dd>${value}</dd>`)}</dl>`;
 }
@@ -100,52 +111,60 @@ function componentTable(answer, sums, parts, hasWeights, isShown, isOld) {
     part,
   ) => html`<tr class=${classMap({ total: isShown(part) })}><td>${quantityName(part.quantity)}${Number.isFinite(part.boron_ppm) ? `, ${number(part.boron_ppm, part.boron_ppm < 99.95 ? 1 : 0)} ppm` : ''}</td>
     ${part.value === null ? html`<td colspan=${hasWeights ? 3 : 1}>${part.reason}</td>` : html`<td>${cell(part.value)}${unitText(part.unit) === unit ? '' : ` ${unitText(part.unit)}`}</td>${hasWeights ? html`<td>${Number.isFinite(part.weight) ? number(part.weight, (part.weight * 10) % 1 ? 2 : 1) : '–'}</td><td>${cell(part.weighted)}</td>` : nothing}`}</tr>`;
-  return html`<table class="dose-table"><thead><tr><th scope="col">Component</th><th scope="col">${unit}</th>${hasWeights ? html`<th scope="col">weight</th><th scope="col">${weightedUnit}</th>` : nothing}</tr></thead>
+  return html`<table class="dose-table"><thead><tr><th scope="col">${say.component}</th><th scope="col">${unit}</th>${hasWeights ? html`<th scope="col">${say.weight}</th><th scope="col">${weightedUnit}</th>` : nothing}</tr></thead>
     <tbody class=${classMap({ old: isOld })}>${sums.map(sumRow)}${sorted.map(partRow)}</tbody></table>`;
 }
 
 function noteWords(plan, answer, hasWeights) {
   const region = plan.regions.find(({ id }) => id === answer.weighted_by);
-  const per = answer.per ? `Per ${unitText(answer.per.replace(/^per /, ''))}. ` : '';
-  const [, ...added] = answer.parts;
-  const times = answer.parts[0].factor === 1 ? '' : `Times ${number(answer.parts[0].factor, answer.parts[0].factor % 1 ? 2 : 0)}. `;
-  const sum = added.length
-    ? `With ${added.map(({ id, factor }) => `${factor === 1 ? '' : `${factor} × `}${plan.doses.find((dose) => dose.id === id)?.name || id}`).join(', ')}. `
-    : '';
-  const weights =
-    region && hasWeights
-      ? `Weights of ${region.name}${answer.tissue ? ' everywhere' : ''}${answer.weights_name ? `, ${answer.weights_name}` : ', edited'}.`
-      : hasWeights || !answer.totals.some(({ quantity }) => quantity === 'weighted')
-        ? ''
-        : 'No weights here.';
-  return `${per}${times}${sum}${weights}`;
+  const [{ factor }, ...added] = answer.parts;
+  const others = added.map((part) => {
+    const name = plan.doses.find((dose) => dose.id === part.id)?.name || part.id;
+    return part.factor === 1 ? name : `${part.factor} × ${name}`;
+  });
+  const hasWeighted = answer.totals.some(({ quantity }) => quantity === 'weighted');
+  const weights = { region: region?.name, set: answer.weights_name || say.edited };
+  return [
+    answer.per && perWords(answer.per),
+    factor !== 1 && say.times({ factor: number(factor, factor % 1 ? 2 : 0) }),
+    added.length && say.withDoses({ doses: others.join(', ') }),
+    region && hasWeights && (answer.tissue ? say.usedEverywhere : say.used)(weights),
+    !hasWeights && hasWeighted && say.noWeights,
+  ]
+    .filter(Boolean)
+    .join(' ');
 }
+
+const perWords = (per) => say.per({ unit: unitText(per.replace(/^per /, '')) });
 
 /** Warnings without which a number must not be read. */
 function marks(plan, scene, answer) {
   const missing = missingWords(answer?.missing ?? []);
   const words = [
-    missing && `The total is ${missing}.`,
-    answer?.accepted && `Used though it does not fit, by ${answer.accepted.by}: ${answer.accepted.words}`,
+    missing && say.totalIs({ missing }),
+    answer?.accepted && say.usedBy({ name: answer.accepted.by, words: answer.accepted.words }),
     answer && !answer.drawn && answer.reason,
   ].filter(Boolean);
   return words.map((text) => html`<p class="note why">${icon('warning', 12)} ${text}</p>`);
 }
 
+function componentName({ quantity, per_ppm: isPerPpm, boron_ppm: ppm }) {
+  const name = isPerPpm ? say.perPpm({ component: quantityName(quantity) }) : quantityName(quantity);
+  return Number.isFinite(ppm) ? say.boronAt({ component: name, ppm }) : name;
+}
+
 /** Another dose, as its file has it. */
 function rawTable(rows) {
-  if (!rows.length) return html`<p class="outside">outside the dose grid</p>`;
+  if (!rows.length) return html`<p class="outside">${say.outside}</p>`;
   const units = [...new Set(rows.map(({ unit }) => unit))];
   const [{ per }] = rows;
   return html`${units.map(
     (unit) =>
-      html`<table><thead><tr><th scope="col">Component</th><th scope="col">${unitText(unit)}</th></tr></thead><tbody>${rows
+      html`<table><thead><tr><th scope="col">${say.component}</th><th scope="col">${unitText(unit)}</th></tr></thead><tbody>${rows
         .filter((row) => row.unit === unit)
         .map(
-          (
-            row,
-          ) => html`<tr><td>${quantityName(row.quantity)}${row.per_ppm ? ', per ppm' : ''}${Number.isFinite(row.boron_ppm) ? `, boron at ${row.boron_ppm} ppm` : ''}</td>
-      <td>${row.value === null ? 'not known here' : significant(row.value)}</td></tr>`,
+          (row) => html`<tr><td>${componentName(row)}</td>
+      <td>${row.value === null ? say.notKnownHere : significant(row.value)}</td></tr>`,
         )}</tbody></table>`,
-  )}<p class="note">${per ? `Per ${unitText(per.replace(/^per /, ''))}. ` : ''}As in the file.</p>`;
+  )}<p class="note">${per ? perWords(per) : ''} ${say.asInFile}</p>`;
 }

@@ -6,6 +6,7 @@ import { ownRegions } from '../../room/identity.js';
 import { crosshair } from '../../room/plan.js';
 import { numberField } from '../../parts/fields.js';
 import { significant } from '../../parts/format.js';
+import { say } from './row_words.js';
 
 const still = (event) => event.stopPropagation();
 
@@ -59,9 +60,9 @@ export function referenceSelect(world, { tabindex }) {
     ${regions.map(({ id, name }) => option(`${kind} ${id}`, name))}</optgroup>`
       : nothing;
   const change = (event) => room.patchScene(chosenPatch(world, event.target.value), { view: ui.active.value, at: event.timeStamp });
-  return html`<select class="dose-select" aria-label="Reference: what 100 % is" title=${`100 % is ${referenceText(world)}`} tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
-    ${option('body', 'maximum in the body')}${own || reference.kind === 'file' ? option('file', "the file's own reference") : nothing}${option('point', 'value at the crosshair')}${option('value', 'a prescription')}
-    ${ofRegions('region-max', 'Maximum of')}${ofRegions('region-mean', 'Mean of')}</select>`;
+  return html`<select class="dose-select" aria-label=${say.referenceIs} title=${say.hundredIsOf({ reference: referenceText(world) })} tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
+    ${option('body', say.bodyMaximum)}${own || reference.kind === 'file' ? option('file', say.fileReference) : nothing}${option('point', say.atCrosshair)}${option('value', say.prescription)}
+    ${ofRegions('region-max', say.maximumOf)}${ofRegions('region-mean', say.meanOf)}</select>`;
 }
 
 /** Further fields of the chosen kind of reference: its number, its place. */
@@ -71,9 +72,9 @@ export function referenceMore(world, isDisabled, change) {
   const { reference, quantity } = scene.dose;
   const reason = doses.scale.value.result?.reference?.reason;
   const set = (patch, event) => change({ dose: { reference: patch } }, event);
-  return html`${reference.kind === 'value' ? html`<dt>Prescription</dt><dd>${numberField('Prescribed dose', reference.value, unitOf(shownDose(plan, scene), quantity), isDisabled, (value, event) => value > 0 && set({ value }, event))}</dd>` : nothing}
-    ${reference.kind === 'point' ? html`<dt>Point</dt><dd><button class="dose-small" ?disabled=${isDisabled} @click=${(event) => set({ point_mm: crosshair(scene) }, event)}>To the crosshair</button></dd>` : nothing}
-    ${reason ? html`<dt>Reference</dt><dd class="err">${reason}</dd>` : nothing}`;
+  return html`${reference.kind === 'value' ? html`<dt>${say.prescriptionField}</dt><dd>${numberField(say.prescribed, reference.value, unitOf(shownDose(plan, scene), quantity), isDisabled, (value, event) => value > 0 && set({ value }, event))}</dd>` : nothing}
+    ${reference.kind === 'point' ? html`<dt>${say.point}</dt><dd><button class="dose-small" ?disabled=${isDisabled} @click=${(event) => set({ point_mm: crosshair(scene) }, event)}>${say.toCrosshair}</button></dd>` : nothing}
+    ${reason ? html`<dt>${say.reference}</dt><dd class="err">${reason}</dd>` : nothing}`;
 }
 
 /** Choice of weights: each tissue its own, or one region's everywhere. */
@@ -81,7 +82,7 @@ export function tissueSelect({ room, ui }, { tabindex }) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   const { tissue } = scene.dose;
   const change = (event) => room.patchScene({ dose: { tissue: event.target.value } }, { view: ui.active.value, at: event.timeStamp });
-  return html`<select class="dose-select" aria-label="Weights of" title="Each tissue with its own weights, or one tissue's everywhere, so that isodoses do not jump at borders" tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
-    <option value="" ?selected=${!tissue} .selected=${live(!tissue)}>each its own</option>
-    ${ownRegions(plan, scene).map(({ id, name }) => html`<option value=${id} ?selected=${id === tissue} .selected=${live(id === tissue)}>as ${name}</option>`)}</select>`;
+  return html`<select class="dose-select" aria-label=${say.weightsOf} title=${say.weightsAre} tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
+    <option value="" ?selected=${!tissue} .selected=${live(!tissue)}>${say.eachItsOwn}</option>
+    ${ownRegions(plan, scene).map(({ id, name }) => html`<option value=${id} ?selected=${id === tissue} .selected=${live(id === tissue)}>${say.asRegion({ region: name })}</option>`)}</select>`;
 }

@@ -17,7 +17,7 @@ import {
   toggledPatch,
   unitOf,
 } from '../../room/dose.js';
-import { approvalOf, isOfOther, shownTreatmentPlan } from '../../room/identity.js';
+import { isOfOther, shownTreatmentPlan } from '../../room/identity.js';
 import { doseWords } from '../../room/plan.js';
 import { levelActions, levelRows } from './dose_levels.js';
 import { referenceSelect, tissueSelect } from './dose_reference.js';
@@ -26,6 +26,7 @@ import { listed, number } from '../../parts/format.js';
 import { ofFits } from '../fits/feature.js';
 import { icon } from '../../parts/icons.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
+import { say } from './row_words.js';
 
 const how = (ui, event) => ({ view: ui.active.value, at: event.timeStamp });
 const still = (event) => event.stopPropagation();
@@ -33,7 +34,7 @@ const still = (event) => event.stopPropagation();
 /** "of brain max"; '' while nothing is shown. */
 export function doseNote({ room }) {
   const [plan, scene] = [room.plan.value, room.scene.value];
-  return scene && isOn(scene) ? `of ${referenceWords(plan, scene.dose.reference)}` : 'off';
+  return scene && isOn(scene) ? say.of({ reference: referenceWords(plan, scene.dose.reference) }) : say.off;
 }
 
 export function doseRows(world) {
@@ -43,11 +44,14 @@ export function doseRows(world) {
   if (!scene || !dose) return nothing;
   return html`${grouped(world, dose)}
     ${world.ui.arrangement.value.tree === 'tree' ? quantityRow(world, dose) : quantitiesOf(dose).map((quantity) => radioRow(world, dose, quantity))}
-    ${controlRow(world, 'reference', html`<span class="dose-word">100 %</span>${referenceSelect(world, { tabindex: -1 })}`, '100 % is')}
-    ${isWeighted(scene.dose.quantity) || dependsOnBlood(dose, scene.dose.quantity) ? controlRow(world, 'tissue', html`<span class="dose-word">Weights</span>${tissueSelect(world, { tabindex: -1 })}`, 'Weights of') : nothing}
+    ${controlRow(world, 'reference', html`<span class="dose-word">100 %</span>${referenceSelect(world, { tabindex: -1 })}`, say.hundredIs)}
+    ${isWeighted(scene.dose.quantity) || dependsOnBlood(dose, scene.dose.quantity) ? controlRow(world, 'tissue', html`<span class="dose-word">${say.weights}</span>${tissueSelect(world, { tabindex: -1 })}`, say.weightsOf) : nothing}
     ${levelRows(world)}${levelActions(world)}
-    ${switchRow(world, 'lines', 'Isodose lines', 'I')}${washRow(world)}${switchRow(world, 'surfaces', 'Isodose surfaces', '')}`;
+    ${switchRow(world, 'lines', say.lines, 'I')}${washRow(world)}${switchRow(world, 'surfaces', say.surfaces, '')}`;
 }
+
+const approvals = { APPROVED: say.approved, UNAPPROVED: say.unapproved, REJECTED: say.rejected };
+const planWords = ({ label, approval }) => (approvals[(approval ?? '').toUpperCase()] ?? say.notStated)({ plan: label });
 
 /** The doses; of several treatment plans under the name of each, the shown plan's first. Those of other patients stand elsewhere. */
 function grouped(world, shown) {
@@ -62,7 +66,7 @@ function grouped(world, shown) {
     .filter(([, doses]) => doses.length)
     .map(
       ([treatment, doses]) =>
-        html`<li class="row-group" role="presentation">${treatment ? `Plan ${treatment.label} · ${approvalOf(treatment)[0].toLowerCase()}` : 'No plan stated'}${treatment && treatment !== first ? html`<span class="dim"> · compare only</span>` : nothing}</li>${doses.map(row)}`,
+        html`<li class="row-group" role="presentation">${treatment ? planWords(treatment) : say.noPlan}${treatment && treatment !== first ? html`<span class="dim"> · ${say.compareOnly}</span>` : nothing}</li>${doses.map(row)}`,
     );
 }
 
@@ -72,7 +76,7 @@ function doseRow(world, dose, isShown) {
   const { lines, wash, surfaces } = scene.dose;
   const isVisible = isShown && (lines.visible || wash.visible || surfaces.visible);
   const words = doseName(dose);
-  const tail = isShown && room.plan.value.doses.length > 1 ? 'chosen' : dose.unit;
+  const tail = isShown && room.plan.value.doses.length > 1 ? say.chosen : dose.unit;
   const toggle = (event) => room.patchScene(toggledPatch(room.plan.value, room.scene.value, dose, isShown), how(ui, event));
   const choose = (event) => !isShown && room.patchScene(choosePatch(room.plan.value, room.scene.value, dose), how(ui, event));
   return treeRow(
@@ -88,7 +92,7 @@ function doseRow(world, dose, isShown) {
       choose,
     },
     html`
-    ${eye(isVisible, `Show ${words}`, isVisible ? 'Hide lines, wash and surfaces' : 'Show its isodose lines and wash', !room.canChange.value, toggle)}${name(words)} ${ofFits(room)?.rowMark(world, 'dose', dose.id) ?? nothing}
+    ${eye(isVisible, say.show({ dose: words }), isVisible ? say.hideAll : say.showLines, !room.canChange.value, toggle)}${name(words)} ${ofFits(room)?.rowMark(world, 'dose', dose.id) ?? nothing}
     <span class="tail">${tail}</span>`,
   );
 }
@@ -108,7 +112,7 @@ function radioRow(world, dose, quantity) {
       kind: 'quantity',
       id: quantity,
       words: [quantityName(quantity), missing || tail],
-      more: [missing ? tail : '', isChosen ? 'chosen' : ''].filter(Boolean),
+      more: [missing ? tail : '', isChosen ? say.chosen : ''].filter(Boolean),
       title: [quantityName(quantity), missing].filter(Boolean).join(', '),
       toggle: choose,
       choose,
@@ -121,7 +125,7 @@ function radioRow(world, dose, quantity) {
 /** The quantities as one field, where rows are dear. */
 function quantityRow(world, dose) {
   const missing = missingWords(missingOf(dose, world.room.scene.value.dose.quantity));
-  return html`${controlRow(world, 'quantity', quantitySelect(world, dose, { tabindex: -1 }), 'Quantity')}
+  return html`${controlRow(world, 'quantity', quantitySelect(world, dose, { tabindex: -1 }), say.quantity)}
     ${missing ? controlRow(world, 'missing', html`<span class="warn">${icon('warning', 12)} ${missing}</span>`, missing) : nothing}`;
 }
 
@@ -129,9 +133,9 @@ export function quantitySelect({ room, ui }, dose, { tabindex }) {
   const { quantity } = room.scene.value.dose;
   const all = quantitiesOf(dose);
   const change = (event) => room.patchScene({ dose: { quantity: event.target.value } }, how(ui, event));
-  return html`<select class="dose-select" aria-label="Quantity" tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
-    ${all.includes(quantity) ? nothing : html`<option value=${quantity} selected>${quantityName(quantity)}: not in this dose</option>`}
-    ${all.map((one) => html`<option value=${one} ?selected=${one === quantity} .selected=${live(one === quantity)}>${listed(quantityName(one), unitOf(dose, one) || 'unit not known')}</option>`)}</select>`;
+  return html`<select class="dose-select" aria-label=${say.quantity} tabindex=${tabindex} ?disabled=${!room.canChange.value} @click=${still} @change=${change}>
+    ${all.includes(quantity) ? nothing : html`<option value=${quantity} selected>${say.notInDose({ quantity: quantityName(quantity) })}</option>`}
+    ${all.map((one) => html`<option value=${one} ?selected=${one === quantity} .selected=${live(one === quantity)}>${listed(quantityName(one), unitOf(dose, one) || say.unitNotKnown)}</option>`)}</select>`;
 }
 
 /** A row around one control: Space moves the focus into it. */
@@ -144,6 +148,11 @@ function controlRow({ ui }, id, content, label) {
     }} @row-toggle=${enter}>${content}</li>`;
 }
 
+const switchWords = (visible, key) => {
+  const words = visible ? say.hide : say.showOne;
+  return key ? say.keyed({ words, key }) : words;
+};
+
 function switchRow(world, id, words, key) {
   const { room, ui } = world;
   const { visible } = room.scene.value.dose[id];
@@ -153,13 +162,13 @@ function switchRow(world, id, words, key) {
     {
       kind: 'dosing',
       id,
-      words: [words, id === 'surfaces' ? 'in 3-D' : ''],
-      title: key ? `${words} (${key})` : words,
+      words: [words, id === 'surfaces' ? say.in3d : ''],
+      title: key ? say.keyed({ words, key }) : words,
       isOn: visible,
       toggle,
     },
     html`
-    ${eye(visible, words, `${visible ? 'Hide' : 'Show'}${key ? ` (${key})` : ''}`, !room.canChange.value, toggle)}${name(words)} <span class="tail">${id === 'surfaces' ? 'in 3-D' : ''}</span>`,
+    ${eye(visible, words, switchWords(visible, key), !room.canChange.value, toggle)}${name(words)} <span class="tail">${id === 'surfaces' ? say.in3d : ''}</span>`,
   );
 }
 
@@ -169,20 +178,20 @@ function washRow(world) {
   const isDisabled = !room.canChange.value;
   const change = (patch, event) => room.patchScene({ dose: { wash: patch } }, how(ui, event));
   const toggle = (event) => change({ visible: !wash.visible }, event);
-  const words = `Wash, ${wash.style} from ${number(wash.below_percent)} %`;
+  const words = (wash.style === 'smooth' ? say.washSmooth : say.washBands)({ percent: number(wash.below_percent) });
   return treeRow(
     world,
-    { kind: 'dosing', id: 'wash', words: ['Wash'], more: [words], title: `${words} (D)`, isOn: wash.visible, toggle },
+    { kind: 'dosing', id: 'wash', words: [say.wash], more: [words], title: say.keyed({ words, key: 'D' }), isOn: wash.visible, toggle },
     html`
-    ${eye(wash.visible, 'Wash', `${wash.visible ? 'Hide' : 'Show'} (D)`, isDisabled, toggle)}${name('Wash')}
-    <select class="dose-style" aria-label="Style of the wash" tabindex="-1" ?disabled=${isDisabled} @click=${still} @change=${(event) => change({ style: event.target.value }, event)}>
+    ${eye(wash.visible, say.wash, switchWords(wash.visible, 'D'), isDisabled, toggle)}${name(say.wash)}
+    <select class="dose-style" aria-label=${say.washStyle} tabindex="-1" ?disabled=${isDisabled} @click=${still} @change=${(event) => change({ style: event.target.value }, event)}>
       ${[
-        ['bands', 'Bands'],
-        ['smooth', 'Smooth'],
+        ['bands', say.bands],
+        ['smooth', say.smooth],
       ].map(
         ([id, text]) => html`<option value=${id} ?selected=${id === wash.style} .selected=${live(id === wash.style)}>${text}</option>`,
       )}</select>
-    <span class="field dose-from" @click=${still}><input type="number" step="any" min="0" max="100" tabindex="-1" aria-label="Wash from this part of the reference, in per cent" .value=${typed(String(wash.below_percent))} ?disabled=${isDisabled}
+    <span class="field dose-from" @click=${still}><input type="number" step="any" min="0" max="100" tabindex="-1" aria-label=${say.washFrom} .value=${typed(String(wash.below_percent))} ?disabled=${isDisabled}
       @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change({ below_percent: Math.min(Math.max(event.target.valueAsNumber, 0), 100) }, event)}><span>%</span></span>`,
   );
 }

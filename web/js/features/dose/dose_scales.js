@@ -1,6 +1,7 @@
 // Washes other than levels: a difference, a gamma index, a statistical error; with their colours, the ends of these, and their subject. Pure.
 import { dosePresets } from '../../../gen/dose_presets.js';
 import { doseName, shownDose, unitOf } from '../../room/dose.js';
+import { say } from './drawn_words.js';
 
 const tidy = (value) => String(Number(value.toPrecision(6)));
 
@@ -34,31 +35,31 @@ export function gradientOf(kind) {
  */
 export function shownScale(plan, scene, reference, significant) {
   const kind = washKind(plan, scene);
-  if (kind === 'error') return { kind, title: 'Statistical error, %', ends: ['0', '10', '≥ 20'], about: '', more: '' };
+  if (kind === 'error') return { kind, title: say.error, ends: ['0', '10', '≥ 20'], about: '', more: '' };
   if (kind !== 'difference' && kind !== 'gamma') return null;
   const { compare, quantity } = scene.dose;
   const [first, second] = [shownDose(plan, scene), plan.doses.find(({ id }) => id === compare.id)].map(doseName);
   const isInBody = (compare.domain ?? 'body') === 'body' && plan.regions.length > 0;
   const least = tidy(compare.threshold_percent);
-  const where = `${isInBody ? 'in the body, ' : ''}from ${least} %`;
-  const whole = `${isInBody ? 'in the body ' : ''}where ${first} has at least ${least} % of the reference`;
+  const where = (isInBody ? say.fromInBody : say.from)({ percent: least });
+  const whole = (isInBody ? say.wholeInBody : say.whole)({ dose: first, percent: least });
   if (kind === 'gamma') {
-    const of = compare.normalization === 'local' ? ' of the point' : '';
+    const about = compare.normalization === 'local' ? say.gammaOfPoint : say.gamma;
     return {
       kind,
-      title: `γ of ${second}`,
-      ends: ['0', '1 passes up to here', '≥ 2'],
-      about: `${tidy(compare.dose_percent)} %${of}, ${tidy(compare.distance_mm)} mm, ${where}`,
-      more: `Gamma index of ${second} against ${first}, ${whole}`,
+      title: say.gammaOf({ dose: second }),
+      ends: ['0', say.passes, '≥ 2'],
+      about: about({ percent: tidy(compare.dose_percent), mm: tidy(compare.distance_mm), where }),
+      more: say.gammaIs({ second, first, where: whole }),
     };
   }
   const isKnown = Number.isFinite(reference);
   const end = isKnown ? significant((reference * compare.span_percent) / 100) : `${tidy(compare.span_percent)} %`;
   return {
     kind,
-    title: `${second} − ${first}, ${isKnown ? unitOf(shownDose(plan, scene), quantity) : '% of the reference'}`,
+    title: `${second} − ${first}, ${isKnown ? unitOf(shownDose(plan, scene), quantity) : say.percentUnit}`,
     ends: [`≤ −${end}`, '0', `≥ +${end}`],
-    about: `to ±${tidy(compare.span_percent)} %, ${where}`,
-    more: `${second} less ${first}, ${whole}, where both have a dose; strongest colours from ±${tidy(compare.span_percent)} % of the reference on`,
+    about: say.span({ percent: tidy(compare.span_percent), where }),
+    more: say.differenceIs({ second, first, where: whole, percent: tidy(compare.span_percent) }),
   };
 }

@@ -2,6 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './words.js';
 
 /** @param {(part: string, at: number) => void} toggle @param {string} size '' in the strip, else that of the dock */
 export function doseTools({ room }, toggle, size = '') {
@@ -9,8 +10,8 @@ export function doseTools({ room }, toggle, size = '') {
   if (!plan?.doses.length || !scene || size === 'phone') return nothing;
   const isDock = Boolean(size);
   return [
-    ['lines', 'isodose', 'Isodose', 'Isodose lines (I)'],
-    ['wash', 'wash', 'Wash', 'Wash of dose (D)'],
+    ['lines', 'isodose', say.isodose, say.isodoseIs],
+    ['wash', 'wash', say.wash, say.washIs],
   ].map(([part, picture, word, title]) => {
     const { visible } = scene.dose[part];
     return html`<button class=${classMap({ tool: true, plain: !isDock, on: visible })} tabindex="-1" title=${title} aria-label=${word} aria-pressed=${visible} ?disabled=${!room.canChange.value}

@@ -17,14 +17,15 @@ import { ownRegions } from '../../room/identity.js';
 import { numberField, typed } from '../../parts/fields.js';
 import { number } from '../../parts/format.js';
 import { icon, swatch } from '../../parts/icons.js';
+import { say } from './later_words.js';
 
 const [sliderHigh, highest] = [40, 1000]; // ppm: the slider's end, proto/scene.json
 const columns = [
-  ['boron_ratio', 'Boron as a multiple of that in blood'],
-  ['cbe', 'CBE, the weight of boron'],
-  ['nitrogen', 'RBE of nitrogen'],
-  ['fast', 'RBE of fast neutrons'],
-  ['gamma', 'Weight of gamma'],
+  ['boron_ratio', say.boronRatioIs],
+  ['cbe', say.cbeIs],
+  ['nitrogen', say.nitrogenIs],
+  ['fast', say.fastIs],
+  ['gamma', say.gammaIs],
 ];
 
 /** Boron in blood, live. */
@@ -32,8 +33,8 @@ export function bloodBlock({ room }, dose, isDisabled, change) {
   const { blood_ppm: ppm, quantity } = room.scene.value.dose;
   if (!dependsOnBlood(dose, quantity)) return nothing;
   const set = (value, event) => Number.isFinite(value) && change({ dose: { blood_ppm: Math.min(Math.max(value, 0), highest) } }, event);
-  return html`<section class="block"><h3 class="dose-head">Blood boron <span class="grow"></span>${numberField('Boron in blood', Number(ppm.toFixed(2)), 'ppm', isDisabled, set)}</h3>
-    <input class="dose-slider" type="range" min="0" max=${Math.max(sliderHigh, ppm)} step="0.5" .value=${live(String(ppm))} aria-label="Boron in blood, ppm" aria-valuetext=${`${number(ppm, 1)} ppm`} ?disabled=${isDisabled}
+  return html`<section class="block"><h3 class="dose-head">${say.bloodBoron} <span class="grow"></span>${numberField(say.boronInBlood, Number(ppm.toFixed(2)), 'ppm', isDisabled, set)}</h3>
+    <input class="dose-slider" type="range" min="0" max=${Math.max(sliderHigh, ppm)} step="0.5" .value=${live(String(ppm))} aria-label=${say.boronInBloodPpm} aria-valuetext=${`${number(ppm, 1)} ppm`} ?disabled=${isDisabled}
       @input=${(event) => set(event.target.valueAsNumber, event)}>
     <div class="dose-scale">${[0, 1, 2, 3, 4].map((part) => html`<span>${number((part * Math.max(sliderHigh, ppm)) / 4)}</span>`)}</div></section>`;
 }
@@ -47,16 +48,16 @@ export function weightsBlock({ room }, isDisabled, change) {
   };
   const edited = isEdited(scene);
   const hasOther = room.plan.value.doses.some((dose) => dose.components.some(({ quantity }) => quantity === 'other'));
-  return html`<section class="block"><h3 class="dose-head">Weights <span class="dim">${edited ? 'edited' : ''}</span><span class="grow"></span>
-      <select class="dose-presets" aria-label="Set of weights" ?disabled=${isDisabled} @change=${choose}>${preset && !edited ? nothing : html`<option value="" selected disabled>${preset ? `${preset.name}, edited` : 'edited'}</option>`}
+  return html`<section class="block"><h3 class="dose-head">${say.weights} <span class="dim">${edited ? say.edited : ''}</span><span class="grow"></span>
+      <select class="dose-presets" aria-label=${say.weightSet} ?disabled=${isDisabled} @change=${choose}>${preset && !edited ? nothing : html`<option value="" selected disabled>${preset ? say.editedSet({ set: preset.name }) : say.edited}</option>`}
         ${presetsFor(plan).map(({ name }) => html`<option value=${name} ?selected=${!edited && preset?.name === name} .selected=${live(!edited && preset?.name === name)}>${name}</option>`)}</select>
-      <button class="icon-button" title=${preset ? `Back to ${preset.name}` : 'The set is not known'} aria-label="Reset the weights" ?disabled=${isDisabled || !edited || !preset} @click=${(event) => change(choosePresetPatch(plan, scene, preset), event)}>${icon('reset')}</button></h3>
-    <table class="dose-weights"><thead><tr><th scope="col">Tissue</th><th scope="col" title=${columns[0][1]}>¹⁰B to blood</th><th scope="col">ppm</th><th scope="col" title=${columns[1][1]}>CBE</th><th scope="col" title=${columns[2][1]}>RBE N</th><th scope="col" title=${columns[3][1]}>RBE fast</th><th scope="col" title=${columns[4][1]}>γ</th></tr></thead>
+      <button class="icon-button" title=${preset ? say.backTo({ set: preset.name }) : say.setNotKnown} aria-label=${say.resetWeights} ?disabled=${isDisabled || !edited || !preset} @click=${(event) => change(choosePresetPatch(plan, scene, preset), event)}>${icon('reset')}</button></h3>
+    <table class="dose-weights"><thead><tr><th scope="col">${say.tissue}</th><th scope="col" title=${columns[0][1]}>${say.boronToBlood}</th><th scope="col">ppm</th><th scope="col" title=${columns[1][1]}>CBE</th><th scope="col" title=${columns[2][1]}>RBE N</th><th scope="col" title=${columns[3][1]}>${say.rbeFast}</th><th scope="col" title=${columns[4][1]}>γ</th></tr></thead>
       <tbody>${ownRegions(plan, scene)
         .filter(({ voxels }) => voxels > 0)
         .map((region) => weightRow(plan, scene, region, preset, isDisabled, change))}</tbody></table>
-    <p class="note dose-warn">${icon('warning', 12)} Example values, not a prescription. The plan is not changed.</p>
-    ${preset ? html`<p class="note">${preset.name}: ${preset.source}.</p>` : nothing}${hasOther ? html`<p class="note">Other recoils and captures count with weight 1 unless the set says otherwise.</p>` : nothing}</section>`;
+    <p class="note dose-warn">${icon('warning', 12)} ${say.exampleValues}</p>
+    ${preset ? html`<p class="note">${preset.name}: ${preset.source}.</p>` : nothing}${hasOther ? html`<p class="note">${say.othersWeightOne}</p>` : nothing}</section>`;
 }
 
 function weightRow(plan, scene, region, preset, isDisabled, change) {
@@ -65,8 +66,8 @@ function weightRow(plan, scene, region, preset, isDisabled, change) {
   const kind = preset && !preset.rows ? tissueFor(preset, region) : null;
   const isInherited = held && held.from !== region.id;
   const about = [
-    held ? '' : 'no weights, so no weighted dose',
-    isInherited ? `as ${plan.regions.find(({ id }) => id === held.from).name} around it` : '',
+    held ? '' : say.noWeights,
+    isInherited ? say.asAround({ region: plan.regions.find(({ id }) => id === held.from).name }) : '',
     kind ? `${preset.name}: ${kind.tissue}${kind.assumed ? ` (${kind.assumed})` : ''}` : '',
   ]
     .filter(Boolean)
@@ -75,7 +76,7 @@ function weightRow(plan, scene, region, preset, isDisabled, change) {
     const value = held?.row[field];
     const isChanged = given && held && value !== given[field];
     return html`<td><input type="number" step="any" min="0" max="100" class=${isChanged ? 'dose-edited' : ''} .value=${typed(value === undefined ? '' : String(Number(value.toPrecision(4))))} ?disabled=${isDisabled}
-      aria-label=${`${region.name}: ${words}`} title=${isChanged ? `${given[field]} in ${preset.name}` : words}
+      aria-label=${`${region.name}: ${words}`} title=${isChanged ? say.givenIn({ value: given[field], set: preset.name }) : words}
       @change=${(event) => Number.isFinite(event.target.valueAsNumber) && change(editPatch(plan, scene, region, { [field]: Math.min(Math.max(event.target.valueAsNumber, 0), 100) }), event)}></td>`;
   };
   const ppm = held ? held.row.boron_ratio * scene.dose.blood_ppm : NaN;
@@ -88,17 +89,17 @@ export function isoeffectiveBlock({ room }, isDisabled, change) {
   const [plan, scene] = [room.plan.value, room.scene.value];
   const rows = ownRegions(plan, scene).filter(({ voxels }) => voxels > 0);
   const used = [...new Set(rows.map((region) => weightsOf(plan, scene, region)?.row.isoeffective).filter(Boolean))];
-  return html`<section class="block"><h3>Photon-isoeffective dose</h3>
+  return html`<section class="block"><h3>${say.isoeffective}</h3>
     <p class="note dose-formula">α<sub>R</sub> D + G<sub>R</sub> β<sub>R</sub> D² = Σ α<sub>i</sub> D<sub>i</sub> + Σ Σ G<sub>ij</sub> √(β<sub>i</sub> β<sub>j</sub>) D<sub>i</sub> D<sub>j</sub></p>
-    <p class="note">D is the photon dose of equal effect, D<sub>i</sub> the doses of boron, nitrogen, fast neutrons and gamma, G the factors of repair during irradiation. Gonzalez and Santa Cruz, Radiat. Res. 178 (2012) 609.</p>
+    <p class="note">${say.isoeffectiveIs({ doses: html`D<sub>i</sub>` })}</p>
     <dl class="dose-list">${rows.map((region) => {
       const set = weightsOf(plan, scene, region)?.row.isoeffective ?? '';
-      return html`<dt>${region.name}</dt><dd><select class="dose-select" aria-label=${`Parameters of ${region.name}`} ?disabled=${isDisabled} @change=${(event) => change(editPatch(plan, scene, region, { isoeffective: event.target.value }), event)}>
-        <option value="" ?selected=${!set} .selected=${live(!set)}>none: no dose</option>${isoeffectiveSets.map(({ name }) => html`<option value=${name} ?selected=${set === name} .selected=${live(set === name)}>${name}</option>`)}</select></dd>`;
+      return html`<dt>${region.name}</dt><dd><select class="dose-select" aria-label=${say.parametersOf({ region: region.name })} ?disabled=${isDisabled} @change=${(event) => change(editPatch(plan, scene, region, { isoeffective: event.target.value }), event)}>
+        <option value="" ?selected=${!set} .selected=${live(!set)}>${say.noParameters}</option>${isoeffectiveSets.map(({ name }) => html`<option value=${name} ?selected=${set === name} .selected=${live(set === name)}>${name}</option>`)}</select></dd>`;
     })}</dl>
     ${used.map((name) => {
       const set = isoeffectiveSets.find((other) => other.name === name);
-      return set ? html`<p class="note">${name}: ${set.source}. Repair: ${set.repair_source}.</p>` : nothing;
+      return set ? html`<p class="note">${say.setSource({ set: name, source: set.source, repair: set.repair_source })}</p>` : nothing;
     })}
-    <p class="note dose-warn">${icon('warning', 12)} Example values, not a prescription. The plan is not changed.</p></section>`;
+    <p class="note dose-warn">${icon('warning', 12)} ${say.exampleValues}</p></section>`;
 }

@@ -5,6 +5,7 @@ import { known, later } from '../../parts/lazy.js';
 import { DoseFacts } from './dose_facts.js';
 import { doseTools } from './dose_tools.js';
 import { ChartLoader, hasCharts } from './plots/chart_loader.js';
+import { say } from './words.js';
 
 const panels = later(() => import('./later_rows.js'));
 const drawn = later(() => import('./later_drawn.js'));
@@ -36,7 +37,7 @@ function ofDrawnDose(room) {
 /** The action of a key of dose; without a dose it says so. */
 const withDose = (act) => (world, at) => {
   const { room, ui } = world;
-  if (!room.plan.value?.doses.length) ui.notify('ok', 'This plan has no dose.', 'dose');
+  if (!room.plan.value?.doses.length) ui.notify('ok', say.noDose, 'dose');
   const rows = ofDose(room);
   if (rows) act(world, at, rows);
 };
@@ -58,7 +59,7 @@ export const dose = {
   sections: [
     {
       id: 'doses',
-      name: 'Doses',
+      name: say.section,
       icon: 'dose',
       place: 4,
       has: (plan) => plan.doses.length,
@@ -69,7 +70,7 @@ export const dose = {
   kinds: { dose: 'doses', quantity: 'doses', dosing: 'doses', level: 'doses' },
   blocks: later(() => import('./later_blocks.js')),
   isSoon: true,
-  tabs: [{ id: 'dvh', name: 'DVH', inSheet: hasCharts, draw: ({ charts }) => charts.draw('sheet') }],
+  tabs: [{ id: 'dvh', name: say.dvh, inSheet: hasCharts, draw: ({ charts }) => charts.draw('sheet') }],
   keys: { d: toggle('wash'), i: toggle('lines'), q: withDose(pinHere) },
   drawer: { has: hasCharts, draw: ({ charts }) => charts.draw('drawer') },
   strip: {
@@ -80,7 +81,7 @@ export const dose = {
   planParts: ({ room, charts }) => (room.plan.value.doses.length ? charts.draw('limits') : nothing),
   probeTool: (world) =>
     ofDose(world.room)
-      ? html`<button class="icon-button" title="Pin these values (Q)" aria-label="Pin these values" ?disabled=${!world.room.canChange.value} @click=${(event) => pinHere(world, event.timeStamp)}>${icon('marker')}</button>`
+      ? html`<button class="icon-button" title=${say.pinIs} aria-label=${say.pin} ?disabled=${!world.room.canChange.value} @click=${(event) => pinHere(world, event.timeStamp)}>${icon('marker')}</button>`
       : nothing,
   probe: (world) => html`${ofDose(world.room)?.doseAtCrosshair(world)}${ofDrawnDose(world.room)?.pinsBlock(world)}`,
   here: (world) => ofDose(world.room)?.doseHere(world),

@@ -1,5 +1,6 @@
 // Biological weights by region: presets and which of their rows a region gets by its name, what a region has, what was edited. Pure.
 import { dosePresets } from '../../../gen/dose_presets.js';
+import { say } from './later_words.js';
 
 /** {name, source, note, tissues: [{tissue, words, boron_ratio, cbe, nitrogen, fast, gamma, other, isoeffective, assumed}]} */
 export const weightPresets = dosePresets.weights;
@@ -57,7 +58,7 @@ function filesPreset(plan) {
   });
   return {
     name: fromFiles,
-    source: 'Tissue data that were loaded with the plan',
+    source: say.filesSource,
     note: '',
     rows: Object.fromEntries(given.map((region) => [region.id, rowOf(region)])),
   };

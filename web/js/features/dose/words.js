@@ -1,0 +1,14 @@
+// What a person reads of dose on every page.
+import { sentences } from '../../parts/sentences.js';
+
+export const say = sentences('dose', {
+  noDose: 'This plan has no dose.',
+  section: 'Doses',
+  dvh: 'DVH',
+  pinIs: 'Pin these values (Q)',
+  pin: 'Pin these values',
+  isodose: 'Isodose',
+  isodoseIs: 'Isodose lines (I)',
+  wash: 'Wash',
+  washIs: 'Wash of dose (D)',
+});
