@@ -255,6 +255,7 @@ check "the page's imports follow tests/page_layers.txt" page_layers
 check "an import from one feature to another, and one upwards, are found" planted_import
 check "what a person reads on the page stands in tables of words (tests/page_words.mjs)" page_words
 check "texts outside of a table, keys that are missing or too many, and a table of later in what is loaded at once are found" planted_words
+check "each sentence of the server is in proto/sentences.json, and each of those is said (tests/sentences.mjs)" "${NODE:-node}" tests/sentences.mjs
 check "comments begin with their subject (tests/comments.mjs)" comments_begin
 check "comments that begin in the middle are found" planted_comment
 check "locks stand in core/base alone" locks_in_base

@@ -2,6 +2,7 @@
 //   scene.h scene.c      structs, enums, defaults, copy and compare of scene and view, without JSON, for core
 //   wire_gen.h wire_gen.c  field tables and message structs for server/wire
 //   problem_gen.h problem_gen.c  types of problems
+//   sentences_gen.h sentences_gen.c  sentences with their codes and places
 //   gl_shaders.h gl_shaders.c  the shaders of core/render/gl/shaders
 //   packets_gen.h packets_gen.c  structs, field tables and limits of the packets between daemon and renderer
 //   openapi.json openapi.c  the HTTP API, as a file and for the daemon to serve
@@ -26,6 +27,7 @@ import { problemHeader, problemSource } from './problem_c.mjs';
 import { readShaders, shadersHeader, shadersSource } from './shaders_c.mjs';
 import { referencePage } from './reference.mjs';
 import { reportCodes } from './report_codes.mjs';
+import { sentencesHeader, sentencesSource } from './sentences.mjs';
 import { undoWordsScript } from './undo_words.mjs';
 
 const proto = join(dirname(fileURLToPath(import.meta.url)), '..');
@@ -33,6 +35,7 @@ const read = (name) => JSON.parse(readFileSync(join(proto, name), 'utf8'));
 const scene = checkedDocuments(read('scene.json'));
 const messages = checkedMessages(read('messages.json'));
 const problems = read('problems.json');
+const sentences = read('sentences.json');
 const shaders = readShaders(join(proto, '../core/render/gl/shaders'));
 const packets = read('packets.json');
 checkPackets(packets, scene);
@@ -53,6 +56,8 @@ write('packets_gen.h', packetsHeader(packets));
 write('packets_gen.c', packetsSource(packets));
 write('problem_gen.h', problemHeader(problems));
 write('problem_gen.c', problemSource(problems));
+write('sentences_gen.h', sentencesHeader(sentences));
+write('sentences_gen.c', sentencesSource(sentences));
 write('gl_shaders.h', shadersHeader(shaders));
 write('gl_shaders.c', shadersSource(shaders));
 write('volume_presets.h', presetsHeader());
@@ -65,7 +70,14 @@ write('wire.js', wireScript(scene, messages));
 write('undo_words.js', undoWordsScript(scene));
 write(
   'reference.html',
-  referencePage(scene, messages, packets, problems, reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8'))),
+  referencePage(
+    scene,
+    messages,
+    packets,
+    problems,
+    reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8')),
+    sentences,
+  ),
 );
 write('openapi.json', JSON.stringify(api, null, 1));
 write('openapi.c', openapiSource(api));

@@ -77,6 +77,8 @@ export function openapi(http, scene, answers, version) {
         title: { type: 'string' },
         status: { type: 'integer' },
         detail: { type: 'string' },
+        detail_code: { type: 'string', description: 'Which sentence detail is; the reference lists them.' },
+        detail_values: { type: 'object', description: 'The values of its places, by their names.' },
         instance: { type: 'string' },
         pointer: { type: 'string' },
         code: { type: 'string' },

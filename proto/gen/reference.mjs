@@ -1,5 +1,6 @@
 // reference.html: everything that proto/ describes, as a page for people.
 import { packetsSection } from './packets.mjs';
+import { sentencesSection } from './sentences.mjs';
 
 const escape = (text) => String(text).replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
 
@@ -49,7 +50,7 @@ function rows(fields, enums) {
 export const tableOf = (fields, enums) =>
   `<table><thead><tr><th>Field</th><th>Type</th><th>Range</th><th>Default</th><th>Meaning</th></tr></thead><tbody>\n${rows(fields, enums)}\n</tbody></table>\n`;
 
-export function referencePage(scene, messages, packets, problems, codes) {
+export function referencePage(scene, messages, packets, problems, codes, sentences) {
   const enums = { ...scene.enums, ...messages.enums };
   let body = '<h1>Beamroom reference</h1>\n<p><a href="/api/v1/openapi.json">OpenAPI description of the HTTP API</a></p>\n';
   body += `<h2>Scene and view</h2>\n<p>${escape(scene.about)}</p>\n`;
@@ -83,5 +84,6 @@ export function referencePage(scene, messages, packets, problems, codes) {
       )
       .join('\n') +
     '\n</tbody></table>\n';
+  body += sentencesSection(sentences, escape);
   return `<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>Beamroom reference</title>\n<link rel="icon" href="../icon.svg">\n<link rel="stylesheet" href="../css/reference.css">\n<main>\n${body}</main>\n</html>\n`;
 }

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/wire/sentence_json.h"
+
 bool problem_set(struct problem *problem, enum problem_type type, const char *pointer, const char *code,
                  const char *format, ...)
 {
@@ -16,6 +18,9 @@ bool problem_set(struct problem *problem, enum problem_type type, const char *po
     va_list args;
     va_start(args, format);
     (void)vsnprintf(problem->detail, sizeof problem->detail, format, args);
+    va_end(args);
+    va_start(args, format);
+    sentence_describe(&problem->facts, format, args);
     va_end(args);
     return false;
 }
@@ -67,6 +72,7 @@ cJSON *problem_to_json(const struct problem *problem)
     cJSON_AddStringToObject(json, "title", problem_types[type].title);
     cJSON_AddNumberToObject(json, "status", problem_types[type].status);
     cJSON_AddStringToObject(json, "detail", problem->detail);
+    sentence_add_json(json, "detail", &problem->facts);
     if (problem->pointer[0])
         cJSON_AddStringToObject(json, "pointer", problem->pointer);
     if (problem->code[0])
@@ -94,6 +100,7 @@ bool problem_from_json(const cJSON *json, struct problem *problem)
     if (type == PROBLEM_NONE)
         return problem_set(problem, PROBLEM_INTERNAL, "", "", "an answer that is not a problem description");
     (void)problem_set(problem, type, text_of(json, "pointer"), text_of(json, "code"), "%s", text_of(json, "detail"));
+    sentence_read_json(json, "detail", &problem->facts);
     const cJSON *retry = cJSON_GetObjectItemCaseSensitive(json, "retry_after_ms");
     if (cJSON_IsNumber(retry) && retry->valuedouble > 0 && retry->valuedouble < 3600000)
         problem->retry_after_ms = (int)retry->valuedouble;

@@ -5,6 +5,7 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { createInterface } from 'node:readline';
 import { inspect } from 'node:util';
+import { heldToSentences } from './sentences.mjs';
 import { parseStrict } from './strict_json.mjs';
 
 export const bin = process.env.BEAMROOM_BIN ?? resolve('build/release');
@@ -83,7 +84,7 @@ export async function call(url, method = 'GET', body, headers = {}) {
   const isEndless = type.startsWith('multipart/x-mixed-replace');
   if (isEndless) await answer.body.cancel();
   const text = isEndless ? '' : await answer.text();
-  const json = /^application\/(.*\+)?json\b/.test(type) && text ? parseStrict(text) : undefined;
+  const json = /^application\/(.*\+)?json\b/.test(type) && text ? heldToSentences(parseStrict(text)) : undefined;
   return { status: answer.status, headers: answer.headers, type, text, json };
 }
 

@@ -2,6 +2,7 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
 import { connect as connectSecurely } from 'node:tls';
+import { heldToSentences } from './sentences.mjs';
 import { parseStrict } from './strict_json.mjs';
 
 const TEXT = 1,
@@ -156,7 +157,7 @@ export class Client {
     if (!isFinal) return true;
     const [kind, ...parts] = this.#fragment;
     const whole = Buffer.concat(parts);
-    if (kind === TEXT) this.messages.push(parseStrict(whole.toString('utf8')));
+    if (kind === TEXT) this.messages.push(heldToSentences(parseStrict(whole.toString('utf8'))));
     else if (kind === BINARY) {
       const frame = readFrame(whole);
       this.frames.push(frame);

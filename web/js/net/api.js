@@ -1,4 +1,5 @@
 // Calls of the HTTP API (proto/http.json) that the page uses. Every failure is a Problem with a sentence.
+import { told } from '../parts/sentences.js';
 
 const thumbnailPx = [192, 116]; // twice the size on the page
 
@@ -32,7 +33,7 @@ export function makeApi(fetch, base = 'api/v1') {
       throw new Problem({ detail: 'The server does not answer.' });
     }
     const isJson = /json/.test(response.headers.get('Content-Type') ?? '');
-    const answer = isJson ? await response.json().catch(() => null) : null;
+    const answer = isJson ? told(await response.json().catch(() => null)) : null;
     if (!response.ok) throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
     return isPicture ? response.blob() : answer;
   }

@@ -1,5 +1,6 @@
 // The WebSocket of a room: sends hello, checks messages in both directions, connects again after a loss.
 import { maxClientBytes, protocol } from '../../gen/wire.js';
+import { told } from '../parts/sentences.js';
 import { readMessage, readServerMessage } from '../wire/check.js';
 import { readFrame } from '../wire/frame.js';
 
@@ -159,7 +160,7 @@ export class Connection extends EventTarget {
     this.#isQuiet = false;
     try {
       if (typeof data !== 'string') return void this.#tell('frame', readFrame(data));
-      const message = readServerMessage(JSON.parse(data));
+      const message = readServerMessage(told(JSON.parse(data)));
       if (message) this.#take(message);
     } catch (error) {
       // A message of the server that cannot be read is ignored, but never silently.

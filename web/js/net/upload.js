@@ -1,4 +1,5 @@
 // Uploads a plan. By XMLHttpRequest, as only that reports how much has been sent.
+import { told } from '../parts/sentences.js';
 import { Problem } from './api.js';
 
 /**
@@ -10,7 +11,7 @@ export function sendPlan({ makeRequest, url, body, type, onSent, signal }) {
     const request = makeRequest();
     const answer = () => {
       try {
-        return JSON.parse(request.responseText);
+        return told(JSON.parse(request.responseText));
       } catch {
         return null;
       }

@@ -18,6 +18,25 @@ export function sentences(group, english) {
   return Object.fromEntries(Object.entries(english).map(([key, text]) => [key, sentence(own[key] ?? text)]));
 }
 
+/**
+ * What the server says, in the page's language: in its JSON a sentence stands beside its code and values ("detail", "detail_code", "detail_values";
+ * proto/sentences.json), and languages/ has texts of the group "server" by code. Sentences that the language lacks stay English.
+ * @template T @param {T} json is changed @returns {T}
+ */
+export function told(json) {
+  if (texts.server && json && typeof json === 'object')
+    for (const [key, value] of Object.entries(json)) {
+      const text = key.endsWith('_code') && texts.server[value];
+      const name = key.slice(0, -5);
+      if (!text) told(value);
+      else {
+        const say = sentence(text);
+        json[name] = typeof say === 'string' ? say : say(json[`${name}_values`]);
+      }
+    }
+  return json;
+}
+
 function sentence(text) {
   const pieces = text.split(/\{([^}]*)\}/); // text, place, text, …
   if (pieces.length === 1) return text;

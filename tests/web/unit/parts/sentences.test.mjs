@@ -28,13 +28,16 @@ test('a browser of another language has what that language has', async (t) => {
   writeFileSync(list, text.replace('languages = {}', "languages = { pl: () => import('./pl.js'), cs: () => import('./gone.js') }"));
   assert.notEqual(readFileSync(list, 'utf8'), text);
   // the four forms of Polish in the order of CLDR: one (1), few (2 to 4), many (5 and more), other (fractions)
-  writeFileSync(join(folder, 'languages/pl.js'), "export default { test: { rows: '{n} {n|a|b|c|d}' } };");
+  writeFileSync(
+    join(folder, 'languages/pl.js'),
+    "export default { test: { rows: '{n} {n|a|b|c|d}' }, server: { 'view-not-open': 'v{view}', 'disk-full': 'p' } };",
+  );
   const inLanguages = async (...languages) => {
     Object.defineProperty(globalThis, 'navigator', { value: { languages }, configurable: true });
     const copy = join(folder, `run-${languages.join('-')}`);
     for (const part of ['languages', 'parts', 'package.json']) cpSync(join(folder, part), join(copy, part), { recursive: true });
     const module = await import(pathToFileURL(join(copy, 'parts/sentences.js')).href);
-    return module.sentences('test', { rows: '{n} {n|row|rows}', other: 'Stays' });
+    return { ...module.sentences('test', { rows: '{n} {n|row|rows}', other: 'Stays' }), told: module.told };
   };
   const before = Object.getOwnPropertyDescriptor(globalThis, 'navigator');
   t.after(() => (before ? Object.defineProperty(globalThis, 'navigator', before) : delete globalThis.navigator));
@@ -44,6 +47,24 @@ test('a browser of another language has what that language has', async (t) => {
     ['1 a', '3 b', '7 c', '1.5 d'],
   );
   assert.equal(polish.other, 'Stays');
-  assert.equal((await inLanguages('en-GB', 'pl')).rows({ n: 2 }), '2 rows', 'English comes first');
+  const sent = () => ({
+    problem: { detail: 'view 3 is not open', detail_code: 'view-not-open', detail_values: { view: 3 }, code: 'range' },
+    lines: [
+      { sentence: 'Full.', sentence_code: 'disk-full' },
+      { sentence: 'New.', sentence_code: 'not-in-this-language' },
+      { sentence: 'Free.' },
+      null,
+    ],
+  });
+  const translated = polish.told(sent());
+  assert.equal(translated.problem.detail, 'v3');
+  assert.deepEqual(
+    translated.lines.map((line) => line?.sentence),
+    ['p', 'New.', 'Free.', undefined],
+  );
+  assert.equal(polish.told(null), null);
+  const english = await inLanguages('en-GB', 'pl');
+  assert.deepEqual(english.told(sent()), sent(), 'English is said by the server');
+  assert.equal(english.rows({ n: 2 }), '2 rows', 'English comes first');
   assert.equal((await inLanguages('cs')).rows({ n: 1 }), '1 row', 'a language that cannot be loaded');
 });
