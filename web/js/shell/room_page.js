@@ -1,6 +1,6 @@
 // The room page: panes with the panels around them, connected to the room's state.
 import { html, nothing } from '../../lib/lit-html.js';
-import { computed, effect } from '../../lib/signals-core.js';
+import { computed, effect, signal, untracked } from '../../lib/signals-core.js';
 import { features, partsOf } from '../features/index.js';
 import { AfterRoom } from '../room/after_room.js';
 import { crosshair } from '../room/plan.js';
@@ -30,6 +30,7 @@ import { say } from './words.js';
 
 const probeMs = 60;
 const tickMs = 250;
+const lateMs = 150; // without the room's plan, after which the panels are drawn without it
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
 const drawer = (world) => (world.ui.arrangement.value.drawer ? features.map(({ drawer: own }) => own?.draw(world)) : nothing);
@@ -58,6 +59,7 @@ export function roomPage(
   const part = (name) => host.querySelector(name);
   const ui = new UiState(clock, storage);
   const connection = connect(id);
+  connection.open(); // its answer is on the way while the page is drawn; nothing is told before this returns
   const room = new RoomState(id, { connection, clock, schedule: redraw.schedule, sendSoon: soon(clock), notify: ui.notify });
   const undo = new Undo(room, { clock, notify: ui.notify });
   const probing = probe(room, api, clock);
@@ -95,7 +97,7 @@ export function roomPage(
     panes[detail.header.view - 1]?.painter.offer(detail);
   });
 
-  for (const [name, draw] of [
+  const panels = [
     ['.banner', banner],
     ['.tree', tree],
     ['.strip', toolStrip],
@@ -106,8 +108,8 @@ export function roomPage(
     ['.status', status],
     ['.toasts', (shown) => html`${savedLine(shown)}${requestLines(shown)}${toasts(shown)}`],
     ['.floating', floating],
-  ])
-    stops.push(mount(part(name), () => draw(world), redraw));
+  ];
+  stops.push(whenKnown(room, clock, () => stops.push(...panels.map(([name, draw]) => mount(part(name), () => draw(world), redraw)))));
   if (!isBack) stops.push(offerName(world));
   stops.push(
     effect(() => describeTitle(room)),
@@ -128,13 +130,30 @@ export function roomPage(
     ui.now.value = clock.now();
   }, tickMs);
   hooks.enter(room, panes);
-  connection.open();
   return () => {
     clearInterval(tick);
     connection.close();
     for (const pane of panes) pane.stop();
     for (const stop of stops.reverse()) stop();
     document.title = 'Beamroom';
+  };
+}
+
+/** Calls back when the room has told its plan, or is late with it: what is around the panes is then drawn once, and not before the views are open. */
+function whenKnown(room, clock, act) {
+  let isDone = false;
+  const isLate = signal(false);
+  const timer = clock.setTimeout(() => {
+    isLate.value = true;
+  }, lateMs);
+  const stop = effect(() => {
+    if (isDone || !(room.plan.value || isLate.value)) return;
+    isDone = true;
+    untracked(act);
+  });
+  return () => {
+    clock.clearTimeout(timer);
+    stop();
   };
 }
 
