@@ -51,6 +51,24 @@ export function known(lazy) {
   return module;
 }
 
+const forwarded = ['layer', 'lines', 'key', 'start', 'move', 'end', 'tap', 'doubleTap', 'hover'];
+
+/**
+ * What a feature has in a pane (PanePart of features/index.js), made when there is something for it; until then it draws and takes nothing.
+ * @template T @param {() => boolean} isNeeded reactive @param {Lazy<T>} code @param {(loaded: T) => object} make
+ */
+export function laterPart(isNeeded, code, make) {
+  let part = null;
+  const made = () => {
+    if (!part && isNeeded()) {
+      const module = known(code);
+      part = module && make(module);
+    }
+    return part;
+  };
+  return Object.fromEntries(forwarded.map((name) => [name, (...args) => made()?.[name]?.(...args)]));
+}
+
 /** Adds a style sheet to the page, once; resolves when it is there. */
 export async function styled(href) {
   const known = document.querySelector(`link[href="${href}"]`);

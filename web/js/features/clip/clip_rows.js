@@ -32,6 +32,10 @@ export function clipNote({ room }) {
   return n ? say.nOn({ n }) : say.off;
 }
 
+/** Whether anything is cut off. */
+export const isClipped = ({ room }) =>
+  Boolean(room.plan.value && room.scene.value?.clip && enabledClips(room.plan.value, room.scene.value).length);
+
 export function clipRows(world) {
   const { room } = world;
   if (!room.scene.value?.clip) return nothing;

@@ -1,18 +1,29 @@
 // Oblique planes; the lines in which they and clip planes cut the slices of panes.
-import { later } from '../../parts/lazy.js';
-import { hasClips } from '../clip/clip_rows.js';
-import { obliqueNote, obliqueRows } from './oblique_rows.js';
-import { PaneLines } from './pane_lines.js';
+import { later, laterPart } from '../../parts/lazy.js';
+import { hasClips, isClipped } from '../clip/clip_rows.js';
+import { obliqueNote, obliqueRows, obliquesOf } from './oblique_rows.js';
 import { say } from './words.js';
+
+const blocks = later(() => import('./later_blocks.js'));
+
+/** Whether a slice may be cut by a line, or one is being drawn. */
+const hasLines = (world) => Boolean(world.ui.picking.value || Object.keys(obliquesOf(world)).length || isClipped(world));
 
 /** @type {import('../index.js').Feature} */
 export const planes = {
   sections: [{ id: 'planes', name: say.section, icon: 'plane', place: 2, has: hasClips, note: obliqueNote, rows: obliqueRows }],
   kinds: { oblique: 'planes' },
-  blocks: later(() => import('./later_blocks.js')),
+  blocks,
   isSoon: true,
-  pane: ({ room, ui, place }, view) => {
-    const lines = new PaneLines(room, ui, view, place);
-    return { lines: () => lines.draw() };
+  pane: (world, view) => {
+    const { room, ui, place } = world;
+    return laterPart(
+      () => hasLines(world),
+      blocks,
+      ({ PaneLines }) => {
+        const lines = new PaneLines(room, ui, view, place);
+        return { lines: () => lines.draw() };
+      },
+    );
   },
 };

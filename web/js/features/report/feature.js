@@ -2,7 +2,7 @@
 import { html } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
 import { Printout } from './report_pages.js';
-import { listenSnapshots, otherPlanDialog, resumeSnapshot, snapshotMenu } from './snapshots.js';
+import { code, listenSnapshots, resumeSnapshot, snapshotMenu } from './snapshots.js';
 
 /** @type {import('../index.js').Feature} */
 export const report = {
@@ -16,6 +16,6 @@ export const report = {
     return () => stops.forEach((stop) => stop());
   },
   dialogs: ['printout', 'other-plan'],
-  dialog: (world) => html`${otherPlanDialog(world)}${world.printoutDialog.value?.(world)}`,
+  dialog: (world) => html`${code.loaded.value?.otherPlanDialog(world)}${world.printoutDialog.value?.(world)}`,
   strip: { end: snapshotMenu },
 };

@@ -1,103 +1,30 @@
-// Snapshots: the menu of the camera button, and annotated pictures that are dropped on the page to be shown again.
+// Snapshots: the camera button, and annotated pictures that are dropped on the page or for which a room was opened.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { effect } from '../../../lib/signals-core.js';
 import { filesOfDrop } from '../../net/dropped.js';
 import { icon } from '../../parts/icons.js';
-import { styled } from '../../parts/lazy.js';
+import { later } from '../../parts/lazy.js';
 
-const leastWidthPx = 1200; // enough for a column of a printed page
-const mostPx = 4096;
+export const code = later(() => import('./later_snapshots.js'));
 
-/** How pictures are read and shown again: no part of what a first visit loads. */
-const records = () => import('./snapshot_record.js');
-
-/** The view as it is on the screen, as large as a report needs it. */
-function viewDocument(view) {
-  const [width, height] = view.document.value.size_px;
-  const factor = Math.min(Math.max(1, leastWidthPx / width), mostPx / Math.max(width, height));
-  return { ...view.document.value, size_px: [Math.round(width * factor), Math.round(height * factor)] };
-}
-
-async function save(world) {
-  const view = world.room.view(world.ui.active.value);
-  const document = viewDocument(view);
-  try {
-    await (await import('../../room/exports.js')).savePicture(world, view, document);
-  } catch {
-    world.ui.notify('err', 'No snapshot: the server does not answer.', 'snapshot');
-  }
-}
-
-async function add({ room, ui, printout }) {
-  const view = room.view(ui.active.value);
-  try {
-    await printout.add(room, viewDocument(view));
-    const n = printout.entries.value.length;
-    ui.notify('ok', `In the report to print: ${n} picture${n === 1 ? '' : 's'}`, 'snapshot');
-  } catch (error) {
-    ui.notify('err', `No snapshot: ${error.message}`, 'snapshot');
-  }
-}
-
-/** The dialog is loaded when it is first opened. */
-async function openPrintout({ ui, printoutDialog }) {
-  try {
-    [{ printoutDialog: printoutDialog.value }] = await Promise.all([import('./printout.js'), styled('js/features/report/printout.css')]);
-    ui.popover.value = 'printout';
-  } catch {
-    ui.notify('err', 'The report to print could not be loaded: the server does not answer.', 'snapshot');
-  }
+/** What it exports. Throws when it cannot be loaded. */
+async function load() {
+  await code.load();
+  if (!code.loaded.peek()) throw new Error('The picture cannot be read: the server does not answer.');
+  return code.loaded.peek();
 }
 
 export function snapshotMenu(world) {
-  const { room, ui, printout } = world;
+  const { ui } = world;
   const isOpen = ui.popover.value === 'snapshot';
-  const hasPicture = Boolean(room.view(ui.active.value).painted.value);
-  const n = printout.entries.value.length;
-  const act = (run) => (event) => {
-    event.currentTarget.closest('.anchor').querySelector('button').focus(); // the item goes
-    ui.popover.value = '';
-    run(world);
-  };
   return html`<span class="anchor"><button class="tool plain" tabindex="-1" title="Snapshot of the active pane" aria-label="Snapshot" aria-haspopup="menu" aria-expanded=${isOpen}
       @click=${() => ui.toggle('snapshot')}>${icon('camera')}</button>
-    ${
-      isOpen
-        ? html`<div class="popover snapshots"><div class="menu" role="menu" aria-label="Snapshot" @keydown=${move}>
-      <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>Save the active pane as PNG</span></button>
-      <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>Add it to the report to print</span></button>
-      <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>Report to print</span><span class="tag">${n}</span></button></div>
-      <p class="note">With letters, scale and caption. Drop the PNG on this page to see it again as it was.</p></div>`
-        : nothing
-    }</span>`;
-}
-
-function move(event) {
-  const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-  if (!by) return;
-  const items = [...event.currentTarget.querySelectorAll('button:not([disabled])')];
-  items[(items.indexOf(document.activeElement) + by + items.length) % items.length]?.focus();
-  event.preventDefault();
-  event.stopPropagation();
+    ${isOpen ? code.draw(({ menu }) => menu(world)) : nothing}</span>`;
 }
 
 // ---- pictures that come back ------------------------------------------------------------------------------------------
 
-const pendingKey = (room) => `snapshot ${room}`;
-
-async function show(world, record) {
-  const { room, ui, otherPlan } = world;
-  const { restore, toldOfMerge } = await records();
-  if (record.plan.id !== room.planId.value) {
-    otherPlan.value = record;
-    ui.popover.value = 'other-plan';
-  } else if (!room.canChange.value) {
-    ui.notify('warn', 'The picture can be shown again when the plan is loaded and the server answers.', 'snapshot');
-  } else {
-    const but = toldOfMerge(restore(world, record));
-    ui.notify(but ? 'warn' : 'ok', `Scene and view are as in the picture${but ? `. ${but}` : ''}`, 'snapshot');
-  }
-}
+export const pendingKey = (room) => `snapshot ${room}`;
 
 /** Shows annotated pictures that are dropped anywhere on the room's page. @returns {() => void} stops */
 export function listenSnapshots(world, target = globalThis) {
@@ -105,10 +32,8 @@ export function listenSnapshots(world, target = globalThis) {
   const isFiles = (event) => event.dataTransfer?.types.includes('Files');
   const drop = async (data) => {
     try {
-      const [first] = await filesOfDrop(data);
-      const record = first && (await (await records()).recordOfFile(first.file));
-      if (record) await show(world, record);
-      else world.ui.notify('warn', 'Only a snapshot as PNG can be dropped here. Plans are dropped on the start page.', 'snapshot');
+      const files = filesOfDrop(data); // at once: what was dropped is gone after the event
+      await (await load()).showFirst(world, await files);
     } catch (error) {
       world.ui.notify('err', error.message, 'snapshot');
     }
@@ -132,23 +57,6 @@ export function listenSnapshots(world, target = globalThis) {
   return () => abort.abort();
 }
 
-/** Makes a room on the plan of a picture and goes there, where the picture is shown. */
-export async function openSnapshot(api, record, enter) {
-  const { id } = await api.makeRoom(record.plan.id);
-  sessionStorage.setItem(pendingKey(id), JSON.stringify(record));
-  enter(id);
-}
-
-/** Opens a picture that was dropped on the start page. @returns {Promise<boolean>} false: it is no picture */
-export async function openDroppedSnapshot(api, file, enter) {
-  const record = await (await records()).recordOfFile(file);
-  if (!record) return false;
-  await openSnapshot(api, record, enter).catch((error) => {
-    throw new Error(`The picture shows the plan ${record.plan.name}: ${error.message}`);
-  });
-  return true;
-}
-
 /** Shows the picture that this room was opened for, once its plan is loaded. @returns {() => void} stops */
 export function resumeSnapshot(world) {
   const text = sessionStorage.getItem(pendingKey(world.room.id));
@@ -158,24 +66,8 @@ export function resumeSnapshot(world) {
     if (isShown || !world.room.canChange.value || !world.room.plan.value) return;
     isShown = true;
     sessionStorage.removeItem(pendingKey(world.room.id));
-    queueMicrotask(() => show(world, JSON.parse(text)).catch((error) => world.ui.notify('err', error.message, 'snapshot')));
+    load()
+      .then(({ show }) => show(world, JSON.parse(text)))
+      .catch((error) => world.ui.notify('err', error.message, 'snapshot'));
   });
-}
-
-/** Says that a picture belongs to another plan, and offers to open that. */
-export function otherPlanDialog({ room, ui, api, otherPlan }) {
-  const record = otherPlan.value;
-  if (ui.popover.value !== 'other-plan' || !record) return nothing;
-  const close = () => {
-    ui.popover.value = '';
-  };
-  const open = () => {
-    close();
-    openSnapshot(api, record, (id) => {
-      location.hash = `#/rooms/${id}`;
-    }).catch((error) => ui.notify('err', `${record.plan.name}: ${error.message}`, 'snapshot'));
-  };
-  return html`<section class="card other-plan" role="dialog" tabindex="-1" aria-label="Picture of another plan">
-    <p><b>This picture shows another plan</b>: ${record.plan.name} <code>${record.plan.id}</code>, not ${room.plan.value?.name ?? room.planId.value}.</p>
-    <div class="buttons"><button class="primary" @click=${open}>Open ${record.plan.id} in a new room</button><button @click=${close}>Stay here</button></div></section>`;
 }

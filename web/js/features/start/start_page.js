@@ -13,7 +13,7 @@ import { askName, nameButton, roomsList } from './lobby.js';
 import { mount } from '../../parts/mount.js';
 import { planList, refusalOf } from './plan_list.js';
 import { reportLines } from '../../parts/report.js';
-import { openDroppedSnapshot } from '../report/snapshots.js';
+import { openDroppedSnapshot } from '../report/later_snapshots.js';
 import { dropZone, listenDrops } from './upload.js';
 
 /** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, thumbnails} @returns {() => void} leaves the page */
