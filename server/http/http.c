@@ -402,8 +402,8 @@ static void screen_left(struct net *net, void *argument)
 static void completed(void *context, struct MHD_Connection *connection, void **state,
                       enum MHD_RequestTerminationCode code)
 {
+    struct http *http = context;
     struct request *request = *state;
-    (void)context;
     (void)connection;
     if (!request)
         return;
@@ -412,9 +412,9 @@ static void completed(void *context, struct MHD_Connection *connection, void **s
     intake_drop(request->archive);
     *state = NULL;
     remove_feeding(request);
-    if (request->call->feed && gate_enter(request->http->posting)) {
-        net_post(request->http->net, screen_left, request);
-        gate_leave(request->http->posting);
+    if (request->call->feed && gate_enter(http->posting)) {
+        net_post(http->net, screen_left, request); /* which frees it */
+        gate_leave(http->posting);
         return;
     }
     feed_leave(request->call->feed); /* the net thread has left it, or is about to */
@@ -480,7 +480,7 @@ struct http *http_create(struct net *net, struct front *front, const struct http
      * own limits on connections and time are off: the front has both, and the library (0.9.75) hangs for ever when its
      * limit on connections is reached. */
     http->daemon = MHD_start_daemon(MHD_USE_EPOLL | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
-                                    handle, http, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
+                                    handle, http, MHD_OPTION_NOTIFY_COMPLETED, completed, http,
                                     MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http, MHD_OPTION_CONNECTION_LIMIT,
                                     LIBRARY_LIMIT, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)128 * 1024,
                                     MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL, MHD_OPTION_END);
