@@ -5,6 +5,7 @@
 #include "server/room/log/replay.h"
 #include "server/room/people/links.h"
 #include "server/room/streams/display.h"
+#include "server/room/streams/pictures.h"
 #include "server/room/streams/stream.h"
 
 void room_picture_came(struct room *room, uint64_t request, struct frame *picture, int64_t now_us)

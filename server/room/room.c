@@ -33,8 +33,9 @@
 #include "server/room/streams/display.h"
 #include "server/room/streams/lag.h"
 #include "server/room/streams/main_view.h"
+#include "server/room/streams/pictures.h"
 #include "server/room/streams/stream.h"
-#include "server/room/streams/watch_join.h"
+#include "server/room/streams/watch.h"
 #include "server/room/views/beginning.h"
 #include "server/room/views/member_view.h"
 #include "server/room/views/shared_scene.h"
@@ -375,12 +376,13 @@ static const struct {
     int64_t (*settle)(struct room *room);
     bool is_at_once; /* after each message; the others once for all messages that have come together */
 } following[] = {
-    { pointers_settle, false },     { look_settle, false },        { saved_settle, false },
-    { replay_settle, false },       { displays_settle, false },    { members_settle_lost, true },
-    { members_settle, false },      { control_settle, true },      { main_view_settle, true },
-    { displays_follow, true },      { watches_follow, true },      { watches_settle, false },
-    { members_settle_away, false }, { streams_request_due, true }, { presenter_due_us, false },
-    { send_members_due, false },    { recording_settle, false },   { audit_settle, false },
+    { pointers_settle, false },  { look_settle, false },         { saved_settle, false },
+    { replay_settle, false },    { displays_settle, false },     { members_settle_lost, true },
+    { members_settle, false },   { control_settle, true },       { main_view_settle, true },
+    { displays_follow, true },   { watches_follow, true },       { streams_send_watches, false },
+    { watches_settle, false },   { members_settle_away, false }, { streams_request_due, true },
+    { presenter_due_us, false }, { send_members_due, false },    { recording_settle, false },
+    { audit_settle, false },
 };
 
 static int64_t settle(struct room *room, bool only_at_once)
@@ -419,6 +421,7 @@ int64_t room_due_us(const struct room *room)
  * is one for each frame and member. */
 static int64_t settle_shown(struct room *room, struct member *member)
 {
+    stream_send_watch(room, member);
     const int64_t watch_us = watch_settle(room, member), request_us = streams_request_due(room),
                   late_us = room->now_us + LAG_AFTER_US, next_us = watch_us < late_us ? watch_us : late_us;
     return request_us < next_us ? request_us : next_us;

@@ -2,7 +2,7 @@
 /* Displays: screens that show a shared view and are no members. A display is a viewer of the stream without credit: it
  * is sent the pictures that the members who look are sent, and nothing is drawn for it beside them. Only where nobody
  * else looks, or none of those who look takes pictures, are pictures requested for displays. Internal to server/room.
- * display_add, display_remove and displays_follow are in display_join.c. */
+ */
 #include "server/room/state/room_state.h"
 #include "server/room/streams/room_displays.h"
 
@@ -33,12 +33,7 @@ int64_t display_alone_us(const struct stream *stream);
 /* Gives the stream's latest picture to its displays. Of a scene with a draft they are given pictures with words for it
  * alone: nothing else says so on a screen. */
 void displays_send(const struct room *room, const struct stream *stream);
-/* The display shows this stream from now on. Returns false when the picture that is there or on its way was requested
- * without the words for a draft: it is to be requested again. */
-NODISCARD bool display_show(const struct room *room, struct room_display *display, struct stream *stream);
 /* Tells displays whether their picture is late; when the next may be. */
 int64_t displays_settle(struct room *room);
 /* The room's main view is another one: the displays that show it go over. Returns INT64_MAX. */
 int64_t displays_follow(struct room *room);
-/* Ends them: the stream does. */
-void displays_end(struct stream *stream);

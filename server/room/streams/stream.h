@@ -1,9 +1,6 @@
 #pragma once
 /* Streams: one per own view of a member, one per kind and number for all who follow; of oblique views one per plane.
- * When a picture of a stream is requested, how good, and to whom it is sent. Internal to server/room.
- *   - Nothing is requested while no viewer could be sent it; what is requested shows the newest state.
- *   - A picture older than the newest one is never sent.
- *   - Moving pictures are followed by a still.
+ * Their pictures: pictures.h. Internal to server/room.
  *   - A shared stream has one size, that of the presenter's view, for all who follow; a pane of another size or shape
  * shows the whole picture, with bars. Small panes are sent it reduced: size_class.h. A member who wants one of their
  * own size leaves. */
@@ -31,16 +28,6 @@ void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *
 /* Forgets outstanding requests without a word to the renderer: it is gone. */
 void streams_forget_requests(struct room *room);
 void streams_restart_pace(struct room *room);
-/* The answers to a request; room_picture_came and room_picture_failed. */
-void streams_picture_came(struct room *room, uint64_t number, struct frame *picture); /* takes picture */
-void streams_picture_failed(struct room *room, uint64_t number, const struct problem *problem);
-/* Sends the latest picture to the view, if it is new there, the view has credit and can be drawn as it is now. */
-void stream_send_picture(struct room *room, struct member *member, struct member_view *view);
-/* Sends the problem to a member who opened a view of a stream that cannot be drawn. */
-void stream_send_refusal(struct room *room, struct member *member, const struct member_view *view);
-void stream_acknowledged(struct room *room, struct member_view *view, uint32_t sequence);
-/* Requests the pictures that are due; returns when to call again. */
-int64_t streams_request_due(struct room *room);
 /* The shared views as they are kept: [{view, mover}]. The text is the caller's; NULL: no memory. Reading leaves out
  * what is not a view. */
 NODISCARD char *streams_write(const struct room *room);

@@ -4,6 +4,7 @@
  * of that view, its acknowledgements pace nothing, and the member's own views go first. Its size chooses a class of the
  * shared picture (size_class.h), as that of a pane does. Internal to server/room. */
 #include "server/room/state/room_state.h"
+#include "server/wire/message.h"
 
 enum {
     WATCH_EVERY_US = 200000, /* between two pictures */
@@ -22,3 +23,13 @@ bool watch_is_newest(const struct member_view *view);
 bool watches_have_credit(const struct stream *stream, uint32_t n_coming, int64_t now_us);
 /* When the next picture may be sent, as far as time decides that. */
 int64_t watch_next_us(const struct member_view *view);
+
+/* The handler of the message watch. */
+bool watch_set(struct room *room, struct member *member, const struct message *message, struct problem *problem);
+/* After whatever may have changed who presents, or the main view: those who watch go over to it, or see none.
+ * Returns INT64_MAX. */
+int64_t watches_follow(struct room *room);
+/* After stream_send_watch: tells the member whether the small picture is late; returns when it is due again. */
+int64_t watch_settle(struct room *room, struct member *member);
+/* Like watch_settle, for all members. */
+int64_t watches_settle(struct room *room);

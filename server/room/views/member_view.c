@@ -9,6 +9,7 @@
 #include "server/room/state/member_list.h"
 #include "server/room/state/own_view.h"
 #include "server/room/streams/main_view.h"
+#include "server/room/streams/pictures.h"
 #include "server/room/streams/stream.h"
 
 /* ---- joining and leaving a stream ------------------------------------------------------------------------------- */

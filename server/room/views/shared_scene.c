@@ -6,6 +6,7 @@
 #include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/room/streams/main_view.h"
+#include "server/room/streams/pictures.h"
 #include "server/room/streams/stream.h"
 #include "server/room/views/marks.h"
 #include "server/room/views/member_view.h"
