@@ -68,7 +68,7 @@ function placesOf(quasis) {
 }
 
 const skipped =
-  /^(matchMedia|startsWith|endsWith|includes|split|join|querySelector|querySelectorAll|closest|matches|import|setAttribute|getAttribute|styled|error|warn|debug)$/;
+  /^(\$|matchMedia|startsWith|endsWith|includes|split|join|querySelector|querySelectorAll|closest|matches|import|setAttribute|getAttribute|styled|error|warn|debug)$/;
 /** True of a text that never reaches a person: a key of an event, a selector, a name that is compared, an error of the program. */
 function isForProgram(parents) {
   const [own, parent, above] = parents;

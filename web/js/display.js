@@ -5,6 +5,7 @@ import { edgeLetters } from './pane/letters.js';
 import { Painter } from './pane/painter.js';
 import { keepTextVisible } from './parts/visible_text.js';
 import { isId } from './wire/check.js';
+import { say } from './display_words.js';
 
 keepTextVisible(document.documentElement);
 
@@ -17,19 +18,19 @@ const tickMs = 250;
 const factsMs = 5000;
 const viewNames = {
   '3d': '3-D',
-  axial: 'Axial',
-  coronal: 'Coronal',
-  sagittal: 'Sagittal',
-  oblique: 'Oblique',
-  beam: "Beam's eye",
-  'beam-slice': 'Beam slice',
+  axial: say.axial,
+  coronal: say.coronal,
+  sagittal: say.sagittal,
+  oblique: say.oblique,
+  beam: say.beam,
+  'beam-slice': say.beamSlice,
 };
 const rendererWords = {
-  starting: 'The plan is being opened.',
-  loading: 'The plan is being opened.',
-  restarting: 'The renderer is being started again: the picture may be old.',
-  failed: 'The plan cannot be drawn: the picture may be old.',
-  closed: 'The plan is closed: the picture may be old.',
+  starting: say.opening,
+  loading: say.opening,
+  restarting: say.restarting,
+  failed: say.failed,
+  closed: say.closed,
 };
 
 const base = new URL('../api/v1', location.href).pathname;
@@ -37,6 +38,8 @@ const api = makeApi((...request) => fetch(...request), base);
 const room = location.pathname.split('/').pop();
 const $ = (selector) => document.querySelector(selector);
 const figure = $('figure');
+$('header .note').textContent = say.forReview;
+$('footer p').textContent = say.alone;
 
 const state = {
   heardAt: 0, // when the last part came; 0: none has
@@ -73,18 +76,13 @@ const time = (ms) => new Date(ms).toLocaleTimeString('en-GB');
 function words(silentMs) {
   const { facts, header, problem } = state;
   if (problem && silentMs > lateMs) return { notice: problem, kind: header ? 'lost' : 'waiting' };
-  if (header && silentMs > lostMs) return { notice: `Connection lost. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
+  if (header && silentMs > lostMs) return { notice: say.lostAt({ time: time(state.changedAt) }), kind: 'lost' };
   if (!header)
     return {
-      notice:
-        rendererWords[facts?.renderer] ??
-        (performance.now() - begunAt < firstMs
-          ? 'Waiting for the first picture …'
-          : "No picture comes: the room's page says why the view is not drawn."),
+      notice: rendererWords[facts?.renderer] ?? (performance.now() - begunAt < firstMs ? say.waiting : say.noPicture),
       kind: 'waiting',
     };
-  if (state.isOld && (!facts || facts.renderer === 'ready'))
-    return { notice: `The room shows something newer, which is not drawn yet. The picture is of ${time(state.changedAt)}.`, kind: 'lost' };
+  if (state.isOld && (!facts || facts.renderer === 'ready')) return { notice: say.newer({ time: time(state.changedAt) }), kind: 'lost' };
   return { notice: facts && facts.renderer !== 'ready' ? (rendererWords[facts.renderer] ?? '') : '', kind: 'lost' };
 }
 
@@ -96,11 +94,11 @@ function draw() {
   const isLost = header && silentMs > lostMs;
   const isSilent = silentMs > lateMs;
   const late = isLost ? 'lost' : isSilent || state.isOld ? 'late' : 'live';
-  $('h1').textContent = [plan, `Room ${room}`, viewNames[kind]].filter(Boolean).join(' · ');
-  document.title = [plan, 'Beamroom display'].filter(Boolean).join(' – ');
+  $('h1').textContent = [plan, say.room({ room }), viewNames[kind]].filter(Boolean).join(' · ');
+  document.title = [plan, say.displayOf].filter(Boolean).join(' – ');
   $('.who').textContent = [
-    presenter ? `Presenter: ${presenter.name}` : facts ? 'Nobody presents' : '',
-    header?.missing ? `Not drawn: ${header.missing}` : '',
+    presenter ? say.presenter(presenter) : facts ? say.nobody : '',
+    header?.missing ? say.notDrawn({ what: header.missing }) : '',
   ]
     .filter(Boolean)
     .join(' · ');
@@ -110,12 +108,12 @@ function draw() {
   const said = !header
     ? ''
     : isLost
-      ? 'Connection lost'
+      ? say.lost
       : isSilent
-        ? 'Link?'
+        ? say.link
         : state.isOld
-          ? `Old · picture of ${time(state.changedAt)}`
-          : `Live · picture of ${time(state.changedAt)}`;
+          ? say.old({ time: time(state.changedAt) })
+          : say.live({ time: time(state.changedAt) });
   if (age.textContent !== said) age.textContent = said; // a live region: only what is new
   const { notice, kind: how } = words(silentMs);
   const line = $('.notice');
@@ -126,10 +124,7 @@ function draw() {
   place();
   const letters = edgeLetters(header.clip_from_lps_mm);
   for (const edge of ['top', 'bottom', 'left', 'right']) $(`.letter.${edge}`).textContent = letters[edge];
-  $('canvas').setAttribute(
-    'aria-label',
-    `${viewNames[kind] ?? 'Shared'} view; left ${letters.left}, right ${letters.right}, top ${letters.top}, bottom ${letters.bottom}`,
-  );
+  $('canvas').setAttribute('aria-label', viewNames[kind] ? say.picture({ view: viewNames[kind], ...letters }) : say.sharedPicture(letters));
 }
 
 function take({ fields, body }) {
@@ -152,7 +147,7 @@ async function show(abort) {
   const reader = answer.body.getReader();
   for (;;) {
     const { done, value } = await reader.read();
-    if (done) throw new Problem({ detail: 'The room has ended or sleeps.' });
+    if (done) throw new Problem({ detail: say.ended });
     parts.push(value).forEach(take);
   }
 }
@@ -194,6 +189,6 @@ if (isId(room)) {
   draw();
   run();
 } else {
-  state.problem = 'The address names no room.';
+  state.problem = say.noRoom;
   draw();
 }

@@ -1,5 +1,6 @@
 // Calls of the HTTP API (proto/http.json) that the page uses. Every failure is a Problem with a sentence.
 import { told } from '../parts/sentences.js';
+import { say } from './words.js';
 
 const thumbnailPx = [192, 116]; // twice the size on the page
 
@@ -7,7 +8,7 @@ const thumbnailPx = [192, 116]; // twice the size on the page
 export class Problem extends Error {
   /** @param {{type?: string, status?: number, detail?: string, title?: string}} problem */
   constructor(problem) {
-    super(problem.detail || problem.title || 'The server refused without a reason.');
+    super(problem.detail || problem.title || say.noReason);
     this.type = problem.type ?? '';
     this.status = problem.status ?? 0;
     this.code = problem.code ?? '';
@@ -30,11 +31,11 @@ export function makeApi(fetch, base = 'api/v1') {
       });
     } catch (error) {
       if (error.name === 'AbortError') throw error;
-      throw new Problem({ detail: 'The server does not answer.' });
+      throw new Problem({ detail: say.noAnswer });
     }
     const isJson = /json/.test(response.headers.get('Content-Type') ?? '');
     const answer = isJson ? told(await response.json().catch(() => null)) : null;
-    if (!response.ok) throw new Problem({ status: response.status, ...(answer ?? { detail: `The server answered ${response.status}.` }) });
+    if (!response.ok) throw new Problem({ status: response.status, ...(answer ?? { detail: say.answered(response) }) });
     return isPicture ? response.blob() : answer;
   }
   const id = encodeURIComponent;

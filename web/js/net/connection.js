@@ -3,6 +3,7 @@ import { maxClientBytes, protocol } from '../../gen/wire.js';
 import { told } from '../parts/sentences.js';
 import { readMessage, readServerMessage } from '../wire/check.js';
 import { readFrame } from '../wire/frame.js';
+import { say } from './words.js';
 
 const backoffMs = [500, 1000, 1500]; // who waits longest is back within 2 s after the server
 const beatMs = 500;
@@ -248,7 +249,7 @@ export class Connection extends EventTarget {
     if (!(await this.#isGone()) || this.#isEnded) return;
     this.close();
     this.#tell('ended', {
-      reason: 'the room is no longer there; it ends with a restart of the server, and when nobody has been in it for long',
+      reason: say.gone,
     });
   }
 

@@ -1,5 +1,7 @@
 // Lists files with their paths from a drop on the page or a file dialog, including those in dropped folders.
 
+import { say } from './words.js';
+
 const mostFiles = 100000;
 
 const entries = (reader) =>
@@ -12,7 +14,7 @@ const fileOf = (entry) =>
   });
 
 async function walk(entry, files) {
-  if (files.length > mostFiles) throw new Error(`More than ${mostFiles} files; drop one plan.`);
+  if (files.length > mostFiles) throw new Error(say.tooManyFiles({ n: mostFiles }));
   if (entry.isFile) {
     files.push({ path: entry.fullPath.replace(/^\//, ''), file: await fileOf(entry) });
     return;

@@ -1,6 +1,9 @@
 // Reads the text that the daemon puts into annotated PNG files: chunks, their checksums and compressed international text
 // (PNG specification, 3rd edition, sections 5.3, 11.3.3.4, D). The file may be hostile: everything is bounded.
 
+import { say } from './later_words.js';
+/** What is wrong with a picture, in a sentence. */
+class Damage extends Error {}
 const signature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 const maxTextBytes = 4 << 20; // a scene of 1024 regions has 0.2 MB
 /** The daemon sends no larger picture. */
@@ -29,7 +32,7 @@ async function inflate(bytes) {
     n += part.value.length;
     if (n > maxTextBytes) {
       reader.cancel().catch(() => {});
-      throw new Error('The text in the picture is too long.');
+      throw new Damage(say.tooLong);
     }
     parts.push(part.value);
   }
@@ -40,9 +43,9 @@ async function readText(data) {
   const [isCompressed, method] = data;
   const language = data.indexOf(0, 2);
   const translated = language < 0 ? -1 : data.indexOf(0, language + 1);
-  if (translated < 0 || isCompressed > 1 || method !== 0) throw new Error('The text in the picture is damaged.');
+  if (translated < 0 || isCompressed > 1 || method !== 0) throw new Damage(say.damaged);
   const text = data.subarray(translated + 1);
-  if (!isCompressed && text.length > maxTextBytes) throw new Error('The text in the picture is too long.');
+  if (!isCompressed && text.length > maxTextBytes) throw new Damage(say.tooLong);
   const plain = isCompressed ? await inflate(text) : text;
   return new TextDecoder('utf-8', { fatal: true }).decode(plain);
 }
@@ -63,15 +66,14 @@ export async function textOfPng(bytes, keyword) {
     const data = bytes.subarray(at + 8, at + 8 + length);
     if (type === 'IEND') return null;
     if (type === 'iTXt' && key.every((byte, index) => data[index] === byte)) {
-      if (crc32(bytes.subarray(at + 4, at + 8 + length)) !== view.getUint32(at + 8 + length))
-        throw new Error('The text in the picture is damaged.');
+      if (crc32(bytes.subarray(at + 4, at + 8 + length)) !== view.getUint32(at + 8 + length)) throw new Damage(say.damaged);
       try {
         return await readText(data.subarray(key.length));
       } catch (error) {
-        throw /picture/.test(error.message) ? error : new Error('The text in the picture is damaged.');
+        throw error instanceof Damage ? error : new Damage(say.damaged);
       }
     }
     at += 12 + length;
   }
-  throw new Error('The picture is cut off.');
+  throw new Damage(say.cutOff);
 }

@@ -6,6 +6,7 @@ import { isTurnable } from '../room/kinds.js';
 import { cubeSides, sides } from './orientation.js';
 import { checkbox, segment } from '../parts/fields.js';
 import { icon } from '../parts/icons.js';
+import { say } from './words.js';
 
 const edgePx = 36;
 const buttonFrom = 0.3; // cosine; a side that is seen more from its edge is too narrow to be hit
@@ -22,7 +23,7 @@ export function orientation({ room, ui }, actions, size) {
   const seen = cubeSides(header.clip_from_lps_mm);
   const isTouch = ui.isTouch.value;
   const isDisabled = !room.canChange.value;
-  const picture = html`<svg class="view-cube" viewBox="-36 -36 72 72" role=${isTouch ? nothing : 'group'} aria-label=${isTouch ? nothing : `Look from, ${view.name}`} aria-hidden=${isTouch ? 'true' : nothing}>
+  const picture = html`<svg class="view-cube" viewBox="-36 -36 72 72" role=${isTouch ? nothing : 'group'} aria-label=${isTouch ? nothing : say.lookFromIn({ view: view.name })} aria-hidden=${isTouch ? 'true' : nothing}>
     ${repeat(
       seen,
       ({ letter }) => letter,
@@ -30,7 +31,7 @@ export function orientation({ room, ui }, actions, size) {
     )}</svg>`;
   return html`<div class="view-figure">
     ${isTouch ? nothing : picture}
-    <span class="anchor"><button class=${isTouch ? 'view-all touch' : 'view-all'} title="Look from, fit, roll, projection" aria-haspopup="dialog" aria-expanded=${isOpen} @click=${() => ui.toggle(name)}>${isTouch ? picture : icon('camera3d')}<span class="hidden">Camera of ${view.name}</span></button>
+    <span class="anchor"><button class=${isTouch ? 'view-all touch' : 'view-all'} title=${say.lookFromIs} aria-haspopup="dialog" aria-expanded=${isOpen} @click=${() => ui.toggle(name)}>${isTouch ? picture : icon('camera3d')}<span class="hidden">${say.cameraOf({ view: view.name })}</span></button>
     ${isOpen ? menu({ room, ui }, actions, isDisabled) : nothing}</span></div>`;
 }
 
@@ -42,7 +43,7 @@ function face({ letter, name, facing, middle, corners }, act) {
     act(event);
   };
   const at = (point) => point.map((part) => (part * edgePx).toFixed(2)).join();
-  return svg`<g class=${isButton ? 'side button' : 'side'} role=${isButton ? 'button' : nothing} tabindex=${isButton ? 0 : nothing} aria-label=${isButton ? `Look from ${name}` : nothing}
+  return svg`<g class=${isButton ? 'side button' : 'side'} role=${isButton ? 'button' : nothing} tabindex=${isButton ? 0 : nothing} aria-label=${isButton ? say.lookFromSide({ side: say[name] }) : nothing}
     @click=${isButton ? act : nothing} @keydown=${isButton ? onKey : nothing}>
     <polygon points=${corners.map(at).join(' ')} />
     ${facing >= letterFrom ? svg`<text text-anchor="middle" x=${middle[0] * edgePx} y=${middle[1] * edgePx + 4.5}>${letter}</text>` : nothing}</g>`;
@@ -58,29 +59,32 @@ function menu({ room, ui }, actions, isDisabled) {
     ui.panes.areCamerasLinked.value = isOn;
     if (isOn) cameras.link(event.timeStamp);
   };
-  return html`<div class="popover view-menu" role="dialog" aria-label="Camera">
-    <div class="view-sides" role="group" aria-label="Look from">${sides.map(
-      ({ letter, name }) => html`<button ?disabled=${isDisabled} aria-label=${`Look from ${name}`} title=${`Look from ${name}`}
+  return html`<div class="popover view-menu" role="dialog" aria-label=${say.camera}>
+    <div class="view-sides" role="group" aria-label=${say.lookFrom}>${sides.map(
+      ({
+        letter,
+        name,
+      }) => html`<button ?disabled=${isDisabled} aria-label=${say.lookFromSide({ side: say[name] })} title=${say.lookFromSide({ side: say[name] })}
       @click=${act((at) => cameras.lookFrom(name, at))}>${letter}</button>`,
     )}</div>
     <div class="view-acts">
-      <button ?disabled=${isDisabled} title="Fit to the selected region or measure (G)" @click=${act((at) => cameras.fit(at))}>Fit</button>
-      <button ?disabled=${isDisabled} title="Reset this view (R)" @click=${act((at) => cameras.reset(at))}>Reset</button>
-      <button ?disabled=${isDisabled} title="Roll to the left by 5° (,)" aria-label="Roll to the left" @click=${act((at) => cameras.roll(5, at))}>${icon('rollLeft')}</button>
-      <button ?disabled=${isDisabled} title="Roll to the right by 5° (.)" aria-label="Roll to the right" @click=${act((at) => cameras.roll(-5, at))}>${icon('rollRight')}</button></div>
+      <button ?disabled=${isDisabled} title=${say.fitIs} @click=${act((at) => cameras.fit(at))}>${say.fit}</button>
+      <button ?disabled=${isDisabled} title=${say.resetIs} @click=${act((at) => cameras.reset(at))}>${say.reset}</button>
+      <button ?disabled=${isDisabled} title=${say.rollLeftIs} aria-label=${say.rollLeft} @click=${act((at) => cameras.roll(5, at))}>${icon('rollLeft')}</button>
+      <button ?disabled=${isDisabled} title=${say.rollRightIs} aria-label=${say.rollRight} @click=${act((at) => cameras.roll(-5, at))}>${icon('rollRight')}</button></div>
     ${segment(
-      'Projection',
+      say.projection,
       [
-        ['perspective', 'Perspective'],
-        ['parallel', 'Parallel'],
+        ['perspective', say.perspective],
+        ['parallel', say.parallel],
       ],
       cameras.value.projection,
       isDisabled,
       (id, event) => cameras.setProjection(id, event.timeStamp),
     )}
-    <div class="checks">${scene?.axes ? checkbox('Patient axes', scene.axes.visible, isDisabled, (visible, event) => room.patchScene({ axes: { visible } }, { view: actions.view.number, at: event.timeStamp }), 'Lines through the middle of the plan, for everybody') : nothing}
+    <div class="checks">${scene?.axes ? checkbox(say.axes, scene.axes.visible, isDisabled, (visible, event) => room.patchScene({ axes: { visible } }, { view: actions.view.number, at: event.timeStamp }), say.axesIs) : nothing}
       ${view.ofKind > 1 ? onlyTargets(room, view, isDisabled) : nothing}
-      ${checkbox('Link the 3-D cameras', ui.panes.areCamerasLinked.value, false, link, hasTwo ? 'The two 3-D panes turn together' : 'For two 3-D panes: put 3-D 2 into a pane by its name')}</div></div>`;
+      ${checkbox(say.linkCameras, ui.panes.areCamerasLinked.value, false, link, hasTwo ? say.linkCamerasIs : say.linkCamerasHow)}</div></div>`;
 }
 
 /** A second 3-D picture beside the first: the same scene, without what lies around the targets. */
@@ -89,11 +93,11 @@ function onlyTargets(room, view, isDisabled) {
   if (!regions.some(isTarget)) return nothing;
   const hidden = Object.fromEntries(regions.map((region) => [region.id, { visible: isTarget(region) }]));
   return checkbox(
-    'Only targets here',
+    say.onlyTargets,
     hasOwnRegions(view),
     isDisabled,
     (isOn, event) => room.patchView(view.number, { override: { regions: isOn ? hidden : null } }, { at: event.timeStamp }),
-    'In this picture alone, for everybody who sees it',
+    say.onlyTargetsIs,
   );
 }
 

@@ -21,6 +21,7 @@ import { hasOwnRegions, orientation } from './orientation_menu.js';
 import { PaneActions, fitBox } from './pane_actions.js';
 import { paneKind } from './pane_kind.js';
 import { readOut, spoken } from './read_out.js';
+import { say } from './words.js';
 
 const resizeMs = 120;
 const maxSide = 4096;
@@ -154,12 +155,12 @@ export class Pane {
         ${paneKind({ room: this.#room, ui: this.#ui }, this.#view)}<span class="where">${tools.where ?? this.#whereInHead()}</span>${parts.map((part) => part.head?.())}${tools.head ?? nothing}<span class="grow"></span>
         ${followMark(this.#room)}${this.#badgeButton()}
         <button class="icon-button small" @click=${() => this.#ui.maximise(n)} aria-pressed=${isMaximised}
-          title=${isMaximised ? 'Show all panes (Enter)' : 'Maximise (double click, Enter)'} aria-label=${`${isMaximised ? 'Restore' : 'Maximise'} ${name}`}>
+          title=${isMaximised ? say.showAll : say.maximiseIs} aria-label=${(isMaximised ? say.restore : say.maximise)({ view: name })}>
           ${icon(isMaximised ? 'restore' : 'maximise')}</button>
       </header>
       <div class="pane-body">
         <div class=${classMap({ picture: true, stale: this.badge.value?.state === 'stale', lost: this.badge.value?.state === 'disconnected' })}
-          tabindex="0" role="group" aria-label=${`${name} picture`} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
+          tabindex="0" role="group" aria-label=${say.picture({ view: name })} aria-describedby=${`caption-${n}`} id=${`picture-${n}`}
           @focus=${() => {
             this.#ui.active.value = n;
           }}>
@@ -179,11 +180,11 @@ export class Pane {
     const { kind } = this.#view;
     const scene = this.#room.scene.value;
     if (!scene || !this.#room.plan.value) return '';
-    if (kind === 'beam') return 'camera locked to beam';
-    if (kind === 'beam-slice') return `${millimetres(scene.beam.slice.along_mm)} from entry`;
+    if (kind === 'beam') return say.locked;
+    if (kind === 'beam-slice') return say.fromEntry({ distance: millimetres(scene.beam.slice.along_mm) });
     if (isInSpace(kind)) {
       const camera = this.#view.document.value && this.actions.camera;
-      return hasOwnRegions(this.#view) ? `${describe(camera)}, only targets` : describe(camera);
+      return hasOwnRegions(this.#view) ? say.targetsOnly({ camera: describe(camera) }) : describe(camera);
     }
     const { plane } = this.actions;
     return `${letters(plane.normal)} ${millimetres(positionOf(plane))}`;
@@ -227,11 +228,7 @@ export class Pane {
       axes: scene.axes?.visible ? plan?.bounds : null,
       point: image || plan?.regions.length ? crosshair(scene) : null, // without image and regions there is nothing to point at
       pxPerMm: (header.pixels_per_mm * box.width) / header.full_px[0],
-      windowText: image
-        ? windowText(scene.image.window, image.unit, isLowWhite(image, scene))
-        : plan?.regions.length
-          ? 'No image: regions'
-          : '',
+      windowText: image ? windowText(scene.image.window, image.unit, isLowWhite(image, scene)) : plan?.regions.length ? say.noImage : '',
     })}`;
   }
 
@@ -250,24 +247,24 @@ export class Pane {
   #cover() {
     const { state, phase, percent, problem } = this.#room.renderer.value;
     if (state === 'failed' || state === 'closed')
-      return html`<div class="cover"><div class="refusal">${icon('error')}<div><b>The plan cannot be shown.</b><p>${problem?.detail ?? 'The renderer gave no reason.'}</p></div></div></div>`;
+      return html`<div class="cover"><div class="refusal">${icon('error')}<div><b>${say.notShown}</b><p>${problem?.detail ?? say.noReason}</p></div></div></div>`;
     if (state === 'restarting' && problem)
-      return html`<div class="cover"><div class="refusal" role="status">${icon('warning')}<div><b>No new picture yet.</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
+      return html`<div class="cover"><div class="refusal" role="status">${icon('warning')}<div><b>${say.noNewPicture}</b><p>${phase[0]?.toUpperCase()}${phase.slice(1)}.</p></div></div></div>`;
     const { value: refusal } = this.#view.refusal;
     if (refusal && state === 'ready')
-      return html`<div class="cover"><div class="refusal" role="status">${icon('error')}<div><b>This view cannot be drawn.</b><p>${refusal}</p>
-        <p class="place">${this.#view.painted.value ? 'The picture behind is the last that could be. ' : ''}It is drawn again after the next change.</p></div></div></div>`;
+      return html`<div class="cover"><div class="refusal" role="status">${icon('error')}<div><b>${say.notDrawnView}</b><p>${refusal}</p>
+        <p class="place">${this.#view.painted.value ? say.lastDrawnAgain : say.drawnAgain}</p></div></div></div>`;
     if (this.#view.painted.value) return this.#emptyWords();
     if (state === 'ready') return this.#emptyWords();
     return html`<div class="cover"><div class="loading" role="progressbar" aria-valuenow=${Math.round(percent)} aria-valuemin="0" aria-valuemax="100">
-      <span>${phase || (state === 'starting' ? 'Starting the renderer' : 'Loading')}</span><b>${number(percent)} %</b>
+      <span>${phase || (state === 'starting' ? say.starting : say.loading)}</span><b>${number(percent)} %</b>
       <i class="bar" ${variables({ '--fill': `${percent}%` })}></i></div></div>`;
   }
 
   #emptyWords() {
     const plan = this.#room.plan.value;
     if (!plan || plan.images.length || plan.regions.length) return nothing;
-    return html`<div class="cover quiet"><p>No image and no region in this plan: nothing to ${isInSpace(this.#view.kind) ? 'draw' : 'cut through'}.</p></div>`;
+    return html`<div class="cover quiet"><p>${isInSpace(this.#view.kind) ? say.nothingToDraw : say.nothingToCut}</p></div>`;
   }
 
   /** The legend: regions that are missing from the picture, and the colours of the segmentation check. */
@@ -279,8 +276,8 @@ export class Pane {
     if (isLow && !isInSpace(this.#view.kind) && this.#ui.active.value !== this.#view.number) return nothing;
     const check =
       !isInSpace(this.#view.kind) && scene.check.visible && plan.regions.length
-        ? html`<ul class="legend" aria-label="Colours of the check">
-        <li><i class="beyond"></i>surface beyond univels</li><li><i class="within"></i>univels beyond surface</li></ul>`
+        ? html`<ul class="legend" aria-label=${say.checkColours}>
+        <li><i class="beyond"></i>${say.beyond}</li><li><i class="within"></i>${say.within}</li></ul>`
         : nothing;
     const reasons = isInSpace(this.#view.kind) ? this.#refused.value : this.#view.missing.value.reasons;
     const missing = plan.regions.filter(({ id }) => reasons[id]);
@@ -290,16 +287,17 @@ export class Pane {
 
   #missing(scene, missing, reasons, check) {
     const words = !isInSpace(this.#view.kind)
-      ? 'Not checked'
+      ? say.notChecked
       : missing.every(({ id }) => scene.regions[id]?.representation === 'nurbs')
-        ? 'Not shown as NURBS'
-        : 'Not drawn';
+        ? say.notNurbs
+        : say.notDrawn;
     const nUnnamed = Math.max(0, this.#view.missing.value.n - missing.length);
+    const regions = nameSome([...missing.map(({ name }) => name), ...Array(nUnnamed).fill(say.others)]);
     const show = () => {
       this.#ui.choose('region', missing[0].id);
     };
-    return html`${check}<div class="legend missing" role="status"><span class="warn">${icon('warning', 12)}</span><p>${words}: ${nameSome([...missing.map(({ name }) => name), ...Array(nUnnamed).fill('others')])}</p>
-      <button title=${reasons[missing[0].id]} aria-label=${`Why ${missing[0].name} is not shown`} @click=${show}>Why?</button></div>`;
+    return html`${check}<div class="legend missing" role="status"><span class="warn">${icon('warning', 12)}</span><p>${words({ regions })}</p>
+      <button title=${reasons[missing[0].id]} aria-label=${say.whyNot({ region: missing[0].name })} @click=${show}>${say.why}</button></div>`;
   }
 
   #slider() {
@@ -312,7 +310,7 @@ export class Pane {
     const image = shownImage(plan.value, scene.value);
     const { low, high } = reachOf(plane.normal, image?.bounds ?? plan.value.bounds);
     const position = positionOf(plane);
-    return html`<label class="slice-slider" title="Slice (wheel, arrow keys)"><input type="range" aria-label=${`${this.#view.name} slice, ${letter} in mm`}
+    return html`<label class="slice-slider" title=${say.sliceIs}><input type="range" aria-label=${say.slice({ view: this.#view.name, letter })}
       min=${low} max=${high} step="0.1" .value=${live(String(position))} ?disabled=${!this.#room.canChange.value}
       aria-valuetext=${`${letter} ${millimetres(position)}`}
       @input=${(event) => this.actions.setSlice(event.target.valueAsNumber, event.timeStamp)}

@@ -7,6 +7,7 @@ import { alongBeam, freeId, maxObliques, newOblique, normalOfAngles, obliqueName
 import { crosshair } from '../room/plan.js';
 import { isOfBeam } from '../room/kinds.js';
 import { icon } from '../parts/icons.js';
+import { say } from './words.js';
 
 const tiltDeg = 60; // of the normal of a new plane over anterior: an axial slice turned by 30 degrees
 
@@ -16,7 +17,7 @@ export function paneKind({ room, ui }, view) {
   const { plane } = view.document.value;
   const oblique = view.kind === 'oblique' && room.scene.value?.image.obliques?.[plane];
   const words = oblique ? html`<span class="clip-plane-name">${obliqueName(plane, oblique)}</span>` : view.name;
-  return html`<span class="anchor view-kind"><h2><button aria-haspopup="menu" aria-expanded=${isOpen} title="Show something else in this pane" @click=${() => ui.toggle(name)}>${words}<span class="roomy">${icon('chevronDown', 12)}</span></button></h2>
+  return html`<span class="anchor view-kind"><h2><button aria-haspopup="menu" aria-expanded=${isOpen} title=${say.showElse} @click=${() => ui.toggle(name)}>${words}<span class="roomy">${icon('chevronDown', 12)}</span></button></h2>
     ${isOpen ? menu({ room, ui }, view) : nothing}</span>`;
 }
 
@@ -30,7 +31,7 @@ function menu({ room, ui }, view) {
   const item = (words, isOn, run, isDisabled = false) =>
     html`<button role="menuitemradio" aria-checked=${isOn} ?disabled=${isDisabled} @click=${choose(run)}>${isOn ? icon('check', 12) : html`<i></i>`}<span>${words}</span></button>`;
   const isOff = !room.canChange.value;
-  return html`<div class="popover view-kinds"><div class="menu" role="menu" aria-label=${`In the pane of ${view.name}`} @keydown=${move}>
+  return html`<div class="popover view-kinds"><div class="menu" role="menu" aria-label=${say.paneOf({ view: view.name })} @keydown=${move}>
     ${views.map(({ name, kind }, index) => (isOfBeam(kind) && !beamShown(room.plan.value, room.scene.value) ? nothing : item(name, index + 1 === view.number, () => ui.showInPlaceOf(view.number, index + 1))))}
     ${view.kind === 'oblique' ? html`<hr>${planeItems(room, view, item, isOff)}` : nothing}</div></div>`;
 }
@@ -39,11 +40,11 @@ function planeItems(room, view, item, isOff) {
   const obliques = Object.entries(room.scene.value?.image.obliques ?? {});
   const { plane } = view.document.value;
   return html`${obliques.map(([id, oblique]) => item(obliqueName(id, oblique), id === plane, (at) => room.patchView(view.number, { plane: id }, { at }), isOff))}
-    ${obliques.length < maxObliques ? item('New plane through the crosshair', false, () => addOblique(room), isOff) : nothing}
+    ${obliques.length < maxObliques ? item(say.newPlane, false, () => addOblique(room), isOff) : nothing}
     ${
       obliques.some(([id]) => id === plane)
         ? item(
-            'Move it to the crosshair',
+            say.moveHere,
             false,
             (at) =>
               room.patchScene(

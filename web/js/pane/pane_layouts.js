@@ -7,6 +7,7 @@ import { isInSpace, isTurnable } from '../room/kinds.js';
 import { partsOf } from '../features/index.js';
 import { checkbox } from '../parts/fields.js';
 import { icon } from '../parts/icons.js';
+import { say } from './words.js';
 
 /** Those with views of a beam where there is one. */
 const layoutsOf = ({ plan, scene }) => layouts.filter(({ id }) => id !== 'beam' || beamShown(plan.value, scene.value));
@@ -16,7 +17,7 @@ const chosen = ({ arrangement, panes }) => layoutId(arrangement.value.layout, pa
 export const layoutButtons = ({ room, ui }) =>
   layoutsOf(room).map(({ id, icon: picture, name }, index) => {
     const isOn = chosen(ui) === id;
-    return html`<button class=${classMap({ tool: true, plain: true, on: isOn, 'view-extra': extra.includes(id) })} title=${`${name} (Shift + ${index + 1})`} aria-label=${name} aria-pressed=${isOn} tabindex="-1" @click=${() => ui.setLayout(id)}>${icon(picture)}</button>`;
+    return html`<button class=${classMap({ tool: true, plain: true, on: isOn, 'view-extra': extra.includes(id) })} title=${say.layoutIs({ name, n: index + 1 })} aria-label=${name} aria-pressed=${isOn} tabindex="-1" @click=${() => ui.setLayout(id)}>${icon(picture)}</button>`;
   });
 
 /** The 3-D pane that buttons outside of panes act on: the active one, else the first that is shown. */
@@ -39,29 +40,29 @@ export function panesMenu(world, isDock = false) {
     ui.popover.value = '';
     run();
   };
-  return html`<span class="anchor"><button class=${classMap({ tool: true, plain: !isDock, on: isOpen })} tabindex="-1" title="Panes: layouts, linked zoom and cameras" aria-label="Panes" aria-haspopup="dialog" aria-expanded=${isOpen}
-      @click=${() => ui.toggle('panes')}>${icon(isDock ? 'grid' : 'chevronDown', isDock ? 20 : 16)}${isDock ? html`<span class="word">Panes</span>` : nothing}</button>
+  return html`<span class="anchor"><button class=${classMap({ tool: true, plain: !isDock, on: isOpen })} tabindex="-1" title=${say.panesIs} aria-label=${say.panes} aria-haspopup="dialog" aria-expanded=${isOpen}
+      @click=${() => ui.toggle('panes')}>${icon(isDock ? 'grid' : 'chevronDown', isDock ? 20 : 16)}${isDock ? html`<span class="word">${say.panes}</span>` : nothing}</button>
     ${
       isOpen
-        ? html`<div class=${isDock ? 'popover view-panes up' : 'popover view-panes'} role="dialog" aria-label="Panes">
-      <div class="menu" role="radiogroup" aria-label="Layout">${layoutsOf(room).map(
+        ? html`<div class=${isDock ? 'popover view-panes up' : 'popover view-panes'} role="dialog" aria-label=${say.panes}>
+      <div class="menu" role="radiogroup" aria-label=${say.layout}>${layoutsOf(room).map(
         (
           { id, name, icon: picture },
           index,
         ) => html`<button role="radio" aria-checked=${chosen(ui) === id} class=${classMap({ on: chosen(ui) === id })}
-        @click=${act(() => ui.setLayout(id))}>${icon(picture)}<span>${name}</span>${isDock ? nothing : html`<kbd>Shift ${index + 1}</kbd>`}</button>`,
+        @click=${act(() => ui.setLayout(id))}>${icon(picture)}<span>${name}</span>${isDock ? nothing : html`<kbd>${say.shiftKey({ n: index + 1 })}</kbd>`}</button>`,
       )}</div>
       ${partsOf('panesMenu', world, act)}
-      <div class="checks">${checkbox('Link zoom', ui.panes.isZoomLinked.value, false, link, 'All slice panes show as many mm per pixel, and the crosshair at the same place')}
+      <div class="checks">${checkbox(say.linkZoom, ui.panes.isZoomLinked.value, false, link, say.linkZoomIs)}
         ${checkbox(
-          'Link the 3-D cameras',
+          say.linkCameras,
           ui.panes.areCamerasLinked.value,
           false,
           (isOn, event) => {
             ui.panes.areCamerasLinked.value = isOn;
             if (isOn) active3d(world).actions.cameras.link(event.timeStamp);
           },
-          'The two 3-D panes turn together',
+          say.linkCamerasIs,
         )}</div></div>`
         : nothing
     }</span>`;

@@ -4,6 +4,7 @@ import { shownImage } from '../room/plan.js';
 import { cardOf, placeBeside } from '../parts/place.js';
 import { imageValue, number, position, significant, unitText, volume } from '../parts/format.js';
 import { variables } from '../parts/mount.js';
+import { say } from './words.js';
 
 const mouseGap = 16;
 const touchGap = 40; // a finger covers what is nearer
@@ -39,13 +40,14 @@ export function words({ regions: ids, images, point_lps_mm: point, onSurface, do
   const image = shownImage(plan, scene);
   const found = image && images?.find(({ id }) => id === image.id);
   return {
-    name: first?.name ?? (plan.regions.length ? 'Outside every region' : (image?.modality ?? '')),
+    name: first?.name ?? (plan.regions.length ? say.outside : (image?.modality ?? '')),
+    isOutside: !first,
     color: first && (scene.regions[first.id]?.color ?? first.color),
     value: found && found.value !== null ? { label: image.modality, ...imageValue(found.value, image.unit) } : null,
     lines: [
       doseLine(dose),
-      outer.length ? `in ${outer.map((region) => region.name).join(', ')}` : '',
-      first && scene.regions[first.id]?.visible === false ? 'hidden in this scene' : '',
+      outer.length ? say.in({ regions: outer.map((region) => region.name).join(', ') }) : '',
+      first && scene.regions[first.id]?.visible === false ? say.hidden : '',
       onSurface && first?.voxels ? volume(first.volume_cm3) : '',
       position(point),
     ].filter(Boolean),
@@ -63,8 +65,11 @@ const doseLine = (answer) =>
 /** Words of the values at the crosshair for a caption. */
 export function spoken(result, plan, scene) {
   if (!plan || !scene) return [];
-  const { name, value } = words(result, plan, scene);
-  return [plan.regions.length ? name.replace(/^Outside/, 'outside') : '', value ? `${value.label} ${value.text} ${value.unit}`.trim() : ''];
+  const { name, isOutside, value } = words(result, plan, scene);
+  return [
+    plan.regions.length ? (isOutside ? say.outsideWithin : name) : '',
+    value ? `${value.label} ${value.text} ${value.unit}`.trim() : '',
+  ];
 }
 
 /** Boxes that the card must not cover: letters, scale bar, axes figure, legend. */

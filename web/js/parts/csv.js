@@ -1,5 +1,7 @@
 // Comma-separated values as of RFC 4180.
 
+import { say } from './later_words.js';
+
 /** A text that a spreadsheet would take for a formula gets an apostrophe in front. */
 const guarded = (text) => (/^[=+@\t]/.test(text) ? `'${text}` : text);
 const cell = (value) => {
@@ -34,14 +36,14 @@ export function csvRows(text) {
       else if (source[at + 1] === '"') field += source[++at];
       else isQuoted = false;
     } else if (sign === '"') {
-      if (field.trim() || wasQuoted) throw new Error(`Line ${line}: a quotation mark inside a field.`);
+      if (field.trim() || wasQuoted) throw new Error(say.quoteInside({ line }));
       [field, isQuoted, wasQuoted] = ['', true, true];
     } else if (sign === ',') endField();
     else if (sign === '\n') endRow();
     else if (!wasQuoted) field += sign;
-    else if (sign.trim()) throw new Error(`Line ${line}: text after a quotation mark.`);
+    else if (sign.trim()) throw new Error(say.afterQuote({ line }));
   }
-  if (isQuoted) throw new Error(`Line ${start}: a quotation mark is not closed.`);
+  if (isQuoted) throw new Error(say.quoteOpen({ line: start }));
   endRow();
   return rows;
 }

@@ -1,5 +1,7 @@
 // Formats numbers for people: a true minus, thin spaces between thousands, one space before a unit.
 
+import { say } from './words.js';
+
 const thin = '\u2009';
 const minus = '\u2212';
 
@@ -71,7 +73,8 @@ export const listed = (...words) => words.filter(Boolean).join(', ');
 export const windowText = ({ center, width }, unit, isInverted = false) => {
   const digits = width < 10 ? Math.min(2 - Math.floor(Math.log10(width)), 20) : 0;
   const [c, w] = width < 1e-4 ? [significant(center), significant(width)] : [number(center, digits), number(width, digits)];
-  return `C ${c}  W ${w}${unit ? ` ${unitText(unit)}` : ''}${isInverted ? '  low white' : ''}`;
+  const window = `C ${c}  W ${w}${unit ? ` ${unitText(unit)}` : ''}`;
+  return isInverted ? say.windowInverted({ window }) : window;
 };
 
 /** "R1" for "Reviewer 1", "AL" for "Ada Lovelace". */
@@ -84,6 +87,6 @@ export function initials(name) {
 /** "liver and colon", "liver, colon and 21 more" */
 export function nameSome(names, shown = 3) {
   if (names.length <= 1) return names[0] ?? '';
-  if (names.length <= shown) return `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
-  return `${names.slice(0, shown - 1).join(', ')} and ${names.length - shown + 1} more`;
+  if (names.length <= shown) return say.and({ names: names.slice(0, -1).join(', '), last: names.at(-1) });
+  return say.andMore({ names: names.slice(0, shown - 1).join(', '), n: names.length - shown + 1 });
 }

@@ -1,6 +1,7 @@
 // Parts of the page that are loaded when they are first drawn, so that they do not weigh on a first visit.
 import { html } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
+import { say } from './words.js';
 
 /** @template T */
 export class Lazy {
@@ -18,11 +19,11 @@ export class Lazy {
   draw(use) {
     if (this.loaded.value) return use(this.loaded.value);
     if (this.#error.value)
-      return html`<p class="empty" role="alert">This part of the page could not be loaded. <button class="link" @click=${() => {
+      return html`<p class="empty" role="alert">${say.notLoaded} <button class="link" @click=${() => {
         this.#error.value = false;
-      }}>Try again</button></p>`;
+      }}>${say.tryAgain}</button></p>`;
     this.load();
-    return html`<p class="empty">Loading …</p>`;
+    return html`<p class="empty">${say.loading}</p>`;
   }
 
   /** Loads it before it is drawn; resolves when it is there, or cannot be loaded, whoever asked for it first. */

@@ -3,6 +3,7 @@ import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from './icons.js';
 import { variables } from './mount.js';
+import { say } from './words.js';
 
 const endLength = 7; // characters of a name that stay when it is cut: often they are the side
 
@@ -40,7 +41,7 @@ export function treeRow({ ui }, { kind, id, words, more = [], title, depth = 0, 
     ui.row.value = key;
     ui.choose(kind, id);
   };
-  const label = [words.filter(Boolean).join(' '), ...more, ...(isOn === undefined ? [] : [isOn ? 'shown' : 'hidden'])].join(', ');
+  const label = [words.filter(Boolean).join(' '), ...more, ...(isOn === undefined ? [] : [isOn ? say.shown : say.hidden])].join(', ');
   // data-region and data-dose: to look rows up, for tests and for style
   return html`<li class=${classMap({ row: true, selected: isChosen, off: isOn === false, current: ui.row.value === key })} role="treeitem" id=${`row-${key}`} data-key=${key}
     data-region=${kind === 'region' ? id : nothing} data-dose=${kind === 'dose' ? id : nothing} aria-level=${depth + 2} aria-selected=${isChosen}

@@ -22,7 +22,9 @@ import { clipPosition } from '../clip/clip_rows.js';
 import { icon } from '../../parts/icons.js';
 import { variables } from '../../parts/mount.js';
 import { pickingLayer } from './pane_picking.js';
+import { number } from '../../parts/format.js';
 import { sliderKey } from '../../parts/slider_keys.js';
+import { say } from './words.js';
 
 const namesFrom = 240; // px of width
 const [turnPart, degrees] = [0.93, Math.PI / 180];
@@ -107,8 +109,10 @@ export class PaneLines {
         kind: 'clip',
         id,
         name: clipName(id),
-        words: [`${clipRow(id).name}`, keepsWords(id)].filter(Boolean).join(', '),
-        label: `Clip plane ${clipWords(id)}`,
+        words: [clipRow(id).name, keepsWords(id)].filter(Boolean).join(', '),
+        label: keepsWords(id)
+          ? say.clipHandle({ plane: clipWords(id), keeps: keepsWords(id) })
+          : say.clipHandleAny({ plane: clipWords(id) }),
         text: clipPosition(clipRow(id), position),
         plane: { origin, normal },
         position,
@@ -198,8 +202,8 @@ export class PaneLines {
     const [x, y] = line.at;
     const angle = Math.atan2(line.cut.over[1], line.cut.over[0]) / degrees;
     const isClip = line.kind === 'clip';
-    return html`<i class=${`clip-handle${line.isChosen ? ' chosen' : ''}`} role="slider" tabindex="0" data-plane=${line.id} aria-label=${isClip ? `${line.label}, ${keepsWords(line.id) || 'in any direction'}` : `Plane ${line.label}`}
-      aria-valuemin=${line.range.low} aria-valuemax=${line.range.high} aria-valuenow=${Math.round(line.position * 10) / 10 || 0} aria-valuetext=${line.text} title=${`${line.name}: ${line.text} (drag, arrow keys)`}
+    return html`<i class=${`clip-handle${line.isChosen ? ' chosen' : ''}`} role="slider" tabindex="0" data-plane=${line.id} aria-label=${isClip ? line.label : say.planeHandle({ plane: line.label })}
+      aria-valuemin=${line.range.low} aria-valuemax=${line.range.high} aria-valuenow=${Math.round(line.position * 10) / 10 || 0} aria-valuetext=${line.text} title=${say.handleIs({ plane: line.name, position: line.text })}
       ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @pointerdown=${(event) => this.#hold(event, line)} @pointermove=${(event) => this.#drag(event)} @pointerup=${() => {
         this.#held = null;
       }} @pointercancel=${() => {
@@ -213,8 +217,8 @@ export class PaneLines {
   #turnHandle(line) {
     const [x, y] = line.turnAt;
     const angle = Math.round(Math.atan2(line.cut.from[1] - line.cut.to[1], line.cut.to[0] - line.cut.from[0]) / degrees);
-    return html`<i class=${`clip-handle clip-turn${line.isChosen ? ' chosen' : ''}`} role="slider" tabindex="0" data-turn=${line.id} aria-label=${`Turn ${line.kind === 'clip' ? 'the free clip plane' : line.name}`}
-      aria-valuemin="-180" aria-valuemax="180" aria-valuenow=${angle} aria-valuetext=${`${String(angle).replace('-', '−')}° in this pane`} title=${`Turn ${line.name} (drag, arrow keys)`}
+    return html`<i class=${`clip-handle clip-turn${line.isChosen ? ' chosen' : ''}`} role="slider" tabindex="0" data-turn=${line.id} aria-label=${line.kind === 'clip' ? say.turnFree : say.turn({ plane: line.name })}
+      aria-valuemin="-180" aria-valuemax="180" aria-valuenow=${angle} aria-valuetext=${say.turnedBy({ n: number(angle) })} title=${say.turnIs({ plane: line.name })}
       ${variables({ '--x': `${x}px`, '--y': `${y}px` })} @pointerdown=${(event) => this.#hold(event, line, true)} @pointermove=${(event) => this.#drag(event)} @pointerup=${() => {
         this.#held = null;
       }} @pointercancel=${() => {

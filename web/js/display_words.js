@@ -1,0 +1,35 @@
+// What a person reads on the page of a display.
+import { sentences } from './parts/sentences.js';
+
+export const say = sentences('page.display', {
+  displayOf: 'Beamroom display',
+  forReview: 'For research and plan review',
+  alone:
+    'The picture alone: crosshair, pointers, notes, measures and the legend of the dose are not in it. They are on the page of the room.',
+  axial: 'Axial',
+  coronal: 'Coronal',
+  sagittal: 'Sagittal',
+  oblique: 'Oblique',
+  beam: "Beam's eye",
+  beamSlice: 'Beam slice',
+  opening: 'The plan is being opened.',
+  restarting: 'The renderer is being started again: the picture may be old.',
+  failed: 'The plan cannot be drawn: the picture may be old.',
+  closed: 'The plan is closed: the picture may be old.',
+  lostAt: 'Connection lost. The picture is of {time}.',
+  waiting: 'Waiting for the first picture …',
+  noPicture: "No picture comes: the room's page says why the view is not drawn.",
+  newer: 'The room shows something newer, which is not drawn yet. The picture is of {time}.',
+  room: 'Room {room}',
+  presenter: 'Presenter: {name}',
+  nobody: 'Nobody presents',
+  notDrawn: 'Not drawn: {what}',
+  lost: 'Connection lost',
+  link: 'Link?',
+  old: 'Old · picture of {time}',
+  live: 'Live · picture of {time}',
+  picture: '{view} view; left {left}, right {right}, top {top}, bottom {bottom}',
+  sharedPicture: 'Shared view; left {left}, right {right}, top {top}, bottom {bottom}',
+  ended: 'The room has ended or sleeps.',
+  noRoom: 'The address names no room.',
+});

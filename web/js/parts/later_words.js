@@ -1,0 +1,8 @@
+// What a person reads of a CSV file that cannot be read.
+import { sentences } from './sentences.js';
+
+export const say = sentences('parts.later', {
+  quoteInside: 'Line {line}: a quotation mark inside a field.',
+  afterQuote: 'Line {line}: text after a quotation mark.',
+  quoteOpen: 'Line {line}: a quotation mark is not closed.',
+});

@@ -1,0 +1,19 @@
+// What a person reads of the small things that all of the page uses.
+import { sentences } from './sentences.js';
+
+export const say = sentences('parts', {
+  windowInverted: '{window}  low white',
+  and: '{names} and {last}',
+  andMore: '{names} and {n} more',
+  notLoaded: 'This part of the page could not be loaded.',
+  tryAgain: 'Try again',
+  loading: 'Loading …',
+  error: 'Error',
+  warning: 'Warning',
+  note: 'Note',
+  nothing: 'Nothing was noticed while loading.',
+  codeIs: 'What it means and what to do',
+  moreDropped: '{n} more are not kept.',
+  shown: 'shown',
+  hidden: 'hidden',
+});
