@@ -1,5 +1,6 @@
 // The server's answers to dvh, profile and constraints (proto/packets.json), in the form that the plots draw.
 import { figureNames, withSums } from './dose_dvh.js';
+import { say } from './data_words.js';
 
 /** Least and most of a figure; one that is known has one value. */
 function boundsOf(row, read) {
@@ -87,7 +88,7 @@ export function readProfile(answer) {
     advantage: depthOf(answer.advantage_mm),
     advantageReason: answer.advantage?.reason ?? '',
     references: answer.references.map(({ id, name, quantity, unit: own, per, radius_mm: radius, depths_mm: depths, values }) => ({
-      name: `${name || id}${radius ? `, ${radius} mm off the axis` : ''}`,
+      name: radius ? say.offAxis({ curve: name || id, mm: radius }) : name || id,
       quantity,
       unit: own,
       per,

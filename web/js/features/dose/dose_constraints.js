@@ -1,9 +1,10 @@
 // Limits on doses, scene.constraints: their checks, their files, and what the server says of them.
 import { enums } from '../../../gen/wire.js';
 import { csvRows, csvText } from '../../parts/csv.js';
-import { boundsWords } from './dose_dvh.js';
+import { boundsWords, figureWords } from './dose_dvh.js';
 import { populationWords } from './dose_population.js';
 import { freeNumber } from '../../room/marks.js';
+import { say } from './data_words.js';
 
 export const mostConstraints = 64;
 const mostCharacters = 200000;
@@ -29,11 +30,11 @@ export function readMetric(text) {
 /** The kind of a metric's unit: the quantity's unit, % or cm3. @returns {'dose'|'percent'|'cm3'} */
 export const measureOf = (metric) => (!metric.startsWith('V') ? 'dose' : metric.endsWith('cc') ? 'cm3' : 'percent');
 
-/** "D95 %", "V20 Gy(w)", for people. */
+/** "D95 %", "V20 Gy(w)", "mean", for people. */
 export function metricWords(metric, unit) {
   const [, , size, of, level, cc] = metricPattern.exec(metric) ?? [];
   if (size) return `D${size}${of === '%' ? ' %' : ' cm³'}`;
-  return level ? `V${level} ${unit}${cc ? ', cm³' : ''}` : metric;
+  return level ? `V${level} ${unit}${cc ? ', cm³' : ''}` : figureWords(metric);
 }
 
 /** Where the limit stands in a cumulative histogram: a dose, and the share or volume there; what is null is the whole axis. */
@@ -52,54 +53,46 @@ const regionOf = (plan, word) => plan.regions.find(({ id }) => id === word) ?? p
 /** Checks one by the rules of the scene. Throws an Error with a sentence. @returns {Constraint} */
 export function readConstraint({ region, quantity, metric, side, limit, tissue = '' }, plan) {
   const found = regionOf(plan, region);
-  if (!region) throw new Error('There is no region.');
-  if (!found) throw new Error(`The plan has no region “${region}”.`);
+  if (!region) throw new Error(say.noRegion);
+  if (!found) throw new Error(say.unknownRegion({ region }));
   const weighing = tissue && regionOf(plan, tissue);
-  if (tissue && !weighing) throw new Error(`The plan has no region “${tissue}” whose weights could count.`);
-  if (!enums.dose_quantity.includes(quantity))
-    throw new Error(`“${quantity}” is no quantity; there are ${enums.dose_quantity.join(', ')}.`);
+  if (tissue && !weighing) throw new Error(say.unknownTissue({ region: tissue }));
+  if (!enums.dose_quantity.includes(quantity)) throw new Error(say.noQuantity({ quantity, all: enums.dose_quantity.join(', ') }));
   const known = readMetric(metric);
-  if (!known)
-    throw new Error(
-      `“${metric}” is no figure; there are mean, min, max, D95%, D2cc, V20 and V20cc with any number, doses in the unit of the dose.`,
-    );
-  if (!enums.limit_side.includes(side)) throw new Error(`“${side}” is no side; there are ${enums.limit_side.join(', ')}.`);
+  if (!known) throw new Error(say.noFigure({ figure: metric }));
+  if (!enums.limit_side.includes(side)) throw new Error(say.noSide({ side, all: enums.limit_side.join(', ') }));
   const text = String(limit).trim();
   const value = Number(text);
-  if (text === '' || !Number.isFinite(value) || value < 0 || value > 1e30)
-    throw new Error(`The limit “${limit}” is not a number from 0 on.`);
-  if (measureOf(known) === 'percent' && value > 100) throw new Error(`The limit ${value} % of a volume is over 100 %.`);
+  if (text === '' || !Number.isFinite(value) || value < 0 || value > 1e30) throw new Error(say.noNumber({ limit }));
+  if (measureOf(known) === 'percent' && value > 100) throw new Error(say.overHundred({ percent: value }));
   return { region: found.id, quantity, metric: known, side, limit: value, ...(weighing && { tissue: weighing.id }) };
 }
 
 /** Reads a file whole or not at all: throws an Error with one sentence for each line that is wrong. @returns {Constraint[]} */
 export function constraintsFromCsv(text, plan) {
-  if (text.length > mostCharacters) throw new Error(`The file has more than ${mostCharacters} characters.`);
+  if (text.length > mostCharacters) throw new Error(say.fileTooLong({ n: mostCharacters }));
   const [head, ...rows] = csvRows(text);
   const columns = head?.cells.map((name) => name.toLowerCase()) ?? [];
   const missing = needed.filter((name) => !columns.includes(name));
-  if (missing.length)
-    throw new Error(
-      `The first line has to name the columns ${needed.join(', ')}; ${missing.join(', ')} ${missing.length > 1 ? 'are' : 'is'} not there.`,
-    );
+  if (missing.length) throw new Error(say.columnsMissing({ columns: needed.join(', '), missing: missing.join(', '), n: missing.length }));
   const unknown = columns.filter((name) => !needed.includes(name) && !told.includes(name) && name !== 'tissue');
-  if (unknown.length) throw new Error(`The column “${unknown[0]}” is not known.`);
+  if (unknown.length) throw new Error(say.unknownColumn({ column: unknown[0] }));
   const twice = columns.find((name, index) => columns.indexOf(name) !== index);
-  if (twice) throw new Error(`The column “${twice}” is there twice.`);
-  if (!rows.length) throw new Error('The file has no limits below its first line.');
-  if (rows.length > mostConstraints) throw new Error(`The file has ${rows.length} limits; a scene has at most ${mostConstraints}.`);
+  if (twice) throw new Error(say.columnTwice({ column: twice }));
+  if (!rows.length) throw new Error(say.noLimits);
+  if (rows.length > mostConstraints) throw new Error(say.tooManyLimits({ n: rows.length, most: mostConstraints }));
   const errors = [];
   const constraints = rows.map(({ line, cells }) => {
     try {
-      if (cells.length !== columns.length) throw new Error(`${cells.length} fields, not ${columns.length}.`);
+      if (cells.length !== columns.length) throw new Error(say.fields({ n: cells.length, wanted: columns.length }));
       return readConstraint(Object.fromEntries(columns.map((name, index) => [name, cells[index]])), plan);
     } catch (error) {
-      errors.push(`Line ${line}: ${error.message}`);
+      errors.push(say.inLine({ line, reason: error.message }));
       return null;
     }
   });
   if (errors.length)
-    throw new Error([...errors.slice(0, 5), ...(errors.length > 5 ? [`${errors.length - 5} more lines are wrong.`] : [])].join(' '));
+    throw new Error([...errors.slice(0, 5), ...(errors.length > 5 ? [say.moreWrong({ n: errors.length - 5 })] : [])].join(' '));
   return constraints;
 }
 
@@ -116,7 +109,7 @@ export const constraintsCsv = (rows, plan) =>
       verdict.value ??
         (Number.isFinite(verdict.bounds[0]) ? boundsWords(verdict.bounds, (value) => String(Number(value.toPrecision(9)))) : ''),
       verdict.unit,
-      { met: 'yes', 'not met': 'no' }[verdict.word] ?? 'not known',
+      { met: say.yes, unmet: say.no }[verdict.state] ?? say.notKnown,
       verdict.reason,
       plan.regions.find(({ id }) => id === region)?.name ?? '',
       tissue,
@@ -126,27 +119,27 @@ export const constraintsCsv = (rows, plan) =>
   ]);
 
 /**
- * The verdict on a limit. @typedef {{word: 'met'|'not met'|'not known', value: number|null, bounds: [number, number], unit: string, reason: string, basis: string, population: string}} Verdict
+ * The verdict on a limit. @typedef {{state: 'met'|'unmet'|'unknown', value: number|null, bounds: [number, number], unit: string, reason: string, basis: string, population: string}} Verdict
  * bounds of the figure, as in dose_dvh.js; value null unless they are one. basis: whose weights count, '' none.
  * @param {object|undefined} row of the server's answer
  */
 export function verdictOf(row, error = '') {
   const none = { value: null, bounds: [NaN, NaN], unit: '', basis: '', population: '' };
-  if (!row) return { ...none, word: 'not known', reason: error || 'The server has not answered yet.' };
+  if (!row) return { ...none, state: 'unknown', reason: error || say.noAnswer };
   const isNumber = Number.isFinite(row.value);
   const bounds = isNumber ? [row.value, row.value] : Number.isFinite(row.least) ? [row.least, row.most ?? Infinity] : none.bounds;
   const isKnown = typeof row.met === 'boolean' && Number.isFinite(bounds[0]);
   return {
-    word: isKnown ? (row.met ? 'met' : 'not met') : 'not known',
+    state: isKnown ? (row.met ? 'met' : 'unmet') : 'unknown',
     value: isNumber ? row.value : null,
     bounds,
     unit: row.unit ?? '',
     basis: row.basis ?? '',
     population: row.population ?? '',
-    reason: isKnown ? '' : row.reason || 'The server gave no reason.',
+    reason: isKnown ? '' : row.reason || say.noReason,
   };
 }
 
-const order = ['not met', 'not known', 'met'];
+const order = ['unmet', 'unknown', 'met'];
 /** Limits in the order in which people need them: not met, not known, met. @param {{verdict: Verdict}[]} rows */
-export const byState = (rows) => [...rows].sort((a, b) => order.indexOf(a.verdict.word) - order.indexOf(b.verdict.word));
+export const byState = (rows) => [...rows].sort((a, b) => order.indexOf(a.verdict.state) - order.indexOf(b.verdict.state));

@@ -1,6 +1,7 @@
 // Dose-volume histograms as the page needs them: what is read off a curve, and the files that carry them.
 import { csvText } from '../../parts/csv.js';
 import { populationWords } from './dose_population.js';
+import { say } from './data_words.js';
 
 /**
  * One histogram. counts are the cm3 of the region in bins of equal width, the first one from `from`.
@@ -17,6 +18,8 @@ import { populationWords } from './dose_population.js';
 
 /** Columns of the table, in its order. HI: homogeneity, (D2% - D98%) / D50% (ICRU Report 83). */
 export const figureNames = ['D98%', 'D50%', 'D2%', 'D0.03cc', 'HI'];
+/** The name of a figure for people: D98% and the like are international. */
+export const figureWords = (name) => ({ min: say.min, mean: say.mean, max: say.max })[name] ?? name;
 
 export function withSums(curve) {
   const above = new Array(curve.counts.length + 1).fill(0);
@@ -51,14 +54,18 @@ export const openOf = (curve) => (curve.isPartial ? curve.missing : 0);
 export function boundsWords([least, most], words) {
   if (!Number.isFinite(least)) return '–';
   if (least === most) return words(least);
-  if (!Number.isFinite(most)) return least > 0 ? `≥ ${words(least)}` : 'not known';
-  return least > 0 ? `${words(least)} to ${words(most)}` : `≤ ${words(most)}`;
+  if (isOpen([least, most])) return say.notKnown;
+  if (!Number.isFinite(most)) return `≥ ${words(least)}`;
+  return least > 0 ? say.range({ least: words(least), most: words(most) }) : `≤ ${words(most)}`;
 }
+
+/** True for bounds that say nothing: from 0 on. */
+export const isOpen = ([least, most]) => least !== most && !Number.isFinite(most) && !(least > 0);
 
 /** The share of a region with at least a dose, in words: "25.0 %", "18.0 to 99.9 %". */
 export function shareWords(curve, cm3, words) {
   const [least, most] = [cm3, cm3 + openOf(curve)].map((part) => shareOf(curve, part, 'percent'));
-  return least === most ? `${words(least)} %` : `${words(least)} to ${words(most)} %`;
+  return least === most ? `${words(least)} %` : say.percentRange({ least: words(least), most: words(most) });
 }
 
 /** The largest value of some curves, rounded up to a number that ends an axis. */
@@ -96,7 +103,7 @@ export const readAt = (curves, dose) =>
     return { curve, cm3, percent: shareOf(curve, cm3, 'percent') };
   });
 
-/** The figures and the curves of histograms, with what they depend on in its first lines. @param {{words: string[][], regionName: (id: string) => string, unit: string}} about */
+/** The figures and the curves of histograms, with what they depend on in its first lines. @param {{words: {id: string, name: string, values: unknown[]}[], regionName: (id: string) => string, unit: string}} about */
 export function dvhCsv(curves, { words, regionName, unit }) {
   const { doses, values, tops } = plotPoints(curves, { isDifferential: false, unit: 'percent', nPoints: 200 });
   const name = (curve) => `${regionName(curve.region)}${curve.of ? ` (${curve.dose})` : ''}`;
@@ -113,27 +120,27 @@ export function dvhCsv(curves, { words, regionName, unit }) {
   const columns = curves.flatMap((curve, at) =>
     tops[at]
       ? [
-          [`${name(curve)}: least % of the whole volume with at least it`, values[at]],
-          [`${name(curve)}: most %, were all of missing_cm3 above it`, tops[at]],
+          [say.csvLeast({ curve: name(curve) }), values[at]],
+          [say.csvMost({ curve: name(curve) }), tops[at]],
         ]
-      : [[`${name(curve)}: % of the whole volume with at least it`, values[at]]],
+      : [[say.csvShare({ curve: name(curve) }), values[at]]],
   );
   return csvText([
-    ...words,
+    ...words.map(({ name: about, values }) => [about, ...values]),
     [],
     [
-      'region',
+      say.csvRegion,
       'cm3',
-      'univels',
+      say.csvUnivels,
       'missing_cm3',
-      ...['min', 'mean', 'max', ...figureNames].map((figure) => (figure === 'HI' ? figure : `${figure} (${unit})`)),
-      'population',
-      'weights',
+      ...['min', 'mean', 'max', ...figureNames].map((figure) => (figure === 'HI' ? figure : `${figureWords(figure)} (${unit})`)),
+      say.csvPopulation,
+      say.csvWeights,
     ],
     ...rows,
     [],
     ...conformityRows(curves, { name, unit }),
-    [`dose (${unit})`, ...columns.map(([head]) => head)],
+    [say.csvDose({ unit }), ...columns.map(([head]) => head)],
     ...doses.map((dose, index) => [dose, ...columns.map(([, list]) => list[index])]),
   ]);
 }
@@ -144,25 +151,14 @@ function conformityRows(curves, { name, unit }) {
     curve.conformity.map((row) => [name(curve), row.value, row.isodose_cm3, row.covered_cm3, row.paddick, row.rtog]),
   );
   return rows.length
-    ? [
-        [
-          'target',
-          `level (${unit})`,
-          'isodose (cm3)',
-          'covered (cm3)',
-          'Paddick: covered^2 / (target x isodose)',
-          'RTOG: isodose / target',
-        ],
-        ...rows,
-        [],
-      ]
+    ? [[say.csvTarget, say.csvLevel({ unit }), say.csvIsodose, say.csvCovered, say.csvPaddick, say.csvRtog], ...rows, []]
     : [];
 }
 
 export const dvhJson = (curves, { words, regionName, unit }) =>
   JSON.stringify(
     {
-      ...Object.fromEntries(words.map(([name, ...value]) => [name.replaceAll(' ', '_'), value.join(', ')])),
+      ...Object.fromEntries(words.map(({ id, values }) => [id, values.join(', ')])),
       unit,
       histograms: curves.map(({ above, of, missing, isPartial, figures, ...curve }) => ({
         ...curve,

@@ -1,5 +1,6 @@
 // Doses along a line as the page needs them: which lines there are, what is read off the curves, and the files that carry them.
 import { csvText } from '../../parts/csv.js';
+import { say } from './data_words.js';
 
 /**
  * @typedef {object} Line a beam, from its entry to its target and on, or a distance measure
@@ -18,16 +19,16 @@ import { csvText } from '../../parts/csv.js';
 
 /** Colours and dashes of the components, css px. */
 export const looks = {
-  weighted: { color: '#f4f6f8', dash: [], name: 'total' },
-  total: { color: '#f4f6f8', dash: [], name: 'total' },
-  'weighted-total': { color: '#f4f6f8', dash: [], name: 'total' },
-  isoeffective: { color: '#f4f6f8', dash: [], name: 'isoeffective' },
-  boron: { color: '#c58bff', dash: [], name: 'boron' },
-  'blood-boron': { color: '#c58bff', dash: [1, 3], name: 'boron in blood' },
-  gamma: { color: '#58cfc3', dash: [7, 3], name: 'gamma' },
-  nitrogen: { color: '#c3cc55', dash: [2, 3], name: 'nitrogen' },
-  fast: { color: '#a3b1c6', dash: [8, 3, 2, 3], name: 'fast neutron' },
-  other: { color: '#d9a27f', dash: [4, 2], name: 'other' },
+  weighted: { color: '#f4f6f8', dash: [], name: say.total },
+  total: { color: '#f4f6f8', dash: [], name: say.total },
+  'weighted-total': { color: '#f4f6f8', dash: [], name: say.total },
+  isoeffective: { color: '#f4f6f8', dash: [], name: say.isoeffective },
+  boron: { color: '#c58bff', dash: [], name: say.boron },
+  'blood-boron': { color: '#c58bff', dash: [1, 3], name: say.bloodBoron },
+  gamma: { color: '#58cfc3', dash: [7, 3], name: say.gamma },
+  nitrogen: { color: '#c3cc55', dash: [2, 3], name: say.nitrogen },
+  fast: { color: '#a3b1c6', dash: [8, 3, 2, 3], name: say.fast },
+  other: { color: '#d9a27f', dash: [4, 2], name: say.other },
 };
 export const lookOf = (quantity) => looks[quantity] ?? { color: '#b9c0c9', dash: [], name: quantity.replaceAll('-', ' ') };
 
@@ -51,7 +52,7 @@ export function linesOf(plan, scene) {
           name,
           points: [a, b],
         },
-      ]) => ({ key: `measure ${id}`, kind: 'measure', id, name: name || 'distance', from: a.at_mm, to: b.at_mm }),
+      ]) => ({ key: `measure ${id}`, kind: 'measure', id, name: name || say.distance, from: a.at_mm, to: b.at_mm }),
     ),
   ].filter(({ from, to }) => Math.hypot(...from.map((mm, axis) => to[axis] - mm)) > 1e-6);
 }
@@ -114,27 +115,27 @@ export function profileCsv(profile, { words, regionName }) {
     profile.bands
       .filter(({ from, to }) => depth >= from && depth <= to)
       .map(({ region }) => regionName(region))
-      .join(' and ');
+      .reduce((one, two) => (one ? say.and({ one, two }) : two), '');
   const columns = [...profile.curves, ...profile.others].flatMap(({ quantity, unit, values, physical, physicalUnit }) => [
     { name: quantity, unit, values },
-    ...(physical ? [{ name: `${quantity} without weight`, unit: physicalUnit, values: physical }] : []),
+    ...(physical ? [{ name: say.csvWithoutWeight({ quantity }), unit: physicalUnit, values: physical }] : []),
   ]);
   return csvText([
-    ...words,
-    ...profile.notes.map((note) => ['note', note]),
+    ...words.map(({ name, values }) => [name, ...values]),
+    ...profile.notes.map((note) => [say.csvNote, note]),
     [],
     ...[
-      ['entry (mm)', profile.entry],
-      ['peak (mm)', profile.peak?.depth],
-      ['advantage depth (mm)', profile.advantage ?? profile.advantageReason],
+      [say.csvEntry, profile.entry],
+      [say.csvPeak, profile.peak?.depth],
+      [say.csvAdvantage, profile.advantage ?? profile.advantageReason],
     ],
     [],
-    ['depth (mm)', ...columns.map(({ name, unit }) => `${name} (${unit})`), 'region'],
+    [say.csvDepth, ...columns.map(({ name, unit }) => `${name} (${unit})`), say.csvRegion],
     ...profile.depths.map((depth, index) => [depth, ...columns.map(({ values }) => values[index]), band(depth)]),
     ...profile.references.flatMap((curve) => [
       [],
-      [`reference curve of a phantom: ${curve.name}, ${curve.quantity}`],
-      ['depth (mm)', `${curve.quantity} (${curve.unit})`],
+      [say.csvPhantom({ curve: curve.name, quantity: curve.quantity })],
+      [say.csvDepth, `${curve.quantity} (${curve.unit})`],
       ...curve.depths.map((depth, index) => [depth, curve.values[index]]),
     ]),
   ]);
@@ -143,7 +144,7 @@ export function profileCsv(profile, { words, regionName }) {
 export const profileJson = (profile, { words, regionName }) =>
   JSON.stringify(
     {
-      ...Object.fromEntries(words.map(([name, ...value]) => [name.replaceAll(' ', '_'), value.join(', ')])),
+      ...Object.fromEntries(words.map(({ id, values }) => [id, values.join(', ')])),
       ...profile,
       bands: profile.bands.map((band) => ({ ...band, region_name: regionName(band.region) })),
     },

@@ -167,8 +167,8 @@ test('a file of histograms says what it depends on, and has the curves', () => {
   const rows = csvRows(
     dvhCsv([even('a', 0, 40, 20)], {
       words: [
-        ['plan', 'A, "B"'],
-        ['weights', '=1+1'],
+        { id: 'plan', name: 'plan', values: ['A, "B"'] },
+        { id: 'weights', name: 'weights', values: ['=1+1'] },
       ],
       regionName: () => 'tumour, left',
       unit: 'Gy(w)',
@@ -357,7 +357,7 @@ test('a file of limits with anything wrong is refused whole, with its lines', ()
 
 test('what the server does not know is said with its reason, and is never met', () => {
   assert.deepEqual(verdictOf({ value: 8, unit: 'Gy', met: false }), {
-    word: 'not met',
+    state: 'unmet',
     value: 8,
     bounds: [8, 8],
     unit: 'Gy',
@@ -366,14 +366,14 @@ test('what the server does not know is said with its reason, and is never met', 
     population: '',
   });
   const bound = verdictOf({ value: null, least: 13.1, most: null, unit: 'Gy', met: false, basis: 'weights of brain', population: 'own' });
-  assert.deepEqual([bound.word, bound.value, bound.bounds, bound.basis], ['not met', null, [13.1, Infinity], 'weights of brain']);
-  assert.equal(verdictOf({ value: null, least: 6.73, most: null, met: null, reason: '18 % of the region have no dose' }).word, 'not known');
+  assert.deepEqual([bound.state, bound.value, bound.bounds, bound.basis], ['unmet', null, [13.1, Infinity], 'weights of brain']);
+  assert.equal(verdictOf({ value: null, least: 6.73, most: null, met: null, reason: '18 % of the region have no dose' }).state, 'unknown');
   assert.deepEqual(
-    byState(['met', 'not known', 'not met', 'met'].map((word, id) => ({ id, verdict: { word } }))).map(({ id }) => id),
+    byState(['met', 'unknown', 'unmet', 'met'].map((state, id) => ({ id, verdict: { state } }))).map(({ id }) => id),
     [2, 1, 0, 3],
   );
-  assert.equal(verdictOf({ value: null, met: null, reason: 'There is no boron.' }).word, 'not known');
-  assert.equal(verdictOf({ value: 8 }).word, 'not known');
+  assert.equal(verdictOf({ value: null, met: null, reason: 'There is no boron.' }).state, 'unknown');
+  assert.equal(verdictOf({ value: 8 }).state, 'unknown');
   assert.equal(verdictOf(undefined, 'The server does not answer.').reason, 'The server does not answer.');
   assert.equal(freeConstraintId({ 'limit-1': {}, 'limit-3': {} }, ['limit-2']), 'limit-4');
 });

@@ -3,19 +3,20 @@ import { html, nothing } from '../../../../lib/lit-html.js';
 import { dvhPart } from './chart_dvh.js';
 import { profilePart } from './chart_profile.js';
 import { icon } from '../../../parts/icons.js';
+import { say } from './words.js';
 
 const ready = ({ room }) => Boolean(room.plan.value && room.scene.value);
 
 export function drawer(world) {
   const { ui } = world;
-  if (!ready(world)) return html`<p class="empty">The plan is being loaded.</p>`;
+  if (!ready(world)) return html`<p class="empty">${say.loading}</p>`;
   const { drawer: place, size } = ui.arrangement.value;
   const isRight = place === 'right';
   const dock = (isOnRight) => {
     ui.isDrawerRight.value = isOnRight;
   };
-  const close = html`${size === 'wide' ? html`<button class="icon-button small" title=${isRight ? 'Below the panes' : 'Beside the panes'} aria-label=${isRight ? 'Plots below the panes' : 'Plots beside the panes'} @click=${() => dock(!isRight)}>${icon(isRight ? 'drawer' : 'panel', 12)}</button>` : nothing}
-    <button class="icon-button small" title="Close (V)" aria-label="Close the plots" @click=${() => ui.toggleDrawer()}>${icon('close', 12)}</button>`;
+  const close = html`${size === 'wide' ? html`<button class="icon-button small" title=${isRight ? say.below : say.beside} aria-label=${isRight ? say.plotsBelow : say.plotsBeside} @click=${() => dock(!isRight)}>${icon(isRight ? 'drawer' : 'panel', 12)}</button>` : nothing}
+    <button class="icon-button small" title=${say.close} aria-label=${say.closePlots} @click=${() => ui.toggleDrawer()}>${icon('close', 12)}</button>`;
   return html`${dvhPart(world, { isInline: isRight })}${profilePart(world, { isInline: isRight, close })}`;
 }
 

@@ -3,17 +3,30 @@ import { html, nothing } from '../../../../lib/lit-html.js';
 import { classMap } from '../../../../lib/directives/class-map.js';
 import { live } from '../../../../lib/directives/live.js';
 import { limitAt, metricWords } from '../dose_constraints.js';
-import { boundsWords, densityAt, dvhCsv, dvhJson, figureNames, openOf, readAt, shareOf, shareWords, volumeFrom } from '../dose_dvh.js';
+import {
+  boundsWords,
+  densityAt,
+  dvhCsv,
+  dvhJson,
+  figureNames,
+  figureWords,
+  openOf,
+  readAt,
+  shareOf,
+  shareWords,
+  volumeFrom,
+} from '../dose_dvh.js';
 import { populationWords } from '../dose_population.js';
 import { ownRegions } from '../../../room/identity.js';
 import { doseWaitReason } from '../../../room/waits.js';
 import { doubtMark, downloads, instead, options, staleMark, tableButton, withoutMark } from './chart_parts.js';
-import { dot, dotted, hatched, legible, plot, write } from './chart_plot.js';
+import { dot, dotted, fontOf, hatched, legible, plot, write } from './chart_plot.js';
 import { basisRows, doseName, quantityName, regionName, regionOf, unitPer } from './chart_words.js';
 import { numberField, segment } from '../../../parts/fields.js';
 import { listed, number, significant, unitText } from '../../../parts/format.js';
 import { icon } from '../../../parts/icons.js';
 import { variables } from '../../../parts/mount.js';
+import { say } from './histogram_words.js';
 
 const colorOf = ({ room }, { region }) => legible(room.scene.value.regions[region]?.color ?? '#c8c8c8');
 const curveName = ({ room }, curve) =>
@@ -23,10 +36,11 @@ const shownQuantity = ({ room, curves }) => curves.quantity.value || room.scene.
 const percentWords = (percent) => number(percent, 1);
 const shareAt = (curve, dose) => shareWords(curve, volumeFrom(curve, dose), percentWords);
 /** "brain: in the band, 18 % has no dose" */
-export const bandName = (curve, name, isDifferential) =>
-  openOf(curve)
-    ? `${name}: ${isDifferential ? '' : 'in the band, '}${number(shareOf(curve, openOf(curve), 'percent'), shareOf(curve, openOf(curve), 'percent') < 10 ? 1 : 0)} % has no dose`
-    : name;
+export function bandName(curve, name, isDifferential) {
+  if (!openOf(curve)) return name;
+  const share = shareOf(curve, openOf(curve), 'percent');
+  return (isDifferential ? say.noDose : say.inBand)({ curve: name, percent: number(share, share < 10 ? 1 : 0) });
+}
 const swatch = (world, curve) =>
   html`<i class=${classMap({ swatch: true, dashed: curve.of > 0 })} ${variables({ '--color': colorOf(world, curve) })}></i>`;
 
@@ -57,10 +71,10 @@ function controls(world) {
   const { quantity } = room.scene.value.dose;
   return html`<div class="chart-choices">
     ${segment(
-      'Kind of histogram',
+      say.kind,
       [
-        ['cumulative', 'Cumulative'],
-        ['differential', 'Differential'],
+        ['cumulative', say.cumulative],
+        ['differential', say.differential],
       ],
       curves.isDifferential.value ? 'differential' : 'cumulative',
       false,
@@ -69,7 +83,7 @@ function controls(world) {
       },
     )}
     ${segment(
-      'Unit of volume',
+      say.volumeUnit,
       [
         ['percent', '%'],
         ['cm3', 'cm³'],
@@ -80,14 +94,14 @@ function controls(world) {
         curves.unit.value = id;
       },
     )}
-    <select aria-label="Quantity of the histograms" @change=${(event) => {
+    <select aria-label=${say.quantity} @change=${(event) => {
       curves.quantity.value = event.target.value === quantity ? '' : event.target.value;
     }}>${quantities(world).map((id) => html`<option value=${id} .selected=${live(id === shownQuantity(world))}>${quantityName(id)}</option>`)}</select>
-    <label class="chart-basis"><span>Weights</span><select aria-label="Weights of the histograms" @change=${(event) => {
+    <label class="chart-basis"><span>${say.weights}</span><select aria-label=${say.weightsOf} @change=${(event) => {
       curves.tissue.value = event.target.value;
-    }}>${[['', "each region's own"], ...ownRegions(room.plan.value, room.scene.value).map(({ id, name }) => [id, `of ${name}`])].map(([id, words]) => html`<option value=${id} .selected=${live(id === curves.tissue.value)}>${words}</option>`)}</select></label>
+    }}>${[['', say.eachOwn], ...ownRegions(room.plan.value, room.scene.value).map(({ id, name }) => [id, say.ofRegion({ region: name })])].map(([id, words]) => html`<option value=${id} .selected=${live(id === curves.tissue.value)}>${words}</option>`)}</select></label>
     ${downloads(world, 'dvh', files(world))}</div>
-    <div class="chart-chips" role="group" aria-label="Regions in the histogram">${curves.regions.value.map(
+    <div class="chart-chips" role="group" aria-label=${say.regions}>${curves.regions.value.map(
       ({ id, name }) => html`<button class="chart-chip" aria-pressed=${!curves.hidden.value.has(id)} @click=${() => toggle(id)}>
       <i class="swatch" ${variables({ '--color': legible(room.scene.value.regions[id].color) })}></i>${name}</button>`,
     )}</div>`;
@@ -97,8 +111,8 @@ function controls(world) {
 export function populationSelect({ room, curves }) {
   const { population } = curves;
   const set = (event) => room.patchScene({ dose: { population: event.target.value } }, { at: event.timeStamp });
-  return html`<select class="chart-population" aria-label="Univels of a region" title="Which univels of a region count in histograms, limits and coverage" ?disabled=${!room.canChange.value} @change=${set}>
-    ${population ? nothing : html`<option value="" selected>usual</option>`}${['own', 'whole'].map((id) => html`<option value=${id} .selected=${live(id === population)}>${populationWords(id)}</option>`)}</select>`;
+  return html`<select class="chart-population" aria-label=${say.univels} title=${say.univelsAre} ?disabled=${!room.canChange.value} @change=${set}>
+    ${population ? nothing : html`<option value="" selected>${say.usual}</option>`}${['own', 'whole'].map((id) => html`<option value=${id} .selected=${live(id === population)}>${populationWords(id)}</option>`)}</select>`;
 }
 
 function files(world) {
@@ -208,12 +222,16 @@ function spec(world) {
       if (!part) return;
       highlight.end();
       room.patchScene({ dose: { coverage: { visible: true, ...part, unit: 'dose' } } }, { at: event.timeStamp });
-      world.ui.notify(
-        'ok',
-        `Highlighted: ${regionName(room.plan.value)(part.region)}, ${part.high === null ? `${significant(part.low)} ${unitOf(world)} and more` : `${significant(part.low)} to ${significant(part.high)} ${unitOf(world)}`}.`,
-        'coverage',
-        { word: 'Hide', act: () => room.patchScene({ dose: { coverage: { visible: false } } }) },
-      );
+      const said = {
+        region: regionName(room.plan.value)(part.region),
+        low: significant(part.low),
+        high: significant(part.high),
+        unit: unitOf(world),
+      };
+      world.ui.notify('ok', (part.high === null ? say.highlightedFrom : say.highlighted)(said), 'coverage', {
+        word: say.hide,
+        act: () => room.patchScene({ dose: { coverage: { visible: false } } }),
+      });
     },
   };
 }
@@ -260,7 +278,7 @@ function curveNames(world, chart, pen, px) {
     for (const part of [0.5, 0.3, 0.7, 0.15, 0.85, 0.05]) {
       const index = values[at].findLastIndex((value) => value >= high * part);
       const [x, y] = [chart.valToPos(doses[index], 'x', true) + 6 * px, chart.valToPos(values[at][index], 'y', true)];
-      pen.font = `400 ${Math.round(11 * px)}px "Inter Variable", system-ui, sans-serif`;
+      pen.font = fontOf(Math.round(11 * px));
       const box = [x, y - 8 * px, x + pen.measureText(name).width, y + 8 * px];
       if (
         box[2] > left + width ||
@@ -295,8 +313,8 @@ function card(world) {
         shareWords(curve, cm3, percentWords),
         `${boundsWords([cm3, cm3 + openOf(curve)], significant)} cm³`,
       ]);
-  return html`<div class="card chart-card" data-side=${place.value > curves.points.value.end / 2 ? 'left' : 'right'} ${variables({ '--x': `${place.x}px` })}><b>${curves.isDifferential.value ? 'at' : 'at least'} ${significant(place.value)} ${unit}</b>
-    <table><tbody>${rows.slice(0, 6).map(([curve, first, second]) => html`<tr><th scope="row">${swatch(world, curve)} ${curveName(world, curve)}</th><td>${first}</td><td>${second}</td></tr>`)}</tbody></table>${rows.length > 6 ? html`<span class="dim">and ${rows.length - 6} more</span>` : nothing}</div>`;
+  return html`<div class="card chart-card" data-side=${place.value > curves.points.value.end / 2 ? 'left' : 'right'} ${variables({ '--x': `${place.x}px` })}><b>${(curves.isDifferential.value ? say.at : say.atLeast)({ value: significant(place.value), unit })}</b>
+    <table><tbody>${rows.slice(0, 6).map(([curve, first, second]) => html`<tr><th scope="row">${swatch(world, curve)} ${curveName(world, curve)}</th><td>${first}</td><td>${second}</td></tr>`)}</tbody></table>${rows.length > 6 ? html`<span class="dim">${say.more({ n: rows.length - 6 })}</span>` : nothing}</div>`;
 }
 
 /** The table twin: figures of each region. */
@@ -305,14 +323,14 @@ export function dvhTable(world) {
   const unit = unitOf(world);
   const level = curves.level.value ?? Number((curves.points.value.end / 2).toPrecision(2));
   const cell = (bounds) => html`<td>${boundsWords(bounds, significant)}</td>`;
-  return html`<div class="chart-table" role="group" tabindex="0" aria-label="Figures of the histograms"><table><thead><tr><th scope="col">Region</th><th scope="col">cm³</th><th scope="col">univels</th>${['min', 'mean', 'max', ...figureNames].map((name) => html`<th scope="col">${name.replace('%', ' %')}</th>`)}
-      <th scope="col"><span class="chart-level">V ≥ ${numberField(`V: dose in ${unit}`, level, '', false, (value) => {
+  return html`<div class="chart-table" role="group" tabindex="0" aria-label=${say.figures}><table><thead><tr><th scope="col">${say.region}</th><th scope="col">cm³</th><th scope="col">${say.univelsColumn}</th>${['min', 'mean', 'max', ...figureNames].map((name) => html`<th scope="col">${figureWords(name).replace('%', ' %')}</th>`)}
+      <th scope="col"><span class="chart-level">V ≥ ${numberField(say.doseIn({ unit }), level, '', false, (value) => {
         curves.level.value = Math.max(0, value);
       })}</span></th></tr></thead>
     <tbody>${curves.curves.value.map(
       (
         curve,
-      ) => html`<tr><th scope="row">${swatch(world, curve)} ${curveName(world, curve)}${curve.missing ? html` <span class="warn" title=${withoutWords(curve)}>${significant(curve.missing)} cm³ without dose</span>` : nothing}</th><td>${number(curve.volume, 2)}</td><td>${number(curve.univels)}</td>
+      ) => html`<tr><th scope="row">${swatch(world, curve)} ${curveName(world, curve)}${curve.missing ? html` <span class="warn" title=${withoutWords(curve)}>${say.withoutDose({ cm3: significant(curve.missing) })}</span>` : nothing}</th><td>${number(curve.volume, 2)}</td><td>${number(curve.univels)}</td>
       ${['min', 'mean', 'max', ...figureNames].map((name) => cell(curve.figures[name]))}<td>${shareAt(curve, level)}</td></tr>`,
     )}</tbody></table></div>`;
 }
@@ -323,19 +341,26 @@ export function conformityTable(world) {
   const rows = curves.curves.value.flatMap((curve) => curve.conformity.map((row) => ({ curve, ...row })));
   if (!rows.length) return nothing;
   const unit = unitOf(world);
-  return html`<details class="more chart-more"><summary>${icon('chevronDown', 12)} Conformity of the targets</summary><div class="chart-table" role="group" tabindex="0" aria-label="Conformity of the targets"><table><thead><tr><th scope="col">Target</th><th scope="col">${listed('level', unit)}</th><th scope="col">isodose, cm³</th><th scope="col">covered, cm³</th><th scope="col" title="covered² / (target × isodose)">Paddick</th><th scope="col" title="isodose / target">RTOG</th></tr></thead>
+  return html`<details class="more chart-more"><summary>${icon('chevronDown', 12)} ${say.conformity}</summary><div class="chart-table" role="group" tabindex="0" aria-label=${say.conformity}><table><thead><tr><th scope="col">${say.target}</th><th scope="col">${listed(say.level, unit)}</th><th scope="col">${say.isodoseCm3}</th><th scope="col">${say.coveredCm3}</th><th scope="col" title=${say.paddickIs}>${say.paddick}</th><th scope="col" title=${say.rtogIs}>${say.rtog}</th></tr></thead>
     <tbody>${rows.map((row) => html`<tr><th scope="row">${regionName(room.plan.value)(row.curve.region)}</th>${[row.value, row.isodose_cm3, row.covered_cm3, row.paddick, row.rtog].map((value) => html`<td>${significant(value ?? NaN)}</td>`)}</tr>`)}</tbody></table></div>
-    <p class="chart-method">Paddick: covered² / (target × isodose); RTOG: isodose / target. HI: (D2 % − D98 %) / D50 %.</p></details>`;
+    <p class="chart-method">${say.conformityIs}</p></details>`;
 }
 
-const withoutWords = (curve) =>
-  `${significant(curve.missing)} cm³ have no dose: ${curve.isPartial ? 'figures are bounds, for any dose there' : 'too little to change the figures'}`;
+const withoutWords = (curve) => (curve.isPartial ? say.missingBounds : say.missingLittle)({ cm3: significant(curve.missing) });
+
+/** The unit of the volumes: "% of the whole volume", "cm³ per Gy(w)". */
+export function axisWords(world) {
+  const isVolume = world.curves.unit.value === 'cm3';
+  const unit = unitOf(world);
+  if (world.curves.isDifferential.value) return (isVolume ? say.cm3Per : say.percentPer)({ unit });
+  return isVolume ? 'cm³' : say.percentOfVolume;
+}
 
 /** Regions shown that have no curve, with the reason. */
 export const leftWords = ({ room, curves }) =>
   (curves.dvh.value.result?.left ?? [])
     .filter(({ region }) => curves.shownRegions.value.some(({ id }) => id === region))
-    .map(({ region, reason }) => `${regionName(room.plan.value)(region)}: not known: ${reason}.`)
+    .map(({ region, reason }) => say.leftOut({ region: regionName(room.plan.value)(region), reason }))
     .join(' ');
 
 /** Names the weights of the histograms: "each region's own weights"; '' none. */
@@ -345,29 +370,25 @@ export const basisWords = ({ curves }) => curves.curves.value[0]?.basis ?? '';
 export function dvhPart(world, { isInline }) {
   const { room, curves } = world;
   const state = curves.dvh.value;
-  const noRegion = curves.regions.value.length ? '' : 'No region is shown. Show one in the tree to see its histogram.';
+  const noRegion = curves.regions.value.length ? '' : say.noRegion;
   const reason = instead(state, {
-    empty:
-      state.result &&
-      !curves.curves.value.length &&
-      (noRegion || leftWords(world) || state.result.reason || 'None of the regions chosen has univels with a dose.'),
+    empty: state.result && !curves.curves.value.length && (noRegion || leftWords(world) || state.result.reason || say.noUnivels),
     idle: doseWaitReason(room) || noRegion,
   });
-  const unit = unitOf(world);
   const isTable = curves.isTable.value.dvh && !isInline;
   const left = leftWords(world);
   const words = html`<p class="chart-method" title=${`${state.result?.method ?? ''} ${left}`}>${state.result?.method ?? ''}${left ? html` <span class="warn">${left}</span>` : nothing}</p>`;
-  return html`<section class=${classMap({ 'chart-part': true, 'chart-dvh': true, old: state.isOld })} aria-label="Dose-volume histogram">
-    <header class="chart-head"><h2>${isInline ? 'Dose-volume histogram' : 'DVH'}</h2>${populationSelect(world)}<span class="dim chart-kind">${curves.isDifferential.value ? 'differential' : 'cumulative'}</span>${staleMark(state.isOld)}${withoutMark(state.result?.missing)}${doubtMark(world)}${left && !reason ? html`<span class="chart-without warn" title=${left}>${icon('warning', 12)} ${left}</span>` : nothing}<span class="grow"></span>
-      ${reason ? nothing : atCrosshair(world)}${isInline ? nothing : html`${options(world, 'dvh', 'Choices of the histogram', html`${controls(world)}${words}`)}${tableButton(world, 'dvh', 'Histogram as a table')}`}</header>
+  return html`<section class=${classMap({ 'chart-part': true, 'chart-dvh': true, old: state.isOld })} aria-label=${say.histogram}>
+    <header class="chart-head"><h2>${isInline ? say.histogram : say.dvh}</h2>${populationSelect(world)}<span class="dim chart-kind">${curves.isDifferential.value ? say.differentialKind : say.cumulativeKind}</span>${staleMark(state.isOld)}${withoutMark(state.result?.missing)}${doubtMark(world)}${left && !reason ? html`<span class="chart-without warn" title=${left}>${icon('warning', 12)} ${left}</span>` : nothing}<span class="grow"></span>
+      ${reason ? nothing : atCrosshair(world)}${isInline ? nothing : html`${options(world, 'dvh', say.choices, html`${controls(world)}${words}`)}${tableButton(world, 'dvh', say.asTable)}`}</header>
     ${isInline ? controls(world) : nothing}
     ${
       reason ??
       html`${
         isTable
           ? dvhTable(world)
-          : html`<div class="chart-box"><div class="chart-plot" role="img" aria-label=${`${curves.isDifferential.value ? 'Differential' : 'Cumulative'} dose-volume histogram of ${curves.curves.value.map((curve) => curveName(world, curve)).join(', ')}; the table has its figures`} ${plot(spec(world))}></div>${card(world)}</div>
-      <p class="chart-foot"><span>${curves.isDifferential.value ? `${curves.unit.value === 'cm3' ? 'cm³' : '% of the whole volume'} per ${unit}` : curves.unit.value === 'cm3' ? 'cm³' : '% of the whole volume'}</span><span>${[unitPer(state.result), quantityName(shownQuantity(world)), basisWords(world)].filter(Boolean).join(', ')}</span></p>`
+          : html`<div class="chart-box"><div class="chart-plot" role="img" aria-label=${(curves.isDifferential.value ? say.differentialOf : say.cumulativeOf)({ curves: curves.curves.value.map((curve) => curveName(world, curve)).join(', ') })} ${plot(spec(world))}></div>${card(world)}</div>
+      <p class="chart-foot"><span>${axisWords(world)}</span><span>${[unitPer(state.result), quantityName(shownQuantity(world)), basisWords(world)].filter(Boolean).join(', ')}</span></p>`
       }
       ${isInline ? html`${dvhTable(world)}${words}${conformityTable(world)}` : nothing}`
     }</section>`;

@@ -4,7 +4,8 @@ import { Directive, directive } from '../../../../lib/directive.js';
 import UPlot from '../../../../lib/uplot.js';
 import { visibleText } from '../../../parts/visible_text.js';
 
-const font = (weight = 400) => `${weight} 11px "Inter Variable", system-ui, sans-serif`;
+/** @param {number} size px of the canvas */
+export const fontOf = (size, weight = 400) => `${weight} ${size}px "Inter Variable", system-ui, sans-serif`;
 export const [axisInk, gridInk, faintInk, ink] = ['#929ba6', '#1f242b', '#39414b', '#eceef1'];
 
 /**
@@ -77,7 +78,7 @@ class PlotDirective extends Directive {
         hooks: { drawAxes: [layer('below')], draw: [layer('above')], setCursor: [(chart) => this.#spec.pointed?.(placeOf(chart))] },
         axes: axes.map((axis) => ({
           stroke: axisInk,
-          font: font(),
+          font: fontOf(11),
           grid: { stroke: gridInk, width: 1 },
           ticks: { show: false },
           border: { show: true, stroke: faintInk, width: 1 },
@@ -113,7 +114,7 @@ export const plot = directive(PlotDirective);
 
 /** Words in a plot, with a halo so that they can be read on curves. */
 export function write(pen, px, text, x, y, { color = ink, align = 'left', weight = 400 } = {}) {
-  pen.font = `${weight} ${Math.round(11 * px)}px "Inter Variable", system-ui, sans-serif`;
+  pen.font = fontOf(Math.round(11 * px), weight);
   [pen.textAlign, pen.textBaseline, pen.lineJoin, pen.lineWidth, pen.strokeStyle, pen.fillStyle] = [
     align,
     'middle',

@@ -1,13 +1,14 @@
 // Plots of dose in the report to print: on white paper, as vector drawings, with their tables and the limits.
 import { html, nothing, svg } from '../../../../lib/lit-html.js';
-import { boundsWords, figureNames } from '../dose_dvh.js';
+import { boundsWords, figureNames, figureWords } from '../dose_dvh.js';
 import { populationWords } from '../dose_population.js';
 import { lookOf } from '../dose_profile.js';
-import { bandName, basisWords, leftWords } from './chart_dvh.js';
-import { limitBasis, limitPopulation, limitRows, limitWords, valueWords } from './chart_limits.js';
-import { readOuts } from './chart_profile.js';
+import { axisWords, bandName, basisWords, leftWords } from './chart_dvh.js';
+import { limitBasis, limitPopulation, limitRows, limitWords, valueWords, verdictWord } from './chart_limits.js';
+import { depthWords, readOuts } from './chart_profile.js';
 import { basisRows, doseName, quantityName, regionName, unitPer } from './chart_words.js';
 import { listed, number, significant, unitText } from '../../../parts/format.js';
+import { say } from './printed_words.js';
 
 const [width, height, left, foot] = [640, 240, 46, 34];
 /** Regions differ by dash, too: paper may be grey. */
@@ -54,14 +55,14 @@ function drawing(label, lines, { xWords, yWords, low, high, top }) {
     <text x=${left} y=${height - 4}>${yWords}</text><text x=${width - 10} y=${height - 4} text-anchor="end">${xWords}</text>
     ${lines.map((line, at) => (line.tops ? svg`<pattern id=${`band-${at}`} width="6" height="6" patternUnits="userSpaceOnUse" patternTransform="rotate(45)"><line x1="0" x2="0" y1="0" y2="6" stroke=${onPaper(line.color)} stroke-width="1.2" /></pattern><path class="chart-paper-band" d=${band(line)} fill=${`url(#band-${at})`} stroke=${onPaper(line.color)} stroke-width="0.8" stroke-dasharray="3 3" />` : nothing))}
     ${lines.map((line) => svg`<path d=${path(line)} fill="none" stroke=${onPaper(line.color)} stroke-width=${line.isThin ? 0.8 : 1.6} stroke-dasharray=${line.dash.join(' ')} />`)}</svg>
-    <ul class="chart-paper-key" aria-label="Curves">${lines.map(({ name, color, dash }) => html`<li><svg viewBox="0 0 24 6" width="24" height="6" aria-hidden="true"><line x1="0" x2="24" y1="3" y2="3" stroke=${onPaper(color)} stroke-width="2" stroke-dasharray=${dash.join(' ')} /></svg> ${name}</li>`)}</ul>`;
+    <ul class="chart-paper-key" aria-label=${say.curves}>${lines.map(({ name, color, dash }) => html`<li><svg viewBox="0 0 24 6" width="24" height="6" aria-hidden="true"><line x1="0" x2="24" y1="3" y2="3" stroke=${onPaper(color)} stroke-width="2" stroke-dasharray=${dash.join(' ')} /></svg> ${name}</li>`)}</ul>`;
 }
 
 export function printed(world) {
   const { room, curves } = world;
   const [plan, scene] = [room.plan.value, room.scene.value];
   if (!plan || !scene?.dose) return nothing;
-  return html`${histograms(world, plan, scene)}${profile(world, scene)}${limits(world)}${curves.dvh.value.error ? html`<p class="values">Histograms: ${curves.dvh.value.error}</p>` : nothing}`;
+  return html`${histograms(world, plan, scene)}${profile(world, scene)}${limits(world)}${curves.dvh.value.error ? html`<p class="values">${say.histogramError({ reason: curves.dvh.value.error })}</p>` : nothing}`;
 }
 
 function histograms(world, plan, scene) {
@@ -77,10 +78,10 @@ function histograms(world, plan, scene) {
   const basis = basisRows(world, result.quantity || scene.dose.quantity, result, {
     basis: basisWords(world),
     population: populationWords(curves.population),
-  }).filter(([word]) => !['plan', 'revision', 'use', 'method'].includes(word));
-  return html`<h2>Dose-volume histogram</h2><p class="values">${basis.map(([word, ...value]) => `${word}: ${value.join(', ')}`).join('; ')}.</p>
+  }).filter(({ id }) => !['plan', 'revision', 'use', 'method'].includes(id));
+  return html`<h2>${say.histogram}</h2><p class="values">${basis.map(({ name: word, values: of }) => `${word}: ${of.join(', ')}`).join('; ')}.</p>
     ${drawing(
-      'Dose-volume histogram',
+      say.histogram,
       list.map((curve, at) => ({
         name: bandName(curve, name(curve), curves.isDifferential.value),
         color: scene.regions[curve.region]?.color ?? '#888888',
@@ -95,10 +96,10 @@ function histograms(world, plan, scene) {
         high: end,
         top: isPercent ? 100 : Math.max(1e-9, ...values.flat(), ...tops.flatMap((one) => one ?? [])),
         xWords: listed(unitPer(result), quantityName(result.quantity || scene.dose.quantity)),
-        yWords: `${curves.unit.value === 'cm3' ? 'cm³' : '% of the whole volume'}${curves.isDifferential.value ? ` per ${unit}` : ''}`,
+        yWords: axisWords(world),
       },
     )}
-    <div class="numbers-scroll" role="group" tabindex="0" aria-label="Figures of the histograms"><table class="numbers-table chart-figures"><thead><tr><th scope="col">${listed('Region', unit)}</th><th scope="col">cm³</th><th scope="col">without dose, cm³</th><th scope="col">Univels</th>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<th scope="col">${figure}</th>`)}</tr></thead>
+    <div class="numbers-scroll" role="group" tabindex="0" aria-label=${say.figures}><table class="numbers-table chart-figures"><thead><tr><th scope="col">${listed(say.region, unit)}</th><th scope="col">cm³</th><th scope="col">${say.withoutDose}</th><th scope="col">${say.univels}</th>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<th scope="col">${figureWords(figure)}</th>`)}</tr></thead>
       <tbody>${list.map((curve) => html`<tr><th scope="row">${name(curve)}</th><td>${number(curve.volume, 2)}</td><td>${curve.missing ? significant(curve.missing) : '0'}</td><td>${number(curve.univels)}</td>${['min', 'mean', 'max', ...figureNames].map((figure) => html`<td>${boundsWords(curve.figures[figure], significant)}</td>`)}</tr>`)}</tbody></table></div>
     <p class="values">${result.method} ${leftWords(world)}</p>`;
 }
@@ -109,11 +110,13 @@ function profile({ curves, room }, scene) {
   const top = Math.max(1e-30, ...result.curves.flatMap(({ values }) => values).filter(Number.isFinite)) * 1.05;
   const facts = [
     readOuts(result),
-    ...result.bands.map(({ region, from, to }) => `${regionName(room.plan.value)(region)} ${number(from, 1)} to ${number(to, 1)} mm`),
+    ...result.bands.map(({ region, from, to }) =>
+      say.band({ region: regionName(room.plan.value)(region), from: number(from, 1), to: number(to, 1) }),
+    ),
   ].filter(Boolean);
-  return html`<h2>Depth profile, ${curves.chosenLine.value.name}</h2>
+  return html`<h2>${say.profileOf({ line: curves.chosenLine.value.name })}</h2>
     ${drawing(
-      'Depth profile',
+      say.profile,
       result.curves.map(({ quantity, values }, at) => ({
         name: lookOf(quantity).name,
         color: at === 0 ? '#222222' : lookOf(quantity).color,
@@ -125,7 +128,7 @@ function profile({ curves, room }, scene) {
         low: result.depths[0],
         high: result.depths.at(-1),
         top,
-        xWords: curves.chosenLine.value.kind === 'beam' ? 'mm from entry' : 'mm from the first point',
+        xWords: depthWords(curves.chosenLine.value),
         yWords: listed(unitPer(result), quantityName(scene.dose.quantity)),
       },
     )}
@@ -135,6 +138,6 @@ function profile({ curves, room }, scene) {
 function limits(world) {
   const rows = limitRows(world);
   if (!rows.length) return nothing;
-  return html`<h2>Limits of dose</h2>${limitPopulation(world) ? html`<p class="values">Univels of each region: ${limitPopulation(world)}.</p>` : nothing}<div class="numbers-scroll" role="group" tabindex="0" aria-label="Limits of dose"><table class="numbers-table"><thead><tr><th scope="col">Region</th><th scope="col">Limit</th><th scope="col">Quantity</th><th scope="col">Weights</th><th scope="col">Value</th><th scope="col">Met</th></tr></thead>
-    <tbody>${rows.map((row) => html`<tr><th scope="row">${limitWords(world, row)[0]}</th><td>${limitWords(world, row)[1]}</td><td>${quantityName(row.constraint.quantity)}</td><td>${limitBasis(world, row) || '–'}</td><td>${valueWords(row)}</td><td>${row.verdict.word}${row.verdict.reason ? `: ${row.verdict.reason}` : ''}</td></tr>`)}</tbody></table></div>`;
+  return html`<h2>${say.limits}</h2>${limitPopulation(world) ? html`<p class="values">${say.univelsOfEach({ population: limitPopulation(world) })}</p>` : nothing}<div class="numbers-scroll" role="group" tabindex="0" aria-label=${say.limits}><table class="numbers-table"><thead><tr><th scope="col">${say.region}</th><th scope="col">${say.limit}</th><th scope="col">${say.quantity}</th><th scope="col">${say.weights}</th><th scope="col">${say.value}</th><th scope="col">${say.met}</th></tr></thead>
+    <tbody>${rows.map((row) => html`<tr><th scope="row">${limitWords(world, row)[0]}</th><td>${limitWords(world, row)[1]}</td><td>${quantityName(row.constraint.quantity)}</td><td>${limitBasis(world, row) || '–'}</td><td>${valueWords(row)}</td><td>${verdictWord(row.verdict)}${row.verdict.reason ? `: ${row.verdict.reason}` : ''}</td></tr>`)}</tbody></table></div>`;
 }

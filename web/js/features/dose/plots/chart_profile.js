@@ -6,15 +6,15 @@ import { aligned, depthOf, lookOf, pointAt, profileCsv, profileJson, referenceGr
 import { crosshair, crosshairPatch, shownImage } from '../../../room/plan.js';
 import { doseWaitReason } from '../../../room/waits.js';
 import { doubtMark, downloads, instead, options, staleMark, tableButton, withoutMark } from './chart_parts.js';
-import { dot, dotted, legible, plot, write } from './chart_plot.js';
-import { basisRows, inUnit, quantityName, regionName, unitPer, weightWords } from './chart_words.js';
+import { dot, dotted, fontOf, legible, plot, write } from './chart_plot.js';
+import { basisRows, inUnit, quantityName, regionName, row, unitPer, weightWords } from './chart_words.js';
 import { number, significant, unitText } from '../../../parts/format.js';
 import { icon } from '../../../parts/icons.js';
 import { variables } from '../../../parts/mount.js';
+import { say } from './profile_words.js';
 
 const resultOf = ({ curves }) => curves.profile.value.result;
 const mm = (depth) => `${number(depth, 1)} mm`;
-const phantomWords = "Reference curves were measured or computed in a phantom: they are not this patient's dose.";
 
 /** The depth of the crosshair on the line; null when it is further than 15 mm beside it. */
 function hereOn(world) {
@@ -27,7 +27,7 @@ function hereOn(world) {
 
 function bandAt(world, depth) {
   const band = resultOf(world).bands.findLast(({ from, to }) => depth >= from && depth <= to);
-  return band ? regionName(world.room.plan.value)(band.region) : 'outside every region';
+  return band ? regionName(world.room.plan.value)(band.region) : say.outside;
 }
 
 /** The reference curves that stand beside the profile; null: none. */
@@ -40,7 +40,7 @@ function drawn(world) {
     ...resultOf(world).curves.map(({ quantity }) => ({ ...lookOf(quantity), isReference: false })),
     ...(reference?.curves ?? []).map(({ quantity }) => ({
       ...lookOf(quantity),
-      name: `phantom: ${lookOf(quantity).name}`,
+      name: say.ofPhantom({ curve: lookOf(quantity).name }),
       dash: [1, 4],
       isReference: true,
     })),
@@ -52,21 +52,24 @@ function controls(world) {
   const groups = resultOf(world) ? referenceGroups(resultOf(world).references) : [];
   return html`<div class="chart-choices">${
     groups.length
-      ? html`<select aria-label="Reference curves beside the profile" @change=${(event) => {
+      ? html`<select aria-label=${say.references} @change=${(event) => {
           curves.reference.value = event.target.value;
-        }}><option value="" .selected=${live(!curves.reference.value)}>no reference curves</option>
+        }}><option value="" .selected=${live(!curves.reference.value)}>${say.noReferences}</option>
       ${groups.map(({ key, name, unit, curves: list }) => html`<option value=${key} .selected=${live(key === curves.reference.value)}>${name}: ${list.map(({ quantity }) => lookOf(quantity).name).join(', ')}${unit ? `, ${unitText(unit)}` : ''}</option>`)}</select>`
       : nothing
   }${downloads(world, 'profile', files(world))}</div>`;
 }
 
+/** Where the depths of a line count from. */
+export const depthWords = ({ kind }) => (kind === 'beam' ? say.mmFromEntry : say.mmFromFirst);
+
 /** "entry 0.0 mm, peak 1.11 Gy(w) at 27.0 mm, advantage depth 85.0 mm" */
 export function readOuts(result) {
   const { entry, peak, advantage, advantageReason, unit } = result;
   return [
-    entry !== null && `entry ${mm(entry)}`,
-    peak && `peak ${inUnit(peak.value, unit)} at ${mm(peak.depth)}`,
-    advantage !== null ? `advantage depth ${mm(advantage)}` : advantageReason && `no advantage depth: ${advantageReason}`,
+    entry !== null && say.entryAt({ depth: mm(entry) }),
+    peak && say.peakAt({ dose: inUnit(peak.value, unit), depth: mm(peak.depth) }),
+    advantage !== null ? say.advantageAt({ depth: mm(advantage) }) : advantageReason && say.noAdvantage({ reason: advantageReason }),
   ]
     .filter(Boolean)
     .join(', ');
@@ -75,9 +78,9 @@ export function readOuts(result) {
 function lineChoice({ curves }) {
   const chosen = curves.chosenLine.value;
   if (curves.lines.value.length < 2) return html`<span class="dim chart-kind">${chosen?.name ?? ''}</span>`;
-  return html`<select class="chart-line" aria-label="Line of the depth profile" @change=${(event) => {
+  return html`<select class="chart-line" aria-label=${say.line} @change=${(event) => {
     curves.line.value = event.target.value;
-  }}>${curves.lines.value.map(({ key, kind, name }) => html`<option value=${key} .selected=${live(key === chosen.key)}>${kind === 'beam' ? name : `measure ${name}`}</option>`)}</select>`;
+  }}>${curves.lines.value.map(({ key, kind, name }) => html`<option value=${key} .selected=${live(key === chosen.key)}>${kind === 'beam' ? name : say.measure({ name })}</option>`)}</select>`;
 }
 
 function files(world) {
@@ -88,13 +91,12 @@ function files(world) {
   const about = () => ({
     words: [
       ...basisRows(world, room.scene.value.dose.quantity, resultOf(world)),
-      ['line', line.name, `from ${place(line.from)}`, `to ${place(line.to)}`],
-      [
+      row('line', say.rowLine, line.name, say.from({ place: place(line.from) }), say.to({ place: place(line.to) })),
+      row(
         'depths',
-        resultOf(world).zero
-          ? `from the entry into the body, ${resultOf(world).zero.toFixed(2)} mm along the line`
-          : 'from the first point of the line',
-      ],
+        say.rowDepths,
+        resultOf(world).zero ? say.depthsFromEntry({ mm: resultOf(world).zero.toFixed(2) }) : say.depthsFromFirst,
+      ),
     ],
     regionName: regionName(room.plan.value),
   });
@@ -158,11 +160,11 @@ function spec(world) {
       const { left, top: above, width, height } = chart.bbox;
       const isRoomy = width > 300 * px;
       if (result.entry !== null && Math.abs(result.entry) > 0.5 && result.entry > low)
-        tick(pen, px, x(result.entry), above + height, 'entry');
+        tick(pen, px, x(result.entry), above + height, say.entry);
       if (result.advantage !== null && result.advantage < high && isRoomy) {
         const total = valueAt(result.depths, result.curves[0].values, result.advantage) ?? 0;
         tick(pen, px, x(result.advantage), above + height, '');
-        write(pen, px, `advantage ${number(result.advantage, 0)} mm`, x(result.advantage) + 4 * px, y(total) - 10 * px, {
+        write(pen, px, say.advantageMark({ mm: number(result.advantage, 0) }), x(result.advantage) + 4 * px, y(total) - 10 * px, {
           color: '#b9c0c9',
         });
       }
@@ -173,7 +175,7 @@ function spec(world) {
           write(
             pen,
             px,
-            `peak ${significant(result.peak.value)} at ${number(result.peak.depth, 0)} mm`,
+            say.peakMark({ value: significant(result.peak.value), mm: number(result.peak.depth, 0) }),
             x(result.peak.depth) + (isRight ? 8 : -8) * px,
             y(result.peak.value) - 9 * px,
             { weight: 600, align: isRight ? 'left' : 'right' },
@@ -224,7 +226,7 @@ function bands({ room, curves }, chart, pen, px) {
     pen.globalAlpha = 1;
     pen.fillRect(a, top - 4 * px, b - a - px, 3 * px);
     const name = regionName(room.plan.value)(region);
-    pen.font = `400 ${Math.round(11 * px)}px "Inter Variable", system-ui, sans-serif`;
+    pen.font = fontOf(Math.round(11 * px));
     if (pen.measureText(name).width < b - a - 4 * px) write(pen, px, name, (a + b) / 2, top - 13 * px, { color, align: 'center' });
   }
 }
@@ -237,13 +239,13 @@ function card(world) {
   const rows = [
     ...result.curves.map((curve) => [lookOf(curve.quantity), valueAt(result.depths, curve.values, place.value), curve.unit ?? result.unit]),
     ...(referenceOf(world)?.curves ?? []).map((curve) => [
-      { ...lookOf(curve.quantity), name: `phantom: ${lookOf(curve.quantity).name}`, dash: [1] },
+      { ...lookOf(curve.quantity), name: say.ofPhantom({ curve: lookOf(curve.quantity).name }), dash: [1] },
       valueAt(curve.depths, curve.values, place.value),
       curve.unit,
     ]),
   ];
   return html`<div class="card chart-card" data-side=${place.value > (result.depths[0] + result.depths.at(-1)) / 2 ? 'left' : 'right'} ${variables({ '--x': `${place.x}px` })}><b>${mm(place.value)}</b> <span class="dim">${bandAt(world, place.value)}</span>
-    <table><tbody>${rows.map(([look, value, unit]) => html`<tr><th scope="row"><i class=${classMap({ 'chart-dash': true, dashed: look.dash.length > 0 })} ${variables({ '--color': look.color })}></i> ${look.name}</th><td>${value === null ? 'not known' : inUnit(value, unit)}</td></tr>`)}</tbody></table></div>`;
+    <table><tbody>${rows.map(([look, value, unit]) => html`<tr><th scope="row"><i class=${classMap({ 'chart-dash': true, dashed: look.dash.length > 0 })} ${variables({ '--color': look.color })}></i> ${look.name}</th><td>${value === null ? say.notKnown : inUnit(value, unit)}</td></tr>`)}</tbody></table></div>`;
 }
 
 /** The table twin: steps along the line, and the depths that have a name. */
@@ -253,17 +255,17 @@ export function profileTable(world) {
   const step = [1, 2, 5, 10, 20, 50, 100].find((size) => (high - low) / size <= 20) ?? 200;
   const here = hereOn(world);
   const named = [
-    [entry, 'entry'],
-    [peak?.depth, 'peak'],
-    [advantage, 'advantage depth'],
-    [here, 'crosshair'],
+    [entry, say.entry],
+    [peak?.depth, say.peak],
+    [advantage, say.advantage],
+    [here, say.crosshair],
   ].filter(([depth]) => Number.isFinite(depth));
   const steps = Array.from(
     { length: Math.floor(high / step) - Math.ceil(low / step) + 1 },
     (_, at) => (Math.ceil(low / step) + at) * step,
   ).filter((depth) => named.every(([other]) => Math.abs(other - depth) > 0.05));
   const rows = [...named, ...steps.map((depth) => [depth, ''])].sort(([a], [b]) => a - b);
-  return html`<div class="chart-table" role="group" tabindex="0" aria-label="Doses along the line"><table><thead><tr><th scope="col">mm</th><th scope="col">Place</th>${curves.map(({ quantity, unit }) => html`<th scope="col">${lookOf(quantity).name}, ${unitText(unit ?? resultOf(world).unit)}</th>`)}</tr></thead>
+  return html`<div class="chart-table" role="group" tabindex="0" aria-label=${say.dosesAlong}><table><thead><tr><th scope="col">mm</th><th scope="col">${say.place}</th>${curves.map(({ quantity, unit }) => html`<th scope="col">${lookOf(quantity).name}, ${unitText(unit ?? resultOf(world).unit)}</th>`)}</tr></thead>
     <tbody>${rows.map(([depth, name]) => html`<tr><th scope="row">${number(depth, 1)}</th><td class="place">${[name, bandAt(world, depth)].filter(Boolean).join(', ')}</td>${curves.map(({ values }) => html`<td>${significant(valueAt(depths, values, depth) ?? NaN)}</td>`)}</tr>`)}</tbody></table></div>`;
 }
 
@@ -274,10 +276,10 @@ export function profilePart(world, { isInline, close = nothing }) {
   const hasLine = curves.chosenLine.value !== null;
   const reason = hasLine
     ? instead(state, {
-        empty: state.result && !state.result.curves.length && (state.result.reason || 'There is no dose on this line.'),
+        empty: state.result && !state.result.curves.length && (state.result.reason || say.noDose),
         idle: doseWaitReason(room),
       })
-    : html`<p class="chart-note empty">The plan has no beam. Draw a distance measure (M): the profile runs along it.</p>`;
+    : html`<p class="chart-note empty">${say.noBeam}</p>`;
   const isTable = curves.isTable.value.profile && !isInline;
   const here = reason ? null : hereOn(world);
   const value = here === null ? null : valueAt(state.result.depths, state.result.curves[0].values, here);
@@ -285,25 +287,25 @@ export function profilePart(world, { isInline, close = nothing }) {
   const reference = reason ? null : referenceOf(world);
   const warnings = [
     ...(reason ? [] : state.result.doubts),
-    ...(reference ? [`${phantomWords}${reference.unit === state.result.unit ? '' : ` Right axis: ${unitText(reference.unit)}.`}`] : []),
+    ...(reference ? [reference.unit === state.result.unit ? say.phantom : say.phantomAxis({ unit: unitText(reference.unit) })] : []),
   ];
   const warning = warnings.length
     ? html`<span class="warn" title=${warnings.join(' ')}>${icon('warning', 12)} ${warnings.join(' ')}</span>`
     : nothing;
   const facts = reason ? nothing : html`<p class="chart-method chart-facts">${readOuts(state.result)}</p>`;
-  return html`<section class=${classMap({ 'chart-part': true, 'chart-profile': true, old: state.isOld && hasLine })} aria-label="Depth profile">
-    <header class="chart-head"><h2>${isInline ? 'Depth profile' : 'Depth'}</h2>${lineChoice(world)}${hasLine ? staleMark(state.isOld) : nothing}${withoutMark(state.result?.missing)}${doubtMark(world)}<span class="grow"></span>
+  return html`<section class=${classMap({ 'chart-part': true, 'chart-profile': true, old: state.isOld && hasLine })} aria-label=${say.profile}>
+    <header class="chart-head"><h2>${isInline ? say.profile : say.depth}</h2>${lineChoice(world)}${hasLine ? staleMark(state.isOld) : nothing}${withoutMark(state.result?.missing)}${doubtMark(world)}<span class="grow"></span>
       ${value === null ? nothing : html`<span class="chart-here">${mm(here)} <b>${inUnit(value, state.result.unit)}</b></span>`}
-      ${isInline ? nothing : html`${options(world, 'profile', 'Choices of the profile', html`${controls(world)}${facts}<p class="chart-method">${state.result?.method ?? ''} ${warning}</p>`)}${tableButton(world, 'profile', 'Profile as a table')}`}${close}</header>
+      ${isInline ? nothing : html`${options(world, 'profile', say.choices, html`${controls(world)}${facts}<p class="chart-method">${state.result?.method ?? ''} ${warning}</p>`)}${tableButton(world, 'profile', say.asTable)}`}${close}</header>
     ${isInline ? controls(world) : nothing}
     ${
       reason ??
       html`${
         isTable
           ? profileTable(world)
-          : html`<div class="chart-box"><div class="chart-plot" role="img" aria-label=${`Doses along ${curves.chosenLine.value.name}: ${state.result.curves.map((curve) => lookOf(curve.quantity).name).join(', ')}; the table has their values`} ${plot(spec(world))}></div>
-        <ul class="chart-key" aria-label="Curves">${drawn(world).map(({ name, color, dash }) => html`<li><i class=${classMap({ 'chart-dash': true, dashed: dash.length > 0 })} ${variables({ '--color': color })}></i>${name}</li>`)}</ul>${card(world)}</div>
-      <p class="chart-foot"><span>${[unitPer(state.result), quantityName(quantity), weightWords(room.plan.value, room.scene.value.dose)].filter(Boolean).join(', ')}</span>${isInline ? nothing : warning}<span>${curves.chosenLine.value.kind === 'beam' ? 'mm from entry' : 'mm from the first point'}</span></p>`
+          : html`<div class="chart-box"><div class="chart-plot" role="img" aria-label=${say.plotOf({ line: curves.chosenLine.value.name, curves: state.result.curves.map((curve) => lookOf(curve.quantity).name).join(', ') })} ${plot(spec(world))}></div>
+        <ul class="chart-key" aria-label=${say.curves}>${drawn(world).map(({ name, color, dash }) => html`<li><i class=${classMap({ 'chart-dash': true, dashed: dash.length > 0 })} ${variables({ '--color': color })}></i>${name}</li>`)}</ul>${card(world)}</div>
+      <p class="chart-foot"><span>${[unitPer(state.result), quantityName(quantity), weightWords(room.plan.value, room.scene.value.dose)].filter(Boolean).join(', ')}</span>${isInline ? nothing : warning}<span>${depthWords(curves.chosenLine.value)}</span></p>`
       }
       ${isInline ? html`${facts}${profileTable(world)}<p class="chart-method">${state.result.method} ${warning}</p>` : nothing}`
     }</section>`;

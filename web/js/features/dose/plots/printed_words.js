@@ -1,0 +1,22 @@
+// What a person reads in the plots on paper.
+import { sentences } from '../../../parts/sentences.js';
+
+export const say = sentences('dose.plots.printed', {
+  curves: 'Curves',
+  histogramError: 'Histograms: {reason}',
+  histogram: 'Dose-volume histogram',
+  figures: 'Figures of the histograms',
+  region: 'Region',
+  withoutDose: 'without dose, cm³',
+  univels: 'Univels',
+  band: '{region} {from} to {to} mm',
+  profileOf: 'Depth profile, {line}',
+  profile: 'Depth profile',
+  limits: 'Limits of dose',
+  univelsOfEach: 'Univels of each region: {population}.',
+  limit: 'Limit',
+  quantity: 'Quantity',
+  weights: 'Weights',
+  value: 'Value',
+  met: 'Met',
+});
