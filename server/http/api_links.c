@@ -65,7 +65,7 @@ void api_room_link_new(struct api *api, struct call *call)
     struct problem problem = { 0 };
     struct wanted wanted;
     cJSON *body;
-    char token[33], mark[9], url[160];
+    char token[33], digits[9], url[160];
     struct room *room = net_room_find(api->net, call->ids[0]);
     if (!room) {
         problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
@@ -89,8 +89,8 @@ void api_room_link_new(struct api *api, struct call *call)
     cJSON_AddNumberToObject(answer, "expires_s", (double)wanted.expires_s);
     cJSON_AddBoolToObject(answer, "one_use", wanted.is_one_use);
     cJSON *made = cJSON_CreateObject();
-    room_link_mark(token, mark);
-    cJSON_AddStringToObject(made, "link", mark);
+    room_link_digits(token, digits);
+    cJSON_AddStringToObject(made, "link", digits);
     cJSON_AddStringToObject(made, "role", wire_member_role_words.words[wanted.role]);
     cJSON_AddNumberToObject(made, "expires_s", (double)wanted.expires_s);
     cJSON_AddBoolToObject(made, "one_use", wanted.is_one_use);

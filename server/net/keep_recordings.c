@@ -36,7 +36,7 @@ static char *write_facts(const struct room_recording *facts)
     cJSON_AddNumberToObject(json, "n_bytes", (double)facts->n_bytes);
     cJSON_AddStringToObject(json, "by", facts->by);
     cJSON_AddStringToObject(json, "by_name", facts->by_name);
-    cJSON_AddStringToObject(json, "plan_mark", facts->plan_mark);
+    cJSON_AddStringToObject(json, "plan_mark", facts->plan_sum); /* its name in databases */
     cJSON_AddStringToObject(json, "plan_revision", facts->plan_revision);
     json_add(json, "marks", facts->marks ? cJSON_Duplicate(facts->marks, true) : cJSON_CreateArray());
     char *text = json_print(json);
@@ -150,7 +150,7 @@ static bool read_facts(const char *text, struct room_recording *facts)
     facts->n_bytes = (uint64_t)number_below(json, "n_bytes", ROOM_MAX_RECORDING_BYTES);
     json_put_text(facts->by, sizeof facts->by, json, "by");
     json_put_text(facts->by_name, sizeof facts->by_name, json, "by_name");
-    json_put_text(facts->plan_mark, sizeof facts->plan_mark, json, "plan_mark");
+    json_put_text(facts->plan_sum, sizeof facts->plan_sum, json, "plan_mark");
     json_put_text(facts->plan_revision, sizeof facts->plan_revision, json, "plan_revision"); /* older ones have none */
     marks = cJSON_DetachItemFromObjectCaseSensitive(json, "marks");
     if (are_marks(marks))

@@ -55,7 +55,7 @@ static void play(const char *const *texts, size_t n, int64_t t_ms, bool is_chang
     struct room *room = room_create("7q4k-m2wz", "head", &callbacks, NULL);
     kept_plan_ready(room, now_us);
     if (!is_changed)
-        REQUIRE(recording_plan_mark(room, facts.plan_mark));
+        REQUIRE(recording_plan_sum(room, facts.plan_sum));
     room_replay_begin(room, "2v8x-p5fd", 3, &facts, now_us);
     say(room, &page, "{\"type\":\"hello\",\"protocol\":2,\"name\":\"Dee\"}", now_us);
     say(room, &page, "{\"type\":\"view.open\",\"view\":1,\"follow\":true,\"document\":{\"size_px\":[64,48]}}", now_us);

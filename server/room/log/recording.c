@@ -109,7 +109,7 @@ void recording_show(struct room *room, struct member *member)
     send_to_member(room, member, &message);
 }
 
-bool recording_plan_mark(const struct room *room, char mark[20])
+bool recording_plan_sum(const struct room *room, char digits[20])
 {
     (void)json_no_memory(NULL, "what came before");
     cJSON *plan = room->shared.plan ? cJSON_Duplicate(room->shared.plan, true) : NULL;
@@ -119,7 +119,7 @@ bool recording_plan_mark(const struct room *room, char mark[20])
     uint64_t sum = UINT64_C(0xcbf29ce484222325); /* FNV-1a, 64 bits */
     for (const char *at = text; at && *at; at++)
         sum = (sum ^ (uint8_t)*at) * UINT64_C(0x100000001b3);
-    (void)snprintf(mark, 20, "%016llx", (unsigned long long)sum);
+    (void)snprintf(digits, 20, "%016llx", (unsigned long long)sum);
     const bool ok = text != NULL;
     free(text);
     return ok;
@@ -346,7 +346,7 @@ bool recording_start(struct room *room, struct member *member, const struct mess
         return json_no_memory(problem, "a recording");
     struct room_recording *facts = &room->recordings->list[room->recordings->n];
     *facts = (struct room_recording){ .state = WIRE_RECORDING_STATE_RUNNING };
-    if (!recording_plan_mark(room, facts->plan_mark)) {
+    if (!recording_plan_sum(room, facts->plan_sum)) {
         meeting_log_destroy(log);
         return json_no_memory(problem, "a recording");
     }

@@ -37,4 +37,4 @@ void recordings_finish(struct room *room);
 bool recording_wants_revision(const struct room *room);
 void recording_revision_came(struct room *room, const char *revision);
 /* Tells the same plan document from another one. False: no memory. */
-NODISCARD bool recording_plan_mark(const struct room *room, char mark[20]);
+NODISCARD bool recording_plan_sum(const struct room *room, char digits[20]);

@@ -436,8 +436,8 @@ static bool has_other_plan(const struct room *room)
 {
     const struct replay *replay = room->replay;
     const char *then = replay->facts.plan_revision, *now = replay->plan_revision;
-    char mark[20];
-    return !recording_plan_mark(room, mark) || strcmp(mark, replay->facts.plan_mark) != 0 ||
+    char sum[20];
+    return !recording_plan_sum(room, sum) || strcmp(sum, replay->facts.plan_sum) != 0 ||
            (then[0] && now[0] && strcmp(then, now) != 0);
 }
 

@@ -90,24 +90,24 @@ const char *link_find(struct room *room, const char *token, const char *person, 
 }
 
 /* Writes eight digits of the token's hash: they tell links apart and let nobody in. */
-static void write_mark(const unsigned char hash[SECRET_HASH_BYTES], char mark[9])
+static void write_digits(const unsigned char hash[SECRET_HASH_BYTES], char digits[9])
 {
-    (void)snprintf(mark, 9, "%02x%02x%02x%02x", hash[0], hash[1], hash[2], hash[3]);
+    (void)snprintf(digits, 9, "%02x%02x%02x%02x", hash[0], hash[1], hash[2], hash[3]);
 }
 
-void room_link_mark(const char *token, char mark[9])
+void room_link_digits(const char *token, char digits[9])
 {
     unsigned char hash[SECRET_HASH_BYTES];
     secret_hash(token, hash);
-    write_mark(hash, mark);
+    write_digits(hash, digits);
 }
 
 static cJSON *describe(const struct link *link)
 {
-    char mark[9];
+    char digits[9];
     cJSON *detail = cJSON_CreateObject();
-    write_mark(link->token_hash, mark);
-    cJSON_AddStringToObject(detail, "link", mark);
+    write_digits(link->token_hash, digits);
+    cJSON_AddStringToObject(detail, "link", digits);
     cJSON_AddStringToObject(detail, "role", wire_member_role_words.words[link->role]);
     cJSON_AddBoolToObject(detail, "one_use", link->is_one_use);
     return detail;

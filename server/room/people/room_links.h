@@ -3,4 +3,4 @@
 #include "server/room/state/room_types.h"
 
 /* The eight digits that name the link of this token in the audit. */
-void room_link_mark(const char *token, char mark[9]);
+void room_link_digits(const char *token, char digits[9]);

@@ -66,11 +66,10 @@ export function makeApi(fetch, base = 'api/v1') {
     /** @param {{member: string, secret: string}} identity of who makes it @param {{role: string, expires_s: number, one_use: boolean}} link @returns {Promise<{token: string}>} */
     makeLink: (room, identity, link) => call('POST', `rooms/${id(room)}/links`, { body: link, more: ofMember(identity) }),
     probe: (plan, [x, y, z], signal) => call('GET', `plans/${id(plan)}/probe?x=${x}&y=${y}&z=${z}`, { signal }),
-    pick: (plan, room, view, px, py, prefer = '') =>
-      call(
-        'GET',
-        `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${prefer ? `&prefer=${id(prefer)}` : ''}`,
-      ),
+    pick: (plan, room, view, px, py, prefer = '') => {
+      const preferred = prefer ? `&prefer=${id(prefer)}` : '';
+      return call('GET', `plans/${id(plan)}/pick?room=${id(room)}&view=${id(JSON.stringify(view))}&px=${px}&py=${py}${preferred}`);
+    },
     /** A question about the scene of a room with a view's override: dvh, profile, constraints, dose/probe. */
     ofScene: (plan, question, room, view, parameters, signal) =>
       call('GET', `plans/${id(plan)}/${question}?${new URLSearchParams({ room, view: JSON.stringify(view), ...parameters })}`, { signal }),

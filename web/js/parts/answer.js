@@ -1,4 +1,6 @@
-// A live answer of the server: asked for again whenever its key, everything that it depends on, changes. Debounce, abort, error and age stand here alone.
+// A live answer of the server: asked for again whenever its key, everything that it depends on, changes. Debounce, abort, error and age stand here.
+// Three askers are no such answers: image/histograms.js asks once for each image, room/pointed.js asks nothing while a question is on its way, and
+// measures/ellipses.js asks for as many ellipses as are being drawn.
 import { computed, effect, signal, untracked } from '../../lib/signals-core.js';
 
 const [firstMs, pauseMs] = [40, 150]; // of an answer that follows: before a question, and after an answer, as pictures come first

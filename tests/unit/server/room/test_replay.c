@@ -305,7 +305,7 @@ static void another_plan_than_the_recorded_one_is_said(void **state)
     (void)state;
     disk = batches;
     fake_plan_ready(&fake, true);
-    assert_true(recording_plan_mark(fake.room, facts.plan_mark));
+    assert_true(recording_plan_sum(fake.room, facts.plan_sum));
     room_replay_begin(fake.room, "k3rw-8vxa", 0, &facts, fake.now_us);
     fake_hello(&fake, &page);
     answer();
@@ -323,7 +323,7 @@ static void another_revision_of_the_files_is_said_when_it_is_known(void **state)
     (void)state;
     disk = batches;
     fake_plan_ready(&fake, true);
-    assert_true(recording_plan_mark(fake.room, facts.plan_mark));
+    assert_true(recording_plan_sum(fake.room, facts.plan_sum));
     room_replay_begin(fake.room, "k3rw-8vxa", 0, &facts, fake.now_us);
     fake_hello(&fake, &page);
     answer();
@@ -348,7 +348,7 @@ static void an_older_recording_knows_no_revision(void **state)
     (void)state;
     disk = batches;
     fake_plan_ready(&fake, true);
-    assert_true(recording_plan_mark(fake.room, facts.plan_mark));
+    assert_true(recording_plan_sum(fake.room, facts.plan_sum));
     room_replay_begin(fake.room, "k3rw-8vxa", 0, &facts, fake.now_us);
     fake_hello(&fake, &page);
     answer();
