@@ -1,13 +1,13 @@
-// The orientation figure of a 3-D pane, whose sides are buttons, and the menu of its camera.
+// The orientation figure of a 3-D pane, whose sides are buttons, and the button of the camera's menu.
 import { html, nothing, svg } from '../../lib/lit-html.js';
 import { repeat } from '../../lib/directives/repeat.js';
-import { isTarget } from '../room/plan.js';
 import { isTurnable } from '../room/kinds.js';
-import { cubeSides, sides } from './orientation.js';
-import { checkbox, segment } from '../parts/fields.js';
+import { cubeSides } from './orientation.js';
 import { icon } from '../parts/icons.js';
+import { later } from '../parts/lazy.js';
 import { say } from './words.js';
 
+const cameraMenu = later(() => import('./camera_menu.js'));
 const edgePx = 36;
 const buttonFrom = 0.3; // cosine; a side that is seen more from its edge is too narrow to be hit
 const letterFrom = 0.25;
@@ -32,7 +32,7 @@ export function orientation({ room, ui }, actions, size) {
   return html`<div class="view-figure">
     ${isTouch ? nothing : picture}
     <span class="anchor"><button class=${isTouch ? 'view-all touch' : 'view-all'} title=${say.lookFromIs} aria-haspopup="dialog" aria-expanded=${isOpen} @click=${() => ui.toggle(name)}>${isTouch ? picture : icon('camera3d')}<span class="hidden">${say.cameraOf({ view: view.name })}</span></button>
-    ${isOpen ? menu({ room, ui }, actions, isDisabled) : nothing}</span></div>`;
+    ${isOpen ? cameraMenu.draw(({ menu }) => menu({ room, ui }, actions, isDisabled)) : nothing}</span></div>`;
 }
 
 function face({ letter, name, facing, middle, corners }, act) {
@@ -47,58 +47,6 @@ function face({ letter, name, facing, middle, corners }, act) {
     @click=${isButton ? act : nothing} @keydown=${isButton ? onKey : nothing}>
     <polygon points=${corners.map(at).join(' ')} />
     ${facing >= letterFrom ? svg`<text text-anchor="middle" x=${middle[0] * edgePx} y=${middle[1] * edgePx + 4.5}>${letter}</text>` : nothing}</g>`;
-}
-
-function menu({ room, ui }, actions, isDisabled) {
-  const { cameras } = actions;
-  const act = (run) => (event) => run(event.timeStamp);
-  const hasTwo = room.views.filter(({ kind, isOpen }) => isTurnable(kind) && isOpen.value).length > 1;
-  const scene = room.scene.value;
-  const { view } = actions;
-  const link = (isOn, event) => {
-    ui.panes.areCamerasLinked.value = isOn;
-    if (isOn) cameras.link(event.timeStamp);
-  };
-  return html`<div class="popover view-menu" role="dialog" aria-label=${say.camera}>
-    <div class="view-sides" role="group" aria-label=${say.lookFrom}>${sides.map(
-      ({
-        letter,
-        name,
-      }) => html`<button ?disabled=${isDisabled} aria-label=${say.lookFromSide({ side: say[name] })} title=${say.lookFromSide({ side: say[name] })}
-      @click=${act((at) => cameras.lookFrom(name, at))}>${letter}</button>`,
-    )}</div>
-    <div class="view-acts">
-      <button ?disabled=${isDisabled} title=${say.fitIs} @click=${act((at) => cameras.fit(at))}>${say.fit}</button>
-      <button ?disabled=${isDisabled} title=${say.resetIs} @click=${act((at) => cameras.reset(at))}>${say.reset}</button>
-      <button ?disabled=${isDisabled} title=${say.rollLeftIs} aria-label=${say.rollLeft} @click=${act((at) => cameras.roll(5, at))}>${icon('rollLeft')}</button>
-      <button ?disabled=${isDisabled} title=${say.rollRightIs} aria-label=${say.rollRight} @click=${act((at) => cameras.roll(-5, at))}>${icon('rollRight')}</button></div>
-    ${segment(
-      say.projection,
-      [
-        ['perspective', say.perspective],
-        ['parallel', say.parallel],
-      ],
-      cameras.value.projection,
-      isDisabled,
-      (id, event) => cameras.setProjection(id, event.timeStamp),
-    )}
-    <div class="checks">${scene?.axes ? checkbox(say.axes, scene.axes.visible, isDisabled, (visible, event) => room.patchScene({ axes: { visible } }, { view: actions.view.number, at: event.timeStamp }), say.axesIs) : nothing}
-      ${view.ofKind > 1 ? onlyTargets(room, view, isDisabled) : nothing}
-      ${checkbox(say.linkCameras, ui.panes.areCamerasLinked.value, false, link, hasTwo ? say.linkCamerasIs : say.linkCamerasHow)}</div></div>`;
-}
-
-/** A second 3-D picture beside the first: the same scene, without what lies around the targets. */
-function onlyTargets(room, view, isDisabled) {
-  const regions = room.plan.value?.regions ?? [];
-  if (!regions.some(isTarget)) return nothing;
-  const hidden = Object.fromEntries(regions.map((region) => [region.id, { visible: isTarget(region) }]));
-  return checkbox(
-    say.onlyTargets,
-    hasOwnRegions(view),
-    isDisabled,
-    (isOn, event) => room.patchView(view.number, { override: { regions: isOn ? hidden : null } }, { at: event.timeStamp }),
-    say.onlyTargetsIs,
-  );
 }
 
 /** True if the view shows other regions than the scene. */

@@ -1,8 +1,7 @@
-// The red bar of a plan whose files have changed on the disk since they were read, and its way out.
-import { html, nothing } from '../../lib/lit-html.js';
+// The red bar of a plan whose files have changed on the disk since they were read, and its way out. Loaded when they have.
+import { html } from '../../lib/lit-html.js';
 import { icon } from '../parts/icons.js';
-import { styled } from '../parts/lazy.js';
-import { say } from './words.js';
+import { say } from './later_words.js';
 
 const time = (ms) => new Date(ms).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit' });
 
@@ -17,8 +16,6 @@ async function readAnew({ room, ui }) {
 
 export function filesBar(world) {
   const files = world.room.files.value;
-  if (!files) return nothing;
-  void styled('js/features/fits/fit.css');
   const changed = html`<b>${say.filesChanged({ time: time(files.changed_ms) })}</b>`;
   return html`<div class="fit-bar err" role="alert"><span class="err">${icon('error')}</span><p>${say.filesRead({ changed, time: time(files.read_ms) })}</p>
     <button @click=${() => void readAnew(world)}>${say.readAnew}</button></div>`;

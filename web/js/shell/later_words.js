@@ -1,4 +1,4 @@
-// What a person reads in the lists of members and of keys, and in invitations.
+// What a person reads of members, invitations, a room that has ended, files that changed.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('shell.later', {
@@ -59,4 +59,17 @@ export const say = sentences('shell.later', {
   asks: '{name} requests control',
   give: 'Give',
   moreAsk: '{n} more request control: see the members',
+  noReason: 'The server gave no reason.',
+  youLeft: 'You are no longer in this room',
+  refused: 'You cannot enter this room',
+  noRoom: 'There is no room at this address',
+  planGone: 'Its plan is no longer on this server.',
+  changesLost: 'Your last changes did not reach it.',
+  saveNotes: 'Save its notes as a file',
+  join: 'Join {room}: {who}',
+  openNew: 'Open {plan} in a new room',
+  notReadAnew: 'The plan could not be read anew: the server refused or does not answer.',
+  filesChanged: 'The plan’s files changed on the disk at {time}.',
+  filesRead: '{changed} Shown is what was read at {time}. Nothing is decided or signed until it is read anew.',
+  readAnew: 'Read anew',
 });

@@ -9,12 +9,12 @@ import { RoomState } from '../room/room.js';
 import { UiState } from '../room/ui.js';
 import { Undo, listenUndo } from '../room/undo.js';
 import { banner } from './banner.js';
-import { ended, watchEnd } from './ended.js';
-import { filesBar } from './files_bar.js';
+import { card, ended, watchEnd } from './ended.js';
 import { coverPage, help, toasts } from './float.js';
 import { inspector } from './inspector.js';
 import { soon } from '../net/soon.js';
 import { Answer } from '../parts/answer.js';
+import { later } from '../parts/lazy.js';
 import { mount } from '../parts/mount.js';
 import { Pane } from '../pane/pane.js';
 import { giveOblique } from '../pane/pane_kind.js';
@@ -33,6 +33,7 @@ const tickMs = 250;
 const lateMs = 150; // without the room's plan, after which the panels are drawn without it
 const inspectorFrom = 1209; // px: rail, inspector and two panes of 420
 
+const filesBar = later(() => import('./files_bar.js'), 'js/features/fits/fit.css');
 const drawer = (world) => (world.ui.arrangement.value.drawer ? features.map(({ drawer: own }) => own?.draw(world)) : nothing);
 const dialogs = ['help', ...features.flatMap((feature) => feature.dialogs ?? [])];
 const floating = (world) => html`${help(world)}${ended(world)}${partsOf('dialog', world)}`;
@@ -102,7 +103,10 @@ export function roomPage(
     ['.tree', tree],
     ['.strip', toolStrip],
     ['.switch', paneSwitch],
-    ['.dose-bars', () => html`${filesBar(world)}${partsOf('bar', world)}`],
+    [
+      '.dose-bars',
+      () => html`${world.room.files.value ? filesBar.draw((loaded) => loaded.filesBar(world)) : nothing}${partsOf('bar', world)}`,
+    ],
     ['.chart-drawer', drawer],
     ['.inspector', inspector],
     ['.status', status],
@@ -198,12 +202,14 @@ function probe(room, api, clock) {
   return new Answer({ key, ask, clock, restMs: probeMs, renews: true });
 }
 
-/** The inspector's Selection is loaded when somebody begins to use the page: it is there before the first click. */
+/** The inspector's Selection is loaded when somebody begins to use the page: it is there before the first click. So is what tells that the room has ended, when
+ *  a server that restarts may not give it any more. */
 function loadBeforeClicks() {
   const abort = new AbortController();
   const load = () => {
     abort.abort();
     loadBlocks();
+    card.load();
   };
   for (const event of ['pointerover', 'keydown', 'touchstart']) addEventListener(event, load, { signal: abort.signal, passive: true });
   return () => abort.abort();

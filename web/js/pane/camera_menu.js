@@ -1,0 +1,63 @@
+// The menu of a 3-D pane's camera. Loaded when it is first opened.
+import { html, nothing } from '../../lib/lit-html.js';
+import { isTarget } from '../room/plan.js';
+import { isTurnable } from '../room/kinds.js';
+import { hasOwnRegions } from './orientation_menu.js';
+import { sides } from './orientation.js';
+import { checkbox, segment } from '../parts/fields.js';
+import { icon } from '../parts/icons.js';
+import { say } from './later_words.js';
+import { say as sayAtOnce } from './words.js';
+
+/** @param {object} world {room, ui} @param {import('./pane_actions.js').PaneActions} actions of the pane */
+export function menu({ room, ui }, actions, isDisabled) {
+  const { cameras } = actions;
+  const act = (run) => (event) => run(event.timeStamp);
+  const hasTwo = room.views.filter(({ kind, isOpen }) => isTurnable(kind) && isOpen.value).length > 1;
+  const scene = room.scene.value;
+  const { view } = actions;
+  const link = (isOn, event) => {
+    ui.panes.areCamerasLinked.value = isOn;
+    if (isOn) cameras.link(event.timeStamp);
+  };
+  return html`<div class="popover view-menu" role="dialog" aria-label=${say.camera}>
+    <div class="view-sides" role="group" aria-label=${say.lookFrom}>${sides.map(
+      ({
+        letter,
+        name,
+      }) => html`<button ?disabled=${isDisabled} aria-label=${sayAtOnce.lookFromSide({ side: sayAtOnce[name] })} title=${sayAtOnce.lookFromSide({ side: sayAtOnce[name] })}
+      @click=${act((at) => cameras.lookFrom(name, at))}>${letter}</button>`,
+    )}</div>
+    <div class="view-acts">
+      <button ?disabled=${isDisabled} title=${say.fitIs} @click=${act((at) => cameras.fit(at))}>${say.fit}</button>
+      <button ?disabled=${isDisabled} title=${say.resetIs} @click=${act((at) => cameras.reset(at))}>${say.reset}</button>
+      <button ?disabled=${isDisabled} title=${say.rollLeftIs} aria-label=${say.rollLeft} @click=${act((at) => cameras.roll(5, at))}>${icon('rollLeft')}</button>
+      <button ?disabled=${isDisabled} title=${say.rollRightIs} aria-label=${say.rollRight} @click=${act((at) => cameras.roll(-5, at))}>${icon('rollRight')}</button></div>
+    ${segment(
+      say.projection,
+      [
+        ['perspective', say.perspective],
+        ['parallel', say.parallel],
+      ],
+      cameras.value.projection,
+      isDisabled,
+      (id, event) => cameras.setProjection(id, event.timeStamp),
+    )}
+    <div class="checks">${scene?.axes ? checkbox(say.axes, scene.axes.visible, isDisabled, (visible, event) => room.patchScene({ axes: { visible } }, { view: actions.view.number, at: event.timeStamp }), say.axesIs) : nothing}
+      ${view.ofKind > 1 ? onlyTargets(room, view, isDisabled) : nothing}
+      ${checkbox(sayAtOnce.linkCameras, ui.panes.areCamerasLinked.value, false, link, hasTwo ? sayAtOnce.linkCamerasIs : say.linkCamerasHow)}</div></div>`;
+}
+
+/** A second 3-D picture beside the first: the same scene, without what lies around the targets. */
+function onlyTargets(room, view, isDisabled) {
+  const regions = room.plan.value?.regions ?? [];
+  if (!regions.some(isTarget)) return nothing;
+  const hidden = Object.fromEntries(regions.map((region) => [region.id, { visible: isTarget(region) }]));
+  return checkbox(
+    say.onlyTargets,
+    hasOwnRegions(view),
+    isDisabled,
+    (isOn, event) => room.patchView(view.number, { override: { regions: isOn ? hidden : null } }, { at: event.timeStamp }),
+    say.onlyTargetsIs,
+  );
+}
