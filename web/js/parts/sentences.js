@@ -14,7 +14,7 @@ const forms = inOrder.filter((form) => rules.resolvedOptions().pluralCategories.
  * @returns {{[K in keyof T]: any}}
  */
 export function sentences(group, english) {
-  const own = texts[group] ?? {};
+  const own = { __proto__: null, ...texts[group] }; // a key may be valueOf
   return Object.fromEntries(Object.entries(english).map(([key, text]) => [key, sentence(own[key] ?? text)]));
 }
 

@@ -8,8 +8,15 @@ import { join } from 'node:path';
 import { sentences } from '../../../../web/js/parts/sentences.js';
 
 test('places take values, numbers choose the form, templates make a list', () => {
-  const say = sentences('test', { plain: 'Show', named: 'Show {plane}', many: '{n} {n|row|rows} of {all}', twice: '{a} and {a}' });
+  const say = sentences('test', {
+    plain: 'Show',
+    valueOf: 'Value of {n}',
+    named: 'Show {plane}',
+    many: '{n} {n|row|rows} of {all}',
+    twice: '{a} and {a}',
+  });
   assert.equal(say.plain, 'Show');
+  assert.equal(say.valueOf({ n: 2 }), 'Value of 2', 'a key may have the name of what every object has');
   assert.equal(say.named({ plane: 'Oblique 1' }), 'Show Oblique 1');
   assert.equal(say.many({ n: 1, all: 4 }), '1 row of 4');
   assert.equal(say.many({ n: 0, all: 4 }), '0 rows of 4');

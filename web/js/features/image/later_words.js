@@ -107,7 +107,7 @@ export const say = sentences('image.later', {
   pointIs: 'Point {n}: {value}, {percent} % stopped by 1 mm',
   points: 'Points of the transfer function',
   stopped: '{percent} % stopped by 1 mm',
-  valueOf: 'Value of point {n}',
+  valueOfPoint: 'Value of point {n}',
   opacityOf: 'Opacity of point {n} in per cent',
   colourOf: 'Colour of point {n}',
   noPoint: 'No point: nothing is drawn.',

@@ -160,7 +160,7 @@ function keys(event, { room, axis, at, set, choose, insertBeside, remove }) {
 }
 
 const valueField = ({ room, axis, isDisabled, set }, points, index, unit) =>
-  numberField(say.valueOf({ n: index + 1 }), Number(points[index].value.toPrecision(6)), unitText(unit), isDisabled, (value, event) =>
+  numberField(say.valueOfPoint({ n: index + 1 }), Number(points[index].value.toPrecision(6)), unitText(unit), isDisabled, (value, event) =>
     set(moved(pointsNow(room), axis, index, { value }), event),
   );
 const opacityField = ({ room, axis, isDisabled, set }, points, index) =>
