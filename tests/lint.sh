@@ -201,12 +201,13 @@ import { say } from './words.js';
 import { say as later } from './later_words.js';
 
 const names = { axial: 'Axial cut', icon: 'eye-off' };
-export const clip = (ui, n) => html`<p class="a note" title="Planted one" data-key="Aa bb">${say.none} mm<b>Planted two</b>${n ? 'planted' : names.axial} ${n === 'all of' ? icon('eye') : later.name}</p>
+export const clip = (ui, n) => html`<p class="a note" title="Planted one" data-key="Aa bb">${say.none} mm<b>Planted two</b>${n ? 'planted' : names.axial} ${n === 'all of' ? icon('eye') : later.name}${later.one({ m: n })}</p>
   <i class=${`old ${n}`} aria-label=${`planted ${n}`} @click=${() => ui.notify('ok', `Planted ${n} more`)}></i>`;
 JS
     printf "export const say = sentences('clip', {\n  some: 'Some',\n});\n" >"$folder/web/js/clip/words.js"
-    printf "export const say = sentences('clip.later', {\n  name: 'Name',\n});\n" >"$folder/web/js/clip/later_words.js"
+    printf "export const say = sentences('clip.later', {\n  name: 'Name',\n  one: '{n} of one',\n});\n" >"$folder/web/js/clip/later_words.js"
     expected='web/js/clip/clip.js:6: web/js/clip/words.js has no "none"
+web/js/clip/clip.js:6: "one" of web/js/clip/later_words.js gets no value for n
 web/js/clip/words.js:2: nothing reads "some"
 web/js/clip/clip.js is loaded at once, and imports web/js/clip/later_words.js
 web/js/clip/clip.js:6: stands outside of a table of words: Planted one

@@ -1,6 +1,6 @@
 // Finds what a person reads outside of the tables of words: node tests/page_words.mjs [ROOT]; prints each, and fails then. Strings that only look like
 // words, and files whose sentences are not in a table yet, stand in tests/page_words.txt. Of the tables: each key is read somewhere, none that is read is
-// missing, and no module that is loaded at once imports one of what is loaded later.
+// missing, each place gets a value, and no module that is loaded at once imports one of what is loaded later.
 import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import { basename, dirname, join, normalize } from 'node:path';
 import { ancestor } from 'acorn-walk';
@@ -127,13 +127,36 @@ function readIn(source, tree) {
   return found;
 }
 
-/** The table of a file that has one. @returns {{group: string, keys: Map<string, number>}|null} */
+/** What is wrong with the way a text is read, where that can be seen: a text without places is no function, one with places gets a value for each. */
+function misread(text, ancestors) {
+  let at = ancestors.length - 1;
+  while (/^(Conditional|Logical)Expression$/.test(ancestors[at - 1]?.type) && ancestors[at - 1].test !== ancestors[at]) at--;
+  const call = ancestors[at - 1];
+  if (call?.type !== 'CallExpression' || call.callee !== ancestors[at]) return '';
+  const places = new Set([...text.matchAll(/\{([^}|]*)[^}]*\}/g)].map(([, name]) => name));
+  if (!places.size) return 'has no places, and is called';
+  const [values] = call.arguments;
+  if (values?.type !== 'ObjectExpression' || values.properties.some(({ type }) => type !== 'Property')) return '';
+  const lacking = [...places].filter((name) => !values.properties.some(({ key }) => (key.name ?? key.value) === name));
+  return lacking.length ? `gets no value for ${lacking.join(', ')}` : '';
+}
+
+/** The table of a file that has one: by key its line and its text. @returns {{group: string, keys: Map<string, number>, english: Map<string, string>}|null} */
 function tableOf(tree) {
   let table = null;
   ancestor(tree, {
     CallExpression({ callee, arguments: [group, english] }) {
       if (callee.name !== 'sentences' || english?.type !== 'ObjectExpression') return;
-      table = { group: group.value, keys: new Map(english.properties.map(({ key, loc }) => [key.name ?? key.value, loc.start.line])) };
+      const rows = english.properties.map(({ key, value, loc }) => ({
+        key: key.name ?? key.value,
+        text: value.value,
+        line: loc.start.line,
+      }));
+      table = {
+        group: group.value,
+        keys: new Map(rows.map(({ key, line }) => [key, line])),
+        english: new Map(rows.map(({ key, text }) => [key, text])),
+      };
     },
   });
   return table;
@@ -185,10 +208,12 @@ function keyFaults({ scripts, tables }) {
   const faults = [];
   const used = new Map([...tables.keys()].map((path) => [path, new Set()]));
   const look = (script, other, own) => {
-    const { keys } = tables.get(other);
+    const { keys, english } = tables.get(other);
     ancestor(script.tree, {
-      MemberExpression({ object, property, computed, loc }) {
+      MemberExpression({ object, property, computed, loc }, _, ancestors) {
         if (object.type !== 'Identifier' || object.name !== own) return;
+        const why = !computed && keys.has(property.name) ? misread(english.get(property.name), ancestors) : '';
+        if (why) faults.push(`${script.path}:${loc.start.line}: "${property.name}" of ${other} ${why}`);
         const read = !computed ? [property.name] : property.type === 'Literal' ? [property.value] : [...keys.keys()];
         for (const key of read) {
           used.get(other).add(key);
