@@ -250,6 +250,7 @@ check "no folder and no file of a folder is in a circle" tests/circles.sh "${BEA
 check "a circle of folders and one of files are found" planted_circle
 check "documents name what is there: paths, packages with their licences, one version" "${NODE:-node}" tests/documents.mjs
 check "a path, a package and a version that are not are found" planted_documents
+check "a stranger's questions lead from README.md to their files (docs/testing.md)" "${NODE:-node}" tests/ways.mjs
 check "the README of each folder names its files, each once, and nothing that is not there" "${NODE:-node}" tests/readmes.mjs
 check "faults of such a README are found" planted_readmes
 check "no C file has more than 600 lines" short_enough
