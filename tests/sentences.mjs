@@ -1,4 +1,4 @@
-// Holds proto/sentences.json to the C code: every sentence that problem_set or report_add is given is a row of the list, and every row is said somewhere.
+// Holds proto/sentences.json to the C code: every sentence that one of the calls below is given is a row of the list, and every row is said somewhere.
 // Prints what is wrong, a line each, and ends with 1 if there is anything. A new sentence gets a row: the code that it keeps, and names for its places.
 //
 //   node tests/sentences.mjs [FOLDER]     the project, or another tree with the same rules
@@ -8,8 +8,17 @@ import { fileURLToPath } from 'node:url';
 import { sentencesOf } from '../proto/gen/sentences.mjs';
 
 const top = process.argv[2] ?? join(dirname(fileURLToPath(import.meta.url)), '..');
-const says = { problems: /\bproblem_set\(/g, report: /\breport_add\(/g };
-const formatAt = 4; // the argument of both that is the format
+/** The calls that say a sentence, which of their arguments is its format, what stands before it, and in which files. */
+const says = {
+  problems: [
+    [/\bproblem_set\(/g, 4],
+    [/\brefuse\(/g, 3, '%s ', /wire\/fields_read\.c$/],
+  ],
+  report: [
+    [/\breport_add\(/g, 4],
+    [/\breport_line_say\(/g, 1],
+  ],
+};
 const passesOn = new Set(['"%s"']); // a sentence that was written elsewhere
 
 function* filesOf(folder) {
@@ -53,20 +62,21 @@ const wrong = (words) => {
   n++;
 };
 const files = ['core', 'server'].flatMap((folder) => [...filesOf(join(top, folder))]).map((path) => [path, readFileSync(path, 'utf8')]);
-for (const [group, call] of Object.entries(says)) {
+for (const [group, calls] of Object.entries(says)) {
   const listed = new Map(sentencesOf({ [group]: groups[group] }).map(({ code, format }) => [format.replace(/" (PRI\w+) "/g, '$1'), code]));
   const said = new Set();
-  for (const [path, text] of files)
-    for (const found of text.matchAll(call)) {
-      const given = argumentsFrom(text, found.index + found[0].length);
-      for (const format of formatsIn(given[formatAt] ?? '')) {
-        said.add(format);
-        if (!listed.has(format) && !passesOn.has(format)) {
+  for (const [call, formatAt, before = '', where = /./] of calls)
+    for (const [path, text] of files.filter(([one]) => where.test(one)))
+      for (const found of text.matchAll(call)) {
+        const given = argumentsFrom(text, found.index + found[0].length);
+        for (const own of formatsIn(given[formatAt] ?? '')) {
+          const format = `"${before}${own.slice(1)}`;
+          said.add(format);
+          if (listed.has(format) || passesOn.has(format)) continue;
           const line = text.slice(0, found.index).split('\n').length;
           wrong(`${path.slice(top.length + 1)}:${line}: ${format} is not in proto/sentences.json, ${group}`);
         }
       }
-    }
   for (const [format, code] of listed) if (!said.has(format)) wrong(`proto/sentences.json, ${group}: nothing says ${code}, ${format}`);
 }
 process.exitCode = n ? 1 : 0;

@@ -449,9 +449,11 @@ static void fields_report(struct fields *fields, struct report *report)
         fields_text(fields, line.code, sizeof line.code);
         fields_text(fields, line.where, sizeof line.where);
         fields_text(fields, line.sentence, sizeof line.sentence);
+        fields_text(fields, line.facts.code, sizeof line.facts.code);
+        fields_text(fields, line.facts.values, sizeof line.facts.values);
         require(fields, report_code_is_known(line.code));
         if (fields->is_reading && !fields->is_bad)
-            report_add(report, line.severity, line.code, line.where, "%s", line.sentence);
+            report_add_line(report, &line);
     }
     if (fields->is_reading)
         report->n_dropped = all->n_dropped;

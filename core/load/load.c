@@ -96,8 +96,8 @@ static void count_found(struct plan *plan)
     for (size_t i = 0; i < plan->report.n_lines; i++) {
         struct report_line *line = &plan->report.lines[i];
         if (strcmp(line->code, "plan.recognised") == 0)
-            snprintf(
-                line->sentence, sizeof line->sentence,
+            report_line_say(
+                line,
                 "The folder has no plan.json; its parts were found by names and contents: %zu %s, %zu %s, %zu %s, %zu %s.",
                 plan->n_images, plan->n_images == 1 ? "image" : "images", plan->regions.n_regions,
                 plan->regions.n_regions == 1 ? "region" : "regions", plan->n_doses,

@@ -36,32 +36,61 @@ static bool make_room(struct report *report, enum report_severity severity)
     return true;
 }
 
+/* A line to write into; NULL: there is no report, or no room for a line of this severity. */
+static struct report_line *new_line(struct report *report, enum report_severity severity)
+{
+    if (!report || (report->n_lines >= REPORT_MAX && !make_room(report, severity)))
+        return NULL;
+    if (!report->lines)
+        report->lines = mem_new(REPORT_MAX * sizeof *report->lines);
+    return &report->lines[report->n_lines++];
+}
+
+static void say(struct report_line *line, const char *format, va_list args)
+{
+    va_list again;
+    va_copy(again, args);
+    (void)vsnprintf(line->sentence, sizeof line->sentence, format, args);
+    sentence_describe(&line->facts, format, again);
+    va_end(again);
+}
+
 void report_add(struct report *report, enum report_severity severity, const char *code, const char *where,
                 const char *format, ...)
 {
     assert(report_code_is_known(code));
-    if (!report)
+    struct report_line *line = new_line(report, severity);
+    if (!line)
         return;
-    if (report->n_lines >= REPORT_MAX && !make_room(report, severity))
-        return;
-    if (!report->lines)
-        report->lines = mem_new(REPORT_MAX * sizeof *report->lines);
-    struct report_line *line = &report->lines[report->n_lines++];
     line->severity = severity;
     snprintf(line->code, sizeof line->code, "%s", code);
     snprintf(line->where, sizeof line->where, "%s", where);
     va_list args;
     va_start(args, format);
-    vsnprintf(line->sentence, sizeof line->sentence, format, args);
+    say(line, format, args);
     va_end(args);
+}
+
+void report_line_say(struct report_line *line, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    say(line, format, args);
+    va_end(args);
+}
+
+void report_add_line(struct report *report, const struct report_line *line)
+{
+    assert(report_code_is_known(line->code));
+    struct report_line *place = new_line(report, line->severity);
+    if (place)
+        *place = *line;
 }
 
 void report_move(struct report *to, struct report *from)
 {
-    for (size_t i = 0; i < from->n_lines; i++) {
-        const struct report_line *line = &from->lines[i];
-        report_add(to, line->severity, line->code, line->where, "%s", line->sentence);
-    }
+    for (size_t i = 0; i < from->n_lines; i++)
+        report_add_line(to, &from->lines[i]);
     to->n_dropped += from->n_dropped;
     report_finish(from);
 }

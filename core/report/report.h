@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "core/base/error.h"
+#include "core/sentence/sentence.h"
 
 enum report_severity { REPORT_NOTE, REPORT_WARNING, REPORT_ERROR };
 enum { REPORT_MAX = 500 }; /* lines beyond are counted in n_dropped, not kept */
@@ -13,6 +14,7 @@ struct report_line {
     char code[48]; /* one of report_codes.h, "image.slices-differ"; stable, so programs may go by it */
     char sentence[400];
     char where[200]; /* the file, relative to the plan's folder; "" for the plan as a whole */
+    struct sentence_facts facts;
 };
 
 struct report {
@@ -24,6 +26,10 @@ struct report {
  * report_codes.h; does nothing when report is NULL. */
 void report_add(struct report *report, enum report_severity severity, const char *code, const char *where,
                 const char *format, ...) PRINTF_LIKE(5, 6);
+/* Puts another sentence into a line. */
+void report_line_say(struct report_line *line, const char *format, ...) PRINTF_LIKE(2, 3);
+/* Appends a line as it was written before. */
+void report_add_line(struct report *report, const struct report_line *line);
 /* Appends all lines of from to to, and empties from. */
 void report_move(struct report *to, struct report *from);
 bool report_code_is_known(const char *code);

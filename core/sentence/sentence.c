@@ -69,20 +69,25 @@ const struct sentence *sentence_find(const char *code)
     return NULL;
 }
 
-static const struct sentence *of_format(const char *format)
+static const char behind_subject[] = "%s ";
+
+/* has_subject: the format is what stands behind "%s ". */
+static const struct sentence *of_format(const char *format, bool has_subject)
 {
+    size_t n = has_subject ? sizeof behind_subject - 1 : 0;
     for (size_t i = 0; i < n_sentences; i++)
-        if (strcmp(sentences[i].format, format) == 0)
+        if (strncmp(sentences[i].format, behind_subject, n) == 0 && strcmp(sentences[i].format + n, format) == 0)
             return &sentences[i];
     return NULL;
 }
 
-void sentence_describe(struct sentence_facts *facts, const char *format, va_list args)
+/* subject: the first value; NULL: it is one of the arguments. */
+static void describe(struct sentence_facts *facts, const char *subject, const char *format, va_list args)
 {
     *facts = (struct sentence_facts){ 0 };
-    const struct sentence *sentence = of_format(format);
-    bool fits = sentence != NULL;
-    for (int i = 0; fits && i < sentence->n_places; i++) {
+    const struct sentence *sentence = of_format(format, subject != NULL);
+    bool fits = sentence != NULL && (!subject || sentence_add_text(facts, true, subject, -1));
+    for (int i = subject ? 1 : 0; fits && i < sentence->n_places; i++) {
         const struct sentence_place *place = &sentence->places[i];
         switch (place->type) {
         case SENTENCE_TEXT:
@@ -105,4 +110,14 @@ void sentence_describe(struct sentence_facts *facts, const char *format, va_list
         (void)snprintf(facts->code, sizeof facts->code, "%s", sentence->code);
     else
         *facts = (struct sentence_facts){ 0 };
+}
+
+void sentence_describe(struct sentence_facts *facts, const char *format, va_list args)
+{
+    describe(facts, NULL, format, args);
+}
+
+void sentence_describe_of(struct sentence_facts *facts, const char *subject, const char *format, va_list args)
+{
+    describe(facts, subject, format, args);
 }

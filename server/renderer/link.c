@@ -125,6 +125,7 @@ static void add_memory_limit(struct problem *problem, uint64_t max_bytes)
     (void)snprintf(problem->detail, sizeof problem->detail,
                    "%.*s; the renderer of a plan may take %llu MiB (max-renderer-mib)", (int)sizeof detail - 80, detail,
                    (unsigned long long)(max_bytes >> 20));
+    problem->facts = (struct sentence_facts){ 0 }; /* it is another sentence now */
 }
 
 void link_send_problem(struct link *link, int64_t id, const struct problem *problem)

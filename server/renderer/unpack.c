@@ -156,6 +156,7 @@ static void add_place(struct unpacker *unpacker)
     (void)snprintf(problem->detail, sizeof problem->detail, "entry %lu%s%s%.*s", (unsigned long)unpacker->n_entries,
                    place, names_it ? ", \"" : ": ", (int)(sizeof sentence - sizeof place),
                    sentence + (names_it ? sizeof before - 1 : 0));
+    problem->facts = (struct sentence_facts){ 0 }; /* it is another sentence now */
 }
 
 static bool refuse_no_file(struct unpacker *unpacker)

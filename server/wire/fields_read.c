@@ -26,7 +26,13 @@ static bool refuse(const struct json_pointer *where, const char *code, struct pr
     (void)vsnprintf(words, sizeof words, format, args);
     va_end(args);
     json_pointer_write(where, pointer);
-    return problem_set(problem, PROBLEM_VALIDATION, pointer, code, "%s %s", pointer, words);
+    (void)problem_set(problem, PROBLEM_VALIDATION, pointer, code, "%s %s", pointer, words);
+    if (!problem)
+        return false;
+    va_start(args, format);
+    sentence_describe_of(&problem->facts, pointer, format, args);
+    va_end(args);
+    return false;
 }
 
 static bool wrong_type(const struct json_pointer *where, const char *expected, struct problem *problem)

@@ -13,6 +13,7 @@
 #include "server/wire/document.h"
 #include "server/wire/plan_fits.h"
 #include "server/wire/plan_origins.h"
+#include "server/wire/sentence_json.h"
 
 static cJSON *point(struct vec3 p)
 {
@@ -355,6 +356,7 @@ static cJSON *report_object(const struct report *report)
         json_add(entry, "code", cJSON_CreateString(line->code));
         json_add(entry, "where", cJSON_CreateString(line->where));
         json_add(entry, "sentence", cJSON_CreateString(line->sentence));
+        sentence_add_json(entry, "sentence", &line->facts);
         json_append(lines, entry);
     }
     json_add(object, "lines", lines);

@@ -128,7 +128,9 @@ static void doses_tracks_and_the_report_keep_their_words(void **state)
     plan.doses[0].frame = DOSE_FRAME_DIFFERS;
     plan.tracks.n_segments = 3;
     plan.tracks.n_of_class[TRACK_GAMMA_LOW] = 3;
-    struct report_line line = { REPORT_WARNING, "dose.negative", "A sentence.", "dose.nii.gz" };
+    struct report_line line = {
+        .severity = REPORT_WARNING, .code = "dose.negative", .sentence = "A sentence.", .where = "dose.nii.gz"
+    };
     plan.report.lines = &line;
     plan.report.n_lines = 1;
     plan.report.n_dropped = 7;
