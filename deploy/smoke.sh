@@ -1,35 +1,41 @@
 #!/bin/bash
-# Does an installed Beamroom work? deploy/smoke.sh [http://HOST:PORT [PLAN]]   (http://127.0.0.1:8080, first readable plan)
+# Does an installed Beamroom work? deploy/smoke.sh [http[s]://HOST:PORT [PLAN]]   (http://127.0.0.1:8080, first readable plan)
 # Asks a running daemon what a browser and a script would: alive, ready, page, plans, open, a picture, a WebSocket.
-# Needs nothing but bash. Plain HTTP only: run it on the host itself, behind the proxy.
+# Needs nothing but bash, and for https:// the command of OpenSSL; it looks at no certificate.
 # Ends with "smoke: N passed, N failed, N skipped".
 set -u
 url=${1:-http://127.0.0.1:8080}
 plan=${2:-}
-address=${url#http://}
+scheme=${url%%://*}
+address=${url#*://}
 address=${address%%/*}
 host=${address%:*} port=${address##*:}
-[ "$port" != "$address" ] || port=80
+[ "$port" != "$address" ] || { [ "$scheme" = https ] && port=443 || port=80; }
 answer=$(mktemp)
 trap 'rm -f "$answer"' EXIT
 passed=0 failed=0
 
+request() { # request [HEADER...]: of $method, $path, $body
+    printf '%s %s HTTP/1.1\r\nHost: %s\r\n' "$method" "$path" "$address"
+    [ $# -gt 0 ] && printf '%s\r\n' "$@"
+    [[ "$*" == *Upgrade* ]] || printf 'Connection: close\r\n'
+    [ "$method" = GET ] || printf 'Content-Type: application/json\r\nContent-Length: %d\r\n' "${#body}"
+    printf '\r\n%s' "$body"
+}
 # call METHOD PATH [BODY [HEADER...]]: status in $status, whole answer in the file $answer
 call() {
     local method=$1 path=$2 body=${3:-}
     shift $(($# < 3 ? $# : 3))
     status=0
     : >"$answer"
-    exec 3<>"/dev/tcp/$host/$port" || return 1
-    {
-        printf '%s %s HTTP/1.1\r\nHost: %s\r\n' "$method" "$path" "$address"
-        [ $# -gt 0 ] && printf '%s\r\n' "$@"
-        [[ "$*" == *Upgrade* ]] || printf 'Connection: close\r\n'
-        [ "$method" = GET ] || printf 'Content-Type: application/json\r\nContent-Length: %d\r\n' "${#body}"
-        printf '\r\n%s' "$body"
-    } >&3
-    timeout "${CALL_SECONDS:-30}" cat <&3 >"$answer" 2>/dev/null
-    exec 3<&- 3>&-
+    if [ "$scheme" = https ]; then
+        request "$@" | timeout "${CALL_SECONDS:-30}" openssl s_client -quiet -connect "$host:$port" >"$answer" 2>/dev/null
+    else
+        exec 3<>"/dev/tcp/$host/$port" || return 1
+        request "$@" >&3
+        timeout "${CALL_SECONDS:-30}" cat <&3 >"$answer" 2>/dev/null
+        exec 3<&- 3>&-
+    fi
     status=$(head -n 1 "$answer" | tr -d '\0' | sed -nE 's|^HTTP/1\.[01] ([0-9]{3}).*|\1|p')
 }
 says() { grep -qaE "$1" "$answer"; }

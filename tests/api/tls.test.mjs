@@ -93,6 +93,12 @@ describe('over one port of TLS', () => {
     client.cut();
   });
 
+  test('deploy/smoke.sh finds nothing amiss', () => {
+    const { status, stdout } = spawnSync('deploy/smoke.sh', [daemon.url, 'phantom'], { encoding: 'utf8', timeout: 120000 });
+    assert.equal(status, 0, stdout);
+    assert.match(stdout, /smoke: \d+ passed, 0 failed/);
+  });
+
   test("the client's address is known behind it", async () => {
     const from = '127.0.7.1';
     const { socket } = await shakeHands(daemon.url, { from });
@@ -256,6 +262,52 @@ test('Strict-Transport-Security is promised on port 443 alone', async (t) => {
   const answer = await call(`${daemon.url}/healthz`);
   assert.equal(answer.headers.get('strict-transport-security'), 'max-age=31536000');
   assert.equal(await daemon.stop(), 0);
+});
+
+test('SIGHUP ends a daemon whose terminal is gone', async () => {
+  const data = mkdtempSync(join(tmpdir(), 'beamroom-terminal-'));
+  // A terminal of its own, which is closed once the daemon serves; a hangup is what the kernel sends then.
+  const program = `
+import os, pty, signal, sys, time
+child, terminal = pty.fork()
+if child == 0: os.execv(sys.argv[1], sys.argv[1:])
+text = b''
+while b'ready http' not in text: text += os.read(terminal, 4096)
+os.close(terminal)
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+`;
+  const args = [join(bin, 'beamroomd'), '--stub', '--data', data, '--web', web, '--listen', '127.0.0.1:0'];
+  const ended = spawnSync('python3', ['-c', program, ...args], { encoding: 'utf8', timeout: 60000 });
+  rmSync(data, { recursive: true, force: true });
+  assert.equal(ended.stdout, '0\n', ended.stderr);
+});
+
+test('a key that the user of the daemon cannot read is named', {
+  skip: process.getuid() !== 0 && 'only root can become another user',
+}, () => {
+  const data = mkdtempSync(join(tmpdir(), 'beamroom-tls-data-'));
+  const ended = spawnSync(
+    join(bin, 'beamroomd'),
+    [
+      '--stub',
+      '--user',
+      'nobody',
+      '--data',
+      data,
+      '--web',
+      web,
+      '--listen',
+      '127.0.0.1:0',
+      '--tls-cert',
+      first.cert,
+      '--tls-key',
+      first.key,
+    ],
+    { encoding: 'utf8', timeout: 60000 },
+  );
+  rmSync(data, { recursive: true, force: true });
+  assert.notEqual(ended.status, 0);
+  assert.match(ended.stderr, /user nobody cannot reach --(tls-cert|tls-key|web|renderer|data) /);
 });
 
 describe('the start ends with a sentence', () => {
