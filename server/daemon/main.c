@@ -231,12 +231,6 @@ static bool verify_audit(const struct options *options, struct error *err)
     return true;
 }
 
-static bool is_loopback(const char *listen)
-{
-    struct address address;
-    return address_read(listen, strlen(listen), &address) && address_is_loopback(&address);
-}
-
 /* ---- serving ---------------------------------------------------------------------------------------------------- */
 
 /* A connection passes through these: TLS, where there is, gives decrypted streams to the front, which hands WebSockets
@@ -336,14 +330,16 @@ static bool serve(const struct options *options, struct error *err)
     };
     char upload_folder[PATH_SIZE + 16];
     (void)snprintf(upload_folder, sizeof upload_folder, "%s/uploads", data_folder);
-    struct hosts *hosts = hosts_create((const char *const *)options->public_names, options->n_public_names);
+    struct hosts *hosts = options->is_open
+                              ? hosts_create((const char *const *)options->public_names, options->n_public_names)
+                              : hosts_create_alone();
     const struct http_options http_options = { .web_folder = options->web_folder,
                                                .upload_folder = upload_folder,
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
                                                .is_secure = options->tls_cert != NULL,
                                                .is_secure_alone = options->tls_cert && port_of(options) == HTTPS_PORT,
-                                               .is_alone = options->n_public_names == 0 && is_loopback(listen) };
+                                               .is_alone = !options->is_open };
     struct service service = { 0 };
     struct net *net = start_tls(&service, options, err) ? net_create(&net_options, err) : NULL;
     const struct front_options front_options = { .listen = listen,
@@ -363,6 +359,9 @@ static bool serve(const struct options *options, struct error *err)
             printf("ready %s\n", front_url(front));
             (void)fflush(stdout);
             log_info("serving on %s", front_url(front));
+            if (options->is_open)
+                log_warn("open to everybody: whoever reaches %s may see and change every plan, as nobody signs in here",
+                         front_url(front));
             notify_send("READY=1");
             heartbeat = serve_on(&service);
         }

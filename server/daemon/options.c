@@ -62,6 +62,10 @@ static const struct setting settings[] = {
       KIND_NAMES, AT(public_names), 0, 0 },
     { "trusted-proxy", "ADDRESS[/BITS]", "a proxy whose X-Forwarded-For says who its clients are; may be repeated",
       KIND_RANGES, AT(trusted_proxies), 0, 0 },
+    { "open-to-everybody", NULL,
+      "whoever reaches the port may see and change everything, as nobody signs in here: needed for any other address "
+      "than loopback, for --public-name and for --trusted-proxy",
+      KIND_FLAG, AT(is_open), 0, 0 },
     { "user", "NAME",
       "started by root: the user to run as; default beamroom where there is one, else nobody; root stays root",
       KIND_TEXT, AT(user), 0, 0 },
@@ -196,6 +200,32 @@ static bool read_file(struct options *options, const char *name, const bool *giv
     return ok;
 }
 
+/* Nobody signs in here: what lets others than the person at this machine in must be said. */
+static bool may_be_reached(const struct options *options, struct error *err)
+{
+    const char *listen = options->listen;
+    struct address address;
+    if (options->is_open)
+        return true;
+    if (listen && !address_read(listen, strlen(listen), &address)) /* not to be taken for one of loopback */
+        return error_set(err, ERROR_FORMAT, "--listen %.80s: expected ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
+                         listen);
+    if (listen && !address_is_loopback(&address))
+        return error_set(
+            err, ERROR_FORMAT,
+            "--listen %.80s lets others than this machine in, and nobody signs in here: whoever reaches the "
+            "port could see and change every plan. Listen on 127.0.0.1 or [::1], or say "
+            "--open-to-everybody",
+            listen);
+    if (options->n_public_names > 0 || options->n_trusted_proxies > 0)
+        return error_set(
+            err, ERROR_FORMAT,
+            "--%s is for a server that others reach, and nobody signs in here: whoever reaches it could see "
+            "and change every plan. Leave it away, or say --open-to-everybody",
+            options->n_public_names > 0 ? "public-name" : "trusted-proxy");
+    return true;
+}
+
 /* True if no setting lacks the other that it needs. */
 static bool is_whole(const struct options *options, struct error *err)
 {
@@ -253,7 +283,8 @@ bool options_read(struct options *options, int argc, char **argv, struct error *
         else
             given[setting - settings] = true;
     }
-    return (!config || read_file(options, config, given, err)) && is_whole(options, err);
+    return (!config || read_file(options, config, given, err)) && is_whole(options, err) &&
+           (options->backup || options->verify_audit || may_be_reached(options, err));
 }
 
 void options_finish(struct options *options)

@@ -25,6 +25,7 @@ struct options {
         recording_speed;
     int64_t max_upload_mib, max_unpacked_mib, max_cache_mib, disk_reserve_mib;
     bool stub_renderer;
+    bool is_open; /* open-to-everybody */
     enum log_level log_level;
     bool wants_help, wants_version;
 };

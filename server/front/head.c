@@ -16,6 +16,8 @@ struct text { /* a piece of the head */
 /* The headers that are used. */
 struct fields {
     struct text host, origin, upgrade, connection, key, version, length, coding, forwarded;
+    struct text
+        passed_on; /* name of the header by which a proxy says that it passed the request on; n 0: there is none */
     size_t n_hosts, n_origins, n_lengths, n_codings, n_keys, n_versions;
 };
 
@@ -85,6 +87,15 @@ static bool has_word(struct text list, const char *word)
     return false;
 }
 
+/* True for a header that a proxy adds to what it passes on (RFC 7239, RFC 9110 7.6.3, and what was used before them).
+ */
+static bool is_of_proxy(struct text name)
+{
+    static const char before[] = "X-Forwarded-";
+    return is_word(name, "Forwarded") || is_word(name, "Via") || is_word(name, "X-Real-IP") ||
+           (name.n >= sizeof before - 1 && strncasecmp(name.at, before, sizeof before - 1) == 0);
+}
+
 /* Takes the next line, without its line end. Returns false when it is not whole. */
 static bool next_line(const char **at, const char *end, struct text *line)
 {
@@ -149,6 +160,8 @@ static bool refuse_field(const struct head *head, size_t number, struct text lin
 static void note_field(struct fields *fields, struct text name, struct text after_colon)
 {
     struct text whole = trim_front(after_colon), value = trim(after_colon);
+    if (is_of_proxy(name))
+        fields->passed_on = name;
     const struct {
         const char *name;
         struct text *value;
@@ -225,14 +238,36 @@ static bool refuse_host(struct problem *problem, struct text host)
         show(host, shown));
 }
 
+/* Where nobody signs in, whoever reaches the server may do everything: a proxy on this machine would make that
+ * everybody who reaches the proxy. */
+static bool check_alone(const struct head *head, const struct hosts *hosts)
+{
+    const struct fields *fields = &head->fields;
+    char shown[SHOWN_SIZE];
+    if (!hosts_is_alone(hosts))
+        return true;
+    if (fields->passed_on.n > 0)
+        return problem_set(
+            head->problem, PROBLEM_THIS_MACHINE, "", "",
+            "a proxy passed the request on (%s), but nobody signs in here, so this server answers its own "
+            "machine alone; --open-to-everybody would let everybody in",
+            show(fields->passed_on, shown));
+    return fields->n_hosts == 0 || hosts_allow(hosts, fields->host.at, fields->host.n) ||
+           problem_set(
+               head->problem, PROBLEM_THIS_MACHINE, "", "",
+               "Host is \"%s\"; nobody signs in here, so this server answers its own machine alone: expected is "
+               "127.0.0.1, [::1] or localhost",
+               show(fields->host, shown));
+}
+
 static bool check_host(const struct head *head, const struct hosts *hosts)
 {
     const struct fields *fields = &head->fields;
     if (fields->n_hosts > 1 || (fields->n_hosts == 0 && head->minor > 0))
         return problem_set(head->problem, PROBLEM_REQUEST, "", "", "Host is there %zu times; HTTP/1.1 expects it once",
                            fields->n_hosts);
-    return fields->n_hosts == 0 || hosts_allow(hosts, fields->host.at, fields->host.n) ||
-           refuse_host(head->problem, fields->host);
+    return check_alone(head, hosts) && (fields->n_hosts == 0 || hosts_allow(hosts, fields->host.at, fields->host.n) ||
+                                        refuse_host(head->problem, fields->host));
 }
 
 /* True for "/api/v1/rooms/<room>/ws"; fills in room. */

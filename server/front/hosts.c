@@ -14,6 +14,7 @@ struct hosts {
     char **names;
     size_t n_names;
     bool allows_any;
+    bool is_alone;
 };
 
 struct hosts *hosts_create(const char *const *names, size_t n_names)
@@ -29,6 +30,18 @@ struct hosts *hosts_create(const char *const *names, size_t n_names)
     if (gethostname(own, sizeof own - 1) == 0 && own[0])
         hosts->names[hosts->n_names++] = mem_copy_text(own);
     return hosts;
+}
+
+struct hosts *hosts_create_alone(void)
+{
+    struct hosts *hosts = mem_new(sizeof *hosts);
+    hosts->is_alone = true;
+    return hosts;
+}
+
+bool hosts_is_alone(const struct hosts *hosts)
+{
+    return hosts->is_alone;
 }
 
 void hosts_destroy(struct hosts *hosts)
@@ -79,6 +92,7 @@ bool hosts_allow(const struct hosts *hosts, const char *host, size_t n)
 {
     char text[HOSTS_MAX_NAME + 16];
     struct in6_addr address;
+    struct in_addr old;
     bool is_bracketed;
     if (hosts->allows_any)
         return true;
@@ -90,8 +104,10 @@ bool hosts_allow(const struct hosts *hosts, const char *host, size_t n)
     if (!name || !*name)
         return false;
     if (is_bracketed)
-        return inet_pton(AF_INET6, name, &address) == 1;
-    if (inet_pton(AF_INET, name, &address) == 1 || strcasecmp(name, "localhost") == 0 || ends_in(name, ".localhost"))
+        return inet_pton(AF_INET6, name, &address) == 1 && (!hosts->is_alone || IN6_IS_ADDR_LOOPBACK(&address));
+    if (inet_pton(AF_INET, name, &old) == 1)
+        return !hosts->is_alone || ntohl(old.s_addr) >> 24 == IN_LOOPBACKNET;
+    if (strcasecmp(name, "localhost") == 0 || ends_in(name, ".localhost"))
         return true;
     for (size_t i = 0; i < hosts->n_names; i++)
         if (strcasecmp(name, hosts->names[i]) == 0)

@@ -17,7 +17,7 @@ static bool may_read(const struct api *api, const struct call *call, struct prob
     if (!api->is_alone || !is_here)
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "identity",
                            "who a patient is is told only to the person at the server's own machine (a listener on "
-                           "127.0.0.1 or [::1], without --public-name), as nobody signs in here");
+                           "127.0.0.1 or [::1], without --open-to-everybody), as nobody signs in here");
     /* a page of another site could not read the answer, but it could fill the audit with rows */
     if (call->fetch_site && strcmp(call->fetch_site, "same-origin") != 0 && strcmp(call->fetch_site, "none") != 0)
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "identity",

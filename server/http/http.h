@@ -18,7 +18,7 @@ struct http_options {
     uint64_t disk_reserve_bytes; /* left free on the disk of upload_folder */
     bool is_secure;              /* the port speaks TLS */
     bool is_secure_alone;        /* and browsers are to use nothing else for this name (RFC 6797), whatever the port */
-    bool is_alone;               /* only this machine reaches the server: a listener on loopback, and no public name */
+    bool is_alone;               /* only this machine is answered */
 };
 
 /* Serves the requests of front, which begins to listen and starts its thread (front_serve). net and front outlive it.

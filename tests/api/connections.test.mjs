@@ -109,7 +109,7 @@ describe('a later request of a connection', () => {
 describe('behind a proxy', () => {
   let daemon;
   before(async () => {
-    daemon = await startDaemon({ args: ['--stub', '--trusted-proxy', '127.0.3.0/24'] });
+    daemon = await startDaemon({ args: ['--stub', '--open-to-everybody', '--trusted-proxy', '127.0.3.0/24'] });
   });
   after(() => daemon?.stop());
   const ask = (forwarded, from) =>

@@ -170,7 +170,7 @@ describe('a stranger on the line', () => {
       ['a handshake with a wrong length', handshake(room, { more: 'Content-Length: -1\r\n' }), 400, /Content-Length is "-1"/],
       ['a handshake with chunks', handshake(room, { more: 'Transfer-Encoding: chunked\r\n' }), 400, /announces a body/],
       ['a handshake with two Hosts', handshake(room, { more: 'Host: localhost\r\n' }), 400, /Host is there 2 times/],
-      ['a handshake to somebody else', handshake(room).replace('Host: localhost', 'Host: evil.example'), 421, /evil\.example/],
+      ['a handshake to somebody else', handshake(room).replace('Host: localhost', 'Host: evil.example'), 403, /evil\.example/],
       [
         'a handshake of two origins',
         handshake(room, { more: 'Origin: http://localhost\r\nOrigin: http://evil.example\r\n' }),
@@ -223,12 +223,13 @@ describe('a stranger on the line', () => {
     ]) {
       const answer = await exchange(bytes),
         last = answer.slice(answer.lastIndexOf('HTTP/1.1'));
-      assert.equal(statusOf(last), 421);
+      assert.equal(statusOf(last), 403);
       const problem = parseStrict(last.slice(last.indexOf('\r\n\r\n') + 4));
-      assert.equal(problem.type, '/problems/misdirected');
-      assert.match(problem.detail, /evil\.example:8080.*--public-name/);
+      assert.equal(problem.type, '/problems/this-machine');
+      assert.match(problem.detail, /evil\.example:8080.*localhost/);
     }
-    const named = await startDaemon({ plans: [], args: ['--stub', '--public-name', 'beamroom.example', '--public-name', 'other.example'] });
+    const names = ['--public-name', 'beamroom.example', '--public-name', 'other.example'];
+    const named = await startDaemon({ plans: [], args: ['--stub', '--open-to-everybody', ...names] });
     try {
       for (const [host, status] of [
         ['beamroom.example', 200],

@@ -107,7 +107,7 @@ describe('a WebSocket', () => {
       ['/api/v1/rooms/7q4k-m2wz/ws', {}, 404],
       [path(), { 'Sec-WebSocket-Version': '8' }, 426],
       [path(), { Connection: 'keep-alive' }, 426],
-      [path(), { Host: 'evil.example' }, 421],
+      [path(), { Host: 'evil.example' }, 403],
     ]) {
       const { socket } = await used([FIRST]);
       assert.equal((await Client.open(daemon.url, where, headers, socket)).status, status);

@@ -310,6 +310,47 @@ static void only_our_own_names_are_answered_to(void **state)
     assert_int_equal(problem_status(problem.type), 421);
 }
 
+static void a_server_for_its_own_machine_answers_no_other_name_and_no_proxy(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *fields;
+        bool is_answered;
+    } cases[] = { { "Host: 127.0.0.1:8080", true },
+                  { "Host: 127.255.0.3", true },
+                  { "Host: localhost", true },
+                  { "Host: beamroom.localhost:8080", true },
+                  { "Host: [::1]:8080", true },
+                  { "Host: [0:0:0:0:0:0:0:1]", true },
+                  { "Host: 192.0.2.1", false },
+                  { "Host: 128.0.0.1", false },
+                  { "Host: [2001:db8::1]", false },
+                  { "Host: [::]", false },
+                  { "Host: 0.0.0.0", false },
+                  { "Host: beamroom.example", false },
+                  { "Host: 127.0.0.1.evil.example", false },
+                  { "Host: localhost\r\nX-Forwarded-For: 127.0.0.1", false },
+                  { "Host: localhost\r\nx-forwarded-proto: https", false },
+                  { "Host: localhost\r\nX-FORWARDED-HOST: localhost", false },
+                  { "Host: localhost\r\nForwarded: for=127.0.0.1", false },
+                  { "Host: localhost\r\nVia: 1.1 proxy", false },
+                  { "Host: localhost\r\nVia:", false },
+                  { "Host: localhost\r\nX-Real-IP: 127.0.0.1", false },
+                  { "Host: localhost\r\nX-Forward: 1\r\nViable: 1", true } };
+    struct hosts *alone = hosts_create_alone();
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char bytes[300];
+        struct problem problem = { 0 };
+        int n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n%s\r\n\r\n", cases[i].fields);
+        enum head_kind kind = head_look(bytes, (size_t)n, alone, &problem);
+        if ((kind == HEAD_HTTP) != cases[i].is_answered)
+            fail_msg("%s", cases[i].fields);
+        if (!cases[i].is_answered)
+            assert_int_equal(problem_status(problem.type), 403);
+    }
+    hosts_destroy(alone);
+}
+
 static void a_whole_head_says_where_its_request_ends_and_for_whom_it_comes(void **state)
 {
     (void)state;
@@ -395,6 +436,7 @@ int main(void)
         cmocka_unit_test(an_origin_is_there_once_and_is_not_cut),
         cmocka_unit_test(a_beginning_is_waited_for_or_refused_as_the_whole_is),
         cmocka_unit_test(only_our_own_names_are_answered_to),
+        cmocka_unit_test(a_server_for_its_own_machine_answers_no_other_name_and_no_proxy),
         cmocka_unit_test(a_whole_head_says_where_its_request_ends_and_for_whom_it_comes),
         cmocka_unit_test(more_parameters_than_the_library_has_memory_for_are_refused),
         cmocka_unit_test(who_does_not_come_to_an_end_is_told_what_is_missing),
