@@ -2,6 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { icon } from '../../parts/icons.js';
 import { styled } from '../../parts/lazy.js';
+import { say } from './later_words.js';
 import { pendingKey } from './snapshots.js';
 
 const leastWidthPx = 1200; // enough for a column of a printed page
@@ -23,7 +24,7 @@ async function save(world) {
   try {
     await (await import('../../room/exports.js')).savePicture(world, view, document);
   } catch {
-    world.ui.notify('err', 'No snapshot: the server does not answer.', 'snapshot');
+    world.ui.notify('err', say.noAnswer, 'snapshot');
   }
 }
 
@@ -32,9 +33,9 @@ async function add({ room, ui, printout }) {
   try {
     await printout.add(room, viewDocument(view));
     const n = printout.entries.value.length;
-    ui.notify('ok', `In the report to print: ${n} picture${n === 1 ? '' : 's'}`, 'snapshot');
+    ui.notify('ok', say.inReport({ n }), 'snapshot');
   } catch (error) {
-    ui.notify('err', `No snapshot: ${error.message}`, 'snapshot');
+    ui.notify('err', say.noSnapshot({ why: error.message }), 'snapshot');
   }
 }
 
@@ -44,7 +45,7 @@ async function openPrintout({ ui, printoutDialog }) {
     [{ printoutDialog: printoutDialog.value }] = await Promise.all([import('./printout.js'), styled('js/features/report/printout.css')]);
     ui.popover.value = 'printout';
   } catch {
-    ui.notify('err', 'The report to print could not be loaded: the server does not answer.', 'snapshot');
+    ui.notify('err', say.notLoaded, 'snapshot');
   }
 }
 
@@ -58,11 +59,11 @@ export function menu(world) {
     ui.popover.value = '';
     run(world);
   };
-  return html`<div class="popover snapshots"><div class="menu" role="menu" aria-label="Snapshot" @keydown=${move}>
-      <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>Save the active pane as PNG</span></button>
-      <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>Add it to the report to print</span></button>
-      <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>Report to print</span><span class="tag">${n}</span></button></div>
-      <p class="note">With letters, scale and caption. Drop the PNG on this page to see it again as it was.</p></div>`;
+  return html`<div class="popover snapshots"><div class="menu" role="menu" aria-label=${say.snapshot} @keydown=${move}>
+      <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>${say.save}</span></button>
+      <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>${say.add}</span></button>
+      <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>${say.report}</span><span class="tag">${n}</span></button></div>
+      <p class="note">${say.about}</p></div>`;
 }
 
 function move(event) {
@@ -83,10 +84,10 @@ export async function show(world, record) {
     otherPlan.value = record;
     ui.popover.value = 'other-plan';
   } else if (!room.canChange.value) {
-    ui.notify('warn', 'The picture can be shown again when the plan is loaded and the server answers.', 'snapshot');
+    ui.notify('warn', say.notYet, 'snapshot');
   } else {
     const but = toldOfMerge(restore(world, record));
-    ui.notify(but ? 'warn' : 'ok', `Scene and view are as in the picture${but ? `. ${but}` : ''}`, 'snapshot');
+    ui.notify(but ? 'warn' : 'ok', but ? say.asInPictureBut({ but }) : say.asInPicture, 'snapshot');
   }
 }
 
@@ -94,7 +95,7 @@ export async function show(world, record) {
 export async function showFirst(world, [first]) {
   const record = first && (await (await records()).recordOfFile(first.file));
   if (record) await show(world, record);
-  else world.ui.notify('warn', 'Only a snapshot as PNG can be dropped here. Plans are dropped on the start page.', 'snapshot');
+  else world.ui.notify('warn', say.onlySnapshots, 'snapshot');
 }
 
 /** Makes a room on the plan of a picture and goes there, where the picture is shown. */
@@ -109,7 +110,7 @@ export async function openDroppedSnapshot(api, file, enter) {
   const record = await (await records()).recordOfFile(file);
   if (!record) return false;
   await openSnapshot(api, record, enter).catch((error) => {
-    throw new Error(`The picture shows the plan ${record.plan.name}: ${error.message}`);
+    throw new Error(say.showsPlan({ plan: record.plan.name, why: error.message }));
   });
   return true;
 }
@@ -125,9 +126,11 @@ export function otherPlanDialog({ room, ui, api, otherPlan }) {
     close();
     openSnapshot(api, record, (id) => {
       location.hash = `#/rooms/${id}`;
-    }).catch((error) => ui.notify('err', `${record.plan.name}: ${error.message}`, 'snapshot'));
+    }).catch((error) => ui.notify('err', say.planWhy({ plan: record.plan.name, why: error.message }), 'snapshot'));
   };
-  return html`<section class="card other-plan" role="dialog" tabindex="-1" aria-label="Picture of another plan">
-    <p><b>This picture shows another plan</b>: ${record.plan.name} <code>${record.plan.id}</code>, not ${room.plan.value?.name ?? room.planId.value}.</p>
-    <div class="buttons"><button class="primary" @click=${open}>Open ${record.plan.id} in a new room</button><button @click=${close}>Stay here</button></div></section>`;
+  const plans = { plan: record.plan.name, id: html`<code>${record.plan.id}</code>`, shown: room.plan.value?.name ?? room.planId.value };
+  return html`<section class="card other-plan" role="dialog" tabindex="-1" aria-label=${say.pictureOfOther}>
+    <p>${say.otherPlanIs({ ...plans, other: html`<b>${say.showsOther}</b>` })}</p>
+    <div class="buttons"><button class="primary" @click=${open}>${say.open({ plan: record.plan.id })}</button>
+      <button @click=${close}>${say.stay}</button></div></section>`;
 }

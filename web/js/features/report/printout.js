@@ -10,20 +10,20 @@ import { draftBelongs, draftWords } from '../beams/beam_words.js';
 import { hasCharts } from '../dose/plots/chart_loader.js';
 import { printable } from '../../room/exports.js';
 import { ofFits } from '../fits/feature.js';
-import { count, number, signed, significant, unitText } from '../../parts/format.js';
+import { listed, number, signed, significant, unitText } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { measureName, valueText } from '../measures/measure_words.js';
+import { say } from './printout_words.js';
 
 const kinds = {
-  '3d': '3-D',
-  axial: 'Axial',
-  coronal: 'Coronal',
-  sagittal: 'Sagittal',
-  oblique: 'Oblique',
-  beam: "Beam's-eye view",
-  'beam-slice': 'Beam slice',
+  '3d': say.space,
+  axial: say.axial,
+  coronal: say.coronal,
+  sagittal: say.sagittal,
+  oblique: say.oblique,
+  beam: say.beam,
+  'beam-slice': say.beamSlice,
 };
-const research = 'For research and plan review. Not a medical device; not for diagnosis or treatment decisions.';
 
 let measured = null; // what the figures were measured for: the list of entries
 
@@ -43,54 +43,61 @@ export function printoutDialog(world) {
   const close = () => {
     ui.popover.value = '';
   };
-  return html`<section class="printout" role="dialog" aria-modal="true" tabindex="-1" aria-label="Report to print">
-    <div class="printout-bar"><b>Report to print</b><span class="note" role="status">${printout.isComplete.value ? '' : 'Measuring surfaces …'}</span><span class="grow"></span>
-      <button class="primary" ?disabled=${!plan || !printout.isComplete.value} @click=${printable(world, 'printed-report', `report on plan ${room.planId.value}`)}>${icon('print')}<span>Print or save as PDF</span></button>
-      <button class="icon-button" aria-label="Close" @click=${close}>${icon('close')}</button></div>
-    ${printout.isKept.value ? nothing : html`<p class="note bar-note">These pictures are too large to be kept when the page is loaded again: print before that.</p>`}
-    ${plan ? sheet(world, plan) : html`<p class="empty">The plan is being loaded.</p>`}</section>`;
+  const print = printable(world, 'printed-report', `report on plan ${room.planId.value}`); // in the audit's language
+  return html`<section class="printout" role="dialog" aria-modal="true" tabindex="-1" aria-label=${say.report}>
+    <div class="printout-bar"><b>${say.report}</b><span class="note" role="status">${printout.isComplete.value ? '' : say.measuring}</span>
+      <span class="grow"></span>
+      <button class="primary" ?disabled=${!plan || !printout.isComplete.value} @click=${print}>${icon('print')}<span>${say.print}</span></button>
+      <button class="icon-button" aria-label=${say.close} @click=${close}>${icon('close')}</button></div>
+    ${printout.isKept.value ? nothing : html`<p class="note bar-note">${say.tooLarge}</p>`}
+    ${plan ? sheet(world, plan) : html`<p class="empty">${say.loading}</p>`}</section>`;
 }
 
 /** A table of layout: its foot stands on every printed page. */
-const sheet = (
-  world,
-  plan,
-) => html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}${hasCharts(plan) ? world.charts.draw('printed') : nothing}${ofFits(world.room)?.usedSheet(world) ?? nothing}${measures(world)}${warnings(plan)}</div>
-  <footer class="sheet-foot"><div>${plan.name} · printed ${new Date().toISOString().slice(0, 16).replace('T', ' ')} UTC · revision ${world.room.revision.value}<br><b>${research}</b></div></footer></article>`;
+function sheet(world, plan) {
+  const time = new Date().toISOString().slice(0, 16).replace('T', ' ');
+  return html`<article class="sheet"><div class="sheet-body">${head(world, plan)}${pictures(world, plan)}${figures(world)}
+    ${hasCharts(plan) ? world.charts.draw('printed') : nothing}${ofFits(world.room)?.usedSheet(world) ?? nothing}
+    ${measures(world)}${warnings(plan)}</div>
+  <footer class="sheet-foot"><div>${say.foot({ plan: plan.name, time, revision: world.room.revision.value })}<br><b>${say.research}</b></div></footer></article>`;
+}
 
 function head({ room }, plan) {
-  const images = plan.images.map(
-    ({ id, modality, size, stepMm }) =>
-      `${modality} ${id}, ${size.join(' × ')} voxels, ${stepMm.map((mm) => number(mm, 2)).join(' × ')} mm`,
+  const images = plan.images.map(({ id, modality, size, stepMm }) =>
+    say.imageIs({ image: `${modality} ${id}`, size: size.join(' × '), step: stepMm.map((mm) => number(mm, 2)).join(' × ') }),
   );
+  const name = html`${plan.name} <code>${room.planId.value}</code>`;
+  const nRegions = plan.regions.length;
+  const doses = plan.doses.map((dose) => say.doseIs({ dose: dose.name || dose.id, words: unitText(doseWords(dose)) }));
   const rows = [
-    ['Plan', html`${plan.name} <code>${room.planId.value}</code>${plan.isPhantom ? ' (phantom)' : ''}`],
-    ['Images', images.join('; ') || 'none'],
-    ['Regions', `${count(plan.regions.length, 'region')}`],
-    ['Doses', plan.doses.map((dose) => `${dose.name || dose.id}: ${unitText(doseWords(dose))}`).join('; ') || 'none'],
-    ['Beams', plan.beams.map((beam) => [beam.name || beam.id, beamWords(beam)].filter(Boolean).join(', ')).join('; ') || 'none'],
-    ...(plan.note ? [['Note', plan.note]] : []),
-    ['Load report', reportSummary(plan.report)],
+    [say.plan, plan.isPhantom ? say.phantom({ plan: name }) : name],
+    [say.images, images.join('; ') || say.none],
+    [say.regions, say.nRegions({ count: number(nRegions), n: nRegions })],
+    [say.doses, doses.join('; ') || say.none],
+    [say.beams, plan.beams.map((beam) => listed(beam.name || beam.id, beamWords(beam))).join('; ') || say.none],
+    ...(plan.note ? [[say.note, plan.note]] : []),
+    [say.loadReport, reportSummary(plan.report)],
   ];
-  return html`<h1>${plan.name}</h1><table class="facts"><tbody>${rows.map(([name, value]) => html`<tr><th scope="row">${name}</th><td>${value}</td></tr>`)}</tbody></table>`;
+  const line = ([word, value]) => html`<tr><th scope="row">${word}</th><td>${value}</td></tr>`;
+  return html`<h1>${plan.name}</h1><table class="facts"><tbody>${rows.map(line)}</tbody></table>`;
 }
 
 function pictures({ printout }, plan) {
   const entries = printout.entries.value;
-  if (!entries.length)
-    return html`<p class="empty on-screen">No picture yet. Close this, choose a pane, and use “Add it to the report to print” under the camera.</p>`;
+  if (!entries.length) return html`<p class="empty on-screen">${say.noPicture}</p>`;
   return repeat(
     entries,
     ({ key }) => key,
     (entry, at) => {
       const { key, record } = entry;
-      const name = `Figure ${at + 1}`;
-      return html`<figure data-entry=${key}><img src=${entry.url} alt=${`${name}: ${kinds[record.view.kind]} of ${record.plan.name}`}>
-      <figcaption><b>${name}.</b> <span class="on-paper">${entry.caption}</span>
-        <span class="on-screen edit"><input name="caption" aria-label=${`Caption of ${name}`} placeholder="Caption" maxlength="500" .value=${live(entry.caption)} @input=${(event) => printout.describe(key, event.target.value)} @change=${() => printout.keep()}>
-          <button class="small" ?disabled=${at === 0} aria-label=${`${name} earlier`} @click=${() => printout.move(key, -1)}>Up</button>
-          <button class="small" ?disabled=${at === entries.length - 1} aria-label=${`${name} later`} @click=${() => printout.move(key, 1)}>Down</button>
-          <button class="small" aria-label=${`Remove ${name}`} @click=${() => printout.remove(key)}>Remove</button></span></figcaption>
+      const n = at + 1;
+      return html`<figure data-entry=${key}><img src=${entry.url} alt=${say.figureIs({ n, view: kinds[record.view.kind], plan: record.plan.name })}>
+      <figcaption><b>${say.figure({ n })}</b> <span class="on-paper">${entry.caption}</span>
+        <span class="on-screen edit"><input name="caption" aria-label=${say.captionOf({ n })} placeholder=${say.caption} maxlength="500"
+          .value=${live(entry.caption)} @input=${(event) => printout.describe(key, event.target.value)} @change=${() => printout.keep()}>
+          <button class="small" ?disabled=${at === 0} aria-label=${say.earlier({ n })} @click=${() => printout.move(key, -1)}>${say.up}</button>
+          <button class="small" ?disabled=${n === entries.length} aria-label=${say.later({ n })} @click=${() => printout.move(key, 1)}>${say.down}</button>
+          <button class="small" aria-label=${say.removeFigure({ n })} @click=${() => printout.remove(key)}>${say.remove}</button></span></figcaption>
       ${draft(entry, plan)}${values(entry, plan)}</figure>`;
     },
   );
@@ -98,31 +105,35 @@ function pictures({ printout }, plan) {
 
 /** Says whose dose the picture shows, if a beam was drafted. */
 function draft({ record: { scene } }, plan) {
-  return isDrafted(plan, scene)
-    ? html`<p class="values"><b>Draft beam:</b> ${[draftBelongs(plan, scene), draftWords(plan, scene)].filter(Boolean).join(', ')}.</p>`
-    : nothing;
+  if (!isDrafted(plan, scene)) return nothing;
+  const facts = listed(draftBelongs(plan, scene), draftWords(plan, scene));
+  return html`<p class="values">${say.draftIs({ draft: html`<b>${say.draftBeam}</b>`, facts })}</p>`;
 }
 
 /** The values at the picture's crosshair. */
 function values({ record, probe }, plan) {
   const point = crosshair(record.scene);
-  const place = html`Crosshair at ${['L', 'P', 'S'].map((letter, axis) => `${letter} ${number(point[axis], 1)}`).join(', ')} mm`;
-  if (!probe) return html`<p class="values">${place}: values are not known.</p>`;
+  const at = say.crosshair({ place: ['L', 'P', 'S'].map((letter, axis) => `${letter} ${number(point[axis], 1)}`).join(', ') });
+  if (!probe) return html`<p class="values">${say.notKnown({ crosshair: at })}</p>`;
   const image = shownImage(plan, record.scene);
   const value = probe.images?.find((other) => other.id === image?.id);
   const inside = (probe.regions ?? []).map((id) => plan.regions.find((region) => region.id === id)?.name).filter(Boolean);
   const doses = plan.doses
     .map((dose) => [dose, (probe.doses ?? []).filter((row) => row.id === dose.id && row.value !== null)])
     .filter(([, rows]) => rows.length);
-  return html`<p class="values">${place}${value && value.value !== null ? `, ${image.modality} ${significant(value.value)}${value.unit ? ` ${value.unit}` : ''}` : ''}${inside.length ? `, in ${inside.join(', in ')}` : ', outside every region'}.
-    ${doses.map(
-      ([dose, rows]) =>
-        html`<br>${dose.name || dose.id}${rows[0].per ? `, per ${unitText(rows[0].per.replace(/^per /, ''))}` : ''}: ${rows
-          .map(
-            (row) => `${row.quantity.replaceAll('-', ' ')}${row.per_ppm ? ' per ppm' : ''} ${significant(row.value)} ${unitText(row.unit)}`,
-          )
-          .join(', ')}.`,
-    )}</p>`;
+  const imageValue = value && value.value !== null && [image.modality, significant(value.value), value.unit].filter(Boolean).join(' ');
+  const regions = inside.length ? inside.map((region) => say.inRegion({ region })) : [say.outside];
+  return html`<p class="values">${say.valuesAre({ values: listed(at, imageValue, ...regions) })}
+    ${doses.map((row) => html`<br>${doseValues(...row)}`)}</p>`;
+}
+
+function doseValues(dose, rows) {
+  const values = rows.map(({ quantity, per_ppm: perPpm, value, unit }) =>
+    (perPpm ? say.valuePerPpm : say.valueIs)({ quantity: quantity.replaceAll('-', ' '), value: significant(value), unit: unitText(unit) }),
+  );
+  const { per } = rows[0];
+  const facts = { dose: dose.name || dose.id, per: unitText((per ?? '').replace(/^per /, '')), values: values.join(', ') };
+  return (per ? say.dosePerValues : say.doseValues)(facts);
 }
 
 function figures({ printout }) {
@@ -132,11 +143,17 @@ function figures({ printout }) {
     result
       ? html`<td>${result.triangles ? number(result.triangles) : '–'}</td><td>${result.area_mm2 ? number(result.area_mm2 / 100, 1) : '–'}</td><td>${result.volume_mm3 ? number(result.volume_mm3 / 1000, 2) : '–'}</td>
     <td>${result.volume_mm3 ? `${signed(volumeDifference(result), 2)}` : '–'}</td><td>${Number.isFinite(result.distance_max_mm) ? number(result.distance_max_mm, 2) : '–'}</td>`
-      : html`<td colspan="5">${error || '…'}</td>`;
-  return html`<h2>Regions</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label="Figures of the regions"><table class="numbers-table"><thead><tr><th scope="col">Region</th><th scope="col">Univels</th><th scope="col">Volume, cm³</th><th scope="col">Surface</th><th scope="col">Triangles</th><th scope="col">Area, cm²</th><th scope="col">Encloses, cm³</th><th scope="col">to univels, %</th><th scope="col">Off at most, mm</th></tr></thead>
-    <tbody>${rows.map((row) => html`<tr><th scope="row">${row.region.name}</th><td>${number(row.region.voxels)}</td><td>${number(row.region.volume_cm3, 2)}</td><td>${row.method}</td>${cells(row)}</tr>`)}</tbody></table></div>
-    <p class="values">Univels and volume are the region's own; surfaces enclose all regions inside it as well. Off: distance from the univels' border.</p>`;
+      : html`<td colspan="5">${error === null ? say.notMeasured : error || '…'}</td>`;
+  const columns = [say.region, say.univels, say.volume, say.surface, say.triangles, say.area, say.encloses, say.toUnivels, say.off];
+  const line = (row) => html`<tr><th scope="row">${row.region.name}</th><td>${number(row.region.voxels)}</td>
+      <td>${number(row.region.volume_cm3, 2)}</td><td>${row.method}</td>${cells(row)}</tr>`;
+  return html`<h2>${say.regions}</h2>${table(say.figures, columns, rows.map(line))}
+    <p class="values">${say.figuresAre}</p>`;
 }
+
+const table = (label, columns, lines) =>
+  html`<div class="numbers-scroll" role="group" tabindex="0" aria-label=${label}><table class="numbers-table">
+    <thead><tr>${columns.map((word) => html`<th scope="col">${word}</th>`)}</tr></thead><tbody>${lines}</tbody></table></div>`;
 
 /** The measures of the newest picture; without one, of the room as it is now. */
 function measures(world) {
@@ -144,13 +161,22 @@ function measures(world) {
   const list = Object.entries(printout.entries.value.at(-1)?.record.scene.measures ?? room.scene.value?.measures ?? {});
   if (!list.length) return nothing;
   const place = (at) => `(${at.map((mm) => number(mm, 1)).join(', ')})`;
-  return html`<h2>Measures</h2><div class="numbers-scroll" role="group" tabindex="0" aria-label="Measures"><table class="numbers-table"><thead><tr><th scope="col">Measure</th><th scope="col">Value</th><th scope="col">Points, mm L P S</th></tr></thead>
-    <tbody>${list.map(([id, measure]) => html`<tr><th scope="row">${measureName(id, measure)}</th><td>${valueText(world, id, measure)}</td><td>${measure.points.map(({ at_mm: at }) => place(at)).join(' ')}</td></tr>`)}</tbody></table></div>`;
+  const line = ([id, measure]) => html`<tr><th scope="row">${measureName(id, measure)}</th><td>${valueText(world, id, measure)}</td>
+      <td>${measure.points.map(({ at_mm: at }) => place(at)).join(' ')}</td></tr>`;
+  return html`<h2>${say.measures}</h2>${table(say.measures, [say.measure, say.value, say.points], list.map(line))}`;
 }
 
 function warnings(plan) {
   const lines = plan.report.lines.filter(({ severity }) => severity !== 'note');
   if (!lines.length) return nothing;
-  return html`<h2>Noticed while loading</h2><ul class="noticed">${lines.map(({ severity, code, sentence, where }) => html`<li><b>${severity === 'error' ? 'Error' : 'Warning'}</b> <code>${code}</code> ${sentence}${where ? html` <span class="place">${where}</span>` : nothing}</li>`)}</ul>
-    ${plan.report.dropped ? html`<p class="values">${count(plan.report.dropped, 'line')} more are not kept.</p>` : nothing}`;
+  const line = ({
+    severity,
+    code,
+    sentence,
+    where,
+  }) => html`<li><b>${severity === 'error' ? say.error : say.warning}</b> <code>${code}</code>
+      ${sentence}${where ? html` <span class="place">${where}</span>` : nothing}</li>`;
+  const { dropped } = plan.report;
+  return html`<h2>${say.noticed}</h2><ul class="noticed">${lines.map(line)}</ul>
+    ${dropped ? html`<p class="values">${say.notKept({ count: number(dropped), n: dropped })}</p>` : nothing}`;
 }

@@ -33,7 +33,7 @@ export class Printout {
     this.#storage = storage;
     this.#storageKey = `printout ${room}`;
     this.entries = signal([]); // PrintoutEntry[]
-    this.figures = signal([]); // {region, method, result, error}[], of the regions that the snapshots show
+    this.figures = signal([]); // {region, method, result, error}[], of the regions that the snapshots show; error null: not measured, beyond mostFigures
     this.isComplete = signal(true); // all figures are there
     this.isKept = signal(true); // false: too large to be there after the page is loaded again
     try {
@@ -98,7 +98,7 @@ export class Printout {
       region,
       method: query.algorithm ?? query.representation,
       result: null,
-      error: at < mostFigures ? '' : 'not measured',
+      error: at < mostFigures ? '' : null,
     }));
     this.isComplete.value = !wanted.length;
     for (const [at, { region, query }] of wanted.slice(0, mostFigures).entries()) {

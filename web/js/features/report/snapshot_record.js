@@ -5,6 +5,7 @@ import { isId, readDocument } from '../../wire/check.js';
 import { isObject } from '../../wire/merge.js';
 import { adopted } from '../../room/marks.js';
 import { mergedScene } from '../../room/saved_merge.js';
+import { say } from './later_words.js';
 
 export { toldOfMerge } from '../../room/saved_merge.js';
 
@@ -24,10 +25,10 @@ export function readRecord(text) {
   try {
     json = JSON.parse(text);
   } catch {
-    throw new Error('The text in the picture is damaged.');
+    throw new Error(say.damaged);
   }
-  if (!isObject(json) || !isObject(json.plan) || !isId(json.plan.id)) throw new Error('The picture does not say which plan it shows.');
-  if (json.version !== version) throw new Error('The picture was made by another version of Beamroom.');
+  if (!isObject(json) || !isObject(json.plan) || !isId(json.plan.id)) throw new Error(say.saysNoPlan);
+  if (json.version !== version) throw new Error(say.otherVersion);
   try {
     const scene = readDocument('scene', json.scene);
     const view = readDocument('view', json.view);
@@ -36,7 +37,7 @@ export function readRecord(text) {
     const revision = Number.isInteger(json.revision) && json.revision >= 0 && json.revision < 2 ** 32 ? json.revision : 0;
     return { plan: { id: json.plan.id, name: name || json.plan.id }, date, revision, scene, view };
   } catch (error) {
-    throw new Error(`The scene in the picture is not valid: ${error.message}`);
+    throw new Error(say.notValid({ why: error.message }));
   }
 }
 
@@ -47,9 +48,9 @@ export function readRecord(text) {
 export async function recordOfFile(file) {
   const first = new Uint8Array(await file.slice(0, 8).arrayBuffer());
   if (!isPng(first)) return null;
-  if (file.size > maxFileBytes) throw new Error('The picture is too large.');
+  if (file.size > maxFileBytes) throw new Error(say.tooLarge);
   const text = await textOfPng(new Uint8Array(await file.arrayBuffer()), keyword);
-  if (text === null) throw new Error('This picture does not say what it shows. Only snapshots with annotations do, as they were saved.');
+  if (text === null) throw new Error(say.noRecord);
   return readRecord(text);
 }
 

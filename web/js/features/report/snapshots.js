@@ -4,21 +4,22 @@ import { effect } from '../../../lib/signals-core.js';
 import { filesOfDrop } from '../../net/dropped.js';
 import { icon } from '../../parts/icons.js';
 import { later } from '../../parts/lazy.js';
+import { say } from './words.js';
 
 export const code = later(() => import('./later_snapshots.js'));
 
 /** What it exports. Throws when it cannot be loaded. */
 async function load() {
   await code.load();
-  if (!code.loaded.peek()) throw new Error('The picture cannot be read: the server does not answer.');
+  if (!code.loaded.peek()) throw new Error(say.cannotRead);
   return code.loaded.peek();
 }
 
 export function snapshotMenu(world) {
   const { ui } = world;
   const isOpen = ui.popover.value === 'snapshot';
-  return html`<span class="anchor"><button class="tool plain" tabindex="-1" title="Snapshot of the active pane" aria-label="Snapshot" aria-haspopup="menu" aria-expanded=${isOpen}
-      @click=${() => ui.toggle('snapshot')}>${icon('camera')}</button>
+  return html`<span class="anchor"><button class="tool plain" tabindex="-1" title=${say.snapshotOf} aria-label=${say.snapshot} aria-haspopup="menu"
+      aria-expanded=${isOpen} @click=${() => ui.toggle('snapshot')}>${icon('camera')}</button>
     ${isOpen ? code.draw(({ menu }) => menu(world)) : nothing}</span>`;
 }
 

@@ -1,0 +1,31 @@
+// What a person reads of snapshots: the menu, what is told of them, pictures that come back.
+import { sentences } from '../../parts/sentences.js';
+
+export const say = sentences('report.later', {
+  snapshot: 'Snapshot',
+  save: 'Save the active pane as PNG',
+  add: 'Add it to the report to print',
+  report: 'Report to print',
+  about: 'With letters, scale and caption. Drop the PNG on this page to see it again as it was.',
+  noAnswer: 'No snapshot: the server does not answer.',
+  noSnapshot: 'No snapshot: {why}',
+  inReport: 'In the report to print: {n} {n|picture|pictures}',
+  notLoaded: 'The report to print could not be loaded: the server does not answer.',
+  notYet: 'The picture can be shown again when the plan is loaded and the server answers.',
+  asInPicture: 'Scene and view are as in the picture',
+  asInPictureBut: 'Scene and view are as in the picture. {but}',
+  onlySnapshots: 'Only a snapshot as PNG can be dropped here. Plans are dropped on the start page.',
+  showsPlan: 'The picture shows the plan {plan}: {why}',
+  planWhy: '{plan}: {why}',
+  pictureOfOther: 'Picture of another plan',
+  showsOther: 'This picture shows another plan',
+  otherPlanIs: '{other}: {plan} {id}, not {shown}.',
+  open: 'Open {plan} in a new room',
+  stay: 'Stay here',
+  damaged: 'The text in the picture is damaged.',
+  saysNoPlan: 'The picture does not say which plan it shows.',
+  otherVersion: 'The picture was made by another version of Beamroom.',
+  notValid: 'The scene in the picture is not valid: {why}',
+  tooLarge: 'The picture is too large.',
+  noRecord: 'This picture does not say what it shows. Only snapshots with annotations do, as they were saved.',
+});
