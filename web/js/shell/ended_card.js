@@ -2,7 +2,7 @@
 import { html, nothing } from '../../lib/lit-html.js';
 import { classMap } from '../../lib/directives/class-map.js';
 import { icon } from '../parts/icons.js';
-import { whoIn } from '../features/start/lobby.js';
+import { whoIn } from '../features/start/who_in.js';
 import { say } from './later_words.js';
 import { say as sayAtOnce } from './words.js';
 

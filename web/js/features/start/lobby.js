@@ -3,29 +3,28 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { repeat } from '../../../lib/directives/repeat.js';
 import { maxName } from '../../room/own_name.js';
 import { present } from '../../room/plans.js';
-import { count, initials, nameSome } from '../../parts/format.js';
+import { initials, number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
-
-/** "Dr A, Dr B and 2 more"; "nobody in it now" */
-export const whoIn = (room) =>
-  nameSome(
-    present(room).map(({ name }) => name),
-    4,
-  ) || 'nobody in it now';
+import { say } from './later_words.js';
+import { whoIn } from './who_in.js';
 
 export function roomsList(state, enter) {
   const rooms = [...state.rooms.value].sort((a, b) => present(b).length - present(a).length || b.created_at.localeCompare(a.created_at));
   if (!rooms.length) return nothing;
   const nameOf = (id) => state.plans.value?.find((plan) => plan.id === id)?.name ?? id;
-  return html`<section class="rooms" aria-labelledby="rooms-head"><div class="list-head"><h2 id="rooms-head">Rooms</h2><span class="dim">${count(rooms.length, 'room')}</span></div>
+  return html`<section class="rooms" aria-labelledby="rooms-head"><div class="list-head"><h2 id="rooms-head">${say.rooms}</h2>
+      <span class="dim">${say.nRooms({ count: number(rooms.length), n: rooms.length })}</span></div>
     <ul>${repeat(
       rooms,
       ({ id }) => id,
       (room) => {
         const members = present(room);
-        return html`<li class="room-row" data-room=${room.id}><span class="avatars" aria-hidden="true">${members.slice(0, 3).map(({ name }, index) => html`<span class=${`avatar small tint-${index % 4}`}>${initials(name)}</span>`)}${members.length ? nothing : icon('people')}</span>
-      <span class="title"><b>${nameOf(room.plan)}</b><code>${room.id}</code></span><span class="who">${whoIn(room)}</span>
-      <button aria-label=${`Join ${room.id}: ${nameOf(room.plan)}, ${whoIn(room)}`} @click=${() => enter(room.id, room.plan)}>Join</button></li>`;
+        const facts = { room: room.id, plan: nameOf(room.plan), who: whoIn(room) };
+        const avatar = ({ name }, index) => html`<span class=${`avatar small tint-${index % 4}`}>${initials(name)}</span>`;
+        return html`<li class="room-row" data-room=${room.id}>
+      <span class="avatars" aria-hidden="true">${members.slice(0, 3).map(avatar)}${members.length ? nothing : icon('people')}</span>
+      <span class="title"><b>${facts.plan}</b><code>${room.id}</code></span><span class="who">${facts.who}</span>
+      <button aria-label=${say.joinOf(facts)} @click=${() => enter(room.id, room.plan)}>${say.join}</button></li>`;
       },
     )}</ul></section>`;
 }
@@ -35,7 +34,7 @@ const field = (ownName, id, buttons) => {
     event.preventDefault();
     ownName.set(new FormData(event.target).get('name'));
   };
-  return html`<form class="own-name" @submit=${keep}><label for=${id}>Your name, as others in a room see it</label>
+  return html`<form class="own-name" @submit=${keep}><label for=${id}>${say.nameIs}</label>
     <input id=${id} name="name" maxlength=${maxName} autocomplete="name" .value=${ownName.value.value}>${buttons}</form>`;
 };
 
@@ -45,7 +44,7 @@ export const askName = (ownName) =>
     ? field(
         ownName,
         'first-name',
-        html`<button>Save name</button><button type="button" class="ghost" @click=${() => ownName.set('')}>Not now</button>`,
+        html`<button>${say.saveName}</button><button type="button" class="ghost" @click=${() => ownName.set('')}>${say.notNow}</button>`,
       )
     : nothing;
 
@@ -56,9 +55,10 @@ export function nameButton(state, ownName) {
   const close = (event) => {
     if (event.type === 'submit' || event.key === 'Escape') state.isNaming.value = false;
   };
-  return html`<span class="anchor"><button class="ghost" aria-expanded=${state.isNaming.value} title="Change your name" @click=${() => {
+  const save = html`<button class="primary">${say.saveName}</button>`;
+  return html`<span class="anchor"><button class="ghost" aria-expanded=${state.isNaming.value} title=${say.changeName} @click=${() => {
     state.isNaming.value = !state.isNaming.value;
   }}>
-      ${name ? html`<span class="avatar own small" aria-hidden="true">${initials(name)}</span>` : icon('people')}<span>${name || 'Your name'}</span></button>
-    ${state.isNaming.value ? html`<div class="popover" @submit=${close} @keydown=${close}>${field(ownName, 'change-name', html`<button class="primary">Save name</button>`)}</div>` : nothing}</span>`;
+      ${name ? html`<span class="avatar own small" aria-hidden="true">${initials(name)}</span>` : icon('people')}<span>${name || say.yourName}</span></button>
+    ${state.isNaming.value ? html`<div class="popover" @submit=${close} @keydown=${close}>${field(ownName, 'change-name', save)}</div>` : nothing}</span>`;
 }

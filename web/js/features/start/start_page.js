@@ -7,8 +7,9 @@ import { UploadsState } from './uploads.js';
 import { isId } from '../../wire/check.js';
 import { brand } from '../../shell/banner.js';
 import { deleteDialog, watchDialog } from './delete_dialog.js';
-import { count, seconds } from '../../parts/format.js';
+import { number, seconds } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
+import { say } from './later_words.js';
 import { askName, nameButton, roomsList } from './lobby.js';
 import { mount } from '../../parts/mount.js';
 import { planList, refusalOf } from './plan_list.js';
@@ -54,24 +55,30 @@ const reveal = (host, plan) => host.querySelector(`[data-plan="${CSS.escape(plan
 
 const page = (state, uploads, { enter, ownName, thumbnails }) => html`<div class="start">
   <header class="banner">${brand()}<span class="grow"></span>
-    <label class="search">${icon('search')}<input type="search" placeholder="Find a plan" aria-label="Find a plan" .value=${state.search.value} @input=${(
+    <label class="search">${icon('search')}<input type="search" placeholder=${say.find} aria-label=${say.find} .value=${state.search.value} @input=${(
       event,
     ) => {
       state.search.value = event.target.value;
     }}></label>
     ${join(state, enter)}${nameButton(state, ownName)}</header>
   <main>${notices(state)}${askName(ownName)}${roomsList(state, enter)}${planList(state, uploads, thumbnails)}</main>
-  <aside class="load-report" aria-label="Load report and upload"><div class="found">${report(state)}</div>${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
-  <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">Research use. Not for diagnosis or treatment decisions.</b></footer>${deleteDialog(state, ownName)}</div>`;
+  <aside class="load-report" aria-label=${say.aside}><div class="found">${report(state)}</div>
+    ${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
+  <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">${say.research}</b></footer>
+  ${deleteDialog(state, ownName)}</div>`;
 
 /** Notices about the server, not about one plan. */
-const notices = (
-  state,
-) => html`${state.error.value ? html`<div class="notice bad" role="alert">${icon('error')}<div><b>${state.error.value}</b><p>Trying again every few seconds.</p></div></div>` : nothing}
+const notices = (state) => html`${
+  state.error.value
+    ? html`<div class="notice bad" role="alert">${icon('error')}<div>
+    <b>${state.error.value}</b><p>${say.tryingAgain}</p></div></div>`
+    : nothing
+}
   ${
     state.notice.value
-      ? html`<div class="notice" role="alert">${icon('warning')}<div><b>The server is full</b><p>${state.notice.value[0].toUpperCase()}${state.notice.value.slice(1)}. Try again when a room has ended.</p></div>
-    <button class="icon-button small" aria-label="Dismiss" @click=${() => {
+      ? html`<div class="notice" role="alert">${icon('warning')}<div><b>${say.full}</b>
+    <p>${say.fullIs({ why: `${state.notice.value[0].toUpperCase()}${state.notice.value.slice(1)}` })}</p></div>
+    <button class="icon-button small" aria-label=${say.dismiss} @click=${() => {
       state.notice.value = '';
     }}>${icon('close', 12)}</button></div>`
       : nothing
@@ -83,46 +90,53 @@ function join(state, enter) {
     const field = event.target.elements.room;
     // a whole link is accepted as well as the id in it
     const [id, plan = ''] = field.value.trim().split('#/rooms/').at(-1).split('/');
-    field.setCustomValidity(isId(id) ? '' : 'A room is named by letters a to z, digits and -.');
+    field.setCustomValidity(isId(id) ? '' : say.noRoomId);
     if (field.reportValidity()) enter(id, isId(plan) ? plan : '');
   };
   return html`<span class="anchor"><button aria-expanded=${state.isJoining.value} @click=${() => {
     state.isJoining.value = !state.isJoining.value;
-  }}>${icon('people')}<span>Join a room</span></button>
+  }}>${icon('people')}<span>${say.joinRoom}</span></button>
     ${
       state.isJoining.value
         ? html`<form class="popover invite" @submit=${go} @keydown=${(event) => {
             if (event.key === 'Escape') state.isJoining.value = false;
           }}>
-      <label for="join-id">Room id or link</label><div class="pair"><input id="join-id" name="room" autocomplete="off" @input=${(event) => event.target.setCustomValidity('')}><button class="primary">Join</button></div></form>`
+      <label for="join-id">${say.roomIdOrLink}</label><div class="pair">
+        <input id="join-id" name="room" autocomplete="off" @input=${(event) => event.target.setCustomValidity('')}>
+        <button class="primary">${say.join}</button></div></form>`
         : nothing
     }</span>`;
 }
 
+function summaryOf(found) {
+  const summary = reportSummary(found);
+  return found.loadMs === null ? summary : say.loadedIn({ summary, time: seconds(found.loadMs) });
+}
+
 function report(state) {
   const plan = state.plans.value?.find((other) => other.id === state.chosen.value);
-  if (!plan) return html`<header><h2>Load report</h2></header><p class="empty">Choose a plan to see what was noticed while loading it.</p>`;
+  if (!plan) return html`<header><h2>${say.loadReport}</h2></header><p class="empty">${say.choosePlan}</p>`;
   const found = state.report.value?.plan === plan.id ? state.report.value : null;
   const refusal = refusalOf(state, plan);
-  return html`<header><h2>Load report</h2><code>${plan.id}</code></header>
-    ${found ? html`<p class="note">${reportSummary(found)}${found.loadMs === null ? '' : `, loaded in ${seconds(found.loadMs)}`}</p>` : nothing}
+  return html`<header><h2>${say.loadReport}</h2><code>${plan.id}</code></header>
+    ${found ? html`<p class="note">${summaryOf(found)}</p>` : nothing}
     ${plan.note ? html`<p class="plan-note">${plan.note}</p>` : nothing}
     ${
       found
         ? reportLines(found)
         : refusal
-          ? html`<ul class="report"><li><span class="err">${icon('error')}</span><div><p><b class="err">Refused</b></p><p>${refusal}</p><p class="place">Nothing was loaded.</p></div></li></ul>`
-          : html`<p class="empty">The plan is not loaded. Open it to see what was noticed.</p>`
+          ? html`<ul class="report"><li><span class="err">${icon('error')}</span><div><p><b class="err">${say.refused}</b></p>
+            <p>${refusal}</p><p class="place">${say.nothingLoaded}</p></div></li></ul>`
+          : html`<p class="empty">${say.notOpened}</p>`
     }`;
 }
 
 function serverStatus(state) {
-  if (state.error.value)
-    return html`<span class="badge disconnected">${icon('disconnected', 12)}<span>Server does not answer</span></span>`;
+  if (state.error.value) return html`<span class="badge disconnected">${icon('disconnected', 12)}<span>${say.noAnswer}</span></span>`;
   const version = state.version.value;
   if (!version) return nothing;
   const gl = version.gl;
   const n = (state.plans.value ?? []).filter((plan) => plan.state === 'ready').length;
-  return html`<span class="badge live">${icon('ready', 12)}<span>Server ready</span></span><span>${count(n, 'renderer')} in use</span>
+  return html`<span class="badge live">${icon('ready', 12)}<span>${say.serverReady}</span></span><span>${say.inUse({ count: number(n), n })}</span>
     <span class="dim wide">${[gl?.back_end, gl?.renderer].filter(Boolean).join(', ')}</span><span class="dim wide">Beamroom ${version.version}</span>`;
 }

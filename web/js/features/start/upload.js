@@ -7,9 +7,10 @@ import { bodyOf } from '../../net/tar.js';
 import { bytes, number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { variables } from '../../parts/mount.js';
+import { say } from './later_words.js';
 
 function take(uploads, files) {
-  uploads.error.value = files.length ? '' : 'There is no file in it.';
+  uploads.error.value = files.length ? '' : say.noFile;
   if (files.length) uploads.offer(bodyOf(files));
 }
 
@@ -54,17 +55,17 @@ export function dropZone(uploads, limit) {
   };
   const choose = (event) => event.currentTarget.parentElement.querySelector('input').click();
   const picker = (word, input) => html`<span class="anchor"><button @click=${choose}>${word}</button>${input}</span>`;
-  return html`<section class=${classMap({ 'drop-zone': true, over: uploads.isOver.value })} aria-label="Upload">
-    <span class="sign">${icon('upload', 24)}</span><div><p><b>Drop a plan here</b>: a folder, its files, or a zip or tar of it</p>
-      <p class="note">DICOM-RT, SERA, NIfTI, NRRD${limit ? `, at most ${bytes(limit)}` : ''}. It stays on this server; remove names from files before you send them.</p>
-      <div class="buttons">${picker('Choose files', html`<input type="file" multiple tabindex="-1" aria-label="Files of a plan" @change=${chosen}>`)}
-        ${picker('Choose a folder', html`<input type="file" webkitdirectory tabindex="-1" aria-label="Folder of a plan" @change=${chosen}>`)}</div>
+  return html`<section class=${classMap({ 'drop-zone': true, over: uploads.isOver.value })} aria-label=${say.upload}>
+    <span class="sign">${icon('upload', 24)}</span><div><p>${say.dropIs({ drop: html`<b>${say.dropHere}</b>` })}</p>
+      <p class="note">${limit ? say.formatsAtMost({ size: bytes(limit) }) : say.formats}</p>
+      <div class="buttons">${picker(say.chooseFiles, html`<input type="file" multiple tabindex="-1" aria-label=${say.filesOf} @change=${chosen}>`)}
+        ${picker(say.chooseFolder, html`<input type="file" webkitdirectory tabindex="-1" aria-label=${say.folderOf} @change=${chosen}>`)}</div>
       ${uploads.error.value ? html`<p class="err" role="alert">${icon('error')} ${uploads.error.value}</p>` : nothing}</div></section>`;
 }
 
 const words = ({ state, job, sent, bytes: size }) => {
-  if (state === 'sending') return sent < size ? 'Sending' : 'Sent, waiting for the server';
-  return job?.phase ? `${job.phase[0].toUpperCase()}${job.phase.slice(1)}` : 'Waiting';
+  if (state === 'sending') return sent < size ? say.sending : say.sent;
+  return job?.phase ? `${job.phase[0].toUpperCase()}${job.phase.slice(1)}` : say.waiting;
 };
 
 /** Asks for the name that everybody will see, as local files are often called after the patient. */
@@ -76,22 +77,27 @@ function asking(uploads, upload) {
   const day = new Date().toISOString().slice(0, 10);
   return html`<li class="plan upload" data-upload=${upload.key}><form class="naming" @submit=${submit}>
     <p class="what"><b>${upload.name}</b> <span>${bytes(upload.bytes)}</span></p>
-    <label>Name on this server <input name="name" maxlength="60" autocomplete="off" placeholder=${`upload-${day}`} aria-describedby=${`naming-${upload.key}`}></label>
-    <button class="primary" type="submit">${icon('upload')}<span>Send</span></button><button type="button" @click=${() => uploads.cancel(upload.key)}>${icon('close')}<span>Cancel</span></button>
-    <p class="note" id=${`naming-${upload.key}`}>Everybody who opens this page sees it, also in addresses: no patient's name. Left empty, it is the day.</p></form></li>`;
+    <label>${say.nameOnServer} <input name="name" maxlength="60" autocomplete="off"
+      placeholder=${`upload-${day}`} aria-describedby=${`naming-${upload.key}`}></label>
+    <button class="primary" type="submit">${icon('upload')}<span>${say.send}</span></button>
+    <button type="button" @click=${() => uploads.cancel(upload.key)}>${icon('close')}<span>${say.cancel}</span></button>
+    <p class="note" id=${`naming-${upload.key}`}>${say.nameIsSeen}</p></form></li>`;
 }
 
 function row(uploads, upload) {
   if (upload.state === 'asking') return asking(uploads, upload);
   const percent = upload.state === 'sending' ? (100 * upload.sent) / Math.max(upload.bytes, 1) : (upload.job?.percent ?? 0);
   const hasFailed = upload.state === 'failed';
-  return html`<li class="plan upload" data-upload=${upload.key}><div class="plan-row"><span class="thumb">${icon(hasFailed ? 'error' : 'upload')}</span><div class="title"><b>${upload.name}</b><code>upload</code></div><div class="parts"></div>
-      <div class="end size">${bytes(upload.bytes)}</div><div class="plan-state">${hasFailed ? html`<span class="err">${icon('error')} Refused</span>` : html`<b>Uploading</b>`}</div>
-      <div class="end buttons-of">${hasFailed ? html`<button @click=${() => uploads.dismiss(upload.key)}>Dismiss</button>` : html`<button @click=${() => uploads.cancel(upload.key)}>${icon('close')}<span>Cancel</span></button>`}</div></div>
+  const [dismiss, cancel] = [() => uploads.dismiss(upload.key), () => uploads.cancel(upload.key)];
+  return html`<li class="plan upload" data-upload=${upload.key}><div class="plan-row"><span class="thumb">${icon(hasFailed ? 'error' : 'upload')}</span><div class="title">
+        <b>${upload.name}</b><code>${say.anUpload}</code></div><div class="parts"></div>
+      <div class="end size">${bytes(upload.bytes)}</div>
+      <div class="plan-state">${hasFailed ? html`<span class="err">${icon('error')} ${say.refused}</span>` : html`<b>${say.uploading}</b>`}</div>
+      <div class="end buttons-of">${hasFailed ? html`<button @click=${dismiss}>${say.dismiss}</button>` : html`<button @click=${cancel}>${icon('close')}<span>${say.cancel}</span></button>`}</div></div>
     ${
       hasFailed
-        ? html`<div class="refusal" role="alert">${icon('error')}<div><p>${upload.error}</p><p class="place">Nothing was kept.</p></div></div>`
-        : html`<div class="progress" role="progressbar" aria-label=${`Upload of ${upload.name}`} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(percent)}>
+        ? html`<div class="refusal" role="alert">${icon('error')}<div><p>${upload.error}</p><p class="place">${say.nothingKept}</p></div></div>`
+        : html`<div class="progress" role="progressbar" aria-label=${say.uploadOf({ name: upload.name })} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${Math.round(percent)}>
         <i class="bar" ${variables({ '--fill': `${percent}%` })}></i><b>${number(percent)} %</b><span class="phase">${icon('phase')} ${words(upload)}</span></div>`
     }</li>`;
 }

@@ -1,6 +1,7 @@
 // Uploads of plans: chosen, named, sent, unpacked, scanned, listed; or the reason why not. The name of the chosen file or folder stays
 // in this page: it is often a patient's name, and everybody sees the names of plans.
 import { signal } from '../../../lib/signals-core.js';
+import { say } from './later_words.js';
 
 const jobMs = 200;
 
@@ -50,8 +51,7 @@ export class UploadsState {
     this.#aborts.set(key, abort);
     this.#change(key, { state: 'sending' });
     try {
-      if (body.size > this.limit())
-        throw new Error(`${megabytes(body.size)}; the server takes plans of at most ${megabytes(this.limit())}.`);
+      if (body.size > this.limit()) throw new Error(say.tooLarge({ size: megabytes(body.size), limit: megabytes(this.limit()) }));
       let job = await this.#send({
         publicName: publicName.trim(),
         body,
@@ -70,7 +70,7 @@ export class UploadsState {
           this.dismiss(key);
           return;
         }
-        if (job.state === 'failed') throw new Error(job.problem?.detail ?? 'The plan was refused.');
+        if (job.state === 'failed') throw new Error(job.problem?.detail ?? say.planRefused);
         await new Promise((resolve) => {
           this.#clock.setTimeout(resolve, jobMs);
         });
