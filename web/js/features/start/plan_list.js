@@ -57,8 +57,8 @@ function row(state, thumbnails, plan) {
   const isChosen = state.chosen.value === plan.id;
   return html`<li class=${classMap({ plan: true, chosen: isChosen })} data-plan=${plan.id} @click=${() => state.choose(plan.id)}>
     <div class="plan-row">${thumbnail(thumbnails.of(plan), refusal)}
-      <div class="title"><button class="as-text" aria-pressed=${isChosen} title=${say.showReport} @click=${() => state.choose(plan.id)}>${plan.name}</button>
-        ${plan.is_phantom ? html`<span class="tag phantom">${say.phantom}</span>` : nothing}<code>${plan.id}</code></div>
+      <div class="title"><button class="as-text" aria-pressed=${isChosen} title=${say.showReport}
+        @click=${() => state.choose(plan.id)}>${plan.name}</button>${plan.is_phantom ? html`<span class="tag phantom">${say.phantom}</span>` : nothing}<code>${plan.id}</code></div>
       <div class="parts">${(plan.parts ?? []).map((part) => html`<span class="tag">${part}</span>`)}</div>
       <div class="end size">${bytes(plan.n_bytes)}</div><div class="plan-state">${stateWords(plan, job, refusal)}</div>
       <div class="end buttons-of">${action(state, plan, job, isChosen)}</div></div>
