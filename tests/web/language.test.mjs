@@ -30,6 +30,9 @@ async function tablesOf(folder) {
 /** A copy of the page that has the language. */
 async function pageWith(folder) {
   const tables = await tablesOf(folder);
+  const { about, ...ofServer } = JSON.parse(readFileSync('proto/sentences.json', 'utf8'));
+  const rows = Object.values(ofServer).flat(); // "{n %d}": a place, and how the server prints it
+  tables.server = Object.fromEntries(rows.map(([code, text]) => [code, text.replace(/\{(\w+) %[^}]*\}/g, '{$1}')]));
   const bracketed = Object.entries(tables).map(([group, english]) => [
     group,
     Object.fromEntries(Object.entries(english).map(([key, text]) => [key, `⟦${text}⟧`])),
@@ -88,17 +91,31 @@ function readPage() {
   return { said, bracketed };
 }
 
-const names = ['name', 'label', 'id', 'where', 'code', 'author_name'];
+/** Under these names a message or an answer has names of things, words of files, and paths. */
+const nameKeys = [
+  'name',
+  'label',
+  'id',
+  'masked',
+  'modality',
+  'unit',
+  'per',
+  'where',
+  'code',
+  'author_name',
+  'source',
+  'group',
+  'format',
+  'gl',
+];
 const escaped = (text) => text.replace(/[\\^$.*+?()[\]{}|]/g, '\\$&');
 
-/** Remembers the strings that the server sent: names, and its own sentences. */
+/** Remembers names that the server sent. */
 function hear(page, heard) {
   const keep = (value, key) => {
-    if (typeof value === 'string') {
-      if (names.includes(key) || /[\s\p{Lu}]|.{20}/u.test(value)) heard.add(value);
-      if (key === 'id') heard.add(`${value[0]?.toUpperCase()}${value.slice(1).replaceAll('-', ' ')}`); // a class of tracks has its name from its id
-    }
-    if (value && typeof value === 'object') for (const [key, one] of Object.entries(value)) keep(one, Array.isArray(value) ? '' : key);
+    if (typeof value === 'string' && (nameKeys.includes(key) || /^\S{20}/.test(value))) heard.add(value);
+    if (typeof value === 'string' && key === 'id') heard.add(`${value[0]?.toUpperCase()}${value.slice(1).replaceAll('-', ' ')}`); // of a class of tracks
+    if (value && typeof value === 'object') for (const [inner, one] of Object.entries(value)) keep(one, Array.isArray(value) ? key : inner);
   };
   const parse = (text) => {
     try {
@@ -107,6 +124,7 @@ function hear(page, heard) {
       // not JSON
     }
   };
+  keep(JSON.parse(readFileSync('proto/dose_presets.json', 'utf8'))); // names of published sets
   page.on('response', (answer) => /json/.test(answer.headers()['content-type'] ?? '') && answer.text().then(parse, () => {}));
   page.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => typeof payload === 'string' && parse(payload)));
 }
