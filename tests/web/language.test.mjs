@@ -83,7 +83,7 @@ function readPage() {
       if (whole) add(text, nameOf(whole));
       [whole, text] = [own, ''];
     }
-    text += outside(data);
+    text += `${parentElement.closest('.clip') ? '' : ' '}${outside(data)}`; // a name that is cut in two is one
   }
   if (whole) add(text, nameOf(whole));
   depth = 0;
@@ -110,11 +110,10 @@ const nameKeys = [
 ];
 const escaped = (text) => text.replace(/[\\^$.*+?()[\]{}|]/g, '\\$&');
 
-/** Remembers names that the server sent. */
+/** Remembers names that the server sent, and its sentences. */
 function hear(page, heard) {
   const keep = (value, key) => {
-    if (typeof value === 'string' && (nameKeys.includes(key) || /^\S{20}/.test(value))) heard.add(value);
-    if (typeof value === 'string' && key === 'id') heard.add(`${value[0]?.toUpperCase()}${value.slice(1).replaceAll('-', ' ')}`); // of a class of tracks
+    if (typeof value === 'string' && ([...nameKeys, ...sentenceKeys].includes(key) || /^\S{20}/.test(value))) heard.add(value);
     if (value && typeof value === 'object') for (const [inner, one] of Object.entries(value)) keep(one, Array.isArray(value) ? key : inner);
   };
   const parse = (text) => {

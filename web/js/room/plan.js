@@ -187,8 +187,18 @@ export function troubles({ lines }) {
   return counted(lines, ['error', 'warning']);
 }
 
+const trackClasses = {
+  'neutron-high': say.neutronHigh,
+  'neutron-medium': say.neutronMedium,
+  'neutron-low': say.neutronLow,
+  'gamma-high': say.gammaHigh,
+  'gamma-medium': say.gammaMedium,
+  'gamma-low': say.gammaLow,
+  lost: say.lost,
+  'beam-line': say.beamLine,
+};
 /** "Neutron high" for the class of tracks "neutron-high". */
-export const className = (id) => `${id[0].toUpperCase()}${id.slice(1).replaceAll('-', ' ')}`;
+export const className = (id) => trackClasses[id] ?? id;
 
 /** "Gy per fraction, total" for a dose; unknown parts are left out. */
 export function doseWords(dose) {
