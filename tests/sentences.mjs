@@ -18,6 +18,11 @@ const says = {
     [/\breport_add\(/g, 4],
     [/\breport_line_say\(/g, 1],
   ],
+  fits: [
+    [/\bSAY\(/g, 1, '', /core\/plan\/fit_words\.c$/],
+    [/\bSAY_ALL\(/g, 0, '', /core\/plan\/fit_words\.c$/],
+    [/\bSAY_ALL\(/g, 1, '', /core\/plan\/fit_words\.c$/],
+  ],
 };
 const passesOn = new Set(['"%s"']); // a sentence that was written elsewhere
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/plan/fit_facts.h"
 #include "core/plan/identity.h"
 
 static const struct part_origin no_origin = { .patient = -1, .treatment_plan = -1 };
@@ -48,7 +49,7 @@ struct fit_part fit_part_of_region(const struct plan *plan, size_t region)
 
 /* ---- whose a part is -------------------------------------------------------------------------------------------- */
 
-static const struct part_origin *origin_of(const struct plan *plan, struct fit_part part)
+const struct part_origin *fit_origin_of(const struct plan *plan, struct fit_part part)
 {
     switch (part.kind) {
     case FIT_IMAGE: return &plan->image_origins[part.index];
@@ -62,7 +63,7 @@ static const struct part_origin *origin_of(const struct plan *plan, struct fit_p
 }
 
 /* NULL: none, or not here. */
-static const struct treatment_plan *treatment_plan_of(const struct plan *plan, const struct part_origin *origin)
+const struct treatment_plan *fit_treatment_plan_of(const struct plan *plan, const struct part_origin *origin)
 {
     return origin->treatment_plan >= 0 && (size_t)origin->treatment_plan < plan->n_treatment_plans
                ? &plan->treatment_plans[origin->treatment_plan]
@@ -71,7 +72,7 @@ static const struct treatment_plan *treatment_plan_of(const struct plan *plan, c
 
 static int patient_of(const struct plan *plan, const struct part_origin *origin)
 {
-    const struct treatment_plan *treatment = treatment_plan_of(plan, origin);
+    const struct treatment_plan *treatment = fit_treatment_plan_of(plan, origin);
     int patient = origin->patient >= 0 && (size_t)origin->patient < plan->n_patients ? origin->patient
                   : treatment                                                        ? treatment->patient
                                                                                      : -1;
@@ -80,14 +81,14 @@ static int patient_of(const struct plan *plan, const struct part_origin *origin)
 
 static const char *plan_uid_of(const struct plan *plan, const struct part_origin *origin)
 {
-    const struct treatment_plan *treatment = treatment_plan_of(plan, origin);
+    const struct treatment_plan *treatment = fit_treatment_plan_of(plan, origin);
     return treatment && treatment->uid[0] ? treatment->uid : origin->plan_uid;
 }
 
 static const char *structs_uid_of(const struct plan *plan, struct fit_part part)
 {
-    const struct part_origin *origin = origin_of(plan, part);
-    const struct treatment_plan *treatment = treatment_plan_of(plan, origin);
+    const struct part_origin *origin = fit_origin_of(plan, part);
+    const struct treatment_plan *treatment = fit_treatment_plan_of(plan, origin);
     if (part.kind == FIT_REGIONS || !treatment || !treatment->structs_uid[0])
         return origin->structs_uid;
     return treatment->structs_uid;
@@ -103,7 +104,7 @@ static bool has_structs(const struct plan *plan, const char *uid)
 
 bool fit_is_of_other(const struct plan *plan, struct fit_part part)
 {
-    int patient = patient_of(plan, origin_of(plan, part)), shown = plan_shown_patient(plan);
+    int patient = patient_of(plan, fit_origin_of(plan, part)), shown = plan_shown_patient(plan);
     return patient >= 0 && shown >= 0 && patient != shown;
 }
 
@@ -198,7 +199,7 @@ static bool is_apart(const struct plan *plan, struct fit_part thing, struct fit_
 /* True if plan.json states that a part's frame is the image's (is_same), or that it is not. */
 static bool is_stated(const struct plan *plan, struct fit_part part, bool is_same)
 {
-    const struct part_origin *origin = origin_of(plan, part);
+    const struct part_origin *origin = fit_origin_of(plan, part);
     if (is_same ? origin->is_stated_same : origin->is_stated_other)
         return true;
     return part.kind == FIT_DOSE && !origin->frame_uid[0] && plan->doses[part.index].has_frame &&
@@ -208,7 +209,7 @@ static bool is_stated(const struct plan *plan, struct fit_part part, bool is_sam
 /* FIT_SAME, FIT_REGISTERED, FIT_UNSTATED or FIT_FRAME. What plan.json says of a dose is about the image. */
 static enum fit_relation frames_of(const struct plan *plan, struct fit_part thing, struct fit_part with)
 {
-    const struct part_origin *a = origin_of(plan, thing), *b = origin_of(plan, with);
+    const struct part_origin *a = fit_origin_of(plan, thing), *b = fit_origin_of(plan, with);
     if (is_stated(plan, thing, false) != is_stated(plan, with, false))
         return FIT_FRAME;
     if (is_stated(plan, thing, true) && (with.kind == FIT_IMAGE || is_stated(plan, with, true)))
@@ -263,7 +264,7 @@ const char *fit_per(const struct dose *dose, char word[FIT_PER_SIZE])
 }
 
 /* True if a dose has weighted values alone, so that nothing of it is physical. */
-static bool is_weighted_alone(const struct dose *dose)
+bool fit_is_weighted_alone(const struct dose *dose)
 {
     for (size_t c = 0; c < dose->n_components; c++)
         if (dose->components[c].quantity != DOSE_WEIGHTED_TOTAL)
@@ -284,8 +285,8 @@ static uint32_t dose_reasons(const struct dose *a, const struct dose *b)
     char pers[2][FIT_PER_SIZE];
     uint32_t reasons = 0;
     double factor;
-    if (!fit_unit_factor(a->unit, b->unit, &factor) || (is_weighted_alone(a) && !has_weighted(b)) ||
-        (is_weighted_alone(b) && !has_weighted(a)))
+    if (!fit_unit_factor(a->unit, b->unit, &factor) || (fit_is_weighted_alone(a) && !has_weighted(b)) ||
+        (fit_is_weighted_alone(b) && !has_weighted(a)))
         reasons |= 1U << FIT_UNIT;
     if (strcmp(fit_per(a, pers[0]), fit_per(b, pers[1])) != 0)
         reasons |= 1U << FIT_PER;
@@ -299,7 +300,7 @@ static uint32_t dose_reasons(const struct dose *a, const struct dose *b)
  */
 static bool refers_to_absent(const struct plan *plan, const struct part_origin *origin)
 {
-    if (treatment_plan_of(plan, origin))
+    if (fit_treatment_plan_of(plan, origin))
         return false;
     if (origin->plan_uid[0] && plan->n_treatment_plans > 0)
         return true;
@@ -311,7 +312,7 @@ static bool refers_to_absent(const struct plan *plan, const struct part_origin *
 
 struct fit fit_of(const struct plan *plan, struct fit_part thing, struct fit_part with)
 {
-    const struct part_origin *a = origin_of(plan, thing), *b = origin_of(plan, with);
+    const struct part_origin *a = fit_origin_of(plan, thing), *b = fit_origin_of(plan, with);
     int patients[2] = { patient_of(plan, a), patient_of(plan, b) };
     enum fit_relation frames = frames_of(plan, thing, with);
     struct fit fit = { frames, frames == FIT_FRAME ? 1U << FIT_FRAME : 0 };
@@ -354,164 +355,6 @@ struct fit fit_alone(const struct plan *plan, struct fit_part thing)
         if (fit.reasons >> r & 1)
             fit.relation = (enum fit_relation)r;
     return fit;
-}
-
-/* ---- words ------------------------------------------------------------------------------------------------------ */
-
-static void name_of(const struct plan *plan, struct fit_part part, char text[FIT_WHY_SIZE / 3])
-{
-    const size_t size = FIT_WHY_SIZE / 3;
-    switch (part.kind) {
-    case FIT_IMAGE: {
-        const struct plan_image *image = &plan->images[part.index];
-        snprintf(text, size, "%s", image->name[0] ? image->name : image->id);
-        break;
-    }
-    case FIT_DOSE: {
-        const struct dose *dose = &plan->doses[part.index];
-        snprintf(text, size, "Dose “%s”", dose->name[0] ? dose->name : dose->id);
-        break;
-    }
-    case FIT_BEAM: {
-        const struct beam *beam = &plan->beams[part.index];
-        snprintf(text, size, "Beam “%s”", beam->name[0] ? beam->name : beam->id);
-        break;
-    }
-    case FIT_REGIONS: {
-        const char *path = part.index ? plan->region_origins[part.index - 1].path : "";
-        if (path[0])
-            snprintf(text, size, "Regions of “%.100s”", path);
-        else
-            snprintf(text, size, "Regions");
-        break;
-    }
-    case FIT_TRACKS:
-    case FIT_N_KINDS: snprintf(text, size, "Tracks"); break;
-    }
-}
-
-static const char *frame_fact(enum fit_kind kind)
-{
-    switch (kind) {
-    case FIT_DOSE: return "it was computed in another frame of reference";
-    case FIT_BEAM: return "it was planned in another frame of reference";
-    case FIT_REGIONS: return "they were drawn in another frame of reference";
-    case FIT_TRACKS: return "they were computed in another frame of reference";
-    case FIT_IMAGE:
-    case FIT_N_KINDS: break;
-    }
-    return "it was taken in another frame of reference";
-}
-
-static void write_plans(const struct plan *plan, struct fit_part thing, struct fit_part with, char *text, size_t size)
-{
-    const struct part_origin *origins[2] = { origin_of(plan, thing), origin_of(plan, with) };
-    const struct treatment_plan *of[2] = { treatment_plan_of(plan, origins[0]), treatment_plan_of(plan, origins[1]) };
-    const char *labels[2];
-    for (int i = 0; i < 2; i++)
-        labels[i] = of[i] ? of[i]->label[0] ? of[i]->label : of[i]->name : "";
-    if (thing.kind == FIT_REGIONS)
-        snprintf(text, size, "they are of another structure set than the one that plan %.65s refers to", labels[1]);
-    else
-        snprintf(text, size, "it belongs to plan %.65s; shown is %.65s", labels[0][0] ? labels[0] : "that is not here",
-                 labels[1][0] ? labels[1] : "a plan that is not here");
-}
-
-static void write_units(const struct dose *a, const struct dose *b, char *text, size_t size)
-{
-    double factor;
-    if (!a->unit[0])
-        snprintf(text, size, "it does not say its unit");
-    else if (!b->unit[0])
-        snprintf(text, size, "that one does not say its unit");
-    else if (!fit_unit_factor(a->unit, b->unit, &factor))
-        snprintf(text, size, "it is in %s, that one in %s", a->unit, b->unit);
-    else
-        snprintf(text, size,
-                 is_weighted_alone(a) ? "it is weighted, that one physical" : "it is physical, that one weighted");
-}
-
-static const char *per_words(const struct dose *dose)
-{
-    return dose->per[0] ? dose->per : "what it does not say";
-}
-
-static void write_sentence(const struct plan *plan, struct fit_part thing, struct fit_part with,
-                           enum fit_relation relation, bool is_by_word, char why[FIT_WHY_SIZE])
-{
-    char names[2][FIT_WHY_SIZE / 3], fact[FIT_WHY_SIZE / 2] = "";
-    bool is_many = thing.kind == FIT_REGIONS || thing.kind == FIT_TRACKS, is_grid = with.kind == FIT_IMAGE;
-    const char *may = "", *verb = is_many ? "are not used with" : "is not used with";
-    name_of(plan, thing, names[0]);
-    name_of(plan, with, names[1]);
-    switch (relation) {
-    case FIT_SAME:
-        verb = is_many ? "fit" : "fits";
-        snprintf(fact, sizeof fact, "both are in one frame of reference");
-        break;
-    case FIT_REGISTERED:
-        verb = is_many ? "are used with" : "is used with";
-        snprintf(fact, sizeof fact, "a registration of this folder joins their frames of reference");
-        break;
-    case FIT_UNSTATED:
-        verb = is_many ? "are used with" : "is used with";
-        snprintf(fact, sizeof fact, "the files do not say whether they share a frame of reference");
-        break;
-    case FIT_ABSENT:
-        snprintf(fact, sizeof fact,
-                 origin_of(plan, thing)->plan_uid[0] && plan->n_treatment_plans > 0
-                     ? "it refers to a plan that is not in this folder"
-                     : "it refers to a structure set that is not in this folder");
-        break;
-    case FIT_PER:
-        snprintf(fact, sizeof fact, "it is per %.64s, that one per %.64s", per_words(&plan->doses[thing.index]),
-                 per_words(&plan->doses[with.index]));
-        break;
-    case FIT_UNIT: write_units(&plan->doses[thing.index], &plan->doses[with.index], fact, sizeof fact); break;
-    case FIT_PLAN: write_plans(plan, thing, with, fact, sizeof fact); break;
-    case FIT_APART:
-        snprintf(fact, sizeof fact, "%s %s", is_many ? "they do not meet" : "its grid does not meet",
-                 is_grid ? "the image" : "it");
-        may = is_many ? " They may be another patient's, or a phantom's."
-                      : " It may be another patient's, or a phantom's.";
-        break;
-    case FIT_FRAME:
-        snprintf(fact, sizeof fact, "%s", frame_fact(thing.kind));
-        may = is_many   ? is_grid ? " They may be shifted against this image, or be another patient's."
-                                  : " They may be shifted against it, or be another patient's."
-              : is_grid ? " It may be shifted against this image, or be another patient's."
-                        : " It may be shifted against it, or be another patient's.";
-        break;
-    case FIT_PATIENT:
-    case FIT_N_RELATIONS:
-        verb = is_many ? "are never used with" : "is never used with";
-        snprintf(fact, sizeof fact, "%s",
-                 fit_is_of_other(plan, thing) || !fit_is_of_other(plan, with)
-                     ? is_many ? "they belong to another patient" : "it belongs to another patient"
-                     : "that one belongs to another patient");
-        break;
-    }
-    if (is_by_word)
-        verb = is_many ? "are used with" : "is used with";
-    bool is_alone = thing.kind == with.kind && thing.index == with.index; /* of a part without image */
-    if (is_alone && relation == FIT_APART)
-        snprintf(fact, sizeof fact, "its grid does not meet the regions");
-    snprintf(why, FIT_WHY_SIZE, "%s %.*s%s%s%s: %s.%s", names[0],
-             (int)strlen(verb) - (is_alone && strstr(verb, " with") ? 5 : 0), verb, is_alone ? "" : " ",
-             is_alone ? "" : names[1],
-             is_by_word ? is_many ? " though they do not fit" : " though it does not fit" : "", fact, may);
-}
-
-void fit_sentence(const struct plan *plan, struct fit_part thing, struct fit_part with, enum fit_relation relation,
-                  char why[FIT_WHY_SIZE])
-{
-    write_sentence(plan, thing, with, relation, false, why);
-}
-
-void fit_accepted_sentence(const struct plan *plan, struct fit_part thing, struct fit_part with,
-                           enum fit_relation relation, char why[FIT_WHY_SIZE])
-{
-    write_sentence(plan, thing, with, relation, true, why);
 }
 
 /* ---- names of parts --------------------------------------------------------------------------------------------- */

@@ -5,10 +5,12 @@
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
 #include "server/wire/json.h"
+#include "server/wire/sentence_json.h"
 
 static void add_use(cJSON *parts, const struct scene_fits *fits, struct fit_part thing, const struct fit_use *use)
 {
     char word[FIT_PART_SIZE], why[FIT_WHY_SIZE];
+    struct fit_words words;
     bool is_alone = thing.kind == use->with.kind && thing.index == use->with.index;
     struct fit fit = is_alone ? fit_alone(fits->plan, thing) : fit_of(fits->plan, thing, use->with);
     cJSON *object = cJSON_CreateObject();
@@ -18,8 +20,9 @@ static void add_use(cJSON *parts, const struct scene_fits *fits, struct fit_part
     cJSON_AddStringToObject(object, "with", word);
     cJSON_AddStringToObject(object, "state", fit_state_word(use->state));
     cJSON_AddStringToObject(object, "relation", fit_relation_word(use->relation));
-    fit_use_sentence(fits, thing, use, why);
+    fit_describe(fits->plan, thing, use->with, use->relation, use->state == FIT_USED_BY_WORD, why, &words);
     cJSON_AddStringToObject(object, "reason", why);
+    fit_words_add_json(object, "reason", &words);
     cJSON_AddStringToObject(object, "needs",
                             fit_needs_word(use->state == FIT_USED ? FIT_NEEDS_NOTHING
                                            : fit_needs_of(use->relation) == FIT_NEEDS_NEVER ||

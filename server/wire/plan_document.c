@@ -159,13 +159,15 @@ static cJSON *dose_object(const struct plan *plan, size_t index)
     json_add(object, "unit", cJSON_CreateString(dose->unit));
     json_add(object, "per", cJSON_CreateString(dose->per));
     char why[FIT_WHY_SIZE];
+    struct fit_words words;
     int image = fit_first_image(plan);
     struct fit_part part = { FIT_DOSE, index }, with = { FIT_IMAGE, (size_t)(image < 0 ? 0 : image) };
     struct fit fit = image < 0 ? fit_alone(plan, part) : fit_of(plan, part, with);
-    fit_sentence(plan, part, image < 0 ? part : with, fit.relation, why);
+    fit_describe(plan, part, image < 0 ? part : with, fit.relation, false, why, &words);
     json_add(object, "frame_of_reference", frame_word(plan, index, image, &fit));
     json_add(object, "fit", cJSON_CreateString(fit_relation_word(fit.relation)));
     json_add(object, "fit_reason", cJSON_CreateString(why));
+    fit_words_add_json(object, "fit_reason", &words);
     json_add(object, "masked", cJSON_CreateBool(dose->mask != NULL));
     for (size_t i = 0; i < dose->n_components; i++) {
         const struct dose_component *component = &dose->components[i];

@@ -1,12 +1,15 @@
 /* Writes which parts of a plan fit each other. */
 #include "server/wire/plan_fits.h"
 
+#include "server/wire/sentence_json.h"
+
 static void add_pair(cJSON *fits, const struct plan *plan, struct fit_part thing, struct fit_part with)
 {
     bool is_alone = thing.kind == with.kind && thing.index == with.index;
     struct fit fit = is_alone ? fit_alone(plan, thing) : fit_of(plan, thing, with);
     enum fit_needs needs = fit_pair_needs(&fit);
     char word[FIT_PART_SIZE], why[FIT_WHY_SIZE];
+    struct fit_words words;
     if (with.kind == FIT_DOSE && needs == FIT_NEEDS_NOTHING)
         return;
     cJSON *object = cJSON_CreateObject(), *reasons = cJSON_CreateArray();
@@ -19,8 +22,9 @@ static void add_pair(cJSON *fits, const struct plan *plan, struct fit_part thing
         if (fit.reasons >> r & 1)
             json_append(reasons, cJSON_CreateString(fit_relation_word((enum fit_relation)r)));
     json_add(object, "reasons", reasons);
-    fit_sentence(plan, thing, with, fit.relation, why);
+    fit_describe(plan, thing, with, fit.relation, false, why, &words);
     json_add(object, "reason", cJSON_CreateString(why));
+    fit_words_add_json(object, "reason", &words);
     json_add(object, "needs", cJSON_CreateString(fit_needs_word(needs)));
     json_append(fits, object);
 }

@@ -48,6 +48,17 @@ void sentence_add_json(cJSON *object, const char *name, const struct sentence_fa
     }
 }
 
+void fit_words_add_json(cJSON *object, const char *name, const struct fit_words *words)
+{
+    char key[KEY_SIZE];
+    sentence_add_json(object, name, &words->all);
+    cJSON *values = cJSON_GetObjectItemCaseSensitive(object, key_of(name, "_values", key));
+    if (!values)
+        return;
+    sentence_add_json(values, "fact", &words->fact);
+    sentence_add_json(values, "may", &words->may);
+}
+
 static bool read_value(struct sentence_facts *facts, bool is_first, const struct sentence_place *place,
                        const cJSON *value)
 {

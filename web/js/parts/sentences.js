@@ -31,7 +31,7 @@ export function told(json) {
       if (!text) told(value);
       else {
         const say = sentence(text);
-        json[name] = typeof say === 'string' ? say : say(json[`${name}_values`]);
+        json[name] = typeof say === 'string' ? say : say(told(json[`${name}_values`])); // a value may be a sentence itself
       }
     }
   return json;

@@ -37,7 +37,7 @@ test('a browser of another language has what that language has', async (t) => {
   // the four forms of Polish in the order of CLDR: one (1), few (2 to 4), many (5 and more), other (fractions)
   writeFileSync(
     join(folder, 'languages/pl.js'),
-    "export default { test: { rows: '{n} {n|a|b|c|d}' }, server: { 'view-not-open': 'v{view}', 'disk-full': 'p' } };",
+    "export default { test: { rows: '{n} {n|a|b|c|d}' }, server: { 'view-not-open': 'v{view}', 'disk-full': 'p', 'is-used': '{thing}={with}: {fact}', 'same-frame': 's' } };",
   );
   const inLanguages = async (...languages) => {
     Object.defineProperty(globalThis, 'navigator', { value: { languages }, configurable: true });
@@ -70,6 +70,12 @@ test('a browser of another language has what that language has', async (t) => {
     ['p', 'New.', 'Free.', undefined],
   );
   assert.equal(polish.told(null), null);
+  const fit = {
+    reason: 'A is used with B: both are in one frame of reference.',
+    reason_code: 'is-used',
+    reason_values: { thing: 'A', with: 'B', fact: 'both are in one frame of reference', fact_code: 'same-frame', may: '' },
+  };
+  assert.equal(polish.told(fit).reason, 'A=B: s');
   const english = await inLanguages('en-GB', 'pl');
   assert.deepEqual(english.told(sent()), sent(), 'English is said by the server');
   assert.equal(english.rows({ n: 2 }), '2 rows', 'English comes first');
