@@ -47,7 +47,7 @@ struct log_batch; /* meeting_log.h */
 /* A recording of a meeting in the room: its facts. The events are on disk alone. */
 struct room_recording {
     char id[32], by[64], by_name[161]; /* by: the member who began it */
-    char plan_sum[20];                /* of the plan's document then: the same for the same document */
+    char plan_sum[20];                 /* of the plan's document then: the same for the same document */
     char plan_revision[65];            /* of its files then; "": not known */
     int64_t started_ms, length_ms;     /* since 1970; of the meeting */
     uint32_t n_batches, n_events;
