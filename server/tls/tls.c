@@ -4,6 +4,7 @@
 
 #include <openssl/ssl.h>
 #include <stdlib.h>
+#include <sys/epoll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -14,7 +15,7 @@
 #include "core/base/queue.h"
 #include "server/tls/policy.h"
 #include "server/tls/tls_link.h"
-#include "server/ws/library_log.h"
+#include "server/ws/library.h"
 
 #define TICK_S 0.5
 
@@ -159,13 +160,17 @@ static bool start(struct tls *tls, struct error *err)
         return false;
     library_log_start();
     tls->loop = ev_loop_new(EVBACKEND_EPOLL | EVFLAG_NOENV);
-    if (!tls->loop || !start_library(tls))
+    tls->silent = epoll_create1(EPOLL_CLOEXEC);
+    if (!tls->loop || tls->silent < 0 || !start_library(tls))
         return error_set(err, ERROR_IO, "TLS has no loop: libwebsockets or its libev plugin cannot be started");
     ev_async_init(&tls->woken, wake_up);
     ev_init(&tls->tick, tick);
     tls->woken.data = tls->tick.data = tls;
     tls->tick.repeat = TICK_S;
     ev_async_start(tls->loop, &tls->woken);
+    ev_io_init(&tls->heard, tls_link_look, tls->silent, EV_READ);
+    tls->heard.data = tls;
+    ev_io_start(tls->loop, &tls->heard);
     tls->has_thread = pthread_create(&tls->thread, NULL, work, tls) == 0;
     if (!tls->has_thread)
         return error_set(err, ERROR_IO, "the thread of TLS did not start");
@@ -178,6 +183,7 @@ struct tls *tls_create(const struct tls_options *options, struct error *err)
     struct tls *tls = mem_new(sizeof *tls);
     tls->options = *options;
     tls->protocols[0] = (struct lws_protocols){ .name = "tls", .callback = handle };
+    tls->silent = -1;
     atomic_init(&tls->renewed, NULL);
     atomic_init(&tls->pinged, NULL);
     atomic_init(&tls->is_closed, false);
@@ -250,6 +256,8 @@ void tls_destroy(struct tls *tls)
         lws_context_destroy(tls->context);
     if (tls->loop)
         ev_loop_destroy(tls->loop);
+    if (tls->silent >= 0)
+        (void)close(tls->silent);
     certificate_destroy(tls->certificate);
     certificate_destroy(atomic_load(&tls->renewed));
     queue_destroy(tls->accepted);

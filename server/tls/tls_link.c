@@ -11,12 +11,14 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "core/base/clock.h"
 #include "core/base/gate.h"
 #include "core/base/mem.h"
+#include "server/ws/library.h"
 
 enum { RECORD_OF_HANDSHAKE = 22 }; /* the first byte of a connection of TLS (RFC 8446 5.1) */
 
@@ -60,7 +62,6 @@ static void set_stage(struct tls_link *link, enum tls_stage stage, int64_t withi
 static void free_link(struct tls_link *link)
 {
     struct tls *tls = link->tls;
-    ev_io_stop(tls->loop, &link->first);
     ev_io_stop(tls->loop, &link->down);
     ev_io_stop(tls->loop, &link->up);
     if (link->pair >= 0)
@@ -78,6 +79,11 @@ static void free_link(struct tls_link *link)
     free(link);
 }
 
+static void unwatch_silent(const struct tls_link *link)
+{
+    (void)epoll_ctl(link->tls->silent, EPOLL_CTL_DEL, link->client, NULL);
+}
+
 void tls_link_end(struct tls_link *link)
 {
     struct lws *lws = link->lws;
@@ -86,6 +92,8 @@ void tls_link_end(struct tls_link *link)
         lws_set_timeout(lws, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_SYNC); /* reports the end, which frees the link */
         return;
     }
+    if (link->stage == TLS_SILENT)
+        unwatch_silent(link); /* a child process that is being started may hold a copy of the socket */
     if (link->stage != TLS_LEFT)
         (void)close(link->client);
     free_link(link);
@@ -315,10 +323,13 @@ static void begin_handshake(struct tls_link *link)
 {
     const lws_sock_file_fd_type one = { .sockfd = link->client };
     struct tls *tls = link->tls;
+    struct stat facts = { 0 };
+    (void)fstat(link->client, &facts);
     struct lws *lws = lws_adopt_descriptor_vhost(tls->vhost, LWS_ADOPT_SOCKET | LWS_ADOPT_ALLOW_SSL, one,
                                                  tls->protocols[0].name, NULL);
     if (!lws) {
-        free_link(link); /* the library has closed the socket */
+        library_close_refused(link->client, &facts);
+        free_link(link);
         return;
     }
     lws_set_timeout(lws, NO_PENDING_TIMEOUT, 0);
@@ -327,28 +338,38 @@ static void begin_handshake(struct tls_link *link)
     link->stage = TLS_HANDSHAKE; /* counted like TLS_SILENT, and late at the same time */
 }
 
-/* libev's: the first byte has come, or the client has gone. */
-static void look(struct ev_loop *loop, struct ev_io *watcher, int events)
+/* The first byte has come, or the client has gone. */
+static void look(struct tls_link *link)
 {
-    struct tls_link *link = watcher->data;
     struct tls *tls = link->tls;
     unsigned char byte;
     ssize_t n = recv(link->client, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
-    (void)events;
     if (n < 0 && would_block())
         return;
-    ev_io_stop(loop, watcher);
     if (n == 1 && byte == RECORD_OF_HANDSHAKE) {
+        unwatch_silent(link);
         begin_handshake(link);
         return;
     }
     if (n == 1 && gate_enter(tls->taking)) {
+        unwatch_silent(link);
         tls->options.take_plain(tls->options.context, link->client, &link->peer);
         gate_leave(tls->taking);
         free_link(link);
         return;
     }
     tls_link_end(link);
+}
+
+void tls_link_look(struct ev_loop *loop, struct ev_io *watcher, int events)
+{
+    struct tls *tls = watcher->data;
+    struct epoll_event found[64];
+    (void)loop;
+    (void)events;
+    int n = epoll_wait(tls->silent, found, 64, 0);
+    for (int i = 0; i < n; i++)
+        look(found[i].data.ptr);
 }
 
 static bool may_wait(const struct tls *tls, const struct address *peer)
@@ -386,9 +407,9 @@ void tls_link_begin(struct tls *tls, int socket, const struct address *peer)
     /* these fail on other sockets than TCP, where they are not needed */
     (void)setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     (void)setsockopt(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
-    ev_io_init(&link->first, look, socket, EV_READ);
-    link->first.data = link;
-    ev_io_start(tls->loop, &link->first);
+    struct epoll_event event = { .events = EPOLLIN, .data.ptr = link };
+    if (epoll_ctl(tls->silent, EPOLL_CTL_ADD, socket, &event) != 0)
+        tls_link_end(link);
 }
 
 void tls_link_check(struct tls_link *link, int64_t now_us)

@@ -30,7 +30,6 @@ struct tls_link {
     int client;                /* the client's socket; the library owns it when it has it */
     int pair;                  /* our end of the pair; -1: there is none yet */
     struct lws *lws;           /* the library's; NULL: it does not have the socket */
-    struct ev_io first;        /* client: the first byte */
     struct ev_io down, up;     /* pair: bytes for the client; room for bytes of the client */
     char *to_client, *to_pair; /* bytes that were not taken; NULL: none */
     size_t n_to_client, n_to_pair;
@@ -51,6 +50,10 @@ struct tls {
     struct queue *accepted;                /* from tls_accept */
     struct gate *taking;                   /* passed by each call of take and take_plain; closed by tls_close */
     struct ev_async woken;
+    /* An epoll of its own watches the sockets of links in TLS_SILENT, and libev this epoll: libev goes on watching a
+     * socket that it was told to leave, until it is closed, while others may own this one by then. */
+    int silent;
+    struct ev_io heard;
     struct ev_timer tick; /* runs while links may be late */
     pthread_t thread;
     bool has_thread;

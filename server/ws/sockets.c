@@ -11,7 +11,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
-#include "server/ws/library_log.h"
+#include "server/ws/library.h"
 
 struct sockets {
     const struct sockets_calls *calls;
@@ -79,8 +79,13 @@ static bool add_timer(struct sockets *sockets)
 {
     sockets->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
     lws_sock_file_fd_type timer = { .filefd = sockets->timer_fd };
-    return sockets->timer_fd >= 0 &&
-           lws_adopt_descriptor_vhost(sockets->vhost, LWS_ADOPT_RAW_FILE_DESC, timer, sockets->protocols[0].name, NULL);
+    struct stat facts;
+    if (sockets->timer_fd < 0 || fstat(sockets->timer_fd, &facts) != 0)
+        return false;
+    if (lws_adopt_descriptor_vhost(sockets->vhost, LWS_ADOPT_RAW_FILE_DESC, timer, sockets->protocols[0].name, NULL))
+        return true;
+    library_close_refused(sockets->timer_fd, &facts);
+    return false;
 }
 
 struct sockets *sockets_create(const struct sockets_calls *calls, struct error *err)
@@ -112,10 +117,14 @@ void sockets_destroy(struct sockets *sockets)
 bool sockets_add(struct sockets *sockets, struct socket *socket, int fd)
 {
     const lws_sock_file_fd_type one = { .sockfd = fd };
+    struct stat facts = { 0 };
+    (void)fstat(fd, &facts);
     struct lws *lws =
         lws_adopt_descriptor_vhost(sockets->vhost, LWS_ADOPT_SOCKET, one, sockets->protocols[0].name, NULL);
-    if (!lws)
+    if (!lws) {
+        library_close_refused(fd, &facts);
         return false;
+    }
     lws_set_timeout(lws, NO_PENDING_TIMEOUT, 0); /* or it is cut after some seconds */
     lws_set_wsi_user(lws, socket);
     *socket = (struct socket){ sockets->calls, lws, fd };

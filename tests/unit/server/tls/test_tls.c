@@ -279,6 +279,35 @@ static void after_the_close_nothing_is_handed_on_and_what_stands_goes_on(void **
     tls_world_bye(standing);
 }
 
+/* The library has places for as many descriptors as were allowed when it was started. */
+static void a_socket_that_the_library_does_not_take_is_closed(void **state)
+{
+    static struct tls_world world;
+    struct rlimit before;
+    (void)state;
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+    const struct rlimit few = { 64, before.rlim_max };
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+    tls_world_start(&world, false);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
+    int ends[2];
+    char byte;
+    struct address address = { { 1 } };
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
+    int high = fcntl(ends[0], F_DUPFD_CLOEXEC, 200);
+    assert_true(high >= 200);
+    close(ends[0]);
+    tls_accept(world.tls, high, &address);
+    assert_int_equal(send(ends[1], "\x16\x03\x01", 3, 0), 3);
+    wait_for(&world, 0);
+    for (int ms = 0; ms < TLS_WORLD_WAIT_MS && fcntl(high, F_GETFD) != -1; ms += 5)
+        usleep(5000);
+    assert_int_equal(fcntl(high, F_GETFD), -1);
+    assert_true(recv(ends[1], &byte, 1, MSG_DONTWAIT) <= 0);
+    close(ends[1]);
+    tls_world_finish(&world);
+}
+
 static void a_chain_is_read_and_one_without_end_is_not(void **state)
 {
     struct tls_world *world = *state;
@@ -321,6 +350,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_renewed_certificate_is_that_of_new_connections, start_echo, finish),
         cmocka_unit_test_setup_teardown(after_the_close_nothing_is_handed_on_and_what_stands_goes_on, start_echo,
                                         finish),
+        cmocka_unit_test(a_socket_that_the_library_does_not_take_is_closed),
         cmocka_unit_test_setup_teardown(a_chain_is_read_and_one_without_end_is_not, start, finish),
     };
     signal(SIGPIPE, SIG_IGN);
