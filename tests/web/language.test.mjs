@@ -108,6 +108,7 @@ const nameKeys = [
   'format',
   'gl',
 ];
+const sentenceKeys = ['sentence', 'detail', 'title', 'phase', 'reason']; // not all of them have a code
 const escaped = (text) => text.replace(/[\\^$.*+?()[\]{}|]/g, '\\$&');
 
 /** Remembers names that the server sent, and its sentences. */
