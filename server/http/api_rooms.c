@@ -36,7 +36,7 @@ void api_rooms(struct api *api, struct call *call)
 }
 
 /* The bookmark under this token and its plan's id, borrowed from it. NULL with problem. */
-static cJSON *find_saved(struct api *api, const cJSON *token, const char **plan_id, struct problem *problem)
+static cJSON *find_bookmark(struct api *api, const cJSON *token, const char **plan_id, struct problem *problem)
 {
     if (!cJSON_IsString(token) || !id_is_valid(token->valuestring)) {
         problem_set(problem, PROBLEM_VALIDATION, "/saved", "pattern", "\"saved\" must be the token of a bookmark");
@@ -101,7 +101,7 @@ void api_room_new(struct api *api, struct call *call)
         return;
     }
     const cJSON *plan = cJSON_GetObjectItemCaseSensitive(body, "plan"),
-                *saved = cJSON_GetObjectItemCaseSensitive(body, "saved");
+                *token = cJSON_GetObjectItemCaseSensitive(body, "saved");
     const cJSON *item;
     cJSON *bookmark = NULL;
     const char *plan_id = cJSON_GetStringValue(plan);
@@ -113,15 +113,15 @@ void api_room_new(struct api *api, struct call *call)
             problem_set(&problem, PROBLEM_VALIDATION, pointer, "unknown-field", "%.60s is not a field of a room",
                         item->string);
     }
-    if (!plan == !saved)
+    if (!plan == !token)
         problem_set(&problem, PROBLEM_VALIDATION, "/plan", "required",
                     "which plan? give either \"plan\", or \"saved\", the token of a bookmark");
     else if (plan && (!plan_id || !id_is_valid(plan_id)))
         problem_set(&problem, PROBLEM_VALIDATION, "/plan", "pattern", "\"plan\" must be the id of a plan");
-    else if (saved && problem.type == PROBLEM_NONE)
-        bookmark = find_saved(api, saved, &plan_id, &problem);
+    else if (token && problem.type == PROBLEM_NONE)
+        bookmark = find_bookmark(api, token, &plan_id, &problem);
     if (problem.type == PROBLEM_NOT_FOUND && net_rooms_are_known(api->net, &problem) &&
-        api_bookmark_sleeps(api, call, saved->valuestring, api_room_new)) {
+        api_bookmark_sleeps(api, call, token->valuestring, api_room_new)) {
         cJSON_Delete(body);
         return;
     }

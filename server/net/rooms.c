@@ -352,13 +352,13 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
 {
     struct problem problem = { 0 };
     struct asleep_room *asleep = asleep_of_answer(net, answer);
-    const struct waiter *saved = asleep ? NULL : asleep_waiter_of_answer(net, answer);
+    const struct waiter *bookmark = asleep ? NULL : asleep_waiter_of_answer(net, answer);
     char token[64] = "";
-    if (saved) {
-        memcpy(token, saved->room, sizeof token);
+    if (bookmark) {
+        memcpy(token, bookmark->room, sizeof token);
         asleep = answer->room ? asleep_find(net, answer->room->id) : NULL;
     }
-    if (saved && !asleep) {
+    if (bookmark && !asleep) {
         problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no bookmark with this token");
         asleep_tell(net, token, answer->room && rooms_find(net, answer->room->id) ? NULL : &problem);
         return;

@@ -40,12 +40,12 @@ cJSON *stream_first_view(const struct room *room, cJSON *document)
     const cJSON *entry;
     cJSON_ArrayForEach(entry, room->beginning.views)
     {
-        const cJSON *saved = cJSON_GetObjectItemCaseSensitive(entry, "document");
-        if (!views_are_alike(saved, document) || has_camera(document))
+        const cJSON *first = cJSON_GetObjectItemCaseSensitive(entry, "document");
+        if (!views_are_alike(first, document) || has_camera(document))
             continue;
         cJSON *patch = cJSON_CreateObject();
-        json_add(patch, "camera", cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(saved, "camera"), true));
-        json_add(patch, "beam", cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(saved, "beam"), true));
+        json_add(patch, "camera", cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(first, "camera"), true));
+        json_add(patch, "beam", cJSON_Duplicate(cJSON_GetObjectItemCaseSensitive(first, "beam"), true));
         cJSON *view = view_document_patch(document, patch, NULL);
         cJSON_Delete(patch);
         if (!view)

@@ -59,7 +59,7 @@ export function makeApi(fetch, base = 'api/v1') {
     /** Any other call, of parts that are loaded later. */
     call,
     /** A room of its own that begins with a saved view. @param {string} token of its link */
-    makeRoomOfSaved: (token) => call('POST', 'rooms', { body: { saved: token } }),
+    makeRoomOfBookmark: (token) => call('POST', 'rooms', { body: { saved: token } }),
     bookmark: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}`),
     bookmarkPicture: (room, bookmark) => call('GET', `rooms/${id(room)}/bookmarks/${id(bookmark)}/picture`, { isPicture: true }),
     room: (room) => call('GET', `rooms/${id(room)}`),

@@ -3,7 +3,7 @@ import { bookmarkBlock } from './bookmark_block.js';
 import { html, nothing } from '../../../lib/lit-html.js';
 import { repeat } from '../../../lib/directives/repeat.js';
 import { Bookmarks, bookmarksOf } from './bookmarks.js';
-import { toldOfMerge } from '../../room/saved_merge.js';
+import { toldOfMerge } from '../../room/scene_merge.js';
 import { icon } from '../../parts/icons.js';
 import { name, treeRow } from '../../parts/tree_row.js';
 import { say } from './later_words.js';

@@ -3,7 +3,7 @@ import { batch, effect, signal } from '../../../lib/signals-core.js';
 import { readDocument } from '../../wire/check.js';
 import { isObject } from '../../wire/merge.js';
 import { layouts } from '../../room/layout.js';
-import { mergedScene } from '../../room/saved_merge.js';
+import { mergedScene } from '../../room/scene_merge.js';
 import { say } from './later_words.js';
 
 export const maxName = 80; // characters

@@ -17,7 +17,7 @@ export function permalinkPage(host, token, { api, enter }) {
   const open = async () => {
     problem.value = null;
     try {
-      const room = await api.makeRoomOfSaved(token);
+      const room = await api.makeRoomOfBookmark(token);
       if (isLeft) return;
       beginWith(room.id);
       enter(room.id, room.plan);

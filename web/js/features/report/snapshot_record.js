@@ -4,10 +4,10 @@ import { isPng, maxFileBytes, textOfPng } from '../../net/png.js';
 import { isId, readDocument } from '../../wire/check.js';
 import { isObject } from '../../wire/merge.js';
 import { adopted } from '../../room/marks.js';
-import { mergedScene } from '../../room/saved_merge.js';
+import { mergedScene } from '../../room/scene_merge.js';
 import { say } from './later_words.js';
 
-export { toldOfMerge } from '../../room/saved_merge.js';
+export { toldOfMerge } from '../../room/scene_merge.js';
 
 const keyword = 'beamroom';
 const version = 1;

@@ -150,7 +150,7 @@ test('a presentation goes from one to the next, and stays at its ends', async ()
 
 // ---- what others made since -----------------------------------------------------------------------------------------------
 
-const { mergedScene, toldOfMerge } = await load('room/saved_merge.js');
+const { mergedScene, toldOfMerge } = await load('room/scene_merge.js');
 
 test('a saved view hides planes and levels that it does not hold, and leaves marks as they are now', () => {
   const line = (name, visible = true) => ({ kind: 'distance', name, author: 'Dr A', visible, points: [] });
