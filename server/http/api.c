@@ -7,11 +7,15 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/http/api_acts.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 #include "server/http/api_questions.h"
 
-static const struct api_route api_routes[] = {
+static const struct {
+    const char *method, *path;
+    void (*handle)(struct api *api, struct call *call);
+} api_routes[] = {
     { "GET", "/healthz", api_healthz },
     { "GET", "/readyz", api_readyz },
     { "GET", "/metrics", api_metrics },
@@ -128,11 +132,14 @@ static bool has_right(struct api *api, const struct call *call, const struct api
 
 bool api_route_at(size_t index, struct api_route *route)
 {
-    if (index < api_n_routes)
-        *route = api_routes[index];
-    else
-        *route = (struct api_route){ .method = "GET", .handle = api_question };
-    return index < api_n_routes || api_question_route(index - api_n_routes, &route->path);
+    if (index < api_n_routes) {
+        *route = (struct api_route){ api_routes[index].method, api_routes[index].path, api_routes[index].handle, NULL };
+        return true;
+    }
+    if (api_act_route(index - api_n_routes, route))
+        return true;
+    *route = (struct api_route){ .method = "GET", .handle = api_question };
+    return api_question_route(index - api_n_routes - api_n_acts, &route->path);
 }
 
 /* Handles the call once more: the room that it needs is awake. */
@@ -150,7 +157,8 @@ static void room_awoke(void *context, const char *room_id, const struct problem 
 static bool wakes_room(struct api *api, struct call *call, const struct api_route *route)
 {
     const char *room = call_query(call, "room");
-    bool is_for_awake = call->method == CALL_DELETE || route->handle == api_room_ws || route->handle == api_room_stream;
+    bool is_for_awake = (call->method == CALL_DELETE && route->handle != api_room_act) ||
+                        route->handle == api_room_ws || route->handle == api_room_stream;
     if (strncmp(route->path, in_room, strlen(in_room)) == 0)
         room = is_for_awake ? NULL : call->ids[0];
     if (!room || !net_room_is_asleep(api->net, room))
@@ -205,6 +213,7 @@ void api_handle(struct api *api, struct call *call)
                     return;
                 }
             call->route = route.path;
+            call->act = route.act;
             if (wakes_room(api, call, &route) || looks_for_plan(api, call, &route))
                 return;
             if (!room_can_be_looked_for(api, call, &route, &problem) || !has_right(api, call, &route, &problem)) {

@@ -9,12 +9,15 @@ struct api;
 struct api *api_create(struct net *net, uint64_t max_upload_bytes, bool is_alone);
 void api_destroy(struct api *api);
 
+struct api_act;
+
 struct api_route {
     const char *method, *path; /* as in proto/http.json: "/api/v1/plans/{plan}/open" */
     void (*handle)(struct api *api, struct call *call);
+    const struct api_act *act; /* of api_room_act; else NULL */
 };
-/* The route number index: those with a handler of their own, then one for each question of proto/packets.json. False
- * after the last. */
+/* The route number index: those with a handler of their own, then those of api_acts.c, then one for each question of
+ * proto/packets.json. False after the last. */
 bool api_route_at(size_t index, struct api_route *route);
 
 /* Finds the route, checks the ids and runs the handler. The call is answered now or later, exactly once. */

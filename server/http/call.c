@@ -36,6 +36,7 @@ void call_destroy(struct call *call)
     }
     free(call->if_match);
     free(call->member);
+    free(call->key);
     free(call->if_none_match);
     free(call->content_type);
     free(call->origin);

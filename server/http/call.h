@@ -21,6 +21,7 @@ struct call_pair {
     char *name, *value;
 };
 
+struct api_act;
 struct feed;
 
 struct call {
@@ -32,7 +33,7 @@ struct call {
     const char *ids[CALL_MAX_SEGMENTS]; /* the segments that stand for {...} in the route, in order */
     struct call_pair query[CALL_MAX_QUERY];
     size_t n_query;
-    char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member; /* NULL when not sent */
+    char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member, *key; /* NULL when not sent */
     bool is_secure;  /* it came by TLS, which was decrypted here */
     char client[46]; /* address of the client, behind trusted proxies; "": not known */
     char *body;
@@ -61,7 +62,8 @@ struct call {
     void (*wake)(void *context);         /* for feed_create */
     void *wake_context;
     int64_t started_us;
-    const char *route; /* "GET /api/v1/plans/{plan}", for metrics; never an id */
+    const struct api_act *act; /* of the route; NULL: its handler is its own */
+    const char *route;         /* "GET /api/v1/plans/{plan}", for metrics; never an id */
 };
 
 struct call *call_create(void);

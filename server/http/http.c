@@ -313,6 +313,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
         front_client(request->link, call->client);
     call->if_match = copy_header(connection, "If-Match");
     call->member = copy_header(connection, "Beamroom-Member");
+    call->key = copy_header(connection, "Idempotency-Key");
     call->if_none_match = copy_header(connection, "If-None-Match");
     call->content_type = copy_header(connection, "Content-Type");
     call->origin = copy_header(connection, "Origin");

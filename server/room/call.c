@@ -14,8 +14,7 @@
 #include "server/wire/json.h"
 #include "server/wire/message.h"
 
-/* The member who makes a call: member as in room_call_may. NULL: nobody of the room. */
-static struct member *find_caller(const struct room *room, const char *member)
+struct member *room_caller(const struct room *room, const char *member)
 {
     char id[64];
     const size_t n = member ? strcspn(member, " ") : 0;
@@ -29,7 +28,7 @@ static struct member *find_caller(const struct room *room, const char *member)
 
 const char *room_caller_name(const struct room *room, const char *member)
 {
-    const struct member *caller = find_caller(room, member);
+    const struct member *caller = room_caller(room, member);
     return caller ? caller->name : "";
 }
 
@@ -51,7 +50,7 @@ bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller,
     room_enter(room, now_us);
     if (!replay_allows(room, MESSAGE_SCENE_PATCH, problem))
         return false;
-    room->call.by = find_caller(room, caller);
+    room->call.by = room_caller(room, caller);
     room->call.address = address;
     const bool ok = scene_apply_patch(room, patch, NULL, 0, problem);
     room->call.address = NULL;
@@ -65,7 +64,7 @@ void room_audit_call(struct room *room, const char *member, const char *address,
 {
     if (strcmp(action, "export") == 0 && room->files.revision[0])
         cJSON_AddStringToObject(detail, "plan_revision", room->files.revision);
-    const struct audit_act act = { .by = find_caller(room, member),
+    const struct audit_act act = { .by = room_caller(room, member),
                                    .action = action,
                                    .address = address,
                                    .detail = detail,
@@ -79,7 +78,7 @@ void room_audit_call(struct room *room, const char *member, const char *address,
 
 bool room_call_may(const struct room *room, const char *member, enum wire_right right, struct problem *problem)
 {
-    const struct member *caller = find_caller(room, member);
+    const struct member *caller = room_caller(room, member);
     if (caller) {
         if (right == WIRE_RIGHT_SCENE && role_has_right(caller->role, right) && !member_presents(room, caller))
             return refuse_not_presenter(room, problem, "change the scene");

@@ -317,9 +317,10 @@ static void whole_number(const cJSON *json, const char *name, double most, int64
     *value = number >= 0 && number <= most ? (int64_t)number : 0;
 }
 
-static void audit_refused(struct room *room, const struct member *member, const char *what,
-                          const struct problem *problem)
+void room_audit_refused(struct room *room, const struct member *member, const char *what, const struct problem *problem)
 {
+    if (problem->type != PROBLEM_FORBIDDEN && problem->type != PROBLEM_NOT_PRESENTER)
+        return;
     const struct audit_act row = {
         .by = member, .action = "refused", .detail = cJSON_CreateObject(), .is_refused = true, .before = -1, .after = -1
     };
@@ -363,8 +364,7 @@ static bool refuse(struct room *room, void *connection, const char *text, size_t
     whole_number(json, "view", ROOM_MAX_VIEWS, &view);
     whole_number(json, "input", UINT32_MAX, &input);
     cJSON_Delete(json);
-    if (problem->type == PROBLEM_FORBIDDEN || problem->type == PROBLEM_NOT_PRESENTER)
-        audit_refused(room, member, to, problem);
+    room_audit_refused(room, member, to, problem);
     return send_problem(room, connection, to, view, input, problem);
 }
 
@@ -427,6 +427,17 @@ static int64_t settle_shown(struct room *room, struct member *member)
     return request_us < next_us ? request_us : next_us;
 }
 
+bool room_apply(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    if (!role_check(member->role, message_descriptions[message->type].right, problem) ||
+        !replay_allows(room, message->type, problem) || (is_recorded(message->type) && !audit_has_place(room, problem)))
+        return false;
+    for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++)
+        if (handlers[i].type == message->type)
+            return handlers[i].handle(room, member, message, problem);
+    return true;
+}
+
 /* Applies the message of a text. Returns true for an acknowledgement that was taken. */
 static bool take_text(struct room *room, struct member *member, void *connection, const char *text, size_t n)
 {
@@ -443,14 +454,8 @@ static bool take_text(struct room *room, struct member *member, void *connection
         problem_set(&problem, PROBLEM_VALIDATION, "/type", "required", "%s", hello_first);
         if (refuse(room, connection, text, n, &problem))
             send_bye(room, connection, -1, hello_first);
-    } else if (!role_check(member->role, message_descriptions[message.type].right, &problem) ||
-               !replay_allows(room, message.type, &problem) ||
-               (is_recorded(message.type) && !audit_has_place(room, &problem))) {
+    } else if (!room_apply(room, member, &message, &problem)) {
         (void)refuse(room, connection, text, n, &problem);
-    } else {
-        for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++)
-            if (handlers[i].type == message.type && !handlers[i].handle(room, member, &message, &problem))
-                (void)refuse(room, connection, text, n, &problem);
     }
     const bool is_shown = message.type == MESSAGE_FRAME_SHOWN && problem.type == PROBLEM_NONE;
     message_finish(&message);

@@ -128,6 +128,8 @@ test('rooms, and what their members write down', async () => {
   await ask(`${at}/members`);
   await give({ type: 'item.put', kind: 'note', body: { text: 'here', anchor: { point_mm: [1, 2, 3] } } });
   const bookmark = await give({ type: 'item.put', kind: 'bookmark', body: { name: 'One' } });
+  const { id: note } = await ask(`${at}/notes`, 'POST', { body: { text: 'by a script' }, name: 'Script' });
+  await ask(`${at}/notes/${note}`, 'PATCH', { version: 1, body: { text: 'changed' }, name: 'Script' });
   await ask(`${at}/notes`);
   await ask(`${at}/bookmarks`);
   await ask(`${at}/bookmarks/${bookmark.id}`);

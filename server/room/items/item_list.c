@@ -110,3 +110,9 @@ cJSON *room_items(const struct room *room, enum wire_item_kind kind)
 {
     return rows(room, &kind);
 }
+
+bool room_item_is(const struct room *room, const char *id, enum wire_item_kind kind)
+{
+    const struct item *item = items_find(room, id);
+    return item && item->kind == kind;
+}

@@ -22,6 +22,9 @@ struct keeping { /* an item that is being written, and counts afterwards */
     bool is_change;   /* of an item in the list */
     char member[64];  /* who gave it */
     uint32_t input;
+    void (*done)(void *context, const char *row, bool was_sent_before,
+                 const struct problem *problem); /* of struct room_act; NULL: a message gave it */
+    void *context;
 };
 
 struct items {

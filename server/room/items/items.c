@@ -7,7 +7,9 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/auth/digest.h"
 #include "server/room/items/acceptance.h"
+#include "server/room/items/bookmark_body.h"
 #include "server/room/items/item_list.h"
 #include "server/room/items/item_row.h"
 #include "server/room/items/record_body.h"
@@ -31,6 +33,16 @@ static void make_id(const struct room *room, char id[16])
         random_hex(digits, ID_BYTES);
         (void)snprintf(id, 16, "i-%s", digits);
     } while (items_find(room, id));
+}
+
+/* The same for the same key of the same caller in this room: a call that is sent again finds what it has made, also
+ * after a restart. */
+static void make_id_of_key(const struct room *room, const struct member *member, const char *key, char id[16])
+{
+    char text[600], hex[DIGEST_TEXT];
+    (void)snprintf(text, sizeof text, "%s\n%s\n%s\n%s", room->id, member->id, member->id[0] ? "" : member->name, key);
+    digest_text(text, hex);
+    (void)snprintf(id, 16, "i-%.*s", 2 * ID_BYTES, hex);
 }
 
 static void copy_name(char to[161], const char *from)
@@ -145,6 +157,10 @@ static bool keep_first(struct room *room, const struct item *next, bool is_chang
     *keeping =
         (struct keeping){ .number = ++room->items->n_kept, .item = *next, .is_change = is_change, .input = input };
     (void)snprintf(keeping->member, sizeof keeping->member, "%s", member->id);
+    if (room->call.act) {
+        keeping->done = room->call.act->done;
+        keeping->context = room->call.act->context;
+    }
     if (!write_first(room, keeping, member, problem)) {
         free(keeping->item.row);
         free(keeping);
@@ -153,14 +169,21 @@ static bool keep_first(struct room *room, const struct item *next, bool is_chang
     while (*last)
         last = &(*last)->next;
     *last = keeping;
+    room->call.waits = keeping->done != NULL;
     return true;
 }
 
 void items_forget_keeping(struct room *room)
 {
+    struct problem problem;
+    problem_set(&problem, PROBLEM_BUSY, "", "",
+                "the room was closed while this was being kept: look whether it is there");
+    problem.retry_after_ms = 1000;
     while (room->items->keeping) {
         struct keeping *keeping = room->items->keeping;
         room->items->keeping = keeping->next;
+        if (keeping->done)
+            keeping->done(keeping->context, NULL, false, &problem);
         free(keeping->item.row);
         free(keeping);
     }
@@ -184,17 +207,70 @@ void items_written(struct room *room, uint64_t number, const struct problem *pro
     *at = keeping->next;
     if (problem) {
         for (int i = 0; i < room->members.n; i++)
-            if (strcmp(room->members.list[i]->id, keeping->member) == 0 && room->members.list[i]->connection)
+            if (!keeping->done && strcmp(room->members.list[i]->id, keeping->member) == 0 &&
+                room->members.list[i]->connection)
                 (void)send_problem(room, room->members.list[i]->connection, "item.put", 0, keeping->input, problem);
+        if (keeping->done)
+            keeping->done(keeping->context, NULL, false, problem);
         free(keeping->item.row);
     } else {
         struct item *before = keeping->is_change ? items_find(room, keeping->item.id) : NULL;
         const struct item *item = take(room, before, &keeping->item, keeping->item.row);
         tell_members(room, item->id, item->row, keeping->member, keeping->input);
+        if (keeping->done)
+            keeping->done(keeping->context, item->row, false, NULL);
         if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
             acceptances_settle(room);
     }
     free(keeping);
+}
+
+/* Whether the body is the one that the item was made with, as far as that can be told. */
+static bool was_made_with(const struct room *room, const struct item *made, const cJSON *body)
+{
+    struct problem ignored = { 0 };
+    if (made->version > 1) /* it was changed since */
+        return true;
+    if (made->kind == WIRE_ITEM_KIND_BOOKMARK) { /* what it shows may be of that moment */
+        cJSON *kept = bookmark_body_of(made);
+        const char *was = json_text(kept, "name"), *is = json_text(body, "name");
+        const bool is_same = was && is && strcmp(was, is) == 0;
+        cJSON_Delete(kept);
+        return is_same;
+    }
+    char *text = item_body_text(room, made->kind, body, made, false, &ignored);
+    char *row = text ? item_row_text(made, text) : NULL;
+    const bool is_same = row && strcmp(row, made->row) == 0;
+    free(row);
+    free(text);
+    return is_same;
+}
+
+/* Gives a new item its id, and is true; or it was made when the same call was sent before (room->call.was_sent_before),
+ * or is just being kept: then false, with problem if that is not the answer. */
+static bool give_id(struct room *room, const struct member *member, const struct message_item_put *put, char id[16],
+                    struct problem *problem)
+{
+    if (!room->call.act || !room->call.act->key) {
+        make_id(room, id);
+        return true;
+    }
+    make_id_of_key(room, member, room->call.act->key, id);
+    for (const struct keeping *keeping = room->items->keeping; keeping; keeping = keeping->next)
+        if (strcmp(keeping->item.id, id) == 0) {
+            problem_set(problem, PROBLEM_BUSY, "", "", "this call was sent before, and is just being kept: try again");
+            problem->retry_after_ms = 200;
+            return false;
+        }
+    const struct item *made = items_find(room, id);
+    if (!made)
+        return true;
+    if (made->kind != put->kind || strcmp(made->author, member->id) != 0 || !was_made_with(room, made, put->body))
+        return problem_set(problem, PROBLEM_CONFLICT, "", "key",
+                           "another call had this Idempotency-Key: it has written %s, which is something else", id);
+    (void)snprintf(room->call.item, sizeof room->call.item, "%s", id);
+    room->call.was_sent_before = true;
+    return false;
 }
 
 bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem)
@@ -219,7 +295,8 @@ bool items_put(struct room *room, struct member *member, const struct message *m
     } else {
         if (!acceptance_may_write(room, member, put->kind, NULL, problem))
             return false;
-        make_id(room, next.id);
+        if (!give_id(room, member, put, next.id, problem))
+            return room->call.was_sent_before;
         (void)snprintf(next.author, sizeof next.author, "%s", member->id);
         copy_name(next.author_name, member->name);
         (void)snprintf(next.author_color, sizeof next.author_color, "#%06x", color_rgb(member->color) & 0xffffffU);
@@ -249,6 +326,7 @@ bool items_put(struct room *room, struct member *member, const struct message *m
     record_audit(room, item, member, NULL);
     acceptance_audit(room, item, member, false);
     tell(room, item->id, item->row, member, (uint32_t)put->input);
+    (void)snprintf(room->call.item, sizeof room->call.item, "%s", item->id);
     if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
         acceptances_settle(room);
     return true;

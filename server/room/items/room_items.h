@@ -6,6 +6,8 @@
 /* Items: notes with their replies, and bookmarks. [row] of one kind, oldest first, as in the message welcome; NULL: no
  * memory. */
 NODISCARD cJSON *room_items(const struct room *room, enum wire_item_kind kind);
+/* Whether the room has an item with this id, of this kind. */
+bool room_item_is(const struct room *room, const char *id, enum wire_item_kind kind);
 /* Gives a room an item that was kept: the row of item_changed. All rows of a room before its first member, in the order
  * of created_ms; neither item_changed nor a message follows. False with problem when the row is damaged, there already
  * or beyond a limit: the others can still be restored. */

@@ -97,9 +97,13 @@ static void end(struct room *room, int index)
     drop(room, index);
 }
 
-static const char *address_of(const struct audit_act *act)
+static const char *address_of(const struct room *room, const struct audit_act *act)
 {
-    return act->address ? act->address : act->by ? act->by->address : "";
+    if (act->address)
+        return act->address;
+    if (act->by && room->call.act)
+        return room->call.act->address;
+    return act->by ? act->by->address : "";
 }
 
 static enum wire_member_role role_of(const struct audit_act *act)
@@ -109,11 +113,12 @@ static enum wire_member_role role_of(const struct audit_act *act)
 
 /* Whether this act may share a row with what is gathered. Steps of a gesture (a key) may differ in their values; other
  * acts must be equal in everything but their time. */
-static bool is_same_act(const struct gathered *found, const struct audit_act *act, const cJSON *detail)
+static bool is_same_act(const struct room *room, const struct gathered *found, const struct audit_act *act,
+                        const cJSON *detail)
 {
     if (strcmp(found->action, act->action) != 0 || strcmp(found->key, act->key ? act->key : "") != 0 ||
         strcmp(found->member, act->by ? act->by->id : "") != 0 ||
-        strcmp(found->name, act->by ? act->by->name : "") != 0 || strcmp(found->address, address_of(act)) != 0 ||
+        strcmp(found->name, act->by ? act->by->name : "") != 0 || strcmp(found->address, address_of(room, act)) != 0 ||
         found->role != role_of(act) || found->is_refused != act->is_refused)
         return false;
     return act->key ||
@@ -123,7 +128,7 @@ static bool is_same_act(const struct gathered *found, const struct audit_act *ac
 static struct gathered *find(struct room *room, const struct audit_act *act, const cJSON *detail)
 {
     for (int i = 0; i < room->audit->n_gathered; i++)
-        if (is_same_act(&room->audit->gathered[i], act, detail))
+        if (is_same_act(room, &room->audit->gathered[i], act, detail))
             return &room->audit->gathered[i];
     return NULL;
 }
@@ -135,7 +140,7 @@ static void fill(const struct room *room, const struct audit_act *act, struct ga
     (void)snprintf(found->key, sizeof found->key, "%s", act->key ? act->key : "");
     (void)snprintf(found->member, sizeof found->member, "%s", act->by ? act->by->id : "");
     (void)snprintf(found->name, sizeof found->name, "%s", act->by ? act->by->name : "");
-    (void)snprintf(found->address, sizeof found->address, "%s", address_of(act));
+    (void)snprintf(found->address, sizeof found->address, "%s", address_of(room, act));
     found->role = role_of(act);
 }
 

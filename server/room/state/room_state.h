@@ -169,9 +169,13 @@ struct beginning { /* the bookmark that the room was made from; all NULL: none *
     cJSON *opened; /* without the scene; NULL before the plan is ready */
 };
 
-struct scene_call {          /* while a call over HTTP changes the scene */
-    const struct member *by; /* NULL: nobody of the room */
-    const char *address;     /* NULL: no call */
+struct room_call {              /* while a call over HTTP acts in the room */
+    const struct member *by;    /* who changes the scene; NULL: nobody of the room, or no call */
+    const char *address;        /* NULL: no call */
+    const struct room_act *act; /* NULL: none that is answered */
+    char item[16];              /* the item that it has written; "": none yet */
+    bool waits;                 /* its item is being written: it is answered by items_written */
+    bool was_sent_before;       /* the item was made when the call was sent before */
 };
 
 struct plan_files {              /* of the room's plan */
@@ -207,7 +211,7 @@ struct room {
     struct plan_files files;
     struct shared_documents shared;
     struct beginning beginning;
-    struct scene_call call;
+    struct room_call call;
     struct streams streams;
     struct members members;
     struct member *presenter; /* one of members, connected or away for less than ROOM_PRESENTER_KEPT_S; NULL: nobody */

@@ -41,6 +41,7 @@ enum {
     ROOM_DISPLAY_RETRY_MS = 5000
 };
 
+struct message; /* wire_gen.h */
 struct room;
 struct log_batch; /* meeting_log.h */
 
@@ -148,6 +149,20 @@ struct room_callbacks {
      * the next such one, are to be read; answered by room_replay_came, later. False with problem: not now. */
     bool (*replay_read)(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms,
                         struct problem *problem);
+};
+
+/* What somebody does in a room by a call over HTTP: a message of a page (proto/messages.json), as if a member had sent
+ * it. Borrowed, but for context. */
+struct room_act {
+    const char *member;  /* as in room_call_may */
+    const char *name;    /* of who does it, when member is NULL */
+    const char *address; /* as in room_audit_call */
+    const char *key;     /* NULL, or: the same item is not made twice for this word of the caller's */
+    struct message *message;
+    /* Called once: at once, or when the item is on disk. problem NULL: it is done, and row is the item that was
+     * written; NULL: none was. was_sent_before: an earlier act with the same key has written it. */
+    void (*done)(void *context, const char *row, bool was_sent_before, const struct problem *problem);
+    void *context;
 };
 
 /* Parts of a room that are kept on disk. */
