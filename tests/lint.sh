@@ -189,6 +189,22 @@ planted_import() {
     echo "$out"
     return 1
 }
+planted_sentence() {
+    local folder out expected
+    folder=$(mktemp -d)
+    mkdir -p "$folder/core" "$folder/server/wire" "$folder/proto"
+    printf '{ "about": "", "problems": [["said", "so {n %%d}"], ["not-said", "not so"]], "report": [], "fits": [] }\n' >"$folder/proto/sentences.json"
+    printf 'f(problem_set(p, T, "", "", "so " "%%d", g(1, 2)));\nf(problem_set(p, T, "", "", is ? "%%s" : "new", x));\n' >"$folder/server/a.c"
+    expected='server/a.c:2: "new" is not in proto/sentences.json, problems
+proto/sentences.json, problems: nothing says not-said, "not so"'
+    out=$("${NODE:-node}" tests/sentences.mjs "$folder")
+    local status=$?
+    rm -rf "$folder"
+    [ $status = 1 ] && [ "$out" = "$expected" ] && return 0
+    echo "a sentence without a row and a row that nothing says; the check said (exit $status):"
+    echo "$out"
+    return 1
+}
 page_words() { "${NODE:-node}" tests/page_words.mjs; }
 planted_words() {
     local folder out expected
@@ -264,6 +280,7 @@ check "an import from one feature to another, and one upwards, are found" plante
 check "what a person reads on the page stands in tables of words (tests/page_words.mjs)" page_words
 check "texts outside of a table, keys that are missing or too many, and a table of later in what is loaded at once are found" planted_words
 check "each sentence of the server is in proto/sentences.json, and each of those is said (tests/sentences.mjs)" "${NODE:-node}" tests/sentences.mjs
+check "a sentence without a row and a row that nothing says are found" planted_sentence
 check "comments begin with their subject (tests/comments.mjs)" comments_begin
 check "comments that begin in the middle are found" planted_comment
 check "locks stand in core/base alone" locks_in_base

@@ -18,7 +18,7 @@ struct sentence_facts {
 
 /* The facts of a sentence that is being written by vprintf with this format and these arguments, which are used up. */
 void sentence_describe(struct sentence_facts *facts, const char *format, va_list args);
-/* The same of a sentence that is written as subject, a space, and the rest by this format. */
+/* Like sentence_describe, for a sentence that is written as subject, a space, and the rest by this format. */
 void sentence_describe_of(struct sentence_facts *facts, const char *subject, const char *format, va_list args);
 /* NULL: no sentence has this code. Sentences of one code have the same names in the same order. */
 const struct sentence *sentence_find(const char *code);

@@ -28,7 +28,7 @@ export function placesOf(text) {
   });
 }
 
-/** As the C code has it: "%" before "PRIu64" opens a string again. */
+/** The text as a string of C: in front of PRIu64 the string ends. */
 const formatOf = (text) => JSON.stringify(text.replace(place, (_, name, format = '%s') => format)).replace(/%(PRI\w+)/g, '%" $1 "');
 
 /** All sentences, whatever they are about. Throws where one code has two texts, or one text two codes. */

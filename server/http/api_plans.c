@@ -5,6 +5,7 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 #include "server/http/api_queries.h"
+#include "server/wire/sentence_json.h"
 
 static cJSON *plan_head(const struct fleet_plan *plan)
 {
@@ -24,6 +25,7 @@ static cJSON *plan_head(const struct fleet_plan *plan)
     }
     if (plan->problem) { /* unreadable, failed, or waiting for a restart */
         cJSON_AddStringToObject(json, "reason", plan->problem->detail);
+        sentence_add_json(json, "reason", &plan->problem->facts);
         cJSON_AddItemToObject(json, "problem", problem_to_json(plan->problem));
     } else {
         cJSON_AddNullToObject(json, "reason");

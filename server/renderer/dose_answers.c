@@ -11,6 +11,7 @@
 #include "server/renderer/dose_answers.h"
 #include "server/wire/document.h"
 #include "server/wire/json.h"
+#include "server/wire/sentence_json.h"
 #include "wire_gen.h"
 
 static void add_quantities(cJSON *json, const char *name, uint32_t bits)
@@ -49,9 +50,12 @@ static void add_fit(cJSON *json, const struct snapshot *snapshot, size_t dose)
 {
     char why[FIT_WHY_SIZE];
     const struct fit_use *use = &snapshot->fits.doses[dose];
-    fit_use_sentence(&snapshot->fits, (struct fit_part){ FIT_DOSE, dose }, use, why);
+    struct fit_words words;
+    fit_describe(snapshot->plan, (struct fit_part){ FIT_DOSE, dose }, use->with, use->relation,
+                 use->state == FIT_USED_BY_WORD, why, &words);
     cJSON_AddStringToObject(json, "fit", fit_relation_word(use->relation));
     cJSON_AddStringToObject(json, "fit_reason", why);
+    fit_words_add_json(json, "fit_reason", &words);
     dose_add_accepted(json, use);
 }
 

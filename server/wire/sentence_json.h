@@ -8,7 +8,7 @@
 
 /* Adds nothing where the sentence has no code. name: of the member with the sentence. */
 void sentence_add_json(cJSON *object, const char *name, const struct sentence_facts *facts);
-/* The same of a sentence that holds two others. */
+/* Like sentence_add_json, for a sentence that holds two others. */
 void fit_words_add_json(cJSON *object, const char *name, const struct fit_words *words);
 /* Reads what is not trusted: facts without code where it is not as the code's sentence has it. */
 void sentence_read_json(const cJSON *object, const char *name, struct sentence_facts *facts);

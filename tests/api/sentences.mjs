@@ -44,7 +44,8 @@ export function heldToSentences(json) {
   if (!json || typeof json !== 'object') return json;
   for (const [key, value] of Object.entries(json)) {
     const name = key.endsWith('_code') ? key.slice(0, -5) : '';
-    if (!(name in json)) heldToSentences(value); // values too, which may hold sentences
+    if (!(name in json))
+      heldToSentences(value); // values too, which may hold sentences
     else if (typeof value === 'string' && typeof json[name] === 'string') {
       const english = (texts.get(value) ?? []).map((text) => filled(text, json[`${name}_values`] ?? {}));
       const is = (one) =>

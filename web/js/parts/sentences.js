@@ -19,14 +19,14 @@ export function sentences(group, english) {
 }
 
 /**
- * What the server says, in the page's language: in its JSON a sentence stands beside its code and values ("detail", "detail_code", "detail_values";
- * proto/sentences.json), and languages/ has texts of the group "server" by code. Sentences that the language lacks stay English.
+ * Puts the server's sentences into the page's language. In the server's JSON a sentence stands beside its code and values ("detail", "detail_code",
+ * "detail_values"; proto/sentences.json), and languages/ has texts of the group "server" by code. Sentences that the language lacks stay English.
  * @template T @param {T} json is changed @returns {T}
  */
 export function told(json) {
   if (texts.server && json && typeof json === 'object')
     for (const [key, value] of Object.entries(json)) {
-      const text = key.endsWith('_code') && texts.server[value];
+      const text = key.endsWith('_code') && Object.hasOwn(texts.server, value) && texts.server[value];
       const name = key.slice(0, -5);
       if (!text) told(value);
       else {
