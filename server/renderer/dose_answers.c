@@ -76,7 +76,7 @@ static void add_parts(cJSON *json, const struct snapshot *snapshot)
         cJSON_AddStringToObject(part, "id", i == 0 ? snapshot->plan->doses[snapshot->dose].id : style->sum[i - 1].id);
         json_add_finite(part, "factor", factor);
         cJSON_AddBoolToObject(part, "used", fit_is_used(&use));
-        json_add_text(part, "reason", fit_is_used(&use) ? NULL : why);
+        reason_add_json(part, "reason", fit_is_used(&use) ? NULL : why);
         dose_add_accepted(part, &use);
         cJSON_AddItemToArray(parts, part);
     }
@@ -103,7 +103,7 @@ static void add_reference(cJSON *json, const struct snapshot *snapshot, const st
                             scene_dose_reference_kind_words.words[snapshot->scene.dose.reference.kind]);
     cJSON_AddStringToObject(reference, "words", scale->words);
     json_add_finite(reference, "value", scale->reference);
-    json_add_text(reference, "reason", scale->why_no_reference.code ? scale->why_no_reference.text : NULL);
+    reason_add_json(reference, "reason", scale->why_no_reference.code ? scale->why_no_reference.text : NULL);
 }
 
 static void add_levels(cJSON *json, const struct snapshot *snapshot, const struct dose_scale *scale)
@@ -137,7 +137,7 @@ void dose_add_basis(cJSON *json, const struct snapshot *snapshot, const struct d
     cJSON_AddStringToObject(json, "per", is_whole ? "plan" : dose->per); /* fractions that are counted make the plan */
     cJSON_AddStringToObject(json, "quantity", scene_dose_quantity_words.words[style->quantity]);
     cJSON_AddStringToObject(json, "unit", unit);
-    json_add_text(json, "reason", scale->field ? NULL : scale->why.text);
+    reason_add_json(json, "reason", scale->field ? NULL : scale->why.text);
     add_fit(json, snapshot, (size_t)snapshot->dose);
     add_quantities(json, "missing", scale->field ? scale->field->missing : 0);
     add_parts(json, snapshot);
@@ -358,7 +358,7 @@ static void add_components(cJSON *json, const struct snapshot *snapshot, struct 
         cJSON_AddStringToObject(item, "quantity", dose_quantity_word(component->quantity));
         json_add_finite(item, "value", value);
         cJSON_AddStringToObject(item, "unit", unit);
-        json_add_text(item, "reason", why);
+        reason_add_json(item, "reason", why);
         bool is_boron = component->quantity == DOSE_BORON && component->is_per_ppm;
         json_add_finite(item, "boron_ppm",
                         component->is_per_ppm
@@ -414,7 +414,7 @@ cJSON *answer_dose_probe(struct question *question, struct derive *derived, stru
     double value = value_at(snapshot, snapshot->scene.dose.quantity, at, &why);
     json_add_finite(json, "value", value);
     json_add_finite(json, "percent", 100 * value / scale.reference);
-    json_add_text(json, "value_reason", why);
+    reason_add_json(json, "value_reason", why);
     int tissue = tissue_at(snapshot, &probe);
     const struct scene_tissue_weights *weights =
         tissue >= 0 ? scene_weights_of(plan, &snapshot->scene, (size_t)tissue) : NULL;
@@ -437,7 +437,7 @@ cJSON *answer_dose_probe(struct question *question, struct derive *derived, stru
         cJSON_AddStringToObject(item, "quantity", scene_dose_quantity_words.words[totals[i]]);
         json_add_finite(item, "value", value_at(snapshot, totals[i], at, &why));
         cJSON_AddStringToObject(item, "unit", unit);
-        json_add_text(item, "reason", why);
+        reason_add_json(item, "reason", why);
         cJSON_AddItemToArray(list, item);
     }
     dose_scale_finish(&scale);

@@ -11,6 +11,7 @@
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
 #include "server/wire/json.h"
+#include "server/wire/sentence_json.h"
 
 enum { MAX_BINS = 65536, MAX_METRICS = 16, WORD_SIZE = 32 }; /* bins of all curves of an answer */
 
@@ -110,7 +111,7 @@ static void find_doses(struct asking *asking, cJSON *json)
         }
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "dose", snapshot->plan->doses[doses[i]].id);
-        cJSON_AddStringToObject(row, "reason", why.text);
+        reason_add_json(row, "reason", why.text);
         cJSON_AddItemToArray(without, row);
     }
 }
@@ -319,7 +320,7 @@ static bool has_curve(cJSON *json, const struct asking *asking, const struct dos
     if (row) {
         cJSON_AddStringToObject(row, "dose", plan->doses[dose->dose].id);
         cJSON_AddStringToObject(row, "region", plan->regions.regions[region].id);
-        cJSON_AddStringToObject(row, "reason", why.text);
+        reason_add_json(row, "reason", why.text);
         cJSON_AddItemToArray(cJSON_GetObjectItemCaseSensitive(json, "without_curves"), row);
     }
     return false;

@@ -6,6 +6,7 @@
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
 #include "server/wire/json.h"
+#include "server/wire/sentence_json.h"
 #include "wire_gen.h"
 
 static void add_gamma(cJSON *json, const struct dose_comparison *comparison, double most)
@@ -99,7 +100,7 @@ cJSON *answer_gamma(struct question *question, struct derive *derived, struct pr
         add_gamma(json, comparisons[0], index.gamma.most);
         add_difference(json, comparisons[1]);
         add_method(json, asked, difference.is_in_body, scale.words);
-        json_add_text(json, "comparison_reason", why.code ? why.text : NULL);
+        reason_add_json(json, "comparison_reason", why.code ? why.text : NULL);
     }
     for (int i = 0; i < 2; i++)
         if (comparisons[i])

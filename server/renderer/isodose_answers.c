@@ -7,6 +7,7 @@
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
 #include "server/wire/json.h"
+#include "server/wire/sentence_json.h"
 #include "wire_gen.h"
 
 static bool find_level(const struct snapshot *snapshot, const char *id, size_t *level, struct problem *problem)
@@ -84,7 +85,7 @@ cJSON *answer_isodose(struct question *question, struct derive *derived, struct 
         cJSON_AddStringToObject(json, "grid", scene_isodose_grid_words.words[snapshot->scene.dose.surfaces.grid]);
         cJSON_AddStringToObject(json, "algorithm", algorithm_word(snapshot));
         add_facts(json, made);
-        json_add_text(json, "level_reason", made ? NULL : err.text);
+        reason_add_json(json, "level_reason", made ? NULL : err.text);
     }
     if (made)
         derive_result_unref(&made->base);

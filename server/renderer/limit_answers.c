@@ -10,6 +10,7 @@
 #include "server/renderer/answers.h"
 #include "server/renderer/dose_answers.h"
 #include "server/wire/json.h"
+#include "server/wire/sentence_json.h"
 
 /* ---- coverage --------------------------------------------------------------------------------------------------- */
 
@@ -60,7 +61,7 @@ static void add_coverage(cJSON *json, const struct snapshot *snapshot, const str
     json_add_finite(json, "share_most", coverage ? coverage->most_share : NAN);
     json_add_finite(json, "region_cm3", coverage ? (double)coverage->n_region * cm3 : NAN);
     json_add_finite(json, "missing_cm3", coverage ? (double)coverage->n_without * cm3 : NAN);
-    json_add_text(json, "coverage_reason", coverage ? NULL : why.text);
+    reason_add_json(json, "coverage_reason", coverage ? NULL : why.text);
     cJSON_AddStringToObject(json, "method",
                             "Univels of the population, with the weights of the region; the dose at a univel's centre, "
                             "trilinear in the dose's own grid; low <= value < high. share is a part of all of them.");
@@ -159,7 +160,7 @@ static void add_verdict(cJSON *json, const struct snapshot *snapshot, const stru
     json_add_finite(json, "most", most);
     cJSON_AddStringToObject(json, "unit", unit_of(&metric, asked.unit));
     cJSON_AddItemToObject(json, "met", is_known ? cJSON_CreateBool(is_met(constraint, least)) : cJSON_CreateNull());
-    json_add_text(json, "reason", is_known ? NULL : why.text);
+    reason_add_json(json, "reason", is_known ? NULL : why.text);
     json_add_finite(json, "volume_cm3", (dvh.n + dvh.n_missing) * dvh.univel_cm3);
     json_add_finite(json, "missing_cm3", dvh.n_missing * dvh.univel_cm3);
     dvh_finish(&dvh);

@@ -7,6 +7,7 @@
 #include "core/scene/tracks_shown.h"
 #include "server/renderer/answers.h"
 #include "server/wire/json.h"
+#include "server/wire/sentence_json.h"
 
 static struct vec3 point_of(const float p[3])
 {
@@ -82,8 +83,7 @@ static void add_lost(cJSON *json, const struct snapshot *snapshot, size_t most)
         cJSON *item = cJSON_CreateObject();
         json_add_finite(item, "segment", (double)i);
         bool is_inside = add_region(item, "region", snapshot, from);
-        cJSON_AddItemToObject(item, "reason",
-                              is_inside ? cJSON_CreateNull() : cJSON_CreateString("outside all regions"));
+        reason_add_json(item, "reason", is_inside ? NULL : "outside all regions");
         cJSON_AddItemToObject(item, "from_lps_mm", point(from));
         cJSON_AddItemToObject(item, "to_lps_mm", point(to));
         json_add_finite(item, "energy_mev", (double)segment->energy_mev);

@@ -48,6 +48,15 @@ void sentence_add_json(cJSON *object, const char *name, const struct sentence_fa
     }
 }
 
+void reason_add_json(cJSON *object, const char *name, const char *text)
+{
+    char key[KEY_SIZE];
+    json_add_text(object, name, text);
+    for (size_t i = 0; text && i < n_sentences; i++)
+        if (sentences[i].n_places == 0 && strcmp(sentences[i].format, text) == 0)
+            cJSON_AddStringToObject(object, key_of(name, "_code", key), sentences[i].code);
+}
+
 void fit_words_add_json(cJSON *object, const char *name, const struct fit_words *words)
 {
     char key[KEY_SIZE];

@@ -10,5 +10,7 @@
 void sentence_add_json(cJSON *object, const char *name, const struct sentence_facts *facts);
 /* Like sentence_add_json, for a sentence that holds two others. */
 void fit_words_add_json(cJSON *object, const char *name, const struct fit_words *words);
+/* Adds a text (NULL: null) and, where it is a sentence of the list that has no places, its code. */
+void reason_add_json(cJSON *object, const char *name, const char *text);
 /* Reads what is not trusted: facts without code where it is not as the code's sentence has it. */
 void sentence_read_json(const cJSON *object, const char *name, struct sentence_facts *facts);
