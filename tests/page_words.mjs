@@ -268,12 +268,6 @@ function textFaults(page) {
   return faults;
 }
 
-/** The texts of the files whose sentences do not all stand in a table yet, {} for each value. @returns {string[]} */
-export function textsLeft(root) {
-  const page = readPage(root);
-  return [...outsideOf(page)].flatMap(([path, found]) => (page.allowed.files.has(path) ? found.map(({ text }) => text) : []));
-}
-
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
   const page = readPage(process.argv[2] ?? '.');
   const faults = [...groupFaults(page), ...keyFaults(page), ...laterFaults(page), ...textFaults(page)];

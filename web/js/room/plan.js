@@ -200,12 +200,26 @@ const trackClasses = {
 /** "Neutron high" for the class of tracks "neutron-high". */
 export const className = (id) => trackClasses[id] ?? id;
 
+const components = {
+  total: say.componentTotal,
+  boron: say.boronWithin,
+  nitrogen: say.nitrogenWithin,
+  fast: say.componentFast,
+  gamma: say.gammaWithin,
+  other: say.componentOther,
+  'blood-boron': say.componentBloodBoron,
+  'weighted-total': say.componentWeightedTotal,
+  'fast-fluence': say.componentFastFluence,
+  'epithermal-fluence': say.componentEpithermalFluence,
+  'thermal-fluence': say.componentThermalFluence,
+};
 /** "Gy per fraction, total" for a dose; unknown parts are left out. */
 export function doseWords(dose) {
   const unit = dose.unit || say.noUnit;
-  const quantities = dose.components.map(({ quantity, per_ppm: perPpm, boron_ppm: ppm }) =>
-    perPpm ? say.perPpm({ quantity }) : Number.isFinite(ppm) ? say.withBoron({ quantity, n: ppm }) : quantity,
-  );
+  const quantities = dose.components.map(({ quantity: id, per_ppm: perPpm, boron_ppm: ppm }) => {
+    const quantity = components[id] ?? id;
+    return perPpm ? say.perPpm({ quantity }) : Number.isFinite(ppm) ? say.withBoron({ quantity, n: ppm }) : quantity;
+  });
   return [dose.per ? say.unitPer({ unit, what: dose.per.replace(/^per /, '') }) : unit, ...quantities].join(', ');
 }
 
