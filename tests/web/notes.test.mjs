@@ -49,8 +49,8 @@ test('two people write notes, answer at once, find, jump, resolve, and find all 
   await ben.locator('.note-pin').first().waitFor();
   await openTab(ben);
   await note(ben, 'the edge?').locator('.note-head').click();
-  await ann.getByLabel('Reply').fill('Ann says yes');
-  await ben.getByLabel('Reply').fill('Ben says no');
+  await ann.getByLabel('Reply', { exact: true }).fill('Ann says yes');
+  await ben.getByLabel('Reply', { exact: true }).fill('Ben says no');
   await Promise.all([ann, ben].map((page) => page.getByRole('button', { name: 'Reply', exact: true }).click()));
   for (const page of [ann, ben]) {
     await page.locator('.note-replies > li').nth(1).waitFor();
@@ -135,7 +135,7 @@ test('two people write notes, answer at once, find, jump, resolve, and find all 
   await openTab(ben);
   if ((await note(ben, 'the edge?').locator('.note-head').getAttribute('aria-expanded')) !== 'true')
     await note(ben, 'the edge?').locator('.note-head').click();
-  await ben.getByLabel('Reply').fill('Half a thought');
+  await ben.getByLabel('Reply', { exact: true }).fill('Half a thought');
   await note(ann, 'the edge?').getByRole('button', { name: 'Delete' }).first().click();
   await ann.getByRole('button', { name: 'Delete with 2 replies?' }).click();
   await note(ben, 'the edge?').waitFor({ state: 'detached' });

@@ -150,12 +150,12 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     assert.deepEqual((await items('notes'))[0].body.mentions, [{ member: ben_id, name: 'Ben' }]);
     await toast(ben, 'Dr Ann mentions you in a note');
     await openNote(ben, 'Is the margin');
-    await ben.getByLabel('Reply').fill('5 mm more, please');
+    await ben.getByLabel('Reply', { exact: true }).fill('5 mm more, please');
     await ben.getByRole('button', { name: 'Reply', exact: true }).click();
     await ann.locator('.note-replies', { hasText: '5 mm more' }).waitFor();
     await openNote(cem, 'Is the margin');
     await cem.locator('.note-replies', { hasText: '5 mm more' }).waitFor();
-    assert.equal(await cem.getByLabel('Reply').count(), 0, 'an observer reads');
+    assert.equal(await cem.getByLabel('Reply', { exact: true }).count(), 0, 'an observer reads');
     await shoot(cem, 'whole-3-note-observer');
   });
 
