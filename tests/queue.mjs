@@ -20,12 +20,31 @@ for (const words of process.argv.slice(2).join('\n').split('\n--\n')) {
 }
 mkdirSync(folder, { recursive: true });
 const known = existsSync(lastRun) ? JSON.parse(readFileSync(lastRun, 'utf8')) : {};
+/** What takes long, in seconds: a clean checkout has no last run, and one of these started last would run alone. */
+const usual = {
+  30: `web/whole_meeting api/idle web/page web/start api/connections web/watch web/beam_draft unit/test_fleet_silence api/ws web/dose web/views`,
+  20: `api/dvh api/hostile web/image faults/test_draw web/clip web/sizes web/beam_eye unit/test_unpack web/pointed web/regions web/display web/touch
+    unit/test_fleet_restarts api/cases api/audit api/upload api/replayed_meeting render/test_pauses tests/lint`,
+  12: `web/charts render/test_caps web/measure render/test_wash_agree web/layout web/snapshot render/test_representations api/cli web/undo web/tracks
+    unit/test_plan_data render/test_beam_slice api/http render/test_occlusion api/kept api/display`,
+};
+const usualSeconds = new Map(
+  Object.entries(usual).flatMap(([seconds, names]) => names.split(/\s+/).map((name) => [name, Number(seconds)])),
+);
+const secondsOf = ({ path }) =>
+  known[path] ??
+  usualSeconds.get(
+    path
+      .replace(/(\.test)?\.m?[a-z]+$/, '')
+      .split('/')
+      .slice(-2)
+      .join('/'),
+  ) ??
+  0;
 const took = {};
 const rank = [...suites.keys()];
 const waiting = [...suites.values()].flatMap((suite) => suite.paths.map((path) => ({ suite, path, size: statSync(path).size })));
-waiting.sort(
-  (a, b) => (known[b.path] ?? 0) - (known[a.path] ?? 0) || rank.indexOf(a.suite.name) - rank.indexOf(b.suite.name) || b.size - a.size,
-);
+waiting.sort((a, b) => secondsOf(b) - secondsOf(a) || rank.indexOf(a.suite.name) - rank.indexOf(b.suite.name) || b.size - a.size);
 for (const { name } of suites.values()) rmSync(`${folder}/${name}.log`, { force: true });
 
 /** Browsers that no file uses now. They end with this process. */
