@@ -239,9 +239,10 @@ RENDER_THREADS := caps isodose_pictures pauses pictures shapes soft tracks trans
 RENDER_RUN = $(if $(findstring thread,$(SAN)),$(RENDER_THREADS:%=$(B)/render/test_%),$(render_BIN))
 PARALLEL := $(shell nproc)
 TWICE := $(shell echo $$((2 * $(PARALLEL))))
+# UNITS=whole: without the bounds that keep the units of `make test` short; the sanitizers run the whole
 .PHONY: test-unit test-render test-faults test-api test-web test-long test-install test test-deep lint
 test-unit: $(UNIT_RUN)
-	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(if $(SAN),$(PARALLEL),$(TWICE)) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
+	$(Q)$(if $(SAN),UNITS=whole) RUNNER="$(RUNNER)" PARALLEL=$(if $(SAN),$(PARALLEL),$(TWICE)) tests/run_programs.sh "$(call LABEL,unit)" $(UNIT_RUN)
 test-render: $(RENDER_RUN)
 	$(Q)RUNNER="$(RUNNER)" PARALLEL=$(PARALLEL) tests/run_programs.sh "$(call LABEL,render)" $(RENDER_RUN)
 # FAULTS=whole: every call of some hundred, then in short steps; else every one of the first few, then in long ones

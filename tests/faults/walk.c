@@ -29,7 +29,7 @@ enum {
     SETTLE_MS = 100
 };
 
-enum { MS_A_WALK = 400, MS_A_WALK_WHOLE = 20000 };
+enum { MS_A_WALK = 150, MS_A_WALK_WHOLE = 20000 };
 
 static int n_failed;
 
