@@ -264,12 +264,13 @@ test('Strict-Transport-Security is promised on port 443 alone', async (t) => {
   assert.equal(await daemon.stop(), 0);
 });
 
-test('SIGHUP ends a daemon whose terminal is gone', async () => {
+test('SIGHUP ends a daemon whose terminal is gone', (t) => {
   const data = mkdtempSync(join(tmpdir(), 'beamroom-terminal-'));
   // A terminal of its own, which is closed once the daemon serves; a hangup is what the kernel sends then.
   const program = `
 import os, pty, signal, sys, time
-child, terminal = pty.fork()
+try: child, terminal = pty.fork()
+except OSError as error: sys.exit(77)
 if child == 0: os.execv(sys.argv[1], sys.argv[1:])
 text = b''
 while b'ready http' not in text: text += os.read(terminal, 4096)
@@ -279,7 +280,8 @@ print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
   const args = [join(bin, 'beamroomd'), '--stub', '--data', data, '--web', web, '--listen', '127.0.0.1:0'];
   const ended = spawnSync('python3', ['-c', program, ...args], { encoding: 'utf8', timeout: 60000 });
   rmSync(data, { recursive: true, force: true });
-  assert.equal(ended.stdout, '0\n', ended.stderr);
+  if (ended.status === 77) t.skip('there are no terminals here');
+  else assert.equal(ended.stdout, '0\n', ended.stderr);
 });
 
 test('a key that the user of the daemon cannot read is named', {
