@@ -180,13 +180,19 @@ export function checkedMessages(description) {
 }
 
 /** The routes of rooms (http.json), each with its right. */
-export function checkedRoomRoutes({ routes }, { enums }) {
+export function checkedRoomRoutes({ routes }, { enums, messages }) {
   const rights = enums.right.values.map(([word]) => word);
   for (const { method, path, right } of routes)
     need(
       /\{room\}/.test(path) ? rights.includes(right) : right === undefined,
       `${method} ${path}`,
       `a route of a room, and no other, has a "right": one of ${rights.join(', ')}`,
+    );
+  for (const { method, path, right, message } of routes)
+    need(
+      message === undefined || messages.find(({ name }) => name === message)?.right === right,
+      `${method} ${path}`,
+      `does what the message "${message}" does, and needs its right`,
     );
   return routes.filter(({ right }) => right !== undefined);
 }

@@ -41,7 +41,7 @@ const packets = read('packets.json');
 checkPackets(packets, scene);
 const http = read('http.json');
 const routes = [...http.routes, ...questionRoutes(packets)];
-const api = openapi({ ...http, routes }, scene, answerSchemas(read('answers.json'), read('record.json'), scene, routes), '1');
+const api = openapi({ ...http, routes }, scene, answerSchemas(read('answers.json'), read('record.json'), scene, routes), messages, '1');
 const presets = checkedPresets(read('volume_presets.json'), scene);
 const dosePresets = checkedDosePresets(read('dose_presets.json'), scene);
 const out = process.argv[2];

@@ -66,7 +66,10 @@ const mediaOf = (kind, answers, name) => {
   return { [kind]: { schema: { type: 'string' } } };
 };
 
-export function openapi(http, scene, answers, version) {
+/** The fields of the message that a call stands for, but its number. */
+const fieldsOf = (messages, name) => messages.messages.find((one) => one.name === name).fields.filter((field) => field.name !== 'input');
+
+export function openapi(http, scene, answers, messages, version) {
   const schemas = {
     problem: {
       type: 'object',
@@ -114,7 +117,13 @@ export function openapi(http, scene, answers, version) {
       description: `A problem: ${route.problems.join(', ') || 'internal'}.`,
       content: { 'application/problem+json': { schema: { $ref: '#/components/schemas/problem' } } },
     };
-    const operation = { summary: route.about, parameters, responses, ...(route.right && { 'x-right': route.right }) };
+    const operation = {
+      summary: route.about,
+      parameters,
+      responses,
+      ...(route.right && { 'x-right': route.right }),
+      ...(route.message && { 'x-message': route.message }),
+    };
     if (route.body === 'scene')
       operation.requestBody = { required: true, content: { 'application/merge-patch+json': { schema: { type: 'object' } } } };
     else if (Array.isArray(route.body))
@@ -140,6 +149,16 @@ export function openapi(http, scene, answers, version) {
           },
         },
       };
+    else if (route.message && route.method !== 'DELETE') {
+      const fields = fieldsOf(messages, route.message);
+      const schema = {
+        type: 'object',
+        additionalProperties: false,
+        required: fields.filter(({ required }) => required).map(({ name }) => name),
+        properties: Object.fromEntries(fields.map((field) => [field.name, schemaOf(field, messages)])),
+      };
+      operation.requestBody = { required: true, content: { 'application/json': { schema } } };
+    }
     (paths[route.path] ??= {})[route.method.toLowerCase()] = operation;
   }
   return {

@@ -50,7 +50,11 @@ static const struct {
     { "GET", "/api/v1/rooms/{room}/recordings/{recording}/state", api_room_recording_state },
     { "GET", "/api/v1/rooms/{room}/snapshot", api_room_snapshot },
     { "POST", "/api/v1/rooms/{room}/exports", api_room_export },
+    { "GET", "/api/v1/rooms/{room}/links", api_room_links },
     { "POST", "/api/v1/rooms/{room}/links", api_room_link_new },
+    { "DELETE", "/api/v1/rooms/{room}/links/{link}", api_room_link_revoke },
+    { "GET", "/api/v1/rooms/{room}/acceptances", api_room_acceptances },
+    { "GET", "/api/v1/rooms/{room}/control", api_room_control },
     { "GET", "/api/v1/rooms/{room}/stream", api_room_stream },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
     { "GET", "/api/v1/records", api_records },
@@ -117,7 +121,9 @@ static bool has_right(struct api *api, const struct call *call, const struct api
         if (strcmp(row->method, route->method) != 0 || strcmp(row->path, route->path) != 0)
             continue;
         struct room *room = net_room_find(api->net, call->ids[0]);
-        if (!room || room_call_may(room, call->member, row->right, problem)) /* no room: the handler says so */
+        bool (*may)(const struct room *, const char *, enum wire_right, struct problem *) =
+            route->act ? room_act_may : room_call_may;
+        if (!room || may(room, call->member, row->right, problem)) /* no room: the handler says so */
             return true;
         cJSON *detail = cJSON_CreateObject();
         char what[96];
@@ -157,7 +163,7 @@ static void room_awoke(void *context, const char *room_id, const struct problem 
 static bool wakes_room(struct api *api, struct call *call, const struct api_route *route)
 {
     const char *room = call_query(call, "room");
-    bool is_for_awake = (call->method == CALL_DELETE && route->handle != api_room_act) ||
+    bool is_for_awake = (call->method == CALL_DELETE && !route->act && route->handle != api_room_link_revoke) ||
                         route->handle == api_room_ws || route->handle == api_room_stream;
     if (strncmp(route->path, in_room, strlen(in_room)) == 0)
         room = is_for_awake ? NULL : call->ids[0];

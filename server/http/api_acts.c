@@ -15,6 +15,33 @@ static const struct api_act acts[] = {
     { "POST", "/api/v1/rooms/{room}/notes", "item.put", "note" },
     { "PATCH", "/api/v1/rooms/{room}/notes/{note}", "item.put", "note" },
     { "DELETE", "/api/v1/rooms/{room}/notes/{note}", "item.delete", "note" },
+    { "POST", "/api/v1/rooms/{room}/bookmarks", "item.put", "bookmark" },
+    { "PATCH", "/api/v1/rooms/{room}/bookmarks/{bookmark}", "item.put", "bookmark" },
+    { "DELETE", "/api/v1/rooms/{room}/bookmarks/{bookmark}", "item.delete", "bookmark" },
+    { "POST", "/api/v1/rooms/{room}/checks", "item.put", "check" },
+    { "PATCH", "/api/v1/rooms/{room}/checks/{check}", "item.put", "check" },
+    { "DELETE", "/api/v1/rooms/{room}/checks/{check}", "item.delete", "check" },
+    { "POST", "/api/v1/rooms/{room}/decisions", "item.put", "decision" },
+    { "POST", "/api/v1/rooms/{room}/signatures", "item.put", "signature" },
+    { "POST", "/api/v1/rooms/{room}/acceptances", "item.put", "acceptance" },
+    { "DELETE", "/api/v1/rooms/{room}/acceptances/{acceptance}", "item.delete", "acceptance" },
+    { "POST", "/api/v1/rooms/{room}/control/present", "present", NULL },
+    { "POST", "/api/v1/rooms/{room}/control/request", "control.request", NULL },
+    { "POST", "/api/v1/rooms/{room}/control/give", "control.give", NULL },
+    { "POST", "/api/v1/rooms/{room}/control/refuse", "control.refuse", NULL },
+    { "POST", "/api/v1/rooms/{room}/control/take", "control.take", NULL },
+    { "POST", "/api/v1/rooms/{room}/control/lock", "control.lock", NULL },
+    { "POST", "/api/v1/rooms/{room}/follow", "follow", NULL },
+    { "POST", "/api/v1/rooms/{room}/follow/everyone", "show.everyone", NULL },
+    { "POST", "/api/v1/rooms/{room}/look", "look.here", NULL },
+    { "POST", "/api/v1/rooms/{room}/look/come", "look.come", NULL },
+    { "POST", "/api/v1/rooms/{room}/pointer", "pointer", NULL },
+    { "POST", "/api/v1/rooms/{room}/recording/start", "recording.start", NULL },
+    { "POST", "/api/v1/rooms/{room}/recording/stop", "recording.stop", NULL },
+    { "POST", "/api/v1/rooms/{room}/replay/play", "replay.play", NULL },
+    { "POST", "/api/v1/rooms/{room}/replay/pause", "replay.pause", NULL },
+    { "POST", "/api/v1/rooms/{room}/replay/seek", "replay.seek", NULL },
+    { "POST", "/api/v1/rooms/{room}/replay/leave", "replay.leave", NULL },
 };
 const size_t api_n_acts = sizeof acts / sizeof acts[0];
 
@@ -50,9 +77,9 @@ static bool name_is_right(const cJSON *name, struct problem *problem)
 /* The fields that the address gives do not stand in the body. */
 static bool body_is_free(const cJSON *body, const struct api_act *act, bool is_change, struct problem *problem)
 {
-    static const char *const given[] = { "type", "input", "view", "kind", "item", "version" };
+    static const char *const given[] = { "type", "input", "kind", "item", "version" };
     char pointer[16];
-    const size_t n = act->kind ? (is_change ? 5 : 6) : 3;
+    const size_t n = act->kind ? (is_change ? 4 : 5) : 2;
     for (size_t i = 0; i < n; i++)
         if (cJSON_HasObjectItem(body, given[i])) {
             (void)snprintf(pointer, sizeof pointer, "/%s", given[i]);

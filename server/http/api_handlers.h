@@ -49,6 +49,10 @@ void api_room_snapshot(struct api *api, struct call *call);
 void api_room_stream(struct api *api, struct call *call);
 void api_room_export(struct api *api, struct call *call);
 void api_room_link_new(struct api *api, struct call *call);
+void api_room_links(struct api *api, struct call *call);
+void api_room_link_revoke(struct api *api, struct call *call);
+void api_room_acceptances(struct api *api, struct call *call);
+void api_room_control(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);
 
 /* The revision of the plan's files. False with problem: not known, busy while it is being found out. */

@@ -1,4 +1,4 @@
-/* Makes links to a room. */
+/* Makes, lists and revokes links to a room. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -59,6 +59,45 @@ static bool read_wanted(const cJSON *body, struct wanted *wanted, struct problem
     return true;
 }
 
+static struct room *find_room(struct api *api, struct call *call)
+{
+    struct problem problem;
+    struct room *room = net_room_find(api->net, call->ids[0]);
+    if (room)
+        return room;
+    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
+    call_answer_problem(call, &problem);
+    return NULL;
+}
+
+void api_room_links(struct api *api, struct call *call)
+{
+    struct room *room = find_room(api, call);
+    if (!room)
+        return;
+    cJSON *answer = cJSON_CreateObject();
+    json_add(answer, "links", room_links(room, clock_now_us()));
+    call_answer_json(call, 200, answer);
+}
+
+void api_room_link_revoke(struct api *api, struct call *call)
+{
+    struct problem problem;
+    struct room *room = find_room(api, call);
+    if (!room)
+        return;
+    if (!net_can_write(api->net, &problem)) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (room_link_revoke(room, call->ids[1], call->member, call->client, clock_now_us())) {
+        call_answer_nothing(call, 204);
+        return;
+    }
+    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the room has no link \"%.63s\"", call->ids[1]);
+    call_answer_problem(call, &problem);
+}
+
 void api_room_link_new(struct api *api, struct call *call)
 {
     static const char *const media_types[] = { "application/json", NULL };
@@ -66,12 +105,9 @@ void api_room_link_new(struct api *api, struct call *call)
     struct wanted wanted;
     cJSON *body;
     char token[33], digits[9], url[160];
-    struct room *room = net_room_find(api->net, call->ids[0]);
-    if (!room) {
-        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
-        call_answer_problem(call, &problem);
+    struct room *room = find_room(api, call);
+    if (!room)
         return;
-    }
     if (!call_read_object(call, media_types, &body))
         return;
     bool ok = read_wanted(body, &wanted, &problem) && net_can_write(api->net, &problem) &&
@@ -83,13 +119,14 @@ void api_room_link_new(struct api *api, struct call *call)
     }
     (void)snprintf(url, sizeof url, "/#/rooms/%s?link=%s", room_id(room), token);
     cJSON *answer = cJSON_CreateObject();
+    room_link_digits(token, digits);
+    cJSON_AddStringToObject(answer, "id", digits);
     cJSON_AddStringToObject(answer, "token", token);
     cJSON_AddStringToObject(answer, "url", url);
     cJSON_AddStringToObject(answer, "role", wire_member_role_words.words[wanted.role]);
     cJSON_AddNumberToObject(answer, "expires_s", (double)wanted.expires_s);
     cJSON_AddBoolToObject(answer, "one_use", wanted.is_one_use);
     cJSON *made = cJSON_CreateObject();
-    room_link_digits(token, digits);
     cJSON_AddStringToObject(made, "link", digits);
     cJSON_AddStringToObject(made, "role", wire_member_role_words.words[wanted.role]);
     cJSON_AddNumberToObject(made, "expires_s", (double)wanted.expires_s);

@@ -197,6 +197,18 @@ void api_room_bookmarks(struct api *api, struct call *call)
     answer_items(api, call, WIRE_ITEM_KIND_BOOKMARK, "bookmarks");
 }
 
+void api_room_acceptances(struct api *api, struct call *call)
+{
+    answer_items(api, call, WIRE_ITEM_KIND_ACCEPTANCE, "acceptances");
+}
+
+void api_room_control(struct api *api, struct call *call)
+{
+    const struct room *room = find_room(api, call);
+    if (room)
+        call_answer_json(call, 200, room_control(room));
+}
+
 static void write_etag(char etag[24], uint32_t revision)
 {
     (void)snprintf(etag, 24, "\"%u\"", revision);

@@ -7,6 +7,7 @@
 
 #include "server/room/log/replay.h"
 #include "server/room/out/audit.h"
+#include "server/room/people/control.h"
 #include "server/room/people/links.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/roles.h"
@@ -79,11 +80,16 @@ void room_audit_call(struct room *room, const char *member, const char *address,
 bool room_call_may(const struct room *room, const char *member, enum wire_right right, struct problem *problem)
 {
     const struct member *caller = room_caller(room, member);
-    if (caller) {
-        if (right == WIRE_RIGHT_SCENE && role_has_right(caller->role, right) && !member_presents(room, caller))
-            return refuse_not_presenter(room, problem, "change the scene");
+    if (caller && right == WIRE_RIGHT_SCENE && role_has_right(caller->role, right) && !member_presents(room, caller))
+        return refuse_not_presenter(room, problem, "change the scene");
+    return room_act_may(room, member, right, problem);
+}
+
+bool room_act_may(const struct room *room, const char *member, enum wire_right right, struct problem *problem)
+{
+    const struct member *caller = room_caller(room, member);
+    if (caller)
         return role_check(caller->role, right, problem);
-    }
     if (member)
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "member",
                            "Beamroom-Member names no member of this room, or not with its secret");
@@ -110,6 +116,25 @@ static cJSON *make_document(const char *id, const char *plan_id, uint32_t revisi
     cJSON_AddBoolToObject(json, "asleep", is_asleep);
     json_add(json, "members", members);
     return json;
+}
+
+cJSON *room_control(const struct room *room)
+{
+    return control_document(room);
+}
+
+cJSON *room_links(struct room *room, int64_t now_us)
+{
+    room_enter(room, now_us);
+    return links_list(room);
+}
+
+bool room_link_revoke(struct room *room, const char *id, const char *by, const char *address, int64_t now_us)
+{
+    room_enter(room, now_us);
+    const bool was_there = link_revoke(room, id, room_caller(room, by), address);
+    room_leave(room);
+    return was_there;
 }
 
 cJSON *room_document(const struct room *room)

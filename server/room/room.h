@@ -78,9 +78,19 @@ NODISCARD cJSON *room_document_of(const char *id, const char *plan_id, uint32_t 
  * present. False with problem forbidden or not-presenter. */
 NODISCARD bool room_call_may(const struct room *room, const char *member, enum wire_right right,
                              struct problem *problem);
+/* The same for room_act, whose message finds out by itself whether it takes the presenter. */
+NODISCARD bool room_act_may(const struct room *room, const char *member, enum wire_right right,
+                            struct problem *problem);
 /* Does this in the room, or refuses it as it would a message. An item may be written by who is no member of the room,
  * with the rights that room_call_may gives; anything else takes a member who is connected. */
 void room_act(struct room *room, const struct room_act *act, int64_t now_us);
+/* {presenter, locked, requests}, as in the message control. */
+NODISCARD cJSON *room_control(const struct room *room);
+/* [{id, role, expires_s, one_use, used}]: the links that let somebody in; id is room_link_digits of the token. */
+NODISCARD cJSON *room_links(struct room *room, int64_t now_us);
+/* The link lets nobody in any more; who came in by it stays. by: as member in room_call_may. False: there is no such
+ * link. */
+NODISCARD bool room_link_revoke(struct room *room, const char *id, const char *by, const char *address, int64_t now_us);
 /* Makes a link; token gets 32 digits and a final zero. False with problem limit. */
 NODISCARD bool room_link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
                                 int64_t now_us, char token[33], struct problem *problem);

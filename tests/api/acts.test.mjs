@@ -254,3 +254,164 @@ describe('a call and the state of the room', () => {
     }
   });
 });
+
+describe('the other acts over HTTP', () => {
+  it('saved views, the checklist, decisions and signatures', async () => {
+    const room = await newRoom();
+    const ann = await Client.enter(daemon.url, room, { name: 'Ann' }),
+      ben = await Client.enter(daemon.url, room, { name: 'Ben' });
+    await ann.ready();
+    const saved = await ask(room, '/bookmarks', 'POST', { name: 'Script', body: { name: 'One' } }, { 'Idempotency-Key': 'view-1' });
+    assert.equal(saved.status, 201);
+    assert.deepEqual((await ann.message('item', ({ id }) => id === saved.json.id)).item, saved.json);
+    const again = (body) => ask(room, '/bookmarks', 'POST', { name: 'Script', body }, { 'Idempotency-Key': 'view-1' });
+    const second = await again({ name: 'One' });
+    assert.deepEqual([second.status, second.json], [200, saved.json]);
+    assert.deepEqual(refused(await again({ name: 'Two' })), [409, 'conflict', '', 'key']);
+    const at = `/bookmarks/${saved.json.id}`;
+    const renamed = await ask(room, at, 'PATCH', { name: 'Script', version: 1, body: { ...saved.json.body, name: 'Two' } });
+    assert.deepEqual([renamed.status, renamed.json.body.name, renamed.json.body.token], [200, 'Two', saved.json.body.token]);
+    assert.equal((await ask(room, `/notes/${saved.json.id}`, 'DELETE')).status, 404, 'a view is no note');
+    assert.equal((await ask(room, at, 'DELETE')).status, 204);
+    assert.deepEqual((await ask(room, '/bookmarks')).json, { bookmarks: [] });
+
+    await until(
+      () => ask(room, '/record'),
+      ({ status }) => status === 200,
+    );
+    const check = { entry: 'identity', text: 'Plan', state: 'ok' },
+      decision = { decision: 'accept', text: 'as shown' },
+      signature = { name: 'A. Example', meaning: 'reviewed' };
+    for (const [kind, body] of Object.entries({ checks: check, decisions: decision, signatures: signature, acceptances: { thing: 'x' } }))
+      assert.deepEqual(refused(await ask(room, `/${kind}`, 'POST', { body })), [403, 'forbidden', '', 'seat'], kind);
+    const ticked = await ask(room, '/checks', 'POST', { body: check }, ben.headers);
+    assert.deepEqual([ticked.status, ticked.json.author_name, ticked.json.body.role], [201, 'Ben', 'reviewer']);
+    const wrong = await ask(room, `/checks/${ticked.json.id}`, 'PATCH', { version: 1, body: { ...check, state: 'issue' } }, ann.headers);
+    assert.deepEqual([wrong.status, wrong.json.changed_name, wrong.json.body.state], [200, 'Ann', 'issue']);
+    assert.deepEqual(refused(await ask(room, '/decisions', 'POST', { body: decision }, ben.headers)), [403, 'forbidden', '/kind', 'role']);
+    const keyed = { ...ann.headers, 'Idempotency-Key': 'd-1' };
+    const decided = await ask(room, '/decisions', 'POST', { body: decision }, keyed);
+    assert.equal(decided.status, 201);
+    assert.deepEqual((await ask(room, '/decisions', 'POST', { body: decision }, keyed)).json, decided.json);
+    assert.equal((await ask(room, '/decisions', 'POST', { body: { ...decision, decision: 'reject' } }, keyed)).status, 409);
+    assert.equal((await ask(room, '/signatures', 'POST', { body: signature }, ben.headers)).status, 201);
+    assert.deepEqual(refused(await ask(room, '/acceptances', 'POST', { body: { thing: 'dose:x' } }, ben.headers)), [
+      403,
+      'not-presenter',
+      '',
+      '',
+    ]);
+    assert.deepEqual((await ask(room, '/acceptances')).json, { acceptances: [] });
+    const { json: record } = await ask(room, '/record');
+    assert.deepEqual([record.checklist.length, record.decisions.length, record.signatures.length], [1, 1, 1]);
+    assert.equal((await ask(room, `/checks/${ticked.json.id}?version=2`, 'DELETE', undefined, ann.headers)).status, 204);
+    for (const client of [ann, ben]) client.cut();
+  });
+
+  it('control, following and pointing are of members who are connected', async () => {
+    const room = await newRoom();
+    const ann = await Client.enter(daemon.url, room, { name: 'Ann' }),
+      ben = await Client.enter(daemon.url, room, { name: 'Ben' });
+    await ann.ready();
+    const [a, b] = [ann.welcome.member, ben.welcome.member];
+    const act = (rest, who, body = {}) => ask(room, rest, 'POST', body, who?.headers);
+    const control = async () => (await ask(room, '/control')).json;
+    await until(control, ({ presenter }) => presenter === a);
+    assert.deepEqual(refused(await act('/control/take', null)), [403, 'forbidden', '', 'seat']);
+    assert.deepEqual(refused(await act('/control/take', ben)), [403, 'not-presenter', '', '']);
+    assert.equal((await act('/control/request', ben)).status, 204);
+    await ann.message('control', ({ act: what, member }) => what === 'requested' && member === b);
+    assert.deepEqual(await control(), { presenter: a, locked: false, requests: [b] });
+    assert.equal((await act('/control/refuse', ann, { member: b })).status, 204);
+    assert.equal((await act('/control/request', ben)).status, 429, 'not again for a while');
+    assert.equal((await act('/control/lock', ann, { locked: true })).status, 204);
+    assert.deepEqual(refused(await act('/control/give', ann, {})), [422, 'validation', '/member', 'required']);
+    assert.deepEqual(refused(await act('/control/lock', ann, { locked: true, type: 'bye' })), [
+      422,
+      'validation',
+      '/type',
+      'unknown-field',
+    ]);
+    assert.equal((await act('/control/give', ann, { member: b })).status, 204);
+    await ben.message('control', ({ act: what, by }) => what === 'given' && by === a);
+    assert.deepEqual(await control(), { presenter: b, locked: false, requests: [] });
+
+    assert.equal((await act('/follow', ann, { follow: true })).status, 204);
+    assert.equal((await act('/follow/everyone', ben)).status, 204);
+    assert.equal((await act('/look', ann, { point_mm: [1, 2, 3] })).status, 204);
+    const { number } = await ben.message('look', ({ by, point_mm: point }) => by === a && point[2] === 3);
+    assert.equal((await act('/look/come', ben, { number })).status, 204);
+    await ann.message('look', ({ came }) => came.includes(b));
+    assert.equal((await act('/pointer', ann, { view: 1, point_mm: [4, 5, 6] })).status, 204);
+    await ben.message('pointer.at', ({ member, point_mm: point }) => member === a && point?.[0] === 4);
+
+    ann.cut();
+    const members = async () => (await ask(room, '/members')).json.members;
+    await until(members, (list) => list.some(({ id, connected }) => id === a && !connected));
+    assert.deepEqual(refused(await act('/look', ann, { point_mm: [1, 2, 3] })), [409, 'conflict', '', 'away']);
+    assert.equal((await ask(room, '/notes', 'POST', { body: { text: 'still mine' } }, ann.headers)).json.author, a);
+    ben.cut();
+  });
+
+  it('a meeting is recorded and its recording played', async () => {
+    const room = await newRoom();
+    const ann = await Client.enter(daemon.url, room, { name: 'Ann' });
+    await ann.ready();
+    const act = (where, rest, who, body = {}) => ask(where, rest, 'POST', body, who.headers);
+    assert.equal((await act(room, '/recording/start', ann)).status, 204);
+    assert.equal((await act(room, '/recording/start', ann)).status, 409);
+    const { id } = await ann.message('recording');
+    assert.equal((await act(room, '/recording/stop', ann)).status, 204);
+    const made = await until(
+      () => call(`${daemon.url}/api/v1/rooms`, 'POST', { recording: { room, id } }),
+      ({ status }) => status === 201,
+    );
+    const ben = await Client.enter(daemon.url, made.json.id, { name: 'Ben' });
+    await ben.message('replay');
+    assert.equal((await act(made.json.id, '/control/take', ben)).status, 409);
+    for (const [rest, body] of [
+      ['/replay/play', { rate: 2 }],
+      ['/replay/pause', {}],
+      ['/replay/seek', { t_ms: 0 }],
+    ])
+      assert.equal((await act(made.json.id, rest, ben, body)).status, 204, rest);
+    assert.equal((await act(made.json.id, '/replay/leave', ben)).status, 204);
+    await ben.message('replay.at', ({ state }) => state === 'left');
+    for (const client of [ann, ben]) client.cut();
+  });
+
+  it('links are listed without their tokens, and a revoked one lets nobody in', async () => {
+    const room = await newRoom();
+    const ann = await Client.enter(daemon.url, room, { name: 'Ann' });
+    const post = async (body) => (await ask(room, '/links', 'POST', body, ann.headers)).json;
+    const [one, two] = [await post({ role: 'observer' }), await post({ role: 'reviewer', one_use: true, expires_s: 60 })];
+    const list = async () => (await ask(room, '/links', 'GET', undefined, ann.headers)).json.links;
+    const links = await list();
+    assert.deepEqual(
+      links.map(({ id, role, one_use: oneUse, used }) => [id, role, oneUse, used]),
+      [
+        [one.id, 'observer', false, false],
+        [two.id, 'reviewer', true, false],
+      ],
+    );
+    assert.ok(links[1].expires_s > 0 && links[1].expires_s <= 60);
+    assert.ok(![one, two].some(({ token }) => JSON.stringify(links).includes(token)));
+    const ola = await Client.enter(daemon.url, room, { name: 'Ola', link: one.token });
+    for (const [rest, method] of [
+      ['/links', 'GET'],
+      [`/links/${one.id}`, 'DELETE'],
+    ])
+      for (const headers of [{}, ola.headers])
+        assert.deepEqual(refused(await ask(room, rest, method, undefined, headers)), [403, 'forbidden', '', 'role'], rest);
+    assert.equal((await ask(room, `/links/${one.id}`, 'DELETE', undefined, ann.headers)).status, 204);
+    assert.equal((await ask(room, `/links/${one.id}`, 'DELETE', undefined, ann.headers)).status, 404);
+    assert.deepEqual(
+      (await list()).map(({ id }) => id),
+      [two.id],
+    );
+    const late = await Client.hello(daemon.url, room, { name: 'Late', link: one.token });
+    assert.match((await late.message('bye')).reason, /not one of this room/);
+    assert.equal((await ask(room, '/notes', 'GET', undefined, ola.headers)).status, 200, 'who came in by it stays');
+    for (const client of [ann, ola, late]) client.cut();
+  });
+});

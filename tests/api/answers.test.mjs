@@ -131,6 +131,9 @@ test('rooms, and what their members write down', async () => {
   const { id: note } = await ask(`${at}/notes`, 'POST', { body: { text: 'by a script' }, name: 'Script' });
   await ask(`${at}/notes/${note}`, 'PATCH', { version: 1, body: { text: 'changed' }, name: 'Script' });
   await ask(`${at}/notes`);
+  await ask(`${at}/acceptances`);
+  await ask(`${at}/control`);
+  await ask(`${at}/links`, 'GET', undefined, ann.headers);
   await ask(`${at}/bookmarks`);
   await ask(`${at}/bookmarks/${bookmark.id}`);
   const { revision } = await ask('/api/v1/plans/phantom/revision');

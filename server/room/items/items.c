@@ -226,7 +226,7 @@ void items_written(struct room *room, uint64_t number, const struct problem *pro
 }
 
 /* Whether the body is the one that the item was made with, as far as that can be told. */
-static bool was_made_with(const struct room *room, const struct item *made, const cJSON *body)
+static bool was_made_with(struct room *room, const struct item *made, const struct member *member, const cJSON *body)
 {
     struct problem ignored = { 0 };
     if (made->version > 1) /* it was changed since */
@@ -238,7 +238,9 @@ static bool was_made_with(const struct room *room, const struct item *made, cons
         cJSON_Delete(kept);
         return is_same;
     }
+    room->items->writer = member;
     char *text = item_body_text(room, made->kind, body, made, false, &ignored);
+    room->items->writer = NULL;
     char *row = text ? item_row_text(made, text) : NULL;
     const bool is_same = row && strcmp(row, made->row) == 0;
     free(row);
@@ -265,7 +267,8 @@ static bool give_id(struct room *room, const struct member *member, const struct
     const struct item *made = items_find(room, id);
     if (!made)
         return true;
-    if (made->kind != put->kind || strcmp(made->author, member->id) != 0 || !was_made_with(room, made, put->body))
+    if (made->kind != put->kind || strcmp(made->author, member->id) != 0 ||
+        !was_made_with(room, made, member, put->body))
         return problem_set(problem, PROBLEM_CONFLICT, "", "key",
                            "another call had this Idempotency-Key: it has written %s, which is something else", id);
     (void)snprintf(room->call.item, sizeof room->call.item, "%s", id);

@@ -47,6 +47,15 @@ static void fill(const struct room *room, struct message *message)
                    room->presenter ? room->presenter->id : "");
 }
 
+cJSON *control_document(const struct room *room)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "presenter", room->presenter ? room->presenter->id : "");
+    cJSON_AddBoolToObject(json, "locked", room->control->is_locked);
+    json_add(json, "requests", requests_list(room));
+    return json;
+}
+
 void control_send(struct room *room, struct member *member)
 {
     struct message message;

@@ -23,4 +23,6 @@ void control_left(struct room *room, struct member *member);
 /* Tells all members how things stand, if that has changed since the last time. Returns INT64_MAX. */
 int64_t control_settle(struct room *room);
 /* Tells one member how things stand. */
+/* {presenter, locked, requests}. */
+NODISCARD cJSON *control_document(const struct room *room);
 void control_send(struct room *room, struct member *member);

@@ -126,6 +126,49 @@ void link_used(struct room *room, struct link *link, const struct member *member
     room_event(room, ROOM_LINKS, NULL);
 }
 
+cJSON *links_list(const struct room *room)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (int i = 0; i < room->links->n; i++) {
+        const struct link *link = &room->links->list[i];
+        char digits[9];
+        if (is_over(room, link))
+            continue;
+        cJSON *json = cJSON_CreateObject();
+        write_digits(link->token_hash, digits);
+        cJSON_AddStringToObject(json, "id", digits);
+        cJSON_AddStringToObject(json, "role", wire_member_role_words.words[link->role]);
+        cJSON_AddNumberToObject(json, "expires_s", (double)((link->expires_us - room->now_us + 999999) / 1000000));
+        cJSON_AddBoolToObject(json, "one_use", link->is_one_use);
+        cJSON_AddBoolToObject(json, "used", link->is_used);
+        json_append(list, json);
+    }
+    return list;
+}
+
+bool link_revoke(struct room *room, const char *digits, const struct member *by, const char *address)
+{
+    for (int i = 0; i < room->links->n; i++) {
+        char found[9];
+        write_digits(room->links->list[i].token_hash, found);
+        if (strcmp(found, digits) != 0)
+            continue;
+        const struct audit_act act = { .by = by,
+                                       .action = "link-revoked",
+                                       .address = address,
+                                       .detail = describe(&room->links->list[i]),
+                                       .before = -1,
+                                       .after = -1 };
+        audit_tell(room, &act);
+        room->links->n--;
+        memmove(&room->links->list[i], &room->links->list[i + 1],
+                (size_t)(room->links->n - i) * sizeof room->links->list[0]);
+        room_event(room, ROOM_LINKS, NULL);
+        return true;
+    }
+    return false;
+}
+
 bool links_write(const struct room *room, struct store_room *kept)
 {
     kept->links = mem_array((size_t)room->links->n, sizeof kept->links[0], 1 << 20, NULL);

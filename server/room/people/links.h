@@ -18,6 +18,10 @@ bool links_were_made(const struct room *room);
 /* Makes one: room_link_create. */
 NODISCARD bool link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
                            char token[33], struct problem *problem);
+/* [{id, role, expires_s, one_use, used}] of those that are not over. */
+NODISCARD cJSON *links_list(const struct room *room);
+/* Forgets the link with these digits. False: there is none. */
+NODISCARD bool link_revoke(struct room *room, const char *digits, const struct member *by, const char *address);
 /* Finds the link that the token opens for this person. Returns NULL, or the sentence why it opens nothing. */
 const char *link_find(struct room *room, const char *token, const char *person, struct link **found);
 /* The member came in by it. */

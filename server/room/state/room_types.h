@@ -73,10 +73,10 @@ struct room_render {
 };
 
 /* A row for the audit. Texts are borrowed. Actions: note, bookmark, check (an item was put or deleted), open, leave (a
- * member enters, or its connection ends), link (one was used), link-made, control, weights (of a dose), draft-made,
- * draft-changed, draft-reset (of the beam), decision, signature, acceptance, withdrawal (of parts that do not fit, used
- * together by a person's word), recording (of the meeting: running, stopped, cut, ..., deleted), export (something was
- * given away as a file), refused (a message or call lacked the right), deleted (the room). */
+ * member enters, or its connection ends), link (one was used), link-made, link-revoked, control, weights (of a dose),
+ * draft-made, draft-changed, draft-reset (of the beam), decision, signature, acceptance, withdrawal (of parts that do
+ * not fit, used together by a person's word), recording (of the meeting: running, stopped, cut, ..., deleted), export
+ * (something was given away as a file), refused (a message or call lacked the right), deleted (the room). */
 struct room_audit {
     int64_t time_ms; /* since 1970, of the newest act */
     const char *action;
