@@ -84,7 +84,7 @@ for (const [group, calls] of Object.entries(says)) {
       }
   for (const [format, code] of listed) if (!said.has(format)) wrong(`proto/sentences.json, ${group}: nothing says ${code}, ${format}`);
 }
-// Of reasons only those without places are listed; they stand anywhere in the code, in one piece.
+// Only reasons without places are listed; such a one may stand anywhere in the code.
 const code = files.map(([, text]) => text.replace(/"\s*\n\s*"/g, '')).join('');
 for (const [name, text] of groups.reasons ?? [])
   if (!code.includes(`"${text}"`)) wrong(`proto/sentences.json, reasons: nothing says ${name}, "${text}"`);
