@@ -12,7 +12,7 @@ const entry = `${top}/main.js`;
 const mechanism = `${top}/parts/sentences.js`;
 const readAttributes = ['title', 'aria-label', 'aria-description', 'aria-valuetext', 'aria-roledescription', 'placeholder', 'alt', 'label'];
 const units =
-  /\b(mm|cm|dm|Gy|HU|px|keV|MeV|eV|ppm|ug|ml|kg|min|ms|kB|MB|GB|SUV|Beamroom|CT|MR|PET|DICOM|RTSTRUCT|SEG|NIfTI|NRRD|CSV|PNG|JSON|PDF|GLB|PLY|STL|IsoE|fps|[LRAPSI]{2,3}|RBE|CBE|OER)\b|&\w+;/g;
+  /\b(mm|cm|dm|Gy|HU|px|keV|MeV|eV|ppm|ug|ml|kg|min|ms|kB|MB|GB|SUV|Beamroom|CT|MR|PET|DICOM|RTSTRUCT|SEG|NIfTI|NRRD|CSV|PNG|JSON|PDF|GLB|PLY|STL|NURBS|IsoE|fps|[LRAPSI]{2,3}|RBE|CBE|OER)\b|&\w+;/g;
 
 /** "path", "path text": files and strings. @returns {{files: Set<string>, strings: Map<string, string[]>}} */
 function readAllowed(text) {

@@ -174,7 +174,7 @@ describe('the page in another language', { skip: missing && `${missing} is not t
       await page.keyboard.press('Escape');
     }
   };
-  const blocks = async (page) => {
+  const blocks = async (page, more = () => {}) => {
     const kinds = await page.locator('[role="treeitem"][data-key]').evaluateAll((rows) => {
       const first = new Map(rows.map((row) => [row.dataset.key.split(':')[0], row.dataset.key]).reverse());
       return [...first.values()];
@@ -184,6 +184,7 @@ describe('the page in another language', { skip: missing && `${missing} is not t
       if (!(await name.count())) continue;
       await name.click();
       await look(page, `Selection of ${key}`);
+      await more(`Selection of ${key}`);
     }
   };
   const tabs = async (page) => {
@@ -231,6 +232,32 @@ describe('the page in another language', { skip: missing && `${missing} is not t
       if (address === 'modules.html') await popovers(page, 'the start page');
       await page.context().close();
     }
+  });
+
+  later('presses each button of each panel', async () => {
+    const page = await open(`modules.html#/rooms/${room}`, { acceptDownloads: true });
+    page.on('dialog', (dialog) => dialog.dismiss());
+    await full(page);
+    const folded = page.locator('.section-head[aria-expanded="false"]');
+    while (await folded.count()) await folded.first().click();
+    const press = async (state) => {
+      const buttons = page.locator('#tab-panel button:visible:enabled');
+      for (let n = 0; n < Math.min(await buttons.count(), 40); n++) {
+        const text = await buttons.nth(n).innerText();
+        await buttons
+          .nth(n)
+          .click({ timeout: 2000 })
+          .catch(() => {});
+        await look(page, `${state}, button ${n} ${text}`);
+        await page.keyboard.press('Escape');
+      }
+    };
+    await blocks(page, press);
+    for (const id of ['tab-probe', 'tab-plan', 'tab-notes', 'tab-record']) {
+      await page.locator(`#${id}`).click();
+      await press(id);
+    }
+    await page.context().close();
   });
 
   later('goes through a room at each size', async () => {

@@ -29,6 +29,11 @@ export const meanings = [
   ['approved', say.approved],
   ['seen', say.seen],
 ];
+export const roles = [
+  ['presenter', say.isPresenter],
+  ['reviewer', say.isReviewer],
+  ['observer', say.isObserver],
+];
 export const wordOf = (words, id) => words.find(([word]) => word === id)?.[1] ?? id;
 
 const entryOf = (row) => row.body.entry || row.id;

@@ -2,7 +2,7 @@
 import { html, nothing } from '../../../lib/lit-html.js';
 import { signal } from '../../../lib/signals-core.js';
 import { fetchRecord } from '../../net/record.js';
-import { decisions, entriesOf, linesOf, meanings, states, wordOf } from './checklist.js';
+import { decisions, entriesOf, linesOf, meanings, roles, states, wordOf } from './checklist.js';
 import { printable } from '../../room/exports.js';
 import { number } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
@@ -113,7 +113,7 @@ function under(rows, revision, isEarlier) {
             signed.map((line) => [
               corrected(line.row.body.name, line),
               wordOf(meanings, line.row.body.meaning),
-              line.row.body.role,
+              wordOf(roles, line.row.body.role),
               by(line),
             ]),
           )
@@ -152,7 +152,7 @@ const present = ({ present: stays, n_present_dropped: nDropped }) => html`<h2>${
   [40, 16, 22, 22],
   stays.map(({ name, role, entered_ms: from, left_ms: to, here }) => [
     name,
-    role,
+    wordOf(roles, role),
     time(from),
     to ? time(to) : here ? say.stillThere : say.untilEnded,
   ]),

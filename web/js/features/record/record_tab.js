@@ -3,7 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { repeat } from '../../../lib/directives/repeat.js';
 import { signal } from '../../../lib/signals-core.js';
 import { fetchRecord } from '../../net/record.js';
-import { decisions, earlierRevisions, entriesOf, linesOf, meanings, states, wordOf } from './checklist.js';
+import { decisions, earlierRevisions, entriesOf, linesOf, meanings, roles, states, wordOf } from './checklist.js';
 import { whenWords } from '../notes/threads.js';
 import { say } from './later_words.js';
 import { Record } from './record.js';
@@ -127,7 +127,11 @@ function check({ room }, { key, entry, text, row }, revision) {
 function lines(list, label, words) {
   if (!list.length) return nothing;
   const facts = ({ row, isCorrected }) =>
-    (isCorrected ? say.byRoleCorrected : say.byRoleAt)({ name: row.author_name, role: row.body.role, time: when(row.created_ms) });
+    (isCorrected ? say.byRoleCorrected : say.byRoleAt)({
+      name: row.author_name,
+      role: wordOf(roles, row.body.role),
+      time: when(row.created_ms),
+    });
   const line = (one) => html`<li data-corrected=${one.isCorrected}>${words(one.row)}<span class="dim">${facts(one)}</span></li>`;
   return html`<ol class="record-lines" aria-label=${label}>${list.map(line)}</ol>`;
 }
@@ -197,7 +201,7 @@ function signed({ room }, rows, revision) {
 function attendance({ present, n_present_dropped: nDropped }) {
   const stay = ({ name, role, entered_ms: from, left_ms: to, here }) => {
     const end = to ? when(to) : here ? say.now : say.serverEnded;
-    return html`<li><b>${name}</b> <span class="dim">${say.stay({ role, from: when(from), to: end })}</span></li>`;
+    return html`<li><b>${name}</b> <span class="dim">${say.stay({ role: wordOf(roles, role), from: when(from), to: end })}</span></li>`;
   };
   return html`<section class="block"><h3>${say.present}</h3><ul class="record-present" aria-label=${say.present}>${present.map(stay)}</ul>
     ${nDropped ? html`<p class="note">${say.notKept({ n: nDropped })}</p>` : nothing}</section>`;
