@@ -127,7 +127,7 @@ function readIn(source, tree) {
   return found;
 }
 
-/** What is wrong with the way a text is read, where that can be seen: a text without places is no function, one with places gets a value for each. */
+/** Faults of the way a text is read, where that can be seen: a text without places is no function, one with places gets a value for each. */
 function misread(text, ancestors) {
   let at = ancestors.length - 1;
   while (/^(Conditional|Logical)Expression$/.test(ancestors[at - 1]?.type) && ancestors[at - 1].test !== ancestors[at]) at--;
@@ -177,7 +177,7 @@ function readPage(root) {
   };
 }
 
-/** What a script imports at once, with the names there and here. @returns {{path: string, names: [string, string][]}[]} */
+/** Imports of a script that come at once, with the names there and here. @returns {{path: string, names: [string, string][]}[]} */
 const importsOf = ({ path, tree }) =>
   tree.body
     .filter(({ source }) => source)
@@ -242,7 +242,7 @@ function laterFaults({ scripts, tables }) {
   return faults;
 }
 
-/** What stands outside of tables, without the strings that are left out. @returns {Map<string, {line: number, text: string}[]>} by path */
+/** Texts that stand outside of tables, without the strings that are left out. @returns {Map<string, {line: number, text: string}[]>} by path */
 function outsideOf({ scripts, tables, allowed }) {
   const own = [...scripts.values()].filter(({ path }) => !tables.has(path) && path !== mechanism);
   return new Map(

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/wire/json.h"
+#include "server/wire/json_member.h"
 
 enum { KEY_SIZE = 64 };
 

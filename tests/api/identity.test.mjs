@@ -142,12 +142,7 @@ test('identity is told in full, is never stored, and each time is a row of the a
 });
 
 test('a server that others may reach tells nobody', async () => {
-  for (const args of [
-    [],
-    ['--public-name', 'beamroom.example'],
-    ['--listen', '0.0.0.0:0'],
-    ['--trusted-proxy', '127.0.0.1'],
-  ]) {
+  for (const args of [[], ['--public-name', 'beamroom.example'], ['--listen', '0.0.0.0:0'], ['--trusted-proxy', '127.0.0.1']]) {
     const open = await startDaemon({ plans: [plans], args: ['--stub', '--open-to-everybody', ...args] });
     const url = open.url.replace('0.0.0.0', '127.0.0.1');
     const answer = await call(`${url}/api/v1/plans/case-1/identity`, 'GET', undefined, { 'X-Forwarded-For': '192.0.2.7' });

@@ -1,4 +1,4 @@
-// What a person reads on the page of a display.
+// The words on the page of a display.
 import { sentences } from './parts/sentences.js';
 
 export const say = sentences('page.display', {

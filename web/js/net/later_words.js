@@ -1,4 +1,4 @@
-// What a person reads of the text in a picture that cannot be read.
+// The words of the text in a picture that cannot be read.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('net.later', {

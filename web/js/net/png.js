@@ -2,7 +2,7 @@
 // (PNG specification, 3rd edition, sections 5.3, 11.3.3.4, D). The file may be hostile: everything is bounded.
 
 import { say } from './later_words.js';
-/** What is wrong with a picture, in a sentence. */
+/** The fault of a picture, in a sentence. */
 class Damage extends Error {}
 const signature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 const maxTextBytes = 4 << 20; // a scene of 1024 regions has 0.2 MB

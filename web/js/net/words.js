@@ -1,4 +1,4 @@
-// What a person reads of the connection and of calls of the API.
+// The words of the connection and of calls of the API.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('net', {

@@ -1,4 +1,4 @@
-// What a person reads in the menu of a camera.
+// The words in the menu of a camera.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('pane.later', {

@@ -1,4 +1,4 @@
-// What a person reads in a pane.
+// The words in a pane.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('pane', {

@@ -1,4 +1,4 @@
-// What a person reads of a CSV file that cannot be read.
+// The words of a CSV file that cannot be read.
 import { sentences } from './sentences.js';
 
 export const say = sentences('parts.later', {

@@ -55,7 +55,7 @@ export function known(lazy) {
 const forwarded = ['layer', 'lines', 'key', 'start', 'move', 'end', 'tap', 'doubleTap', 'hover'];
 
 /**
- * What a feature has in a pane (PanePart of features/index.js), made when there is something for it; until then it draws and takes nothing.
+ * The part of a feature in a pane (PanePart of features/index.js), made when there is something for it; until then it draws and takes nothing.
  * @template T @param {() => boolean} isNeeded reactive @param {Lazy<T>} code @param {(loaded: T) => object} make
  */
 export function laterPart(isNeeded, code, make) {

@@ -1,4 +1,4 @@
-// What a person reads of the small things that all of the page uses.
+// The words of the small things that all of the page uses.
 import { sentences } from './sentences.js';
 
 export const say = sentences('parts', {

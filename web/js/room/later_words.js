@@ -1,4 +1,4 @@
-// What a person reads of saved views that are merged, of files, and of answers that do not come.
+// The words of saved views that are merged, of files, and of answers that do not come.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('room.later', {

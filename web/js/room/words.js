@@ -1,4 +1,4 @@
-// What a person reads that is made from the state of a room.
+// The words that are made from the state of a room.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('room', {

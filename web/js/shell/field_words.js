@@ -1,4 +1,4 @@
-// What a person reads of undo is called in proto/scene.json, in English; a language has its words under "undo", by the English ones.
+// The words of undo is called in proto/scene.json, in English; a language has its words under "undo", by the English ones.
 import { undoWords } from '../../gen/undo_words.js';
 import { sentences } from '../parts/sentences.js';
 

@@ -1,4 +1,4 @@
-// What a person reads in the list of keys.
+// The words in the list of keys.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('shell.help', {

@@ -1,4 +1,4 @@
-// What a person reads of members, invitations, a room that has ended, files that changed.
+// The words of members, invitations, a room that has ended, files that changed.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('shell.later', {

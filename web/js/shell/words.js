@@ -1,4 +1,4 @@
-// What a person reads around the panes.
+// The words around the panes.
 import { sentences } from '../parts/sentences.js';
 
 export const say = sentences('shell', {

@@ -26,7 +26,7 @@ export function draftWords(plan, scene) {
   return movedWords(movedFrom(chosenBeam(plan, scene), shownLine(plan, scene)));
 }
 
-/** The same in a row of the tree: "5.4 mm, 10.1°". */
+/** That in a row of the tree: "5.4 mm, 10.1°". */
 export function draftFigures(plan, scene) {
   const moved = movedFrom(chosenBeam(plan, scene), shownLine(plan, scene));
   return moved ? movedBy(moved, say.figures, say.figureTarget, say.figureDirection) : '';

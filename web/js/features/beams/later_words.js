@@ -1,4 +1,4 @@
-// What a person reads in Selection of a beam, and while one is drafted or moved.
+// The words in Selection of a beam, and while one is drafted or moved.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('beams.later', {

@@ -1,4 +1,4 @@
-// What a person reads in panes along a beam.
+// The words in panes along a beam.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('beams.panes', {

@@ -1,4 +1,4 @@
-// What a person reads of the combinations of beam, dose and volume.
+// The words of the combinations of beam, dose and volume.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('beams.presets', {

@@ -1,4 +1,4 @@
-// What a person reads of beams in the tree, and how far a draft has moved.
+// The words of beams in the tree, and how far a draft has moved.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('beams.rows', {

@@ -1,4 +1,4 @@
-// What a person reads of beams on every page.
+// The words of beams on every page.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('beams', {

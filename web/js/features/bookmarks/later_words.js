@@ -1,4 +1,4 @@
-// What a person reads of saved views: their rows, Selection, the bar of a presentation, the page of a link.
+// The words of saved views: their rows, Selection, the bar of a presentation, the page of a link.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('bookmarks.later', {

@@ -1,4 +1,4 @@
-// What a person reads of saved views while the room has none.
+// The words of saved views while the room has none.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('bookmarks', {

@@ -39,7 +39,7 @@ const headings = {
   beam: say.planeBeam,
   free: say.planeFree,
 };
-/** Of each plane of an axis: its name with the side that it keeps, and what its switch does. */
+/** Each plane of an axis: its name with the side that it keeps, and what its switch does. */
 const sides = {
   axial_high: { label: say.keepsBelow, about: say.keepBelow },
   axial_low: { label: say.keepsAbove, about: say.keepAbove },

@@ -1,4 +1,4 @@
-// What a person reads in Selection of a clip plane.
+// The words in Selection of a clip plane.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('clip.later', {

@@ -1,4 +1,4 @@
-// What a person reads of clip planes in the tree and in panes.
+// The words of clip planes in the tree and in panes.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('clip', {

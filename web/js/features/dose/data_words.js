@@ -1,4 +1,4 @@
-// What a person reads of histograms, profiles and limits as data, and in their files.
+// The words of histograms, profiles and limits as data, and in their files.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('dose.data', {

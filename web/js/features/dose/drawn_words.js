@@ -1,4 +1,4 @@
-// What a person reads of dose in pictures, and of pinned probes.
+// The words of dose in pictures, and of pinned probes.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('dose.drawn', {

@@ -1,4 +1,4 @@
-// What a person reads in Selection of a dose, its levels and its weights.
+// The words in Selection of a dose, its levels and its weights.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('dose.later', {

@@ -1,4 +1,4 @@
-// What a person reads of dose in the tree, the Probe and the banner.
+// The words of dose in the tree, the Probe and the banner.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('dose.rows', {

@@ -1,4 +1,4 @@
-// What a person reads of dose on every page.
+// The words of dose on every page.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('dose', {

@@ -1,4 +1,4 @@
-// What a person reads of parts that do not fit: bars, marks, the form in Selection, the table of the Plan tab.
+// The words of parts that do not fit: bars, marks, the form in Selection, the table of the Plan tab.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('fits.later', {

@@ -1,4 +1,4 @@
-// What a person reads in the tree of parts that are never drawn.
+// The words in the tree of parts that are never drawn.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('fits', {

@@ -1,4 +1,4 @@
-// What a person reads in Selection of an image, of its volume and of the 3-D picture.
+// The words in Selection of an image, of its volume and of the 3-D picture.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('image.later', {

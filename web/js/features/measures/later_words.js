@@ -1,4 +1,4 @@
-// What a person reads in Selection of a measure, and of measuring.
+// The words in Selection of a measure, and of measuring.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('measures.later', {

@@ -1,4 +1,4 @@
-// What a person reads of measures in the tree and in panes.
+// The words of measures in the tree and in panes.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('measures', {

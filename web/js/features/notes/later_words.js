@@ -1,4 +1,4 @@
-// What a person reads of notes: the tab, the editor, the pins on pictures, the text that is saved.
+// The words of notes: the tab, the editor, the pins on pictures, the text that is saved.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('notes.later', {

@@ -1,4 +1,4 @@
-// What a person reads of notes before the first one.
+// The words of notes before the first one.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('notes', {

@@ -1,4 +1,4 @@
-// What a person reads on the card of the patient.
+// The words on the card of the patient.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('patient.later', {

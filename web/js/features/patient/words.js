@@ -1,4 +1,4 @@
-// What a person reads of the patient in the banner and in the Plan tab.
+// The words of the patient in the banner and in the Plan tab.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('patient', {

@@ -1,4 +1,4 @@
-// What a person reads in Selection of an oblique plane.
+// The words in Selection of an oblique plane.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('planes.later', {

@@ -1,4 +1,4 @@
-// What a person reads of pointing while nobody else is in the room.
+// The words of pointing while nobody else is in the room.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('pointers', {

@@ -1,4 +1,4 @@
-// What a person reads of the record of a review: the tab, and the page to print.
+// The words of the record of a review: the tab, and the page to print.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('record.later', {

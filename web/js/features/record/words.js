@@ -1,4 +1,4 @@
-// What a person reads of the record before its tab is opened.
+// The words of the record before its tab is opened.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('record', {

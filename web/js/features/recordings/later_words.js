@@ -1,4 +1,4 @@
-// What a person reads of recordings and replays in the popover of the room chip.
+// The words of recordings and replays in the popover of the room chip.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('recordings.later', {

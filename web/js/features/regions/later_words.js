@@ -1,4 +1,4 @@
-// What a person reads in Selection of a region.
+// The words in Selection of a region.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('regions.later', {

@@ -1,4 +1,4 @@
-// What a person reads of the ways to show a region, and where they are compared.
+// The words of the ways to show a region, and where they are compared.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('regions.methods', {

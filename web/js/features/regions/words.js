@@ -1,4 +1,4 @@
-// What a person reads of regions in the tree.
+// The words of regions in the tree.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('regions', {

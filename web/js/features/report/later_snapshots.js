@@ -49,7 +49,7 @@ async function openPrintout({ ui, printoutDialog }) {
   }
 }
 
-/** What the menu shows while it is open. */
+/** The menu while it is open. */
 export function menu(world) {
   const { room, ui, printout } = world;
   const hasPicture = Boolean(room.view(ui.active.value).painted.value);

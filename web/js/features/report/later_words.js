@@ -1,4 +1,4 @@
-// What a person reads of snapshots: the menu, what is told of them, pictures that come back.
+// The words of snapshots: the menu, what is told of them, pictures that come back.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('report.later', {

@@ -1,4 +1,4 @@
-// What a person reads of the report to print, on the screen and on paper.
+// The words of the report to print, on the screen and on paper.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('report.printout', {

@@ -8,7 +8,7 @@ import { say } from './words.js';
 
 export const code = later(() => import('./later_snapshots.js'));
 
-/** What it exports. Throws when it cannot be loaded. */
+/** Its exports. Throws when it cannot be loaded. */
 async function load() {
   await code.load();
   if (!code.loaded.peek()) throw new Error(say.cannotRead);

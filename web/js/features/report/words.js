@@ -1,4 +1,4 @@
-// What a person reads of snapshots before their menu is opened.
+// The words of snapshots before their menu is opened.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('report', {

@@ -1,4 +1,4 @@
-// What a person reads on the start page.
+// The words on the start page.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('start.later', {

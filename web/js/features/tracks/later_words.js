@@ -1,4 +1,4 @@
-// What a person reads of particle tracks in the tree and in Selection.
+// The words of particle tracks in the tree and in Selection.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('tracks.later', {

@@ -1,4 +1,4 @@
-// What a person reads of particle tracks before their rows are loaded.
+// The words of particle tracks before their rows are loaded.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('tracks', {

@@ -1,4 +1,4 @@
-// What a person reads of the small picture of the presenter.
+// The words of the small picture of the presenter.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('watch.later', {

@@ -1,4 +1,4 @@
-// What a person reads in histograms.
+// The words in histograms.
 import { sentences } from '../../../parts/sentences.js';
 
 export const say = sentences('dose.plots.histogram', {

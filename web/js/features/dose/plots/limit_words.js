@@ -1,4 +1,4 @@
-// What a person reads in the table of limits.
+// The words in the table of limits.
 import { sentences } from '../../../parts/sentences.js';
 
 export const say = sentences('dose.plots.limits', {

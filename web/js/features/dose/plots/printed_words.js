@@ -1,4 +1,4 @@
-// What a person reads in the plots on paper.
+// The words in the plots on paper.
 import { sentences } from '../../../parts/sentences.js';
 
 export const say = sentences('dose.plots.printed', {

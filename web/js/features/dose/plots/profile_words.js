@@ -1,4 +1,4 @@
-// What a person reads in the depth profile.
+// The words in the depth profile.
 import { sentences } from '../../../parts/sentences.js';
 
 export const say = sentences('dose.plots.profile', {

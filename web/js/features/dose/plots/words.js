@@ -1,4 +1,4 @@
-// What a person reads in all plots of dose, and of the basis of their numbers.
+// The words in all plots of dose, and of the basis of their numbers.
 import { sentences } from '../../../parts/sentences.js';
 
 export const say = sentences('dose.plots', {
