@@ -14,6 +14,14 @@ static bool is_about_item(const struct message *message)
     return message->type == MESSAGE_ITEM_PUT || message->type == MESSAGE_ITEM_DELETE;
 }
 
+/* Whether who is no member may write it. */
+static bool is_of_anybody(const struct message *message)
+{
+    if (message->type != MESSAGE_ITEM_PUT)
+        return message->type == MESSAGE_ITEM_DELETE;
+    return message->item_put.kind == WIRE_ITEM_KIND_NOTE || message->item_put.kind == WIRE_ITEM_KIND_BOOKMARK;
+}
+
 /* Who acts without being a member of the room: has the name that the call gives, and no id. */
 static struct member *make_stranger(const struct room *room, const struct room_act *act)
 {
@@ -29,14 +37,12 @@ static struct member *make_stranger(const struct room *room, const struct room_a
 static bool check_caller(const struct member *member, const struct room_act *act, struct problem *problem)
 {
     const struct message *message = act->message;
-    const enum wire_item_kind kind = message->item_put.kind;
     if (member && (is_about_item(message) || member->connection))
         return true;
     if (member)
         return problem_set(problem, PROBLEM_CONFLICT, "", "away",
                            "%s is not connected, and takes no part in what the room does now", member->id);
-    if (!is_about_item(message) ||
-        (message->type == MESSAGE_ITEM_PUT && kind != WIRE_ITEM_KIND_NOTE && kind != WIRE_ITEM_KIND_BOOKMARK))
+    if (!is_of_anybody(message))
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "seat",
                            "this is done by a member of the room: send Beamroom-Member");
     if (message->type == MESSAGE_ITEM_PUT && (!act->name || !act->name[0]))

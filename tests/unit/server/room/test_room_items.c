@@ -3,6 +3,7 @@
 
 #include "core/base/mem.h"
 #include "server/room/items/note_body.h"
+#include "server/wire/message.h"
 
 /* Ann presents, Ben and Cem do not; all have said hello. */
 static void enter(void)
@@ -321,6 +322,92 @@ static void a_damaged_row_is_refused_and_leaves_nothing(void **state)
     assert_int_equal(n_notes(), 0);
 }
 
+static struct {
+    int n;
+    bool has_row, was_sent_before;
+    enum problem_type problem;
+    char author_name[64];
+} answer; /* to the newest act */
+
+static void act_done(void *context, const char *row, bool was_sent_before, const struct problem *problem)
+{
+    (void)context;
+    cJSON *json = row ? json_read(row, strlen(row), NULL) : NULL;
+    answer.n++;
+    answer.has_row = row != NULL;
+    answer.was_sent_before = was_sent_before;
+    answer.problem = problem ? problem->type : PROBLEM_NONE;
+    (void)snprintf(answer.author_name, sizeof answer.author_name, "%s", json ? json_text(json, "author_name") : "");
+    cJSON_Delete(json);
+}
+
+static void act(const char *text, const char *key)
+{
+    struct message message;
+    struct problem problem = { 0 };
+    assert_true(message_read(text, strlen(text), true, &message, &problem));
+    const struct room_act script = {
+        .name = "Script", .address = "192.0.2.7", .key = key, .message = &message, .done = act_done
+    };
+    room_act(fake.room, &script, fake.now_us);
+    message_finish(&message);
+}
+
+static uint64_t written;
+
+static bool keep_later(void *context, struct room *room, uint64_t number, const struct room_item_write *write,
+                       struct problem *problem)
+{
+    (void)context;
+    (void)room;
+    (void)problem;
+    assert_string_equal(write->author, "");
+    written = number;
+    return true;
+}
+
+static void a_call_writes_as_a_message_does_and_is_answered_once_it_counts(void **state)
+{
+    static const char note[] = "{\"type\":\"item.put\",\"kind\":\"note\",\"body\":{\"text\":\"Edge?\"}}";
+    const struct problem full = { .type = PROBLEM_STORAGE };
+    (void)state;
+    enter();
+    memset(&answer, 0, sizeof answer);
+    act(note, "k-1");
+    assert_int_equal(answer.n, 1);
+    assert_true(answer.has_row && !answer.was_sent_before);
+    assert_string_equal(answer.author_name, "Script");
+    assert_string_equal(heard(&ann, "item", "by"), "");
+    act(note, "k-1");
+    assert_true(answer.has_row && answer.was_sent_before);
+    assert_int_equal(n_notes(), 1);
+    act("{\"type\":\"item.put\",\"kind\":\"note\",\"body\":{\"text\":\"Other\"}}", "k-1");
+    assert_int_equal(answer.problem, PROBLEM_CONFLICT);
+    act("{\"type\":\"control.take\"}", NULL);
+    assert_int_equal(answer.problem, PROBLEM_FORBIDDEN);
+    act("{\"type\":\"item.put\",\"kind\":\"signature\",\"body\":{}}", NULL);
+    assert_int_equal(answer.problem, PROBLEM_FORBIDDEN);
+
+    fake.room->callbacks.item_first = keep_later;
+    answer.n = 0;
+    act(note, "k-2");
+    assert_int_equal(answer.n, 0); /* it is being written */
+    act(note, "k-2");
+    assert_int_equal(answer.n, 1);
+    assert_int_equal(answer.problem, PROBLEM_BUSY);
+    assert_int_equal(n_notes(), 1);
+    room_item_written(fake.room, written, NULL, fake.now_us);
+    assert_int_equal(answer.n, 2);
+    assert_true(answer.has_row && answer.problem == PROBLEM_NONE);
+    assert_int_equal(n_notes(), 2);
+    act(note, "k-3");
+    room_item_written(fake.room, written, &full, fake.now_us);
+    assert_int_equal(answer.problem, PROBLEM_STORAGE);
+    assert_int_equal(n_notes(), 2);
+    act(note, "k-4"); /* and the room ends */
+    assert_int_equal(answer.n, 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -333,6 +420,7 @@ int main(void)
         ROOM_TEST(a_room_keeps_a_limited_number_of_items_and_bytes),
         ROOM_TEST(what_is_kept_is_given_back_and_ids_are_not_given_twice),
         ROOM_TEST(a_damaged_row_is_refused_and_leaves_nothing),
+        ROOM_TEST(a_call_writes_as_a_message_does_and_is_answered_once_it_counts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
