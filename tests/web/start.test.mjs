@@ -342,4 +342,22 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     await page.locator(`[data-plan="${id}"]`).waitFor();
     return id;
   }
+
+  it('says in red that it is open to everybody, where it is', async () => {
+    const open = await startWorld({ args: ['--open-to-everybody'] });
+    try {
+      const page = await open.newPage();
+      const notice = page.getByRole('note').filter({ hasText: 'Open to everybody' });
+      await notice.waitFor();
+      const [red, green, blue] = await notice.locator('b').evaluate((element) => getComputedStyle(element).color.match(/\d+/g).map(Number));
+      assert.ok(red > 1.5 * green && red > 1.5 * blue, `rgb ${red} ${green} ${blue}`);
+      await isClean(page, 'open to everybody');
+      await shoot(page, 'start-open');
+    } finally {
+      await open.stop();
+    }
+    const page = await newPage();
+    assert.equal(await page.getByText('Open to everybody').count(), 0);
+    await page.close();
+  });
 });

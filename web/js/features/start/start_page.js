@@ -69,6 +69,10 @@ const page = (state, uploads, { enter, ownName, thumbnails }) => html`<div class
 
 /** Notices about the server, not about one plan. */
 const notices = (state) => html`${
+  state.version.value?.open_to_everybody
+    ? html`<div class="notice bad open-door" role="note">${icon('error')}<div><b>${say.openDoor}</b><p>${say.openDoorIs}</p></div></div>`
+    : nothing
+}${
   state.error.value
     ? html`<div class="notice bad" role="alert">${icon('error')}<div>
     <b>${state.error.value}</b><p>${say.tryingAgain}</p></div></div>`
