@@ -112,7 +112,8 @@ export class Following {
   /** A change of the shared camera that made the member leave, as a change of the own view that has taken its place. */
   adapted(number, patch) {
     const { kind, widening: factor } = this.#room.view(number);
-    return patch.camera ? { ...patch, camera: widen(patch.camera, kind, factor) } : patch;
+    // a camera of a saved view that says null is the home one, which shows the whole plan in a pane of any size
+    return patch.camera && patch.camera.position_mm !== null ? { ...patch, camera: widen(patch.camera, kind, factor) } : patch;
   }
 
   /** The document with which a view opens. */
