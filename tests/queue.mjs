@@ -20,7 +20,7 @@ for (const words of process.argv.slice(2).join('\n').split('\n--\n')) {
 }
 mkdirSync(folder, { recursive: true });
 const known = existsSync(lastRun) ? JSON.parse(readFileSync(lastRun, 'utf8')) : {};
-/** What takes long, in seconds: a clean checkout has no last run, and one of these started last would run alone. */
+/** Seconds of the items that take long: a clean checkout has no last run, and one of these started last would run alone. */
 const usual = {
   30: `web/whole_meeting api/idle web/page web/start api/connections web/watch web/beam_draft unit/test_fleet_silence api/ws web/dose web/views`,
   20: `api/dvh api/hostile web/image faults/test_draw web/clip web/sizes web/beam_eye unit/test_unpack web/pointed web/regions web/display web/touch

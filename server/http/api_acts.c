@@ -1,5 +1,4 @@
-/* What members of a room do by messages, as calls: makes the message out of the call, and answers with what came of it.
- */
+/* Calls that do what members of a room do by messages: a call becomes the message, and the outcome its answer. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

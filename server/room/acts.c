@@ -22,7 +22,7 @@ static bool is_of_anybody(const struct message *message)
     return message->item_put.kind == WIRE_ITEM_KIND_NOTE || message->item_put.kind == WIRE_ITEM_KIND_BOOKMARK;
 }
 
-/* Who acts without being a member of the room: has the name that the call gives, and no id. */
+/* A caller who is no member of the room: has the name that the call gives, and no id. */
 static struct member *make_stranger(const struct room *room, const struct room_act *act)
 {
     struct member *stranger = mem_new(sizeof *stranger);

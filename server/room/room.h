@@ -78,7 +78,7 @@ NODISCARD cJSON *room_document_of(const char *id, const char *plan_id, uint32_t 
  * present. False with problem forbidden or not-presenter. */
 NODISCARD bool room_call_may(const struct room *room, const char *member, enum wire_right right,
                              struct problem *problem);
-/* The same for room_act, whose message finds out by itself whether it takes the presenter. */
+/* Like room_call_may, for room_act: its message finds out by itself whether it takes the presenter. */
 NODISCARD bool room_act_may(const struct room *room, const char *member, enum wire_right right,
                             struct problem *problem);
 /* Does this in the room, or refuses it as it would a message. An item may be written by who is no member of the room,

@@ -1,4 +1,4 @@
-// What people do in a room, done by a script over HTTP: members see it at once, with its author; it is kept, refused and undone as a message is.
+// Acts in a room by a script over HTTP: members see it at once, with its author; it is kept, refused and undone as a message is.
 // --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';

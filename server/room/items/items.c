@@ -35,8 +35,8 @@ static void make_id(const struct room *room, char id[16])
     } while (items_find(room, id));
 }
 
-/* The same for the same key of the same caller in this room: a call that is sent again finds what it has made, also
- * after a restart. */
+/* Makes an id that depends on room, caller and key alone: a call that is sent again finds what it has made, also after
+ * a restart. */
 static void make_id_of_key(const struct room *room, const struct member *member, const char *key, char id[16])
 {
     char text[600], hex[DIGEST_TEXT];

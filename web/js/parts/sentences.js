@@ -1,4 +1,4 @@
-// What a person reads stands in a table of each folder (words.js; later_words.js for what is loaded later), in English; languages/ has other languages.
+// Sentences that a person reads stand in a table of each folder (words.js; later_words.js for what is loaded later), in English; languages/ has other languages.
 import { language, texts } from '../languages/index.js';
 
 const rules = new Intl.PluralRules(language);
