@@ -151,8 +151,8 @@ struct room_callbacks {
                         struct problem *problem);
 };
 
-/* An act in a room by a call over HTTP: a message of a page (proto/messages.json), as if a member had sent it. Borrowed,
- * but for context. */
+/* An act in a room by a call over HTTP: a message of a page (proto/messages.json), as if a member had sent it.
+ * Borrowed, but for context. */
 struct room_act {
     const char *member;  /* as in room_call_may */
     const char *name;    /* of who does it, when member is NULL */
