@@ -14,12 +14,17 @@ static bool is_about_item(const struct message *message)
     return message->type == MESSAGE_ITEM_PUT || message->type == MESSAGE_ITEM_DELETE;
 }
 
-/* Whether who is no member may write it. */
-static bool is_of_anybody(const struct message *message)
+/* Whether who is no member may write or delete it. */
+static bool is_of_anybody(const struct room *room, const struct message *message)
 {
-    if (message->type != MESSAGE_ITEM_PUT)
-        return message->type == MESSAGE_ITEM_DELETE;
-    return message->item_put.kind == WIRE_ITEM_KIND_NOTE || message->item_put.kind == WIRE_ITEM_KIND_BOOKMARK;
+    if (!is_about_item(message))
+        return false;
+    const bool is_put = message->type == MESSAGE_ITEM_PUT;
+    const struct item *item = is_put ? NULL : items_find(room, message->item_delete.item);
+    if (!is_put && !item) /* that there is none is said later */
+        return true;
+    const enum wire_item_kind kind = is_put ? message->item_put.kind : item->kind;
+    return kind == WIRE_ITEM_KIND_NOTE || kind == WIRE_ITEM_KIND_BOOKMARK;
 }
 
 /* A caller who is no member of the room: has the name that the call gives, and no id. */
@@ -34,7 +39,8 @@ static struct member *make_stranger(const struct room *room, const struct room_a
 }
 
 /* Whether this caller may act so; member NULL: nobody of the room. */
-static bool check_caller(const struct member *member, const struct room_act *act, struct problem *problem)
+static bool check_caller(const struct room *room, const struct member *member, const struct room_act *act,
+                         struct problem *problem)
 {
     const struct message *message = act->message;
     if (member && (is_about_item(message) || member->connection))
@@ -42,7 +48,7 @@ static bool check_caller(const struct member *member, const struct room_act *act
     if (member)
         return problem_set(problem, PROBLEM_CONFLICT, "", "away",
                            "%s is not connected, and takes no part in what the room does now", member->id);
-    if (!is_of_anybody(message))
+    if (!is_of_anybody(room, message))
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "seat",
                            "this is done by a member of the room: send Beamroom-Member");
     if (message->type == MESSAGE_ITEM_PUT && (!act->name || !act->name[0]))
@@ -56,7 +62,7 @@ void room_act(struct room *room, const struct room_act *act, int64_t now_us)
     struct problem problem = { 0 };
     room_enter(room, now_us);
     struct member *member = room_caller(room, act->member), *stranger = NULL;
-    bool is_done = check_caller(member, act, &problem);
+    bool is_done = check_caller(room, member, act, &problem);
     if (!member)
         member = stranger = make_stranger(room, act);
     room->call = (struct room_call){ .address = act->address, .act = act };

@@ -136,14 +136,17 @@ describe('notes over HTTP', () => {
     assert.equal((await ask(room, '/notes/none', 'DELETE')).status, 404);
   });
 
-  it('in a room with links, who is no member writes notes and changes those of nobody else', async () => {
+  it('in a room with links, who is no member writes notes, and changes none: who has no seat is not known again', async () => {
     const room = await newRoom();
     const ann = await Client.enter(daemon.url, room, { name: 'Ann' });
     const { json: hers } = await ask(room, '/notes', 'POST', { body: { text: 'hers' } }, ann.headers);
     const { json: link } = await ask(room, '/links', 'POST', { role: 'observer' }, ann.headers);
     const { json: own } = await ask(room, '/notes', 'POST', { body: { text: 'own' }, name: 'Script' });
-    assert.equal((await ask(room, `/notes/${own.id}`, 'PATCH', { version: 1, body: { text: 'changed' }, name: 'Script' })).status, 200);
-    assert.deepEqual(refused(await ask(room, `/notes/${hers.id}`, 'DELETE')), [403, 'forbidden', '/item', '']);
+    const changed = await ask(room, `/notes/${own.id}`, 'PATCH', { version: 1, body: { text: 'changed' }, name: 'Script' });
+    assert.deepEqual([own.author, ...refused(changed)], ['', 403, 'forbidden', '/item', '']);
+    for (const { id } of [own, hers])
+      assert.deepEqual(refused(await ask(room, `/notes/${id}`, 'DELETE')), [403, 'forbidden', '/item', ''], id);
+    assert.equal((await ask(room, `/notes/${own.id}`, 'DELETE', undefined, ann.headers)).status, 204);
     const olga = await Client.enter(daemon.url, room, { name: 'Olga', link: link.token });
     assert.deepEqual(refused(await ask(room, '/notes', 'POST', { body: { text: 'x' } }, olga.headers)), [403, 'forbidden', '', 'role']);
     for (const client of [ann, olga]) client.cut();
@@ -286,6 +289,8 @@ describe('the other acts over HTTP', () => {
       assert.deepEqual(refused(await ask(room, `/${kind}`, 'POST', { body })), [403, 'forbidden', '', 'seat'], kind);
     const ticked = await ask(room, '/checks', 'POST', { body: check }, ben.headers);
     assert.deepEqual([ticked.status, ticked.json.author_name, ticked.json.body.role], [201, 'Ben', 'reviewer']);
+    assert.deepEqual(refused(await ask(room, `/checks/${ticked.json.id}`, 'DELETE')), [403, 'forbidden', '', 'seat']);
+    assert.equal((await ask(room, '/record')).json.checklist.length, 1, 'nobody of the room unticks nothing');
     const wrong = await ask(room, `/checks/${ticked.json.id}`, 'PATCH', { version: 1, body: { ...check, state: 'issue' } }, ann.headers);
     assert.deepEqual([wrong.status, wrong.json.changed_name, wrong.json.body.state], [200, 'Ann', 'issue']);
     assert.deepEqual(refused(await ask(room, '/decisions', 'POST', { body: decision }, ben.headers)), [403, 'forbidden', '/kind', 'role']);

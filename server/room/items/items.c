@@ -88,8 +88,9 @@ static struct item *find_to_change(const struct room *room, const struct member 
     }
     if (!record_may_change(room, item, problem) || !acceptance_may(room, member, item->kind, problem))
         return NULL;
-    if (item->kind != WIRE_ITEM_KIND_CHECK && item->kind != WIRE_ITEM_KIND_ACCEPTANCE &&
-        strcmp(item->author, member->id) != 0 && member->role != WIRE_MEMBER_ROLE_PRESENTER) {
+    const bool is_own = member->id[0] && strcmp(item->author, member->id) == 0; /* who has no seat is not known again */
+    if (item->kind != WIRE_ITEM_KIND_CHECK && item->kind != WIRE_ITEM_KIND_ACCEPTANCE && !is_own &&
+        member->role != WIRE_MEMBER_ROLE_PRESENTER) {
         problem_set(problem, PROBLEM_FORBIDDEN, "/item", "",
                     "this %s is by %.40s: only its author or a member of role presenter changes or deletes it",
                     item_word(item->kind), item->author_name);
