@@ -42,9 +42,12 @@ function sentence(text) {
   if (pieces.length === 1) return text;
   return (values) => {
     const all = pieces.map((piece, n) => (n % 2 ? filled(piece, values) : piece));
-    return all.some((one) => typeof one === 'object') ? all : all.join('');
+    return all.some(isDrawn) ? all : all.join('');
   };
 }
+
+/** Whether lit-html has to draw it: a template, a list, or its `nothing`, which is a symbol. No value at all is no text. */
+const isDrawn = (one) => (typeof one === 'object' && one !== null) || typeof one === 'symbol';
 
 function filled(place, values) {
   const [name, ...words] = place.split('|');

@@ -23,6 +23,9 @@ test('places take values, numbers choose the form, templates make a list', () =>
   assert.equal(say.twice({ a: '{b}' }), '{b} and {b}', 'a value is never a text with places');
   const template = { strings: [] };
   assert.deepEqual(say.named({ plane: template }), ['Show ', template, '']);
+  const nothing = Symbol('nothing');
+  assert.deepEqual(say.named({ plane: nothing }), ['Show ', nothing, '']);
+  assert.equal(say.named({ plane: null }), 'Show ', 'no value is no text');
 });
 
 test('a browser of another language has what that language has', async (t) => {
