@@ -138,6 +138,7 @@ static bool start_library(struct tls *tls)
         .pt_serv_buf_size = LWS_PRE + TLS_READ_AT_ONCE,
         .fd_limit_per_thread = 0 /* as many as the process may have: with less, each event searches a table */
     };
+    tls->n_places = library_places();
     tls->context = lws_create_context(&info);
     tls->vhost = tls->context ? lws_create_vhost(tls->context, &info) : NULL;
     return tls->vhost && tls->ssl_ctx && policy_set(tls->ssl_ctx);

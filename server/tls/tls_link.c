@@ -321,14 +321,10 @@ int tls_link_handle(struct lws *lws, enum lws_callback_reasons reason, void *own
 /* Gives the socket to the library. */
 static void begin_handshake(struct tls_link *link)
 {
-    const lws_sock_file_fd_type one = { .sockfd = link->client };
     struct tls *tls = link->tls;
-    struct stat facts = { 0 };
-    (void)fstat(link->client, &facts);
-    struct lws *lws = lws_adopt_descriptor_vhost(tls->vhost, LWS_ADOPT_SOCKET | LWS_ADOPT_ALLOW_SSL, one,
-                                                 tls->protocols[0].name, NULL);
-    if (!lws) {
-        library_close_refused(link->client, &facts);
+    struct lws *lws = library_adopt(tls->vhost, tls->n_places, LWS_ADOPT_SOCKET | LWS_ADOPT_ALLOW_SSL, link->client,
+                                    tls->protocols[0].name);
+    if (!lws) { /* closed */
         free_link(link);
         return;
     }

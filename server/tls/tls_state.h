@@ -44,6 +44,7 @@ struct tls {
     struct ev_loop *loop;
     struct lws_context *context;
     struct lws_vhost *vhost;
+    int n_places;                          /* descriptors below have one in the library's table */
     struct ssl_ctx_st *ssl_ctx;            /* the vhost's */
     struct certificate *certificate;       /* of connections that begin */
     _Atomic(struct certificate *) renewed; /* by tls_reload, for the thread */

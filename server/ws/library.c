@@ -2,7 +2,10 @@
 #include "server/ws/library.h"
 
 #include <libwebsockets.h>
+#include <limits.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/base/log.h"
@@ -21,9 +24,32 @@ void library_log_start(void)
     lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
 }
 
-void library_close_refused(int fd, const struct stat *before)
+int library_places(void)
+{
+    struct rlimit allowed;
+    return getrlimit(RLIMIT_NOFILE, &allowed) != 0 || allowed.rlim_cur > INT_MAX ? INT_MAX : (int)allowed.rlim_cur;
+}
+
+/* The library has closed some of those that it did not adopt itself, and others not. before: the descriptor's facts
+ * from then, as another thread may have been given the number since. */
+static void close_refused(int fd, const struct stat *before)
 {
     struct stat now;
     if (fstat(fd, &now) == 0 && now.st_ino == before->st_ino && now.st_dev == before->st_dev)
         (void)close(fd);
+}
+
+struct lws *library_adopt(struct lws_vhost *vhost, int n_places, int options, int fd, const char *protocol)
+{
+    const lws_sock_file_fd_type one = { .sockfd = fd };
+    struct stat facts = { 0 };
+    if (fd >= n_places) {
+        (void)close(fd);
+        return NULL;
+    }
+    (void)fstat(fd, &facts);
+    struct lws *lws = lws_adopt_descriptor_vhost(vhost, (lws_adoption_type)options, one, protocol, NULL);
+    if (!lws)
+        close_refused(fd, &facts);
+    return lws;
 }

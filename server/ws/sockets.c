@@ -20,6 +20,7 @@ struct sockets {
     struct lws_context *context;
     struct lws_vhost *vhost;
     int timer_fd;
+    int n_places;     /* descriptors below have one in the library's table */
     int64_t armed_us; /* when timer_fd fires; INT64_MAX: never */
     bool is_woken;
 };
@@ -78,20 +79,15 @@ static bool start_library(struct sockets *sockets)
 static bool add_timer(struct sockets *sockets)
 {
     sockets->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    lws_sock_file_fd_type timer = { .filefd = sockets->timer_fd };
-    struct stat facts;
-    if (sockets->timer_fd < 0 || fstat(sockets->timer_fd, &facts) != 0)
-        return false;
-    if (lws_adopt_descriptor_vhost(sockets->vhost, LWS_ADOPT_RAW_FILE_DESC, timer, sockets->protocols[0].name, NULL))
-        return true;
-    library_close_refused(sockets->timer_fd, &facts);
-    return false;
+    return sockets->timer_fd >= 0 && library_adopt(sockets->vhost, sockets->n_places, LWS_ADOPT_RAW_FILE_DESC,
+                                                   sockets->timer_fd, sockets->protocols[0].name);
 }
 
 struct sockets *sockets_create(const struct sockets_calls *calls, struct error *err)
 {
     struct sockets *sockets = mem_new(sizeof *sockets);
     sockets->calls = calls;
+    sockets->n_places = library_places();
     sockets->protocols[0] = (struct lws_protocols){ .name = "raw", .callback = handle };
     sockets->armed_us = INT64_MAX;
     library_log_start();
@@ -116,15 +112,10 @@ void sockets_destroy(struct sockets *sockets)
 
 bool sockets_add(struct sockets *sockets, struct socket *socket, int fd)
 {
-    const lws_sock_file_fd_type one = { .sockfd = fd };
-    struct stat facts = { 0 };
-    (void)fstat(fd, &facts);
     struct lws *lws =
-        lws_adopt_descriptor_vhost(sockets->vhost, LWS_ADOPT_SOCKET, one, sockets->protocols[0].name, NULL);
-    if (!lws) {
-        library_close_refused(fd, &facts);
+        library_adopt(sockets->vhost, sockets->n_places, LWS_ADOPT_SOCKET, fd, sockets->protocols[0].name);
+    if (!lws)
         return false;
-    }
     lws_set_timeout(lws, NO_PENDING_TIMEOUT, 0); /* or it is cut after some seconds */
     lws_set_wsi_user(lws, socket);
     *socket = (struct socket){ sockets->calls, lws, fd };

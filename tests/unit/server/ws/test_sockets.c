@@ -65,26 +65,42 @@ static size_t n_descriptors(void)
     return n;
 }
 
+/* Opens descriptors until n_free of the allowed ones are left. Returns how many were opened. */
+static size_t leave_free(int opened[], size_t n_allowed, size_t n_free)
+{
+    size_t n = 0;
+    for (size_t left = n_allowed - n_descriptors(); left > n_free; left--, n++) {
+        opened[n] = fcntl(0, F_DUPFD_CLOEXEC, 0);
+        assert_true(opened[n] >= 0);
+    }
+    return n;
+}
+
 /* Descriptors run out at each step of the start in turn. */
 static void a_start_that_fails_leaves_no_descriptor(void **state)
 {
     static const struct sockets_calls calls = { .received = say_nothing, .takes_more = do_nothing, .ended = forget };
+    enum { N_TABLE = 256 };
     struct rlimit before;
     (void)state;
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+    struct rlimit few = { N_TABLE, before.rlim_max };
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
     const size_t n_before = n_descriptors();
     bool has_started = false;
-    for (rlim_t n = n_before; !has_started && n < n_before + 40; n++) {
+    for (size_t n_free = 0; !has_started && n_free < 40; n_free++) {
+        int opened[N_TABLE];
         struct error err = { 0 };
-        struct rlimit few = { n, before.rlim_max };
-        assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+        const size_t n_opened = leave_free(opened, N_TABLE, n_free);
         struct sockets *sockets = sockets_create(&calls, &err);
-        assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
         has_started = sockets != NULL;
         sockets_destroy(sockets);
-        assert_int_equal(n_descriptors(), n_before);
+        assert_int_equal(n_descriptors(), n_before + n_opened);
+        for (size_t i = 0; i < n_opened; i++)
+            close(opened[i]);
     }
     assert_true(has_started);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
 }
 
 int main(void)
