@@ -9,16 +9,24 @@
 
 enum { DEFAULT_PRECISION = 6, NUMBER_SIZE = 400 }; /* of printf; %f of the largest double has 316 digits */
 
-/* The length of text within most bytes (negative: all of it), without a part of a character at its end. */
+/* The bytes of a character of UTF-8 that begins so. */
+static size_t character_length(unsigned char first)
+{
+    return first < 0xC0 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+}
+
+/* The length of text within most bytes (negative: all of it), without a part of a character at its end. As for printf,
+ * text need not end within most bytes: nothing behind them is read. */
 static size_t whole_length(const char *text, int most)
 {
-    size_t n = strlen(text);
-    if (most < 0 || n <= (size_t)most)
-        return n;
-    n = (size_t)most;
-    while (n > 0 && ((unsigned char)text[n] & 0xC0) == 0x80)
-        n--;
-    return n;
+    if (most < 0)
+        return strlen(text);
+    const size_t n = strnlen(text, (size_t)most);
+    size_t last = n; /* behind the beginning of the last character */
+    while (last > 0 && ((unsigned char)text[last - 1] & 0xC0) == 0x80)
+        last--;
+    const bool is_cut = n == (size_t)most && last > 0 && last - 1 + character_length((unsigned char)text[last - 1]) > n;
+    return is_cut ? last - 1 : n;
 }
 
 bool sentence_add_text(struct sentence_facts *facts, bool is_first, const char *text, int precision)

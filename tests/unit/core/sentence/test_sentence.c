@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "server/wire/json.h"
@@ -66,6 +67,23 @@ static void a_text_is_cut_between_characters(void **state)
     memcpy(name + 62, "\xc3\xbc!", 4); /* an u with two dots, of two bytes, at the end of 63 */
     struct sentence_facts facts = describe("there is no room \"%.63s\"", name);
     assert_int_equal(strlen(facts.values), 62);
+}
+
+/* Sanitizers see a byte that is read behind it. */
+static void a_text_of_so_many_bytes_needs_no_end(void **state)
+{
+    (void)state;
+    static const char *const texts[] = { "2.0", "\xe2\x82\xac", "a\xc3\xa4", "ab\xc3", "a\xe2\x82" };
+    static const char *const kept[] = { "2.0", "\xe2\x82\xac", "a\xc3\xa4", "ab", "a" };
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        char *open = malloc(3);
+        assert_non_null(open);
+        memcpy(open, texts[i], 3);
+        struct sentence_facts facts = describe("the request is of HTTP/%.3s; expected is HTTP/1.1 or HTTP/1.0", open);
+        free(open);
+        assert_string_equal(facts.code, "http-version-unknown");
+        assert_string_equal(facts.values, kept[i]);
+    }
 }
 
 static void a_sentence_that_is_not_listed_or_too_long_has_no_facts(void **state)
@@ -136,6 +154,7 @@ int main(void)
         cmocka_unit_test(each_sentence_is_found_by_its_code_and_has_its_number_of_places),
         cmocka_unit_test(numbers_and_texts_are_kept_as_english_shows_them),
         cmocka_unit_test(a_text_is_cut_between_characters),
+        cmocka_unit_test(a_text_of_so_many_bytes_needs_no_end),
         cmocka_unit_test(a_sentence_that_is_not_listed_or_too_long_has_no_facts),
         cmocka_unit_test(facts_are_the_same_after_a_way_through_json),
         cmocka_unit_test(facts_in_json_that_are_not_as_listed_are_left_out),
