@@ -5,6 +5,7 @@
 
 #include "core/base/clock.h"
 #include "server/http/api_acts.h"
+#include "server/http/api_queries.h"
 #include "server/room/state/body_check.h"
 #include "server/wire/message.h"
 
@@ -159,12 +160,9 @@ void api_room_act(struct api *api, struct call *call)
     struct problem problem = { 0 };
     struct message message;
     char name[4 * MAX_NAME + 1];
-    struct room *room = net_room_find(api->net, call->ids[0]);
-    if (!room) {
-        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
-        call_answer_problem(call, &problem);
+    struct room *room = api_find_room(api, call);
+    if (!room)
         return;
-    }
     if (call->act->kind && call->ids[1] && !room_item_is(room, call->ids[1], kind_of(call->act->kind))) {
         problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the room has no %s \"%.63s\"", call->act->kind, call->ids[1]);
         call_answer_problem(call, &problem);

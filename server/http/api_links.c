@@ -5,6 +5,7 @@
 
 #include "core/base/clock.h"
 #include "server/http/api_handlers.h"
+#include "server/http/api_queries.h"
 
 struct wanted {
     enum wire_member_role role;
@@ -59,20 +60,9 @@ static bool read_wanted(const cJSON *body, struct wanted *wanted, struct problem
     return true;
 }
 
-static struct room *find_room(struct api *api, struct call *call)
-{
-    struct problem problem;
-    struct room *room = net_room_find(api->net, call->ids[0]);
-    if (room)
-        return room;
-    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
-    call_answer_problem(call, &problem);
-    return NULL;
-}
-
 void api_room_links(struct api *api, struct call *call)
 {
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     if (!room)
         return;
     cJSON *answer = cJSON_CreateObject();
@@ -83,7 +73,7 @@ void api_room_links(struct api *api, struct call *call)
 void api_room_link_revoke(struct api *api, struct call *call)
 {
     struct problem problem;
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     if (!room)
         return;
     if (!net_can_write(api->net, &problem)) {
@@ -105,7 +95,7 @@ void api_room_link_new(struct api *api, struct call *call)
     struct wanted wanted;
     cJSON *body;
     char token[33], digits[9], url[160];
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     if (!room)
         return;
     if (!call_read_object(call, media_types, &body))

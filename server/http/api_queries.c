@@ -95,3 +95,14 @@ void api_when_ready(struct api *api, struct call *call, const char *plan_id, fle
     packet_init(&packet, PACKET_AWAIT_READY);
     api_query_send(api, call, plan_id, &packet, reply);
 }
+
+struct room *api_find_room(struct api *api, struct call *call)
+{
+    struct room *room = net_room_find(api->net, call->ids[0]);
+    if (!room) {
+        struct problem problem;
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
+        call_answer_problem(call, &problem);
+    }
+    return room;
+}

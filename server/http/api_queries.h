@@ -1,11 +1,13 @@
 #pragma once
-/* Queries to a plan's renderer for a call: finding the plan, opening it, sending the query, answering the call with the
- * renderer's body. Internal to server/http; net thread. */
+/* Queries to a plan's renderer for a call: finding the plan or room, opening it, sending the query, answering the call
+ * with the renderer's body. Internal to server/http; net thread. */
 #include "server/http/api_state.h"
 #include "server/wire/shape_query.h"
 
 /* The plan that the call's address names. Returns false when there is none: the call was answered. */
 bool api_find_plan(struct api *api, struct call *call, struct fleet_plan *plan);
+/* The room that the call's address names; NULL: there is none, the call was answered. */
+struct room *api_find_room(struct api *api, struct call *call);
 /* Opens the plan, sends the question, and calls reply with the call as its context, exactly once. */
 void api_query_send(struct api *api, struct call *call, const char *plan_id, struct packet *question,
                     fleet_reply reply);

@@ -4,6 +4,7 @@
 
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
+#include "server/http/api_queries.h"
 
 /* The newest row of the audit on disk, for --audit-head. */
 static cJSON *describe_audit(struct api *api)
@@ -21,14 +22,11 @@ void api_room_record(struct api *api, struct call *call)
     struct problem problem;
     struct fleet_plan plan;
     struct fleet_revision revision;
-    struct room *room = net_room_find(api->net, call->ids[0]);
+    struct room *room = api_find_room(api, call);
     const char *export = call_query(call, "export");
     const bool is_export = export && strcmp(export, "true") == 0;
-    if (!room) {
-        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
-        call_answer_problem(call, &problem);
+    if (!room)
         return;
-    }
     if (export && !is_export && strcmp(export, "false") != 0) {
         problem_set(&problem, PROBLEM_VALIDATION, "/export", "type", "export is \"%.20s\", expected true or false",
                     export);

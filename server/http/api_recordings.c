@@ -6,18 +6,8 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/http/api_handlers.h"
+#include "server/http/api_queries.h"
 #include "server/http/api_recordings.h"
-
-static struct room *find_room(struct api *api, struct call *call)
-{
-    struct problem problem;
-    struct room *room = net_room_find(api->net, call->ids[0]);
-    if (room)
-        return room;
-    problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
-    call_answer_problem(call, &problem);
-    return NULL;
-}
 
 static void answer_missing(struct call *call)
 {
@@ -28,7 +18,7 @@ static void answer_missing(struct call *call)
 
 void api_room_recordings(struct api *api, struct call *call)
 {
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     if (!room)
         return;
     cJSON *answer = cJSON_CreateObject();
@@ -38,7 +28,7 @@ void api_room_recordings(struct api *api, struct call *call)
 
 void api_room_recording_delete(struct api *api, struct call *call)
 {
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     if (!room)
         return;
     if (!room_recording_delete(room, call->ids[1], clock_now_us())) {
@@ -74,7 +64,7 @@ static void part_was_read(void *context, const char *const *texts, size_t n, int
 void api_room_recording_state(struct api *api, struct call *call)
 {
     struct problem problem;
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     double t_ms = 0;
     if (!room)
         return;

@@ -12,18 +12,6 @@
 
 enum { MAX_ASLEEP = 100 }; /* rooms that sleep, in the list of rooms */
 
-/* The room that the call's address names; NULL: there is none, the call was answered. */
-static struct room *find_room(struct api *api, struct call *call)
-{
-    struct room *room = net_room_find(api->net, call->ids[0]);
-    if (!room) {
-        struct problem problem;
-        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
-        call_answer_problem(call, &problem);
-    }
-    return room;
-}
-
 void api_rooms(struct api *api, struct call *call)
 {
     cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "rooms");
@@ -144,14 +132,14 @@ void api_room_new(struct api *api, struct call *call)
 
 void api_room(struct api *api, struct call *call)
 {
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     if (room)
         call_answer_json(call, 200, document_of(room));
 }
 
 void api_room_delete(struct api *api, struct call *call)
 {
-    if (!net_room_is_asleep(api->net, call->ids[0]) && !find_room(api, call))
+    if (!net_room_is_asleep(api->net, call->ids[0]) && !api_find_room(api, call))
         return;
     struct room *room = net_room_find(api->net, call->ids[0]);
     char reason[200] = "the room was deleted";
@@ -169,7 +157,7 @@ void api_room_delete(struct api *api, struct call *call)
 
 void api_room_members(struct api *api, struct call *call)
 {
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     if (!room)
         return;
     cJSON *answer = cJSON_CreateObject();
@@ -179,7 +167,7 @@ void api_room_members(struct api *api, struct call *call)
 
 static void answer_items(struct api *api, struct call *call, enum wire_item_kind kind, const char *name)
 {
-    struct room *room = find_room(api, call);
+    struct room *room = api_find_room(api, call);
     if (!room)
         return;
     cJSON *answer = cJSON_CreateObject();
@@ -204,7 +192,7 @@ void api_room_acceptances(struct api *api, struct call *call)
 
 void api_room_control(struct api *api, struct call *call)
 {
-    const struct room *room = find_room(api, call);
+    const struct room *room = api_find_room(api, call);
     if (room)
         call_answer_json(call, 200, room_control(room));
 }
@@ -217,7 +205,7 @@ static void write_etag(char etag[24], uint32_t revision)
 /* The scene of the call's room; NULL: the call was answered. */
 static const cJSON *find_scene(struct api *api, struct call *call, struct room **room, uint32_t *revision)
 {
-    *room = find_room(api, call);
+    *room = api_find_room(api, call);
     if (!*room)
         return NULL;
     const cJSON *scene = room_scene(*room, revision);

@@ -49,11 +49,10 @@ bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller,
                       struct problem *problem)
 {
     room_enter(room, now_us);
-    if (!replay_allows(room, MESSAGE_SCENE_PATCH, problem))
-        return false;
     room->call.by = room_caller(room, caller);
     room->call.address = address;
-    const bool ok = scene_apply_patch(room, patch, NULL, 0, problem);
+    const bool ok =
+        replay_allows(room, MESSAGE_SCENE_PATCH, problem) && scene_apply_patch(room, patch, NULL, 0, problem);
     room->call.address = NULL;
     room->call.by = NULL;
     room_leave(room);
@@ -126,7 +125,9 @@ cJSON *room_control(const struct room *room)
 cJSON *room_links(struct room *room, int64_t now_us)
 {
     room_enter(room, now_us);
-    return links_list(room);
+    cJSON *list = links_list(room);
+    room_leave(room);
+    return list;
 }
 
 bool room_link_revoke(struct room *room, const char *id, const char *by, const char *address, int64_t now_us)

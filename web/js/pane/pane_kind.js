@@ -8,6 +8,7 @@ import { crosshair } from '../room/plan.js';
 import { isOfBeam } from '../room/kinds.js';
 import { icon } from '../parts/icons.js';
 import { say } from './words.js';
+import { menuKeys } from '../parts/roving.js';
 
 const tiltDeg = 60; // of the normal of a new plane over anterior: an axial slice turned by 30 degrees
 
@@ -31,7 +32,7 @@ function menu({ room, ui }, view) {
   const item = (words, isOn, run, isDisabled = false) =>
     html`<button role="menuitemradio" aria-checked=${isOn} ?disabled=${isDisabled} @click=${choose(run)}>${isOn ? icon('check', 12) : html`<i></i>`}<span>${words}</span></button>`;
   const isOff = !room.canChange.value;
-  return html`<div class="popover view-kinds"><div class="menu" role="menu" aria-label=${say.paneOf({ view: view.name })} @keydown=${move}>
+  return html`<div class="popover view-kinds"><div class="menu" role="menu" aria-label=${say.paneOf({ view: view.name })} @keydown=${menuKeys}>
     ${views.map(({ name, kind }, index) => (isOfBeam(kind) && !beamShown(room.plan.value, room.scene.value) ? nothing : item(name, index + 1 === view.number, () => ui.showInPlaceOf(view.number, index + 1))))}
     ${view.kind === 'oblique' ? html`<hr>${planeItems(room, view, item, isOff)}` : nothing}</div></div>`;
 }
@@ -55,15 +56,6 @@ function planeItems(room, view, item, isOff) {
           )
         : nothing
     }`;
-}
-
-function move(event) {
-  const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-  if (!by) return;
-  const items = [...event.currentTarget.querySelectorAll('button:not([disabled])')];
-  items[(items.indexOf(document.activeElement) + by + items.length) % items.length]?.focus();
-  event.preventDefault();
-  event.stopPropagation();
 }
 
 /** A plane through the crosshair, along the first beam if there is one, and the oblique view shows it. */

@@ -20,3 +20,13 @@ export function roving(event) {
   if (event.currentTarget.getAttribute('role') !== 'toolbar') button.click();
   event.preventDefault();
 }
+
+/** A keydown listener of a menu: up and down move the focus from item to item, around the end. */
+export function menuKeys(event) {
+  const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+  if (!by) return;
+  const items = [...event.currentTarget.querySelectorAll('button:not([disabled])')];
+  items[(items.indexOf(document.activeElement) + by + items.length) % items.length]?.focus();
+  event.preventDefault();
+  event.stopPropagation();
+}

@@ -4,6 +4,7 @@ import { icon } from '../../parts/icons.js';
 import { styled } from '../../parts/lazy.js';
 import { say } from './later_words.js';
 import { pendingKey } from './snapshots.js';
+import { menuKeys } from '../../parts/roving.js';
 
 const leastWidthPx = 1200; // enough for a column of a printed page
 const mostPx = 4096;
@@ -59,20 +60,11 @@ export function menu(world) {
     ui.popover.value = '';
     run(world);
   };
-  return html`<div class="popover snapshots"><div class="menu" role="menu" aria-label=${say.snapshot} @keydown=${move}>
+  return html`<div class="popover snapshots"><div class="menu" role="menu" aria-label=${say.snapshot} @keydown=${menuKeys}>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>${say.save}</span></button>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>${say.add}</span></button>
       <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>${say.report}</span><span class="tag">${n}</span></button></div>
       <p class="note">${say.about}</p></div>`;
-}
-
-function move(event) {
-  const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-  if (!by) return;
-  const items = [...event.currentTarget.querySelectorAll('button:not([disabled])')];
-  items[(items.indexOf(document.activeElement) + by + items.length) % items.length]?.focus();
-  event.preventDefault();
-  event.stopPropagation();
 }
 
 // ---- pictures that come back ------------------------------------------------------------------------------------------
