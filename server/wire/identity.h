@@ -1,0 +1,54 @@
+#pragma once
+/* Who makes a call or opens a WebSocket: plain data from where requests are read to where rights are checked. What a
+ * request brings to prove it are its credentials; server/auth makes an identity of them. */
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    IDENTITY_MAX_GROUPS = 32,
+    IDENTITY_MAX_USER = 64, /* bytes of a user's id, and of a group's */
+    IDENTITY_MAX_NAME = 160 /* bytes of a name: 40 characters */
+};
+
+enum identity_source {
+    IDENTITY_NOBODY,   /* has not signed in: has no right, but for what a link to a room gives */
+    IDENTITY_MACHINE,  /* --sign-in none: whoever reaches the server is its one person, and may do everything */
+    IDENTITY_PASSWORD, /* signed in here, with a session */
+    IDENTITY_PROXY,    /* named by the proxy in front, over the Unix socket */
+    IDENTITY_TOKEN     /* a script's */
+};
+
+/* What a token may do, as a set. A session has all of it; its rights come from grants alone. */
+enum identity_scope {
+    IDENTITY_SCOPE_READ = 1,
+    IDENTITY_SCOPE_PLAN = 2, /* changes, uploads */
+    IDENTITY_SCOPE_PULL = 4, /* from an archive */
+    IDENTITY_SCOPE_ADMIN = 8,
+    IDENTITY_SCOPE_ALL = 15
+};
+
+struct identity {
+    enum identity_source source;
+    char user[IDENTITY_MAX_USER + 1]; /* printable, without spaces; "" of nobody and of the machine's person */
+    char name[IDENTITY_MAX_NAME + 1]; /* as people are shown it; "": none */
+    char groups[IDENTITY_MAX_GROUPS][IDENTITY_MAX_USER + 1];
+    size_t n_groups;
+    unsigned scopes;    /* enum identity_scope */
+    char session[17];   /* names the session or token in the audit and when it is ended; opens nothing. "": none */
+    char address[46];   /* the client's, behind trusted proxies; "": not known */
+    int64_t proved_ms;  /* wall clock: when the person last gave a password, or signed in at the proxy; 0: not known */
+    int64_t ends_ms;    /* wall clock: when it ends at the latest; 0: it does not */
+    char folders[1024]; /* of a token: grant folders that it is held to, each ended by '\n'; "": none in particular */
+};
+
+/* What a request brings. Pointers into it; NULL: it has none. */
+struct credentials {
+    const char *cookie;        /* the header Cookie, whole */
+    const char *authorization; /* the header Authorization, whole */
+    /* headers of the proxy, whose names can be set; only where is_from_proxy */
+    const char *user, *name, *groups, *auth_time;
+    bool is_from_proxy; /* it came over the Unix socket, from a process of the proxy's user or group */
+    bool is_secure;     /* over TLS of our own, the Unix socket or loopback */
+    const char *address;
+};
