@@ -30,6 +30,7 @@ void store_room_free(struct store_room *room)
     free(room->scene);
     free(room->views);
     free(room->presence);
+    free(room->people);
     free(room);
 }
 
@@ -40,9 +41,10 @@ static bool write_row(sqlite3 *db, const struct store_room *room, struct error *
     sqlite3_stmt *row = sql_prepare(
         db,
         "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, presenter, scene, views, has_links,"
-        " presence) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) ON CONFLICT(id) DO UPDATE SET used_ms = ?4, revision = ?5,"
-        " n_named = ?6, presenter = ?7, scene = coalesce(?8, scene), views = coalesce(?9, views), has_links = ?10,"
-        " presence = coalesce(?11, presence)",
+        " presence, owner, people, is_open) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)"
+        " ON CONFLICT(id) DO UPDATE SET used_ms = ?4, revision = ?5, n_named = ?6, presenter = ?7,"
+        " scene = coalesce(?8, scene), views = coalesce(?9, views), has_links = ?10,"
+        " presence = coalesce(?11, presence), owner = ?12, people = coalesce(?13, people), is_open = ?14",
         err);
     if (!row)
         return false;
@@ -57,6 +59,9 @@ static bool write_row(sqlite3 *db, const struct store_room *room, struct error *
     sql_bind_text(row, 9, room->views);
     (void)sqlite3_bind_int(row, 10, room->has_links);
     sql_bind_text(row, 11, room->presence);
+    sql_bind_text(row, 12, room->owner);
+    sql_bind_text(row, 13, room->people);
+    (void)sqlite3_bind_int(row, 14, room->is_open);
     bool ok = sql_step(row, "writing a room", err);
     (void)sqlite3_finalize(row);
     return ok;
@@ -80,8 +85,8 @@ static bool write_members(sqlite3 *db, const struct store_room *room, struct err
     if (!run_for(db, "DELETE FROM members WHERE room = ?1", room->id, NULL, "writing members", err))
         return false;
     sqlite3_stmt *row = sql_prepare(db,
-                                    "INSERT INTO members(room, place, id, name, color, role, secret_hash, has_left)"
-                                    " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+                                    "INSERT INTO members(room, place, id, name, color, role, secret_hash, has_left,"
+                                    " user, is_guest) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
                                     err);
     bool ok = row != NULL;
     for (size_t i = 0; ok && i < room->n_members; i++) {
@@ -94,6 +99,8 @@ static bool write_members(sqlite3 *db, const struct store_room *room, struct err
         sql_bind_text(row, 6, member->role);
         (void)sqlite3_bind_blob(row, 7, member->secret_hash, STORE_HASH_BYTES, SQLITE_TRANSIENT);
         (void)sqlite3_bind_int(row, 8, member->has_left);
+        sql_bind_text(row, 9, member->user);
+        (void)sqlite3_bind_int(row, 10, member->is_guest);
         ok = sql_step(row, "writing members", err);
     }
     (void)sqlite3_finalize(row);
@@ -106,8 +113,8 @@ static bool write_links(sqlite3 *db, const struct store_room *room, struct error
         return false;
     sqlite3_stmt *row =
         sql_prepare(db,
-                    "INSERT INTO links(room, place, token_hash, role, expires_ms, is_one_use, is_used, person)"
-                    " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+                    "INSERT INTO links(room, place, token_hash, role, expires_ms, is_one_use, is_used, person,"
+                    " maker, name, allows_guests) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
                     err);
     bool ok = row != NULL;
     for (size_t i = 0; ok && i < room->n_links; i++) {
@@ -120,6 +127,9 @@ static bool write_links(sqlite3 *db, const struct store_room *room, struct error
         (void)sqlite3_bind_int(row, 6, link->is_one_use);
         (void)sqlite3_bind_int(row, 7, link->is_used);
         sql_bind_text(row, 8, link->person);
+        sql_bind_text(row, 9, link->maker);
+        sql_bind_text(row, 10, link->name);
+        (void)sqlite3_bind_int(row, 11, link->allows_guests);
         ok = sql_step(row, "writing links", err);
     }
     (void)sqlite3_finalize(row);
@@ -167,8 +177,9 @@ bool rows_write_room(sqlite3 *db, const struct store_room *room, struct error *e
 static bool write_begun(sqlite3 *db, const struct store_room *room, struct error *err)
 {
     sqlite3_stmt *row = sql_prepare(db,
-                                    "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, has_links)"
-                                    " VALUES(?1, ?2, ?3, ?4, 0, ?5, ?6) ON CONFLICT(id) DO NOTHING",
+                                    "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, has_links,"
+                                    " owner, is_open) VALUES(?1, ?2, ?3, ?4, 0, ?5, ?6, ?7, ?8)"
+                                    " ON CONFLICT(id) DO NOTHING",
                                     err);
     if (!row)
         return false;
@@ -178,6 +189,8 @@ static bool write_begun(sqlite3 *db, const struct store_room *room, struct error
     (void)sqlite3_bind_int64(row, 4, room->used_ms);
     (void)sqlite3_bind_int64(row, 5, room->n_named);
     (void)sqlite3_bind_int(row, 6, room->has_links);
+    sql_bind_text(row, 7, room->owner);
+    (void)sqlite3_bind_int(row, 8, room->is_open);
     bool ok = sql_step(row, "writing a room", err);
     (void)sqlite3_finalize(row);
     return ok;
@@ -204,7 +217,7 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
 {
     sqlite3_stmt *row = sql_prepare(db,
                                     "SELECT id, plan, created_ms, used_ms, revision, n_named, presenter, scene,"
-                                    " views, has_links, presence FROM rooms WHERE id = ?1",
+                                    " views, has_links, presence, owner, people, is_open FROM rooms WHERE id = ?1",
                                     err);
     if (!row)
         return false;
@@ -223,6 +236,9 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
         room->views = sql_copy_text(row, 8);
         room->has_links = sqlite3_column_int(row, 9) != 0;
         room->presence = sql_copy_text(row, 10);
+        sql_text(row, 11, room->owner, sizeof room->owner);
+        room->people = sql_copy_text(row, 12);
+        room->is_open = sqlite3_column_int(row, 13) != 0;
     } else if (step == SQLITE_DONE) {
         error_set(err, ERROR_NOT_FOUND, "there is no room \"%.63s\"", id);
     } else {
@@ -232,9 +248,8 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
     return ok;
 }
 
-/* Rows of a room to an array of size bytes each, at most `most`. */
-static bool read_list(sqlite3 *db, const char *sql, const char *id, size_t size, size_t most,
-                      bool (*read)(sqlite3_stmt *row, void *to), void **list, size_t *n, struct error *err)
+bool rows_read_list(sqlite3 *db, const char *sql, const char *id, size_t size, size_t most,
+                    bool (*read)(sqlite3_stmt *row, void *to), void **list, size_t *n, struct error *err)
 {
     sqlite3_stmt *row = sql_prepare(db, sql, err);
     size_t capacity = 0;
@@ -276,6 +291,8 @@ static bool read_member(sqlite3_stmt *row, void *to)
     if (sqlite3_column_bytes(row, 4) == STORE_HASH_BYTES)
         memcpy(member->secret_hash, sqlite3_column_blob(row, 4), STORE_HASH_BYTES);
     member->has_left = sqlite3_column_int(row, 5) != 0;
+    sql_text(row, 6, member->user, sizeof member->user);
+    member->is_guest = sqlite3_column_int(row, 7) != 0;
     return true;
 }
 
@@ -289,6 +306,9 @@ static bool read_link(sqlite3_stmt *row, void *to)
     link->is_one_use = sqlite3_column_int(row, 3) != 0;
     link->is_used = sqlite3_column_int(row, 4) != 0;
     sql_text(row, 5, link->person, sizeof link->person);
+    sql_text(row, 6, link->maker, sizeof link->maker);
+    sql_text(row, 7, link->name, sizeof link->name);
+    link->allows_guests = sqlite3_column_int(row, 8) != 0;
     return true;
 }
 
@@ -333,21 +353,22 @@ struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err
     void *members = NULL, *links = NULL, *items = NULL, *recordings = NULL;
     bool ok =
         read_row(db, id, room, err) &&
-        read_list(db,
-                  "SELECT id, name, color, role, secret_hash, has_left FROM members WHERE room = ?1"
-                  " ORDER BY place",
-                  id, sizeof(struct store_member), STORE_MAX_MEMBERS, read_member, &members, &room->n_members, err) &&
-        read_list(db,
-                  "SELECT token_hash, role, expires_ms, is_one_use, is_used, person FROM links WHERE room = ?1"
-                  " ORDER BY place",
-                  id, sizeof(struct store_link), STORE_MAX_LINKS, read_link, &links, &room->n_links, err) &&
-        read_list(db,
-                  "SELECT id, kind, version, author, author_name, created_ms, changed_ms, body FROM items"
-                  " WHERE room = ?1 ORDER BY created_ms, rowid",
-                  id, sizeof(struct store_item), STORE_MAX_ITEMS, read_item, &items, &room->n_items, err) &&
-        read_list(db, "SELECT id, facts FROM recordings WHERE room = ?1 ORDER BY rowid", id,
-                  sizeof(struct store_recording), STORE_MAX_RECORDINGS, read_recording, &recordings,
-                  &room->n_recordings, err);
+        rows_read_list(db,
+                       "SELECT id, name, color, role, secret_hash, has_left, user, is_guest FROM members"
+                       " WHERE room = ?1 ORDER BY place",
+                       id, sizeof(struct store_member), STORE_MAX_MEMBERS, read_member, &members, &room->n_members,
+                       err) &&
+        rows_read_list(db,
+                       "SELECT token_hash, role, expires_ms, is_one_use, is_used, person, maker, name, allows_guests"
+                       " FROM links WHERE room = ?1 ORDER BY place",
+                       id, sizeof(struct store_link), STORE_MAX_LINKS, read_link, &links, &room->n_links, err) &&
+        rows_read_list(db,
+                       "SELECT id, kind, version, author, author_name, created_ms, changed_ms, body FROM items"
+                       " WHERE room = ?1 ORDER BY created_ms, rowid",
+                       id, sizeof(struct store_item), STORE_MAX_ITEMS, read_item, &items, &room->n_items, err) &&
+        rows_read_list(db, "SELECT id, facts FROM recordings WHERE room = ?1 ORDER BY rowid", id,
+                       sizeof(struct store_recording), STORE_MAX_RECORDINGS, read_recording, &recordings,
+                       &room->n_recordings, err);
     room->members = members;
     room->links = links;
     room->items = items;
@@ -377,11 +398,12 @@ struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struc
 {
     void *list = mem_new(1);
     *n = 0;
-    if (read_list(db,
-                  "SELECT id, plan, created_ms, used_ms, revision,"
-                  " (SELECT count(*) FROM members WHERE members.room = rooms.id),"
-                  " (SELECT count(*) FROM records WHERE records.room = rooms.id) FROM rooms ORDER BY used_ms DESC, id",
-                  NULL, sizeof(struct store_summary), most, read_summary, &list, n, err))
+    if (rows_read_list(
+            db,
+            "SELECT id, plan, created_ms, used_ms, revision,"
+            " (SELECT count(*) FROM members WHERE members.room = rooms.id),"
+            " (SELECT count(*) FROM records WHERE records.room = rooms.id) FROM rooms ORDER BY used_ms DESC, id",
+            NULL, sizeof(struct store_summary), most, read_summary, &list, n, err))
         return list;
     free(list);
     return NULL;

@@ -58,6 +58,26 @@ static const char *const steps[] = {
     " WHERE kind IN ('decision', 'signature') ORDER BY items.created_ms, items.rowid;"
     "CREATE TRIGGER records_update BEFORE UPDATE ON records BEGIN SELECT RAISE(ABORT, 'a record is never changed'); END;"
     "CREATE TRIGGER records_delete BEFORE DELETE ON records BEGIN SELECT RAISE(ABORT, 'a record is never deleted'); END;",
+    /* 7: who signs in and how; who owns what; who may come into a room */
+    "CREATE TABLE users(id TEXT PRIMARY KEY, name TEXT NOT NULL, password TEXT NOT NULL, is_disabled INTEGER NOT NULL,"
+    " failed INTEGER NOT NULL, locked_until_ms INTEGER NOT NULL, created_ms INTEGER NOT NULL) STRICT;"
+    "CREATE TABLE user_groups(user TEXT NOT NULL REFERENCES users(id) ON DELETE CASCADE, name TEXT NOT NULL,"
+    " PRIMARY KEY(user, name)) STRICT;"
+    "CREATE TABLE tokens(id TEXT PRIMARY KEY, hash BLOB NOT NULL, user TEXT NOT NULL, name TEXT NOT NULL,"
+    " scope TEXT NOT NULL, folders TEXT NOT NULL, created_ms INTEGER NOT NULL, expires_ms INTEGER NOT NULL,"
+    " used_ms INTEGER NOT NULL, revoked_ms INTEGER NOT NULL) STRICT;"
+    "CREATE TABLE sessions(hash BLOB PRIMARY KEY, user TEXT NOT NULL, name TEXT NOT NULL, \"groups\" TEXT NOT NULL,"
+    " source TEXT NOT NULL, address TEXT NOT NULL, created_ms INTEGER NOT NULL, seen_ms INTEGER NOT NULL,"
+    " proved_ms INTEGER NOT NULL) STRICT;"
+    "CREATE TABLE owners(plan TEXT PRIMARY KEY, user TEXT NOT NULL) STRICT;"
+    "ALTER TABLE rooms ADD COLUMN owner TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE rooms ADD COLUMN people TEXT;"
+    "ALTER TABLE rooms ADD COLUMN is_open INTEGER NOT NULL DEFAULT 0;"
+    "ALTER TABLE members ADD COLUMN user TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE members ADD COLUMN is_guest INTEGER NOT NULL DEFAULT 0;"
+    "ALTER TABLE links ADD COLUMN maker TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE links ADD COLUMN name TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE links ADD COLUMN allows_guests INTEGER NOT NULL DEFAULT 0;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

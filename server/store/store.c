@@ -12,6 +12,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/base/queue.h"
+#include "server/store/accounts.h"
 #include "server/store/audit.h"
 #include "server/store/database.h"
 #include "server/store/heads.h"
@@ -22,15 +23,23 @@
 
 enum { MAX_BATCH = 256, MAX_PENDING = STORE_QUEUE };
 
-enum request_kind { REQUEST_WRITE, REQUEST_DELETE, REQUEST_READ, REQUEST_READ_PART, REQUEST_READ_RECORDS };
+enum request_kind {
+    REQUEST_WRITE,
+    REQUEST_WRITE_ACCOUNTS,
+    REQUEST_DELETE,
+    REQUEST_READ,
+    REQUEST_READ_PART,
+    REQUEST_READ_RECORDS
+};
 
 struct request {
     struct request *next; /* in the list of writes that are not yet on disk */
     enum request_kind kind;
     uint64_t ticket;
     char room_id[64];
-    struct store_room *room; /* of a write */
-    char recording[64];      /* of a part that is read; of records, those before this one */
+    struct store_room *room;         /* of a write */
+    struct store_accounts *accounts; /* of REQUEST_WRITE_ACCOUNTS */
+    char recording[64];              /* of a part that is read; of records, those before this one */
     int64_t t_ms;
     struct error refusal; /* why the room can never be written; its rows for the audit are left */
 };
@@ -59,6 +68,7 @@ void store_answer_free(struct store_answer *answer)
     store_room_free(answer->room);
     store_part_free(answer->part);
     free(answer->rooms);
+    store_accounts_free(answer->accounts);
     for (size_t i = 0; i < answer->n_records; i++)
         store_record_finish(&answer->records[i]);
     free(answer->records);
@@ -69,6 +79,7 @@ static void request_free(void *item)
 {
     struct request *request = item;
     store_room_free(request->room);
+    store_accounts_free(request->accounts);
     free(request);
 }
 
@@ -175,7 +186,9 @@ static bool open_database(struct store *store, struct error *err)
     if (!store->db)
         return false;
     opened.rooms = rows_list_rooms(store->db, STORE_MAX_ROOMS, &opened.n_rooms, err);
-    if (!opened.rooms) {
+    opened.accounts = opened.rooms ? accounts_read(store->db, err) : NULL;
+    if (!opened.accounts) {
+        free(opened.rooms);
         database_close(store->db);
         store->db = NULL;
         return false;
@@ -194,6 +207,8 @@ static bool apply(struct store *store, const struct request *request, struct err
 {
     if (request->kind == REQUEST_DELETE)
         return rows_delete_room(store->db, request->room_id, err);
+    if (request->kind == REQUEST_WRITE_ACCOUNTS)
+        return accounts_write(store->db, request->accounts, err);
     return (request->room->id[0] == 0 || (request->room->is_prompt ? rows_write_prompt(store->db, request->room, err)
                                                                    : rows_write_room(store->db, request->room, err))) &&
            audit_append(store->db, request->room->audit, request->room->n_audit, err);
@@ -293,7 +308,7 @@ static void write_pending(struct store *store)
         if (ok) {
             finish(store, n, NULL);
         } else if (err.code == ERROR_STATE) {
-            log_error("a room cannot be stored: %s", err.text);
+            log_error("a change cannot be stored: %s", err.text);
             if (!keep_audit_alone(store, &err))
                 finish(store, n, &err);
         } else {
@@ -343,7 +358,7 @@ static void read_records(struct store *store, const struct request *request)
 
 static void take(struct store *store, struct request *request)
 {
-    if (request->kind != REQUEST_WRITE && request->kind != REQUEST_DELETE) {
+    if (request->kind != REQUEST_WRITE && request->kind != REQUEST_WRITE_ACCOUNTS && request->kind != REQUEST_DELETE) {
         if (request->kind == REQUEST_READ)
             read_room(store, request);
         else if (request->kind == REQUEST_READ_PART)
@@ -447,6 +462,16 @@ static bool put(struct store *store, enum request_kind kind, const char *room_id
 bool store_write(struct store *store, struct store_room *room, uint64_t ticket)
 {
     return put(store, REQUEST_WRITE, room->id, room, ticket);
+}
+
+bool store_write_accounts(struct store *store, struct store_accounts *accounts, uint64_t ticket)
+{
+    struct request *request = mem_new(sizeof *request);
+    *request = (struct request){ .kind = REQUEST_WRITE_ACCOUNTS, .ticket = ticket, .accounts = accounts };
+    if (queue_try_put(store->queue, request))
+        return true;
+    free(request);
+    return false;
 }
 
 bool store_delete(struct store *store, const char *room_id, uint64_t ticket)

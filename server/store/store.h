@@ -1,7 +1,8 @@
 #pragma once
-/* Rooms on disk: an SQLite file with a thread of its own. Others hand it writes and reads, which never wait for the
- * disk; each is answered. Writes that come together are committed together, each whole or not at all. While the disk
- * is full or fails, writes stay in memory and are tried again. Knows rows and texts, not what they mean. */
+/* Rooms and accounts on disk: an SQLite file with a thread of its own. Others hand it writes and reads, which never
+ * wait for the disk; each is answered. Writes that come together are committed together, each whole or not at all.
+ * While the disk is full or fails, writes stay in memory and are tried again. Knows rows and texts, not what they mean.
+ */
 #include <stdbool.h>
 
 #include "core/base/error.h"
@@ -19,7 +20,8 @@ enum {
 struct store;
 
 enum store_event {
-    STORE_OPENED,  /* rooms: what is on disk; is_new: an earlier file was damaged and moved aside while it was open */
+    STORE_OPENED,  /* rooms, accounts: what is on disk; is_new: an earlier file was damaged and moved aside while it was
+                      open */
     STORE_WRITTEN, /* the write `ticket` is on disk; error.code set: it can never be written, and was dropped */
     STORE_READ,    /* room, or NULL with error */
     STORE_PART,    /* part, or NULL with error */
@@ -32,9 +34,10 @@ struct store_answer {
     enum store_event event;
     uint64_t ticket;
     struct error error;
-    struct store_room *room;     /* the receiver's */
-    struct store_part *part;     /* the receiver's */
-    struct store_summary *rooms; /* the receiver's */
+    struct store_room *room;         /* the receiver's */
+    struct store_part *part;         /* the receiver's */
+    struct store_summary *rooms;     /* the receiver's */
+    struct store_accounts *accounts; /* the receiver's */
     size_t n_rooms;
     struct store_record *records; /* the receiver's */
     size_t n_records;
@@ -63,6 +66,8 @@ void store_destroy(struct store *store);
  * room with an empty id is no room: its rows for the audit alone are written. They are also written when the room they
  * came with can never be. */
 bool store_write(struct store *store, struct store_room *room, uint64_t ticket);
+/* As store_write; takes accounts. Those whose commit fails wait for the disk as rooms do. */
+bool store_write_accounts(struct store *store, struct store_accounts *accounts, uint64_t ticket);
 bool store_delete(struct store *store, const char *room_id, uint64_t ticket);
 bool store_read(struct store *store, const char *room_id, uint64_t ticket);
 /* Records with time and number before those of the record `before` ("": the newest), at most STORE_RECORDS_AT_ONCE; id

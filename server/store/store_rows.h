@@ -1,5 +1,5 @@
 #pragma once
-/* Stored rows of a room, as plain data: texts of JSON are opaque here. Thread: any. */
+/* Stored rows of rooms and accounts, as plain data: texts of JSON are opaque here. Thread: any. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -12,20 +12,27 @@ enum {
     STORE_MAX_TEXT_BYTES = 32 << 20, /* one scene, list of views, or item */
     STORE_MAX_RECORDINGS = 64,       /* of one room */
     STORE_MAX_PART_BYTES = 64 << 20, /* of a recording, that are read at once */
-    STORE_AUDIT_HASH = 65            /* a hash of the audit as text */
+    STORE_AUDIT_HASH = 65,           /* a hash of the audit as text */
+    STORE_USER = 65,                 /* bytes of a user's or group's id, with the end */
+    STORE_PERSON = 164,              /* of a name as people read it */
+    STORE_GROUPS = 2113,             /* of a list of groups */
+    STORE_MAX_ACCOUNTS = 10000       /* users, tokens, sessions or owners that are read */
 };
 
 struct store_member {
     char id[64], name[164], color[8], role[16];
+    char user[STORE_USER];                       /* who signed in; "": nobody */
     unsigned char secret_hash[STORE_HASH_BYTES]; /* of auth/secret.h */
     bool has_left;                               /* it may come back */
+    bool is_guest;
 };
 
 struct store_link {
     unsigned char token_hash[STORE_HASH_BYTES]; /* of auth/secret.h */
     char role[16], person[257];                 /* person: who used it, if it is for one use */
+    char maker[STORE_USER], name[STORE_PERSON]; /* maker: user who made it; name: what it is for. "": not known */
     int64_t expires_ms;                         /* since 1970 */
-    bool is_one_use, is_used;
+    bool is_one_use, is_used, allows_guests;
 };
 
 struct store_item { /* a note or a bookmark */
@@ -73,6 +80,9 @@ struct store_room {
     int64_t created_ms, used_ms;          /* since 1970; used: when somebody was last in it */
     uint32_t revision, n_named;           /* of the scene; members ever made */
     bool has_links;                       /* there is or was one */
+    bool is_open;                         /* who may see its plan may come in without a link */
+    char owner[STORE_USER];               /* user; "": nobody's */
+    char *people;                         /* JSON: who may come in without a link; NULL when read: nobody */
     char *scene, *views;                  /* JSON; NULL when read: the plan was never loaded */
     char *presence;                       /* JSON; NULL when read: not known */
     struct store_member *members;         /* all; NULL in a write: as they are */
@@ -99,3 +109,42 @@ struct store_summary {
 };
 
 void store_room_free(struct store_room *room);
+
+/* Accounts. Lists of groups and folders are texts in which each entry ends with '\n'. */
+struct store_user {
+    char id[STORE_USER], name[STORE_PERSON];
+    char password[129]; /* as crypto_pwhash_str made it; "": none, so nobody signs in with one */
+    char groups[STORE_GROUPS];
+    bool is_disabled;
+    int64_t n_failed;                    /* sign-ins since the last that worked */
+    int64_t locked_until_ms, created_ms; /* since 1970 */
+};
+
+struct store_token {
+    char id[20], user[STORE_USER], name[STORE_PERSON], scope[40], folders[1024];
+    unsigned char hash[STORE_HASH_BYTES];
+    int64_t created_ms, expires_ms, used_ms, revoked_ms; /* since 1970; 0: not used, not revoked */
+    bool is_deleted;                                     /* in a write: it is no longer kept */
+};
+
+struct store_session {
+    unsigned char hash[STORE_HASH_BYTES];
+    char user[STORE_USER], name[STORE_PERSON], groups[STORE_GROUPS], source[16], address[46];
+    int64_t created_ms, seen_ms, proved_ms; /* since 1970 */
+    bool is_deleted;                        /* in a write: it has ended */
+};
+
+struct store_owner { /* of a plan */
+    char plan[64], user[STORE_USER];
+    bool is_deleted; /* in a write: the plan is gone */
+};
+
+/* All accounts, or in a write those that changed. */
+struct store_accounts {
+    struct store_user *users;
+    struct store_token *tokens;
+    struct store_session *sessions;
+    struct store_owner *owners;
+    size_t n_users, n_tokens, n_sessions, n_owners;
+};
+void store_accounts_free(struct store_accounts *accounts);

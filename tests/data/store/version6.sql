@@ -1,0 +1,37 @@
+-- A database of version 6, as the program before sign-in wrote it: rooms, a member, a note, a link.
+PRAGMA application_id = 1113940333;
+PRAGMA user_version = 6;
+BEGIN TRANSACTION;
+CREATE TABLE audit(n INTEGER PRIMARY KEY, row TEXT NOT NULL, hash TEXT NOT NULL) STRICT;
+CREATE TABLE audit_head(id INTEGER PRIMARY KEY CHECK(id = 1), n INTEGER NOT NULL, hash TEXT NOT NULL) STRICT;
+INSERT INTO "audit_head" VALUES(1,0,'0000000000000000000000000000000000000000000000000000000000000000');
+CREATE TABLE items(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, id TEXT NOT NULL, kind TEXT NOT NULL,
+ version INTEGER NOT NULL, author TEXT NOT NULL, author_name TEXT NOT NULL, created_ms INTEGER NOT NULL,
+ changed_ms INTEGER NOT NULL, body TEXT NOT NULL, PRIMARY KEY(room, id)) STRICT;
+INSERT INTO "items" VALUES('7q4k-m2wz','i-0000000001','note',2,'m1','Ann',1767225650000,1767225660000,'{"id":"i-0000000001","kind":"note","version":2,"body":{"text":"Edge?"}}');
+CREATE TABLE links(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, place INTEGER NOT NULL,
+ token_hash BLOB NOT NULL, role TEXT NOT NULL, expires_ms INTEGER NOT NULL, is_one_use INTEGER NOT NULL,
+ is_used INTEGER NOT NULL, person TEXT NOT NULL, PRIMARY KEY(room, place)) STRICT;
+INSERT INTO "links" VALUES('7q4k-m2wz',0,X'000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F','observer',1767312000000,0,0,'');
+CREATE TABLE members(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, place INTEGER NOT NULL,
+ id TEXT NOT NULL, name TEXT NOT NULL, secret_hash BLOB NOT NULL, color TEXT NOT NULL DEFAULT '',
+ role TEXT NOT NULL DEFAULT '', has_left INTEGER NOT NULL DEFAULT 0, PRIMARY KEY(room, id)) STRICT;
+INSERT INTO "members" VALUES('7q4k-m2wz',0,'m1','Ann',X'000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F','#56b4e9','presenter',0);
+CREATE TABLE recording_batches(room TEXT NOT NULL, recording TEXT NOT NULL, place INTEGER NOT NULL, t_ms INTEGER NOT NULL, is_state INTEGER NOT NULL, body TEXT NOT NULL, PRIMARY KEY(room, recording, place), FOREIGN KEY(room, recording) REFERENCES recordings(room, id) ON DELETE CASCADE) STRICT;
+CREATE TABLE recordings(room TEXT NOT NULL REFERENCES rooms(id) ON DELETE CASCADE, id TEXT NOT NULL, facts TEXT NOT NULL, PRIMARY KEY(room, id)) STRICT;
+CREATE TABLE records(n INTEGER PRIMARY KEY, id TEXT NOT NULL, room TEXT NOT NULL, plan TEXT NOT NULL, kind TEXT NOT NULL, author TEXT NOT NULL, author_name TEXT NOT NULL, time_ms INTEGER NOT NULL, item TEXT NOT NULL, body TEXT NOT NULL, hash TEXT NOT NULL, UNIQUE(room, id)) STRICT;
+CREATE TABLE rooms(id TEXT PRIMARY KEY, plan TEXT NOT NULL, created_ms INTEGER NOT NULL, revision INTEGER NOT NULL,
+ n_named INTEGER NOT NULL, scene TEXT, views TEXT, used_ms INTEGER NOT NULL DEFAULT 0,
+ presenter TEXT NOT NULL DEFAULT '', has_links INTEGER NOT NULL DEFAULT 0, presence TEXT) STRICT;
+INSERT INTO "rooms" VALUES('7q4k-m2wz','head',1767225600000,42,3,'{"image":{"id":"ct"}}','[]',1767225800000,'m1',1,NULL);
+INSERT INTO "rooms" VALUES('aaaa-bbbb','neck',1767225700000,1,0,NULL,NULL,1767225700000,'',0,NULL);
+CREATE TRIGGER audit_order BEFORE INSERT ON audit WHEN NEW.n IS NOT (SELECT coalesce(max(n), 0) + 1 FROM audit)
+ BEGIN SELECT RAISE(ABORT, 'rows of the audit are added at its end'); END;
+CREATE TRIGGER audit_update BEFORE UPDATE ON audit BEGIN SELECT RAISE(ABORT, 'the audit is never changed'); END;
+CREATE TRIGGER audit_delete BEFORE DELETE ON audit BEGIN SELECT RAISE(ABORT, 'the audit is never deleted'); END;
+CREATE TRIGGER audit_head_order BEFORE UPDATE ON audit_head WHEN NEW.n <= OLD.n BEGIN SELECT RAISE(ABORT, 'the audit only grows'); END;
+CREATE TRIGGER audit_head_delete BEFORE DELETE ON audit_head BEGIN SELECT RAISE(ABORT, 'the audit is never deleted'); END;
+CREATE INDEX records_id ON records(id);
+CREATE TRIGGER records_update BEFORE UPDATE ON records BEGIN SELECT RAISE(ABORT, 'a record is never changed'); END;
+CREATE TRIGGER records_delete BEFORE DELETE ON records BEGIN SELECT RAISE(ABORT, 'a record is never deleted'); END;
+COMMIT;
