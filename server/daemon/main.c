@@ -262,6 +262,18 @@ static void take_plain(void *service, int socket, const struct address *peer)
     front_take_plain(((struct service *)service)->front, socket, peer);
 }
 
+/* Nobody signs in: whoever reaches the server is its one person. */
+static bool identify(void *service, const struct credentials *credentials, struct identity *identity,
+                     struct problem *problem)
+{
+    (void)service;
+    (void)problem;
+    identity->source = IDENTITY_MACHINE;
+    identity->scopes = IDENTITY_SCOPE_ALL;
+    (void)snprintf(identity->address, sizeof identity->address, "%s", credentials->address);
+    return true;
+}
+
 /* On SIGHUP. */
 static void reload(struct tls *tls)
 {
@@ -348,6 +360,7 @@ static bool serve(const struct options *options, struct error *err)
                                                  .n_trusted = options->n_trusted_proxies,
                                                  .decrypt = service.tls ? decrypt : NULL,
                                                  .adopt = adopt,
+                                                 .identify = identify,
                                                  .context = &service };
     service.net = net;
     struct front *front = service.front = net ? front_create(&front_options, err) : NULL;

@@ -45,6 +45,11 @@ void front_client(const struct front_link *link, char text[ADDRESS_TEXT])
     address_write(&link->asked_by, text);
 }
 
+const struct identity *front_identity(const struct front_link *link)
+{
+    return &link->identity;
+}
+
 struct front_link *front_find(struct front *front, int socket)
 {
     struct front_link *link = front->links;

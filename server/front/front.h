@@ -10,6 +10,7 @@
 #include "server/front/address.h"
 #include "server/front/hosts.h"
 #include "server/wire/handshake.h"
+#include "server/wire/identity.h"
 #include "server/wire/problem.h"
 
 enum {
@@ -59,7 +60,11 @@ struct front_options {
      * front's thread, not after front_close. */
     void (*adopt)(void *context, int socket, const struct handshake *handshake, void (*ended)(void *argument),
                   void *argument);
-    void *context; /* of decrypt and adopt */
+    /* Finds out who makes a request, of whose body nothing has been read. False with problem: it is refused. Called on
+     * the front's thread. NULL: everybody is nobody. */
+    bool (*identify)(void *context, const struct credentials *credentials, struct identity *identity,
+                     struct problem *problem);
+    void *context; /* of decrypt, adopt and identify */
 };
 
 /* The HTTP library. Called on the front's thread. */
@@ -101,6 +106,8 @@ void front_ping(struct front *front, atomic_bool *beat);
 struct front_link *front_find(struct front *front, int socket);
 /* The address of the client of the present request, behind trusted proxies; "": not known. */
 void front_client(const struct front_link *link, char text[ADDRESS_TEXT]);
+/* The identity of the present request. */
+const struct identity *front_identity(const struct front_link *link);
 void front_link_closed(struct front_link *link); /* the library closed its end */
 /* True if all bytes of the answer so far are on their way to the client; false: some wait for the client. */
 bool front_link_is_free(const struct front_link *link);

@@ -15,6 +15,7 @@
 #include "core/base/clock.h"
 #include "core/base/gate.h"
 #include "server/front/front_count.h"
+#include "server/front/front_identify.h"
 #include "server/front/head.h"
 #include "server/wire/refusal.h"
 
@@ -276,6 +277,7 @@ static void hand_on(struct front_link *link, struct handshake *handshake, const 
         if (place) {
             (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, link->client, NULL); /* fails where the head came at once */
             address_write(client, handshake->client);
+            handshake->identity = link->identity;
             handshake->is_secure = front->options.decrypt != NULL;
             front->options.adopt(front->options.context, link->client, handshake, websocket_count_ended, place);
             link->client = -1;
@@ -342,8 +344,10 @@ static bool step_head(struct front_link *link)
     }
     front_end_waiting(link);
     struct address client = address_of_client(&link->peer, front->options.trusted, front->options.n_trusted,
-                                              request.forwarded, request.n_forwarded);
-    if (kind == HEAD_WEBSOCKET)
+                                              request.forwarded.at, request.forwarded.n);
+    if (!front_identify(link, &request, &client, &problem))
+        front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
+    else if (kind == HEAD_WEBSOCKET)
         hand_on(link, &request.handshake, &client);
     else if (!begin_request(link, &request, &client, &problem))
         front_link_refuse(link, &problem, FRONT_MAX_DROPPED);

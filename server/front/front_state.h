@@ -27,6 +27,7 @@ struct front_link {
     enum link_state state;
     int client, inner, server; /* sockets: the client's, our end and the library's end of the pair; -1: closed */
     struct address peer, counted, asked_by; /* asked_by: of the present request, behind trusted proxies */
+    struct identity identity;               /* of who makes the present request */
     bool is_first;                          /* no head of this connection has been whole yet */
     bool is_counted, is_touched;
     bool is_started;                                    /* the library took the connection: it will report its end */

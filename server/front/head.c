@@ -8,22 +8,18 @@
 
 #include "server/wire/fields.h"
 
-struct text { /* a piece of the head */
-    const char *at;
-    size_t n;
-};
-
 /* The headers that are used. */
 struct fields {
-    struct text host, origin, upgrade, connection, key, version, length, coding, forwarded;
-    struct text
+    struct head_text host, origin, upgrade, connection, key, version, length, coding, forwarded;
+    struct head_text
         passed_on; /* name of the header by which a proxy says that it passed the request on; n 0: there is none */
-    size_t n_hosts, n_origins, n_lengths, n_codings, n_keys, n_versions;
+    struct head_text cookie, authorization;
+    size_t n_hosts, n_origins, n_lengths, n_codings, n_keys, n_versions, n_cookies, n_authorizations;
 };
 
 struct head {
     const char *begin;
-    struct text method, target;
+    struct head_text method, target;
     int minor; /* of HTTP/1.x */
     struct fields fields;
     struct problem *problem;
@@ -32,7 +28,7 @@ struct head {
 enum { SHOWN_SIZE = 61 };
 
 /* Bytes of a request, made printable for an error sentence. */
-static const char *show(struct text text, char shown[SHOWN_SIZE])
+static const char *show(struct head_text text, char shown[SHOWN_SIZE])
 {
     size_t n = text.n < SHOWN_SIZE - 1 ? text.n : SHOWN_SIZE - 1;
     for (size_t i = 0; i < n; i++)
@@ -41,13 +37,13 @@ static const char *show(struct text text, char shown[SHOWN_SIZE])
     return shown;
 }
 
-static bool is_word(struct text text, const char *word)
+static bool is_word(struct head_text text, const char *word)
 {
     return text.n == strlen(word) && strncasecmp(text.at, word, text.n) == 0;
 }
 
 /* RFC 9110 5.6.2 */
-static bool is_token(struct text text)
+static bool is_token(struct head_text text)
 {
     for (size_t i = 0; i < text.n; i++)
         if (!isalnum((unsigned char)text.at[i]) && !memchr("!#$%&'*+-.^_`|~", text.at[i], 15))
@@ -55,7 +51,7 @@ static bool is_token(struct text text)
     return text.n > 0;
 }
 
-static struct text trim_front(struct text text)
+static struct head_text trim_front(struct head_text text)
 {
     while (text.n && (*text.at == ' ' || *text.at == '\t')) {
         text.at++;
@@ -64,7 +60,7 @@ static struct text trim_front(struct text text)
     return text;
 }
 
-static struct text trim(struct text text)
+static struct head_text trim(struct head_text text)
 {
     text = trim_front(text);
     while (text.n && (text.at[text.n - 1] == ' ' || text.at[text.n - 1] == '\t'))
@@ -73,12 +69,12 @@ static struct text trim(struct text text)
 }
 
 /* True if the comma-separated list holds the word. */
-static bool has_word(struct text list, const char *word)
+static bool has_word(struct head_text list, const char *word)
 {
     while (list.n) {
         const char *comma = memchr(list.at, ',', list.n);
         size_t n = comma ? (size_t)(comma - list.at) : list.n;
-        if (is_word(trim((struct text){ list.at, n }), word))
+        if (is_word(trim((struct head_text){ list.at, n }), word))
             return true;
         n += comma != NULL;
         list.at += n;
@@ -89,7 +85,7 @@ static bool has_word(struct text list, const char *word)
 
 /* True for a header that a proxy adds to what it passes on (RFC 7239, RFC 9110 7.6.3, and what was used before them).
  */
-static bool is_of_proxy(struct text name)
+static bool is_of_proxy(struct head_text name)
 {
     static const char before[] = "X-Forwarded-";
     return is_word(name, "Forwarded") || is_word(name, "Via") || is_word(name, "X-Real-IP") ||
@@ -97,19 +93,19 @@ static bool is_of_proxy(struct text name)
 }
 
 /* Takes the next line, without its line end. Returns false when it is not whole. */
-static bool next_line(const char **at, const char *end, struct text *line)
+static bool next_line(const char **at, const char *end, struct head_text *line)
 {
     const char *newline = memchr(*at, '\n', (size_t)(end - *at));
     if (!newline)
         return false;
-    *line = (struct text){ *at, (size_t)(newline - *at) };
+    *line = (struct head_text){ *at, (size_t)(newline - *at) };
     if (line->n && newline[-1] == '\r')
         line->n--;
     *at = newline + 1;
     return true;
 }
 
-static bool refuse_line(const struct head *head, struct text line, const char *expected)
+static bool refuse_line(const struct head *head, struct head_text line, const char *expected)
 {
     char shown[SHOWN_SIZE];
     return problem_set(head->problem, PROBLEM_REQUEST, "", "", "line 1, the request line, is \"%s\"; expected is %s",
@@ -117,16 +113,16 @@ static bool refuse_line(const struct head *head, struct text line, const char *e
 }
 
 /* METHOD SP TARGET SP HTTP/1.x */
-static bool read_request_line(struct head *head, struct text line)
+static bool read_request_line(struct head *head, struct head_text line)
 {
     static const char form[] = "a method, an address and HTTP/1.1, parted by single spaces";
     const char *end = line.at + line.n, *space = memchr(line.at, ' ', line.n);
     const char *second = space ? memchr(space + 1, ' ', (size_t)(end - space - 1)) : NULL;
     if (!second)
         return refuse_line(head, line, form);
-    head->method = (struct text){ line.at, (size_t)(space - line.at) };
-    head->target = (struct text){ space + 1, (size_t)(second - space - 1) };
-    struct text version = { second + 1, (size_t)(end - second - 1) };
+    head->method = (struct head_text){ line.at, (size_t)(space - line.at) };
+    head->target = (struct head_text){ space + 1, (size_t)(second - space - 1) };
+    struct head_text version = { second + 1, (size_t)(end - second - 1) };
     if (!is_token(head->method) || head->method.n > 32)
         return refuse_line(head, line, "that it begins with a method, as GET");
     for (size_t i = 0; i < head->target.n; i++)
@@ -147,9 +143,14 @@ static bool read_request_line(struct head *head, struct text line)
     return true;
 }
 
-static bool refuse_field(const struct head *head, size_t number, struct text line, const char *found)
+/* Shows of a secret header its name alone. */
+static bool refuse_field(const struct head *head, size_t number, struct head_text line, const char *found)
 {
     char shown[SHOWN_SIZE];
+    const char *colon = memchr(line.at, ':', line.n);
+    const struct head_text name = { line.at, colon ? (size_t)(colon - line.at) : line.n };
+    if (is_word(trim(name), "Cookie") || is_word(trim(name), "Authorization"))
+        line = name;
     return problem_set(head->problem, PROBLEM_REQUEST, "", "",
                        "header %zu, \"%s\": %s; expected is \"Name: value\" on one line", number, show(line, shown),
                        found);
@@ -157,14 +158,14 @@ static bool refuse_field(const struct head *head, size_t number, struct text lin
 
 /* Stores the value of a known field. Content-Length and Transfer-Encoding keep blanks after their value, and are then
  * refused: libmicrohttpd counts those blanks as part of the value, and would find a different end of the body. */
-static void note_field(struct fields *fields, struct text name, struct text after_colon)
+static void note_field(struct fields *fields, struct head_text name, struct head_text after_colon)
 {
-    struct text whole = trim_front(after_colon), value = trim(after_colon);
+    struct head_text whole = trim_front(after_colon), value = trim(after_colon);
     if (is_of_proxy(name))
         fields->passed_on = name;
     const struct {
         const char *name;
-        struct text *value;
+        struct head_text *value;
         size_t *n;
     } known[] = { { "Host", &fields->host, &fields->n_hosts },
                   { "Origin", &fields->origin, &fields->n_origins },
@@ -172,6 +173,8 @@ static void note_field(struct fields *fields, struct text name, struct text afte
                   { "Transfer-Encoding", &fields->coding, &fields->n_codings },
                   { "Sec-WebSocket-Key", &fields->key, &fields->n_keys },
                   { "Sec-WebSocket-Version", &fields->version, &fields->n_versions },
+                  { "Cookie", &fields->cookie, &fields->n_cookies },
+                  { "Authorization", &fields->authorization, &fields->n_authorizations },
                   { "X-Forwarded-For", &fields->forwarded, NULL },
                   { "Upgrade", &fields->upgrade, NULL },
                   { "Connection", &fields->connection, NULL } };
@@ -183,14 +186,14 @@ static void note_field(struct fields *fields, struct text name, struct text afte
         }
 }
 
-static bool read_field(struct head *head, size_t number, struct text line)
+static bool read_field(struct head *head, size_t number, struct head_text line)
 {
     const char *colon = memchr(line.at, ':', line.n);
     if (line.at[0] == ' ' || line.at[0] == '\t')
         return refuse_field(head, number, line, "it goes on from the line before");
     if (!colon)
         return refuse_field(head, number, line, "without a colon");
-    struct text name = { line.at, (size_t)(colon - line.at) }, value = { colon + 1, line.n - name.n - 1 };
+    struct head_text name = { line.at, (size_t)(colon - line.at) }, value = { colon + 1, line.n - name.n - 1 };
     if (!is_token(name))
         return refuse_field(head, number, line, "a name that is none");
     for (size_t i = 0; i < value.n; i++)
@@ -229,7 +232,25 @@ static bool check_length(const struct head *head)
                                     show(fields->length, shown));
 }
 
-static bool refuse_host(struct problem *problem, struct text host)
+/* A header with a secret may stand there once: of two values another reader could take the other one. */
+static bool check_secret(const struct head *head, const char *name, size_t n_times, struct head_text value)
+{
+    if (n_times > 1)
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "%s is there %zu times; expected is once at most",
+                           name, n_times);
+    return value.n <= HEAD_MAX_SECRET ||
+           problem_set(head->problem, PROBLEM_HEADERS_TOO_LARGE, "", "", "%s has %zu bytes; at most %d are read", name,
+                       value.n, HEAD_MAX_SECRET);
+}
+
+static bool check_secrets(const struct head *head)
+{
+    const struct fields *fields = &head->fields;
+    return check_secret(head, "Cookie", fields->n_cookies, fields->cookie) &&
+           check_secret(head, "Authorization", fields->n_authorizations, fields->authorization);
+}
+
+static bool refuse_host(struct problem *problem, struct head_text host)
 {
     char shown[SHOWN_SIZE];
     return problem_set(
@@ -271,7 +292,7 @@ static bool check_host(const struct head *head, const struct hosts *hosts)
 }
 
 /* True for "/api/v1/rooms/<room>/ws"; fills in room. */
-static bool is_room_address(struct text target, struct text *room)
+static bool is_room_address(struct head_text target, struct head_text *room)
 {
     static const char before[] = "/api/v1/rooms/";
     const size_t n_before = sizeof before - 1;
@@ -279,12 +300,12 @@ static bool is_room_address(struct text target, struct text *room)
     size_t n = question ? (size_t)(question - target.at) : target.n;
     if (n <= n_before + 3 || memcmp(target.at, before, n_before) != 0 || memcmp(target.at + n - 3, "/ws", 3) != 0)
         return false;
-    *room = (struct text){ target.at + n_before, n - n_before - 3 };
+    *room = (struct head_text){ target.at + n_before, n - n_before - 3 };
     return true;
 }
 
 /* True for 16 bytes in base64. */
-static bool is_key(struct text key)
+static bool is_key(struct head_text key)
 {
     if (key.n != 24 || key.at[22] != '=' || key.at[23] != '=')
         return false;
@@ -360,7 +381,7 @@ static bool check_parameters(const struct head *head)
 }
 
 /* digits were checked by check_length. */
-static uint64_t number_of(struct text digits)
+static uint64_t number_of(struct head_text digits)
 {
     uint64_t number = 0;
     for (size_t i = 0; i < digits.n; i++)
@@ -368,7 +389,7 @@ static uint64_t number_of(struct text digits)
     return number;
 }
 
-static void copy(char *out, size_t size, struct text text)
+static void copy(char *out, size_t size, struct head_text text)
 {
     size_t n = text.n < size ? text.n : 0; /* what does not fit is left out as a whole */
     if (n)
@@ -376,7 +397,7 @@ static void copy(char *out, size_t size, struct text text)
     out[n] = 0;
 }
 
-static void fill_handshake(struct handshake *handshake, const struct head *head, struct text room, size_t n_head)
+static void fill_handshake(struct handshake *handshake, const struct head *head, struct head_text room, size_t n_head)
 {
     *handshake = (struct handshake){ .n_head = n_head };
     copy(handshake->room_id, sizeof handshake->room_id, room);
@@ -398,7 +419,7 @@ enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts,
 {
     struct head head = { .begin = bytes, .problem = problem };
     const char *at = bytes, *end = bytes + n;
-    struct text line, room;
+    struct head_text line, room;
     size_t n_fields = 0;
     for (int i = 0;
          i < HEAD_MAX_EMPTY && end - at >= 1 && (*at == '\n' || (*at == '\r' && end - at >= 2 && at[1] == '\n')); i++)
@@ -424,13 +445,14 @@ enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts,
         if (!read_field(&head, n_fields, line))
             return HEAD_REFUSED;
     }
-    if (!check_length(&head) || !check_host(&head, hosts) || !check_parameters(&head))
+    if (!check_length(&head) || !check_host(&head, hosts) || !check_parameters(&head) || !check_secrets(&head))
         return HEAD_REFUSED;
     request->n_bytes = (size_t)(at - bytes);
     request->is_chunked = head.fields.n_codings > 0;
     request->length = number_of(head.fields.length);
-    request->forwarded = head.fields.forwarded.at;
-    request->n_forwarded = head.fields.forwarded.n;
+    request->forwarded = head.fields.forwarded;
+    request->cookie = head.fields.cookie;
+    request->authorization = head.fields.authorization;
     bool is_get = head.method.n == 3 && memcmp(head.method.at, "GET", 3) == 0;
     if (!is_get || !is_room_address(head.target, &room) || !has_word(head.fields.upgrade, "websocket"))
         return HEAD_HTTP;

@@ -14,7 +14,8 @@ enum {
     HEAD_MAX_WEBSOCKET = 12 << 10, /* a whole WebSocket handshake */
     HEAD_MAX_FIELDS = 100,
     HEAD_MAX_PARAMETERS = 100, /* of the address's query */
-    HEAD_MAX_EMPTY = 8         /* empty lines before the request line, which are ignored */
+    HEAD_MAX_EMPTY = 8,        /* empty lines before the request line, which are ignored */
+    HEAD_MAX_SECRET = 16 << 10 /* of Cookie and of Authorization; a ticket of Kerberos takes some thousand */
 };
 
 enum head_kind {
@@ -24,14 +25,19 @@ enum head_kind {
     HEAD_REFUSED    /* problem says why */
 };
 
+struct head_text { /* a piece of the head, borrowed from its bytes; at NULL: there is none */
+    const char *at;
+    size_t n;
+};
+
 /* A whole head. */
 struct head_request {
-    size_t n_bytes;        /* bytes of the head, with the empty lines before it */
-    bool is_chunked;       /* the body has chunks */
-    uint64_t length;       /* of a body without chunks; 0: no body */
-    const char *forwarded; /* value of the last X-Forwarded-For, borrowed from the bytes; NULL: none */
-    size_t n_forwarded;
-    struct handshake handshake; /* HEAD_WEBSOCKET; without the client's address */
+    size_t n_bytes;             /* bytes of the head, with the empty lines before it */
+    bool is_chunked;            /* the body has chunks */
+    uint64_t length;            /* of a body without chunks; 0: no body */
+    struct head_text forwarded; /* value of the last X-Forwarded-For */
+    struct head_text cookie, authorization;
+    struct handshake handshake; /* HEAD_WEBSOCKET; without the client's address and identity */
 };
 
 /* bytes: all that has come so far. hosts: names of this server; a request to another host is refused. */

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "server/wire/identity.h"
 #include "server/wire/json.h"
 
 enum {
@@ -34,8 +35,9 @@ struct call {
     struct call_pair query[CALL_MAX_QUERY];
     size_t n_query;
     char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member, *key; /* NULL when not sent */
-    bool is_secure;  /* it came by TLS, which was decrypted here */
-    char client[46]; /* address of the client, behind trusted proxies; "": not known */
+    bool is_secure;           /* it came by TLS, which was decrypted here */
+    char client[46];          /* address of the client, behind trusted proxies; "": not known */
+    struct identity identity; /* who makes it */
     char *body;
     size_t n_body;
     char *upload_path; /* the file that holds the body when it is an archive; removed with the call unless it is set to

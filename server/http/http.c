@@ -309,8 +309,10 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->method = method_of(method);
     call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);
-    if (request->link)
+    if (request->link) {
         front_client(request->link, call->client);
+        call->identity = *front_identity(request->link);
+    }
     call->if_match = copy_header(connection, "If-Match");
     call->member = copy_header(connection, "Beamroom-Member");
     call->key = copy_header(connection, "Idempotency-Key");

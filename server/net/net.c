@@ -121,8 +121,9 @@ bool net_rooms_are_known(const struct net *net, struct problem *problem)
 
 /* ---- connections ------------------------------------------------------------------------------------------------ */
 
-static bool has_room(void *context, const char *id)
+static bool has_room(void *context, const struct handshake *handshake)
 {
+    const char *id = handshake->room_id;
     struct problem problem;
     return rooms_find(context, id) || asleep_find(context, id) || !net_rooms_are_known(context, &problem);
 }
@@ -179,12 +180,15 @@ static void keep_early(struct visitor *visitor, const char *text, size_t n)
     visitor->n_early_bytes += n + sizeof *early;
 }
 
-static void connection_opened(void *context, struct ws_connection *connection, const char *id)
+static void connection_opened(void *context, struct ws_connection *connection, const struct handshake *handshake)
 {
     struct net *net = context;
+    const char *id = handshake->room_id;
     struct problem problem;
     struct visitor *visitor = mem_new(sizeof *visitor);
-    *visitor = (struct visitor){ .next = net->visitors, .connection = connection, .room = rooms_find(net, id) };
+    *visitor = (struct visitor){
+        .next = net->visitors, .connection = connection, .room = rooms_find(net, id), .identity = handshake->identity
+    };
     net->visitors = visitor;
     ws_set_owner(connection, visitor);
     if (!visitor->room && asleep_find(net, id)) {

@@ -10,6 +10,7 @@
 #include "server/net/net.h"
 #include "server/room/room.h"
 #include "server/store/store.h"
+#include "server/wire/identity.h"
 #include "server/ws/ws.h"
 
 struct net;
@@ -22,6 +23,7 @@ struct visitor { /* one WebSocket connection, from its opening on */
     struct early_text *early; /* what it has said meanwhile */
     size_t n_early_bytes;
     bool holds_plan; /* fleet_hold, on the room's plan */
+    struct identity identity;
 };
 
 struct early_text {

@@ -32,6 +32,13 @@ static const char *address(void *context, void *connection)
     return ws_client(connection);
 }
 
+static const struct identity *identity(void *context, void *connection)
+{
+    const struct visitor *visitor = ws_owner(connection);
+    (void)context;
+    return &visitor->identity;
+}
+
 static void send_text(void *context, void *connection, const char *text)
 {
     (void)context;
@@ -81,6 +88,7 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .send_frame = send_frame,
                                               .close = close_connection,
                                               .address = address,
+                                              .identity = identity,
                                               .context = net,
                                               .item_changed = keep_item_changed,
                                               .item_first = net->store ? keep_item_first : NULL,

@@ -1,6 +1,6 @@
 #pragma once
-/* Who makes a call or opens a WebSocket: plain data from where requests are read to where rights are checked. What a
- * request brings to prove it are its credentials; server/auth makes an identity of them. */
+/* The identity behind a call or a WebSocket: plain data from where requests are read to where rights are checked. What
+ * a request brings to prove it are its credentials; server/auth makes an identity of them. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -19,7 +19,7 @@ enum identity_source {
     IDENTITY_TOKEN     /* a script's */
 };
 
-/* What a token may do, as a set. A session has all of it; its rights come from grants alone. */
+/* The acts open to a token, as a set. A session has all of it; its rights come from grants alone. */
 enum identity_scope {
     IDENTITY_SCOPE_READ = 1,
     IDENTITY_SCOPE_PLAN = 2, /* changes, uploads */
@@ -42,7 +42,7 @@ struct identity {
     char folders[1024]; /* of a token: grant folders that it is held to, each ended by '\n'; "": none in particular */
 };
 
-/* What a request brings. Pointers into it; NULL: it has none. */
+/* The proof that a request brings. Pointers into it; NULL: it has none. */
 struct credentials {
     const char *cookie;        /* the header Cookie, whole */
     const char *authorization; /* the header Authorization, whole */

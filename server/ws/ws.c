@@ -57,7 +57,7 @@ static void refuse(struct ws *ws, int socket, const struct problem *problem)
 
 static bool may_open(const struct ws *ws, const struct handshake *handshake, struct problem *problem)
 {
-    if (!handshake->room_id[0] || !ws->callbacks.has_room(ws->callbacks.context, handshake->room_id))
+    if (!handshake->room_id[0] || !ws->callbacks.has_room(ws->callbacks.context, handshake))
         return problem_set(problem, PROBLEM_NOT_FOUND, "", "",
                            "there is no such room; expected is the id of one that is open");
     if (!origin_is_allowed(ws, handshake))
@@ -119,7 +119,7 @@ static void check_later(struct ws_connection *connection, bool is_greeted)
     ws_check_at(connection, whole_second_after(due_us > now_us ? due_us : now_us));
 }
 
-static void start(struct ws_connection *connection, const char *room_id, const struct ws_count *count)
+static void start(struct ws_connection *connection, const struct handshake *handshake, const struct ws_count *count)
 {
     struct ws *ws = connection->ws;
     connection->count = *count;
@@ -136,7 +136,7 @@ static void start(struct ws_connection *connection, const char *room_id, const s
     ws->counters.opened++;
     ws->counters.n_connections++;
     check_later(connection, false);
-    ws->callbacks.opened(ws->callbacks.context, connection, room_id);
+    ws->callbacks.opened(ws->callbacks.context, connection, handshake);
 }
 
 /* Answers the handshake. False: the socket cannot be served, and is closed. */
@@ -182,7 +182,7 @@ void ws_adopt(struct ws *ws, int socket, const struct handshake *handshake, cons
     }
     connection->ws = ws;
     memcpy(connection->client, handshake->client, sizeof connection->client);
-    start(connection, handshake->room_id, count);
+    start(connection, handshake, count);
 }
 
 void ws_refuse_as_stopping(struct ws *ws, int socket)

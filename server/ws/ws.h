@@ -40,8 +40,8 @@ struct ws;
 struct ws_connection;
 
 struct ws_callbacks {
-    bool (*has_room)(void *context, const char *room_id); /* false: 404 */
-    void (*opened)(void *context, struct ws_connection *connection, const char *room_id);
+    bool (*has_room)(void *context, const struct handshake *handshake); /* false: 404 */
+    void (*opened)(void *context, struct ws_connection *connection, const struct handshake *handshake);
     /* A whole message of at most limits.max_message_bytes; a text is UTF-8. Borrowed for the call. */
     void (*message_received)(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *bytes,
                              size_t n);

@@ -21,6 +21,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
         REQUIRE(handshake->n_head <= n && handshake->n_head >= 4 && data[handshake->n_head - 1] == '\n');
         REQUIRE(strlen(handshake->key) == 24 && (!handshake->room_id[0] || id_is_valid(handshake->room_id)));
     }
+    if (kind == HEAD_WEBSOCKET || kind == HEAD_HTTP) {
+        const struct head_text texts[] = { request.cookie, request.authorization, request.forwarded };
+        for (int i = 0; i < 3; i++)
+            REQUIRE(!texts[i].at ||
+                    (texts[i].at > (const char *)data && texts[i].at + texts[i].n < (const char *)data + n &&
+                     !memchr(texts[i].at, 0, texts[i].n)));
+        REQUIRE(request.cookie.n <= HEAD_MAX_SECRET && request.authorization.n <= HEAD_MAX_SECRET);
+    }
     if (n == 0 || n > HEAD_MAX_BYTES)
         return 0;
     size_t n_part = n > 64 ? n - data[n - 1] % 64 - 1 : n / 2;

@@ -12,17 +12,17 @@ const char hello[] = "Hello, world!";
 
 /* ---- the echo server -------------------------------------------------------------------------------------------- */
 
-static bool has_room(void *context, const char *room_id)
+static bool has_room(void *context, const struct handshake *handshake)
 {
     (void)context;
-    return strcmp(room_id, "7q4k-m2wz") == 0;
+    return strcmp(handshake->room_id, "7q4k-m2wz") == 0;
 }
 
-static void opened(void *context, struct ws_connection *connection, const char *room_id)
+static void opened(void *context, struct ws_connection *connection, const struct handshake *handshake)
 {
     (void)context;
     (void)connection;
-    (void)room_id;
+    (void)handshake;
 }
 
 static void echo(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *bytes, size_t n)

@@ -6,6 +6,7 @@
 #include "server/store/store_rows.h"
 #include "server/wire/document.h"
 #include "server/wire/frame.h"
+#include "server/wire/identity.h"
 #include "wire_gen.h"
 
 enum {
@@ -134,6 +135,8 @@ struct room_callbacks {
     void (*kept_changed)(void *context, struct room *room, unsigned parts);
     /* The address of the client at this connection, "": not known. NULL: no address is known. */
     const char *(*address)(void *context, void *connection);
+    /* The identity behind this connection, valid as long as it lasts. NULL: everybody is the machine's one person. */
+    const struct identity *(*identity)(void *context, void *connection);
     /* A row for the audit, to be committed with what else of the room is written, or before. NULL: there is no audit.
      */
     void (*audited)(void *context, struct room *room, const struct room_audit *row);

@@ -55,8 +55,9 @@ static void answer(struct end *end)
         return;
     }
     front_client(end->link, client);
-    int n_text =
-        snprintf(text, sizeof text, "HTTP/1.1 200 OK\r\nContent-Length: %zu\r\n\r\n%s", strlen(client), client);
+    const char *user = front_identity(end->link)->user;
+    int n_text = snprintf(text, sizeof text, "HTTP/1.1 200 OK\r\nContent-Length: %zu\r\n\r\n%s%s",
+                          strlen(user) + strlen(client), user, client);
     if (send(end->socket, text, (size_t)n_text, MSG_NOSIGNAL) == n_text)
         front_request_ended(end->link);
 }
@@ -81,6 +82,24 @@ static void adopt(void *context, int socket, const struct handshake *handshake, 
     assert_true(queue_try_put(world->adopted, adopted));
 }
 
+/* Takes a cookie for the name of its user. */
+static bool identify(void *context, const struct credentials *credentials, struct identity *identity,
+                     struct problem *problem)
+{
+    (void)context;
+    assert_int_equal(identity->source, IDENTITY_NOBODY);
+    assert_string_equal(identity->user, "");
+    assert_false(credentials->is_from_proxy);
+    assert_int_equal(credentials->is_secure, strncmp(credentials->address, "127.", 4) == 0);
+    if (credentials->authorization)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "", "", "no such token");
+    if (!credentials->cookie)
+        return true;
+    identity->source = IDENTITY_PASSWORD;
+    (void)snprintf(identity->user, sizeof identity->user, "%s", credentials->cookie);
+    return true;
+}
+
 static int set_up(void **state)
 {
     static struct world world;
@@ -88,7 +107,7 @@ static int set_up(void **state)
     world = (struct world){ .hosts = hosts_create(NULL, 0), .epoll = epoll_create1(EPOLL_CLOEXEC) };
     world.adopted = queue_create(MAX_ENDS, free);
     const struct front_options options = {
-        .listen = "127.0.0.1:0", .hosts = world.hosts, .adopt = adopt, .context = &world
+        .listen = "127.0.0.1:0", .hosts = world.hosts, .adopt = adopt, .identify = identify, .context = &world
     };
     world.front = front_create(&options, &err);
     assert_non_null(world.front);
@@ -194,6 +213,48 @@ static void a_handshake_is_handed_on_with_its_bytes_and_its_client_first_and_lat
     }
 }
 
+static void each_request_is_of_who_made_it_also_on_one_connection(void **state)
+{
+    struct world *world = *state;
+    char text[4096];
+    int client = take(world->front, "127.0.0.1");
+    say(client, "GET / HTTP/1.1\r\n" HOST "Cookie: anna\r\n\r\nGET / HTTP/1.1\r\n" HOST "\r\n");
+    hear(client, "\r\n\r\n127.0.0.1", text);
+    assert_non_null(strstr(text, "\r\n\r\nanna127.0.0.1HTTP/1.1 200"));
+    say(client, "GET / HTTP/1.1\r\n" HOST "Cookie: bert\r\n\r\n");
+    hear(client, "\r\n\r\nbert127.0.0.1", text);
+    char shake[sizeof SHAKE + 40];
+    (void)snprintf(shake, sizeof shake, "%.*sCookie: cleo\r\n\r\n", (int)strlen(SHAKE) - 2, SHAKE);
+    say(client, shake);
+    struct adopted *adopted = queue_take(world->adopted, WAIT_MS);
+    assert_non_null(adopted);
+    assert_string_equal(adopted->handshake.identity.user, "cleo");
+    close(adopted->socket);
+    adopted->ended(adopted->argument);
+    free(adopted);
+    close(client);
+}
+
+static void who_is_not_let_in_is_refused_before_the_library_hears_of_it(void **state)
+{
+    struct world *world = *state;
+    char text[4096];
+    int client = take(world->front, "192.0.2.7");
+    say(client, "POST / HTTP/1.1\r\n" HOST "Content-Length: 1000000\r\nAuthorization: Bearer x\r\n\r\n12345");
+    hear(client, NULL, text);
+    assert_memory_equal(text, "HTTP/1.1 403", 12);
+    assert_null(world->ends[0].link);
+    close(client);
+    client = take(world->front, "192.0.2.7");
+    char shake[sizeof SHAKE + 40];
+    (void)snprintf(shake, sizeof shake, "%.*sAuthorization: x\r\n\r\n", (int)strlen(SHAKE) - 2, SHAKE);
+    say(client, shake);
+    hear(client, NULL, text);
+    assert_memory_equal(text, "HTTP/1.1 403", 12);
+    assert_null(queue_try_take(world->adopted));
+    close(client);
+}
+
 static void one_websocket_more_than_an_address_may_have_is_refused(void **state)
 {
     struct world *world = *state;
@@ -254,6 +315,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_taken_stream_is_served_as_its_client_again_and_again, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_handshake_is_handed_on_with_its_bytes_and_its_client_first_and_later, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(each_request_is_of_who_made_it_also_on_one_connection, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(who_is_not_let_in_is_refused_before_the_library_hears_of_it, set_up, tear_down),
         cmocka_unit_test_setup_teardown(one_websocket_more_than_an_address_may_have_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(after_the_door_is_closed_a_stream_is_closed_and_a_handshake_is_refused, set_up,
                                         tear_down),

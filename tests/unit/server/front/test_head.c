@@ -364,12 +364,46 @@ static void a_whole_head_says_where_its_request_ends_and_for_whom_it_comes(void 
     assert_int_equal(request.n_bytes, sizeof post - 1 - 5);
     assert_int_equal(request.length, 12);
     assert_false(request.is_chunked);
-    assert_int_equal(request.n_forwarded, strlen("198.51.100.7, 10.0.0.1"));
-    assert_memory_equal(request.forwarded, "198.51.100.7, 10.0.0.1", request.n_forwarded);
+    assert_int_equal(request.forwarded.n, strlen("198.51.100.7, 10.0.0.1"));
+    assert_memory_equal(request.forwarded.at, "198.51.100.7, 10.0.0.1", request.forwarded.n);
     assert_int_equal(head_read(chunked, sizeof chunked - 1, hosts, &request, &problem), HEAD_HTTP);
     assert_true(request.is_chunked);
     assert_int_equal(request.length, 0);
-    assert_null(request.forwarded);
+    assert_null(request.forwarded.at);
+}
+
+static void what_proves_who_asks_is_there_once_and_not_too_long(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "Cookie", "Authorization" };
+    char bytes[2 * HEAD_MAX_SECRET], value[HEAD_MAX_SECRET + 2];
+    struct head_request request;
+    struct problem problem;
+    for (size_t i = 0; i < 2; i++) {
+        for (size_t more = 0; more < 2; more++) {
+            memset(value, 'a', sizeof value);
+            value[HEAD_MAX_SECRET + more] = 0;
+            int n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s: %s \r\n\r\n", names[i], value);
+            problem = (struct problem){ 0 };
+            assert_int_equal(head_read(bytes, (size_t)n, hosts, &request, &problem), more ? HEAD_REFUSED : HEAD_HTTP);
+            assert_int_equal(problem.type, more ? PROBLEM_HEADERS_TOO_LARGE : PROBLEM_NONE);
+            assert_null(strstr(problem.detail, "aaa"));
+        }
+        const struct head_text *text = i == 0 ? &request.cookie : &request.authorization,
+                               *other = i == 0 ? &request.authorization : &request.cookie;
+        int n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s: one two\t\r\n\r\n", names[i]);
+        assert_int_equal(head_read(bytes, (size_t)n, hosts, &request, &problem), HEAD_HTTP);
+        assert_int_equal(text->n, 7);
+        assert_memory_equal(text->at, "one two", 7);
+        assert_null(other->at);
+        n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s: one\r\n%s: one\r\n\r\n", names[i], names[i]);
+        assert_int_equal(head_read(bytes, (size_t)n, hosts, &request, &problem), HEAD_REFUSED);
+        assert_int_equal(problem_status(problem.type), 400);
+        n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s: secret\001\r\n\r\n", names[i]);
+        assert_int_equal(head_read(bytes, (size_t)n, hosts, &request, &problem), HEAD_REFUSED);
+        assert_non_null(strstr(problem.detail, names[i]));
+        assert_null(strstr(problem.detail, "secret"));
+    }
 }
 
 static void more_parameters_than_the_library_has_memory_for_are_refused(void **state)
@@ -438,6 +472,7 @@ int main(void)
         cmocka_unit_test(only_our_own_names_are_answered_to),
         cmocka_unit_test(a_server_for_its_own_machine_answers_no_other_name_and_no_proxy),
         cmocka_unit_test(a_whole_head_says_where_its_request_ends_and_for_whom_it_comes),
+        cmocka_unit_test(what_proves_who_asks_is_there_once_and_not_too_long),
         cmocka_unit_test(more_parameters_than_the_library_has_memory_for_are_refused),
         cmocka_unit_test(who_does_not_come_to_an_end_is_told_what_is_missing),
         cmocka_unit_test(a_refusal_is_a_whole_answer_of_http),

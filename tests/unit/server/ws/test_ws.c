@@ -16,16 +16,16 @@ static int n_closed;
 static char came[200000];
 static size_t n_came, n_messages;
 
-static bool has_room(void *context, const char *room_id)
+static bool has_room(void *context, const struct handshake *handshake)
 {
     (void)context;
-    return strcmp(room_id, "7q4k-m2wz") == 0;
+    return strcmp(handshake->room_id, "7q4k-m2wz") == 0;
 }
 
-static void opened(void *context, struct ws_connection *new_connection, const char *room_id)
+static void opened(void *context, struct ws_connection *new_connection, const struct handshake *handshake)
 {
     (void)context;
-    assert_string_equal(room_id, "7q4k-m2wz");
+    assert_string_equal(handshake->room_id, "7q4k-m2wz");
     connection = new_connection;
 }
 

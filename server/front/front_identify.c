@@ -1,0 +1,37 @@
+/* Gathers the credentials of a request. */
+#include "server/front/front_identify.h"
+
+#include <string.h>
+
+struct room { /* for copies of headers, which in the head have no end of their own */
+    char bytes[2 * (HEAD_MAX_SECRET + 1)];
+    size_t n;
+};
+
+/* Copies a header that head_read has found to fit. */
+static const char *keep(struct room *room, struct head_text text)
+{
+    char *copy = room->bytes + room->n;
+    if (!text.at)
+        return NULL;
+    memcpy(copy, text.at, text.n);
+    copy[text.n] = 0;
+    room->n += text.n + 1;
+    return copy;
+}
+
+bool front_identify(struct front_link *link, const struct head_request *request, const struct address *client,
+                    struct problem *problem)
+{
+    const struct front_options *options = &link->front->options;
+    char address[ADDRESS_TEXT];
+    struct room room;
+    room.n = 0;
+    address_write(client, address);
+    const struct credentials credentials = { .cookie = keep(&room, request->cookie),
+                                             .authorization = keep(&room, request->authorization),
+                                             .is_secure = options->decrypt || address_is_loopback(&link->peer),
+                                             .address = address };
+    link->identity = (struct identity){ .source = IDENTITY_NOBODY };
+    return !options->identify || options->identify(options->context, &credentials, &link->identity, problem);
+}
