@@ -35,6 +35,7 @@ struct identity {
     char groups[IDENTITY_MAX_GROUPS][IDENTITY_MAX_USER + 1];
     size_t n_groups;
     unsigned scopes;    /* enum identity_scope */
+    bool is_admin;      /* a local user of the group admin, whom no grant has to name; a proxy's groups never do this */
     char session[17];   /* names the session or token in the audit and when it is ended; opens nothing. "": none */
     char address[46];   /* the client's, behind trusted proxies; "": not known */
     int64_t proved_ms;  /* wall clock: when the person last gave a password, or signed in at the proxy; 0: not known */
@@ -49,6 +50,7 @@ struct credentials {
     /* headers of the proxy, whose names can be set; only where is_from_proxy */
     const char *user, *name, *groups, *auth_time;
     bool is_from_proxy; /* it came over the Unix socket, from a process of the proxy's user or group */
+    bool is_control;    /* it came over the control socket of the data folder, from the daemon's user or root */
     bool is_secure;     /* over TLS of our own, the Unix socket or loopback */
     const char *address;
 };
