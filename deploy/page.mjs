@@ -1,7 +1,7 @@
 // Makes the page light to load: node deploy/page.mjs FOLDER, after deploy/web.sh has filled FOLDER.
 //   page/NAME-HASH.js .css .woff2   the modules and the style sheets that index.html names, each joined into one file, and the font;
 //                                   modules that are imported on demand (import('...')), and what only they need, are files of their own
-//   index.html                      names those instead; the page of separate modules stays as modules.html, for debugging
+//   index.html                      names those instead, from the root, as it is served at /rooms/ID too; the page of separate modules stays as modules.html, for debugging
 //   licences.txt                    of the libraries and the font
 //   FILE.gz FILE.br                 beside each text file that gets smaller
 // The files in page/ carry a hash of their contents in their names, so the daemon lets browsers keep them for ever.
@@ -128,8 +128,8 @@ async function joinModules(entry) {
 }
 
 const source = read('index.html');
-const sheets = [...source.matchAll(/^ *<link rel="stylesheet" href="([^"]+)" \/>\n/gm)];
-const script = source.match(/^ *<script type="module" src="([^"]+)"><\/script>\n/m);
+const sheets = [...source.matchAll(/^ *<link rel="stylesheet" href="\/([^"]+)" \/>\n/gm)];
+const script = source.match(/^ *<script type="module" src="\/([^"]+)"><\/script>\n/m);
 if (!sheets.length || !script) throw new Error('index.html names no style sheets or no module in the form that deploy/page.mjs knows');
 
 const shared = {
@@ -171,10 +171,10 @@ const only = (ending) =>
 // The one list of what is loaded first.
 const [css] = only('.css');
 const first = [
-  `<link rel="modulepreload" href="${main}" />`,
-  ...only('.woff2').map((font) => `<link rel="preload" href="${font}" as="font" type="font/woff2" crossorigin />`),
-  `<link rel="stylesheet" href="${css}" />`,
-  `<script type="module" src="${main}"></script>`,
+  `<link rel="modulepreload" href="/${main}" />`,
+  ...only('.woff2').map((font) => `<link rel="preload" href="/${font}" as="font" type="font/woff2" crossorigin />`),
+  `<link rel="stylesheet" href="/${css}" />`,
+  `<script type="module" src="/${main}"></script>`,
 ];
 let page = source;
 for (const [line] of sheets) page = page.replace(line, '');

@@ -147,7 +147,7 @@ void api_permalink(struct api *api, struct call *call)
         return;
     }
     cJSON_Delete(body);
-    (void)snprintf(location, sizeof location, "../#/p/%s", call->ids[0]);
+    (void)snprintf(location, sizeof location, "/#/p/%s", call->ids[0]);
     call_add_header(call, "Location", location);
     call_answer_nothing(call, 303);
 }

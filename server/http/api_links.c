@@ -107,7 +107,7 @@ void api_room_link_new(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    (void)snprintf(url, sizeof url, "/#/rooms/%s?link=%s", room_id(room), token);
+    (void)snprintf(url, sizeof url, "/rooms/%s#link=%s", room_id(room), token);
     cJSON *answer = cJSON_CreateObject();
     room_link_digits(token, digits);
     cJSON_AddStringToObject(answer, "id", digits);

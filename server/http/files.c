@@ -152,11 +152,17 @@ void files_destroy(struct files *files)
     free(files);
 }
 
+static bool is_id_behind(const char *path, const char *start)
+{
+    size_t n = strlen(start);
+    return strncmp(path, start, n) == 0 && id_is_valid(path + n);
+}
+
 const struct file *files_find(const struct files *files, const char *path)
 {
-    if (strcmp(path, "/") == 0)
+    if (strcmp(path, "/") == 0 || is_id_behind(path, "/rooms/"))
         path = "/index.html";
-    else if (strncmp(path, "/display/", strlen("/display/")) == 0 && id_is_valid(path + strlen("/display/")))
+    else if (is_id_behind(path, "/display/"))
         path = "/display.html";
     for (size_t i = 0; i < files->n; i++)
         if (strcmp(files->files[i].path, path) == 0)

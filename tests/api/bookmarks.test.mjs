@@ -85,7 +85,7 @@ test('a permalink begins a room of its own with scene and camera, and the room t
 
   // the address for people
   const link = await fetch(`${daemon.url}/p/${row.body.token}`, { redirect: 'manual' });
-  assert.deepEqual([link.status, link.headers.get('location')], [303, `../#/p/${row.body.token}`]);
+  assert.deepEqual([link.status, link.headers.get('location')], [303, `/#/p/${row.body.token}`]);
 
   // a deleted bookmark opens nothing; rooms made from it stay
   ann.send({ type: 'item.delete', item: row.id });

@@ -39,7 +39,7 @@ try {
   const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json;
   const page = await browser.newPage();
   const began = performance.now();
-  await page.goto(`${daemon.url}/#/rooms/${room.id}`);
+  await page.goto(`${daemon.url}/rooms/${room.id}`);
   const stats = () => page.evaluate(() => globalThis.beamroom?.stats() ?? null);
   const isFull = (s) => Boolean(s?.headers[1]) && s.badges[1] === 'full';
   await page.waitForFunction(() => globalThis.beamroom?.stats().headers[1], null, { polling: 5 });

@@ -33,7 +33,7 @@ try {
   const room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json;
   const open = async () => {
     const page = await (await browser.newContext({ viewport: { width: 1500, height: 1000 } })).newPage();
-    await page.goto(`${daemon.url}/#/rooms/${room.id}`);
+    await page.goto(`${daemon.url}/rooms/${room.id}`);
     await until(
       () => page.evaluate(() => globalThis.beamroom?.stats().badges ?? {}),
       (badges) => [1, 2, 3, 4].every((view) => badges[view] === 'full'),

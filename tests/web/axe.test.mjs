@@ -17,7 +17,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
   // All sizes in the long suite; the quick one has the panels of dose at the smallest (dose.test.mjs).
   for (const [size, options] of Object.entries(sizes).filter(() => isDue(false)))
     it(`${size}: axe-core finds nothing in any state`, async () => {
-      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
+      const page = await world.newPage(`rooms/${await world.newRoom()}`, options);
       await full(page);
       for (const [name, act] of states[size]) {
         await act(page);
@@ -45,7 +45,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
   };
 
   once('the tree is one tab stop, and so is the strip', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`, sizes.wide);
+    const page = await world.newPage(`rooms/${await world.newRoom()}`, sizes.wide);
     await full(page);
     const stops = await tabStops(page);
     assert.ok(stops.length > 10 && stops.length < 40, `${stops.length}: ${stops.join(' | ')}`);
@@ -56,7 +56,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
 
   once('every function of a row is reached by keys', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`, sizes.wide);
+    const page = await world.newPage(`rooms/${room}`, sizes.wide);
     await full(page);
     const tree = page.locator('[role="tree"]');
     const current = () => page.evaluate(() => document.activeElement.getAttribute('aria-activedescendant'));
@@ -96,7 +96,7 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
   });
 
   once('with forced colours what is pressed, chosen or active differs by its border', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`, {
+    const page = await world.newPage(`rooms/${await world.newRoom()}`, {
       ...sizes.wide,
       forcedColors: 'active',
       reducedMotion: 'reduce',

@@ -20,7 +20,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
   before(async () => {
     world = await startWorld();
     room = await world.newRoom();
-    page = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1440, height: 900 } });
+    page = await world.newPage(`rooms/${room}`, { viewport: { width: 1440, height: 900 } });
     for (const view of [1, 2, 3, 4]) await full(page, view);
   });
   after(async () => {
@@ -81,7 +81,7 @@ describe('beams and their drafts', { skip: missing && `${missing} is not there` 
   });
 
   it('a draft begins where the planned beam is, and everybody reads whose dose is shown', async () => {
-    const other = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1200, height: 800 } });
+    const other = await world.newPage(`rooms/${room}`, { viewport: { width: 1200, height: 800 } });
     await panel('Draft a new position').click();
     const line = await comes(({ draft }) => draft.enabled, 'it is drafted');
     assert.deepEqual([line.entry_mm, line.target_mm], [planned.entry, planned.target]);

@@ -41,7 +41,7 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
   const open = async (plan = 'phantom', options = {}) => {
     await page?.context().close();
     room = await world.newRoom(plan);
-    page = await world.newPage(`#/rooms/${room}`, options);
+    page = await world.newPage(`rooms/${room}`, options);
     await full(page, 1);
   };
   const openEye = async (options) => {
@@ -277,7 +277,7 @@ describe('panes along a beam', { skip: missing && `${missing} is not there` }, (
 
   later("who follows sees the presenter's beam's eye, and is alone after a zoom of their own", async () => {
     await openEye();
-    const other = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1280, height: 800 } });
+    const other = await world.newPage(`rooms/${room}`, { viewport: { width: 1280, height: 800 } });
     await full(other, 1);
     await other.locator('#picture-1').focus();
     await other.keyboard.press('b');

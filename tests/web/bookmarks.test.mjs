@@ -51,7 +51,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
 
   later('are saved, shown, renamed, moved, updated and deleted; a link opens a room of its own in another browser', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page);
     const home = await cameraOf(page);
     const plain = await world.scene(room);
@@ -118,7 +118,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
     const other = await world.newPage(link.slice(world.daemon.url.length + 1));
     await full(other);
     await other.getByText('“Bare skull” in a new room of its own.').waitFor();
-    const own = (await other.evaluate(() => location.hash)).split('/')[2];
+    const own = (await other.evaluate(() => location.pathname)).split('/')[2];
     assert.notEqual(own, room);
     assert.deepEqual(await world.scene(own), thin);
     assert.ok(isNear(await cameraOf(other), turned));
@@ -147,7 +147,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
 
   later('are shown to the room by the presenter, to themselves by others, and presented by Page down and Page up', async () => {
     const room = await world.newRoom();
-    const ann = await world.newPage(`#/rooms/${room}`);
+    const ann = await world.newPage(`rooms/${room}`);
     await full(ann);
     const cameras = [await cameraOf(ann)];
     await save(ann, 'First');
@@ -156,7 +156,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
     await patch(room, { axes: { visible: true } });
     cameras.push(await turn(ann));
     await save(ann, 'Third');
-    const ben = await world.newPage(`#/rooms/${room}`);
+    const ben = await world.newPage(`rooms/${room}`);
     await full(ben);
     await listed(ben, ['First', 'Second', 'Third']);
 
@@ -223,7 +223,7 @@ describe('saved views', { skip: missing && `${missing} is not there` }, () => {
 
   later('are within reach on a telephone', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    const page = await world.newPage(`rooms/${room}`, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
     await full(page);
     await page.getByRole('button', { name: 'Parts' }).click();
     await page.getByRole('tab', { name: 'Saved views' }).click();

@@ -23,7 +23,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     const page = await world.newPage('healthz', options);
     const asked = await stubDose(page, how);
     const room = await world.newRoom();
-    await page.goto(`${world.daemon.url}/#/rooms/${room}`);
+    await page.goto(`${world.daemon.url}/rooms/${room}`);
     await full(page);
     return { page, room, asked };
   }
@@ -73,7 +73,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
       { regions: Object.fromEntries(Object.keys(regions).map((id) => [id, { visible: false }])) },
       { 'If-Match': '*' },
     );
-    await page.goto(`${world.daemon.url}/#/rooms/${room}`);
+    await page.goto(`${world.daemon.url}/rooms/${room}`);
     await full(page);
     await page.locator(plots).click();
     await page.locator('.chart-dvh').getByText('No region is shown.').waitFor();
@@ -286,7 +286,7 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
     'of the daemon: volumes are those of the plan, a limit is held to the maximum that the histogram has, and files are of the scene',
     async () => {
       const room = await world.newRoom();
-      const page = await world.newPage(`#/rooms/${room}`);
+      const page = await world.newPage(`rooms/${room}`);
       await full(page);
       await page.locator(plots).click();
       await page.locator('[aria-label="Histogram as a table"]').click();

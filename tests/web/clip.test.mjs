@@ -21,7 +21,7 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
 
   const open = async (options = sizes.wide, sections = ['clip']) => {
     room = await world.newRoom();
-    page = await world.newPage(`#/rooms/${room}`, options);
+    page = await world.newPage(`rooms/${room}`, options);
     for (const view of [1, 2, 3, 4]) await full(page, view);
     for (const id of sections) await page.locator(`[data-key="section:${id}"]`).click();
   };

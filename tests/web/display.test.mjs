@@ -24,7 +24,7 @@ describe('the page of a display', { skip: missing && `${missing} is missing` }, 
   before(async () => {
     world = await startWorld();
     room = await world.newRoom();
-    presenter = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1440, height: 900 } });
+    presenter = await world.newPage(`rooms/${room}`, { viewport: { width: 1440, height: 900 } });
     await full(presenter);
     display = await world.newPage(`display/${room}`, { viewport: { width: 1100, height: 700 } });
     await says(display, 'Live');

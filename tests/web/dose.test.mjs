@@ -29,7 +29,7 @@ describe('dose on the page', { skip: missing && `${missing} is not there` }, () 
 
   const open = async (plan, options = sizes.wide) => {
     room = await world.newRoom(plan);
-    page = await world.newPage(`#/rooms/${room}`, options);
+    page = await world.newPage(`rooms/${room}`, options);
     await full(page);
     await page.locator('[data-key^="dose:"], [data-section="doses"], .dock').first().waitFor();
   };

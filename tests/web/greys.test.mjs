@@ -69,7 +69,7 @@ describe('greys on the page', { skip: missing && `${missing} is not there` }, ()
 
   later('the page shows which it is, switches it, and follows the next image', async () => {
     const room = await world.newRoom('film');
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page);
     /* the panel's choice, and what the three slices say; fails when it does not come to that */
     const shows = (name, nSlices) =>

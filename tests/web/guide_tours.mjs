@@ -460,7 +460,7 @@ export async function walk(world, { names = [], shot = async () => {}, keys = ()
       world: { ...world, newPage: async (...args) => pages[pages.push(await world.newPage(...args)) - 1] },
       person,
       room: async (plan, who = 'Dr Ann') => {
-        const page = await person(`#/rooms/${await world.newRoom(plan)}`, who);
+        const page = await person(`rooms/${await world.newRoom(plan)}`, who);
         await settled(page);
         return page;
       },

@@ -30,7 +30,7 @@ describe('images on the page', { skip: missing && `${missing} is not there` }, (
     const room = await world.newRoom(plan);
     const page = await world.newPage('', options);
     if (isMadeUp) await page.route(/\/histogram$/, (route) => route.fulfill({ json: histogram }));
-    await page.goto(`${world.daemon.url}/#/rooms/${room}`);
+    await page.goto(`${world.daemon.url}/rooms/${room}`);
     await full(page, options === sizes.phone ? 1 : 2);
     const image = async () => (await world.scene(room)).image;
     const comes = async (expected, words) => {

@@ -71,7 +71,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
 
   for (const [width, height] of sizes.filter(([size]) => isDue(size === 1600 || size === 820))) {
     it(`a room at ${width} x ${height}: the line on research use is whole, every pane has its letters`, async () => {
-      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, { viewport: { width, height } });
+      const page = await world.newPage(`rooms/${await world.newRoom()}`, { viewport: { width, height } });
       const visible = await page.evaluate(() =>
         [...document.querySelectorAll('.pane:not([hidden])')].map((pane) => Number(pane.dataset.view)),
       );
@@ -103,7 +103,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
   }
 
   later('a pane maximised while all four are being drawn, and back: the other three come anew', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
+    const page = await world.newPage(`rooms/${await world.newRoom()}`);
     for (const view of [1, 2, 3, 4]) await full(page, view);
     const { scene_revision: revision } = await header(page, 2);
     for (let turn = 0; turn < 3; turn++) {
@@ -121,7 +121,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
 
   for (const [size, options] of Object.entries(roomSizes).filter(() => isDue(false)))
     it(`${size}: in no state does text lie over text, a letter or a control, and panes are as wide as they have to be`, async () => {
-      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
+      const page = await world.newPage(`rooms/${await world.newRoom()}`, options);
       await full(page);
       for (const [name, act] of states[size]) {
         await act(page);
@@ -157,7 +157,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     );
 
   later('panels never make one of four panes narrower than 420 px, at any width of a desk', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`, roomSizes.wide);
+    const page = await world.newPage(`rooms/${await world.newRoom()}`, roomSizes.wide);
     await full(page);
     for (const width of [1920, 1433, 1400, 1399, 1280, 1209, 1208, 1100]) {
       await page.setViewportSize({ width, height: 800 });
@@ -175,7 +175,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
   });
 
   once('what was clicked is in sight in the inspector: its head stands at the top', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`, roomSizes.compact);
+    const page = await world.newPage(`rooms/${await world.newRoom()}`, roomSizes.compact);
     await full(page);
     await page.locator('[data-section="regions"]').click();
     for (const id of ['scalp', 'tumour']) {
@@ -192,7 +192,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
 
   once('regions are found by a part of their names, hidden all at once, and left to the targets', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`, roomSizes.wide);
+    const page = await world.newPage(`rooms/${room}`, roomSizes.wide);
     await full(page);
     const shown = async () =>
       Object.entries((await world.scene(room)).regions)
@@ -223,7 +223,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
   });
 
   once('a name that is cut loses its middle, never its end', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom('sides')}`, roomSizes.wide);
+    const page = await world.newPage(`rooms/${await world.newRoom('sides')}`, roomSizes.wide);
     await full(page);
     for (const side of ['left', 'right']) {
       const row = page.locator('[data-region]', { hasText: side }).first();
@@ -240,7 +240,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
 
   for (const [size, options] of Object.entries(roomSizes))
     later(`${size}: the comparison of methods shows its table in the window`, async () => {
-      const page = await world.newPage(`#/rooms/${await world.newRoom()}`, options);
+      const page = await world.newPage(`rooms/${await world.newRoom()}`, options);
       await full(page);
       if (size === 'compact') await page.locator('[data-section="regions"]').click();
       if (size === 'tablet' || size === 'phone') {
@@ -258,7 +258,7 @@ describe('sizes of windows', { skip: missing && `${missing} is not there` }, () 
     });
 
   later('a plan of beams alone says that there is nothing to draw, and nothing runs through the words', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom('beams')}`);
+    const page = await world.newPage(`rooms/${await world.newRoom('beams')}`);
     for (const view of [1, 2]) {
       await full(page, view);
       await page.locator(`[data-view="${view}"] .cover.quiet`, { hasText: 'nothing to' }).waitFor();

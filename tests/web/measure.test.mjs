@@ -21,7 +21,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
   const open = async (options = sizes.wide, room = null) => {
     const id = room ?? (await world.newRoom());
     const page = await world.newPage('', options);
-    await page.goto(`${world.daemon.url}/#/rooms/${id}`);
+    await page.goto(`${world.daemon.url}/rooms/${id}`);
     for (const view of options === sizes.phone ? [1] : [1, 2, 3, 4]) await full(page, view);
     const measures = async () => (await world.scene(id)).measures;
     const comes = async (test, words) => {

@@ -160,7 +160,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
   /** The presenter, at another size than the two who follow. */
   const meet = async (options, base, presenterBase) => {
     const room = await world.newRoom();
-    const address = `#/rooms/${room}`;
+    const address = `rooms/${room}`;
     const one = await world.newPage(address, { viewport: { width: 1500, height: 700 }, base: presenterBase });
     await says(one, /^Presenting$/);
     const [two, three] = [await world.newPage(address, options), await world.newPage(address, { ...options, base })];
@@ -376,7 +376,7 @@ describe('a meeting of three', { skip: missing && `${missing} is not there` }, (
 
   it('what the presenter changes while the link is dead is sent when it is back', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`, { base: proxy.url });
+    const page = await world.newPage(`rooms/${room}`, { base: proxy.url });
     await allFull(page);
     proxy.black(true);
     await page.locator('[data-region="scalp"] .eye').click();

@@ -18,7 +18,7 @@ before(async () => {
 after(() => world?.stop());
 
 const enter = async (name, options) => {
-  const page = await enterAs(world, `#/rooms/${room}`, name, options);
+  const page = await enterAs(world, `rooms/${room}`, name, options);
   await full(page, 1);
   return page;
 };

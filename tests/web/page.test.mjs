@@ -84,7 +84,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
   once('opens a plan from the list: four pictures, each with the right letters', async () => {
     const page = await world.newPage();
     await page.locator('[data-plan="phantom"] button', { hasText: 'Open' }).click();
-    await page.waitForURL(/#\/rooms\/[a-z0-9-]+\/phantom$/);
+    await page.waitForURL(/\/rooms\/[a-z0-9-]+$/);
     for (const view of [1, 2, 3, 4]) await full(page, view);
     assert.equal(await letters(page, 1), 'RA LP S I', 'from the front and the left, patient right on screen left');
     assert.equal(await letters(page, 2), 'R L A P');
@@ -102,7 +102,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
   });
 
   once('turns by dragging, and ends with a full picture and turned letters', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
+    const page = await world.newPage(`rooms/${await world.newRoom()}`);
     await full(page);
     const before = await look(page, 1);
     await drag(page, 1, 225, 0); // 90 degrees at 0.4 degrees a pixel: the front turns to screen right, the eye from 30 degrees left to 60 right
@@ -117,9 +117,28 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
     await page.context().close();
   });
 
+  it('back and forward go between start page and rooms; the token of a link leaves the address', async () => {
+    const room = await world.newRoom();
+    const page = await world.newPage(`rooms/${room}#link=${'0'.repeat(32)}`);
+    await page.locator('.ended').waitFor(); // a link that lets nobody in
+    assert.equal(page.url(), `${world.daemon.url}/rooms/${room}`);
+    await page.locator('.ended a', { hasText: 'All plans' }).click();
+    await page.locator('.start [data-plan]').first().waitFor();
+    assert.equal(page.url(), `${world.daemon.url}/`);
+    await page.goBack();
+    await page.locator('.room').waitFor();
+    assert.equal(page.url(), `${world.daemon.url}/rooms/${room}`);
+    await page.goForward();
+    await page.locator('.start').waitFor();
+    await page.goto(`${world.daemon.url}/#/rooms/not-there/phantom`); // an address of the time when rooms were fragments
+    await page.locator('.ended', { hasText: 'There is no room at this address' }).waitFor();
+    assert.equal(page.url(), `${world.daemon.url}/rooms/not-there`);
+    await page.context().close();
+  });
+
   once('hides a region through the tree and changes the window by a key', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page);
     const before = await look(page, 1);
     await page.locator('[data-region="scalp"] .eye').click();
@@ -183,7 +202,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
 
   later("shows the box of a dose's grid", async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page);
     const before = await look(page, 1);
     await page.locator('[data-dose="goorley"] button.name').click();
@@ -197,7 +216,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
   });
 
   once('downloads the surface of the chosen region in three formats', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
+    const page = await world.newPage(`rooms/${await world.newRoom()}`);
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
     const links = page.locator('[aria-label="Download the surface"] a');
@@ -218,7 +237,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
 
   later('draws the surfaces by the algorithm chosen below a region', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page);
     const before = await look(page, 1);
     await page.locator('[data-region="tumour"] button.name').click();
@@ -234,7 +253,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
 
   later('shows a region in every way there is, each picture new and soon, with its figures', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
     const { scene_revision: before } = await header(page, 1);
@@ -266,7 +285,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
   });
 
   later('compares the methods on one region, and gives the table as CSV', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
+    const page = await world.newPage(`rooms/${await world.newRoom()}`);
     await full(page);
     await page.locator('[data-region="tumour"] button.name').click();
     await page.locator('button', { hasText: 'Compare methods' }).click();
@@ -288,7 +307,7 @@ describe('the page', { skip: missing && `${missing} is not there` }, () => {
   });
 
   later('lives through the death of the renderer in the middle of a drag', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom()}`);
+    const page = await world.newPage(`rooms/${await world.newRoom()}`);
     await full(page);
     await drag(page, 1, 100, 0, { release: false });
     process.kill(rendererOf(world.daemon.child), 'SIGKILL');

@@ -20,7 +20,7 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     putWhole(join(folder, 'case-1'), quirin, { approval: 'APPROVED' });
     putDose(join(folder, 'case-1'), other, { uid: '1.2.89', file: 'other.dcm' });
     world = await startWorld({ plans: [folder] });
-    page = await world.newPage(`#/rooms/${await world.newRoom('case-1')}`, { viewport: { width: 1440, height: 900 } });
+    page = await world.newPage(`rooms/${await world.newRoom('case-1')}`, { viewport: { width: 1440, height: 900 } });
     await full(page, 2);
   });
   after(async () => {
@@ -63,7 +63,7 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
   });
 
   it('a plan without DICOM says that it names nobody; the phantom says that it is one', async () => {
-    const second = await world.newPage(`#/rooms/${await world.newRoom('phantom')}`, { viewport: { width: 1440, height: 900 } });
+    const second = await world.newPage(`rooms/${await world.newRoom('phantom')}`, { viewport: { width: 1440, height: 900 } });
     await shows(second.locator('.banner .patient'), 'PHANTOM');
     await second.context().close();
   });

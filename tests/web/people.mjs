@@ -20,7 +20,7 @@ export async function openRoster(page) {
   await page.locator('.room-members .own-name').waitFor();
 }
 
-/** A browser of its own, under this name, at an address behind the daemon's: "#/rooms/ID". */
+/** A browser of its own, under this name, at an address behind the daemon's: "rooms/ID". */
 export async function enter(world, address, name, options = {}) {
   const page = await world.newPage('#/', options);
   await page.evaluate((text) => localStorage.setItem('beamroom name', text), name);

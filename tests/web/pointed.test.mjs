@@ -26,7 +26,7 @@ describe('the pointer on the pictures', { skip: missing && `${missing} is not th
     room = await world.newRoom();
     const slices = { axial: { visible: false } }; // in 3-D it would hide parts of the regions
     await call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { image: { slices } }, { 'If-Match': '*' });
-    page = await world.newPage(`#/rooms/${room}`, options);
+    page = await world.newPage(`rooms/${room}`, options);
     for (const view of [1, 2]) await full(page, view);
   };
   const crosshairOf = async () => {

@@ -38,9 +38,9 @@ describe('pointers between two pages', { skip: missing && `${missing} is not the
   before(async () => {
     world = await startWorld();
     room = await world.newRoom();
-    ann = await world.newPage(`#/rooms/${room}`);
+    ann = await world.newPage(`rooms/${room}`);
     await full(ann, 1);
-    ben = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1280, height: 720 } });
+    ben = await world.newPage(`rooms/${room}`, { viewport: { width: 1280, height: 720 } });
     await allFull();
     await ann.locator('.point-tools').waitFor();
   });
@@ -209,7 +209,7 @@ describe('pointers between two pages', { skip: missing && `${missing} is not the
       () => ben.locator('.person-pointer').count(),
       (n) => n === 0,
     );
-    const cem = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1200, height: 800 } });
+    const cem = await world.newPage(`rooms/${room}`, { viewport: { width: 1200, height: 800 } });
     await full(cem, 2);
     await ben.locator('#picture-2').focus();
     await ben.keyboard.press('PageDown');

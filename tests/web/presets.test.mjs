@@ -9,7 +9,7 @@ describe('presets', { skip: missing && `${missing} is not there` }, () => {
   before(async () => {
     world = await startWorld();
     room = await world.newRoom();
-    page = await world.newPage(`#/rooms/${room}`);
+    page = await world.newPage(`rooms/${room}`);
     await full(page, 1);
   });
   after(async () => {

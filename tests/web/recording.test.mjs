@@ -18,8 +18,8 @@ describe('a recorded meeting', { skip: missing && `${missing} is not there` }, (
 
   it('is said to everybody while it runs, and its replay is no live meeting', async () => {
     const room = await world.newRoom();
-    const ann = await enterAs(world, `#/rooms/${room}`, 'Dr Ann');
-    const ben = await enterAs(world, `#/rooms/${room}`, 'Ben');
+    const ann = await enterAs(world, `rooms/${room}`, 'Dr Ann');
+    const ben = await enterAs(world, `rooms/${room}`, 'Ben');
     await Promise.all([full(ann), full(ben)]);
     await ben.locator('#picture-1').focus();
     await ben.keyboard.press('p');
@@ -55,7 +55,7 @@ describe('a recorded meeting', { skip: missing && `${missing} is not there` }, (
 
   it('that cannot be read says so in its replay', async () => {
     const room = await world.newRoom();
-    const ann = await enterAs(world, `#/rooms/${room}`, 'Dr Ann');
+    const ann = await enterAs(world, `rooms/${room}`, 'Dr Ann');
     await full(ann);
     await open(ann);
     await action(ann, 'Record meeting').click();

@@ -33,7 +33,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
   };
 
   once('a region that degree bins cannot show is named in the picture and in the tree, with the reason, and is no file', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
+    const page = await world.newPage(`rooms/${await world.newRoom('balls')}`);
     await full(page);
     await page.locator('[data-region="pair"] button.name').click();
     await choose(page, 'Shown as', 'NURBS');
@@ -64,7 +64,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     async () => {
       const room = await world.newRoom('foam');
       await patch(room, { regions: { foam: { visible: false } } });
-      const page = await world.newPage(`#/rooms/${room}`);
+      const page = await world.newPage(`rooms/${room}`);
       await full(page);
       assert.equal(await page.locator('.legend.missing').count(), 0);
       await patch(room, { regions: { foam: { visible: true, representation: 'univels' }, block: { representation: 'univels' } } });
@@ -90,14 +90,14 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
     other.send({ type: 'hello', protocol: 2 });
     other.send({ type: 'view.open', view: 1, document: { size_px: [64, 64] }, follow: true });
     await other.message('members');
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page);
     look([0, 0, 0]);
     const words = (of) => of.locator('[data-view="1"] .cover .refusal', { hasText: 'cannot be drawn' });
     await words(page).waitFor();
     await words(page).waitFor();
     assert.match(await words(page).textContent(), /position and target are the same point/);
-    const late = await world.newPage(`#/rooms/${room}`);
+    const late = await world.newPage(`rooms/${room}`);
     await words(late).waitFor();
     await shoot(page, 'view-cannot-be-drawn');
     look([0, -500, 0]);
@@ -109,7 +109,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
   });
 
   once("the tree shows every region's volume; the slider takes its place under the pointer and the focus", async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
+    const page = await world.newPage(`rooms/${await world.newRoom('balls')}`);
     await full(page);
     const volume = page.locator('[data-region="ball"] .volume');
     // 4/3 pi 8^3 mm3 = 2.14 cm3, less or more by how a ball of 8 univels is cut into boxes: 2 %
@@ -127,7 +127,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
   });
 
   later('the colours of the check have a legend in every slice pane', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
+    const page = await world.newPage(`rooms/${await world.newRoom('balls')}`);
     await full(page);
     await page.locator('[data-region="ball"] button.name').click();
     const legends = page.locator('.legend[aria-label="Colours of the check"]');
@@ -139,7 +139,7 @@ describe('regions on the page', { skip: missing && `${missing} is not there` }, 
   });
 
   once('a dialog takes the focus and gives it back', async () => {
-    const page = await world.newPage(`#/rooms/${await world.newRoom('balls')}`);
+    const page = await world.newPage(`rooms/${await world.newRoom('balls')}`);
     await full(page);
     await page.locator('[data-region="ball"] button.name').click();
     const opener = page.locator('button', { hasText: 'Compare methods' });

@@ -21,7 +21,7 @@ test('a renderer that stops again and again: every pane says why and counts down
   const world = await startWorld({ args: ['--renderer', renderer, '--plan-idle-close', '1'] });
   try {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page);
     writeFileSync(broken, '');
     await call(`${world.daemon.url}/api/v1/plans/phantom/close`, 'POST');

@@ -19,7 +19,7 @@ after(async () => {
 
 it('a full disk is said in a line over the panes until it is fine again', { skip }, async () => {
   const room = await world.newRoom();
-  const page = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1100, height: 800 } });
+  const page = await world.newPage(`rooms/${room}`, { viewport: { width: 1100, height: 800 } });
   const patch = (center) =>
     call(`${world.daemon.url}/api/v1/rooms/${room}/scene`, 'PATCH', { image: { window: { center } } }, { 'If-Match': '*' });
   const line = page.getByRole('alert').filter({ hasText: 'what is changed now is not kept' });

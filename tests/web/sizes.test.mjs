@@ -64,9 +64,9 @@ describe('a follower in a small window', { skip: missing && `${missing} is not t
   before(async () => {
     world = await startWorld();
     room = await world.newRoom();
-    ann = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1603, height: 1001 } });
+    ann = await world.newPage(`rooms/${room}`, { viewport: { width: 1603, height: 1001 } });
     await full(ann, 1);
-    ben = await world.newPage(`#/rooms/${room}`, { viewport: { width: 1100, height: 700 } });
+    ben = await world.newPage(`rooms/${room}`, { viewport: { width: 1100, height: 700 } });
     await Promise.all([ann, ben].flatMap((page) => [1, 2, 3, 4].map((view) => full(page, view))));
     await ann.locator('.point-tools').waitFor();
   });

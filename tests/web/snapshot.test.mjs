@@ -52,7 +52,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
 
   once('are saved with a caption and, dropped on the page, bring scene and view back', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page, 1);
     const before = await world.scene(room);
     const matrix = (await header(page, 1)).clip_from_lps_mm;
@@ -94,14 +94,14 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
   later('of another plan are said to be, and open that plan as it was in them', async () => {
     const other = await world.newRoom('other');
     await patch(other, { regions: { scalp: { visible: false } } });
-    const page = await world.newPage(`#/rooms/${other}`);
+    const page = await world.newPage(`rooms/${other}`);
     await full(page, 2);
     await choose(page, 2);
     const { name, bytes } = await saved(page);
     assert.equal(name, 'other-axial.png');
     const scene = await world.scene(other);
 
-    await page.goto(`${world.daemon.url}/#/rooms/${await world.newRoom()}`);
+    await page.goto(`${world.daemon.url}/rooms/${await world.newRoom()}`);
     await full(page, 1);
     await drop(page, bytes);
     const dialog = page.getByRole('dialog', { name: 'Picture of another plan' });
@@ -111,7 +111,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await dialog.getByRole('button', { name: /Open other/ }).click();
     await page.getByText('Scene and view are as in the picture').waitFor();
     await full(page, 2);
-    const room = (await page.evaluate(() => location.hash)).split('/')[2];
+    const room = (await page.evaluate(() => location.pathname)).split('/')[2];
     await page.waitForFunction(() => globalThis.beamroom.stats().headers[2].scene_revision > 1);
     assert.deepEqual(await world.scene(room), scene);
 
@@ -120,7 +120,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
     await page.getByText('Drop a plan here').waitFor();
     await drop(page, bytes);
     await page.getByText('Scene and view are as in the picture').waitFor();
-    const again = (await page.evaluate(() => location.hash)).split('/')[2];
+    const again = (await page.evaluate(() => location.pathname)).split('/')[2];
     await page.waitForFunction(() => globalThis.beamroom.stats().headers[2]?.scene_revision > 1);
     assert.notEqual(again, room);
     assert.deepEqual(await world.scene(again), scene);
@@ -130,7 +130,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
 
   later('that say nothing, or nonsense, change nothing and say why', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     await full(page, 1);
     const before = await world.scene(room);
     await drop(page, await drawn(room, { size_px: [64, 64] }));
@@ -148,7 +148,7 @@ describe('snapshots', { skip: missing && `${missing} is not there` }, () => {
 
   later('become a report to print, with captions, figures and the research line on every page', async () => {
     const room = await world.newRoom();
-    const page = await world.newPage(`#/rooms/${room}`);
+    const page = await world.newPage(`rooms/${room}`);
     for (const view of [1, 2, 3]) {
       await full(page, view);
       await choose(page, view);

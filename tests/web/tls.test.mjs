@@ -21,7 +21,7 @@ describe('the page over https', { skip: missing && `${missing} is not there` }, 
     use('first.example');
     world = await startWorld({ args: ['--stub', '--tls-cert', used.cert, '--tls-key', used.key] });
     room = await world.newRoom();
-    page = await world.newPage(`#/rooms/${room}`, { ignoreHTTPSErrors: true });
+    page = await world.newPage(`rooms/${room}`, { ignoreHTTPSErrors: true });
     await full(page);
   });
   after(async () => {
@@ -38,7 +38,7 @@ describe('the page over https', { skip: missing && `${missing} is not there` }, 
 
   it('forms invitations with https', async () => {
     await page.getByRole('button', { name: 'Invite' }).click();
-    assert.match(await page.locator('#invite-link').inputValue(), new RegExp(`^${world.daemon.url}/#/rooms/${room}`));
+    assert.match(await page.locator('#invite-link').inputValue(), new RegExp(`^${world.daemon.url}/rooms/${room}`));
     await page.keyboard.press('Escape');
   });
 

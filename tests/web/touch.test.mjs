@@ -21,7 +21,7 @@ describe('fingers', { skip: missing && `${missing} is not there` }, () => {
 
   const open = async () => {
     room = await world.newRoom();
-    page = await world.newPage(`#/rooms/${room}`, tablet);
+    page = await world.newPage(`rooms/${room}`, tablet);
     for (const view of [1, 2]) await full(page, view);
     const devtools = await page.context().newCDPSession(page);
     touch = (type, points) => devtools.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });

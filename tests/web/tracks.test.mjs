@@ -48,7 +48,7 @@ describe('particle tracks', { skip: missing && `${missing} is not there` }, () =
   };
   const open = async (plan = 'phantom', options = sizes.wide) => {
     room = await world.newRoom(plan);
-    page = await world.newPage(`#/rooms/${room}`, options);
+    page = await world.newPage(`rooms/${room}`, options);
     await full(page, 1);
   };
   const row = (id) => page.locator(`[data-key="tracks:${id}"]`);

@@ -12,7 +12,7 @@ describe('undo and redo', { skip: missing && `${missing} is not there` }, () => 
   before(async () => {
     world = await startWorld();
     room = await world.newRoom();
-    page = await world.newPage(`#/rooms/${room}`);
+    page = await world.newPage(`rooms/${room}`);
     for (const view of [1, 2, 3, 4]) await full(page, view);
   });
   after(async () => {

@@ -40,7 +40,7 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
   const open = async (plan = 'phantom', options = {}) => {
     await page?.context().close();
     room = await world.newRoom(plan);
-    page = await world.newPage(`#/rooms/${room}`, options);
+    page = await world.newPage(`rooms/${room}`, options);
     for (const view of [1, 2, 3, 4]) await full(page, view);
   };
   const matrixOf = async (view) => Object.values((await header(page, view)).clip_from_lps_mm);
@@ -322,7 +322,7 @@ describe('panes and cameras', { skip: missing && `${missing} is not there` }, ()
     await page.keyboard.press('Shift+Digit5');
     await full(page, 5);
     await until(async () => Object.keys((await world.scene(room)).image.obliques)[0], Boolean, 60000);
-    const other = await world.newPage(`#/rooms/${room}`);
+    const other = await world.newPage(`rooms/${room}`);
     await full(other, 1);
     const standing = async () => (await other.locator('.strip').textContent()).includes('Following');
     await other.locator('#picture-1').focus(); // its button is in the menu of panes when others are in the room

@@ -40,9 +40,9 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
   before(async () => {
     world = await startWorld();
     room = await world.newRoom();
-    ann = await enter(world, `#/rooms/${room}`, 'Ann', { viewport: { width: 1440, height: 900 } });
+    ann = await enter(world, `rooms/${room}`, 'Ann', { viewport: { width: 1440, height: 900 } });
     await full(ann);
-    ben = await enter(world, `#/rooms/${room}`, 'Ben', { viewport: { width: 1440, height: 900 } });
+    ben = await enter(world, `rooms/${room}`, 'Ben', { viewport: { width: 1440, height: 900 } });
     await full(ben);
   });
   after(async () => {
@@ -179,7 +179,7 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
 
   it('belongs to each tab, goes with control, and ends with following', async () => {
     const tab = await ben.context().newPage();
-    await tab.goto(`${world.daemon.url}/#/rooms/${room}`);
+    await tab.goto(`${world.daemon.url}/rooms/${room}`);
     await says(tab, /^Following Ann/);
     await tab.locator('#picture-1').focus();
     await tab.keyboard.press('f');
@@ -190,7 +190,7 @@ describe('the small picture of the presenter', { skip: missing && `${missing} is
     await reads(ben, /^Live · Ann/);
     await tab.close();
 
-    const cem = await enter(world, `#/rooms/${room}`, 'Cem', { viewport: { width: 1100, height: 700 } });
+    const cem = await enter(world, `rooms/${room}`, 'Cem', { viewport: { width: 1100, height: 700 } });
     await full(cem);
     await openRoster(ann);
     await row(ann, 'Cem').getByRole('button', { name: 'Give control to Cem' }).click();

@@ -47,7 +47,7 @@ test('a first visit of the start page and of a room stays within its requests an
   const room = await world.newRoom();
   const cases = [
     ['', (page) => page.getByText('Modified Snyder').first().waitFor()],
-    [`#/rooms/${room}`, (page) => page.locator('#fps').waitFor()],
+    [`rooms/${room}`, (page) => page.locator('#fps').waitFor()],
   ];
   for (const [address, isThere] of cases) {
     const { page, requests } = await visit(address, isThere);
@@ -77,7 +77,7 @@ test('a browser that takes gzip alone, as over plain HTTP, stays within the byte
       }).on('error', failed);
     });
   const page = await ask('');
-  const named = new Set([...page.text.matchAll(/(?:href|src)="(page\/[^"]+\.(?:js|css))"/g)].map(([, path]) => path));
+  const named = new Set([...page.text.matchAll(/(?:href|src)="\/(page\/[^"]+\.(?:js|css))"/g)].map(([, path]) => path));
   assert.ok(named.size >= 2, `${[...named]}`);
   let total = page.bytes;
   for (const path of named) total += (await ask(path)).bytes;

@@ -52,7 +52,7 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
   });
 
   it('they join by links with roles', async () => {
-    ann = await enter(world, `#/rooms/${room}`, 'Dr Ann', wide);
+    ann = await enter(world, `rooms/${room}`, 'Dr Ann', wide);
     await says(ann, /^Presenting/);
     await full(ann);
     const made = ann.locator('#invite-made');
@@ -231,7 +231,7 @@ describe('a whole meeting', { skip: missing && `${missing} is not there` }, () =
     const own = await world.newPage(permalink.slice(world.daemon.url.length + 1), small);
     await full(own);
     await own.getByText('“Margin” in a new room of its own.').waitFor();
-    assert.equal((await world.scene((await own.evaluate(() => location.hash)).split('/')[2])).regions.brain.visible, false);
+    assert.equal((await world.scene((await own.evaluate(() => location.pathname)).split('/')[2])).regions.brain.visible, false);
     await own.context().close();
     const later = await meeting();
     assert.deepEqual([later.revision, later.members.length], [before.revision, 3]);

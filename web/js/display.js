@@ -33,8 +33,7 @@ const rendererWords = {
   closed: say.closed,
 };
 
-const base = new URL('../api/v1', location.href).pathname;
-const api = makeApi((...request) => fetch(...request), base);
+const api = makeApi((...request) => fetch(...request));
 const room = location.pathname.split('/').pop();
 const $ = (selector) => document.querySelector(selector);
 const figure = $('figure');
@@ -140,7 +139,7 @@ function take({ fields, body }) {
 /** Shows the stream until it ends. */
 async function show(abort) {
   state.number = 0;
-  const answer = await fetch(`${base}/rooms/${room}/stream${location.search}`, { signal: abort.signal });
+  const answer = await fetch(`/api/v1/rooms/${room}/stream${location.search}`, { signal: abort.signal });
   if (!answer.ok) throw new Problem({ status: answer.status, ...(await answer.json().catch(() => ({}))) });
   tellFacts().catch(() => {}); // asked again soon
   const parts = new Parts();

@@ -1,5 +1,6 @@
 // Starts the page: gives the browser's socket, clock and decoder to the modules and shows the page that the address names.
 import { Connection } from './net/connection.js';
+import { placeOf, roomPath } from './net/address.js';
 import { makeApi } from './net/api.js';
 import { sendPlan } from './net/upload.js';
 import { Hooks } from './hooks.js';
@@ -9,7 +10,6 @@ import { Thumbnails } from './features/start/thumbnails.js';
 import { Redraw } from './parts/redraw.js';
 import { Decoder } from './pane/decoder.js';
 import { keepTextVisible } from './parts/visible_text.js';
-import { isId } from './wire/check.js';
 import { language } from './languages/index.js';
 
 document.documentElement.lang = language;
@@ -31,27 +31,43 @@ const clock = {
 };
 const redraw = new Redraw((callback) => requestAnimationFrame(callback), clock);
 const { decode } = new Decoder({
-  makeWorker: () => new Worker('js/pane/decode_worker.js'),
+  makeWorker: () => new Worker('/js/pane/decode_worker.js'),
   decodeHere: (picture, type) => createImageBitmap(new Blob([picture], { type })),
 });
 const hooks = new Hooks(clock);
 const api = makeApi((...request) => fetch(...request));
-const enter = (room, plan) => {
-  location.hash = address(room, plan);
-};
-/** "#/rooms/ID/PLAN", and "?link=TOKEN" behind it until the link has let this person in: the plan is there for the time after the room, which then can be opened again. */
-const address = (room, plan) => `#/rooms/${room}${plan ? `/${plan}` : ''}`;
+/** Goes to another place of the page. @param {string} path @param {boolean} isInstead back does not lead here again */
+function go(path, isInstead = false) {
+  history[isInstead ? 'replaceState' : 'pushState'](null, '', path);
+  void route();
+}
+/** Goes to a room. @param {string} plan its plan, '' if not known @param {string} link token of the link that lets in */
+function enter(room, plan = '', link = '', isInstead = false) {
+  remember(room, { ...(plan && { plan }), ...(link && { link }) });
+  go(roomPath(room), isInstead);
+}
 const ownName = new OwnName(storage());
 const thumbnails = new Thumbnails(api, URL);
 
 const send = ({ publicName, ...task }) => sendPlan({ ...task, url: api.uploadUrl(publicName), makeRequest: () => new XMLHttpRequest() });
 
-/** The member that this tab was in the room before a reload. */
+const inMemory = new Map(); // what a browser that keeps nothing forgets at a reload
+
+/** Facts of a room that this tab keeps over reloads: {member, secret} that it was, the token of the link that lets it in, the plan, with which it goes on after the room. */
 function remembered(room) {
   try {
     return JSON.parse(sessionStorage.getItem(`room ${room}`)) ?? {};
   } catch {
-    return {};
+    return inMemory.get(room) ?? {};
+  }
+}
+
+function remember(room, part) {
+  const whole = { ...remembered(room), ...part };
+  try {
+    sessionStorage.setItem(`room ${room}`, JSON.stringify(whole));
+  } catch {
+    inMemory.set(room, whole);
   }
 }
 
@@ -69,12 +85,10 @@ function person() {
   }
 }
 
-function connect(room, invitation) {
-  const url = new URL(`api/v1/rooms/${room}/ws`, location.href);
+function connect(room) {
+  const url = new URL(`/api/v1/rooms/${room}/ws`, location.href);
   url.protocol = url.protocol.replace('http', 'ws');
-  url.hash = '';
-  const { member = '', secret = '', link: before = '' } = remembered(room);
-  const link = (invitation || before).slice(0, 64);
+  const { member = '', secret = '', link = '' } = remembered(room);
   const isGone = () =>
     api.room(room).then(
       () => false,
@@ -86,29 +100,32 @@ function connect(room, invitation) {
     { name: ownName.value.value, member, secret, link, person: person() },
   );
   connection.addEventListener('message', ({ detail }) => {
-    if (detail.type !== 'welcome') return;
-    sessionStorage.setItem(`room ${room}`, JSON.stringify({ member: detail.member, secret: detail.secret, link }));
-    history.replaceState(null, '', address(room, detail.plan_id));
+    if (detail.type === 'welcome') remember(room, { member: detail.member, secret: detail.secret, plan: detail.plan_id });
   });
   return connection;
 }
 
 let leave = () => {};
 let nRoutes = 0;
+let shown = null; // "PLACE ID"
 
 async function route() {
-  const [path, query = ''] = location.hash.split('?');
-  const [, place, id, plan = ''] = path.split('/');
-  const invitation = new URLSearchParams(query).get('link') ?? new URLSearchParams(location.search).get('link') ?? '';
-  if (location.hash.startsWith('#picture-')) return; // the skip link's target, not a page
+  const { place, id, plan, link } = placeOf(location);
+  if (place === 'rooms' && (plan || link || location.hash.startsWith('#/'))) {
+    // the token leaves the address and the history before anything else happens
+    remember(id, { ...(plan && { plan }), ...(link && { link }) });
+    history.replaceState(null, '', roomPath(id));
+  }
+  if (shown === `${place} ${id}` && !link) return; // another fragment: the skip link's target, not a page
+  shown = `${place} ${id}`;
   leave();
   leave = () => {};
   nRoutes += 1;
   const host = document.querySelector('#page');
-  if (place === 'rooms' && isId(id))
+  if (place === 'rooms')
     leave = roomPage(host, id, {
       api,
-      connect: (room) => connect(room, invitation),
+      connect,
       clock,
       redraw,
       decode,
@@ -117,12 +134,12 @@ async function route() {
       ownName,
       storage: storage(),
       isBack: Boolean(remembered(id).member),
-      plan: isId(plan) ? plan : '',
+      plan: remembered(id).plan ?? '',
     });
-  else if (place === 'p' && isId(id)) {
+  else if (place === 'p') {
     const n = nRoutes;
     const { permalinkPage } = await import('./features/bookmarks/permalink.js');
-    if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => location.replace(address(room, of)) }); // going back does not make another room
+    if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => enter(room, of, '', true) }); // going back does not make another room
   } else {
     const n = nRoutes;
     const { startPage } = await import('./features/start/start_page.js'); // a file of its own: who opens a room by its link does not load it
@@ -130,5 +147,12 @@ async function route() {
   }
 }
 
-addEventListener('hashchange', route);
-route();
+/** Links to the start page lead there without loading the page anew. */
+document.addEventListener('click', (event) => {
+  const isPlain = !(event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey || event.defaultPrevented);
+  if (!isPlain || !event.target.closest?.('a[href="/"]')) return;
+  event.preventDefault();
+  go('/');
+});
+addEventListener('popstate', route); // also when a fragment is typed
+void route();

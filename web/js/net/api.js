@@ -19,7 +19,7 @@ export class Problem extends Error {
 export const ofMember = ({ member, secret }) => ({ 'Beamroom-Member': `${member} ${secret}` });
 
 /** @param {typeof fetch} fetch @param {string} base */
-export function makeApi(fetch, base = 'api/v1') {
+export function makeApi(fetch, base = '/api/v1') {
   async function call(method, path, { body, signal, isPicture = false, more = {} } = {}) {
     let response;
     try {

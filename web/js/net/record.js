@@ -4,7 +4,7 @@ import { say } from './words.js';
 
 /** Fetches a room's record. An export is recorded as one. @param {string} room its id @param {{member: string, secret: string}} identity of who asks */
 export async function fetchRecord(room, identity, isExport = false) {
-  const response = await fetch(`api/v1/rooms/${room}/record?export=${isExport}`, { headers: ofMember(identity) }).catch(() => {
+  const response = await fetch(`/api/v1/rooms/${room}/record?export=${isExport}`, { headers: ofMember(identity) }).catch(() => {
     throw new Problem({ detail: say.noAnswer });
   });
   const answer = await response.json().catch(() => null);

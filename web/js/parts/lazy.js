@@ -70,8 +70,9 @@ export function laterPart(isNeeded, code, make) {
   return Object.fromEntries(forwarded.map((name) => [name, (...args) => made()?.[name]?.(...args)]));
 }
 
-/** Adds a style sheet to the page, once; resolves when it is there. */
-export async function styled(href) {
+/** Adds a style sheet to the page, once; resolves when it is there. @param {string} sheet "js/parts/fields.css" */
+export async function styled(sheet) {
+  const href = `/${sheet}`;
   const known = document.querySelector(`link[href="${href}"]`);
   if (known?.sheet) return;
   const link = known ?? Object.assign(document.createElement('link'), { rel: 'stylesheet', href });

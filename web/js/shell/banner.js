@@ -12,7 +12,7 @@ import { stripEnd } from './tools.js';
 import { say } from './words.js';
 
 export const brand = () =>
-  html`<a class="brand" href="#/" title=${say.allPlans} aria-label=${say.brand}>${icon('logo', 20)}<b>Beamroom</b></a>`;
+  html`<a class="brand" href="/" title=${say.allPlans} aria-label=${say.brand}>${icon('logo', 20)}<b>Beamroom</b></a>`;
 
 const invite = later(() => import('./invite.js'), 'js/shell/invite.css');
 

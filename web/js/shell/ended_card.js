@@ -29,5 +29,5 @@ export function endedCard(world) {
       ${wasIn && room.lostAtEnd.value ? html`<p class="err">${icon('error')} ${say.changesLost}</p>` : nothing}
       <div class="buttons">${wasIn && room.items.notes.value.length ? html`<button @click=${() => void saveNotes(world)}>${say.saveNotes}</button>` : nothing}${rooms.map((other) => html`<button @click=${() => after.join(other)}>${say.join({ room: other.id, who: whoIn(other) })}</button>`)}
         ${plan ? html`<button class="primary" ?disabled=${after.isBusy.value} @click=${() => after.reopen()}>${say.openNew({ plan: plan.name })}</button>` : nothing}
-        <a class="button" href="#/">${sayAtOnce.allPlans}</a></div></div></section>`;
+        <a class="button" href="/">${sayAtOnce.allPlans}</a></div></div></section>`;
 }

@@ -7,7 +7,7 @@ const time = (ms) => new Date(ms).toLocaleTimeString([], { hour: '2-digit', minu
 
 /** Closes and opens the plan: all its rooms are sent it as it is then. */
 async function readAnew({ room, ui }) {
-  const plan = `api/v1/plans/${encodeURIComponent(room.planId.peek())}`;
+  const plan = `/api/v1/plans/${encodeURIComponent(room.planId.peek())}`;
   for (const act of ['close', 'open']) {
     const answer = await fetch(`${plan}/${act}`, { method: 'POST' }).catch(() => null);
     if (!answer?.ok) return void ui.notify('err', say.notReadAnew, 'files');

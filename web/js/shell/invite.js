@@ -1,6 +1,7 @@
 // Invites others by a link that gives a role. Loaded when it is first opened.
 import { html, nothing } from '../../lib/lit-html.js';
 import { signal } from '../../lib/signals-core.js';
+import { roomPath } from '../net/address.js';
 import { say } from './later_words.js';
 import { say as sayAtOnce } from './words.js';
 
@@ -17,10 +18,10 @@ const times = [
 const made = signal({ url: '', words: '', error: '', isBusy: false });
 
 /** The page's address of this room with the link in it. */
-const addressOf = (room, token) => Object.assign(new URL(location.href), { search: '', hash: `#/rooms/${room.id}?link=${token}` }).href;
+const addressOf = (room, token) => new URL(roomPath(room.id, token), location.href).href;
 
 /** The address of this room for a screen that everybody looks at: short, as somebody types it there. */
-const displayOf = (room) => new URL(`display/${room.id}`, Object.assign(new URL(location.href), { search: '', hash: '' })).href;
+const displayOf = (room) => new URL(`/display/${room.id}`, location.href).href;
 
 async function copy(text) {
   const field = document.querySelector('#invite-made');

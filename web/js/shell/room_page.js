@@ -80,6 +80,7 @@ export function roomPage(
     room,
     ui,
     api,
+    enter,
     clock,
     connection,
     decode,

@@ -72,6 +72,10 @@ static void a_compressed_copy_is_a_form_of_its_file_and_has_no_path(void **state
     assert_memory_equal(page->forms[CODING_BR].bytes, "smaller", 7);
     assert_string_not_equal(page->forms[CODING_GZIP].etag, page->forms[CODING_BR].etag);
     assert_int_equal(file_coding(page, "gzip, br"), CODING_BR);
+    assert_ptr_equal(files_find(files, "/rooms/kave-rimo"), page);
+    assert_null(files_find(files, "/rooms/"));
+    assert_null(files_find(files, "/rooms/kave-rimo/ws"));
+    assert_null(files_find(files, "/rooms/../index.html"));
     const struct file *code = files_find(files, "/page/main-0.js");
     assert_true(code->is_immutable && !code->has_forms);
     assert_int_equal(file_coding(code, "gzip, br"), CODING_IDENTITY);

@@ -89,7 +89,8 @@ export async function move({ room }, row, by) {
     if (other.body.order !== index + 1) await room.items.put('bookmark', { ...other.body, order: index + 1 }, other);
 }
 
-export const linkOf = (row, href = location.href) => `${href.split('#')[0]}#/p/${row.body.token}`;
+/** The token of a saved view stands behind "#": no server writes it into a log. */
+export const linkOf = (row, href = location.href) => new URL(`/#/p/${row.body.token}`, href).href;
 
 // ---- showing ------------------------------------------------------------------------------------------------------------
 

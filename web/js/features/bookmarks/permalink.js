@@ -45,5 +45,5 @@ function refused(problem, again) {
   return html`<section class="card" role="alert">${icon(isGone ? 'bookmark' : 'error', 20)}<div><h1>${isGone ? say.gone : say.notNow}</h1>
     <p>${isGone ? say.goneIs : problem.message}</p>
     <div class="buttons">${isGone ? '' : html`<button class="primary" @click=${again}>${say.again}</button>`}
-      <a class="button" href="#/">${say.plans}</a></div></div></section>`;
+      <a class="button" href="/">${say.plans}</a></div></div></section>`;
 }

@@ -1,6 +1,7 @@
 // Recording the meeting, the list of recordings, and how a replay is moved: part of the popover of the room chip.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { effect, signal } from '../../../lib/signals-core.js';
+import { roomPath } from '../../net/address.js';
 import { dayTime, listed } from '../../parts/format.js';
 import { say } from './later_words.js';
 
@@ -35,7 +36,7 @@ function listOf(room, api, ui) {
 async function play(room, api, ui, id) {
   try {
     const made = await api.call('POST', 'rooms', { body: { recording: { room: room.id, id } } });
-    window.open(`#/rooms/${made.id}`, '_blank');
+    window.open(roomPath(made.id), '_blank');
   } catch (problem) {
     ui.notify('err', problem.message);
   }

@@ -108,7 +108,7 @@ export async function openDroppedSnapshot(api, file, enter) {
 }
 
 /** Says that a picture belongs to another plan, and offers to open that. */
-export function otherPlanDialog({ room, ui, api, otherPlan }) {
+export function otherPlanDialog({ room, ui, api, enter, otherPlan }) {
   const record = otherPlan.value;
   if (ui.popover.value !== 'other-plan' || !record) return nothing;
   const close = () => {
@@ -116,9 +116,9 @@ export function otherPlanDialog({ room, ui, api, otherPlan }) {
   };
   const open = () => {
     close();
-    openSnapshot(api, record, (id) => {
-      location.hash = `#/rooms/${id}`;
-    }).catch((error) => ui.notify('err', say.planWhy({ plan: record.plan.name, why: error.message }), 'snapshot'));
+    openSnapshot(api, record, enter).catch((error) =>
+      ui.notify('err', say.planWhy({ plan: record.plan.name, why: error.message }), 'snapshot'),
+    );
   };
   const plans = { plan: record.plan.name, id: html`<code>${record.plan.id}</code>`, shown: room.plan.value?.name ?? room.planId.value };
   return html`<section class="card other-plan" role="dialog" tabindex="-1" aria-label=${say.pictureOfOther}>

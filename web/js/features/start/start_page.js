@@ -4,7 +4,7 @@ import { effect } from '../../../lib/signals-core.js';
 import { reportSummary } from '../../room/plan.js';
 import { PlansState } from '../../room/plans.js';
 import { UploadsState } from './uploads.js';
-import { isId } from '../../wire/check.js';
+import { roomOf } from '../../net/address.js';
 import { brand } from '../../shell/banner.js';
 import { deleteDialog, watchDialog } from './delete_dialog.js';
 import { number, seconds } from '../../parts/format.js';
@@ -93,9 +93,9 @@ function join(state, enter) {
     event.preventDefault();
     const field = event.target.elements.room;
     // a whole link is accepted as well as the id in it
-    const [id, plan = ''] = field.value.trim().split('#/rooms/').at(-1).split('/');
-    field.setCustomValidity(isId(id) ? '' : say.noRoomId);
-    if (field.reportValidity()) enter(id, isId(plan) ? plan : '');
+    const { place, id, plan, link } = roomOf(field.value);
+    field.setCustomValidity(place === 'rooms' ? '' : say.noRoomId);
+    if (field.reportValidity()) enter(id, plan, link);
   };
   return html`<span class="anchor"><button aria-expanded=${state.isJoining.value} @click=${() => {
     state.isJoining.value = !state.isJoining.value;

@@ -78,7 +78,7 @@ test('a change keeps what this version does not know, and the link', async () =>
   );
   void update(of, one);
   assert.deepEqual([of.puts()[1].body.scene, of.puts()[1].body.name, of.puts()[1].body.token], [null, 'i-1', 'ti-1']);
-  assert.equal(linkOf(one, 'https://host/at/#/rooms/r/p'), 'https://host/at/#/p/ti-1');
+  assert.equal(linkOf(one, 'https://host/rooms/r'), 'https://host/#/p/ti-1');
 });
 
 test('rows stand in their order, and are moved between their neighbours', () => {
