@@ -226,7 +226,10 @@ static bool verify_audit(const struct options *options, struct error *err)
         print_time("first", facts.first_ms);
         print_time("last", facts.last_ms);
     }
-    printf("items %lld\n", (long long)facts.n_items);
+    if (facts.is_export)
+        printf("gaps %lld\n", (long long)facts.n_gaps);
+    else
+        printf("items %lld\n", (long long)facts.n_items);
     printf("head %s\n", facts.head);
     return true;
 }

@@ -57,6 +57,7 @@ static const struct {
     { "GET", "/api/v1/rooms/{room}/control", api_room_control },
     { "GET", "/api/v1/rooms/{room}/stream", api_room_stream },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
+    { "GET", "/api/v1/audit", api_audit },
     { "GET", "/api/v1/records", api_records },
     { "GET", "/api/v1/records/{record}", api_record },
     { "GET", "/p/{saved}", api_permalink },

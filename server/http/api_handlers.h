@@ -30,6 +30,7 @@ void api_room_scene(struct api *api, struct call *call);
 void api_room_scene_patch(struct api *api, struct call *call);
 void api_room_members(struct api *api, struct call *call);
 void api_room_notes(struct api *api, struct call *call);
+void api_audit(struct api *api, struct call *call);
 void api_records(struct api *api, struct call *call);
 void api_record(struct api *api, struct call *call);
 /* Whether a room or plan (what) with these many decisions and signatures may be deleted: records=keep was said where

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "core/base/clock.h"
-#include "server/front/address.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
@@ -12,9 +11,7 @@
  * that is the person at this machine. */
 static bool may_read(const struct api *api, const struct call *call, struct problem *problem)
 {
-    struct address client;
-    bool is_here = address_read(call->client, strlen(call->client), &client) && address_is_loopback(&client);
-    if (!api->is_alone || !is_here)
+    if (!api_is_of_this_machine(api, call))
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "identity",
                            "who a patient is is told only to the person at the server's own machine (a listener on "
                            "127.0.0.1 or [::1], without --open-to-everybody), as nobody signs in here");

@@ -16,6 +16,7 @@
 #include "server/net/bridge.h"
 #include "server/net/keep.h"
 #include "server/net/keep_audit.h"
+#include "server/net/keep_audit_read.h"
 #include "server/net/keep_recordings.h"
 #include "server/net/keep_records.h"
 #include "server/net/net_state.h"
@@ -296,6 +297,7 @@ static void handle_answer(struct net *net, void *argument)
     case STORE_READ: rooms_was_read(net, answer); break;
     case STORE_PART: keep_part_was_read(net, answer); break;
     case STORE_RECORDS: keep_records_were_read(net, answer); break;
+    case STORE_AUDIT: keep_audit_was_read(net, answer); break;
     case STORE_FAILING:
     case STORE_FINE:
         net->store_fails = answer->event == STORE_FAILING;
@@ -434,6 +436,7 @@ static void *work(void *context)
     asleep_tell(net, NULL, &stops);
     keep_readers_finish(net);
     keep_record_readers_finish(net);
+    keep_audit_readers_finish(net);
     tell_listed(net, UINT64_MAX);
     while (net->n_rooms)
         rooms_close(net, 0);

@@ -5,6 +5,7 @@
 
 #include "server/fleet/fleet.h"
 #include "server/room/room.h"
+#include "server/store/store_rows.h"
 #include "server/wire/handshake.h"
 
 struct net;
@@ -90,6 +91,13 @@ struct net_record {
 typedef void net_records_read(void *context, const struct net_record *records, size_t n, const struct problem *problem);
 NODISCARD bool net_read_records(struct net *net, const char *id, const char *before, net_records_read *done,
                                 void *context, struct problem *problem);
+/* Reads rows of the audit, the newest first. done is called once, later; n 0 with problem: they cannot be read. next_n:
+ * rows with lower numbers were not looked at, 0: there are none. False with problem: the disk has too much to do, or
+ * nothing is kept. */
+typedef void net_audit_read(void *context, const struct store_audit_row *rows, size_t n, int64_t next_n,
+                            const struct problem *problem);
+NODISCARD bool net_read_audit(struct net *net, const struct store_audit_query *query, net_audit_read *done,
+                              void *context, struct problem *problem);
 /* False with problem: the disk cannot be written now, so nothing is accepted that must last. */
 NODISCARD bool net_can_write(struct net *net, struct problem *problem);
 /* A new room on the plan of that room, which plays this recording of it. NULL with problem. */

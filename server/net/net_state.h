@@ -102,6 +102,13 @@ struct record_reader { /* waits for records */
     void *context;
 };
 
+struct audit_reader { /* waits for rows of the audit */
+    struct audit_reader *next;
+    uint64_t ticket;
+    net_audit_read *done;
+    void *context;
+};
+
 struct part_reader { /* waits for a part of a recording */
     struct part_reader *next;
     uint64_t ticket;
@@ -126,6 +133,7 @@ struct net {
     struct waiter *waiters;
     struct part_reader *readers;
     struct record_reader *record_readers;
+    struct audit_reader *audit_readers;
     struct list_waiter *list_waiters;
     char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */
     size_t n_undeleted;

@@ -14,6 +14,7 @@
 #include "core/base/queue.h"
 #include "server/store/accounts.h"
 #include "server/store/audit.h"
+#include "server/store/audit_read.h"
 #include "server/store/database.h"
 #include "server/store/heads.h"
 #include "server/store/recordings.h"
@@ -29,7 +30,8 @@ enum request_kind {
     REQUEST_DELETE,
     REQUEST_READ,
     REQUEST_READ_PART,
-    REQUEST_READ_RECORDS
+    REQUEST_READ_RECORDS,
+    REQUEST_READ_AUDIT
 };
 
 struct request {
@@ -41,7 +43,8 @@ struct request {
     struct store_accounts *accounts; /* of REQUEST_WRITE_ACCOUNTS */
     char recording[64];              /* of a part that is read; of records, those before this one */
     int64_t t_ms;
-    struct error refusal; /* why the room can never be written; its rows for the audit are left */
+    struct store_audit_query *query; /* of rows of the audit */
+    struct error refusal;            /* why the room can never be written; its rows for the audit are left */
 };
 
 struct store {
@@ -72,6 +75,7 @@ void store_answer_free(struct store_answer *answer)
     for (size_t i = 0; i < answer->n_records; i++)
         store_record_finish(&answer->records[i]);
     free(answer->records);
+    audit_rows_free(answer->audit, answer->n_audit_rows);
     free(answer);
 }
 
@@ -80,6 +84,7 @@ static void request_free(void *item)
     struct request *request = item;
     store_room_free(request->room);
     store_accounts_free(request->accounts);
+    free(request->query);
     free(request);
 }
 
@@ -356,6 +361,18 @@ static void read_records(struct store *store, const struct request *request)
     answer(store, &read);
 }
 
+static void read_audit(struct store *store, const struct request *request)
+{
+    struct store_answer read = { .event = STORE_AUDIT, .ticket = request->ticket };
+    if (!store->db)
+        read.error = store->failure;
+    else
+        read.audit = audit_read(store->db, request->query, &read.n_audit_rows, &read.next_n, &read.error);
+    read.audit_n = store->head.n;
+    memcpy(read.audit_hash, store->head.hash, sizeof read.audit_hash);
+    answer(store, &read);
+}
+
 static void take(struct store *store, struct request *request)
 {
     if (request->kind != REQUEST_WRITE && request->kind != REQUEST_WRITE_ACCOUNTS && request->kind != REQUEST_DELETE) {
@@ -363,6 +380,8 @@ static void take(struct store *store, struct request *request)
             read_room(store, request);
         else if (request->kind == REQUEST_READ_PART)
             read_part(store, request);
+        else if (request->kind == REQUEST_READ_AUDIT)
+            read_audit(store, request);
         else
             read_records(store, request);
         request_free(request);
@@ -493,6 +512,17 @@ bool store_read_records(struct store *store, const char *id, const char *before,
     if (queue_try_put(store->queue, request))
         return true;
     free(request);
+    return false;
+}
+
+bool store_read_audit(struct store *store, const struct store_audit_query *query, uint64_t ticket)
+{
+    struct request *request = mem_new(sizeof *request);
+    *request = (struct request){ .kind = REQUEST_READ_AUDIT, .ticket = ticket, .query = mem_new(sizeof *query) };
+    *request->query = *query;
+    if (queue_try_put(store->queue, request))
+        return true;
+    request_free(request);
     return false;
 }
 

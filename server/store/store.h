@@ -12,8 +12,10 @@ enum {
     STORE_QUEUE = 4096,      /* requests that may wait */
     STORE_MAX_ROOMS = 10000, /* listed; a caller keeps no more */
     STORE_RECORDS_AT_ONCE = 1000,
-    STORE_LOG_HEAD_S = 3600, /* the newest row of the audit goes to the log, if there are new ones */
-    STORE_RETRY_MS = 500,    /* pause after a failed commit; doubled each time up to */
+    STORE_AUDIT_AT_ONCE = 1000,
+    STORE_AUDIT_LOOKED_AT = 10000, /* rows of the audit that one reading looks at: writes wait meanwhile */
+    STORE_LOG_HEAD_S = 3600,       /* the newest row of the audit goes to the log, if there are new ones */
+    STORE_RETRY_MS = 500,          /* pause after a failed commit; doubled each time up to */
     STORE_RETRY_AT_MOST_MS = 4000
 };
 
@@ -25,6 +27,7 @@ enum store_event {
     STORE_WRITTEN, /* the write `ticket` is on disk; error.code set: it can never be written, and was dropped */
     STORE_READ,    /* room, or NULL with error */
     STORE_PART,    /* part, or NULL with error */
+    STORE_AUDIT,   /* audit, the newest row first; NULL with error */
     STORE_RECORDS, /* records, without item and body, the newest first, or one with them; NULL with error */
     STORE_FAILING, /* nothing can be written now: error; tried again and again */
     STORE_FINE     /* it can be written again */
@@ -41,6 +44,9 @@ struct store_answer {
     size_t n_rooms;
     struct store_record *records; /* the receiver's */
     size_t n_records;
+    struct store_audit_row *audit; /* the receiver's */
+    size_t n_audit_rows;
+    int64_t next_n; /* of STORE_AUDIT: the rows with lower numbers were not looked at; 0: there are none */
     bool is_new;
     size_t n_audit;  /* of STORE_WRITTEN: rows of the audit that were in the write */
     int64_t audit_n; /* of STORE_OPENED and STORE_WRITTEN without error: the newest row of the audit */
@@ -73,5 +79,7 @@ bool store_read(struct store *store, const char *room_id, uint64_t ticket);
 /* Records with time and number before those of the record `before` ("": the newest), at most STORE_RECORDS_AT_ONCE; id
  * not "": this record alone, with item and body. */
 bool store_read_records(struct store *store, const char *id, const char *before, uint64_t ticket);
+/* Rows of the audit, the newest first, of the next STORE_AUDIT_LOOKED_AT ones below query->before_n. */
+bool store_read_audit(struct store *store, const struct store_audit_query *query, uint64_t ticket);
 /* A part of a recording: the batches from the last one with a state at or before t_ms on, up to the next such one. */
 bool store_read_part(struct store *store, const char *room_id, const char *recording, int64_t t_ms, uint64_t ticket);

@@ -51,6 +51,22 @@ struct store_record {
 };
 void store_record_finish(struct store_record *record);
 
+/* Which rows of the audit are read. */
+struct store_audit_query {
+    int64_t from_ms, to_ms;            /* of the row: since 1970, both included */
+    int64_t before_n;                  /* rows with lower numbers alone; INT64_MAX: all */
+    char user[65], plan[64], room[64]; /* "": any */
+    char action[24];
+    size_t limit; /* 1 to STORE_AUDIT_AT_ONCE */
+};
+
+struct store_audit_row {
+    int64_t n;
+    char *text;
+    bool is_json;                                          /* false: somebody has changed it so that it is not */
+    char before[STORE_AUDIT_HASH], hash[STORE_AUDIT_HASH]; /* before: the hash of the row before it */
+};
+
 struct store_batch { /* of the events of a recording */
     uint32_t place;
     int64_t t_ms;

@@ -12,20 +12,9 @@
 #include "server/store/heads.h"
 #include "server/store/sql.h"
 #include "server/store/verify_items.h"
+#include "server/store/verify_rows.h"
 
 enum { VERSION_WITH_AUDIT = 4, VERSION_WITH_HEAD = 6 }; /* of the database */
-
-/* The number and the time with which a row's text begins; false: it begins otherwise. */
-static bool read_beginning(const char *text, int64_t *n, int64_t *time_ms)
-{
-    long long number, ms;
-    int at = 0;
-    if (sscanf(text, "{\"n\":%lld,\"time_ms\":%lld%n", &number, &ms, &at) != 2 || at == 0 || text[at] != ',')
-        return false;
-    *n = number;
-    *time_ms = ms;
-    return true;
-}
 
 /* Whether a row with this number, text and hash continues the chain that ends with facts->head. */
 static bool check_row(const struct audit_facts *facts, int64_t n, const char *text, const char *hash, int64_t *time_ms,
@@ -36,7 +25,7 @@ static bool check_row(const struct audit_facts *facts, int64_t n, const char *te
     int64_t own = 0;
     if (found != here)
         return error_set(err, ERROR_FORMAT, "row %lld is missing: row %lld follows row %lld", here, found, here - 1);
-    if (!read_beginning(text, &own, time_ms))
+    if (!verify_row_beginning(text, &own, time_ms))
         return error_set(err, ERROR_FORMAT, "row %lld: its text does not begin with its number and its time", here);
     if (own != n)
         return error_set(err, ERROR_FORMAT, "row %lld has the text of row %lld: the order was changed", here,
@@ -161,6 +150,8 @@ bool store_verify_audit(const char *path, const char *head, struct audit_facts *
     memcpy(facts->head, audit_no_hash, sizeof facts->head);
     if (access(path, F_OK) != 0)
         return error_set(err, ERROR_NOT_FOUND, "%.150s: %s", path, strerror(errno));
+    if (verify_is_rows(path))
+        return verify_rows(path, head, facts, err);
     heads_read(path, &noted); /* before the database, which goes on growing while a daemon writes it */
     sqlite3 *db = database_open_to_read(path, err);
     const bool ok = db && sql_run(db, "BEGIN", err) && check_all(db, head, &noted, facts, err);

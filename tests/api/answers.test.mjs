@@ -144,6 +144,7 @@ test('rooms, and what their members write down', async () => {
     (answer) => answer.records.length > 0,
   );
   await ask(`/api/v1/records/${records[0].id}`);
+  await ask('/api/v1/audit');
   ann.send({ type: 'recording.start' });
   const { recordings } = await until(
     () => ask(`${at}/recordings`),

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { copyFileSync, mkdtempSync, rmSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -279,6 +279,79 @@ test('the chain is what SHA-256 gives, and beamroomd verifies it', () => {
   assert.equal(status, 0);
   const time = (row) => new Date(row.time_ms).toISOString().replace(/\.\d+Z/, 'Z');
   assert.equal(stdout, `rows ${rows.length}\nfirst ${time(rows[0])}\nlast ${time(rows.at(-1))}\nitems 5\nhead ${hash}\n`);
+});
+
+test('GET /audit gives the rows of the disk, page by page, filtered, and as lines that are checked', async () => {
+  daemon = await startDaemon({ data, args: ['--stub'] });
+  const get = async (query = '') => (await call(`${daemon.url}/api/v1/audit${query}`)).json;
+  const rows = onDisk().reverse(),
+    bare = ({ text: _, hash, ...row }) => ({ ...row, sha256: hash });
+  assert.deepEqual(await get('?limit=1000'), { rows: rows.map(bare), next: null });
+
+  const paged = [];
+  for (let page = { next: '' }; page.next !== null; paged.push(...page.rows))
+    page = await get(`?limit=7${page.next && `&cursor=${page.next}`}`);
+  assert.deepEqual(paged, rows.map(bare));
+
+  const from = rows[9].time_ms,
+    to = rows[4].time_ms,
+    kept = (keep) => rows.filter(keep).map(bare);
+  assert.deepEqual(
+    (await get(`?from=${from}&to=${to}`)).rows,
+    kept(({ time_ms }) => time_ms >= from && time_ms <= to),
+  );
+  assert.deepEqual(
+    (await get(`?action=link&plan=phantom&room=${rows.at(-1).room}`)).rows,
+    kept((row) => row.action === 'link' && row.room === rows.at(-1).room),
+  );
+  assert.deepEqual((await get('?plan=other')).rows, []);
+  for (const [query, pointer] of [
+    ['limit=0', '/limit'],
+    ['limit=1001', '/limit'],
+    ['limit=1.5', '/limit'],
+    ['from=x', '/from'],
+    ['cursor=0', '/cursor'],
+    ['format=csv', '/format'],
+    [`plan=${'a'.repeat(64)}`, '/plan'],
+  ]) {
+    const { status, json } = await call(`${daemon.url}/api/v1/audit?${query}`);
+    assert.deepEqual([status, json.pointer], [422, pointer], query);
+  }
+
+  const file = join(data, 'rows.ndjson');
+  let lines = '';
+  for (let cursor = ''; cursor !== null; ) {
+    const response = await fetch(`${daemon.url}/api/v1/audit?format=ndjson&limit=9${cursor && `&cursor=${cursor}`}`);
+    cursor = response.headers.get('audit-next');
+    lines += await response.text();
+  }
+  writeFileSync(file, lines);
+  const { stdout, stderr } = verify(file, '--audit-head', rows[0].hash);
+  assert.equal(stderr, '');
+  assert.match(stdout, new RegExp(`^rows ${rows.length}\n.*\n.*\ngaps 0\nhead ${rows[0].hash}\n$`));
+  await rowWith('export', (row) => row.detail.what === 'audit');
+
+  const said = (text) => {
+    writeFileSync(file, text);
+    const { status, stdout, stderr } = verify(file);
+    assert.deepEqual([status, stdout], [1, '']);
+    return stderr;
+  };
+  const list = lines.trimEnd().split('\n');
+  assert.match(said(lines.replace('"Ann"', '"Eve"')), /line \d+: row \d+ does not fit: its hash is/);
+  assert.match(said(`${lines}{"n":1}\n`), new RegExp(`line ${list.length + 1} is no row of the audit`));
+  const forged = JSON.parse(list[3]);
+  forged.before = 'a'.repeat(64);
+  const text = list[3].slice(list[3].indexOf('"row":') + 6, -1);
+  const hash = createHash('sha256')
+    .update(forged.before + text)
+    .digest('hex');
+  const line = `{"before":"${forged.before}","sha256":"${hash}","row":${text}}`;
+  assert.match(said([...list.slice(0, 3), line, ...list.slice(4)].join('\n')), /line 4: row \d+ and row \d+ are no chain/);
+  writeFileSync(file, [...list.slice(0, 2), ...list.slice(5)].join('\n'));
+  assert.match(verify(file).stdout, /gaps 1\n/);
+  await daemon.stop();
+  daemon = null;
 });
 
 test('a row that was changed, a cut tail and a wrong hash are named', () => {
