@@ -91,7 +91,7 @@ DAEMON_SRC := $(call c_files,server/daemon)
 RENDERER_SRC := $(call c_files,server/renderer)
 UNPACK_SRC := $(filter-out %_run.c,$(sort $(wildcard server/renderer/unpack*.c)))
 CLI_SRC := $(call c_files,server/cli)
-GEN_SRC := $(GEN)/wire_gen.c $(GEN)/packets_gen.c $(GEN)/problem_gen.c $(GEN)/openapi.c
+GEN_SRC := $(GEN)/wire_gen.c $(GEN)/packets_gen.c $(GEN)/problem_gen.c $(GEN)/rights_gen.c $(GEN)/openapi.c
 
 # The inner loops of the software rasteriser are written to be vectorised. No value changes by that; what does is the exception
 # flags of the processor, which nobody reads.

@@ -169,30 +169,12 @@ export function checkedMessages(description) {
     checkFields(message.fields, { enums: description.enums, references: {}, known: new Set(), isMessage: true }, message.name);
     if (rights)
       need(
-        message.from === 'client' ? rights.includes(message.right) : message.right === undefined,
+        message.from === 'client' ? rights.includes(message.needs?.[0]) : message.needs === undefined,
         message.name,
-        `a message from the page, and no other, has a "right": one of ${rights.join(', ')}`,
+        `a message from the page, and no other, says what it "needs": [right, "room"], the right one of ${rights.join(', ')}`,
       );
   }
   for (const [role, , given = []] of description.enums.member_role?.values ?? [])
     need(given.length > 0 && given.every((right) => rights.includes(right)), role, `a role has rights: some of ${rights.join(', ')}`);
   return description;
-}
-
-/** The routes of rooms (http.json), each with its right. */
-export function checkedRoomRoutes({ routes }, { enums, messages }) {
-  const rights = enums.right.values.map(([word]) => word);
-  for (const { method, path, right } of routes)
-    need(
-      /\{room\}/.test(path) ? rights.includes(right) : right === undefined,
-      `${method} ${path}`,
-      `a route of a room, and no other, has a "right": one of ${rights.join(', ')}`,
-    );
-  for (const { method, path, right, message } of routes)
-    need(
-      message === undefined || messages.find(({ name }) => name === message)?.right === right,
-      `${method} ${path}`,
-      `does what the message "${message}" does, and needs its right`,
-    );
-  return routes.filter(({ right }) => right !== undefined);
 }

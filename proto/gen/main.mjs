@@ -1,6 +1,7 @@
 // Generates code and pages from proto/*.json and the list of report codes: main.mjs FOLDER, which gets
 //   scene.h scene.c      structs, enums, defaults, copy and compare of scene and view, without JSON, for core
 //   wire_gen.h wire_gen.c  field tables and message structs for server/wire
+//   rights_gen.h rights_gen.c  what each route needs
 //   problem_gen.h problem_gen.c  types of problems
 //   sentences_gen.h sentences_gen.c  sentences with their codes and places
 //   gl_shaders.h gl_shaders.c  the shaders of core/render/gl/shaders
@@ -14,7 +15,7 @@
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { checkedDocuments, checkedMessages, checkedRoomRoutes } from './check.mjs';
+import { checkedDocuments, checkedMessages } from './check.mjs';
 import { sceneHeader, sceneSource } from './scene_c.mjs';
 import { wireHeader, wireSource } from './wire_c.mjs';
 import { wireScript } from './wire_js.mjs';
@@ -27,6 +28,7 @@ import { problemHeader, problemSource } from './problem_c.mjs';
 import { readShaders, shadersHeader, shadersSource } from './shaders_c.mjs';
 import { referencePage } from './reference.mjs';
 import { reportCodes } from './report_codes.mjs';
+import { checkedRights, rightsHeader, rightsSource, roomRoutes } from './rights.mjs';
 import { sentencesHeader, sentencesSource } from './sentences.mjs';
 import { undoWordsScript } from './undo_words.mjs';
 
@@ -41,6 +43,7 @@ const packets = read('packets.json');
 checkPackets(packets, scene);
 const http = read('http.json');
 const routes = [...http.routes, ...questionRoutes(packets)];
+const rights = checkedRights(read('rights.json'), routes, messages);
 const api = openapi({ ...http, routes }, scene, answerSchemas(read('answers.json'), read('record.json'), scene, routes), messages, '1');
 const presets = checkedPresets(read('volume_presets.json'), scene);
 const dosePresets = checkedDosePresets(read('dose_presets.json'), scene);
@@ -51,7 +54,9 @@ const write = (name, text) => writeFileSync(join(out, name), text);
 write('scene.h', sceneHeader(scene));
 write('scene.c', sceneSource(scene));
 write('wire_gen.h', wireHeader(scene, messages));
-write('wire_gen.c', wireSource(scene, messages, checkedRoomRoutes(http, messages)));
+write('wire_gen.c', wireSource(scene, messages, roomRoutes(rights, messages)));
+write('rights_gen.h', rightsHeader(rights));
+write('rights_gen.c', rightsSource(rights));
 write('packets_gen.h', packetsHeader(packets));
 write('packets_gen.c', packetsSource(packets));
 write('problem_gen.h', problemHeader(problems));
@@ -77,6 +82,7 @@ write(
     problems,
     reportCodes(readFileSync(join(proto, '../core/report/report_codes.h'), 'utf8')),
     sentences,
+    rights,
   ),
 );
 write('openapi.json', JSON.stringify(api, null, 1));

@@ -121,7 +121,7 @@ export function openapi(http, scene, answers, messages, version) {
       summary: route.about,
       parameters,
       responses,
-      ...(route.right && { 'x-right': route.right }),
+      ...(route.needs && { 'x-needs': { right: route.needs[0], subject: route.needs[1] } }),
       ...(route.message && { 'x-message': route.message }),
     };
     if (route.body === 'scene')

@@ -200,6 +200,7 @@ export function questionRoutes(packets) {
       return {
         method: 'GET',
         path: question.path,
+        needs: question.needs,
         about: question.about,
         query,
         answers: { 200: question.answer ?? question.name },

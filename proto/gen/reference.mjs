@@ -1,5 +1,6 @@
 // reference.html: everything that proto/ describes, as a page for people.
 import { packetsSection } from './packets.mjs';
+import { rightsSection } from './rights.mjs';
 import { sentencesSection } from './sentences.mjs';
 
 const escape = (text) => String(text).replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
@@ -50,7 +51,7 @@ function rows(fields, enums) {
 export const tableOf = (fields, enums) =>
   `<table><thead><tr><th>Field</th><th>Type</th><th>Range</th><th>Default</th><th>Meaning</th></tr></thead><tbody>\n${rows(fields, enums)}\n</tbody></table>\n`;
 
-export function referencePage(scene, messages, packets, problems, codes, sentences) {
+export function referencePage(scene, messages, packets, problems, codes, sentences, rights) {
   const enums = { ...scene.enums, ...messages.enums };
   let body = '<h1>Beamroom reference</h1>\n<p><a href="/api/v1/openapi.json">OpenAPI description of the HTTP API</a></p>\n';
   body += `<h2>Scene and view</h2>\n<p>${escape(scene.about)}</p>\n`;
@@ -63,7 +64,8 @@ export function referencePage(scene, messages, packets, problems, codes, sentenc
     body += `<h3>${name}</h3>\n<p>${escape(description.about)}</p>\n<ul>${description.values.map(([word, about, rights]) => `<li><code>${escape(word)}</code>: ${escape(about)}${rights ? `; rights: ${escape(rights.join(', '))}` : ''}</li>`).join('')}</ul>\n`;
   body += `<h2>WebSocket messages</h2>\n<p>${escape(messages.about)}</p>\n`;
   for (const message of messages.messages)
-    body += `<h3 id="message-${escape(message.name)}">${escape(message.name)} <small>from the ${message.from === 'client' ? 'page' : 'server'}</small></h3>\n<p>${escape(message.about)}${message.right ? ` Right: <code>${message.right}</code>.` : ''}</p>\n${tableOf(message.fields, enums)}`;
+    body += `<h3 id="message-${escape(message.name)}">${escape(message.name)} <small>from the ${message.from === 'client' ? 'page' : 'server'}</small></h3>\n<p>${escape(message.about)}${message.needs ? ` Right: <code>${message.needs[0]}</code>.` : ''}</p>\n${tableOf(message.fields, enums)}`;
+  body += rightsSection(rights, escape);
   body += packetsSection(packets, escape, tableOf);
   body +=
     `<h2 id="problems">Problems</h2>\n<p>${escape(problems.about)}</p>\n<table><thead><tr><th>Type</th><th>Status</th><th>Title</th><th>What to do</th></tr></thead><tbody>\n` +

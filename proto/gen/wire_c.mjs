@@ -143,7 +143,7 @@ export function wireSource(scene, messages, roomRoutes = []) {
   }
   const rows = messages.messages.map(
     (m) =>
-      `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object${messages.enums.right ? `, WIRE_RIGHT_${upper(m.right ?? 'look')}` : ''} },`,
+      `    [MESSAGE_${upper(m.name)}] = { "${m.name}", ${m.from === 'client'}, offsetof(struct message, ${lower(m.name)}), &${structOf(m)}_object${messages.enums.right ? `, WIRE_RIGHT_${upper(m.needs?.[0] ?? 'look')}` : ''} },`,
   );
   text += `const struct message_description message_descriptions[MESSAGE_N_TYPES] = {\n${rows.join('\n')}\n};\n`;
   return messages.enums.member_role ? text + rightsSource(messages, roomRoutes) : text;
