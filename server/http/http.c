@@ -39,6 +39,7 @@ struct http {
     struct intake *intake;
     struct front *front;
     struct MHD_Daemon *daemon;
+    struct queue *moved; /* requests whose archives the disk has taken, which are resumed likewise */
     struct queue *
         answered; /* answered requests, whose connections the HTTP thread resumes: the library allows no other thread */
     struct request *feeding; /* requests whose answers have no end */
@@ -260,6 +261,14 @@ static enum MHD_Result refuse_body(struct request *request)
     return MHD_NO;
 }
 
+/* On the spool's thread. */
+static void disk_moved(void *context)
+{
+    struct request *request = context;
+    (void)queue_try_put(request->http->moved, request);
+    front_wake(request->http->front);
+}
+
 /* Begins to receive an archive as the body. */
 static bool begin_archive(struct request *request)
 {
@@ -272,7 +281,7 @@ static bool begin_archive(struct request *request)
                                         !length         ? -1
                                         : n < INT64_MAX ? (int64_t)n
                                                         : INT64_MAX,
-                                        &call->early);
+                                        disk_moved, request, &call->early);
     return request->archive != NULL;
 }
 
@@ -285,12 +294,30 @@ static bool check_length(struct request *request)
                                              "a body of %llu bytes; at most %d are read", n, CALL_MAX_BODY);
 }
 
-static void finish_archive(struct request *request)
+/* Takes bytes of the body of which *n are there; leaves in *n how many it did not take, which come again. */
+static bool add_archive(struct request *request, const char *bytes, size_t *n)
+{
+    size_t n_taken;
+    if (!intake_add(request->archive, bytes, *n, &n_taken, &request->call->early))
+        return false;
+    *n -= n_taken;
+    if (*n > 0)
+        MHD_suspend_connection(request->connection);
+    return true;
+}
+
+/* Returns false while the disk has not taken all of it. */
+static bool finish_archive(struct request *request)
 {
     struct call *call = request->call;
+    if (request->archive && !intake_end(request->archive)) {
+        MHD_suspend_connection(request->connection);
+        return false;
+    }
     if (request->archive)
         call->upload_path = intake_finish(request->archive, &call->n_upload, &call->early);
     request->archive = NULL;
+    return true;
 }
 
 static struct request *request_create(struct http *http, struct MHD_Connection *connection, const char *url,
@@ -325,9 +352,11 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
 }
 
 /* Appends bytes to the body. */
-static bool add_body(struct request *request, const char *bytes, size_t n)
+static bool add_body(struct request *request, const char *bytes, size_t *n_bytes)
 {
     struct call *call = request->call;
+    const size_t n = *n_bytes;
+    *n_bytes = 0;
     if (call->n_body + n > CALL_MAX_BODY)
         return problem_set(&call->early, PROBLEM_TOO_LARGE, "", "", "a body of more than %d bytes", CALL_MAX_BODY);
     char *larger = realloc(call->body, call->n_body + n);
@@ -366,9 +395,8 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
                                                                                                : refuse_body(request);
     }
     if (*n_upload) {
-        bool goes_on = request->is_archive ? intake_add(request->archive, upload, *n_upload, &request->call->early)
-                                           : add_body(request, upload, *n_upload);
-        *n_upload = 0;
+        bool goes_on =
+            request->is_archive ? add_archive(request, upload, n_upload) : add_body(request, upload, n_upload);
         return goes_on ? MHD_YES : refuse_body(request);
     }
     if (request->is_answered)
@@ -380,7 +408,8 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
         const struct file *file = is_for_file ? files_find(http->files, request->call->path) : NULL;
         if (file)
             return send_file(http, connection, file);
-        finish_archive(request);
+        if (!finish_archive(request))
+            return MHD_YES;
         request->is_posted = true;
         post_request(http, request);
     }
@@ -451,10 +480,17 @@ static void resume_answered(struct http *http)
     }
 }
 
+static void resume_moved(struct http *http)
+{
+    for (struct request *request; (request = queue_try_take(http->moved));)
+        MHD_resume_connection(request->connection);
+}
+
 static bool run_library(void *context)
 {
     struct http *http = context;
     unsigned MHD_LONG_LONG wait_ms;
+    resume_moved(http);
     resume_answered(http);
     resume_feeds(http, false);
     (void)MHD_run(http->daemon);
@@ -471,9 +507,12 @@ struct http *http_create(struct net *net, struct front *front, const struct http
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0, options->is_alone);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes
                                                                                      : HTTP_MIN_ARCHIVE_DROPPED;
-    http->intake = intake_create(options->upload_folder, options->max_upload_bytes, options->disk_reserve_bytes);
     http->posting = gate_create();
     http->answered = queue_create(MAX_ANSWERED, NULL);
+    http->moved = queue_create(INTAKE_MAX_FILES, NULL);
+    http->intake = intake_create(options->upload_folder, options->max_upload_bytes, options->disk_reserve_bytes, err);
+    if (!http->intake)
+        goto fail;
     if (options->web_folder) {
         http->files = files_create(options->web_folder, err);
         if (!http->files)
@@ -514,6 +553,9 @@ void http_destroy(struct http *http)
     if (!http)
         return;
     front_stop(http->front);
+    if (http->intake)
+        intake_wait(http->intake);
+    resume_moved(http);
     resume_answered(http);
     resume_feeds(http, true);
     if (http->daemon)
@@ -521,6 +563,7 @@ void http_destroy(struct http *http)
     gate_destroy(http->posting);
     files_destroy(http->files);
     intake_destroy(http->intake);
+    queue_destroy(http->moved);
     queue_destroy(http->answered);
     api_destroy(http->api);
     free(http);

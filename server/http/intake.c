@@ -3,19 +3,18 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/statvfs.h>
-#include <unistd.h>
 
 #include "core/base/clock.h"
-#include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/http/spool.h"
 
 struct intake {
+    struct spool *spool;
     char *folder;
     uint64_t max_bytes, last_number;
     uint64_t reserve_bytes, n_promised; /* n_promised: sum of the files' `promised` */
@@ -26,12 +25,14 @@ struct intake {
 
 struct intake_file {
     struct intake *intake;
+    struct spool_file *spooled;
     char *path;
-    int fd;
-    uint64_t n_bytes, window_bytes; /* written in all; received since the window began */
-    uint64_t promised;              /* bytes of disk granted to this file and not written yet */
-    uint64_t n_unlooked;            /* written since the disk was last checked */
+    uint64_t n_bytes, window_bytes; /* received in all; since the window began */
+    uint64_t n_written;             /* of n_bytes, as was last seen */
+    uint64_t promised;              /* bytes of disk granted to this file and not written by then */
+    uint64_t n_unlooked;            /* received since the disk was last checked */
     int64_t window_us;
+    bool is_waiting; /* for the disk, not for the sender */
 };
 
 static uint64_t ask_disk(void *context, int *failed)
@@ -42,9 +43,14 @@ static uint64_t ask_disk(void *context, int *failed)
     return *failed ? 0 : (uint64_t)disk.f_bavail * disk.f_frsize;
 }
 
-struct intake *intake_create(const char *folder, uint64_t max_bytes, uint64_t reserve_bytes)
+struct intake *intake_create(const char *folder, uint64_t max_bytes, uint64_t reserve_bytes, struct error *err)
 {
     struct intake *intake = mem_new(sizeof *intake);
+    intake->spool = spool_create(err);
+    if (!intake->spool) {
+        free(intake);
+        return NULL;
+    }
     intake->folder = folder ? mem_copy_text(folder) : NULL;
     intake->max_bytes = max_bytes;
     intake->reserve_bytes = reserve_bytes;
@@ -60,6 +66,11 @@ void intake_set_disk(struct intake *intake, uint64_t (*free_bytes)(void *context
     intake->context = context;
 }
 
+void intake_wait(struct intake *intake)
+{
+    spool_wait(intake->spool);
+}
+
 void intake_set_window_ms(struct intake *intake, int ms)
 {
     intake->window_ms = ms;
@@ -70,6 +81,7 @@ void intake_destroy(struct intake *intake)
     if (!intake)
         return;
     assert(intake->n_files == 0);
+    spool_destroy(intake->spool);
     free(intake->folder);
     free(intake);
 }
@@ -137,12 +149,23 @@ static void promise(struct intake_file *file, uint64_t n)
     file->intake->n_promised += n;
 }
 
-/* To be called before n bytes are written. An announced length was granted as a whole; else space is granted in steps.
- * After each step the disk is checked again, because others write to it too. */
+/* What has been written meanwhile is on the disk, and promised no longer. */
+static void see_written(struct intake_file *file)
+{
+    uint64_t n = spool_written(file->spooled) - file->n_written;
+    file->n_written += n;
+    file->promised -= n;
+    file->intake->n_promised -= n;
+}
+
+/* To be called before n bytes more are taken. An announced length was granted as a whole; else space is granted in
+ * steps. After each step the disk is checked again, because others write to it too. */
 static bool is_granted(struct intake_file *file, size_t n, struct problem *problem)
 {
     struct intake *intake = file->intake;
-    if (n > file->promised) {
+    see_written(file);
+    uint64_t needed = file->n_bytes - file->n_written + n;
+    if (needed > file->promised) {
         uint64_t left = intake->max_bytes - file->n_bytes, step = INTAKE_STEP_BYTES < left ? INTAKE_STEP_BYTES : left;
         step = step > n ? step : n; /* the caller checked that n is within max_bytes */
         if (!check_space(intake, step, problem))
@@ -158,7 +181,7 @@ static bool is_granted(struct intake_file *file, size_t n, struct problem *probl
 }
 
 struct intake_file *intake_begin(struct intake *intake, const struct call *call, int64_t length,
-                                 struct problem *problem)
+                                 void (*moved)(void *context), void *context, struct problem *problem)
 {
     if (!check_sender(call, problem))
         return NULL;
@@ -183,17 +206,17 @@ struct intake_file *intake_begin(struct intake *intake, const struct call *call,
     file->intake = intake;
     file->path = mem_new(n);
     (void)snprintf(file->path, n, "%s/%" PRIu64 ".part", intake->folder, ++intake->last_number);
-    file->fd = open(file->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
-    if (file->fd < 0) {
-        refuse_storage(errno, problem);
-        free(file->path);
-        free(file);
-        return NULL;
-    }
+    file->spooled = spool_open(intake->spool, file->path, moved, context);
     file->window_us = clock_now_us();
     promise(file, length > 0 ? (uint64_t)length : 0);
     intake->n_files++;
     return file;
+}
+
+static void begin_window(struct intake_file *file, int64_t now_us)
+{
+    file->window_us = now_us;
+    file->window_bytes = 0;
 }
 
 /* Returns false when too little came in a window: a slow sender would hold one of the few slots for ever. */
@@ -207,65 +230,59 @@ static bool is_fast_enough(struct intake_file *file, size_t n, struct problem *p
     if (!is_enough)
         problem_set(problem, PROBLEM_TOO_SLOW, "", "", "%" PRIu64 " bytes came in %.0f s; at least %d are expected",
                     file->window_bytes, (double)(now_us - file->window_us) / 1e6, INTAKE_WINDOW_BYTES);
-    file->window_us = now_us;
-    file->window_bytes = 0;
+    begin_window(file, now_us);
     return is_enough;
 }
 
-bool intake_add(struct intake_file *file, const char *bytes, size_t n, struct problem *problem)
+bool intake_add(struct intake_file *file, const char *bytes, size_t n, size_t *n_taken, struct problem *problem)
 {
+    int failed = spool_failed(file->spooled);
+    *n_taken = 0;
+    if (failed)
+        return refuse_storage(failed, problem);
+    if (file->is_waiting)
+        begin_window(file, clock_now_us());
     if (!is_fast_enough(file, n, problem))
         return false;
     if (n > file->intake->max_bytes - file->n_bytes)
         return refuse_size(file->intake, problem);
     if (!is_granted(file, n, problem))
         return false;
-    while (n > 0) {
-        ssize_t n_written = write(file->fd, bytes, n);
-        if (n_written < 0 && errno == EINTR)
-            continue;
-        if (n_written <= 0)
-            return refuse_storage(n_written < 0 ? errno : ENOSPC, problem);
-        bytes += n_written;
-        n -= (size_t)n_written;
-        file->n_bytes += (uint64_t)n_written;
-        file->n_unlooked += (uint64_t)n_written;
-        file->promised -= (uint64_t)n_written;
-        file->intake->n_promised -= (uint64_t)n_written;
-    }
+    *n_taken = spool_write(file->spooled, bytes, n);
+    file->n_bytes += *n_taken;
+    file->n_unlooked += *n_taken;
+    file->is_waiting = *n_taken < n;
     return true;
 }
 
-static void release(struct intake_file *file)
+/* Takes file. */
+static void leave(struct intake_file *file, bool is_kept)
 {
+    spool_leave(file->spooled, is_kept);
     file->intake->n_files--;
     file->intake->n_promised -= file->promised;
     free(file->path);
     free(file);
 }
 
+bool intake_end(struct intake_file *file)
+{
+    return spool_end(file->spooled);
+}
+
 char *intake_finish(struct intake_file *file, uint64_t *n_bytes, struct problem *problem)
 {
-    int failed = close(file->fd) != 0 ? errno : 0; /* some file systems report a full disk only here */
-    file->fd = -1;
-    if (failed) {
-        refuse_storage(failed, problem);
-        intake_drop(file);
-        return NULL;
-    }
-    char *path = mem_copy_text(file->path);
+    int failed = spool_failed(file->spooled);
+    char *path = failed ? NULL : mem_copy_text(file->path);
     *n_bytes = file->n_bytes;
-    release(file);
+    if (failed)
+        refuse_storage(failed, problem);
+    leave(file, !failed);
     return path;
 }
 
 void intake_drop(struct intake_file *file)
 {
-    if (!file)
-        return;
-    if (file->fd >= 0)
-        (void)close(file->fd);
-    if (unlink(file->path) != 0)
-        log_warn("what came of an upload cannot be removed: %s", strerror(errno));
-    release(file);
+    if (file)
+        leave(file, false);
 }

@@ -99,21 +99,30 @@ static void walk_archives(void)
 
 /* ---- receiving ---------------------------------------------------------------------------------------------------- */
 
+static void nothing(void *context)
+{
+    (void)context;
+}
+
 static void receive_one(void *context, struct outcome *outcome)
 {
-    struct intake *intake = intake_create(context, 1 << 20, 0);
+    struct intake *intake = intake_create(context, 1 << 20, 0, &outcome->err);
     struct call *call = call_create();
     uint64_t n_bytes;
+    size_t n_taken;
     char *path = NULL;
     call->method = CALL_POST;
     call_set_path(call, "/api/v1/plans");
     call->content_type = mem_copy_text("application/zip");
-    struct intake_file *file = intake_begin(intake, call, 20, &outcome->problem);
-    if (file && intake_add(file, "0123456789", 10, &outcome->problem) &&
-        intake_add(file, "0123456789", 10, &outcome->problem))
+    struct intake_file *file = intake ? intake_begin(intake, call, 20, nothing, NULL, &outcome->problem) : NULL;
+    if (file && intake_add(file, "0123456789", 10, &n_taken, &outcome->problem) &&
+        intake_add(file, "0123456789", 10, &n_taken, &outcome->problem)) {
+        while (!intake_end(file))
+            intake_wait(intake);
         path = intake_finish(file, &n_bytes, &outcome->problem);
-    else
+    } else {
         intake_drop(file);
+    }
     if (path) {
         outcome->is_done = true;
         faults_pause();
