@@ -120,10 +120,18 @@ static int port_of(const struct options *options)
     return colon ? (int)strtol(colon + 1, NULL, 10) : 8080;
 }
 
+/* The folder of a socket, which the daemon makes there; allocated. */
+static char *folder_of(const struct local_socket *local)
+{
+    char *folder = mem_copy_text(local->path), *slash = strrchr(folder, '/');
+    slash[slash == folder] = 0;
+    return folder;
+}
+
 /* Becomes an ordinary user. Replaces the options' paths by those that this user reaches. */
 static bool give_up_root(struct options *options, struct error *err)
 {
-    struct privilege_place places[OPTIONS_MAX_PLAN_FOLDERS + 5];
+    struct privilege_place places[OPTIONS_MAX_PLAN_FOLDERS + 6 + FRONT_MAX_SOCKETS];
     size_t n = 0;
     for (size_t i = 0; i < options->n_plan_folders; i++)
         places[n++] = (struct privilege_place){ "--plans", options->plan_folders[i], R_OK | X_OK };
@@ -135,12 +143,17 @@ static bool give_up_root(struct options *options, struct error *err)
         places[n++] = (struct privilege_place){ "--tls-cert", options->tls_cert, R_OK };
         places[n++] = (struct privilege_place){ "--tls-key", options->tls_key, R_OK };
     }
+    const size_t n_before_sockets = n;
+    for (size_t i = 0; i < options->n_sockets; i++)
+        places[n++] = (struct privilege_place){ "--listen", folder_of(&options->sockets[i]), W_OK | X_OK };
     struct privilege_options wanted = { .user = options->user,
                                         .data_folder = options->data_folder,
                                         .port = port_of(options),
                                         .places = places,
                                         .n_places = n };
     bool ok = privilege_give_up(&wanted, err);
+    for (size_t i = n_before_sockets; i < n; i++)
+        free(places[i].path);
     for (size_t i = 0; i < options->n_plan_folders; i++)
         options->plan_folders[i] = places[i].path;
     options->data_folder = places[n_always - 3].path;
@@ -318,10 +331,13 @@ static bool start_tls(struct service *service, const struct options *options, st
 }
 
 /* Serves until a signal comes. */
-static bool serve(const struct options *options, struct error *err)
+static bool serve(struct options *options, struct error *err)
 {
     const char *data_folder = options->data_folder;
-    const char *listen = options->listen ? options->listen : "127.0.0.1:8080";
+    const char *listen = options->listen || options->n_sockets ? options->listen : "127.0.0.1:8080";
+    struct local_peers proxy = { 0 };
+    if (options->proxy_user && !local_peers_find(options->proxy_user, &proxy, err))
+        return false;
     char database[PATH_SIZE + 16];
     (void)snprintf(database, sizeof database, "%s/beamroom.db", data_folder);
     const struct net_options net_options = {
@@ -352,12 +368,14 @@ static bool serve(const struct options *options, struct error *err)
                                                .upload_folder = upload_folder,
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
-                                               .is_secure = options->tls_cert != NULL,
                                                .is_secure_alone = options->tls_cert && port_of(options) == HTTPS_PORT,
                                                .is_alone = !options->is_open };
     struct service service = { 0 };
     struct net *net = start_tls(&service, options, err) ? net_create(&net_options, err) : NULL;
     const struct front_options front_options = { .listen = listen,
+                                                 .sockets = options->sockets,
+                                                 .n_sockets = options->n_sockets,
+                                                 .proxy = proxy,
                                                  .hosts = hosts,
                                                  .trusted = options->trusted_proxies,
                                                  .n_trusted = options->n_trusted_proxies,
@@ -375,6 +393,8 @@ static bool serve(const struct options *options, struct error *err)
             printf("ready %s\n", front_url(front));
             (void)fflush(stdout);
             log_info("serving on %s", front_url(front));
+            for (size_t i = 0; i < options->n_sockets; i++)
+                log_info("serving %s at unix:%s", options->proxy_user, options->sockets[i].path);
             if (options->is_open)
                 log_warn("open to everybody: whoever reaches %s may see and change every plan, as nobody signs in here",
                          front_url(front));

@@ -10,7 +10,17 @@
 #include "server/room/room.h"
 #include "server/wire/document.h"
 
-enum kind { KIND_FOLDERS, KIND_TEXT, KIND_COUNT, KIND_FLAG, KIND_LEVEL, KIND_NAMES, KIND_RANGES };
+enum kind {
+    KIND_FOLDERS,
+    KIND_LISTEN,
+    KIND_HEADER,
+    KIND_TEXT,
+    KIND_COUNT,
+    KIND_FLAG,
+    KIND_LEVEL,
+    KIND_NAMES,
+    KIND_RANGES
+};
 
 /* One setting per row: flag --name VALUE, key "name = value". */
 struct setting {
@@ -28,8 +38,12 @@ static const struct setting settings[] = {
       AT(data_folder), 0, 0 },
     { "web", "DIR", "the page's files; default: beside the program or ../share/beamroom/web", KIND_TEXT, AT(web_folder),
       0, 0 },
-    { "listen", "ADDRESS:PORT", "default 127.0.0.1:8080; port 0 lets the system choose. HTTP, or HTTPS with --tls-cert",
-      KIND_TEXT, AT(listen), 0, 0 },
+    { "listen", "ADDRESS:PORT",
+      "default 127.0.0.1:8080; port 0 lets the system choose. HTTP, or HTTPS with --tls-cert. Or a Unix socket for a "
+      "proxy on this machine, unix:/PATH[,group=NAME][,mode=0660]; sockets may be repeated, also beside an address",
+      KIND_LISTEN, AT(listen), 0, 0 },
+    { "proxy-user", "NAME", "with --listen unix: the user, or group, of the only processes that are answered there",
+      KIND_TEXT, AT(proxy_user), 0, 0 },
     { "tls-cert", "FILE",
       "the port speaks TLS: PEM of this server's certificate and those between it and its root; read again on SIGHUP",
       KIND_TEXT, AT(tls_cert), 0, 0 },
@@ -114,6 +128,23 @@ static bool set_level(const char *value, enum log_level *level, struct error *er
     return error_set(err, ERROR_FORMAT, "log-level is \"%.40s\", expected debug, info, warning or error", value);
 }
 
+static void set_text(char *at, const char *value)
+{
+    char **text = (char **)(void *)at;
+    free(*text);
+    *text = mem_copy_text(value);
+}
+
+static bool set_header(const struct setting *setting, const char *value, char *at, struct error *err)
+{
+    if (!head_may_be_identity(value))
+        return error_set(err, ERROR_FORMAT,
+                         "%s is \"%.60s\", expected a name that begins with X- or Remote-, of letters, digits and -",
+                         setting->name, value);
+    set_text(at, value);
+    return true;
+}
+
 static bool set(struct options *options, const struct setting *setting, const char *value, struct error *err)
 {
     char *at = (char *)options + setting->offset;
@@ -140,12 +171,16 @@ static bool set(struct options *options, const struct setting *setting, const ch
         }
         options->n_trusted_proxies++;
         return true;
-    case KIND_TEXT: {
-        char **text = (char **)(void *)at;
-        free(*text);
-        *text = mem_copy_text(value);
+    case KIND_LISTEN:
+        if (local_socket_is_meant(value)) {
+            if (options->n_sockets == FRONT_MAX_SOCKETS)
+                return error_set(err, ERROR_LIMIT, "more than %d Unix sockets", FRONT_MAX_SOCKETS);
+            return local_socket_read(value, &options->sockets[options->n_sockets++], err);
+        }
+        set_text(at, value);
         return true;
-    }
+    case KIND_HEADER: return set_header(setting, value, at, err);
+    case KIND_TEXT: set_text(at, value); return true;
     case KIND_COUNT: return set_count(setting, value, (int64_t *)(void *)at, err);
     case KIND_LEVEL: return set_level(value, &options->log_level, err);
     case KIND_FLAG: *(bool *)at = strcmp(value, "no") != 0 && strcmp(value, "false") != 0; return true;
@@ -208,6 +243,11 @@ static bool may_be_reached(const struct options *options, struct error *err)
     struct address address;
     if (options->is_open)
         return true;
+    if (options->n_sockets > 0)
+        return error_set(err, ERROR_FORMAT,
+                         "--listen unix:%.107s is for a proxy, and nobody signs in here: whoever reaches it could see "
+                         "and change every plan. Leave it away, or say --open-to-everybody",
+                         options->sockets[0].path);
     if (listen && !address_read(listen, strlen(listen), &address)) /* not to be taken for one of loopback */
         return error_set(err, ERROR_FORMAT, "--listen %.80s: expected ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
                          listen);
@@ -230,10 +270,14 @@ static bool may_be_reached(const struct options *options, struct error *err)
 /* True if no setting lacks the other that it needs. */
 static bool is_whole(const struct options *options, struct error *err)
 {
-    if (!options->tls_cert == !options->tls_key)
-        return true;
-    return error_set(err, ERROR_FORMAT, "--tls-%s is given without --tls-%s; expected both or neither",
-                     options->tls_cert ? "cert" : "key", options->tls_cert ? "key" : "cert");
+    if (!options->tls_cert != !options->tls_key)
+        return error_set(err, ERROR_FORMAT, "--tls-%s is given without --tls-%s; expected both or neither",
+                         options->tls_cert ? "cert" : "key", options->tls_cert ? "key" : "cert");
+    if (!options->proxy_user != !options->n_sockets)
+        return error_set(err, ERROR_FORMAT, "%s is given without %s; expected both or neither",
+                         options->proxy_user ? "--proxy-user" : "--listen unix:",
+                         options->proxy_user ? "--listen unix:" : "--proxy-user");
+    return true;
 }
 
 bool options_read(struct options *options, int argc, char **argv, struct error *err)
@@ -297,6 +341,9 @@ void options_finish(struct options *options)
     free(options->data_folder);
     free(options->web_folder);
     free(options->listen);
+    free(options->proxy_user);
+    for (size_t i = 0; i < HEAD_N_IDENTITY; i++)
+        free(options->identity_names[i]);
     free(options->tls_cert);
     free(options->tls_key);
     free(options->gl);

@@ -5,7 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
-#include "server/front/address.h"
+#include "server/front/front.h"
+#include "server/front/head.h"
 
 enum { OPTIONS_MAX_PLAN_FOLDERS = 64, OPTIONS_MAX_NAMES = 64, OPTIONS_MAX_LINE = 4096 };
 
@@ -20,6 +21,10 @@ struct options {
     char *verify_audit, *audit_head; /* the database whose audit is checked instead; a hash that it must have; NULL: not
                                         given */
     char *tls_cert, *tls_key;        /* files of PEM; both or neither; NULL: not given */
+    struct local_socket sockets[FRONT_MAX_SOCKETS]; /* of --listen unix: */
+    size_t n_sockets;
+    char *proxy_user;                      /* NULL: not given */
+    char *identity_names[HEAD_N_IDENTITY]; /* headers of the proxy; NULL: the usual ones */
     char *data_folder, *web_folder, *listen, *gl, *renderer_path, *allowed_origin, *user; /* NULL: not given */
     int64_t max_renderers, max_renderer_mib, plan_idle_close_s, room_idle_close_s, max_rooms, max_members,
         recording_speed;

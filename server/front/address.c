@@ -137,12 +137,12 @@ struct address address_counted(const struct address *address)
     return counted;
 }
 
-struct address address_of_client(const struct address *peer, const struct address_range *trusted, size_t n_trusted,
-                                 const char *forwarded, size_t n)
+/* The newest address in the list that is not a trusted proxy's; client: what the list was believed of. */
+static struct address newest_of(struct address client, const struct address_range *trusted, size_t n_trusted,
+                                const char *forwarded, size_t n)
 {
-    struct address client = *peer;
     size_t end = n;
-    while (address_is_in(&client, trusted, n_trusted) && end > 0) {
+    do {
         size_t begin = end, next;
         while (begin > 0 && forwarded[begin - 1] != ',')
             begin--;
@@ -154,6 +154,20 @@ struct address address_of_client(const struct address *peer, const struct addres
         if (!address_read(forwarded + begin, end - begin, &client))
             break;
         end = next;
-    }
+    } while (address_is_in(&client, trusted, n_trusted) && end > 0);
     return client;
+}
+
+struct address address_of_client(const struct address *peer, const struct address_range *trusted, size_t n_trusted,
+                                 const char *forwarded, size_t n)
+{
+    return n > 0 && address_is_in(peer, trusted, n_trusted) ? newest_of(*peer, trusted, n_trusted, forwarded, n)
+                                                            : *peer;
+}
+
+struct address address_behind_socket(const struct address_range *trusted, size_t n_trusted, const char *forwarded,
+                                     size_t n)
+{
+    static const struct address none = { { 0 } };
+    return n > 0 ? newest_of(none, trusted, n_trusted, forwarded, n) : none;
 }

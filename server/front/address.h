@@ -47,3 +47,6 @@ struct address address_counted(const struct address *address);
  * all are, the oldest of them. Addresses before an entry that is no address are ignored. */
 struct address address_of_client(const struct address *peer, const struct address_range *trusted, size_t n_trusted,
                                  const char *forwarded, size_t n);
+/* Likewise for a connection of the proxy at the Unix socket, which has no address and is trusted. */
+struct address address_behind_socket(const struct address_range *trusted, size_t n_trusted, const char *forwarded,
+                                     size_t n);

@@ -7,6 +7,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
@@ -30,13 +31,16 @@ enum {
     NO_DESCRIPTORS_MS = 50 /* without descriptors nothing is accepted for so long, while other connections close */
 };
 
-struct taken { /* a socket of front_take that the thread has not taken yet */
+struct arrival { /* a connection before it has a link */
     int socket;
     struct address peer;
-    bool is_plain; /* of front_take_plain */
+    bool is_plain;                /* of front_take_plain */
+    bool is_local, is_from_proxy; /* as in struct front_link */
+    struct local_process runs_as; /* is_local: the process at the other end */
 };
 
-static char wake_tag, library_tag, listener_tag; /* their addresses mark the events of these descriptors */
+static char wake_tag, library_tag,
+    listener_tags[1 + FRONT_MAX_SOCKETS]; /* their addresses mark events of descriptors */
 
 /* ---- the set of links ------------------------------------------------------------------------------------------- */
 
@@ -62,16 +66,18 @@ struct front_link *front_find(struct front *front, int socket)
 
 /* ---- the thread ------------------------------------------------------------------------------------------------- */
 
-static struct front_link *create_link(struct front *front, int socket, const struct address *peer)
+static struct front_link *create_link(struct front *front, const struct arrival *arrival)
 {
     struct front_link *link = mem_new(sizeof *link);
     *link = (struct front_link){ .next = front->links,
                                  .front = front,
                                  .state = LINK_DEAD,
-                                 .client = socket,
+                                 .client = arrival->socket,
                                  .inner = -1,
                                  .server = -1,
-                                 .peer = *peer,
+                                 .peer = arrival->peer,
+                                 .is_local = arrival->is_local,
+                                 .is_from_proxy = arrival->is_from_proxy,
                                  .is_first = true,
                                  .client_readable = true };
     link->head_us = link->moved_us = clock_now_us();
@@ -102,16 +108,28 @@ static void refuse_plain(struct front_link *link)
     front_link_refuse(link, &problem, FRONT_MAX_DROPPED_FIRST);
 }
 
+static void refuse_stranger(struct front_link *link, const struct local_process *runs_as)
+{
+    struct problem problem;
+    problem_set(&problem, PROBLEM_FORBIDDEN, "", "",
+                "this socket answers the proxy of --proxy-user alone; this process runs as user %u and group %u",
+                (unsigned)runs_as->user, (unsigned)runs_as->group);
+    front_link_refuse(link, &problem, FRONT_MAX_DROPPED_FIRST);
+}
+
 /* A connection whose head is whole already waits for nothing: in a burst the places of those that wait are for slow
  * ones. */
-static void begin_link(struct front *front, int socket, const struct address *peer, bool is_plain)
+static void begin_link(struct front *front, const struct arrival *arrival)
 {
-    const bool may_wait = front_may_wait(front, peer);
-    struct front_link *link = create_link(front, socket, peer);
+    const int socket = arrival->socket;
+    const bool may_wait = front_may_wait(front, &arrival->peer, arrival->is_from_proxy);
+    struct front_link *link = create_link(front, arrival);
     int on = 1;
     (void)setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on); /* answers are written in few large pieces */
-    if (is_plain)
+    if (arrival->is_plain)
         refuse_plain(link);
+    else if (arrival->is_local && !arrival->is_from_proxy)
+        refuse_stranger(link, &arrival->runs_as);
     front_link_advance(link);
     if (link->state == LINK_HEAD && link->is_first && !may_wait)
         refuse_waiting(link);
@@ -129,22 +147,41 @@ static bool watch(struct front *front, int fd, void *tag)
     return fd >= 0 && epoll_ctl(front->epoll, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-/* The listener is level-triggered: connections left in the system's queue raise another event. */
-static void accept_some(struct front *front)
+static void accepted(struct front *front, bool is_local, int socket, const struct sockaddr_storage *address)
+{
+    struct arrival arrival = { .socket = socket, .peer = address_of_peer(address), .is_local = is_local };
+    if (is_local)
+        arrival.is_from_proxy = local_peers_have(&front->options.proxy, socket, &arrival.runs_as);
+    if (front->options.decrypt && !is_local)
+        front->options.decrypt(front->options.context, socket, &arrival.peer);
+    else
+        begin_link(front, &arrival);
+}
+
+static void watch_listeners(struct front *front, bool is_watched)
+{
+    for (size_t i = 0; i <= FRONT_MAX_SOCKETS; i++) {
+        if (front->listeners[i] < 0)
+            continue;
+        (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, front->listeners[i], NULL);
+        if (is_watched && !watch(front, front->listeners[i], &listener_tags[i]))
+            front->accept_us = clock_now_us() + NO_DESCRIPTORS_MS * INT64_C(1000);
+    }
+}
+
+/* A listener is level-triggered: connections left in the system's queue raise another event. */
+static void accept_some(struct front *front, size_t which)
 {
     for (int i = 0; i < MAX_AT_ONCE && !atomic_load(&front->is_closed); i++) {
         struct sockaddr_storage address = { 0 };
         socklen_t n_address = sizeof address;
-        int socket = accept4(front->listener, (struct sockaddr *)&address, &n_address, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        int socket =
+            accept4(front->listeners[which], (struct sockaddr *)&address, &n_address, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket >= 0) {
-            struct address peer = address_of_peer(&address);
-            if (front->options.decrypt)
-                front->options.decrypt(front->options.context, socket, &peer);
-            else
-                begin_link(front, socket, &peer, false);
+            accepted(front, which > 0, socket, &address);
         } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
             log_warn("front: %s", strerror(errno));
-            (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, front->listener, NULL);
+            watch_listeners(front, false);
             front->accept_us = clock_now_us() + NO_DESCRIPTORS_MS * INT64_C(1000);
             return;
         } else if (errno != EINTR && errno != ECONNABORTED) {
@@ -156,25 +193,38 @@ static void accept_some(struct front *front)
 /* Accepts again after descriptors ran out. */
 static void accept_again(struct front *front, int64_t now_us)
 {
-    if (front->accept_us && now_us >= front->accept_us && front->listener >= 0)
-        front->accept_us =
-            watch(front, front->listener, &listener_tag) ? 0 : now_us + NO_DESCRIPTORS_MS * INT64_C(1000);
+    if (front->accept_us && now_us >= front->accept_us) {
+        front->accept_us = 0;
+        watch_listeners(front, true);
+    }
 }
 
 static void take_queued(struct front *front)
 {
-    for (struct taken *taken; (taken = queue_try_take(front->taken)); free(taken)) {
+    for (struct arrival *taken; (taken = queue_try_take(front->taken)); free(taken)) {
         if (atomic_load(&front->is_closed))
             (void)close(taken->socket);
         else
-            begin_link(front, taken->socket, &taken->peer, taken->is_plain);
+            begin_link(front, taken);
+    }
+}
+
+static void close_listeners(struct front *front)
+{
+    for (size_t i = 0; i <= FRONT_MAX_SOCKETS; i++) {
+        if (front->listeners[i] < 0)
+            continue;
+        if (i > 0) /* while it listens, so that it is not the file of another daemon, started meanwhile */
+            local_socket_remove(&front->options.sockets[i - 1]);
+        front_unwatch_and_close(front, &front->listeners[i]);
     }
 }
 
 /* After front_close: stops listening, ends the connections whose first head is not whole. */
 static void close_door(struct front *front)
 {
-    front_unwatch_and_close(front, &front->listener);
+    close_listeners(front);
+    front->is_door_closed = true;
     front->accept_us = 0;
     for (struct front_link *link = front->links; link; link = link->next)
         if (link->state == LINK_HEAD && link->is_first)
@@ -189,7 +239,7 @@ static void handle_wake(struct front *front)
     atomic_bool *pinged = atomic_exchange(&front->pinged, NULL);
     if (pinged)
         atomic_store(pinged, true);
-    if (atomic_load(&front->is_closed) && front->listener >= 0)
+    if (atomic_load(&front->is_closed) && !front->is_door_closed)
         close_door(front);
 }
 
@@ -201,8 +251,8 @@ static void handle_event(struct front *front, const struct epoll_event *event)
         handle_wake(front);
         return;
     }
-    if (tag == (uint64_t)(uintptr_t)&listener_tag) {
-        accept_some(front);
+    if (tag - (uint64_t)(uintptr_t)listener_tags < sizeof listener_tags) {
+        accept_some(front, tag - (uint64_t)(uintptr_t)listener_tags);
         return;
     }
     if (tag == (uint64_t)(uintptr_t)&library_tag)
@@ -372,7 +422,7 @@ static void *work(void *argument)
 
 static void taken_drop(void *item)
 {
-    struct taken *taken = item;
+    struct arrival *taken = item;
     (void)close(taken->socket);
     free(taken);
 }
@@ -387,7 +437,8 @@ struct front *front_create(const struct front_options *options, struct error *er
     websocket_count_init(&front->websockets);
     front->taken = queue_create(FRONT_MAX_TAKEN, taken_drop);
     front->adopting = gate_create();
-    front->listener = -1;
+    for (size_t i = 0; i <= FRONT_MAX_SOCKETS; i++)
+        front->listeners[i] = -1;
     front->epoll = epoll_create1(EPOLL_CLOEXEC);
     front->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (front->epoll < 0 || !watch(front, front->wake_fd, &wake_tag)) {
@@ -398,13 +449,28 @@ struct front *front_create(const struct front_options *options, struct error *er
     return front;
 }
 
+static bool open_listeners(struct front *front, struct error *err)
+{
+    const struct front_options *options = &front->options;
+    if (options->listen)
+        front->listeners[0] = listener_open(options->listen, options->decrypt != NULL, front->url, err);
+    else
+        (void)snprintf(front->url, sizeof front->url, "unix:%s", options->sockets[0].path);
+    bool ok = !options->listen || front->listeners[0] >= 0;
+    for (size_t i = 0; ok && i < options->n_sockets; i++) {
+        front->listeners[1 + i] = local_socket_open(&options->sockets[i], err);
+        ok = front->listeners[1 + i] >= 0;
+    }
+    return ok;
+}
+
 bool front_serve(struct front *front, const struct front_library *library, struct error *err)
 {
     front->library = *library;
-    front->listener = listener_open(front->options.listen, front->options.decrypt != NULL, front->url, err);
-    if (front->listener < 0)
+    if (!open_listeners(front, err))
         return false;
-    if (!watch(front, library->poll_fd, &library_tag) || !watch(front, front->listener, &listener_tag) ||
+    watch_listeners(front, true);
+    if (!watch(front, library->poll_fd, &library_tag) || front->accept_us ||
         pthread_create(&front->thread, NULL, work, front) != 0)
         return error_set(err, ERROR_IO, "the front's thread did not start: %s", strerror(errno));
     front->has_thread = true;
@@ -435,7 +501,7 @@ void front_stop(struct front *front)
         (void)pthread_join(front->thread, NULL);
         front->has_thread = false;
     }
-    front_close_fd(&front->listener);
+    close_listeners(front);
     for (struct front_link *link = front->links; link; link = link->next)
         if (link->state != LINK_DEAD)
             front_link_die(link);
@@ -464,8 +530,8 @@ const char *front_url(const struct front *front)
 
 static void take(struct front *front, int socket, const struct address *peer, bool is_plain)
 {
-    struct taken *taken = mem_new(sizeof *taken);
-    *taken = (struct taken){ socket, *peer, is_plain };
+    struct arrival *taken = mem_new(sizeof *taken);
+    *taken = (struct arrival){ .socket = socket, .peer = *peer, .is_plain = is_plain };
     if (queue_try_put(front->taken, taken)) {
         front_wake(front);
         return;

@@ -9,6 +9,7 @@
 
 #include "server/front/address.h"
 #include "server/front/hosts.h"
+#include "server/front/local_socket.h"
 #include "server/wire/handshake.h"
 #include "server/wire/identity.h"
 #include "server/wire/problem.h"
@@ -24,6 +25,7 @@ enum {
     /* WebSockets, in all (less than WS_MAX_CONNECTIONS, the limit of server/ws) and from one address. */
     FRONT_MAX_WEBSOCKETS = 1500,
     FRONT_MAX_WEBSOCKETS_PER_ADDRESS = 200,
+    FRONT_MAX_SOCKETS = 4, /* Unix sockets it listens at */
     FRONT_MAX_TAKEN = 512, /* sockets given to front_take that the thread has not taken yet */
     FRONT_RETRY_MS = 5000, /* told to clients that are refused for a limit */
 
@@ -48,9 +50,15 @@ struct front;
 struct front_link; /* a client's connection */
 
 struct front_options {
-    const char *listen; /* "127.0.0.1:8080", "[::1]:0"; a numeric address, port 0 lets the system choose */
-    /* The port speaks TLS: takes each accepted socket, of which nothing has been read, and gives decrypted streams to
-     * front_take. Called on the front's thread, not after front_stop. NULL: it speaks HTTP. */
+    /* "127.0.0.1:8080", "[::1]:0"; a numeric address, port 0 lets the system choose. NULL: only the sockets */
+    const char *listen;
+    struct local_socket *sockets; /* FRONT_MAX_SOCKETS at most; HTTP without TLS */
+    size_t n_sockets;
+    struct local_peers proxy; /* the only ones who are answered at the sockets; their X-Forwarded-For is believed */
+    const char *const *identity_names; /* as in struct head_rules; NULL: head_identity_names */
+    bool takes_identity;               /* the proxy says who makes a request */
+    /* The port speaks TLS: takes each socket accepted there, of which nothing has been read, and gives decrypted
+     * streams to front_take. Called on the front's thread, not after front_stop. NULL: it speaks HTTP. */
     void (*decrypt)(void *context, int socket, const struct address *peer);
     const struct hosts *hosts;           /* outlives the front, like all pointers here */
     const struct address_range *trusted; /* proxies whose X-Forwarded-For is believed */
@@ -87,7 +95,8 @@ NODISCARD bool front_serve(struct front *front, const struct front_library *libr
 void front_close(struct front *front);
 void front_stop(struct front *front);
 void front_destroy(struct front *front);
-/* "http://127.0.0.1:8080", or "https:" with decrypt, with the port that the system chose; after front_serve. */
+/* "http://127.0.0.1:8080", or "https:" with decrypt, with the port that the system chose; "unix:/path" where it listens
+ * at sockets alone; after front_serve. */
 const char *front_url(const struct front *front);
 
 /* Takes a connected stream socket that did not come by the listener, as if it were accepted from this address: one end
@@ -106,6 +115,8 @@ void front_ping(struct front *front, atomic_bool *beat);
 struct front_link *front_find(struct front *front, int socket);
 /* The address of the client of the present request, behind trusted proxies; "": not known. */
 void front_client(const struct front_link *link, char text[ADDRESS_TEXT]);
+/* True if its bytes came by TLS, which was decrypted here. */
+bool front_link_is_encrypted(const struct front_link *link);
 /* The identity of the present request. */
 const struct identity *front_identity(const struct front_link *link);
 void front_link_closed(struct front_link *link); /* the library closed its end */

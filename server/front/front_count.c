@@ -32,13 +32,13 @@ void front_end_waiting(struct front_link *link)
     link->is_first = false;
 }
 
-bool front_may_wait(const struct front *front, const struct address *peer)
+bool front_may_wait(const struct front *front, const struct address *peer, bool is_trusted)
 {
     const struct address counted = address_counted(peer);
     size_t n_same = 0;
     if (front->n_waiting >= FRONT_MAX_WAITING)
         return false;
-    if (address_is_in(peer, front->options.trusted, front->options.n_trusted))
+    if (is_trusted || address_is_in(peer, front->options.trusted, front->options.n_trusted))
         return true;
     for (const struct front_link *link = front->links; link; link = link->next) {
         if (link->state != LINK_HEAD || !link->is_first)

@@ -8,7 +8,7 @@ void front_set_state(struct front_link *link, enum link_state state);
 /* The first head is whole: the connection waits no longer. */
 void front_end_waiting(struct front_link *link);
 /* True if one more connection from this address may wait for its first head. */
-bool front_may_wait(const struct front *front, const struct address *peer);
+bool front_may_wait(const struct front *front, const struct address *peer, bool is_trusted);
 /* Counts the connection for this client, and no longer for another. Returns false with a problem at the limit. */
 bool front_count(struct front_link *link, const struct address *client, struct problem *problem);
 void front_uncount(struct front_link *link);

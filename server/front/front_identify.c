@@ -4,15 +4,15 @@
 #include <string.h>
 
 struct room { /* for copies of headers, which in the head have no end of their own */
-    char bytes[2 * (HEAD_MAX_SECRET + 1)];
+    char bytes[2 * (HEAD_MAX_SECRET + 1) + HEAD_MAX_GROUPS + 1 + IDENTITY_MAX_USER + 1 + IDENTITY_MAX_NAME + 1 + 16];
     size_t n;
 };
 
-/* Copies a header that head_read has found to fit. */
+/* Copies a header that head_read has found to fit; an empty one is as good as none. */
 static const char *keep(struct room *room, struct head_text text)
 {
     char *copy = room->bytes + room->n;
-    if (!text.at)
+    if (text.n == 0)
         return NULL;
     memcpy(copy, text.at, text.n);
     copy[text.n] = 0;
@@ -30,7 +30,13 @@ bool front_identify(struct front_link *link, const struct head_request *request,
     address_write(client, address);
     const struct credentials credentials = { .cookie = keep(&room, request->cookie),
                                              .authorization = keep(&room, request->authorization),
-                                             .is_secure = options->decrypt || address_is_loopback(&link->peer),
+                                             .user = keep(&room, request->identity[HEAD_USER]),
+                                             .name = keep(&room, request->identity[HEAD_NAME]),
+                                             .groups = keep(&room, request->identity[HEAD_GROUPS]),
+                                             .auth_time = keep(&room, request->identity[HEAD_AUTH_TIME]),
+                                             .is_from_proxy = link->is_from_proxy,
+                                             .is_secure =
+                                                 options->decrypt || link->is_local || address_is_loopback(&link->peer),
                                              .address = address };
     link->identity = (struct identity){ .source = IDENTITY_NOBODY };
     return !options->identify || options->identify(options->context, &credentials, &link->identity, problem);

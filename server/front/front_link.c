@@ -230,6 +230,28 @@ static void note_head(struct front_link *link, size_t n)
     link->n_head = n;
 }
 
+bool front_link_is_encrypted(const struct front_link *link)
+{
+    return link->front->options.decrypt && !link->is_local;
+}
+
+static struct head_rules rules_of(const struct front_link *link)
+{
+    const struct front_options *options = &link->front->options;
+    return (struct head_rules){ .hosts = options->hosts,
+                                .identity_names =
+                                    options->identity_names ? options->identity_names : head_identity_names,
+                                .takes_identity = options->takes_identity && link->is_from_proxy };
+}
+
+static struct address client_of(const struct front_link *link, const struct head_text *forwarded)
+{
+    const struct front_options *options = &link->front->options;
+    return link->is_from_proxy
+               ? address_behind_socket(options->trusted, options->n_trusted, forwarded->at, forwarded->n)
+               : address_of_client(&link->peer, options->trusted, options->n_trusted, forwarded->at, forwarded->n);
+}
+
 /* Looks at a head in the socket, where its bytes stay: a WebSocket is handed on with all of them. */
 static enum head_kind peek_head(struct front_link *link, struct head_request *request, struct problem *problem)
 {
@@ -245,7 +267,8 @@ static enum head_kind peek_head(struct front_link *link, struct head_request *re
         return HEAD_INCOMPLETE;
     }
     note_head(link, (size_t)n);
-    enum head_kind kind = head_read(front->bytes, (size_t)n, front->options.hosts, request, problem);
+    const struct head_rules rules = rules_of(link);
+    enum head_kind kind = head_read(front->bytes, (size_t)n, &rules, request, problem);
     if (kind == HEAD_INCOMPLETE) { /* epoll reports bytes that come after those */
         link->client_readable = false;
         link->client_ended = link->client_hung_up;
@@ -257,10 +280,10 @@ static enum head_kind peek_head(struct front_link *link, struct head_request *re
 static enum head_kind read_head(struct front_link *link, struct head_request *request, struct problem *problem)
 {
     enum head_kind kind;
+    const struct head_rules rules = rules_of(link);
     do {
         note_head(link, link->n_in);
-        kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES,
-                         link->front->options.hosts, request, problem);
+        kind = head_read(link->in, link->n_in < HEAD_MAX_BYTES ? link->n_in : HEAD_MAX_BYTES, &rules, request, problem);
     } while (kind == HEAD_INCOMPLETE && !link->client_ended && read_client(link));
     /* The WebSocket's side would miss the bytes that were read: the library refuses it. */
     return kind == HEAD_WEBSOCKET ? HEAD_HTTP : kind;
@@ -278,7 +301,7 @@ static void hand_on(struct front_link *link, struct handshake *handshake, const 
             (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, link->client, NULL); /* fails where the head came at once */
             address_write(client, handshake->client);
             handshake->identity = link->identity;
-            handshake->is_secure = front->options.decrypt != NULL;
+            handshake->is_secure = front_link_is_encrypted(link);
             front->options.adopt(front->options.context, link->client, handshake, websocket_count_ended, place);
             link->client = -1;
         }
@@ -343,8 +366,7 @@ static bool step_head(struct front_link *link)
         return true;
     }
     front_end_waiting(link);
-    struct address client = address_of_client(&link->peer, front->options.trusted, front->options.n_trusted,
-                                              request.forwarded.at, request.forwarded.n);
+    struct address client = client_of(link, &request.forwarded);
     if (!front_identify(link, &request, &client, &problem))
         front_link_refuse(link, &problem, FRONT_MAX_DROPPED);
     else if (kind == HEAD_WEBSOCKET)

@@ -28,6 +28,7 @@ struct front_link {
     int client, inner, server; /* sockets: the client's, our end and the library's end of the pair; -1: closed */
     struct address peer, counted, asked_by; /* asked_by: of the present request, behind trusted proxies */
     struct identity identity;               /* of who makes the present request */
+    bool is_local, is_from_proxy;           /* it came by a Unix socket; of the proxy's user or group */
     bool is_first;                          /* no head of this connection has been whole yet */
     bool is_counted, is_touched;
     bool is_started;                                    /* the library took the connection: it will report its end */
@@ -54,15 +55,16 @@ struct front_link {
 struct front {
     struct front_options options;
     struct front_library library;
-    struct queue *taken;          /* from front_take */
-    struct gate *adopting;        /* passed by each call of options.adopt; closed by front_close */
-    int listener, epoll, wake_fd; /* wake_fd: eventfd, written to wake the thread */
-    int64_t accept_us;            /* descriptors ran out: nothing is accepted before; 0: the listener is watched */
+    struct queue *taken;                  /* from front_take */
+    struct gate *adopting;                /* passed by each call of options.adopt; closed by front_close */
+    int listeners[1 + FRONT_MAX_SOCKETS]; /* TCP, then the Unix sockets; -1: none */
+    int epoll, wake_fd;                   /* wake_fd: eventfd, written to wake the thread */
+    int64_t accept_us; /* descriptors ran out: nothing is accepted before; 0: listeners are watched */
     pthread_t thread;
-    bool has_thread;
+    bool has_thread, is_door_closed;
     atomic_bool is_closed, is_stopping;
     _Atomic(atomic_bool *) pinged;
-    char url[100];
+    char url[LOCAL_SOCKET_MAX_PATH + 8];
     struct front_link *links, *touched;
     size_t n_waiting, n_counted;           /* links: is_first in LINK_HEAD; is_counted */
     size_t n_lingering, n_lingering_first; /* links in LINK_LINGER: with a whole head; is_first */

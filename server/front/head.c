@@ -7,13 +7,16 @@
 #include <strings.h>
 
 #include "server/wire/fields.h"
+#include "server/wire/json.h"
 
 /* The headers that are used. */
 struct fields {
     struct head_text host, origin, upgrade, connection, key, version, length, coding, forwarded;
     struct head_text
         passed_on; /* name of the header by which a proxy says that it passed the request on; n 0: there is none */
-    struct head_text cookie, authorization;
+    struct head_text cookie, authorization, identity[HEAD_N_IDENTITY];
+    struct head_text misspelt; /* name of a header that is one of identity but for _ and -; n 0: there is none */
+    size_t n_identity[HEAD_N_IDENTITY];
     size_t n_hosts, n_origins, n_lengths, n_codings, n_keys, n_versions, n_cookies, n_authorizations;
 };
 
@@ -22,8 +25,12 @@ struct head {
     struct head_text method, target;
     int minor; /* of HTTP/1.x */
     struct fields fields;
+    const struct head_rules *rules;
     struct problem *problem;
 };
+
+const char *const head_identity_names[HEAD_N_IDENTITY] = { "X-Beamroom-User", "X-Beamroom-Name", "X-Beamroom-Groups",
+                                                           "X-Beamroom-Auth-Time" };
 
 enum { SHOWN_SIZE = 61 };
 
@@ -156,6 +163,38 @@ static bool refuse_field(const struct head *head, size_t number, struct head_tex
                        found);
 }
 
+/* True for names that are equal where _ is taken for -, as some readers of headers do. */
+static bool is_like(struct head_text name, const char *other)
+{
+    if (name.n != strlen(other))
+        return false;
+    for (size_t i = 0; i < name.n; i++) {
+        const int a = name.at[i] == '_' ? '-' : tolower((unsigned char)name.at[i]);
+        if (a != (other[i] == '_' ? '-' : tolower((unsigned char)other[i])))
+            return false;
+    }
+    return true;
+}
+
+static void note_identity(struct head *head, struct head_text name, struct head_text value)
+{
+    for (size_t i = 0; i < HEAD_N_IDENTITY; i++) {
+        const char *known = head->rules->identity_names[i];
+        if (is_word(name, known)) {
+            head->fields.identity[i] = value;
+            head->fields.n_identity[i]++;
+        } else if (is_like(name, known))
+            head->fields.misspelt = name;
+    }
+}
+
+bool head_may_be_identity(const char *name)
+{
+    const struct head_text text = { name, strlen(name) };
+    const bool is_free = (strncasecmp(name, "X-", 2) == 0 && name[2]) || strncasecmp(name, "Remote-", 7) == 0;
+    return is_token(text) && text.n <= 60 && !strpbrk(name, "_!#$%&'*+.^`|~") && is_free && !is_of_proxy(text);
+}
+
 /* Stores the value of a known field. Content-Length and Transfer-Encoding keep blanks after their value, and are then
  * refused: libmicrohttpd counts those blanks as part of the value, and would find a different end of the body. */
 static void note_field(struct fields *fields, struct head_text name, struct head_text after_colon)
@@ -200,6 +239,7 @@ static bool read_field(struct head *head, size_t number, struct head_text line)
         if (((unsigned char)value.at[i] < 32 && value.at[i] != '\t') || value.at[i] == 127)
             return refuse_field(head, number, line, "a control character in its value");
     note_field(&head->fields, name, value);
+    note_identity(head, name, trim(value));
     return true;
 }
 
@@ -248,6 +288,58 @@ static bool check_secrets(const struct head *head)
     const struct fields *fields = &head->fields;
     return check_secret(head, "Cookie", fields->n_cookies, fields->cookie) &&
            check_secret(head, "Authorization", fields->n_authorizations, fields->authorization);
+}
+
+/* True for the allowed form of a header of the proxy. */
+static bool is_of_form(enum head_identity which, struct head_text value)
+{
+    static const size_t most[HEAD_N_IDENTITY] = { IDENTITY_MAX_USER, IDENTITY_MAX_NAME, HEAD_MAX_GROUPS, 10 };
+    if (which == HEAD_USER && is_word(value, "(null)")) /* Apache writes it for a variable that is not set */
+        return false;
+    if (value.n > most[which] || (which == HEAD_NAME && !json_is_utf8(value.at, value.n)))
+        return false;
+    for (size_t i = 0; i < value.n; i++) {
+        const unsigned char c = (unsigned char)value.at[i];
+        if ((which == HEAD_AUTH_TIME && !isdigit(c)) || (which == HEAD_USER && (c <= 32 || c == ',' || c > 126)) ||
+            (which == HEAD_GROUPS && (c < 32 || c > 126)))
+            return false;
+        if (which == HEAD_NAME && (c < 32 || (c == 0xc2 && (unsigned char)value.at[i + 1] < 0xa0)))
+            return false; /* C1 control characters */
+    }
+    return true;
+}
+
+static bool check_identity_header(const struct head *head, enum head_identity which)
+{
+    static const char *const forms[HEAD_N_IDENTITY] = { "at most 64 letters, digits and signs of ASCII",
+                                                        "at most 160 bytes of UTF-8",
+                                                        "names of ASCII, parted by commas, with at most 4096 bytes",
+                                                        "seconds since 1970" };
+    const char *name = head->rules->identity_names[which];
+    const size_t n_times = head->fields.n_identity[which];
+    if (n_times > 0 && !head->rules->takes_identity)
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "",
+                           "%s says who makes the request; that is believed of the proxy at the Unix socket alone",
+                           name);
+    if (n_times > 1)
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "", "%s is there %zu times; expected is once at most",
+                           name, n_times);
+    return is_of_form(which, head->fields.identity[which]) ||
+           problem_set(head->problem, PROBLEM_REQUEST, "", "", "%s has another form than expected: %s", name,
+                       forms[which]);
+}
+
+static bool check_identity(const struct head *head)
+{
+    char shown[SHOWN_SIZE];
+    if (head->fields.misspelt.n > 0)
+        return problem_set(head->problem, PROBLEM_REQUEST, "", "",
+                           "the name %s is that of a header which says who makes the request, but for _ and -",
+                           show(head->fields.misspelt, shown));
+    for (int i = 0; i < HEAD_N_IDENTITY; i++)
+        if (!check_identity_header(head, (enum head_identity)i))
+            return false;
+    return true;
 }
 
 static bool refuse_host(struct problem *problem, struct head_text host)
@@ -408,16 +500,16 @@ static void fill_handshake(struct handshake *handshake, const struct head *head,
     copy(handshake->origin, sizeof handshake->origin, head->fields.origin);
 }
 
-enum head_kind head_look(const char *bytes, size_t n, const struct hosts *hosts, struct problem *problem)
+enum head_kind head_look(const char *bytes, size_t n, const struct head_rules *rules, struct problem *problem)
 {
     struct head_request request;
-    return head_read(bytes, n, hosts, &request, problem);
+    return head_read(bytes, n, rules, &request, problem);
 }
 
-enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts, struct head_request *request,
+enum head_kind head_read(const char *bytes, size_t n, const struct head_rules *rules, struct head_request *request,
                          struct problem *problem)
 {
-    struct head head = { .begin = bytes, .problem = problem };
+    struct head head = { .begin = bytes, .rules = rules, .problem = problem };
     const char *at = bytes, *end = bytes + n;
     struct head_text line, room;
     size_t n_fields = 0;
@@ -445,7 +537,8 @@ enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts,
         if (!read_field(&head, n_fields, line))
             return HEAD_REFUSED;
     }
-    if (!check_length(&head) || !check_host(&head, hosts) || !check_parameters(&head) || !check_secrets(&head))
+    if (!check_length(&head) || !check_host(&head, rules->hosts) || !check_parameters(&head) || !check_secrets(&head) ||
+        !check_identity(&head))
         return HEAD_REFUSED;
     request->n_bytes = (size_t)(at - bytes);
     request->is_chunked = head.fields.n_codings > 0;
@@ -453,6 +546,7 @@ enum head_kind head_read(const char *bytes, size_t n, const struct hosts *hosts,
     request->forwarded = head.fields.forwarded;
     request->cookie = head.fields.cookie;
     request->authorization = head.fields.authorization;
+    memcpy(request->identity, head.fields.identity, sizeof request->identity);
     bool is_get = head.method.n == 3 && memcmp(head.method.at, "GET", 3) == 0;
     if (!is_get || !is_room_address(head.target, &room) || !has_word(head.fields.upgrade, "websocket"))
         return HEAD_HTTP;

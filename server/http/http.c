@@ -33,7 +33,7 @@ enum {
 
 struct http {
     struct net *net;
-    bool is_secure, is_secure_alone; /* as in http_options */
+    bool is_secure_alone; /* as in http_options */
     struct api *api;
     struct files *files;
     struct intake *intake;
@@ -66,10 +66,10 @@ struct request {
     "; frame-ancestors 'none'; base-uri 'none'; form-action 'self'"
 static const char content_policy[] = POLICY("ws: wss:"), secure_content_policy[] = POLICY("wss:");
 
-static enum MHD_Result send_response(const struct http *http, struct MHD_Connection *connection, unsigned status,
-                                     struct MHD_Response *response)
+static enum MHD_Result send_response(const struct request *request, unsigned status, struct MHD_Response *response)
 {
-    if (http->is_secure_alone)
+    struct MHD_Connection *connection = request->connection;
+    if (request->http->is_secure_alone && request->call->is_secure)
         MHD_add_response_header(response, "Strict-Transport-Security", "max-age=31536000");
     MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
     MHD_add_response_header(response, "Referrer-Policy", "no-referrer");
@@ -79,8 +79,9 @@ static enum MHD_Result send_response(const struct http *http, struct MHD_Connect
     return sent;
 }
 
-static enum MHD_Result send_file(const struct http *http, struct MHD_Connection *connection, const struct file *file)
+static enum MHD_Result send_file(const struct request *request, const struct file *file)
 {
+    struct MHD_Connection *connection = request->connection;
     const char *accept = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Accept-Encoding");
     const char *known = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "If-None-Match");
     enum content_coding coding = file_coding(file, accept);
@@ -99,8 +100,8 @@ static enum MHD_Result send_file(const struct http *http, struct MHD_Connection 
                             file->is_immutable ? "public, max-age=31536000, immutable" : "no-cache");
     MHD_add_response_header(response, "Content-Type", file->media_type);
     MHD_add_response_header(response, "Content-Security-Policy",
-                            http->is_secure ? secure_content_policy : content_policy);
-    return send_response(http, connection, is_fresh ? 304 : 200, response);
+                            request->call->is_secure ? secure_content_policy : content_policy);
+    return send_response(request, is_fresh ? 304 : 200, response);
 }
 
 /* Called by libmicrohttpd for more bytes of an answer without an end. */
@@ -155,7 +156,7 @@ static struct MHD_Response *make_response(struct request *request)
     return response;
 }
 
-static enum MHD_Result send_answer(struct MHD_Connection *connection, struct request *request)
+static enum MHD_Result send_answer(struct request *request)
 {
     struct call *call = request->call;
     struct MHD_Response *response = make_response(request);
@@ -165,7 +166,7 @@ static enum MHD_Result send_answer(struct MHD_Connection *connection, struct req
     for (size_t i = 0; i < call->n_headers; i++)
         MHD_add_response_header(response, call->headers[i].name, call->headers[i].value);
     api_count(request->http->api, call->status, clock_now_us() - call->started_us);
-    return send_response(request->http, connection, (unsigned)call->status, response);
+    return send_response(request, (unsigned)call->status, response);
 }
 
 static void wake_reader(void *front)
@@ -332,7 +333,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->finished = call_finished;
     call->wake = wake_reader;
     call->wake_context = http->front;
-    call->is_secure = http->is_secure;
+    call->is_secure = request->link && front_link_is_encrypted(request->link);
     call->method = method_of(method);
     call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);
@@ -400,14 +401,14 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
         return goes_on ? MHD_YES : refuse_body(request);
     }
     if (request->is_answered)
-        return send_answer(connection, request);
+        return send_answer(request);
     if (!request->is_posted) {
         enum call_method verb = request->call->method;
         bool is_for_file =
             http->files && request->call->early.type == PROBLEM_NONE && (verb == CALL_GET || verb == CALL_HEAD);
         const struct file *file = is_for_file ? files_find(http->files, request->call->path) : NULL;
         if (file)
-            return send_file(http, connection, file);
+            return send_file(request, file);
         if (!finish_archive(request))
             return MHD_YES;
         request->is_posted = true;
@@ -502,7 +503,6 @@ struct http *http_create(struct net *net, struct front *front, const struct http
     struct http *http = mem_new(sizeof *http);
     http->net = net;
     http->front = front;
-    http->is_secure = options->is_secure;
     http->is_secure_alone = options->is_secure_alone;
     http->api = api_create(net, options->upload_folder ? options->max_upload_bytes : 0, options->is_alone);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes

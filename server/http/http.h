@@ -16,8 +16,7 @@ struct http_options {
     const char *upload_folder; /* where archives are received; NULL: uploads are refused */
     uint64_t max_upload_bytes;
     uint64_t disk_reserve_bytes; /* left free on the disk of upload_folder */
-    bool is_secure;              /* the port speaks TLS */
-    bool is_secure_alone;        /* and browsers are to use nothing else for this name (RFC 6797), whatever the port */
+    bool is_secure_alone;        /* browsers that came by TLS are to use nothing else for this name (RFC 6797) */
     bool is_alone;               /* only this machine is answered */
 };
 

@@ -39,8 +39,9 @@ static size_t utf8_character(const unsigned char *s, size_t n)
     return is_odd ? 0 : more + 1;
 }
 
-static bool is_utf8(const unsigned char *s, size_t n)
+bool json_is_utf8(const char *text, size_t n)
 {
+    const unsigned char *s = (const unsigned char *)text;
     for (size_t at = 0, more; at < n; at += more)
         if ((more = utf8_character(s + at, n - at)) == 0)
             return false;
@@ -102,7 +103,7 @@ cJSON *json_read(const char *bytes, size_t n, struct problem *problem)
         problem_set(problem, PROBLEM_JSON, "", "", "nothing was sent, a JSON value was expected");
         return NULL;
     }
-    if (!is_utf8((const unsigned char *)bytes, n)) {
+    if (!json_is_utf8(bytes, n)) {
         problem_set(problem, PROBLEM_JSON, "", "", "the text is not UTF-8");
         return NULL;
     }

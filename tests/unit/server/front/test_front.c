@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "core/base/queue.h"
@@ -28,6 +29,7 @@ struct world {
         struct front_link *link;
     } ends[MAX_ENDS];
     struct queue *adopted;
+    const char *path; /* of the proxy's socket */
 };
 
 static bool add(void *context, int socket)
@@ -89,8 +91,11 @@ static bool identify(void *context, const struct credentials *credentials, struc
     (void)context;
     assert_int_equal(identity->source, IDENTITY_NOBODY);
     assert_string_equal(identity->user, "");
-    assert_false(credentials->is_from_proxy);
-    assert_int_equal(credentials->is_secure, strncmp(credentials->address, "127.", 4) == 0);
+    assert_int_equal(credentials->is_secure,
+                     credentials->is_from_proxy || strncmp(credentials->address, "127.", 4) == 0);
+    if (credentials->user)
+        (void)snprintf(identity->user, sizeof identity->user, "%s/%s/%s/%s", credentials->user, credentials->name,
+                       credentials->groups, credentials->auth_time);
     if (credentials->authorization)
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "", "no such token");
     if (!credentials->cookie)
@@ -106,9 +111,19 @@ static int set_up(void **state)
     struct error err = { 0 };
     world = (struct world){ .hosts = hosts_create(NULL, 0), .epoll = epoll_create1(EPOLL_CLOEXEC) };
     world.adopted = queue_create(MAX_ENDS, free);
-    const struct front_options options = {
-        .listen = "127.0.0.1:0", .hosts = world.hosts, .adopt = adopt, .identify = identify, .context = &world
-    };
+    static struct local_socket local;
+    local = (struct local_socket){ .mode = 0600 };
+    (void)snprintf(local.path, sizeof local.path, "/tmp/beamroom-test-front-%d", (int)getpid());
+    const struct front_options options = { .listen = "127.0.0.1:0",
+                                           .sockets = &local,
+                                           .n_sockets = 1,
+                                           .proxy = { .has_user = true, .user = geteuid() },
+                                           .takes_identity = true,
+                                           .hosts = world.hosts,
+                                           .adopt = adopt,
+                                           .identify = identify,
+                                           .context = &world };
+    world.path = local.path;
     world.front = front_create(&options, &err);
     assert_non_null(world.front);
     const struct front_library library = { .add = add, .run = run, .poll_fd = world.epoll, .context = &world };
@@ -255,6 +270,28 @@ static void who_is_not_let_in_is_refused_before_the_library_hears_of_it(void **s
     close(client);
 }
 
+static void the_proxy_at_the_socket_says_who_asks_and_from_where(void **state)
+{
+    struct world *world = *state;
+    struct sockaddr_un address = { .sun_family = AF_UNIX };
+    char text[4096];
+    (void)snprintf(address.sun_path, sizeof address.sun_path, "%s", world->path);
+    int proxy = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    assert_int_equal(connect(proxy, (struct sockaddr *)&address, sizeof address), 0);
+    say(proxy, "GET / HTTP/1.1\r\n" HOST
+               "X-Forwarded-For: 198.51.100.1, 192.0.2.77\r\nX-Beamroom-User: anna\r\nX-Beamroom-Name: A\r\n"
+               "X-Beamroom-Groups: a,b\r\nX-Beamroom-Auth-Time: 7\r\n\r\n");
+    hear(proxy, "\r\n\r\nanna/A/a,b/7192.0.2.77", text);
+    say(proxy, "GET / HTTP/1.1\r\n" HOST "\r\n"); /* the next request is of nobody, from nowhere */
+    hear(proxy, "Content-Length: 0\r\n\r\n", text);
+    close(proxy);
+    int other = take(world->front, "127.0.0.1");
+    say(other, "GET / HTTP/1.1\r\n" HOST "X-Beamroom-User: anna\r\n\r\n");
+    hear(other, NULL, text);
+    assert_memory_equal(text, "HTTP/1.1 400", 12);
+    close(other);
+}
+
 static void one_websocket_more_than_an_address_may_have_is_refused(void **state)
 {
     struct world *world = *state;
@@ -317,6 +354,7 @@ int main(void)
                                         tear_down),
         cmocka_unit_test_setup_teardown(each_request_is_of_who_made_it_also_on_one_connection, set_up, tear_down),
         cmocka_unit_test_setup_teardown(who_is_not_let_in_is_refused_before_the_library_hears_of_it, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_proxy_at_the_socket_says_who_asks_and_from_where, set_up, tear_down),
         cmocka_unit_test_setup_teardown(one_websocket_more_than_an_address_may_have_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(after_the_door_is_closed_a_stream_is_closed_and_a_handshake_is_refused, set_up,
                                         tear_down),

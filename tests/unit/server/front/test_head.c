@@ -7,12 +7,14 @@
 #include "tests/check.h"
 
 static struct hosts *hosts;
+static struct head_rules rules;
 
 static int make_hosts(void **state)
 {
     (void)state;
     static const char *const names[] = { "Beamroom.Example" };
     hosts = hosts_create(names, 1);
+    rules = (struct head_rules){ .hosts = hosts, .identity_names = head_identity_names };
     return 0;
 }
 
@@ -26,7 +28,7 @@ static int drop_hosts(void **state)
 static enum head_kind look(const char *bytes, size_t n, struct problem *problem)
 {
     *problem = (struct problem){ 0 };
-    return head_look(bytes, n, hosts, problem);
+    return head_look(bytes, n, &rules, problem);
 }
 
 #define HOST "Host: localhost:8080\r\n"
@@ -217,7 +219,7 @@ static void a_handshake_is_read_as_it_stands(void **state)
             continue;
         }
         memcpy(bytes + n, "\x81\x80", 2); /* the first frame is no part of it */
-        assert_int_equal(head_read(bytes, (size_t)n + 2, hosts, &request, &problem), HEAD_WEBSOCKET);
+        assert_int_equal(head_read(bytes, (size_t)n + 2, &rules, &request, &problem), HEAD_WEBSOCKET);
         assert_string_equal(handshake->room_id, cases[i].room_id);
         assert_string_equal(handshake->host, "localhost:8080");
         assert_string_equal(handshake->origin, "http://a.b:1");
@@ -241,7 +243,7 @@ static void an_origin_is_there_once_and_is_not_cut(void **state)
         memset(origin, 'a', sizeof origin);
         origin[HANDSHAKE_MAX_ORIGIN + more] = 0;
         size_t n = (size_t)snprintf(bytes, sizeof bytes, SHAKE VERSION KEY "Origin: %s\r\n\r\n", origin);
-        assert_int_equal(head_read(bytes, n, hosts, &request, &problem), more ? HEAD_REFUSED : HEAD_WEBSOCKET);
+        assert_int_equal(head_read(bytes, n, &rules, &request, &problem), more ? HEAD_REFUSED : HEAD_WEBSOCKET);
         if (!more)
             assert_string_equal(request.handshake.origin, origin);
     }
@@ -338,11 +340,12 @@ static void a_server_for_its_own_machine_answers_no_other_name_and_no_proxy(void
                   { "Host: localhost\r\nX-Real-IP: 127.0.0.1", false },
                   { "Host: localhost\r\nX-Forward: 1\r\nViable: 1", true } };
     struct hosts *alone = hosts_create_alone();
+    const struct head_rules rules_alone = { .hosts = alone, .identity_names = head_identity_names };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char bytes[300];
         struct problem problem = { 0 };
         int n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n%s\r\n\r\n", cases[i].fields);
-        enum head_kind kind = head_look(bytes, (size_t)n, alone, &problem);
+        enum head_kind kind = head_look(bytes, (size_t)n, &rules_alone, &problem);
         if ((kind == HEAD_HTTP) != cases[i].is_answered)
             fail_msg("%s", cases[i].fields);
         if (!cases[i].is_answered)
@@ -360,13 +363,13 @@ static void a_whole_head_says_where_its_request_ends_and_for_whom_it_comes(void 
     static const char chunked[] = "POST /x HTTP/1.1\r\n" HOST "Transfer-Encoding: chunked\r\n\r\n";
     struct head_request request;
     struct problem problem;
-    assert_int_equal(head_read(post, sizeof post - 1, hosts, &request, &problem), HEAD_HTTP);
+    assert_int_equal(head_read(post, sizeof post - 1, &rules, &request, &problem), HEAD_HTTP);
     assert_int_equal(request.n_bytes, sizeof post - 1 - 5);
     assert_int_equal(request.length, 12);
     assert_false(request.is_chunked);
     assert_int_equal(request.forwarded.n, strlen("198.51.100.7, 10.0.0.1"));
     assert_memory_equal(request.forwarded.at, "198.51.100.7, 10.0.0.1", request.forwarded.n);
-    assert_int_equal(head_read(chunked, sizeof chunked - 1, hosts, &request, &problem), HEAD_HTTP);
+    assert_int_equal(head_read(chunked, sizeof chunked - 1, &rules, &request, &problem), HEAD_HTTP);
     assert_true(request.is_chunked);
     assert_int_equal(request.length, 0);
     assert_null(request.forwarded.at);
@@ -385,25 +388,130 @@ static void what_proves_who_asks_is_there_once_and_not_too_long(void **state)
             value[HEAD_MAX_SECRET + more] = 0;
             int n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s: %s \r\n\r\n", names[i], value);
             problem = (struct problem){ 0 };
-            assert_int_equal(head_read(bytes, (size_t)n, hosts, &request, &problem), more ? HEAD_REFUSED : HEAD_HTTP);
+            assert_int_equal(head_read(bytes, (size_t)n, &rules, &request, &problem), more ? HEAD_REFUSED : HEAD_HTTP);
             assert_int_equal(problem.type, more ? PROBLEM_HEADERS_TOO_LARGE : PROBLEM_NONE);
             assert_null(strstr(problem.detail, "aaa"));
         }
         const struct head_text *text = i == 0 ? &request.cookie : &request.authorization,
                                *other = i == 0 ? &request.authorization : &request.cookie;
         int n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s: one two\t\r\n\r\n", names[i]);
-        assert_int_equal(head_read(bytes, (size_t)n, hosts, &request, &problem), HEAD_HTTP);
+        assert_int_equal(head_read(bytes, (size_t)n, &rules, &request, &problem), HEAD_HTTP);
         assert_int_equal(text->n, 7);
         assert_memory_equal(text->at, "one two", 7);
         assert_null(other->at);
         n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s: one\r\n%s: one\r\n\r\n", names[i], names[i]);
-        assert_int_equal(head_read(bytes, (size_t)n, hosts, &request, &problem), HEAD_REFUSED);
+        assert_int_equal(head_read(bytes, (size_t)n, &rules, &request, &problem), HEAD_REFUSED);
         assert_int_equal(problem_status(problem.type), 400);
         n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s: secret\001\r\n\r\n", names[i]);
-        assert_int_equal(head_read(bytes, (size_t)n, hosts, &request, &problem), HEAD_REFUSED);
+        assert_int_equal(head_read(bytes, (size_t)n, &rules, &request, &problem), HEAD_REFUSED);
         assert_non_null(strstr(problem.detail, names[i]));
         assert_null(strstr(problem.detail, "secret"));
     }
+}
+
+/* Reads a request with these headers on the proxy's connection, or on another one. */
+static enum head_kind read_with(const char *fields, bool is_proxy, struct head_request *request,
+                                struct problem *problem)
+{
+    static char bytes[HEAD_MAX_BYTES];
+    struct head_rules rules_here = rules;
+    rules_here.takes_identity = is_proxy;
+    *problem = (struct problem){ 0 };
+    int n = snprintf(bytes, sizeof bytes, "GET / HTTP/1.1\r\n" HOST "%s\r\n\r\n", fields);
+    return head_read(bytes, (size_t)n, &rules_here, request, problem);
+}
+
+static void the_proxy_says_who_asks_and_nobody_else(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "X-Beamroom-User", "X-Beamroom-Name", "X-Beamroom-Groups",
+                                         "X-Beamroom-Auth-Time" };
+    char fields[300];
+    struct head_request request;
+    struct problem problem;
+    for (size_t i = 0; i < 4; i++) {
+        (void)snprintf(fields, sizeof fields, "%s: 17", names[i]);
+        assert_int_equal(read_with(fields, true, &request, &problem), HEAD_HTTP);
+        assert_int_equal(request.identity[i].n, 2);
+        assert_int_equal(read_with(fields, false, &request, &problem), HEAD_REFUSED);
+        assert_int_equal(problem_status(problem.type), 400);
+        (void)snprintf(fields, sizeof fields, "%s:", names[i]);
+        assert_int_equal(read_with(fields, true, &request, &problem), HEAD_HTTP);
+        assert_int_equal(request.identity[i].n, 0);
+        assert_int_equal(read_with(fields, false, &request, &problem), HEAD_REFUSED);
+        (void)snprintf(fields, sizeof fields, "%s: 17\r\n%s: 17", names[i], names[i]);
+        assert_int_equal(read_with(fields, true, &request, &problem), HEAD_REFUSED);
+        (void)snprintf(fields, sizeof fields, "%s: 17", names[i]);
+        for (char *at = fields; *at; at++) /* in turn each - is _ */
+            if (*at == '-') {
+                *at = '_';
+                assert_int_equal(read_with(fields, true, &request, &problem), HEAD_REFUSED);
+                assert_int_equal(read_with(fields, false, &request, &problem), HEAD_REFUSED);
+                assert_int_equal(problem_status(problem.type), 400);
+                *at = '-';
+            }
+        (void)snprintf(fields, sizeof fields, "x%s: 17", names[i] + 1); /* names have no case */
+        assert_int_equal(read_with(fields, false, &request, &problem), HEAD_REFUSED);
+    }
+}
+
+static void what_the_proxy_says_has_its_form(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *fields;
+        bool is_read;
+    } cases[] = { { "X-Beamroom-User: anna.berg@example.org", true },
+                  { "X-Beamroom-User: anna berg", false },
+                  { "X-Beamroom-User: anna,berg", false },
+                  { "X-Beamroom-User: (null)", false },
+                  { "X-Beamroom-User: \xc3\xa4", false },
+                  { "X-Beamroom-Name: \xc3\x84nne Berg", true },
+                  { "X-Beamroom-Name: \xc4nne Berg", false },
+                  { "X-Beamroom-Name: a\xc2\x85"
+                    "b",
+                    false },
+                  { "X-Beamroom-Name: a\xc2", false },
+                  { "X-Beamroom-Groups: planners, physics staff", true },
+                  { "X-Beamroom-Groups: pl\xc3\xa4ner", false },
+                  { "X-Beamroom-Auth-Time: 1795000000", true },
+                  { "X-Beamroom-Auth-Time: 1795000000.5", false },
+                  { "X-Beamroom-Auth-Time: -1", false },
+                  { "X-Beamroom-Auth-Time: 12345678901", false } };
+    struct head_request request;
+    struct problem problem;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        if ((read_with(cases[i].fields, true, &request, &problem) == HEAD_HTTP) != cases[i].is_read)
+            fail_msg("%s", cases[i].fields);
+    static const size_t most[] = { 64, 160, 4096 };
+    static const char *const names[] = { "User", "Name", "Groups" };
+    for (size_t i = 0; i < 3; i++)
+        for (size_t more = 0; more < 2; more++) {
+            char value[4098], fields[4200];
+            memset(value, 'a', sizeof value);
+            value[most[i] + more] = 0;
+            (void)snprintf(fields, sizeof fields, "X-Beamroom-%s: %s", names[i], value);
+            assert_int_equal(read_with(fields, true, &request, &problem), more ? HEAD_REFUSED : HEAD_HTTP);
+        }
+}
+
+static void a_site_has_its_own_names_for_what_the_proxy_says(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "Remote-User", "Remote-Name", "Remote-Groups", "X-Auth-Time" };
+    struct head_rules own = { .hosts = hosts, .identity_names = names, .takes_identity = true };
+    static const char bytes[] = "GET / HTTP/1.1\r\n" HOST "Remote-User: anna\r\nX-Beamroom-User: bert\r\n\r\n";
+    struct head_request request;
+    struct problem problem;
+    assert_int_equal(head_read(bytes, sizeof bytes - 1, &own, &request, &problem), HEAD_HTTP);
+    assert_memory_equal(request.identity[HEAD_USER].at, "anna", 4);
+    own.takes_identity = false;
+    assert_int_equal(head_read(bytes, sizeof bytes - 1, &own, &request, &problem), HEAD_REFUSED);
+    static const char *const free_names[] = { "Remote-User", "X-Forwarded-User", "X-Auth_User",
+                                              "X-",          "Cookie",           "Host",
+                                              "X-A B",       "X-Real-IP",        "" };
+    for (size_t i = 0; i < sizeof free_names / sizeof free_names[0]; i++)
+        assert_int_equal(head_may_be_identity(free_names[i]), i == 0);
 }
 
 static void more_parameters_than_the_library_has_memory_for_are_refused(void **state)
@@ -473,6 +581,9 @@ int main(void)
         cmocka_unit_test(a_server_for_its_own_machine_answers_no_other_name_and_no_proxy),
         cmocka_unit_test(a_whole_head_says_where_its_request_ends_and_for_whom_it_comes),
         cmocka_unit_test(what_proves_who_asks_is_there_once_and_not_too_long),
+        cmocka_unit_test(the_proxy_says_who_asks_and_nobody_else),
+        cmocka_unit_test(what_the_proxy_says_has_its_form),
+        cmocka_unit_test(a_site_has_its_own_names_for_what_the_proxy_says),
         cmocka_unit_test(more_parameters_than_the_library_has_memory_for_are_refused),
         cmocka_unit_test(who_does_not_come_to_an_end_is_told_what_is_missing),
         cmocka_unit_test(a_refusal_is_a_whole_answer_of_http),
