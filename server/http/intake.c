@@ -11,7 +11,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
-#include "server/http/spool.h"
+#include "core/base/spool.h"
 
 struct intake {
     struct spool *spool;
@@ -149,7 +149,7 @@ static void promise(struct intake_file *file, uint64_t n)
     file->intake->n_promised += n;
 }
 
-/* What has been written meanwhile is on the disk, and promised no longer. */
+/* Bytes that were written meanwhile are promised no longer. */
 static void see_written(struct intake_file *file)
 {
     uint64_t n = spool_written(file->spooled) - file->n_written;

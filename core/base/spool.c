@@ -1,5 +1,5 @@
 /* One thread, and a list of the files that have something for it to do; it does one thing for each in turn. */
-#include "server/http/spool.h"
+#include "core/base/spool.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -87,7 +87,7 @@ static void free_file(struct spool_file *file)
 {
     (void)close_file(file);
     if (file->is_ours && !file->is_kept && unlink(file->path) != 0)
-        log_warn("what came of an upload cannot be removed: %s", strerror(errno));
+        log_warn("what came of a file that was given up cannot be removed: %s", strerror(errno));
     free(file->filled);
     free(file->given);
     free(file->spare);
@@ -173,7 +173,7 @@ struct spool *spool_create(struct error *err)
     (void)pthread_cond_init(&spool->is_idle, NULL);
     if (pthread_create(&spool->thread, NULL, run, spool) == 0)
         return spool;
-    error_set(err, ERROR_IO, "no thread for uploads");
+    error_set(err, ERROR_IO, "no thread to write files");
     free(spool);
     return NULL;
 }
