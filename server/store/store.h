@@ -72,7 +72,7 @@ void store_destroy(struct store *store);
  * room with an empty id is no room: its rows for the audit alone are written. They are also written when the room they
  * came with can never be. */
 bool store_write(struct store *store, struct store_room *room, uint64_t ticket);
-/* As store_write; takes accounts. Those whose commit fails wait for the disk as rooms do. */
+/* Like store_write; takes accounts. Those whose commit fails wait for the disk as rooms do. */
 bool store_write_accounts(struct store *store, struct store_accounts *accounts, uint64_t ticket);
 bool store_delete(struct store *store, const char *room_id, uint64_t ticket);
 bool store_read(struct store *store, const char *room_id, uint64_t ticket);
