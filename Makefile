@@ -2,6 +2,7 @@
 # (the page) and build/demo (the demo plan).
 #   make            the programs and the page               make run     install what is missing, build, demo plan, serve
 #   make test       every kind of test (docs/testing.md)    make test-deep  the long ones: sanitizers, clang, fuzzing
+#   make test-deploy  the sample configurations of deploy/, each proxy in front of a daemon
 #   make check      the quick ones for work: lint, units of C and of the page, in about a minute
 #   make install PREFIX=/usr/local DESTDIR=
 #   make test-unit test-render test-faults test-api test-web test-install test-long  one suite
@@ -287,6 +288,16 @@ test:
 test-deep:
 	@deploy/packages build run test
 	@tests/all.sh deep
+test-deploy:
+	@deploy/packages build run test deploy
+	@tests/all.sh deploy
+# What test-deploy runs: a file for each proxy, a few side by side.
+.PHONY: test-deploy test-proxies
+build/deploy/.stamp: tests/deploy/package.json tests/deploy/package-lock.json .npmrc
+	$(if $(Q),@echo "  NPM ci build/deploy")
+	$(Q)mkdir -p $(@D) && cp $^ $(@D) && (cd $(@D) && npm ci --loglevel=error </dev/null >/dev/null) && touch $@
+test-proxies: all demo build/deploy/.stamp
+	$(Q)TEST_CONCURRENCY=$(PARALLEL) tests/run_node.sh deploy $(sort $(wildcard tests/deploy/*.test.mjs))
 
 # ---- documents: to change X, look in Y; the pictures of the user's guide ----------------------------------------------------------
 .PHONY: where guide-pictures
@@ -332,7 +343,8 @@ install: all
 	[ -e $(DESTDIR)$(SYSCONFDIR)/beamroom/beamroomd.conf ] || \
 	    install -m 644 $(B)/beamroomd.conf $(DESTDIR)$(SYSCONFDIR)/beamroom/beamroomd.conf
 	for text in LICENSE THIRD-PARTY.md CHANGELOG.md; do install -D -m 644 $$text $(DESTDIR)$(PREFIX)/share/doc/beamroom/$$text || exit 1; done
-	install -D -m 644 deploy/nginx.conf $(DESTDIR)$(PREFIX)/share/doc/beamroom/nginx.conf
+	for sample in nginx.conf nginx-signin.conf Caddyfile Caddyfile.forward-auth haproxy.cfg apache-oidc.conf; do \
+	    install -D -m 644 deploy/$$sample $(DESTDIR)$(PREFIX)/share/doc/beamroom/$$sample || exit 1; done
 	install -D -m 644 /usr/share/doc/fonts-dejavu-core/copyright $(DESTDIR)$(PREFIX)/share/doc/beamroom/dejavu-font.copyright
 
 .PHONY: clean

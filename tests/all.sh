@@ -1,5 +1,5 @@
 #!/bin/bash
-# Suites one after the other: tests/all.sh test|deep, what `make test` and `make test-deep` run. Each suite's full output
+# Suites one after the other: tests/all.sh test|deep|deploy, what `make test`, `make test-deep` and `make test-deploy` run. Each suite's full output
 # stays in build/test/<suite>.log. Ends with one line, "N passed, N failed, N skipped", over all of them.
 set -u
 group=${1:-}
@@ -65,8 +65,13 @@ deep)
     suite long test-long LONG_TESTS=rest
     FUZZ_SEED=1 suite fuzz fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-3}"
     ;;
+deploy)
+    suite build "$jobs" all demo
+    suite deploy test-proxies
+    grep -E '^ *(▶|✔|✖) .*ms\)$' "$logs/deploy.log" # how long each part took
+    ;;
 *)
-    echo "usage: tests/all.sh test|deep" >&2
+    echo "usage: tests/all.sh test|deep|deploy" >&2
     exit 2
     ;;
 esac

@@ -30,10 +30,10 @@ export const later = long ? it : () => {};
 /** A file that these tests need and that is not there: they skip then. */
 export const missing = [chromiumPath, join(bin, 'beamroomd'), join(demo, 'phantom/plan.json')].find((path) => !existsSync(path));
 
-/** A browser that several test files use one after the other: what BEAMROOM_BROWSER names. */
-export async function startBrowser() {
+/** A browser that several test files use one after the other: what BEAMROOM_BROWSER names. @param {string[]} further flags */
+export async function startBrowser(further = []) {
   const { chromium } = await import('playwright-core');
-  return chromium.launchServer({ executablePath: chromiumPath, headless: true, args: flags });
+  return chromium.launchServer({ executablePath: chromiumPath, headless: true, args: [...flags, ...further] });
 }
 
 /** @param {{plans?: string[], args?: string[], data?: string}} how data: a state folder, kept afterwards; folders: programs and page */

@@ -1,0 +1,3 @@
+import { proves } from './checks.mjs';
+
+proves('Apache with mod_auth_openidc');

@@ -1,0 +1,4 @@
+import { proves } from './checks.mjs';
+
+proves('Caddy');
+proves('Caddy with forward_auth');

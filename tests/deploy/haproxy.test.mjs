@@ -1,0 +1,4 @@
+import { proves } from './checks.mjs';
+
+proves('HAProxy');
+proves('HAProxy with http-reuse always');

@@ -1,0 +1,4 @@
+import { proves } from './checks.mjs';
+
+proves('nginx');
+proves('nginx with auth_request');
