@@ -158,9 +158,19 @@ static bool is_id_behind(const char *path, const char *start)
     return strncmp(path, start, n) == 0 && id_is_valid(path + n);
 }
 
+/* /signin/proxy is not the page's: a proxy in front asks there. */
+static bool is_sign_in(const char *path)
+{
+    static const char *const paths[] = { "/signin", "/signin/first", "/signin/done" };
+    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++)
+        if (strcmp(path, paths[i]) == 0)
+            return true;
+    return false;
+}
+
 const struct file *files_find(const struct files *files, const char *path)
 {
-    if (strcmp(path, "/") == 0 || is_id_behind(path, "/rooms/"))
+    if (strcmp(path, "/") == 0 || is_sign_in(path) || is_id_behind(path, "/rooms/"))
         path = "/index.html";
     else if (is_id_behind(path, "/display/"))
         path = "/display.html";

@@ -30,9 +30,9 @@ struct files;
  *   errors ERROR_IO, ERROR_LIMIT, ERROR_NOT_FOUND (no index.html) */
 NODISCARD struct files *files_create(const char *folder, struct error *err);
 void files_destroy(struct files *files);
-/* The file of a decoded path; "/" and "/rooms/{room}" are /index.html, also of a room that does not exist: the page
- * says so.
- * "/display/{room}" is /display.html. NULL: there is none. */
+/* The file of a decoded path; "/", "/rooms/{room}" and where people sign in, "/signin", "/signin/first",
+ * "/signin/done", are /index.html, also of a room that does not exist: the page says so. "/display/{room}" is
+ * /display.html. NULL: there is none. */
 const struct file *files_find(const struct files *files, const char *path);
 /* The coding in which to send a file to a client that sent this Accept-Encoding, NULL when it sent none. */
 enum content_coding file_coding(const struct file *file, const char *accept);

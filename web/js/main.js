@@ -1,4 +1,5 @@
 // Starts the page: gives the browser's socket, clock and decoder to the modules and shows the page that the address names.
+import { signal } from '../lib/signals-core.js';
 import { Connection } from './net/connection.js';
 import { placeOf, roomPath } from './net/address.js';
 import { makeApi } from './net/api.js';
@@ -35,7 +36,26 @@ const { decode } = new Decoder({
   decodeHere: (picture, type) => createImageBitmap(new Blob([picture], { type })),
 });
 const hooks = new Hooks(clock);
-const api = makeApi((...request) => fetch(...request));
+/** features/session/session.js, where people sign in; null elsewhere. */
+const session = signal(null);
+/** The room whose welcome has come: {room, connection}. */
+let entered = null;
+const api = makeApi(async (path, init) => {
+  const answer = await fetch(path, session.peek()?.ofGuest(init) ?? init);
+  if (answer.status === 401) void begun.then(() => (session.peek() ? session.peek().refused() : signIn()));
+  return answer;
+});
+const told = api.call('GET', 'session').catch(() => null);
+const begun = told.then(async (facts) => {
+  if (!facts || !(facts.sign_in.length || facts.open_to_everybody)) return;
+  const { Session } = await import('./features/session/session.js');
+  session.value = new Session(facts, { api, ownName, entered: () => entered && { ...entered, ...remembered(entered.room) }, signIn });
+});
+/** Asks who this is; what this page shows opens afterwards. */
+function signIn() {
+  const { pathname, hash } = location;
+  if (!pathname.startsWith('/signin')) go(`/signin?return=${encodeURIComponent(pathname)}${hash}`, true);
+}
 /** Goes to another place of the page. @param {string} path @param {boolean} isInstead back does not lead here again */
 function go(path, isInstead = false) {
   history[isInstead ? 'replaceState' : 'pushState'](null, '', path);
@@ -100,8 +120,11 @@ function connect(room) {
     { name: ownName.value.value, member, secret, link, person: person() },
   );
   connection.addEventListener('message', ({ detail }) => {
-    if (detail.type === 'welcome') remember(room, { member: detail.member, secret: detail.secret, plan: detail.plan_id });
+    if (detail.type !== 'welcome') return;
+    remember(room, { member: detail.member, secret: detail.secret, plan: detail.plan_id });
+    entered = { room, connection };
   });
+  connection.addEventListener('paused', () => entered ?? signIn());
   return connection;
 }
 
@@ -120,9 +143,14 @@ async function route() {
   shown = `${place} ${id}`;
   leave();
   leave = () => {};
-  nRoutes += 1;
+  entered = null;
+  const n = ++nRoutes;
   const host = document.querySelector('#page');
-  if (place === 'rooms')
+  if (place === 'rooms') {
+    const { link: token, member, isGuest } = remembered(id);
+    const facts = token && !member && !isGuest && (await told); // a guest says a name first
+    if (n !== nRoutes) return;
+    if (facts?.guest_links && !facts.identity && facts.sign_in.length) return signIn();
     leave = roomPage(host, id, {
       api,
       connect,
@@ -132,18 +160,20 @@ async function route() {
       hooks,
       enter,
       ownName,
+      session,
       storage: storage(),
       isBack: Boolean(remembered(id).member),
       plan: remembered(id).plan ?? '',
     });
-  else if (place === 'p') {
-    const n = nRoutes;
+  } else if (place === 'signin') {
+    const { signInPage } = await import('./features/session/sign_in_page.js');
+    if (n === nRoutes) leave = signInPage(host, id, { api, ownName, told, remembered, remember });
+  } else if (place === 'p') {
     const { permalinkPage } = await import('./features/bookmarks/permalink.js');
     if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => enter(room, of, '', true) }); // going back does not make another room
   } else {
-    const n = nRoutes;
     const { startPage } = await import('./features/start/start_page.js'); // a file of its own: who opens a room by its link does not load it
-    if (n === nRoutes) leave = startPage(host, { api, clock, enter, send, ownName, thumbnails });
+    if (n === nRoutes) leave = startPage(host, { api, clock, enter, send, ownName, session, thumbnails });
   }
 }
 

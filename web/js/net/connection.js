@@ -27,7 +27,7 @@ class ConnectionEvent extends Event {
 /**
  * Dispatches "message" and "frame" with what was received as detail, "up", "lost" {retryMs} and "ended" {reason, isRefused: the server said so}; "quiet"
  * {since: time of the last sign of the server, dueSince} when an answer is overdue, and "heard" when one came after all;
- * "renewing" when a new socket takes the place of one that works.
+ * "renewing" when a new socket takes the place of one that works; "paused" when the person has to sign in before it goes on.
  */
 export class Connection extends EventTarget {
   #url;
@@ -51,6 +51,7 @@ export class Connection extends EventTarget {
   #welcomeAt = 0;
   #lostMs = lostMs; // grows while connections are short: a slow link may only be busy with one large picture
   #isEnded = false;
+  #isPaused = false;
 
   /**
    * @param {string} url
@@ -74,7 +75,7 @@ export class Connection extends EventTarget {
   }
 
   open(waitMs = welcomeMs) {
-    if (this.#socket || this.#isEnded) return;
+    if (this.#socket || this.#isEnded || this.#isPaused) return;
     this.#clock.clearTimeout(this.#retryTimer);
     const socket = this.#makeSocket(this.#url);
     socket.binaryType = 'arraybuffer';
@@ -120,6 +121,7 @@ export class Connection extends EventTarget {
 
   /** Connects at once instead of at the end of the wait. */
   retryNow() {
+    this.#isPaused = false;
     this.#failures = 0;
     this.#serverWaitMs = 0;
     if (!this.#isWelcome) {
@@ -133,11 +135,24 @@ export class Connection extends EventTarget {
 
   close() {
     this.#isEnded = true;
+    this.#leave();
+  }
+
+  /** Stands still until retryNow(): the person is not signed in any more. The member and its secret are kept. */
+  pause() {
+    if (this.#isEnded || this.#isPaused) return;
+    this.#isPaused = true;
+    this.#leave();
+    this.#tell('paused');
+  }
+
+  #leave() {
     this.#clock.clearTimeout(this.#retryTimer);
     this.#stopTimers();
     const socket = this.#socket;
     this.#socket = null;
-    this.#isWelcome = false;
+    this.#isWelcome = this.#isQuiet = false;
+    this.#dueSince = null;
     socket?.close();
     this.#dropReplaced();
   }
@@ -182,6 +197,7 @@ export class Connection extends EventTarget {
       this.#beat();
     }
     if (message.type === 'bye') {
+      if (message.code === 'sign-in') return this.pause();
       if (message.retry_ms === null) this.#isEnded = true;
       else this.#serverWaitMs = message.retry_ms;
     }

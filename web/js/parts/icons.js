@@ -74,12 +74,15 @@ const paths = {
   isoline: svg`<path d="M2 12.500a6 6 0 0 1 12 0"/>`,
   wash: svg`<circle cx="8" cy="8" r="6.2"/><path d="M3.500 11 11 3.500M5 13 13 5M2.500 8 8 2.500M8.500 13.800l5-5"/>`,
   globe: svg`<circle cx="8" cy="8" r="6.2"/><ellipse cx="8" cy="8" rx="2.800" ry="6.2"/><path d="M1.800 8h12.400"/>`,
+  lock: svg`<rect x="3" y="7" width="10" height="7" rx="1.5"/><path d="M5 7V5a3 3 0 0 1 6 0v2"/>`,
+  hospital: svg`<path d="M1.5 14h13M3 14V5h10v9M6 5V2.5h4V5M8 7v4M6 9h4"/>`,
   // badges of fidelity, each with its own shape
   full: svg`<rect x="2.5" y="2.5" width="11" height="11" rx="2" fill="currentColor"/>`,
   live: svg`<circle cx="8" cy="8" r="6"/><circle cx="8" cy="8" r="2.5" fill="currentColor"/>`,
   reduced: svg`<circle cx="8" cy="8" r="6"/><path d="M2 8a6 6 0 0 0 12 0Z" fill="currentColor"/>`,
   stale: svg`<path d="M3.5 2h9M3.5 14h9M4.5 2c0 3.5 3.5 4 3.5 6s-3.5 2.5-3.5 6M11.5 2c0 3.5-3.5 4-3.5 6s3.5 2.5 3.5 6"/>`,
   link: svg`<path d="M6.5 4.500H5a3.500 3.500 0 0 0 0 7h1.500M9.5 4.500H11a3.500 3.500 0 0 1 0 7H9.500M8 2v2M8 12v2"/>`,
+  paused: svg`<rect x="3.5" y="3.5" width="9" height="9" rx="1.5" fill="currentColor"/>`,
   disconnected: svg`<path d="M8 2.5 14.5 13.500h-13ZM1.5 2.500l13 12"/>`,
 };
 

@@ -1,10 +1,10 @@
-// The fidelity of the picture on the screen: one of six states, each with its words. Pure functions.
+// The fidelity of the picture on the screen: one of seven states, each with its words. Pure functions.
 
 import { say } from './words.js';
 const staleMs = 1000;
 const deadMs = 5000; // an answer that is due for so long
 /** Best to worst. */
-export const order = ['full', 'live', 'reduced', 'stale', 'link', 'disconnected'];
+export const order = ['full', 'live', 'reduced', 'stale', 'link', 'disconnected', 'paused'];
 
 function why(header) {
   const reasons = [];
@@ -29,6 +29,7 @@ export function fidelity({ link, renderer, header, staleSince, behindSince, fps,
     const seconds = Math.max(0, Math.ceil((link.retryAt - now) / 1000));
     return badge('disconnected', seconds ? say.tryingIn({ n: seconds }) : say.trying);
   }
+  if (link.state === 'paused') return badge('paused', say.paused, say.signInEnded);
   if (link.state === 'ended') return badge('disconnected', say.disconnected, link.reason);
   if (link.quietSince && now - link.dueSince >= deadMs) return badge('disconnected', say.disconnected, say.noAnswer);
   if (link.quietSince) return badge('link', say.link({ n: Math.floor((now - link.quietSince) / 1000) }), say.quiet);

@@ -16,6 +16,7 @@ export class OwnName {
     const kept = this.#read();
     this.value = signal(tidy(kept ?? '')); // '': the server chooses one
     this.isAsked = signal(kept === null); // true until there was an answer, which may be none
+    this.isFixed = signal(false); // the name of who signed in
   }
 
   /** @param {string} text '' leaves the choice to the server, and is an answer too */

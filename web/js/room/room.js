@@ -52,6 +52,7 @@ export class RoomState {
     this.link = signal({ state: 'connecting', retryAt: 0, quietSince: 0, dueSince: 0, reason: '' });
     this.lostAtEnd = signal(false); // changes and notes were not answered when the room ended
     this.member = signal('');
+    this.isLeft = signal(false); // its page is gone
     this.members = signal([]);
     this.planId = signal('');
     this.plan = signal(null);
@@ -103,6 +104,7 @@ export class RoomState {
     connection.addEventListener('message', (event) => this.#take(event.detail));
     connection.addEventListener('lost', (event) => this.#lose(event.detail.retryMs));
     connection.addEventListener('renewing', () => this.#keepChanges());
+    connection.addEventListener('paused', () => this.#pause());
     connection.addEventListener('quiet', (event) =>
       this.#setLink('open', { quietSince: event.detail.since, dueSince: event.detail.dueSince }),
     );
@@ -453,6 +455,14 @@ export class RoomState {
     batch(() => {
       this.#setLink('lost', { retryAt: this.#clock.now() + retryMs });
       this.pingMs.value = null;
+      this.#keepChanges();
+    });
+  }
+
+  /** The sign-in has ended: what is shown stands still, and what was changed is kept for the time after the next one. */
+  #pause() {
+    batch(() => {
+      this.#setLink('paused');
       this.#keepChanges();
     });
   }

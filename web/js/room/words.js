@@ -84,6 +84,8 @@ export const say = sentences('room', {
   live: 'Live',
   reduced: 'Reduced',
   stale: 'Stale',
+  paused: 'Paused',
+  signInEnded: 'Your sign-in has ended: this picture stands still.',
   disconnected: 'Disconnected',
   sizeIs: 'size {n} %',
   qualityIs: 'quality {n}',

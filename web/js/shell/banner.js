@@ -69,5 +69,5 @@ export function banner(world) {
         <div class="pair"><input id="invite-link" readonly .value=${location.href}><button class="primary" @click=${() => copyLink(ui)}>${say.copy}</button></div>${room.control.may('control') ? invite.draw((loaded) => loaded.inviteForm(world)) : nothing}</div>`
           : nothing
       }</span>
-    <button class="icon-button" title=${say.keysTip} aria-label=${say.help} aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
+    ${world.session.value?.who() ?? nothing}<button class="icon-button" title=${say.keysTip} aria-label=${say.help} aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
 }

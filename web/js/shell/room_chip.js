@@ -59,7 +59,7 @@ export function offerName({ room, ui, ownName }) {
   let isDone = !ownName.isAsked.peek();
   return effect(() => {
     const members = room.members.value;
-    if (isDone || !members.length) return;
+    if (isDone || !members.length || ownName.isFixed.value) return;
     isDone = true;
     if (members.some(({ id, connected }) => id !== room.member.value && connected !== false))
       untracked(() => ui.notify('ok', say.youAre(room.identity), topic, { word: say.giveName, act: () => askName(ui) }));

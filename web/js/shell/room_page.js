@@ -47,14 +47,14 @@ const frame = () => html`<div class="room">
 
 /**
  * @param {HTMLElement} host @param {string} id of the room
- * @param {object} world {api, connect, clock, redraw, decode, hooks, enter, ownName, storage: of the browser, isBack: this tab was in the room before,
+ * @param {object} world {api, connect, clock, redraw, decode, hooks, enter, ownName, session, storage: of the browser, isBack: this tab was in the room before,
  *   plan: the room's, as far as the address knows it}
  * @returns {() => void} leaves the room
  */
 export function roomPage(
   host,
   id,
-  { api, connect, clock, redraw, decode, hooks, enter, ownName, storage = null, isBack = false, plan = '' },
+  { api, connect, clock, redraw, decode, hooks, enter, ownName, session, storage = null, isBack = false, plan = '' },
 ) {
   const stops = [mount(host, frame)];
   const part = (name) => host.querySelector(name);
@@ -87,6 +87,7 @@ export function roomPage(
     redraw,
     storage,
     ownName,
+    session,
     undo,
     probed: probing.state,
     onPainted,
@@ -129,6 +130,7 @@ export function roomPage(
     watchEnd(host, room, after, plan),
     giveOblique(world),
     coverPage(host, ui),
+    effect(() => session.value?.inRoom(world)),
   );
 
   const tick = setInterval(() => {
@@ -138,6 +140,7 @@ export function roomPage(
   return () => {
     clearInterval(tick);
     connection.close();
+    room.isLeft.value = true;
     for (const pane of panes) pane.stop();
     for (const stop of stops.reverse()) stop();
     document.title = 'Beamroom';

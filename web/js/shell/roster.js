@@ -119,7 +119,7 @@ export function roster({ room, ui, ownName, api, watching }) {
     ${locked ? html`<p class="dim roster-locked">${say.lockedNote}</p>` : nothing}
     <div class="room-actions">${actions(room, watching).map((action) => html`<button title=${action.about} @click=${(event) => act(event, action.do)}>${action.word}</button>`)}</div>
     ${recordings({ room, ui, api }, avatar)}
-    ${nameForm({ room, ui, ownName })}`;
+    ${ownName.isFixed.value ? nothing : nameForm({ room, ui, ownName })}`;
 }
 
 /** For the presenter, above the toasts: the oldest requests for control, one line each. */

@@ -73,6 +73,9 @@ static void a_compressed_copy_is_a_form_of_its_file_and_has_no_path(void **state
     assert_string_not_equal(page->forms[CODING_GZIP].etag, page->forms[CODING_BR].etag);
     assert_int_equal(file_coding(page, "gzip, br"), CODING_BR);
     assert_ptr_equal(files_find(files, "/rooms/kave-rimo"), page);
+    assert_ptr_equal(files_find(files, "/signin"), page);
+    assert_ptr_equal(files_find(files, "/signin/first"), page);
+    assert_null(files_find(files, "/signin/proxy"));
     assert_null(files_find(files, "/rooms/"));
     assert_null(files_find(files, "/rooms/kave-rimo/ws"));
     assert_null(files_find(files, "/rooms/../index.html"));

@@ -100,7 +100,8 @@ function fakeConnection(more = {}) {
     ...more,
   });
   const told = [];
-  for (const type of ['up', 'lost', 'renewing', 'ended']) connection.addEventListener(type, ({ detail }) => told.push({ type, ...detail }));
+  for (const type of ['up', 'lost', 'renewing', 'ended', 'paused'])
+    connection.addEventListener(type, ({ detail }) => told.push({ type, ...detail }));
   connection.open();
   return { connection, told, waits, sockets, last: () => sockets.at(-1), n: () => sockets.length, wait: () => timer() };
 }
@@ -392,5 +393,25 @@ test('a link that is dead shows 2 s after another name was given; the name goes 
   assert.deepEqual(
     told.map(({ type }) => type),
     ['up', 'renewing', 'lost'],
+  );
+});
+
+test('at the end of a sign-in it stands still until it is told to go on, as the same member', () => {
+  const { connection, told, sockets, waits } = fakeConnection();
+  sockets[0].open();
+  sockets[0].welcome();
+  waits.length = 0;
+  connection.pause();
+  sockets[0].lose();
+  assert.deepEqual([sockets.length, waits], [1, []], 'no attempt by itself');
+  assert.equal(connection.send({ type: 'view.close', view: 1 }), false);
+  connection.retryNow();
+  assert.equal(sockets.length, 2);
+  sockets[1].open();
+  assert.deepEqual([sockets[1].sent[0].member, sockets[1].sent[0].secret], ['m-1', 'abc']);
+  sockets[1].welcome();
+  assert.deepEqual(
+    told.map(({ type }) => type),
+    ['up', 'paused', 'up'],
   );
 });

@@ -1,6 +1,6 @@
 // The card of the patient: shows the full identity to this person alone, for a while. It is kept in this module and nowhere else.
 import { html, nothing } from '../../../lib/lit-html.js';
-import { signal } from '../../../lib/signals-core.js';
+import { effect, signal } from '../../../lib/signals-core.js';
 import { identityOf, shownPatient } from '../../room/identity.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
@@ -14,6 +14,7 @@ const identity = signal(null);
 const state = signal({ error: '', isAsked: false });
 let timer = null;
 let hiddenTimer = null;
+let unwatch = () => {};
 
 /** The patient's name as people write it: "Virtanen^Aino" is VIRTANEN, Aino. */
 export function nameWords(name) {
@@ -25,6 +26,7 @@ export function nameWords(name) {
 function hide() {
   clearTimeout(timer);
   clearTimeout(hiddenTimer);
+  unwatch();
   identity.value = null;
 }
 
@@ -33,7 +35,13 @@ document.addEventListener('visibilitychange', () => {
   clearTimeout(hiddenTimer);
   if (document.hidden && identity.peek()) hiddenTimer = setTimeout(hide, hiddenMs);
 });
-addEventListener('hashchange', hide);
+
+/** At the end of the sign-in, and with the room, it is masked again. */
+function watch(room) {
+  unwatch = effect(() => {
+    if (room.isLeft.value || room.link.value.state === 'paused') queueMicrotask(hide); // outside of the effect, which it stops
+  });
+}
 
 /** The identity that this person may read at this moment; null: none, it is masked. */
 export function shownIdentity({ room }) {
@@ -59,6 +67,7 @@ async function show({ room, api }) {
         birth: found.birth_date ?? '',
       };
       timer = setTimeout(hide, shownMs);
+      watch(room);
     }
     state.value = { error: found ? '' : say.changed, isAsked: false };
   } catch (problem) {

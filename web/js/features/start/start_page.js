@@ -17,7 +17,7 @@ import { reportLines } from '../../parts/report.js';
 import { openDroppedSnapshot } from '../report/later_snapshots.js';
 import { dropZone, listenDrops } from './upload.js';
 
-/** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, thumbnails} @returns {() => void} leaves the page */
+/** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, session, thumbnails} @returns {() => void} leaves the page */
 export function startPage(host, world) {
   const state = new PlansState({ ...world, seen: (plans) => void world.thumbnails.update(plans) });
   const uploads = new UploadsState({
@@ -53,15 +53,15 @@ export function startPage(host, world) {
 
 const reveal = (host, plan) => host.querySelector(`[data-plan="${CSS.escape(plan)}"]`)?.scrollIntoView({ block: 'nearest' });
 
-const page = (state, uploads, { enter, ownName, thumbnails }) => html`<div class="start">
+const page = (state, uploads, { enter, ownName, session, thumbnails }) => html`<div class="start">
   <header class="banner">${brand()}<span class="grow"></span>
     <label class="search">${icon('search')}<input type="search" placeholder=${say.find} aria-label=${say.find} .value=${state.search.value} @input=${(
       event,
     ) => {
       state.search.value = event.target.value;
     }}></label>
-    ${join(state, enter)}${nameButton(state, ownName)}</header>
-  <main>${notices(state)}${askName(ownName)}${roomsList(state, enter)}${planList(state, uploads, thumbnails)}</main>
+    ${join(state, enter)}${session.value?.who() ?? nameButton(state, ownName)}</header>
+  <main>${notices(state)}${ownName.isFixed.value ? nothing : askName(ownName)}${roomsList(state, enter)}${planList(state, uploads, thumbnails)}</main>
   <aside class="load-report" aria-label=${say.aside}><div class="found">${report(state)}</div>
     ${dropZone(uploads, state.version.value?.max_upload_bytes)}</aside>
   <footer class="status">${serverStatus(state)}<span class="grow"></span><b class="research">${say.research}</b></footer>
