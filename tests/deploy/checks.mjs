@@ -1,6 +1,6 @@
 // Checks that every proxy has to pass in front of the daemon, each with its sample configuration. One file of tests for each program calls `proves`.
 import assert from 'node:assert/strict';
-import { createReadStream, existsSync, statSync } from 'node:fs';
+import { chmodSync, createReadStream, existsSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { call, demo, openPlan, sleep, startDaemon, until } from '../api/daemon.mjs';
@@ -9,7 +9,7 @@ import { full, missing, shoot, startBrowser } from '../web/browser.mjs';
 import { startProvider, startSignIn } from './people.mjs';
 import { proxies } from './proxies.mjs';
 import { canary, canaryAddress, h2Shapes, sendH2Shapes, sendShapes, shapes } from './smuggling.mjs';
-import { auditOf, bigArchive, Caller, CLIENT, dropHome, freePort, makeHome, NAME, openSecurely, peakMib } from './world.mjs';
+import { auditOf, bigArchive, Caller, CLIENT, dropHome, folderIn, freePort, makeHome, NAME, openSecurely, peakMib } from './world.mjs';
 
 const megabytes = 200;
 const NOTE = { body: { text: 'one' }, name: 'Script' };
@@ -17,14 +17,18 @@ const NOTE = { body: { text: 'one' }, name: 'Script' };
 /** A whole world in front of which a proxy stands. */
 class World {
   async start(name) {
-    const { start, signsIn } = proxies[name];
+    const { start, signsIn, user } = proxies[name];
     this.signsIn = signsIn;
     this.home = makeHome(name.replace(/\W+/g, '-'));
     const port = await freePort();
     if (signsIn === 'proxy') this.people = await startSignIn();
     if (signsIn === 'oidc') this.people = await startProvider(`https://${NAME}:${port}/oidc/back`);
-    this.daemon = await startDaemon({ args: ['--open-to-everybody', '--public-name', NAME, '--trusted-proxy', '127.0.0.1'] });
-    this.proxy = await start({ home: this.home, daemon: Number(new URL(this.daemon.url).port), signIn: this.people?.port, port });
+    const run = folderIn(this.home, 'beamroom');
+    chmodSync(run, 0o777); // the daemon does not stay root, so it cannot give the socket to a group either
+    const socket = join(run, 'http.sock');
+    const listens = user ? ['--listen', `unix:${socket},mode=0666`, '--proxy-user', user] : [];
+    this.daemon = await startDaemon({ args: ['--open-to-everybody', '--public-name', NAME, '--trusted-proxy', '127.0.0.1', ...listens] });
+    this.proxy = await start({ home: this.home, socket, daemon: Number(new URL(this.daemon.url).port), signIn: this.people?.port, port });
     this.port = this.proxy.port;
     this.host = `${NAME}:${this.port}`;
     this.caller = new Caller(this.port);
@@ -135,7 +139,11 @@ export function proves(name) {
       await world.start(name);
       await world.signIn();
     });
-    after(() => world.stop());
+    after(async () => {
+      const { exitCode, signalCode } = world.daemon?.child ?? {};
+      await world.stop();
+      assert.deepEqual([exitCode, signalCode], [null, null], `the daemon ended before its time: ${world.daemon?.log().slice(-2000)}`);
+    });
 
     if (signsIn)
       it('nobody gets in without a sign-in: neither a call nor a WebSocket', async () => {
@@ -213,6 +221,17 @@ export function proves(name) {
         (list) => list.filter(({ address }) => address).length >= claims.length,
       );
       assert.deepEqual([...new Set(rows.map(({ address }) => address))], [CLIENT]);
+    });
+
+    it('nobody says by a header who they are', async () => {
+      const [first, ...more] = ['User', 'Name', 'Groups', 'Auth-Time'].map((word) => `X-Beamroom-${word}`);
+      const direct = await fetch(`${world.daemon.url}/api/v1/version`, { headers: { [first]: 'ann' } });
+      assert.equal(direct.status, 400);
+      for (const header of [first, first.toLowerCase(), ...more])
+        assert.equal((await world.caller.call('/api/v1/version', { headers: { [header]: 'ann' } })).status, 200, header);
+      // another spelling of the same header, which some programs take for the same, is nobody's either
+      const spelt = await world.caller.call('/api/v1/version', { headers: { X_Beamroom_User: 'ann' } });
+      assert.ok([200, 400].includes(spelt.status), `${spelt.status}`);
     });
 
     it('the name with its port is the origin; a page of another site changes nothing', async () => {

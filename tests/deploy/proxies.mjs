@@ -1,7 +1,8 @@
 // Each proxy with its sample configuration of deploy/, as Debian's own configuration loads it, with ports, certificates and folders replaced.
-// A start takes {home, daemon: port, signIn: port of who knows the people} and gives {port, child, log, reload, stop}.
+// A start takes {home, socket: the daemon's, daemon: port, signIn: port of who knows the people} and gives {port, child, log, reload, stop}.
 import { execFileSync } from 'node:child_process';
 import { chmodSync, cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { userInfo } from 'node:os';
 import { join } from 'node:path';
 import { folderIn, freePort, makeCertificate, NAME, replaced, startProgram } from './world.mjs';
 
@@ -16,15 +17,19 @@ const reloader = (home, program, tell) => () => {
   tell(program.child);
 };
 
+const me = userInfo().username;
+/** Apache and nginx stay root in one process alone, the others are this user's. */
+const worker = me === 'root' ? 'www-data' : me;
+
 /** Debian's /etc/nginx, with places of its own. */
-async function startNginx({ home, daemon, signIn }) {
+async function startNginx({ home, socket, signIn }) {
   const port = await freePort();
   const { cert, key } = makeCertificate(home);
   const [etc, run] = [join(home, 'nginx'), folderIn(home, 'run')];
   cpSync('/etc/nginx', etc, { recursive: true, verbatimSymlinks: true });
   rmSync(join(etc, 'sites-enabled'), { recursive: true, force: true });
   const words = [
-    ['127.0.0.1:8080', `127.0.0.1:${daemon}`],
+    ['/run/beamroom/http.sock', socket],
     ['listen 443 ssl;', `listen 127.0.0.1:${port} ssl;`],
     ['listen [::]:443 ssl;', ''],
     ['listen 80;', `listen 127.0.0.1:${await freePort()};`],
@@ -47,12 +52,12 @@ async function startNginx({ home, daemon, signIn }) {
 /** A file for Caddy, behind the options that give it other ports and a folder of its own. */
 const startCaddy =
   (sample) =>
-  async ({ home, daemon, signIn }) => {
+  async ({ home, socket, signIn }) => {
     const [port, plain, admin] = [await freePort(), await freePort(), await freePort()];
     const { cert, key } = makeCertificate(home);
     const file = join(home, 'Caddyfile');
     const words = [
-      ['127.0.0.1:8080', `127.0.0.1:${daemon}`],
+      ['/run/beamroom/http.sock', socket],
       ['/etc/caddy/beamroom.pem', cert],
       ['/etc/caddy/beamroom.key', key],
     ];
@@ -88,7 +93,7 @@ const startHaproxy =
   };
 
 /** Debian's /etc/apache2, with the modules that the sample's first lines name. */
-async function startApache({ home, daemon, signIn, port }) {
+async function startApache({ home, socket, signIn, port }) {
   const { cert, key } = makeCertificate(home);
   const [etc, run] = [join(home, 'apache2'), folderIn(home, 'apache-run')];
   cpSync('/etc/apache2', etc, { recursive: true, verbatimSymlinks: true });
@@ -96,7 +101,7 @@ async function startApache({ home, daemon, signIn, port }) {
   const cache = folderIn(home, 'sessions');
   for (const folder of [run, cache]) chmodSync(folder, 0o777);
   const sample = replaced('apache-oidc.conf', [
-    ['http://127.0.0.1:8080/', `http://127.0.0.1:${daemon}/`],
+    ['/run/beamroom/http.sock', socket],
     ['<VirtualHost *:443>', `<VirtualHost 127.0.0.1:${port}>`],
     ['<VirtualHost *:80>', '<VirtualHost 127.0.0.1:1>'],
     ['https://login.example.org/', `http://127.0.0.1:${signIn}/`],
@@ -117,20 +122,27 @@ async function startApache({ home, daemon, signIn, port }) {
   return { ...program, log, port, reload: reloader(home, program, (child) => child.kill('SIGUSR1')) };
 }
 
-/** The proxies, and what is known to differ. needs: its program. signsIn: 'proxy' (oauth2-proxy's ways) or 'oidc' (of its own). cutsByReload: it
+/** The proxies, and what is known to differ. needs: its program. user: who connects to
+ *  the daemon's socket; without one, its port is used. signsIn: 'proxy' (oauth2-proxy's ways) or 'oidc' (of its own). cutsByReload: it
  *  closes WebSockets then, and the page comes back. */
 export const proxies = {
-  nginx: { needs: '/usr/sbin/nginx', start: startNginx },
-  'nginx with auth_request': { needs: '/usr/sbin/nginx', start: startNginx, signsIn: 'proxy' },
-  Caddy: { needs: '/usr/bin/caddy', start: startCaddy('Caddyfile'), speaksH2: true, cutsByReload: true },
+  nginx: { needs: '/usr/sbin/nginx', start: startNginx, user: worker },
+  'nginx with auth_request': { needs: '/usr/sbin/nginx', start: startNginx, user: worker, signsIn: 'proxy' },
+  Caddy: { needs: '/usr/bin/caddy', start: startCaddy('Caddyfile'), user: me, speaksH2: true, cutsByReload: true },
   'Caddy with forward_auth': {
     needs: '/usr/bin/caddy',
     start: startCaddy('Caddyfile.forward-auth'),
+    user: me,
     signsIn: 'proxy',
     speaksH2: true,
     cutsByReload: true,
   },
   HAProxy: { needs: '/usr/sbin/haproxy', start: startHaproxy(), speaksH2: true },
   'HAProxy with http-reuse always': { needs: '/usr/sbin/haproxy', start: startHaproxy(['http-reuse always']), speaksH2: true },
-  'Apache with mod_auth_openidc': { needs: '/usr/lib/apache2/modules/mod_auth_openidc.so', start: startApache, signsIn: 'oidc' },
+  'Apache with mod_auth_openidc': {
+    needs: '/usr/lib/apache2/modules/mod_auth_openidc.so',
+    start: startApache,
+    user: worker,
+    signsIn: 'oidc',
+  },
 };
