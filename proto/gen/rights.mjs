@@ -42,7 +42,7 @@ export function checkedRights(description, routes, messages) {
     need(typeof about === 'string' && about !== '', word, 'needs a sentence');
   }
   const ofMembers = wordsOf(messages.enums.right.values);
-  const rank = (role) => wordsOf(roles).indexOf(role);
+  const rank = (role) => wordsOf(roles).indexOf(role === 'wall' ? 'observer' : role); // a wall is nobody's role on a plan
   for (const { word, role, member } of rights.map(rightOf)) {
     need(!member || ofMembers.includes(member), word, `stands for the unknown right "${member}" of members`);
     if (ofMembers.includes(word))

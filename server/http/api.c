@@ -40,6 +40,9 @@ static const struct {
     { "GET", "/api/v1/rooms/{room}/scene", api_room_scene },
     { "PATCH", "/api/v1/rooms/{room}/scene", api_room_scene_patch },
     { "GET", "/api/v1/rooms/{room}/members", api_room_members },
+    { "DELETE", "/api/v1/rooms/{room}/members/{member}", api_room_member_remove },
+    { "GET", "/api/v1/rooms/{room}/people", api_room_people },
+    { "PATCH", "/api/v1/rooms/{room}/people", api_room_people_patch },
     { "GET", "/api/v1/rooms/{room}/notes", api_room_notes },
     { "GET", "/api/v1/rooms/{room}/record", api_room_record },
     { "GET", "/api/v1/rooms/{room}/bookmarks", api_room_bookmarks },
@@ -122,10 +125,11 @@ static bool has_right(struct api *api, const struct call *call, const struct api
         if (strcmp(row->method, route->method) != 0 || strcmp(row->path, route->path) != 0)
             continue;
         struct room *room = net_room_find(api->net, call->ids[0]);
-        bool (*may)(const struct room *, const char *, enum wire_right, struct problem *) =
-            route->act ? room_act_may : room_call_may;
-        if (!room || may(room, call->member, row->right, problem)) /* no room: the handler says so */
-            return true;
+        if (!room || room_may(room, &call->identity, call->member, row->right,
+                              route->act || route->handle == api_room_member_remove, problem))
+            return true; /* no room: the handler says so */
+        if (problem->type == PROBLEM_NOT_FOUND)
+            return false;
         cJSON *detail = cJSON_CreateObject();
         char what[96];
         (void)snprintf(what, sizeof what, "%s %s", route->method, route->path);
@@ -164,7 +168,8 @@ static void room_awoke(void *context, const char *room_id, const struct problem 
 static bool wakes_room(struct api *api, struct call *call, const struct api_route *route)
 {
     const char *room = call_query(call, "room");
-    bool is_for_awake = (call->method == CALL_DELETE && !route->act && route->handle != api_room_link_revoke) ||
+    bool is_for_awake = (call->method == CALL_DELETE && !route->act && route->handle != api_room_link_revoke &&
+                         route->handle != api_room_member_remove) ||
                         route->handle == api_room_ws || route->handle == api_room_stream;
     if (strncmp(route->path, in_room, strlen(in_room)) == 0)
         room = is_for_awake ? NULL : call->ids[0];

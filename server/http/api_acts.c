@@ -182,6 +182,7 @@ void api_room_act(struct api *api, struct call *call)
     }
     const struct room_act act = { .member = call->member,
                                   .name = name,
+                                  .identity = &call->identity,
                                   .address = call->client,
                                   .key = call->key,
                                   .message = &message,

@@ -141,7 +141,7 @@ struct room *api_replay_new(struct api *api, const struct call *call, const cJSO
         problem_set(problem, PROBLEM_NOT_FOUND, "/recording/room", "", "there is no room \"%.63s\"", id);
         return NULL;
     }
-    if (!room_call_may(room, call->member, WIRE_RIGHT_LOOK, problem))
+    if (!room_may(room, &call->identity, call->member, WIRE_RIGHT_LOOK, false, problem))
         return NULL;
     if (plan_id && strcmp(plan_id, room_plan_id(room)) != 0) {
         problem_set(problem, PROBLEM_VALIDATION, "/plan", "enum", "the meeting was on the plan \"%.63s\"",

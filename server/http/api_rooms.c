@@ -15,11 +15,17 @@ enum { MAX_ASLEEP = 100 }; /* rooms that sleep, in the list of rooms */
 void api_rooms(struct api *api, struct call *call)
 {
     cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "rooms");
-    for (size_t i = 0; i < net_n_rooms(api->net); i++)
-        json_append(list, room_document(net_room_at(api->net, i)));
-    for (size_t i = 0; i < net_n_asleep(api->net) && i < MAX_ASLEEP; i++)
-        json_append(list, net_asleep_document(api->net, i));
-    cJSON_AddNumberToObject(answer, "n_asleep", (double)net_n_asleep(api->net));
+    const struct identity *who = &call->identity;
+    size_t n_asleep = 0;
+    for (size_t i = 0; i < net_n_rooms(api->net); i++) {
+        const struct room *room = net_room_at(api->net, i);
+        if (who->source == IDENTITY_MACHINE || room_is_listed_to(room, who))
+            json_append(list, room_document(room));
+    }
+    for (size_t i = 0; i < net_n_asleep(api->net); i++)
+        if (net_asleep_is_listed_to(api->net, i, who) && n_asleep++ < MAX_ASLEEP)
+            json_append(list, net_asleep_document(api->net, i));
+    cJSON_AddNumberToObject(answer, "n_asleep", (double)n_asleep);
     call_answer_json(call, 200, answer);
 }
 
@@ -48,8 +54,10 @@ static cJSON *document_of(const struct room *room)
     return document;
 }
 
-static void answer_new(struct call *call, const struct room *room)
+static void answer_new(struct call *call, struct room *room)
 {
+    if (call->identity.user[0])
+        room_set_owner(room, call->identity.user);
     char location[96];
     (void)snprintf(location, sizeof location, "/api/v1/rooms/%s", room_id(room));
     call_add_header(call, "Location", location);
@@ -68,7 +76,7 @@ static void new_replay(struct api *api, struct call *call, cJSON *body)
         cJSON_Delete(body);
         return;
     }
-    const struct room *room =
+    struct room *room =
         problem.type == PROBLEM_NONE ? api_replay_new(api, call, asked, json_text(body, "plan"), &problem) : NULL;
     cJSON_Delete(body);
     if (room)

@@ -37,21 +37,25 @@ static bool reserve(struct net *net, size_t n)
 
 void asleep_add(struct net *net, const struct store_summary *facts)
 {
-    if (!reserve(net, 1)) /* it is found again after a restart */
+    if (!reserve(net, 1)) { /* it is found again after a restart */
+        free(facts->people);
         return;
+    }
     memmove(net->asleep + 1, net->asleep, net->n_asleep * sizeof net->asleep[0]);
     net->asleep[0] = (struct asleep_room){ .facts = *facts };
     net->n_asleep++;
 }
 
-void asleep_add_all(struct net *net, const struct store_summary *rooms, size_t n)
+void asleep_add_all(struct net *net, struct store_summary *rooms, size_t n)
 {
     if (n == 0 || !reserve(net, n))
         return;
     for (size_t i = 0; i < n; i++)
         if (id_is_valid(rooms[i].id) && id_is_valid(rooms[i].plan) && !is_awake(net, rooms[i].id) &&
-            !asleep_find(net, rooms[i].id))
+            !asleep_find(net, rooms[i].id)) {
             net->asleep[net->n_asleep++] = (struct asleep_room){ .facts = rooms[i] };
+            rooms[i].people = NULL;
+        }
 }
 
 void asleep_remove(struct net *net, const char *id)
@@ -59,6 +63,7 @@ void asleep_remove(struct net *net, const char *id)
     struct asleep_room *room = asleep_find(net, id);
     if (!room)
         return;
+    free(room->facts.people);
     net->n_asleep--;
     memmove(room, room + 1, (size_t)(net->asleep + net->n_asleep - room) * sizeof *room);
 }
@@ -144,6 +149,8 @@ struct asleep_room *asleep_of_answer(const struct net *net, const struct store_a
 
 void asleep_finish(struct net *net)
 {
+    for (size_t i = 0; i < net->n_asleep; i++)
+        free(net->asleep[i].facts.people);
     free(net->asleep);
     net->asleep = NULL;
     net->n_asleep = 0;

@@ -4,9 +4,9 @@
 #include "server/net/net_state.h"
 
 struct asleep_room *asleep_find(const struct net *net, const char *room_id);
-void asleep_add(struct net *net, const struct store_summary *facts); /* the one last used */
-/* Adds those that are not awake or listed yet, in their order. */
-void asleep_add_all(struct net *net, const struct store_summary *rooms, size_t n);
+void asleep_add(struct net *net, const struct store_summary *facts); /* the one last used; takes facts->people */
+/* Adds those that are not awake or listed yet, in their order, and takes what they own. */
+void asleep_add_all(struct net *net, struct store_summary *rooms, size_t n);
 void asleep_remove(struct net *net, const char *room_id);
 /* The room is read, unless it is already; done is called with asleep_woken. */
 void asleep_wake(struct net *net, const char *room_id,

@@ -28,6 +28,7 @@ enum {
     FLEET_TICK_US = 250000,
     CALM_AFTER_US = 5000000, /* without a call and a message */
     CALM_TICK_US = 1000000,
+    STILL_EVERY_US = 20000000,  /* whether a sign-in holds is looked at again */
     REST_TICK_US = 60000000,    /* while nothing is under way that depends on time */
     FAREWELL_US = 1000000,      /* at the end, for the byes to be sent */
     RESTART_RETRY_MS = 2000,    /* when pages reconnect after a stop: about the time of a restart */
@@ -97,6 +98,36 @@ static void tick_within(struct net *net, int64_t within_us)
         net->fleet_tick_us = at_us;
 }
 
+/* The sign-in behind the connection is over. */
+static void sign_out(struct visitor *visitor)
+{
+    struct net_room *room = visitor->room;
+    if (!room) {
+        ws_bye(visitor->connection, WS_CLOSE_POLICY, "your sign-in has ended", -1);
+        return;
+    }
+    room_sign_in_over(room->room, visitor->connection, clock_now_us());
+    schedule_room(room);
+}
+
+void net_session_over(struct net *net, const char *session)
+{
+    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
+        if (session[0] && strcmp(visitor->identity.session, session) == 0)
+            sign_out(visitor);
+}
+
+/* Signs out those whose identity does not hold any more. */
+static void look_at_identities(struct net *net, int64_t now_us)
+{
+    if (!net->is_still || now_us < net->still_us)
+        return;
+    net->still_us = now_us + STILL_EVERY_US;
+    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
+        if (visitor->identity.user[0] && !net->is_still(net->rights, &visitor->identity))
+            sign_out(visitor);
+}
+
 static void timer_fired(void *context)
 {
     struct net *net = context;
@@ -104,6 +135,7 @@ static void timer_fired(void *context)
     if (now_us >= net->fleet_tick_us) {
         fleet_tick(net->fleet);
         bridge_look_at_files(net, now_us);
+        look_at_identities(net, now_us);
         rooms_close_idle(net);
         keep_write_due(net, false);
         net->fleet_tick_us = now_us + (now_us < net->calm_from_us ? FLEET_TICK_US : calm_tick_us(net, now_us));
@@ -461,6 +493,9 @@ struct net *net_create(const struct net_options *options, struct error *err)
     net->max_rooms = options->max_rooms > 0 ? options->max_rooms : 200;
     net->room_idle_close_s = options->room_idle_close_s;
     net->limits = options->room;
+    net->role_of = options->role_of;
+    net->is_still = options->is_still;
+    net->rights = options->rights;
     net->rooms = mem_array((size_t)net->max_rooms, sizeof net->rooms[0], 1 << 20, err);
     net->tasks = queue_create(MAX_TASKS, free);
     const struct ws_callbacks callbacks = {

@@ -28,6 +28,11 @@ struct net_options {
     int room_idle_close_s;      /* a room with nobody connected is put to sleep after this, or deleted if nobody ever
                                    used it or rooms are not kept; 0: never */
     struct room_limits room;
+    /* The highest role that who has signed in may have in rooms on this plan; false: none. NULL: as false. */
+    bool (*role_of)(void *context, const struct identity *who, const char *plan_id, enum wire_member_role *role);
+    /* Whether the identity of a connection still holds; proved_ms is brought up to date. NULL: it does. */
+    bool (*is_still)(void *context, struct identity *who);
+    void *rights; /* context of both; net thread */
     /* a further Origin that may open a WebSocket, beside the request's own Host; NULL: none */
     const char *allowed_origin;
     /* the file in which rooms are kept over a restart; NULL: none are */
@@ -52,6 +57,8 @@ void net_adopt(struct net *net, int socket, const struct handshake *handshake, v
                void *context);
 
 /* On the net thread only: */
+/* The session or token of this name is over: its connections get bye, and members keep their seats. */
+void net_session_over(struct net *net, const char *session);
 struct fleet *net_fleet(struct net *net);
 /* Creates a room and opens its plan. bookmark: of this plan, what the room begins with (room_begin_with); NULL: with
  * the plan's own scene. NULL with problem. */
@@ -104,6 +111,8 @@ NODISCARD bool net_can_write(struct net *net, struct problem *problem);
 struct room *net_replay_create(struct net *net, const struct room *of_room, const char *recording,
                                struct problem *problem);
 size_t net_n_asleep(const struct net *net);
+/* Like room_is_listed_to, for a sleeping room; true of each for the machine's person. */
+bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct identity *who);
 /* Like room_document, without members; the one last used is at 0. */
 NODISCARD cJSON *net_asleep_document(const struct net *net, size_t index);
 /* False with problem busy: the database could not be opened since the start, so a room that is not found may be there.

@@ -143,7 +143,11 @@ struct net {
     size_t n_audit_waiting; /* rows that are not on disk yet, of all rooms, those under way included */
     uint64_t n_audit_lost;  /* rows that found neither disk nor memory since the last row that did */
     struct net_audit_head audit_head;
-    bool store_was_open;                                                         /* so the rooms that sleep are known */
+    bool (*role_of)(void *context, const struct identity *who, const char *plan_id, enum wire_member_role *role);
+    bool (*is_still)(void *context, struct identity *who);
+    void *rights;
+    int64_t still_us;    /* when identities are looked at next */
+    bool store_was_open; /* so the rooms that sleep are known */
     void (*files_looked)(struct net_room *entry, const struct fleet_plan *plan); /* keep_files_looked */
     int64_t look_us;                    /* when files of plans are looked at next */
     int64_t fleet_tick_us;              /* when fleet_tick is due */

@@ -34,9 +34,17 @@ static const char *address(void *context, void *connection)
 
 static const struct identity *identity(void *context, void *connection)
 {
-    const struct visitor *visitor = ws_owner(connection);
-    (void)context;
+    struct net *net = context;
+    struct visitor *visitor = ws_owner(connection);
+    if (net->is_still && visitor->identity.user[0])
+        (void)net->is_still(net->rights, &visitor->identity); /* whether it ends is looked at with time */
     return &visitor->identity;
+}
+
+static bool role_of(void *context, const struct room *room, const struct identity *who, enum wire_member_role *role)
+{
+    const struct net *net = context;
+    return net->role_of && net->role_of(net->rights, who, room_plan_id(room), role);
 }
 
 static void send_text(void *context, void *connection, const char *text)
@@ -66,6 +74,12 @@ static void close_connection(void *context, void *connection)
     ws_close(connection, WS_CLOSE_NORMAL);
 }
 
+static void close_signed_out(void *context, void *connection)
+{
+    (void)context;
+    ws_close(connection, WS_CLOSE_POLICY);
+}
+
 /* ---- rooms ------------------------------------------------------------------------------------------------------ */
 
 /* 40 random bits as "7q4k-m2wz". */
@@ -89,6 +103,8 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .close = close_connection,
                                               .address = address,
                                               .identity = identity,
+                                              .role_of = role_of,
+                                              .close_signed_out = close_signed_out,
                                               .context = net,
                                               .item_changed = keep_item_changed,
                                               .item_first = net->store ? keep_item_first : NULL,
@@ -151,6 +167,10 @@ static bool put_to_sleep(struct net *net, size_t index)
                                    .n_members = (uint32_t)kept.n_members };
     (void)snprintf(facts.id, sizeof facts.id, "%s", room_id(room->room));
     (void)snprintf(facts.plan, sizeof facts.plan, "%s", room_plan_id(room->room));
+    (void)snprintf(facts.owner, sizeof facts.owner, "%s", kept.owner);
+    facts.is_open = kept.is_open;
+    facts.people = kept.people;
+    kept.people = NULL;
     room_kept_finish(&kept);
     asleep_add(net, &facts);
     rooms_close(net, index);
@@ -345,6 +365,17 @@ void net_room_wake(struct net *net, const char *id,
 size_t net_n_asleep(const struct net *net)
 {
     return net->n_asleep;
+}
+
+bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct identity *who)
+{
+    const struct store_summary *facts = &net->asleep[index].facts;
+    enum wire_member_role role;
+    if (who->source == IDENTITY_MACHINE || room_people_name(facts->owner, facts->people, who))
+        return true;
+    if (!net->role_of || !net->role_of(net->rights, who, facts->plan, &role))
+        return false;
+    return facts->is_open || (!facts->owner[0] && role == WIRE_MEMBER_ROLE_PLANNER);
 }
 
 cJSON *net_asleep_document(const struct net *net, size_t index)

@@ -17,6 +17,8 @@ static bool is_about_item(const struct message *message)
 /* Whether who is no member may write or delete it. */
 static bool is_of_anybody(const struct room *room, const struct message *message)
 {
+    if (message->type == MESSAGE_MEMBER_REMOVE)
+        return true;
     if (!is_about_item(message))
         return false;
     const bool is_put = message->type == MESSAGE_ITEM_PUT;
@@ -30,10 +32,14 @@ static bool is_of_anybody(const struct room *room, const struct message *message
 /* A caller who is no member of the room: has the name that the call gives, and no id. */
 static struct member *make_stranger(const struct room *room, const struct room_act *act)
 {
+    static const struct identity machine = { .source = IDENTITY_MACHINE };
+    const struct identity *who = act->identity ? act->identity : &machine;
     struct member *stranger = mem_new(sizeof *stranger);
-    stranger->role = links_were_made(room) ? WIRE_MEMBER_ROLE_REVIEWER : WIRE_MEMBER_ROLE_PRESENTER;
+    const char *name = who->name[0] ? who->name : who->user[0] ? who->user : act->name;
+    stranger->role = room_caller_of(room, who, NULL).role;
     stranger->color = COLOR_OF_NOBODY;
-    (void)snprintf(stranger->name, sizeof stranger->name, "%s", act->name ? act->name : "");
+    (void)snprintf(stranger->name, sizeof stranger->name, "%s", name ? name : "");
+    (void)snprintf(stranger->user, sizeof stranger->user, "%s", who->user);
     (void)snprintf(stranger->address, sizeof stranger->address, "%s", act->address);
     return stranger;
 }
@@ -51,7 +57,8 @@ static bool check_caller(const struct room *room, const struct member *member, c
     if (!is_of_anybody(room, message))
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "seat",
                            "this is done by a member of the room: send Beamroom-Member");
-    if (message->type == MESSAGE_ITEM_PUT && (!act->name || !act->name[0]))
+    const bool has_name = (act->identity && act->identity->user[0]) || (act->name && act->name[0]);
+    if (message->type == MESSAGE_ITEM_PUT && !has_name)
         return problem_set(problem, PROBLEM_VALIDATION, "/name", "required",
                            "who writes this? give a name, or send Beamroom-Member");
     return true;

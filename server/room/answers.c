@@ -48,7 +48,19 @@ bool room_link_create(struct room *room, enum wire_member_role role, int64_t exp
                       char token[33], struct problem *problem)
 {
     room_enter(room, now_us);
-    const bool is_made = link_create(room, role, expires_s, is_one_use, token, problem);
+    const struct room_link wanted = {
+        .role = role, .expires_s = expires_s, .is_one_use = is_one_use, .maker = "", .name = ""
+    };
+    const bool is_made = link_create(room, &wanted, token, problem);
+    room_leave(room);
+    return is_made;
+}
+
+bool room_link_make(struct room *room, const struct room_link *wanted, int64_t now_us, char token[33],
+                    struct problem *problem)
+{
+    room_enter(room, now_us);
+    const bool is_made = link_create(room, wanted, token, problem);
     room_leave(room);
     return is_made;
 }

@@ -2,15 +2,19 @@
 #include "server/room/entry.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "server/room/log/replay.h"
 #include "server/room/out/audit.h"
+#include "server/room/people/admission.h"
 #include "server/room/people/control.h"
 #include "server/room/people/links.h"
+#include "server/room/people/removal.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/roles.h"
+#include "server/room/state/who.h"
 #include "server/room/views/shared_scene.h"
 #include "server/wire/json.h"
 #include "server/wire/message.h"
@@ -76,10 +80,84 @@ void room_audit_call(struct room *room, const char *member, const char *address,
     room_leave(room);
 }
 
+struct room_caller room_caller_of(const struct room *room, const struct identity *who, const char *member)
+{
+    const struct member *caller = room_caller(room, member);
+    struct room_caller found = { .role = WIRE_MEMBER_ROLE_OBSERVER };
+    if (member && !(caller && who_has_seat(who, caller->user, caller->is_guest, caller->role)))
+        return found;
+    if (caller)
+        return (struct room_caller){
+            .is_here = true, .is_member = true, .is_guest = caller->is_guest, .role = caller->role
+        };
+    found.is_here = true;
+    if (who_is_machine(who))
+        found.role = links_were_made(room) ? WIRE_MEMBER_ROLE_REVIEWER : WIRE_MEMBER_ROLE_PRESENTER;
+    else
+        found.is_here = admission_role(room, who, &found.role);
+    return found;
+}
+
+bool room_caller_gives(const struct room_caller *caller, enum wire_member_role role)
+{
+    return role_rank(role) <= role_rank(caller->role);
+}
+
+bool room_may(const struct room *room, const struct identity *who, const char *member, enum wire_right right,
+              bool is_act, struct problem *problem)
+{
+    if (who_is_machine(who))
+        return is_act ? room_act_may(room, member, right, problem) : room_call_may(room, member, right, problem);
+    const struct room_caller caller = room_caller_of(room, who, member);
+    const struct member as = { .role = caller.role, .is_guest = caller.is_guest };
+    if (!caller.is_here) /* in the words of a room that is not there */
+        return problem_set(problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", room->id);
+    if (!member_check(&as, right, problem))
+        return false;
+    const bool is_free = is_act || right != WIRE_RIGHT_SCENE || member_presents(room, room_caller(room, member)) ||
+                         (!caller.is_member && role_has_right(caller.role, WIRE_RIGHT_CONTROL));
+    return is_free || refuse_not_presenter(room, problem, "change the scene");
+}
+
+cJSON *room_people(const struct room *room)
+{
+    return admission_document(room);
+}
+
+bool room_people_patch(struct room *room, const cJSON *patch, const struct identity *who, const char *member,
+                       const char *address, int64_t now_us, struct problem *problem)
+{
+    const struct room_caller caller = room_caller_of(room, who, member);
+    room_enter(room, now_us);
+    const bool is_done = admission_patch(room, patch, caller.role, problem);
+    const struct audit_act act = { .by = room_caller(room, member),
+                                   .action = "people",
+                                   .address = address,
+                                   .detail = is_done ? admission_document(room) : NULL,
+                                   .before = -1,
+                                   .after = -1 };
+    if (is_done)
+        audit_tell(room, &act);
+    room_leave(room);
+    return is_done;
+}
+
+bool room_is_listed_to(const struct room *room, const struct identity *who)
+{
+    struct store_room kept = { .people = NULL };
+    enum wire_member_role role;
+    admission_facts(room, &kept);
+    bool is_listed = admission_role(room, who, &role);
+    if (!is_listed && admission_write(room, &kept))
+        is_listed = room_people_name(kept.owner, kept.people, who);
+    free(kept.people);
+    return is_listed;
+}
+
 bool room_call_may(const struct room *room, const char *member, enum wire_right right, struct problem *problem)
 {
     const struct member *caller = room_caller(room, member);
-    if (caller && right == WIRE_RIGHT_SCENE && role_has_right(caller->role, right) && !member_presents(room, caller))
+    if (caller && right == WIRE_RIGHT_SCENE && member_has_right(caller, right) && !member_presents(room, caller))
         return refuse_not_presenter(room, problem, "change the scene");
     return room_act_may(room, member, right, problem);
 }
@@ -88,7 +166,7 @@ bool room_act_may(const struct room *room, const char *member, enum wire_right r
 {
     const struct member *caller = room_caller(room, member);
     if (caller)
-        return role_check(caller->role, right, problem);
+        return member_check(caller, right, problem);
     if (member)
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "member",
                            "Beamroom-Member names no member of this room, or not with its secret");
@@ -128,6 +206,16 @@ cJSON *room_links(struct room *room, int64_t now_us)
     cJSON *list = links_list(room);
     room_leave(room);
     return list;
+}
+
+bool room_link_revoke_all(struct room *room, const char *id, const char *by, const char *address, int64_t now_us)
+{
+    room_enter(room, now_us);
+    const bool was_there = link_revoke(room, id, room_caller(room, by), address);
+    if (was_there)
+        members_remove_of_link(room, id, room_caller(room, by));
+    room_leave(room);
+    return was_there;
 }
 
 bool room_link_revoke(struct room *room, const char *id, const char *by, const char *address, int64_t now_us)

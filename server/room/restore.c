@@ -6,6 +6,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/room/entry.h"
+#include "server/room/people/admission.h"
 #include "server/room/people/known.h"
 #include "server/room/people/links.h"
 #include "server/room/room.h"
@@ -38,6 +39,7 @@ bool room_keep(const struct room *room, unsigned parts, struct store_room *kept)
                                  .has_links = links_were_made(room) };
     (void)snprintf(kept->id, sizeof kept->id, "%s", room->id);
     (void)snprintf(kept->plan, sizeof kept->plan, "%s", room->plan_id);
+    admission_facts(room, kept);
     if (room->presenter)
         (void)snprintf(kept->presenter, sizeof kept->presenter, "%s", room->presenter->id);
     bool ok = true;
@@ -49,6 +51,8 @@ bool room_keep(const struct room *room, unsigned parts, struct store_room *kept)
         ok = write_members(room, kept);
     if (ok && (parts & ROOM_LINKS))
         ok = links_write(room, kept);
+    if (ok && (parts & (ROOM_MEMBERS | ROOM_PEOPLE)))
+        ok = admission_write(room, kept);
     if (ok && (parts & ROOM_PRESENCE))
         ok = (kept->presence = presence_write(room)) != NULL;
     if (!ok)
@@ -61,6 +65,7 @@ void room_kept_finish(struct store_room *kept)
     free(kept->scene);
     free(kept->views);
     free(kept->presence);
+    free(kept->people);
     free(kept->members);
     free(kept->links);
     *kept = (struct store_room){ 0 };
@@ -110,6 +115,7 @@ void room_restore(struct room *room, const struct store_room *kept, int64_t now_
     else
         cJSON_Delete(scene);
     read_members(room, kept);
+    admission_read(room, kept);
     presence_read(room, kept->presence);
     links_read(room, kept);
     cJSON *views = read_json(room, kept->views, "the list of views");

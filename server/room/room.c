@@ -18,6 +18,7 @@
 #include "server/room/out/audit.h"
 #include "server/room/out/saved.h"
 #include "server/room/out/send.h"
+#include "server/room/people/admission.h"
 #include "server/room/people/control.h"
 #include "server/room/people/handover.h"
 #include "server/room/people/known.h"
@@ -26,6 +27,7 @@
 #include "server/room/people/member.h"
 #include "server/room/people/pointers.h"
 #include "server/room/people/presenter.h"
+#include "server/room/people/removal.h"
 #include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/presence.h"
@@ -67,6 +69,8 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
     acceptances_init(room);
     control_init(room);
     known_init(room);
+    admission_init(room);
+    room->admits_guests = limits && limits->admits_guests;
     links_init(room);
     look_init(room);
     recordings_init(room, limits && limits->recording_speed > 0 ? limits->recording_speed : 1);
@@ -105,6 +109,7 @@ void room_destroy(struct room *room)
     cJSON_Delete(room->shared.scene);
     cJSON_Delete(room->shared.restored);
     known_free(room);
+    admission_free(room);
     saved_free(room);
     presence_free(room);
     events_free(room);
@@ -295,6 +300,7 @@ static const struct {
     { MESSAGE_CONTROL_REFUSE, control_refuse },
     { MESSAGE_CONTROL_TAKE, control_take },
     { MESSAGE_CONTROL_LOCK, control_lock },
+    { MESSAGE_MEMBER_REMOVE, member_remove },
     { MESSAGE_SCENE_PATCH, member_scene_patch },
     { MESSAGE_FRAME_SHOWN, member_frame_shown },
     { MESSAGE_ITEM_PUT, items_put },
@@ -346,7 +352,8 @@ static void greet(struct room *room, void *connection, const struct message_hell
 static bool is_recorded(enum message_type type)
 {
     return type == MESSAGE_PRESENT || type == MESSAGE_CONTROL_REQUEST || type == MESSAGE_CONTROL_GIVE ||
-           type == MESSAGE_CONTROL_REFUSE || type == MESSAGE_CONTROL_TAKE || type == MESSAGE_CONTROL_LOCK;
+           type == MESSAGE_CONTROL_REFUSE || type == MESSAGE_CONTROL_TAKE || type == MESSAGE_CONTROL_LOCK ||
+           type == MESSAGE_MEMBER_REMOVE;
 }
 
 /* Answers with the problem; type, view and input of the refused text are repeated as far as it can be parsed. False:
@@ -429,7 +436,7 @@ static int64_t settle_shown(struct room *room, struct member *member)
 
 bool room_apply(struct room *room, struct member *member, const struct message *message, struct problem *problem)
 {
-    if (!role_check(member->role, message_descriptions[message->type].right, problem) ||
+    if (!member_check(member, message_descriptions[message->type].right, problem) ||
         !replay_allows(room, message->type, problem) || (is_recorded(message->type) && !audit_has_place(room, problem)))
         return false;
     for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++)
@@ -486,6 +493,16 @@ void room_connection_lost(struct room *room, void *connection, int64_t heard_us,
 void room_connection_closed(struct room *room, void *connection, int64_t now_us)
 {
     room_connection_lost(room, connection, now_us, now_us);
+}
+
+void room_sign_in_over(struct room *room, void *connection, int64_t now_us)
+{
+    room_enter(room, now_us);
+    struct member *member = member_of_connection(room, connection);
+    send_bye_for(room, connection, "sign-in", -1, "your sign-in has ended");
+    if (member)
+        member_disconnected(room, member, now_us);
+    room_leave(room);
 }
 
 bool room_has_member(const struct room *room, void *connection)

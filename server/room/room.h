@@ -4,6 +4,7 @@
 #include "server/room/items/room_items.h"
 #include "server/room/log/room_recordings.h"
 #include "server/room/people/room_links.h"
+#include "server/room/people/room_people.h"
 #include "server/room/state/room_types.h"
 #include "server/room/streams/room_displays.h"
 #include "server/room/views/room_bookmarks.h"
@@ -73,6 +74,30 @@ NODISCARD cJSON *room_document(const struct room *room);
 /* Like room_document, for a sleeping room: without members, and with asleep true. */
 NODISCARD cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision,
                                   enum wire_renderer_state renderer, int64_t created_at_s);
+/* The caller over HTTP, as the room sees it. */
+struct room_caller {
+    bool is_here;   /* it has a role in the room; false: it is answered as if the room were not there */
+    bool is_member; /* the one whom Beamroom-Member names */
+    bool is_guest;
+    enum wire_member_role role;
+};
+/* member: as in room_call_may. With a seat of another user, or a false secret, is_here is false. */
+struct room_caller room_caller_of(const struct room *room, const struct identity *who, const char *member);
+/* Nobody gives a role above their own. */
+bool room_caller_gives(const struct room_caller *caller, enum wire_member_role role);
+/* Whether this caller has the right in the room: not-found where it has no role there, forbidden, not-presenter.
+ * is_act: for room_act, whose message finds out by itself whether it takes the presenter. */
+NODISCARD bool room_may(const struct room *room, const struct identity *who, const char *member, enum wire_right right,
+                        bool is_act, struct problem *problem);
+/* {owner, is_open, people: [{who, role}], removed: [{user, name}]} */
+NODISCARD cJSON *room_people(const struct room *room);
+/* Changes is_open and people. False with problem: nothing of it was applied. */
+NODISCARD bool room_people_patch(struct room *room, const cJSON *patch, const struct identity *who, const char *member,
+                                 const char *address, int64_t now_us, struct problem *problem);
+/* Whether this user made the room, was asked into it or was in it; or may come in without a link. */
+bool room_is_listed_to(const struct room *room, const struct identity *who);
+/* The sign-in behind this connection is over: the member is away, and keeps its seat. */
+void room_sign_in_over(struct room *room, void *connection, int64_t now_us);
 /* Whether a call over HTTP has the right in this room. member: "ID SECRET" of the member who makes it; NULL: of nobody
  * in the room, who then has the rights of a presenter in a room without links, else those of a reviewer who does not
  * present. False with problem forbidden or not-presenter. */
@@ -91,6 +116,9 @@ NODISCARD cJSON *room_links(struct room *room, int64_t now_us);
 /* The link lets nobody in any more; who came in by it stays. by: as member in room_call_may. False: there is no such
  * link. */
 NODISCARD bool room_link_revoke(struct room *room, const char *id, const char *by, const char *address, int64_t now_us);
+/* Like room_link_revoke; who came in by it is removed. */
+NODISCARD bool room_link_revoke_all(struct room *room, const char *id, const char *by, const char *address,
+                                    int64_t now_us);
 /* Makes a link; token gets 32 digits and a final zero. False with problem limit. */
 NODISCARD bool room_link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
                                 int64_t now_us, char token[33], struct problem *problem);

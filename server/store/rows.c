@@ -86,7 +86,7 @@ static bool write_members(sqlite3 *db, const struct store_room *room, struct err
         return false;
     sqlite3_stmt *row = sql_prepare(db,
                                     "INSERT INTO members(room, place, id, name, color, role, secret_hash, has_left,"
-                                    " user, is_guest) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
+                                    " user, is_guest, link) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
                                     err);
     bool ok = row != NULL;
     for (size_t i = 0; ok && i < room->n_members; i++) {
@@ -101,6 +101,7 @@ static bool write_members(sqlite3 *db, const struct store_room *room, struct err
         (void)sqlite3_bind_int(row, 8, member->has_left);
         sql_bind_text(row, 9, member->user);
         (void)sqlite3_bind_int(row, 10, member->is_guest);
+        sql_bind_text(row, 11, member->link);
         ok = sql_step(row, "writing members", err);
     }
     (void)sqlite3_finalize(row);
@@ -293,6 +294,7 @@ static bool read_member(sqlite3_stmt *row, void *to)
     member->has_left = sqlite3_column_int(row, 5) != 0;
     sql_text(row, 6, member->user, sizeof member->user);
     member->is_guest = sqlite3_column_int(row, 7) != 0;
+    sql_text(row, 8, member->link, sizeof member->link);
     return true;
 }
 
@@ -344,6 +346,9 @@ static bool read_summary(sqlite3_stmt *row, void *to)
     room->revision = (uint32_t)sqlite3_column_int64(row, 4);
     room->n_members = (uint32_t)sqlite3_column_int64(row, 5);
     room->n_decided = (uint32_t)sqlite3_column_int64(row, 6);
+    sql_text(row, 7, room->owner, sizeof room->owner);
+    room->is_open = sqlite3_column_int(row, 8) != 0;
+    room->people = sql_copy_text(row, 9);
     return true;
 }
 
@@ -354,7 +359,7 @@ struct store_room *rows_read_room(sqlite3 *db, const char *id, struct error *err
     bool ok =
         read_row(db, id, room, err) &&
         rows_read_list(db,
-                       "SELECT id, name, color, role, secret_hash, has_left, user, is_guest FROM members"
+                       "SELECT id, name, color, role, secret_hash, has_left, user, is_guest, link FROM members"
                        " WHERE room = ?1 ORDER BY place",
                        id, sizeof(struct store_member), STORE_MAX_MEMBERS, read_member, &members, &room->n_members,
                        err) &&
@@ -394,6 +399,13 @@ struct store_room *rows_read_saved(sqlite3 *db, const char *token, struct error 
     return rows_read_room(db, id, err);
 }
 
+void store_summaries_free(struct store_summary *rooms, size_t n)
+{
+    for (size_t i = 0; rooms && i < n; i++)
+        free(rooms[i].people);
+    free(rooms);
+}
+
 struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struct error *err)
 {
     void *list = mem_new(1);
@@ -402,9 +414,10 @@ struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struc
             db,
             "SELECT id, plan, created_ms, used_ms, revision,"
             " (SELECT count(*) FROM members WHERE members.room = rooms.id),"
-            " (SELECT count(*) FROM records WHERE records.room = rooms.id) FROM rooms ORDER BY used_ms DESC, id",
+            " (SELECT count(*) FROM records WHERE records.room = rooms.id), owner, is_open, people FROM rooms"
+            " ORDER BY used_ms DESC, id",
             NULL, sizeof(struct store_summary), most, read_summary, &list, n, err))
         return list;
-    free(list);
+    store_summaries_free(list, *n);
     return NULL;
 }

@@ -74,6 +74,7 @@ static const char *const steps[] = {
     "ALTER TABLE rooms ADD COLUMN people TEXT;"
     "ALTER TABLE rooms ADD COLUMN is_open INTEGER NOT NULL DEFAULT 0;"
     "ALTER TABLE members ADD COLUMN user TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE members ADD COLUMN link TEXT NOT NULL DEFAULT '';"
     "ALTER TABLE members ADD COLUMN is_guest INTEGER NOT NULL DEFAULT 0;"
     "ALTER TABLE links ADD COLUMN maker TEXT NOT NULL DEFAULT '';"
     "ALTER TABLE links ADD COLUMN name TEXT NOT NULL DEFAULT '';"

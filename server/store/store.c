@@ -70,7 +70,7 @@ void store_answer_free(struct store_answer *answer)
         return;
     store_room_free(answer->room);
     store_part_free(answer->part);
-    free(answer->rooms);
+    store_summaries_free(answer->rooms, answer->n_rooms);
     store_accounts_free(answer->accounts);
     for (size_t i = 0; i < answer->n_records; i++)
         store_record_finish(&answer->records[i]);
@@ -193,7 +193,7 @@ static bool open_database(struct store *store, struct error *err)
     opened.rooms = rows_list_rooms(store->db, STORE_MAX_ROOMS, &opened.n_rooms, err);
     opened.accounts = opened.rooms ? accounts_read(store->db, err) : NULL;
     if (!opened.accounts) {
-        free(opened.rooms);
+        store_summaries_free(opened.rooms, opened.n_rooms);
         database_close(store->db);
         store->db = NULL;
         return false;

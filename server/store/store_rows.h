@@ -22,6 +22,7 @@ enum {
 struct store_member {
     char id[64], name[164], color[8], role[16];
     char user[STORE_USER];                       /* who signed in; "": nobody */
+    char link[9];                                /* digits of the link it came in by; "": by none */
     unsigned char secret_hash[STORE_HASH_BYTES]; /* of auth/secret.h */
     bool has_left;                               /* it may come back */
     bool is_guest;
@@ -122,7 +123,12 @@ struct store_summary {
     char id[64], plan[64];
     int64_t created_ms, used_ms;
     uint32_t revision, n_members, n_decided; /* n_decided: decisions and signatures */
+    bool is_open;
+    char owner[STORE_USER];
+    char *people; /* as in store_room */
 };
+
+void store_summaries_free(struct store_summary *rooms, size_t n);
 
 void store_room_free(struct store_room *room);
 

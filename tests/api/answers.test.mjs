@@ -134,6 +134,8 @@ test('rooms, and what their members write down', async () => {
   await ask(`${at}/acceptances`);
   await ask(`${at}/control`);
   await ask(`${at}/links`, 'GET', undefined, ann.headers);
+  await ask(`${at}/people`, 'PATCH', { people: [{ who: '@physics', role: 'reviewer' }] });
+  await ask(`${at}/people`);
   await ask(`${at}/bookmarks`);
   await ask(`${at}/bookmarks/${bookmark.id}`);
   const { revision } = await ask('/api/v1/plans/phantom/revision');

@@ -147,6 +147,39 @@ describe('links of a room', () => {
     return first;
   }
 
+  it('the end of a link puts out who came by it, and a call removes a member', async () => {
+    const room = await newRoom();
+    const enter = async (link = '') => {
+      const client = await Client.hello(daemon.url, room.split('/').at(-1), { link, name: link ? 'Ben' : 'Ann' });
+      return { client, welcome: await client.message('welcome') };
+    };
+    const ann = await enter();
+    const headers = { 'Beamroom-Member': `${ann.welcome.member} ${ann.welcome.secret}` };
+    const make = async (body) => (await call(`${room}/links`, 'POST', body, headers)).json;
+    const link = await make({ role: 'observer', name: 'Thursday', guests: true });
+    assert.equal((await make({ role: 'planner' })).code, 'role'); // more than Ann has
+    const [ben, wall] = [await enter(link.token), await enter((await make({ role: 'wall' })).token)];
+    const { links } = (await call(`${room}/links`, 'GET', undefined, headers)).json;
+    assert.deepEqual(
+      links.map(({ name, guests, came }) => [name, guests, came]),
+      [
+        ['Thursday', true, 1],
+        ['', false, 1],
+      ],
+    );
+    const refused = await call(`${room}/links/${link.id}?members=all`, 'DELETE', undefined, headers);
+    assert.deepEqual([refused.status, refused.json.pointer], [422, '/members']);
+    assert.equal((await call(`${room}/links/${link.id}?members=remove`, 'DELETE', undefined, headers)).status, 204);
+    const bye = await ben.client.message('bye');
+    assert.deepEqual([bye.code, bye.reason, bye.retry_ms], ['removed', 'Ann removed you from this room', null]);
+    const gone = await call(`${room}/members/${wall.welcome.member}?reason=the%20meeting%20is%20over`, 'DELETE', undefined, headers);
+    assert.equal(gone.status, 204);
+    assert.match((await wall.client.message('bye')).reason, /^Ann removed you from this room: the meeting is over$/);
+    assert.equal((await call(`${room}/members/${wall.welcome.member}`, 'DELETE', undefined, headers)).status, 404);
+    assert.equal((await call(`${room}/members`)).json.members.length, 1);
+    ann.client.cut();
+  });
+
   it('a link is made with a role, a time and for one or many', async () => {
     const room = await newRoom();
     const { status, json } = await call(`${room}/links`, 'POST', { role: 'reviewer', expires_s: 60, one_use: true });

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/base/mem.h"
+#include "server/room/state/room_state.h"
 
 static void render(void *context, struct room *room, const struct room_render *request)
 {
@@ -87,6 +88,27 @@ static void close_page(void *context, void *connection)
     ((struct fake_page *)connection)->is_closed = true;
 }
 
+static void close_signed_out(void *context, void *connection)
+{
+    close_page(context, connection);
+    ((struct fake_page *)connection)->is_signed_out = true;
+}
+
+static const struct identity *identity(void *context, void *connection)
+{
+    static const struct identity machine = { .source = IDENTITY_MACHINE };
+    const struct fake_page *page = connection;
+    (void)context;
+    return page->identity ? page->identity : &machine;
+}
+
+static bool role_of(void *context, const struct room *room, const struct identity *who, enum wire_member_role *role)
+{
+    const struct fake_room *fake = context;
+    (void)room;
+    return fake->role_of && fake->role_of(who, role);
+}
+
 static void item_changed(void *context, struct room *room, const char *row, const char *id)
 {
     struct fake_room *fake = context;
@@ -119,6 +141,11 @@ static void is_saved(void *context, const struct room *room, struct room_saved *
 
 void fake_room_start(struct fake_room *fake, int max_members)
 {
+    fake_room_start_with(fake, &(struct room_limits){ .max_members = max_members });
+}
+
+void fake_room_start_with(struct fake_room *fake, const struct room_limits *limits)
+{
     struct room_callbacks callbacks = { .render = render,
                                         .forget = forget,
                                         .scene_changed = scene_changed,
@@ -131,11 +158,18 @@ void fake_room_start(struct fake_room *fake, int max_members)
                                         .audited = audited,
                                         .audit_has_place = audit_has_place,
                                         .is_saved = is_saved };
-    struct room_limits limits = { .max_members = max_members };
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000000000;
     fake->again_us = INT64_MAX;
-    fake->room = room_create("7q4k-m2wz", "head", &callbacks, &limits);
+    fake->room = room_create("7q4k-m2wz", "head", &callbacks, limits);
+}
+
+void fake_sign_in(struct fake_room *fake, bool (*roles)(const struct identity *who, enum wire_member_role *role))
+{
+    fake->role_of = roles;
+    fake->room->callbacks.identity = identity;
+    fake->room->callbacks.role_of = role_of;
+    fake->room->callbacks.close_signed_out = close_signed_out;
 }
 
 void fake_room_end(struct fake_room *fake)

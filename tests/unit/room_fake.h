@@ -12,8 +12,9 @@ struct fake_page { /* one browser */
     struct frame_header frames[512];
     size_t n_frames, n_bytes_last;
     uint8_t first_byte_last;
-    const void *last_bytes; /* of the newest frame, only to be compared */
-    bool is_closed;
+    const void *last_bytes;          /* of the newest frame, only to be compared */
+    bool is_closed, is_signed_out;   /* signed out: closed for want of a sign-in */
+    const struct identity *identity; /* who has opened it; NULL: the machine's person */
 };
 
 struct fake_request {
@@ -39,12 +40,17 @@ struct fake_room {
     char addresses[16][46]; /* of the rows */
     size_t n_audited;
     bool audit_is_full;
-    bool is_draft;           /* pictures drawn from now on show a draft */
-    const char *missing;     /* of pictures drawn from now on, as JSON; NULL: nothing */
+    bool is_draft;       /* pictures drawn from now on show a draft */
+    const char *missing; /* of pictures drawn from now on, as JSON; NULL: nothing */
+    bool (*role_of)(const struct identity *who, enum wire_member_role *role);
     struct room_saved saved; /* what is on disk; unkept unless a test says otherwise */
 };
 
 void fake_room_start(struct fake_room *fake, int max_members); /* the plan is not ready yet */
+/* Like fake_room_start, with other limits. */
+void fake_room_start_with(struct fake_room *fake, const struct room_limits *limits);
+/* Pages are opened by their identity from now on; roles: the highest role of who has signed in. */
+void fake_sign_in(struct fake_room *fake, bool (*roles)(const struct identity *who, enum wire_member_role *role));
 void fake_room_end(struct fake_room *fake);
 /* A plan with an image "ct" and the regions "scalp" (opacity 0.4) and "brain". */
 void fake_plan_ready(struct fake_room *fake, bool is_software);

@@ -110,7 +110,7 @@ bool acceptance_may(const struct room *room, const struct member *member, enum w
 {
     if (kind != WIRE_ITEM_KIND_ACCEPTANCE)
         return true;
-    if (!role_check(member->role, WIRE_RIGHT_SCENE, problem))
+    if (!member_check(member, WIRE_RIGHT_SCENE, problem))
         return false;
     if (!member_presents(room, member))
         return refuse_not_presenter(room, problem, "say what is used though it does not fit");

@@ -28,6 +28,7 @@ cJSON *recorded_members(const struct room *room)
         cJSON_AddBoolToObject(entry, "connected", member->connection != NULL);
         cJSON_AddBoolToObject(entry, "following", member_follows(room, member));
         cJSON_AddBoolToObject(entry, "presenting", member_presents(room, member));
+        member_say_who(member, entry);
         json_add(entries, member->id, entry);
     }
     return entries;

@@ -235,10 +235,21 @@ void send_missing(struct room *room, struct member *member, int index, const cJS
     cJSON_Delete(nothing);
 }
 
-void send_bye(struct room *room, void *connection, int retry_ms, const char *reason)
+void send_bye_for(struct room *room, void *connection, const char *code, int retry_ms, const char *reason)
 {
     struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };
+    const struct room_callbacks *callbacks = &room->callbacks;
     mem_put_text(message.bye.reason, sizeof message.bye.reason, reason);
-    if (send_to_connection(room, connection, &message))
-        room->callbacks.close(room->callbacks.context, connection);
+    mem_put_text(message.bye.code, sizeof message.bye.code, code);
+    if (!send_to_connection(room, connection, &message))
+        return;
+    if (strcmp(code, "sign-in") == 0 && callbacks->close_signed_out)
+        callbacks->close_signed_out(callbacks->context, connection);
+    else
+        callbacks->close(callbacks->context, connection);
+}
+
+void send_bye(struct room *room, void *connection, int retry_ms, const char *reason)
+{
+    send_bye_for(room, connection, "", retry_ms, reason);
 }

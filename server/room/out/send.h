@@ -33,3 +33,5 @@ bool send_problem(struct room *room, void *connection, const char *to, int64_t v
 void send_missing(struct room *room, struct member *member, int index, const cJSON *missing);
 /* Sends bye and closes the connection; retry_ms < 0: the page is not to come back. */
 void send_bye(struct room *room, void *connection, int retry_ms, const char *reason);
+/* Like send_bye, with the word that says why: proto/messages.json. */
+void send_bye_for(struct room *room, void *connection, const char *code, int retry_ms, const char *reason);

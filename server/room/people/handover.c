@@ -77,7 +77,7 @@ bool control_give(struct room *room, struct member *member, const struct message
     if (!other->connection)
         return problem_set(problem, PROBLEM_NOT_FOUND, "/member", "", "%s is away and cannot be given control",
                            other->id);
-    if (!role_check(other->role, WIRE_RIGHT_SCENE, problem)) {
+    if (!member_check(other, WIRE_RIGHT_SCENE, problem)) {
         problem_below(problem, "/member");
         return false;
     }
@@ -107,7 +107,7 @@ bool control_take(struct room *room, struct member *member, const struct message
         return true;
     if (!presenter)
         return presenter_take_over(room, member, input, problem);
-    if (!role_has_right(member->role, WIRE_RIGHT_CONTROL))
+    if (!member_has_right(member, WIRE_RIGHT_CONTROL))
         return problem_set(problem, PROBLEM_NOT_PRESENTER, "", "",
                            "%s presents: request control, or take it when %s has been away for %d s", presenter->id,
                            presenter->id, ROOM_PRESENTER_KEPT_S);

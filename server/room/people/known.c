@@ -26,6 +26,9 @@ void known_write(const struct member *member, struct store_member *kept)
     (void)snprintf(kept->name, sizeof kept->name, "%s", member->name);
     (void)snprintf(kept->color, sizeof kept->color, "#%06x", (unsigned)color_rgb(member->color) & 0xffffff);
     (void)snprintf(kept->role, sizeof kept->role, "%s", wire_member_role_words.words[member->role]);
+    (void)snprintf(kept->user, sizeof kept->user, "%s", member->user);
+    (void)snprintf(kept->link, sizeof kept->link, "%s", member->link);
+    kept->is_guest = member->is_guest;
     memcpy(kept->secret_hash, member->secret_hash, sizeof kept->secret_hash);
 }
 
@@ -36,9 +39,10 @@ void known_read(const struct store_member *kept, struct member *member)
     member->number = (uint32_t)strtoul(kept->id + (kept->id[0] == 'm'), NULL, 10);
     memcpy(member->secret_hash, kept->secret_hash, sizeof member->secret_hash);
     member->role = WIRE_MEMBER_ROLE_REVIEWER; /* of a member from before there were roles */
-    for (size_t i = 0; i < wire_member_role_words.n; i++)
-        if (strcmp(kept->role, wire_member_role_words.words[i]) == 0)
-            member->role = (enum wire_member_role)i;
+    (void)role_of_word(kept->role, &member->role);
+    (void)snprintf(member->user, sizeof member->user, "%s", kept->user);
+    (void)snprintf(member->link, sizeof member->link, "%s", kept->link);
+    member->is_guest = kept->is_guest;
     for (int i = 0; i < ROLES_N_COLORS; i++) {
         char color[8];
         (void)snprintf(color, sizeof color, "#%06x", (unsigned)color_rgb(i) & 0xffffff);
@@ -92,9 +96,32 @@ static int find(const struct room *room, const char *id, const char *secret)
     return -1;
 }
 
-bool known_has(const struct room *room, const char *id, const char *secret)
+bool known_has(const struct room *room, const char *id, const char *secret, struct member *seat)
 {
-    return find(room, id, secret) >= 0;
+    const int index = find(room, id, secret);
+    if (index >= 0)
+        known_read(&room->known->list[index], seat);
+    return index >= 0;
+}
+
+void known_forget(struct room *room, const struct member *member)
+{
+    for (int i = room->known->n; i-- > 0;) {
+        const struct store_member *known = &room->known->list[i];
+        const bool is_same = member->user[0]
+                                 ? strcmp(known->user, member->user) == 0
+                                 : member->is_guest && known->is_guest && strcmp(known->link, member->link) == 0 &&
+                                       strcmp(known->name, member->name) == 0;
+        if (is_same)
+            known_remove(room, i);
+    }
+}
+
+void known_forget_link(struct room *room, const char *digits)
+{
+    for (int i = room->known->n; i-- > 0;)
+        if (strcmp(room->known->list[i].link, digits) == 0)
+            known_remove(room, i);
 }
 
 struct member *known_back(struct room *room, const char *id, const char *secret)

@@ -9,6 +9,7 @@
 #include "server/room/items/item_list.h"
 #include "server/room/out/audit.h"
 #include "server/room/out/send.h"
+#include "server/room/people/admission.h"
 #include "server/room/people/control.h"
 #include "server/room/people/known.h"
 #include "server/room/people/links.h"
@@ -19,6 +20,7 @@
 #include "server/room/state/presence.h"
 #include "server/room/state/roles.h"
 #include "server/room/state/secret.h"
+#include "server/room/state/who.h"
 #include "server/room/streams/lag.h"
 #include "server/room/views/marks.h"
 #include "server/room/views/member_view.h"
@@ -54,9 +56,11 @@ int64_t members_settle_away(struct room *room)
         const struct member *member = room->members.list[i];
         if (member->connection)
             continue;
-        int64_t due_us = member->away_us + kept_us;
+        const bool is_wall = member->role == WIRE_MEMBER_ROLE_WALL; /* has no seat that would wait for it */
+        int64_t due_us = member->away_us + (is_wall ? 0 : kept_us);
         if (room->now_us >= due_us) {
-            known_add_member(room, member);
+            if (!is_wall)
+                known_add_member(room, member);
             member_free(room, i);
             has_changed = true;
         } else if (due_us < again_us) {
@@ -134,12 +138,13 @@ static bool make_place(struct room *room)
 
 static struct member *member_create(struct room *room, const char *name, enum wire_member_role role)
 {
+    const char *kind = role == WIRE_MEMBER_ROLE_WALL ? "Wall" : "Reviewer";
     struct member *member = mem_new(sizeof *member);
     member->number = room->members.n_named = marks_next_number(room);
     (void)snprintf(member->id, sizeof member->id, "m%u", member->number);
     (void)snprintf(member->name, sizeof member->name, "%s", name);
     for (int number = 1; member->name[0] == 0 || (name[0] == 0 && name_is_taken(room, member->name)); number++)
-        (void)snprintf(member->name, sizeof member->name, "Reviewer %d", number);
+        (void)snprintf(member->name, sizeof member->name, "%s %d", kind, number);
     secret_make(member->secret);
     member->role = role;
     member->color = color_of_newcomer(room);
@@ -163,7 +168,8 @@ static const char *address_of(const struct room *room, void *connection)
     return room->callbacks.address ? room->callbacks.address(room->callbacks.context, connection) : "";
 }
 
-static void refuse_link(struct room *room, void *connection, const char *name, const char *refusal)
+static void refuse_entry(struct room *room, void *connection, const struct message_hello *hello,
+                         const struct admitted *in)
 {
     const struct audit_act row = { .action = "refused",
                                    .address = address_of(room, connection),
@@ -172,10 +178,10 @@ static void refuse_link(struct room *room, void *connection, const char *name, c
                                    .before = -1,
                                    .after = -1 };
     cJSON_AddStringToObject(row.detail, "what", "hello");
-    cJSON_AddStringToObject(row.detail, "name", name);
-    cJSON_AddStringToObject(row.detail, "why", refusal);
+    cJSON_AddStringToObject(row.detail, "name", hello->name);
+    cJSON_AddStringToObject(row.detail, "why", in->refusal);
     audit_tell(room, &row);
-    send_bye(room, connection, -1, refusal);
+    send_bye_for(room, connection, in->code, -1, in->refusal);
 }
 
 /* The documents in the message are borrowed: message_finish is not called on it. */
@@ -199,63 +205,135 @@ static void welcome_member(struct room *room, struct member *member)
     cJSON_Delete(items);
 }
 
+/* The member, in the list, whose seat hello proves to be this identity's. */
+static struct member *find_seat(const struct room *room, const struct identity *who, const struct message_hello *hello)
+{
+    for (int i = 0; i < room->members.n && hello->member[0]; i++) {
+        struct member *member = room->members.list[i];
+        if (strcmp(member->id, hello->member) == 0 && secret_matches(hello->secret, member->secret_hash) &&
+            who_has_seat(who, member->user, member->is_guest, member->role))
+            return member;
+    }
+    return NULL;
+}
+
+/* A copy of what is kept of the member that left and whose seat this is, for free(). NULL: none. */
+static struct member *find_known_seat(const struct room *room, const struct identity *who,
+                                      const struct message_hello *hello)
+{
+    struct member *seat = mem_new(sizeof *seat);
+    if (known_has(room, hello->member, hello->secret, seat) &&
+        who_has_seat(who, seat->user, seat->is_guest, seat->role))
+        return seat;
+    free(seat);
+    return NULL;
+}
+
+/* The seat is taken by its member again. */
+static void sit_down_again(struct room *room, struct member *member)
+{
+    void *old = member->connection; /* half-open: the page notices a lost connection before the server does */
+    member->is_lost = false;
+    member->connection = NULL;
+    views_close(room, member);
+    if (old)
+        send_bye(room, old, -1, replaced);
+}
+
+static const char *name_of(const struct identity *who, const struct message_hello *hello, const struct admitted *in)
+{
+    if (who_is_user(who))
+        return who->name[0] ? who->name : who->user;
+    return !hello->name[0] && in->link && in->role == WIRE_MEMBER_ROLE_WALL ? in->link->name : hello->name;
+}
+
+static void name_member(struct room *room, struct member *member, const struct identity *who,
+                        const struct message_hello *hello, const struct admitted *in)
+{
+    const char *name = name_of(who, hello, in);
+    member->role = in->role;
+    member->is_guest = in->is_guest;
+    if (who_is_user(who))
+        (void)snprintf(member->user, sizeof member->user, "%s", who->user);
+    if (in->link)
+        link_digits(in->link, member->link);
+    if (name[0])
+        (void)snprintf(member->name, sizeof member->name, "%s", name);
+    if (!member->secret[0]) /* it came back with the secret of which only the hash was kept */
+        (void)snprintf(member->secret, sizeof member->secret, "%.32s", hello->secret);
+    (void)snprintf(member->person, sizeof member->person, "%s", in->key);
+    if (member_presents(room, member) && !member_has_right(member, WIRE_RIGHT_SCENE)) /* it had more rights before */
+        control_pass(room, NULL);
+}
+
+/* The member of a hello that was let in; NULL: there is no place. as: of audit_entered. */
+static struct member *take_place(struct room *room, void *connection, const struct identity *who,
+                                 const struct message_hello *hello, const struct admitted *in, const char **as)
+{
+    if (!make_place(room))
+        return NULL;
+    struct member *left = find_known_seat(room, who, hello), *member = NULL;
+    *as = left ? "back" : *as;
+    if (left) {
+        member = known_back(room, hello->member, hello->secret);
+        room->members.list[room->members.n++] = member;
+        free(left);
+    } else {
+        member = member_create(room, name_of(who, hello, in), in->role);
+    }
+    (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
+    if (in->link)
+        link_used(room, in->link, member, in->key);
+    return member;
+}
+
 struct member *member_hello(struct room *room, void *connection, const struct message_hello *hello)
 {
+    const struct identity *who = who_connects(room, connection);
     if (hello->protocol != WIRE_PROTOCOL) {
         send_bye(room, connection, -1, old_page);
         return NULL;
     }
-    struct member *member = NULL;
-    for (int i = 0; i < room->members.n && hello->member[0]; i++)
-        if (strcmp(room->members.list[i]->id, hello->member) == 0 &&
-            secret_matches(hello->secret, room->members.list[i]->secret_hash))
-            member = room->members.list[i];
-    enum wire_member_role role = role_of_newcomer(room);
-    struct link *link = NULL;
-    const char *refusal = NULL;
-    const bool is_known = member || known_has(room, hello->member, hello->secret); /* whatever became of their link */
-    if (!is_known && hello->link[0] && (refusal = link_find(room, hello->link, hello->person, &link)) != NULL) {
-        refuse_link(room, connection, hello->name, refusal);
+    struct member *member = find_seat(room, who, hello);
+    struct member *left = member ? NULL : find_known_seat(room, who, hello);
+    const struct admitted in = admission_decide(room, who, hello, member ? member : left);
+    free(left);
+    if (in.refusal[0]) {
+        refuse_entry(room, connection, hello, &in);
         return NULL;
     }
     if (!audit_has_place(room, NULL)) {
         send_bye(room, connection, UNRECORDED_RETRY_MS, unrecorded);
         return NULL;
     }
-    const char *as = link ? "link" : "new";
-    if (member) {
-        as = "back";
-        void *old = member->connection; /* half-open: the page notices a lost connection before the server does */
-        member->is_lost = false;
-        member->connection = NULL;
-        views_close(room, member);
-        if (old)
-            send_bye(room, old, -1, replaced);
-    } else if (make_place(room)) {
-        member = known_back(room, hello->member, hello->secret);
-        as = member ? "back" : as;
-        if (member)
-            room->members.list[room->members.n++] = member;
-        else
-            member = member_create(room, hello->name, link ? link->role : role);
-        (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
-        if (link)
-            link_used(room, link, member, hello->person);
-    } else {
+    const char *as = member ? "back" : in.link ? "link" : "new";
+    if (member)
+        sit_down_again(room, member);
+    else
+        member = take_place(room, connection, who, hello, &in, &as);
+    if (!member) {
         send_bye(room, connection, FULL_RETRY_MS, room_is_full);
         return NULL;
     }
-    if (hello->name[0])
-        (void)snprintf(member->name, sizeof member->name, "%s", hello->name);
-    if (!member->secret[0]) /* it came back with the secret of which only the hash was kept */
-        (void)snprintf(member->secret, sizeof member->secret, "%.32s", hello->secret);
-    (void)snprintf(member->person, sizeof member->person, "%s", hello->person);
+    name_member(room, member, who, hello, &in);
     member->connection = connection;
     (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
     audit_entered(room, member, as);
     presence_entered(room, member);
     welcome_member(room, member);
     return member;
+}
+
+void member_drop(struct room *room, struct member *member)
+{
+    int index = 0;
+    if (member->connection)
+        member_disconnected(room, member, room->now_us);
+    if (member_presents(room, member))
+        control_pass(room, NULL);
+    while (room->members.list[index] != member)
+        index++;
+    member_free(room, index);
 }
 
 void members_show(struct room *room, struct member *member)

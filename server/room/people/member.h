@@ -8,6 +8,8 @@ struct member *member_hello(struct room *room, void *connection, const struct me
 /* Sends the list of members and the presenter, to a newcomer and to the others. */
 void members_show(struct room *room, struct member *member);
 void member_disconnected(struct room *room, struct member *member, int64_t heard_us); /* away since heard_us */
+/* The member is none any more, and cannot come back; nobody is told, as more may follow. */
+void member_drop(struct room *room, struct member *member);
 /* Drops members that have been away for ROOM_MEMBER_KEPT_S. Returns when the next one is due. */
 int64_t members_settle_away(struct room *room);
 void members_free(struct room *room);

@@ -81,13 +81,13 @@ static struct member *only_connected(const struct room *room)
 {
     struct member *only = NULL;
     for (int i = 0; i < room->members.n; i++) {
-        if (!room->members.list[i]->connection)
+        if (!room->members.list[i]->connection || room->members.list[i]->role == WIRE_MEMBER_ROLE_WALL)
             continue;
         if (only)
             return NULL;
         only = room->members.list[i];
     }
-    return only && role_has_right(only->role, WIRE_RIGHT_SCENE) ? only : NULL;
+    return only && member_has_right(only, WIRE_RIGHT_SCENE) ? only : NULL;
 }
 
 bool presenter_settle(struct room *room)

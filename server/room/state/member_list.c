@@ -64,6 +64,14 @@ static int n_tabs(const struct room *room, const struct member *member)
     return n;
 }
 
+void member_say_who(const struct member *member, cJSON *row)
+{
+    if (member->user[0])
+        cJSON_AddStringToObject(row, "user", member->user);
+    if (member->is_guest)
+        cJSON_AddTrueToObject(row, "is_guest");
+}
+
 cJSON *room_members(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
@@ -81,6 +89,7 @@ cJSON *room_members(const struct room *room)
         cJSON_AddBoolToObject(item, "presenting", member_presents(room, member));
         cJSON_AddStringToObject(item, "lag", wire_member_lag_words.words[member->lag]);
         cJSON_AddNumberToObject(item, "tabs", n_tabs(room, member));
+        member_say_who(member, item);
         json_append(list, item);
     }
     return list;

@@ -11,5 +11,7 @@ struct member *member_who_speaks(struct room *room, const void *connection);
 bool member_presents(const struct room *room, const struct member *member);
 /* True if one of its views shows a shared view, and the member does not present. */
 bool member_follows(const struct room *room, const struct member *member);
+/* Adds to the row of a member what tells it from others of its name: user and is_guest, where there are any. */
+void member_say_who(const struct member *member, cJSON *row);
 /* Fills problem: only the presenter may do `what` ("change the scene"). Returns false. */
 bool refuse_not_presenter(const struct room *room, struct problem *problem, const char *what);

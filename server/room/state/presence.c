@@ -12,7 +12,8 @@
 #include "server/wire/json.h"
 
 struct presence { /* one stay of a member */
-    char member[64], name[161];
+    char member[64], name[161], user[STORE_USER];
+    bool is_guest;
     enum wire_member_role role;
     int64_t entered_ms, left_ms; /* since 1970; left_ms 0: still here, or the server ended */
 };
@@ -68,6 +69,8 @@ static struct presence *last_of(struct presences *presences, const char *member)
 void presence_entered(struct room *room, const struct member *member)
 {
     const int64_t now_ms = clock_wall_ms();
+    if (member->role == WIRE_MEMBER_ROLE_WALL) /* nobody's presence */
+        return;
     struct presence *stay = last_of(room->presences, member->id);
     const bool goes_on = stay && stay->left_ms && now_ms - stay->left_ms <= ROOM_SAME_STAY_MS;
     if (!goes_on)
@@ -78,6 +81,8 @@ void presence_entered(struct room *room, const struct member *member)
         stay->entered_ms = now_ms;
     (void)snprintf(stay->member, sizeof stay->member, "%s", member->id);
     (void)snprintf(stay->name, sizeof stay->name, "%s", member->name);
+    (void)snprintf(stay->user, sizeof stay->user, "%s", member->user);
+    stay->is_guest = member->is_guest;
     stay->role = member->role;
     stay->left_ms = 0;
     room_event(room, ROOM_PRESENCE, NULL);
@@ -112,6 +117,10 @@ cJSON *presence_list(const struct room *room)
         cJSON_AddNumberToObject(json, "entered_ms", (double)stay->entered_ms);
         json_add(json, "left_ms", stay->left_ms ? cJSON_CreateNumber((double)stay->left_ms) : cJSON_CreateNull());
         cJSON_AddBoolToObject(json, "here", is_here(room, stay));
+        if (stay->user[0])
+            cJSON_AddStringToObject(json, "user", stay->user);
+        if (stay->is_guest)
+            cJSON_AddTrueToObject(json, "is_guest");
         json_append(list, json);
     }
     return list;
@@ -137,6 +146,9 @@ static bool read_stay(const cJSON *json, struct presence *stay)
         return false;
     (void)snprintf(stay->member, sizeof stay->member, "%s", member);
     (void)snprintf(stay->name, sizeof stay->name, "%s", name);
+    const char *user = json_text(json, "user");
+    (void)snprintf(stay->user, sizeof stay->user, "%.64s", user ? user : "");
+    stay->is_guest = json_flag(json, "is_guest", false);
     stay->entered_ms = (int64_t)entered_ms;
     stay->left_ms = (int64_t)left_ms;
     for (size_t i = 0; i < wire_member_role_words.n; i++)

@@ -13,7 +13,40 @@ bool role_has_right(enum wire_member_role role, enum wire_right right)
     return (wire_role_rights[role] >> right & 1U) != 0;
 }
 
-bool role_check(enum wire_member_role role, enum wire_right right, struct problem *problem)
+int role_rank(enum wire_member_role role)
+{
+    static const int ranks[] = { [WIRE_MEMBER_ROLE_WALL] = 0,
+                                 [WIRE_MEMBER_ROLE_OBSERVER] = 1,
+                                 [WIRE_MEMBER_ROLE_REVIEWER] = 2,
+                                 [WIRE_MEMBER_ROLE_PRESENTER] = 3,
+                                 [WIRE_MEMBER_ROLE_PLANNER] = 4 };
+    return ranks[role];
+}
+
+enum wire_member_role role_lower(enum wire_member_role a, enum wire_member_role b)
+{
+    return role_rank(a) < role_rank(b) ? a : b;
+}
+
+bool role_of_word(const char *word, enum wire_member_role *role)
+{
+    for (size_t i = 0; word && i < wire_member_role_words.n; i++)
+        if (strcmp(word, wire_member_role_words.words[i]) == 0) {
+            *role = (enum wire_member_role)i;
+            return true;
+        }
+    return false;
+}
+
+bool member_has_right(const struct member *member, enum wire_right right)
+{
+    if (!member->is_guest || member->role == WIRE_MEMBER_ROLE_WALL)
+        return role_has_right(member->role, right);
+    return right == WIRE_RIGHT_LOOK || right == WIRE_RIGHT_POINT ||
+           (right == WIRE_RIGHT_NOTE && role_has_right(member->role, right));
+}
+
+static bool refuse(const char *who, enum wire_right right, struct problem *problem)
 {
     static const char *const acts[] = {
         [WIRE_RIGHT_LOOK] = "look",
@@ -22,10 +55,19 @@ bool role_check(enum wire_member_role role, enum wire_right right, struct proble
         [WIRE_RIGHT_SCENE] = "present or change what the room shows",
         [WIRE_RIGHT_CONTROL] = "lock control, make links or close the room",
     };
-    if (role_has_right(role, right))
-        return true;
-    return problem_set(problem, PROBLEM_FORBIDDEN, "", "role", "the role of %s does not include to %s",
-                       wire_member_role_words.words[role], acts[right]);
+    return problem_set(problem, PROBLEM_FORBIDDEN, "", "role", "the role of %s does not include to %s", who,
+                       acts[right]);
+}
+
+bool role_check(enum wire_member_role role, enum wire_right right, struct problem *problem)
+{
+    return role_has_right(role, right) || refuse(wire_member_role_words.words[role], right, problem);
+}
+
+bool member_check(const struct member *member, enum wire_right right, struct problem *problem)
+{
+    return member_has_right(member, right) ||
+           refuse(member->is_guest ? "guest" : wire_member_role_words.words[member->role], right, problem);
 }
 
 int color_of_newcomer(const struct room *room)

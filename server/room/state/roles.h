@@ -7,6 +7,14 @@
 enum { ROLES_N_COLORS = 12 };
 
 bool role_has_right(enum wire_member_role role, enum wire_right right);
+/* Orders roles: who has a higher one has all rights of a lower one. */
+int role_rank(enum wire_member_role role);
+enum wire_member_role role_lower(enum wire_member_role a, enum wire_member_role b);
+/* The role of this word; false: it is none's. */
+bool role_of_word(const char *word, enum wire_member_role *role);
+/* The rights of a guest are fewer than those of the role: looks and points, and writes notes if the role does. */
+bool member_has_right(const struct member *member, enum wire_right right);
+bool member_check(const struct member *member, enum wire_right right, struct problem *problem);
 /* True if the role has the right; else fills problem, forbidden with the code "role". */
 bool role_check(enum wire_member_role role, enum wire_right right, struct problem *problem);
 /* The colour that the fewest members of the room have, the first of these: a number below ROLES_N_COLORS. */

@@ -101,8 +101,11 @@ struct pointing { /* where a member points */
 struct member {
     char id[64], name[161], secret[SECRET_TEXT]; /* secret "": only its hash is known until it comes back */
     unsigned char secret_hash[SECRET_HASH_BYTES];
-    char person[257];
-    char address[46]; /* of its connection, also when that has ended; "": not known */
+    char person[257];      /* who_key */
+    char user[STORE_USER]; /* who has signed in; "": nobody has */
+    char link[9];          /* digits of the link it came in by; "": by none */
+    bool is_guest;         /* has not signed in, where others do; came by a link that allows it */
+    char address[46];      /* of its connection, also when that has ended; "": not known */
     enum wire_member_role role;
     int color;        /* color_rgb(color) */
     void *connection; /* NULL: away */
@@ -185,6 +188,7 @@ struct plan_files {              /* of the room's plan */
 
 /* Each is the business of the folder and header named beside its pointer in struct room. */
 struct acceptances;
+struct admission;
 struct audit;
 struct control;
 struct events;
@@ -207,6 +211,8 @@ struct room {
     int64_t now_us; /* the time last passed in: room_enter */
     int64_t due_us; /* when room_settle is due */
 
+    bool admits_guests; /* as in struct room_limits */
+
     struct room_renderer renderer;
     struct plan_files files;
     struct shared_documents shared;
@@ -222,6 +228,7 @@ struct room {
     struct saved *saved;             /* out/saved.h */
     struct items *items;             /* items/item_list.h */
     struct acceptances *acceptances; /* items/acceptance.h */
+    struct admission *admission;     /* people/admission.h */
     struct known *known;             /* people/known.h */
     struct control *control;         /* people/control.h */
     struct links *links;             /* people/links.h */

@@ -24,10 +24,13 @@ enum {
     ROOM_MAX_KNOWN = 256, /* members that left and can come back as the same; beyond, the first but presenters cannot */
     ROOM_REQUEST_AGAIN_S = 10, /* after a refusal, before control can be requested again */
     ROOM_MAX_LINKS = 32,       /* valid at once */
+    ROOM_MAX_PEOPLE = 100,     /* who may come in without a link */
+    ROOM_MAX_REMOVED = 64,     /* members that were removed and are not let in again; the first is forgotten */
     ROOM_LINK_MIN_S = 60,
     ROOM_LINK_MAX_S = 30 * 24 * 3600,
-    ROOM_MAX_PRESENCE = 1000,      /* stays of members that are kept; of more, the first are counted only */
-    ROOM_SAME_STAY_MS = 60000,     /* a member who returns within this continues the same stay */
+    ROOM_LINK_WALL_MAX_S = 365 * 24 * 3600, /* of a link for a wall */
+    ROOM_MAX_PRESENCE = 1000,               /* stays of members that are kept; of more, the first are counted only */
+    ROOM_SAME_STAY_MS = 60000,              /* a member who returns within this continues the same stay */
     ROOM_MAX_AUDIT_DETAIL = 1024,  /* bytes of the detail of an audit row; a longer one is replaced by its length */
     ROOM_MAX_GATHERED = 32,        /* acts that are being gathered into a row each; the oldest is then recorded */
     ROOM_AUDIT_QUIET_MS = 1000,    /* acts further apart are rows of their own */
@@ -137,6 +140,11 @@ struct room_callbacks {
     const char *(*address)(void *context, void *connection);
     /* The identity behind this connection, valid as long as it lasts. NULL: everybody is the machine's one person. */
     const struct identity *(*identity)(void *context, void *connection);
+    /* The highest role that this identity, which has signed in, may have in the room by what it may do with its plan.
+     * False: none, and it enters by a link alone. NULL: as false. */
+    bool (*role_of)(void *context, const struct room *room, const struct identity *who, enum wire_member_role *role);
+    /* Like close, with the code of the end that says that a sign-in is needed. NULL: close is called. */
+    void (*close_signed_out)(void *context, void *connection);
     /* A row for the audit, to be committed with what else of the room is written, or before. NULL: there is no audit.
      */
     void (*audited)(void *context, struct room *room, const struct room_audit *row);
@@ -157,10 +165,11 @@ struct room_callbacks {
 /* An act in a room by a call over HTTP: a message of a page (proto/messages.json), as if a member had sent it.
  * Borrowed, but for context. */
 struct room_act {
-    const char *member;  /* as in room_call_may */
-    const char *name;    /* of who does it, when member is NULL */
-    const char *address; /* as in room_audit_call */
-    const char *key;     /* NULL, or: the same item is not made twice for this word of the caller's */
+    const char *member;              /* as in room_call_may */
+    const char *name;                /* of who does it, when member is NULL */
+    const struct identity *identity; /* who makes the call; NULL: the machine's one person */
+    const char *address;             /* as in room_audit_call */
+    const char *key;                 /* NULL, or: the same item is not made twice for this word of the caller's */
     struct message *message;
     /* Called once: at once, or when the item is on disk. problem NULL: it is done, and row is the item that was
      * written; NULL: none was. was_sent_before: an earlier act with the same key has written it. */
@@ -169,12 +178,20 @@ struct room_act {
 };
 
 /* Parts of a room that are kept on disk. */
-enum room_part { ROOM_SCENE = 1, ROOM_VIEWS = 2, ROOM_MEMBERS = 4, ROOM_LINKS = 8, ROOM_PRESENCE = 16 };
-enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS | ROOM_PRESENCE };
+enum room_part {
+    ROOM_SCENE = 1,
+    ROOM_VIEWS = 2,
+    ROOM_MEMBERS = 4,
+    ROOM_LINKS = 8,
+    ROOM_PRESENCE = 16,
+    ROOM_PEOPLE = 32
+};
+enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS | ROOM_PRESENCE | ROOM_PEOPLE };
 
 struct room_limits {
     int max_members;        /* at most ROOM_MAX_MEMBERS */
     double recording_speed; /* how many times as fast the clock of recordings and replays runs; 0: once */
+    bool admits_guests;     /* links may let in who has not signed in */
 };
 
 /* Counters for /metrics. */

@@ -1,0 +1,9 @@
+#pragma once
+/* Public part of who a room is for. Included by room.h. */
+#include "server/room/state/room_types.h"
+
+/* Sets whose room it is: the user who made it. Before its first member. */
+void room_set_owner(struct room *room, const char *user);
+/* Whether a room with this in store_room is listed to this user: it is theirs, they were asked in by name or group, or
+ * they were in it. people NULL: nobody was asked. */
+bool room_people_name(const char *owner, const char *people, const struct identity *who);
