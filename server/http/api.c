@@ -59,6 +59,7 @@ static const struct {
     { "GET", "/api/v1/rooms/{room}/acceptances", api_room_acceptances },
     { "GET", "/api/v1/rooms/{room}/control", api_room_control },
     { "GET", "/api/v1/rooms/{room}/stream", api_room_stream },
+    { "GET", "/api/v1/rooms/{room}/events", api_room_events },
     { "GET", "/api/v1/rooms/{room}/ws", api_room_ws },
     { "GET", "/api/v1/audit", api_audit },
     { "GET", "/api/v1/records", api_records },
@@ -170,7 +171,8 @@ static bool wakes_room(struct api *api, struct call *call, const struct api_rout
     const char *room = call_query(call, "room");
     bool is_for_awake = (call->method == CALL_DELETE && !route->act && route->handle != api_room_link_revoke &&
                          route->handle != api_room_member_remove) ||
-                        route->handle == api_room_ws || route->handle == api_room_stream;
+                        route->handle == api_room_ws || route->handle == api_room_stream ||
+                        route->handle == api_room_events;
     if (strncmp(route->path, in_room, strlen(in_room)) == 0)
         room = is_for_awake ? NULL : call->ids[0];
     if (!room || !net_room_is_asleep(api->net, room))

@@ -48,6 +48,9 @@ void api_room_bookmark_picture(struct api *api, struct call *call);
 void api_permalink(struct api *api, struct call *call);
 void api_room_snapshot(struct api *api, struct call *call);
 void api_room_stream(struct api *api, struct call *call);
+void api_room_events(struct api *api, struct call *call);
+/* The reader of this feed has gone: its listener leaves its room. False: it is no listener's. */
+bool api_listener_left(struct api *api, const struct feed *feed);
 void api_room_export(struct api *api, struct call *call);
 void api_room_link_new(struct api *api, struct call *call);
 void api_room_links(struct api *api, struct call *call);

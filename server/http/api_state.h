@@ -36,8 +36,9 @@ struct api {
     size_t n_waiting_for_pictures; /* calls that these answer */
     uint64_t n_pictures;           /* ever requested */
     struct api_display *displays;  /* screens that look at rooms */
-    size_t n_files, n_timings;     /* under way */
-    size_t n_jobs;                 /* ever made; job n is at index n % API_MAX_JOBS */
+    struct api_listener *listeners;
+    size_t n_files, n_timings; /* under way */
+    size_t n_jobs;             /* ever made; job n is at index n % API_MAX_JOBS */
     _Atomic uint64_t n_calls[6],
         n_calls_us; /* by status / 100, and time spent; counted by the HTTP thread, read by /metrics */
 };

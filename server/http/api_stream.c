@@ -49,7 +49,7 @@ static void end_display(void *context)
 
 void api_display_left(struct api *api, struct feed *feed)
 {
-    struct api_display *display = api->displays;
+    struct api_display *display = api_listener_left(api, feed) ? NULL : api->displays;
     while (display && display->feed != feed)
         display = display->next;
     if (display) {

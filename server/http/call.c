@@ -37,6 +37,7 @@ void call_destroy(struct call *call)
     free(call->if_match);
     free(call->member);
     free(call->key);
+    free(call->last_event);
     free(call->if_none_match);
     free(call->content_type);
     free(call->origin);

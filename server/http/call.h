@@ -34,7 +34,8 @@ struct call {
     const char *ids[CALL_MAX_SEGMENTS]; /* the segments that stand for {...} in the route, in order */
     struct call_pair query[CALL_MAX_QUERY];
     size_t n_query;
-    char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member, *key; /* NULL when not sent */
+    char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member, *key,
+        *last_event;          /* NULL when not sent */
     bool is_secure;           /* it came by TLS, which was decrypted here */
     char client[46];          /* address of the client, behind trusted proxies; "": not known */
     struct identity identity; /* who makes it */

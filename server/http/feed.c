@@ -1,4 +1,4 @@
-/* Passes pictures from the net thread to the HTTP thread, and makes parts of them. */
+/* Passes pictures and texts from the net thread to the HTTP thread, and makes parts of pictures. */
 #include "server/http/feed.h"
 
 #include <stdio.h>
@@ -7,6 +7,7 @@
 
 #include "core/base/mailbox.h"
 #include "core/base/mem.h"
+#include "server/http/feed_texts.h"
 #include "server/wire/missing.h"
 
 #define BOUNDARY "--beamroom\r\n"
@@ -19,7 +20,8 @@ struct feed {
     void *context;
     struct mailbox *box;
     atomic_bool is_full, is_late, is_ended;
-    atomic_int sides; /* that have not left */
+    atomic_int sides;         /* that have not left */
+    struct feed_texts *texts; /* NULL: a feed of pictures, which alone has what follows */
     /* the reader's */
     struct letter *letter; /* of the part; NULL: none came yet */
     int64_t begun_us;      /* the part */
@@ -56,10 +58,18 @@ struct feed *feed_create(void (*wake)(void *context), void *context)
     return feed;
 }
 
+struct feed *feed_create_of_texts(void (*wake)(void *context), void *context)
+{
+    struct feed *feed = feed_create(wake, context);
+    feed->texts = feed_texts_create();
+    return feed;
+}
+
 static void side_left(struct feed *feed)
 {
     if (atomic_fetch_sub(&feed->sides, 1) > 1)
         return;
+    feed_texts_destroy(feed->texts);
     mailbox_destroy(feed->box);
     drop(feed->letter);
     free(feed);
@@ -73,6 +83,19 @@ void feed_put(struct feed *feed, struct frame *picture, const char *kind)
     *letter = (struct letter){ frame_ref(picture), kind };
     atomic_store(&feed->is_full, true); /* before the letter: the reader clears it when it has taken one */
     mailbox_put(feed->box, letter);
+    feed->wake(feed->context);
+}
+
+bool feed_put_text(struct feed *feed, const char *text)
+{
+    const bool is_taken = feed_texts_put(feed->texts, text);
+    feed->wake(feed->context);
+    return is_taken;
+}
+
+void feed_close_texts(struct feed *feed)
+{
+    feed_texts_close(feed->texts);
     feed->wake(feed->context);
 }
 
@@ -150,23 +173,32 @@ static void copy(const struct feed *feed, char *bytes, size_t n)
 
 bool feed_is_inside(const struct feed *feed)
 {
-    return feed->at < feed->n_part;
+    return feed->texts ? feed_texts_are_left(feed->texts) : feed->at < feed->n_part;
 }
 
 bool feed_is_due(const struct feed *feed, int64_t now_us)
 {
+    if (feed->texts)
+        return feed_texts_are_due(feed->texts, now_us);
     return feed_is_inside(feed) || atomic_load(&feed->is_full) ||
            (feed->letter && (now_us - feed->begun_us >= FEED_REPEAT_MS * INT64_C(1000) ||
                              feed->said_late != atomic_load(&feed->is_late)));
 }
 
+bool feed_is_eager(const struct feed *feed)
+{
+    return feed->texts != NULL;
+}
+
 bool feed_is_ended(const struct feed *feed)
 {
-    return atomic_load(&feed->is_ended);
+    return atomic_load(&feed->is_ended) || (feed->texts && feed_texts_are_over(feed->texts));
 }
 
 size_t feed_read(struct feed *feed, char *bytes, size_t size, bool is_free, int64_t now_us)
 {
+    if (feed->texts)
+        return feed_texts_read(feed->texts, bytes, size, now_us);
     if (!feed_is_inside(feed)) {
         if (!is_free || !feed_is_due(feed, now_us))
             return 0;

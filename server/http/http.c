@@ -126,8 +126,9 @@ static void resume_feeds(struct http *http, bool all)
     int64_t now_us = clock_now_us();
     for (struct request *request = http->feeding; request; request = request->next_feeding) {
         const struct feed *feed = request->call->feed;
-        if (!request->is_suspended || !(all || feed_is_ended(feed) || front_link_is_gone(request->link) ||
-                                        (feed_is_due(feed, now_us) && front_link_is_free(request->link))))
+        if (!request->is_suspended ||
+            !(all || feed_is_ended(feed) || front_link_is_gone(request->link) ||
+              (feed_is_due(feed, now_us) && (feed_is_eager(feed) || front_link_is_free(request->link)))))
             continue;
         request->is_suspended = false;
         MHD_resume_connection(request->connection);
@@ -344,6 +345,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->if_match = copy_header(connection, "If-Match");
     call->member = copy_header(connection, "Beamroom-Member");
     call->key = copy_header(connection, "Idempotency-Key");
+    call->last_event = copy_header(connection, "Last-Event-ID");
     call->if_none_match = copy_header(connection, "If-None-Match");
     call->content_type = copy_header(connection, "Content-Type");
     call->origin = copy_header(connection, "Origin");

@@ -470,8 +470,10 @@ static void *work(void *context)
     keep_record_readers_finish(net);
     keep_audit_readers_finish(net);
     tell_listed(net, UINT64_MAX);
-    while (net->n_rooms)
+    while (net->n_rooms) {
+        room_end_because(net->rooms[0]->room, "the server is being stopped");
         rooms_close(net, 0);
+    }
     keep_write_due(net, true); /* what was recorded while rooms were closed */
     store_destroy(net->store); /* writes what it was handed over */
     net->store = NULL;

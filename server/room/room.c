@@ -16,6 +16,7 @@
 #include "server/room/log/recording.h"
 #include "server/room/log/replay.h"
 #include "server/room/out/audit.h"
+#include "server/room/out/listeners.h"
 #include "server/room/out/saved.h"
 #include "server/room/out/send.h"
 #include "server/room/people/admission.h"
@@ -89,6 +90,7 @@ void room_destroy(struct room *room)
     if (!room)
         return;
     recordings_finish(room);
+    listeners_end(room, room->end_reason[0] ? room->end_reason : room_is_closed);
     for (int i = 0; i < room->members.n; i++)
         if (room->members.list[i]->connection)
             send_bye(room, room->members.list[i]->connection, -1,

@@ -3,6 +3,7 @@
  * renderer (callbacks), no clock of its own (now_us is passed in). One thread. */
 #include "server/room/items/room_items.h"
 #include "server/room/log/room_recordings.h"
+#include "server/room/out/room_listeners.h"
 #include "server/room/people/room_links.h"
 #include "server/room/people/room_people.h"
 #include "server/room/state/room_types.h"
@@ -56,6 +57,12 @@ NODISCARD struct room_display *room_display_add(struct room *room, const char *v
                                                 const struct room_display_callbacks *callbacks, int64_t now_us,
                                                 struct problem *problem);
 void room_display_remove(struct room_display *display);
+/* Tells from now on what changes; first what came after event `number` of this epoch, or, where that is not known, the
+ * whole state. epoch "": the state. NULL with problem limit. */
+NODISCARD struct room_listener *room_listener_add(struct room *room, const char *epoch, uint64_t number,
+                                                  const struct room_listener_callbacks *callbacks, int64_t now_us,
+                                                  struct problem *problem);
+void room_listener_remove(struct room_listener *listener);
 
 /* Answers item_first. problem NULL: the item is on disk, so it counts and all members are told. Else it will never be
  * written, and who gave it is told why. */

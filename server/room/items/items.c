@@ -60,6 +60,7 @@ static void tell_members(struct room *room, const char *id, const char *row, con
     (void)snprintf(message.item.id, sizeof message.item.id, "%s", id);
     (void)snprintf(message.item.by, sizeof message.item.by, "%s", by);
     room_event(room, ROOM_ITEMS, id);
+    send_to_listeners(room, &message);
     for (int i = 0; i < room->members.n; i++) {
         const bool is_own = strcmp(room->members.list[i]->id, by) == 0;
         message.item.input = is_own ? input : 0; /* the input number is only for its sender */

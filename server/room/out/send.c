@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/room/out/listeners.h"
 #include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
 #include "server/wire/document.h"
@@ -69,12 +70,26 @@ void send_latest_to_others(struct room *room, const struct member *but, uint32_t
     free(text);
 }
 
-void send_to_all(struct room *room, const struct message *message)
+/* The message, written once for all. */
+static void send_text_to_members(struct room *room, const char *text)
 {
-    char *text = message_write(message); /* written once for all */
     for (int i = 0; i < room->members.n; i++)
         if (room->members.list[i]->connection)
             (void)send_text(room, room->members.list[i]->connection, text);
+}
+
+static void send_to_members(struct room *room, const struct message *message)
+{
+    char *text = message_write(message);
+    send_text_to_members(room, text);
+    free(text);
+}
+
+void send_to_all(struct room *room, const struct message *message)
+{
+    char *text = message_write(message);
+    listeners_tell(room, message->type, text);
+    send_text_to_members(room, text);
     free(text);
 }
 
@@ -101,6 +116,15 @@ void send_members(struct room *room)
     room->members.sent_us = room->now_us;
     room->members.due_us = 0;
     send_members_now(room, NULL);
+}
+
+void send_to_listeners(struct room *room, const struct message *message)
+{
+    if (!listeners_are_told(room, message->type))
+        return;
+    char *text = message_write(message);
+    listeners_tell(room, message->type, text);
+    free(text);
 }
 
 void send_members_to_newcomer(struct room *room, struct member *newcomer)
@@ -139,7 +163,10 @@ void send_plan(struct room *room)
     message.plan.scene = room->shared.scene;
     message.plan.revision = room->shared.revision;
     mem_put_text(message.plan.gl, sizeof message.plan.gl, room->renderer.gl);
-    send_to_all(room, &message);
+    send_to_members(room, &message);
+    message.plan.plan = cJSON_CreateObject(); /* GET of the plan has it */
+    send_to_listeners(room, &message);
+    cJSON_Delete(message.plan.plan);
 }
 
 /* Numbers of the member's open views that the newest change of the scene did not reach; NULL: none. */
@@ -161,6 +188,8 @@ void send_scene_patch(struct room *room, cJSON *patch, struct member *by, uint32
     struct message message = { .type = MESSAGE_SCENE, .scene = { .revision = room->shared.revision, .patch = patch } };
     if (by)
         mem_put_text(message.scene.by, sizeof message.scene.by, by->id);
+    if (to_all)
+        send_to_listeners(room, &message);
     for (int i = 0; i < room->members.n; i++) {
         struct member *member = room->members.list[i];
         if (member != by && !to_all)

@@ -10,7 +10,9 @@ bool send_to_connection(struct room *room, void *connection, const struct messag
 /* Sends a slow receiver only the newest of the messages with one key. */
 void send_latest(struct room *room, struct member *member, uint32_t key, const struct message *message);
 void send_latest_to_others(struct room *room, const struct member *but, uint32_t key, const struct message *message);
-void send_to_all(struct room *room, const struct message *message);
+void send_to_all(struct room *room, const struct message *message); /* and to listeners */
+/* For messages that each member is sent in another form. */
+void send_to_listeners(struct room *room, const struct message *message);
 
 /* To all; in a large room soon, when the list went out just before (MEMBERS_EVERY_US). */
 void send_members(struct room *room);

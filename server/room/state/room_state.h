@@ -195,6 +195,7 @@ struct events;
 struct items;
 struct known;
 struct links;
+struct listeners;
 struct look;
 struct presences;
 struct recorder;
@@ -226,6 +227,7 @@ struct room {
     struct presences *presences;     /* state/presence.h */
     struct audit *audit;             /* out/audit.h */
     struct saved *saved;             /* out/saved.h */
+    struct listeners *listeners;     /* out/listeners.h; NULL: nobody ever listened */
     struct items *items;             /* items/item_list.h */
     struct acceptances *acceptances; /* items/acceptance.h */
     struct admission *admission;     /* people/admission.h */

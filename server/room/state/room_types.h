@@ -42,6 +42,7 @@ enum {
     ROOM_RECORDING_EMPTY_S = 60, /* nobody there for so long ends it */
     ROOM_MAX_MARKS = 500,        /* of one recording */
     ROOM_MAX_DISPLAYS = 8,
+    ROOM_MAX_LISTENERS = 16,
     ROOM_DISPLAY_RETRY_MS = 5000
 };
 
