@@ -62,12 +62,15 @@ export function banner(world) {
       ${others.length > 6 ? html`<span class="dim">+${others.length - 6}</span>` : nothing}</div>
     ${roomChip(world, 'banner')}
     ${isTouch ? html`<div class="strip-end" role="toolbar" aria-label=${say.thisPicture} @keydown=${roving}>${stripEnd(world)}</div>` : nothing}
-    <span class="anchor"><button class="invite-button" @click=${() => ui.toggle('invite')} aria-label=${say.invite} aria-expanded=${ui.popover.value === 'invite'}>${icon('invite')}<span>${say.invite}</span></button>
+    ${
+      world.session.value?.invites() ??
+      html`<span class="anchor"><button class="invite-button" @click=${() => ui.toggle('invite')} aria-label=${say.invite} aria-expanded=${ui.popover.value === 'invite'}>${icon('invite')}<span>${say.invite}</span></button>
       ${
         ui.popover.value === 'invite'
           ? html`<div class="popover invite"><label for="invite-link">${say.linkTo({ room: html`<code>${room.id}</code>` })}</label>
         <div class="pair"><input id="invite-link" readonly .value=${location.href}><button class="primary" @click=${() => copyLink(ui)}>${say.copy}</button></div>${room.control.may('control') ? invite.draw((loaded) => loaded.inviteForm(world)) : nothing}</div>`
           : nothing
-      }</span>
+      }</span>`
+    }
     ${world.session.value?.who() ?? nothing}<button class="icon-button" title=${say.keysTip} aria-label=${say.help} aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
 }

@@ -130,7 +130,10 @@ export function roomPage(
     watchEnd(host, room, after, plan),
     giveOblique(world),
     coverPage(host, ui),
-    effect(() => session.value?.inRoom(world)),
+    effect(() => {
+      const signedIn = session.value;
+      return untracked(() => signedIn?.inRoom(world));
+    }),
   );
 
   const tick = setInterval(() => {

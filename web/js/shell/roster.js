@@ -10,7 +10,7 @@ import { say } from './later_words.js';
 import { say as sayAtOnce } from './words.js';
 
 const topic = 'following';
-const roles = { presenter: say.isPresenter, reviewer: say.isReviewer, observer: say.isObserver };
+const roles = { planner: say.isPlanner, presenter: say.isPresenter, reviewer: say.isReviewer, observer: say.isObserver, wall: say.isWall };
 const lags = {
   link: { word: say.slowLink, about: say.slowLinkIs },
   renderer: { word: say.waitsForPictures, about: say.waitsForPicturesIs },
@@ -40,7 +40,7 @@ function row(member, room) {
   const lag = member.connected === false ? null : lags[member.lag];
   const isAsking = control.requested.value.includes(member.id);
   return html`<li data-member=${member.id} data-away=${member.connected === false}>${avatar(member)}
-    <span class="roster-who"><span class="clipped" title=${member.name}>${member.id === room.member.value ? sayAtOnce.you(member) : member.name}</span>
+    <span class="roster-who"><span class="clipped" title=${member.name}>${member.id === room.member.value ? sayAtOnce.you(member) : member.name}${member.is_guest ? html` <span class="tag">${say.guest}</span>` : nothing}</span>
       <span class="dim">${[roles[member.role], doing(member, following.presenter.value)].filter(Boolean).join(' · ')}</span>
       ${isAsking ? html`<span class="roster-mark">${icon('people', 12)} ${say.requests}</span>` : nothing}
       ${lag ? html`<span class="roster-mark warn" title=${lag.about}>${icon('phase', 12)} ${lag.word}</span>` : nothing}

@@ -15,6 +15,7 @@ import { mayWrite, meIn } from '../notes/note_words.js';
 const command = 'beamroomd --verify-audit';
 const records = new WeakMap(); // by room
 const failed = signal({}); // by form: why the server refused what was last written there
+const codes = new Map(); // by form: the code of that refusal
 const kept = signal({}); // by form: that it is being kept until what was written is on the server's disk, then since when
 const comments = new Map(); // by entry: what is being written about it
 
@@ -24,6 +25,7 @@ function recordOf({ room }) {
 }
 
 const fail = (form, problem) => {
+  codes.set(form, problem?.code ?? '');
   failed.value = { ...failed.peek(), [form]: problem?.detail || problem?.message || '' };
 };
 
@@ -177,7 +179,8 @@ function decided({ room }, rows, revision) {
 
 const signatureOf = ({ body }) => say.signatureOf({ name: body.name, meaning: wordOf(meanings, body.meaning) });
 
-function signed({ room }, rows, revision) {
+/** Who is signed in signs under that name, and proves it once more; elsewhere a name is typed. */
+function signed({ room, session }, rows, revision) {
   const list = linesOf(rows, 'signature', revision);
   const submit = async (event) => {
     event.preventDefault();
@@ -188,11 +191,18 @@ function signed({ room }, rows, revision) {
   };
   return html`<section class="block"><h3>${say.signatures}</h3>${lines(list, say.signatures, signatureWords)}
     ${
-      mayWrite(room)
-        ? html`<form class="record-form" @submit=${submit}><label>${say.name} <input name="name" required maxlength="80" autocomplete="name"></label>
+      session.value?.isOn
+        ? html`${session.value.signing({
+            isGuest: meIn(room).is_guest || !mayWrite(room),
+            fields: html`<label>${say.meaning} <select name="meaning">${meanings.map(option)}</select></label>${corrects(list, signatureOf)}`,
+            note: html`<p class="note">${say.legal} ${say.lineStays}</p>`,
+            write: (body) => write(room, 'signature', 'signature', body).then((isDone) => isDone || codes.get('signature')),
+          })}${errorOf('signature')}`
+        : mayWrite(room)
+          ? html`<form class="record-form" @submit=${submit}><label>${say.name} <input name="name" required maxlength="80" autocomplete="name"></label>
       <label>${say.meaning} <select name="meaning">${meanings.map(option)}</select></label>${corrects(list, signatureOf)}
       <p class="note">${say.legal} ${say.lineStays}</p><div class="note-buttons"><button>${say.sign}</button></div></form>${errorOf('signature')}`
-        : html`<p class="note">${say.legal}</p>`
+          : html`<p class="note">${say.legal}</p>`
     }</section>`;
 }
 

@@ -52,6 +52,11 @@ export const say = sentences('session.later', {
   notYou: 'That was {other}. This seat is {name}’s: sign in as {name}, or leave it.',
   windowBlocked: 'The browser did not open the window. Allow it for this page, then try again.',
   close: 'Close',
+  signAs: 'as the person signed in',
+  oncePassword: 'Your password, once more',
+  onceHospital: 'A signature needs a sign-in at the hospital that is not older than 5 minutes.',
+  sign: 'Sign',
+  noSigning: 'Guests and observers do not sign.',
   openDoor: 'This server is open to everybody who reaches it.',
   openDoorIs: 'Anybody sees every plan here, under any name. Nothing can be signed.',
 });

@@ -6,7 +6,10 @@ import { mount } from '../../parts/mount.js';
 import { againCard } from './again_card.js';
 import { PasswordState, send } from './password_form.js';
 import { openStrip } from './open_strip.js';
-import { menu } from './session_menu.js';
+import { peoplePanel } from './people_panel.js';
+import { PeopleState } from './people_state.js';
+import { invites, menu } from './session_menu.js';
+import { signing } from './signing.js';
 
 const lookMs = 5000;
 const askMs = 60000; // the proxy's own end is met by asking
@@ -32,6 +35,7 @@ export class Session {
     this.error = signal('');
     this.waiting = signal(null); // a window in which somebody signs in: stops waiting for it
     this.state = new PasswordState();
+    this.people = signal(null); // of the room that is open
     void styled('js/features/session/session.css').catch(() => {});
     if (facts.open_to_everybody) openStrip();
     if (!this.person.peek()) return;
@@ -53,6 +57,11 @@ export class Session {
   /** True in the minutes before the end. */
   get isEnding() {
     return !this.endedAt.value && this.endsAt > 0 && this.endsAt - this.now.value <= soonMs;
+  }
+
+  /** True where people sign in. */
+  get isOn() {
+    return this.facts.value.sign_in.length > 0;
   }
 
   /** Calls of a guest, who is nobody to the server but in this room. */
@@ -146,17 +155,31 @@ export class Session {
     return this.person.value ? menu(this) : null;
   }
 
+  /** In the banner of a room, in the place of the form that invites where nobody signs in; null: that one. */
+  invites() {
+    return this.isOn && this.people.value ? invites(this.people.value) : null;
+  }
+
+  /** The form by which a person signs in the record of a review. */
+  signing(form) {
+    return signing(this, form);
+  }
+
   /** Stands over the room at the end of the sign-in; everything else is then without effect. @returns {() => void} stops */
   inRoom(world) {
     const host = document.createElement('div');
     document.body.append(host);
-    const unmount = mount(host, () => againCard(this, world));
+    const people = new PeopleState(world);
+    if (this.isOn) void styled('js/features/session/people.css').catch(() => {});
+    this.people.value = people;
+    const unmount = mount(host, () => [peoplePanel(people, world, this.facts.value.guest_links), againCard(this, world)]);
     const stop = effect(() => {
       const isPaused = world.room.link.value.state === 'paused';
       if (isPaused && !this.endedAt.peek()) this.endedAt.value = Date.now();
       const page = document.querySelector('#page');
       page.inert = isPaused;
       page.classList.toggle('paused', isPaused);
+      if (isPaused) people.close();
       if (isPaused) queueMicrotask(() => host.querySelector('button, input')?.focus());
     });
     return () => {
@@ -166,6 +189,7 @@ export class Session {
       page.classList.remove('paused');
       unmount();
       host.remove();
+      this.people.value = null;
     };
   }
 }

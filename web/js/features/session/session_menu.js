@@ -3,6 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { initials } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
+import { say as sayPeople } from './people_words.js';
 
 export const timeWords = (ms) => new Date(ms).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit' });
 export const sourceWords = ({ source }) => (source === 'proxy' ? say.ofHospital : say.account);
@@ -16,6 +17,17 @@ function chip(session) {
     else session.isStaying.value = true;
   };
   return html`<span class="session-chip" role="status"><span>${say.ends({ time: timeWords(session.endsAt) })}</span> <button class="link" @click=${stay}>${say.stay}</button></span>`;
+}
+
+/** The button of the people panel. @param {import('./people_state.js').PeopleState} people */
+export function invites(people) {
+  const isOpen = people.isOpen.value;
+  const toggle = () => {
+    if (isOpen) return void people.close();
+    people.open();
+    queueMicrotask(() => document.querySelector('.card.people')?.focus());
+  };
+  return html`<button class="people-button invite-button" aria-haspopup="dialog" aria-expanded=${isOpen} aria-label=${sayPeople.people} @click=${toggle}>${icon('people')}<span>${sayPeople.people}</span></button>`;
 }
 
 export function menu(session) {
