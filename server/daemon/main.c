@@ -19,6 +19,7 @@
 #include "server/daemon/notify.h"
 #include "server/daemon/options.h"
 #include "server/daemon/privilege.h"
+#include "server/daemon/sign_in.h"
 #include "server/daemon/stop.h"
 #include "server/front/front.h"
 #include "server/front/hosts.h"
@@ -255,6 +256,7 @@ struct service {
     struct tls *tls; /* NULL: the port speaks HTTP */
     struct front *front;
     struct net *net;
+    struct sign_in sign_in;
 };
 
 static void adopt(void *service, int socket, const struct handshake *handshake, void (*ended)(void *argument),
@@ -278,36 +280,31 @@ static void take_plain(void *service, int socket, const struct address *peer)
     front_take_plain(((struct service *)service)->front, socket, peer);
 }
 
-/* Nobody signs in: whoever reaches the server is its one person. */
 static bool identify(void *service, const struct credentials *credentials, struct identity *identity,
                      struct problem *problem)
 {
-    (void)service;
-    (void)problem;
-    identity->source = IDENTITY_MACHINE;
-    identity->scopes = IDENTITY_SCOPE_ALL;
-    (void)snprintf(identity->address, sizeof identity->address, "%s", credentials->address);
-    return true;
+    return auth_identify(((struct service *)service)->sign_in.auth, credentials, identity, problem);
 }
 
 /* On SIGHUP. */
-static void reload(struct tls *tls)
+static void reload(struct service *service)
 {
     struct error err = { 0 };
-    if (!tls)
-        log_info("nothing to read again on SIGHUP: there is no --tls-cert");
-    else if (!tls_reload(tls, &err))
+    if (!service->tls && !service->sign_in.access)
+        log_info("nothing to read again on SIGHUP: there is no --tls-cert, and nobody signs in");
+    else if (service->tls && !tls_reload(service->tls, &err))
         log_error("TLS: the certificate in use stays: %s", err.text);
+    sign_in_reload(&service->sign_in, service->net);
 }
 
 /* Until a signal to stop comes. The heartbeat is to be destroyed when all threads have ended. */
-static struct heartbeat *serve_on(const struct service *service)
+static struct heartbeat *serve_on(struct service *service)
 {
     struct heartbeat *heartbeat = heartbeat_create(service->net, service->front, service->tls);
     enum stop_signal found;
     while ((found = stop_wait_or_reload(heartbeat_wait_us(heartbeat))) != STOP_STOPS) {
         if (found == STOP_RELOADS)
-            reload(service->tls);
+            reload(service);
         else
             heartbeat_beat(heartbeat);
     }
@@ -359,23 +356,30 @@ static bool serve(struct options *options, struct error *err)
         .allowed_origin = options->allowed_origin,
         .database = database,
     };
+    const char *identity_names[HEAD_N_IDENTITY];
+    for (size_t i = 0; i < HEAD_N_IDENTITY; i++)
+        identity_names[i] = options->identity_names[i] ? options->identity_names[i] : head_identity_names[i];
     char upload_folder[PATH_SIZE + 16];
     (void)snprintf(upload_folder, sizeof upload_folder, "%s/uploads", data_folder);
-    struct hosts *hosts = options->is_open
-                              ? hosts_create((const char *const *)options->public_names, options->n_public_names)
-                              : hosts_create_alone();
+    const bool is_alone = !options->is_open && !options_signs_in(options);
+    struct hosts *hosts = !is_alone ? hosts_create((const char *const *)options->public_names, options->n_public_names)
+                                    : hosts_create_alone();
     const struct http_options http_options = { .web_folder = options->web_folder,
                                                .upload_folder = upload_folder,
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
                                                .is_secure_alone = options->tls_cert && port_of(options) == HTTPS_PORT,
-                                               .is_alone = !options->is_open };
+                                               .is_alone = is_alone };
     struct service service = { 0 };
-    struct net *net = start_tls(&service, options, err) ? net_create(&net_options, err) : NULL;
+    struct net *net = sign_in_create(&service.sign_in, options, err) && start_tls(&service, options, err)
+                          ? net_create(&net_options, err)
+                          : NULL;
     const struct front_options front_options = { .listen = listen,
                                                  .sockets = options->sockets,
                                                  .n_sockets = options->n_sockets,
                                                  .proxy = proxy,
+                                                 .identity_names = identity_names,
+                                                 .takes_identity = options->is_proxied,
                                                  .hosts = hosts,
                                                  .trusted = options->trusted_proxies,
                                                  .n_trusted = options->n_trusted_proxies,
@@ -414,6 +418,7 @@ static bool serve(struct options *options, struct error *err)
     front_destroy(front);
     tls_destroy(service.tls);
     heartbeat_destroy(heartbeat);
+    sign_in_finish(&service.sign_in);
     hosts_destroy(hosts);
     return ok;
 }

@@ -13,6 +13,8 @@
 enum kind {
     KIND_FOLDERS,
     KIND_LISTEN,
+    KIND_SIGN_IN,
+    KIND_GRANT,
     KIND_HEADER,
     KIND_TEXT,
     KIND_COUNT,
@@ -145,7 +147,43 @@ static bool set_header(const struct setting *setting, const char *value, char *a
     return true;
 }
 
-static bool set(struct options *options, const struct setting *setting, const char *value, struct error *err)
+static bool set_sign_in(struct options *options, const char *value, struct error *err)
+{
+    static const char *const words[] = { "none", "local", "proxy", "local,proxy", "proxy,local" };
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strcmp(value, words[i]) == 0) {
+            options->is_local = strstr(value, "local") != NULL;
+            options->is_proxied = strstr(value, "proxy") != NULL;
+            return true;
+        }
+    return error_set(err, ERROR_FORMAT, "sign-in is \"%.40s\", expected none, local, proxy or local,proxy", value);
+}
+
+static bool add_grant(struct options_grants *grants, const char *value, int line, struct error *err)
+{
+    if (grants->n == OPTIONS_MAX_GRANTS)
+        return error_set(err, ERROR_LIMIT, "more than %d grants", OPTIONS_MAX_GRANTS);
+    if (!grants->list)
+        grants->list = mem_new(OPTIONS_MAX_GRANTS * sizeof *grants->list);
+    grants->list[grants->n++] = (struct options_grant){ mem_copy_text(value), line };
+    return true;
+}
+
+void options_grants_finish(struct options_grants *grants)
+{
+    for (size_t i = 0; i < grants->n; i++)
+        free(grants->list[i].value);
+    free(grants->list);
+    *grants = (struct options_grants){ 0 };
+}
+
+bool options_signs_in(const struct options *options)
+{
+    return options->is_local || options->is_proxied;
+}
+
+/* line: of the configuration file; 0: of the command line. */
+static bool set(struct options *options, const struct setting *setting, const char *value, int line, struct error *err)
 {
     char *at = (char *)options + setting->offset;
     switch (setting->kind) {
@@ -179,6 +217,8 @@ static bool set(struct options *options, const struct setting *setting, const ch
         }
         set_text(at, value);
         return true;
+    case KIND_SIGN_IN: return set_sign_in(options, value, err);
+    case KIND_GRANT: return add_grant(&options->grants, value, line, err);
     case KIND_HEADER: return set_header(setting, value, at, err);
     case KIND_TEXT: set_text(at, value); return true;
     case KIND_COUNT: return set_count(setting, value, (int64_t *)(void *)at, err);
@@ -227,7 +267,7 @@ static bool read_file(struct options *options, const char *name, const bool *giv
         if (!setting)
             ok = error_set(err, ERROR_FORMAT, "%.100s line %d: there is no setting \"%.40s\"", name, number, key);
         else if (!given[setting - settings]) {
-            ok = set(options, setting, trim(equals + 1), err);
+            ok = set(options, setting, trim(equals + 1), number, err);
             if (!ok)
                 error_prefix(err, "%.100s line %d", name, number);
         }
@@ -237,10 +277,11 @@ static bool read_file(struct options *options, const char *name, const bool *giv
 }
 
 /* Nobody signs in here: what lets others than the person at this machine in must be said. */
-static bool may_be_reached(const struct options *options, struct error *err)
+static bool may_be_reached(const struct options *options, const struct address *address, struct error *err)
 {
-    const char *listen = options->listen;
-    struct address address;
+    if (options->grants.n > 0)
+        return error_set(err, ERROR_FORMAT,
+                         "--grant says who may do what, and nobody signs in here; say --sign-in too");
     if (options->is_open)
         return true;
     if (options->n_sockets > 0)
@@ -248,23 +289,47 @@ static bool may_be_reached(const struct options *options, struct error *err)
                          "--listen unix:%.107s is for a proxy, and nobody signs in here: whoever reaches it could see "
                          "and change every plan. Leave it away, or say --open-to-everybody",
                          options->sockets[0].path);
-    if (listen && !address_read(listen, strlen(listen), &address)) /* not to be taken for one of loopback */
-        return error_set(err, ERROR_FORMAT, "--listen %.80s: expected ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
-                         listen);
-    if (listen && !address_is_loopback(&address))
+    if (options->listen && !address_is_loopback(address))
         return error_set(
             err, ERROR_FORMAT,
             "--listen %.80s lets others than this machine in, and nobody signs in here: whoever reaches the "
-            "port could see and change every plan. Listen on 127.0.0.1 or [::1], or say "
-            "--open-to-everybody",
-            listen);
-    if (options->n_public_names > 0 || options->n_trusted_proxies > 0)
-        return error_set(
-            err, ERROR_FORMAT,
-            "--%s is for a server that others reach, and nobody signs in here: whoever reaches it could see "
-            "and change every plan. Leave it away, or say --open-to-everybody",
-            options->n_public_names > 0 ? "public-name" : "trusted-proxy");
-    return true;
+            "port could see and change every plan. Listen on "
+            "127.0.0.1 or [::1], or say --open-to-everybody",
+            options->listen);
+    return (options->n_public_names == 0 && options->n_trusted_proxies == 0) ||
+           error_set(err, ERROR_FORMAT,
+                     "--%s is for a server that others reach, and nobody signs in here: whoever reaches it could see "
+                     "and change every plan. Leave it away, or say --open-to-everybody",
+                     options->n_public_names > 0 ? "public-name" : "trusted-proxy");
+}
+
+/* People sign in: passwords and tokens must not be readable on the wire. */
+static bool keeps_secrets(const struct options *options, const struct address *address, struct error *err)
+{
+    if (options->is_open)
+        return error_set(err, ERROR_FORMAT,
+                         "--open-to-everybody lets in who has not signed in, and --sign-in does not; expected one of "
+                         "them");
+    if (options->is_proxied && options->n_sockets == 0)
+        return error_set(err, ERROR_FORMAT,
+                         "--sign-in proxy needs --listen unix:/PATH and --proxy-user NAME: what a proxy says is "
+                         "believed there alone");
+    return !options->listen || address_is_loopback(address) || options->tls_cert ||
+           error_set(
+               err, ERROR_FORMAT,
+               "--listen %.80s would carry passwords without encryption; give --tls-cert and --tls-key, or listen "
+               "on 127.0.0.1, [::1] or unix:/PATH behind a proxy",
+               options->listen);
+}
+
+static bool may_serve(const struct options *options, struct error *err)
+{
+    const char *listen = options->listen;
+    struct address address = { { 0 } };
+    if (listen && !options->is_open && !address_read(listen, strlen(listen), &address)) /* nor taken for loopback */
+        return error_set(err, ERROR_FORMAT, "--listen %.80s: expected ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080",
+                         listen);
+    return options_signs_in(options) ? keeps_secrets(options, &address, err) : may_be_reached(options, &address, err);
 }
 
 /* True if no setting lacks the other that it needs. */
@@ -283,7 +348,6 @@ static bool is_whole(const struct options *options, struct error *err)
 bool options_read(struct options *options, int argc, char **argv, struct error *err)
 {
     bool given[N_SETTINGS] = { false };
-    const char *config = NULL;
     *options = (struct options){ .max_renderers = 8,
                                  .max_renderer_mib = 16384,
                                  .plan_idle_close_s = 600,
@@ -295,6 +359,8 @@ bool options_read(struct options *options, int argc, char **argv, struct error *
                                  .max_unpacked_mib = 8192,
                                  .max_cache_mib = 16384,
                                  .disk_reserve_mib = 64,
+                                 .session_idle_min = 30,
+                                 .session_max_h = 12,
                                  .log_level = LOG_INFO };
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "-h") == 0 || strcmp(argv[i], "--help") == 0) {
@@ -322,14 +388,35 @@ bool options_read(struct options *options, int argc, char **argv, struct error *
         else
             return error_set(err, ERROR_FORMAT, "--%.60s needs a value", name);
         if (is_config)
-            config = value;
-        else if (!set(options, setting, value, err))
+            set_text((char *)&options->config, value);
+        else if (!set(options, setting, value, 0, err))
             return false;
         else
             given[setting - settings] = true;
     }
-    return (!config || read_file(options, config, given, err)) && is_whole(options, err) &&
-           (options->backup || options->verify_audit || may_be_reached(options, err));
+    options->has_grants_on_command = options->grants.n > 0;
+    return (!options->config || read_file(options, options->config, given, err)) && is_whole(options, err) &&
+           (options->backup || options->verify_audit || may_serve(options, err));
+}
+
+bool options_read_grants(const struct options *options, struct options_grants *grants, struct error *err)
+{
+    bool given[N_SETTINGS];
+    struct options read = { 0 };
+    bool ok = true;
+    for (size_t i = 0; i < N_SETTINGS; i++)
+        given[i] = settings[i].kind != KIND_GRANT;
+    *grants = (struct options_grants){ 0 };
+    if (options->has_grants_on_command || !options->config)
+        for (size_t i = 0; i < options->grants.n; i++)
+            ok = ok && add_grant(&read.grants, options->grants.list[i].value, 0, err);
+    else
+        ok = read_file(&read, options->config, given, err);
+    if (ok)
+        *grants = read.grants;
+    else
+        options_grants_finish(&read.grants);
+    return ok;
 }
 
 void options_finish(struct options *options)
@@ -340,6 +427,8 @@ void options_finish(struct options *options)
         free(options->public_names[i]);
     free(options->data_folder);
     free(options->web_folder);
+    options_grants_finish(&options->grants);
+    free(options->config);
     free(options->listen);
     free(options->proxy_user);
     for (size_t i = 0; i < HEAD_N_IDENTITY; i++)

@@ -8,7 +8,16 @@
 #include "server/front/front.h"
 #include "server/front/head.h"
 
-enum { OPTIONS_MAX_PLAN_FOLDERS = 64, OPTIONS_MAX_NAMES = 64, OPTIONS_MAX_LINE = 4096 };
+enum { OPTIONS_MAX_PLAN_FOLDERS = 64, OPTIONS_MAX_NAMES = 64, OPTIONS_MAX_LINE = 4096, OPTIONS_MAX_GRANTS = 1000 };
+
+/* Grants, a line of text each. */
+struct options_grants {
+    struct options_grant {
+        char *value; /* FOLDER WHO ROLE */
+        int line;    /* of the configuration file; 0: of the command line */
+    } * list;
+    size_t n;
+};
 
 struct options {
     char *plan_folders[OPTIONS_MAX_PLAN_FOLDERS];
@@ -30,7 +39,13 @@ struct options {
         recording_speed;
     int64_t max_upload_mib, max_unpacked_mib, max_cache_mib, disk_reserve_mib;
     bool stub_renderer;
-    bool is_open; /* open-to-everybody */
+    bool is_open;              /* open-to-everybody */
+    bool is_local, is_proxied; /* how people sign in; neither: nobody does */
+    bool admits_guests;        /* links may let in who has not signed in */
+    int64_t session_idle_min, session_max_h;
+    struct options_grants grants;
+    char *config;               /* NULL: not given */
+    bool has_grants_on_command; /* so those of the file do not count */
     enum log_level log_level;
     bool wants_help, wants_version;
 };
@@ -38,5 +53,9 @@ struct options {
 /* Fills options with the defaults, the command line and its --config file; the command line wins.
  *   errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT, ERROR_IO; the sentence names the flag, or file and line */
 NODISCARD bool options_read(struct options *options, int argc, char **argv, struct error *err);
+/* Reads the grants anew, as they stand in the configuration file now. False: grants is empty. errors as options_read */
+NODISCARD bool options_read_grants(const struct options *options, struct options_grants *grants, struct error *err);
+void options_grants_finish(struct options_grants *grants);
+bool options_signs_in(const struct options *options); /* people have to sign in */
 void options_finish(struct options *options);
 void options_print_help(void);

@@ -1,0 +1,110 @@
+/* Creates accounts and grants from the settings, and reads grants again. */
+#include "server/daemon/sign_in.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/log.h"
+#include "core/base/mem.h"
+#include "server/wire/json.h"
+
+/* Hands the grants to access. */
+static bool use_grants(struct access *access, const char *file, const struct options_grants *grants, struct error *err)
+{
+    struct access_line *lines = mem_new((grants->n + 1) * sizeof *lines);
+    for (size_t i = 0; i < grants->n; i++)
+        lines[i] = (struct access_line){ .value = grants->list[i].value,
+                                         .file = grants->list[i].line ? file : "the command line",
+                                         .line = grants->list[i].line };
+    const bool ok = access_set(access, lines, grants->n, err);
+    free(lines);
+    return ok;
+}
+
+bool sign_in_create(struct sign_in *sign_in, const struct options *options, struct error *err)
+{
+    const struct auth_options auth = { .is_local = options->is_local,
+                                       .is_proxied = options->is_proxied,
+                                       .idle_ms = options->session_idle_min * 60 * 1000,
+                                       .total_ms = options->session_max_h * 60 * 60 * 1000 };
+    *sign_in = (struct sign_in){ .options = options };
+    sign_in->auth = auth_create(&auth, err);
+    if (!sign_in->auth || !options_signs_in(options))
+        return sign_in->auth != NULL;
+    sign_in->access = access_create();
+    return options_read_grants(options, &sign_in->grants, err) &&
+           use_grants(sign_in->access, options->config, &sign_in->grants, err);
+}
+
+void sign_in_finish(struct sign_in *sign_in)
+{
+    if (sign_in->auth)
+        auth_close(sign_in->auth);
+    auth_destroy(sign_in->auth);
+    access_destroy(sign_in->access);
+    options_grants_finish(&sign_in->grants);
+}
+
+/* ---- reading grants again --------------------------------------------------------------------------------------- */
+
+static bool has(const struct options_grants *grants, const char *value)
+{
+    for (size_t i = 0; i < grants->n; i++)
+        if (strcmp(grants->list[i].value, value) == 0)
+            return true;
+    return false;
+}
+
+/* Grants that `grants` has and `others` has not. */
+static cJSON *new_in(const struct options_grants *grants, const struct options_grants *others)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (size_t i = 0; i < grants->n; i++)
+        if (!has(others, grants->list[i].value))
+            cJSON_AddItemToArray(list, cJSON_CreateString(grants->list[i].value));
+    return list;
+}
+
+/* On the net thread. */
+static void record(struct net *net, void *detail)
+{
+    net_audit(net, "", "", "", "grants", detail);
+}
+
+static void say_unchanged(struct net *net, const char *why)
+{
+    cJSON *detail = cJSON_CreateObject();
+    cJSON_AddStringToObject(detail, "refused", why);
+    log_error("grants: those in use stay: %s", why);
+    net_post(net, record, detail);
+}
+
+/* Folders may be called after patients, so the log has numbers alone and the audit has the lines. */
+static void say_changed(struct net *net, const struct options_grants *before, const struct options_grants *now)
+{
+    cJSON *detail = cJSON_CreateObject(), *added = new_in(now, before), *removed = new_in(before, now);
+    log_info("grants: read again: %d new, %d gone, %zu in use", cJSON_GetArraySize(added), cJSON_GetArraySize(removed),
+             now->n);
+    cJSON_AddItemToObject(detail, "added", added);
+    cJSON_AddItemToObject(detail, "removed", removed);
+    net_post(net, record, detail);
+}
+
+void sign_in_reload(struct sign_in *sign_in, struct net *net)
+{
+    struct options_grants grants;
+    struct error err = { 0 };
+    if (!sign_in->access)
+        return;
+    if (!options_read_grants(sign_in->options, &grants, &err)) {
+        say_unchanged(net, err.text);
+    } else if (!use_grants(sign_in->access, sign_in->options->config, &grants, &err)) {
+        say_unchanged(net, err.text);
+        options_grants_finish(&grants);
+    } else {
+        say_changed(net, &sign_in->grants, &grants);
+        options_grants_finish(&sign_in->grants);
+        sign_in->grants = grants;
+    }
+}
