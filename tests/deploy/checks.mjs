@@ -53,7 +53,10 @@ class World {
     const page = await this.context.newPage();
     const errors = [];
     page.on('pageerror', (error) => errors.push(error.message));
-    page.on('response', (answer) => answer.status() >= 400 && errors.push(`${answer.status()} ${answer.url()}`));
+    page.on(
+      'response',
+      (answer) => answer.status() >= 400 && !/\/session$/.test(answer.url()) && errors.push(`${answer.status()} ${answer.url()}`),
+    );
     await page.goto(`https://${this.host}${path}`);
     if (this.signsIn === 'oidc' && (await page.locator('input[name=login]').count())) {
       await page.fill('input[name=login]', 'ann');
@@ -136,13 +139,19 @@ export function proves(name) {
   describe(name, { skip: absent && `${absent} is not there` }, () => {
     const world = new World();
     before(async () => {
-      await world.start(name);
-      await world.signIn();
+      try {
+        await world.start(name);
+        await world.signIn();
+      } catch (error) {
+        await world.stop(); // what runs still would keep this file from its end
+        throw error;
+      }
     });
     after(async () => {
-      const { exitCode, signalCode } = world.daemon?.child ?? {};
+      if (!world.daemon) return;
+      const { exitCode, signalCode } = world.daemon.child;
       await world.stop();
-      assert.deepEqual([exitCode, signalCode], [null, null], `the daemon ended before its time: ${world.daemon?.log().slice(-2000)}`);
+      assert.deepEqual([exitCode, signalCode], [null, null], `the daemon ended before its time: ${world.daemon.log().slice(-2000)}`);
     });
 
     if (signsIn)
@@ -266,7 +275,9 @@ export function proves(name) {
       socket.destroy();
       assert.equal((await world.caller.call('/api/v1/version', { headers: { 'X-Long': 'a'.repeat(6000) } })).status, 200);
       const large = await world.caller.call('/api/v1/version', { headers: { 'X-Long': 'a'.repeat(60000) } });
-      assert.ok([400, 413, 414, 431].includes(large.status), `${large.status}`);
+      // 502: the proxy was still sending when the daemon had said 431 and closed
+      assert.ok([400, 413, 414, 431, 502].includes(large.status), `${large.status}`);
+      assert.equal((await world.caller.call('/api/v1/version')).status, 200);
     });
 
     const tryShapes = async (send, n) => {
