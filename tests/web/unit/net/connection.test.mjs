@@ -397,21 +397,24 @@ test('a link that is dead shows 2 s after another name was given; the name goes 
 });
 
 test('at the end of a sign-in it stands still until it is told to go on, as the same member', () => {
-  const { connection, told, sockets, waits } = fakeConnection();
-  sockets[0].open();
-  sockets[0].welcome();
-  waits.length = 0;
-  connection.pause();
-  sockets[0].lose();
-  assert.deepEqual([sockets.length, waits], [1, []], 'no attempt by itself');
-  assert.equal(connection.send({ type: 'view.close', view: 1 }), false);
-  connection.retryNow();
-  assert.equal(sockets.length, 2);
-  sockets[1].open();
-  assert.deepEqual([sockets[1].sent[0].member, sockets[1].sent[0].secret], ['m-1', 'abc']);
-  sockets[1].welcome();
-  assert.deepEqual(
-    told.map(({ type }) => type),
-    ['up', 'paused', 'up'],
-  );
+  const told = (_, socket) => socket.tell({ type: 'bye', reason: 'your sign-in has ended', code: 'sign-in', retry_ms: null });
+  for (const end of [told, (connection) => connection.pause()]) {
+    const { connection, told: events, sockets, waits } = fakeConnection();
+    sockets[0].open();
+    sockets[0].welcome();
+    waits.length = 0;
+    end(connection, sockets[0]);
+    sockets[0].lose();
+    assert.deepEqual([sockets.length, waits], [1, []], 'no attempt by itself');
+    assert.equal(connection.send({ type: 'view.close', view: 1 }), false);
+    connection.retryNow();
+    assert.equal(sockets.length, 2);
+    sockets[1].open();
+    assert.deepEqual([sockets[1].sent[0].member, sockets[1].sent[0].secret], ['m-1', 'abc']);
+    sockets[1].welcome();
+    assert.deepEqual(
+      events.map(({ type }) => type),
+      ['up', 'paused', 'up'],
+    );
+  }
 });

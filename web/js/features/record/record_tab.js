@@ -195,7 +195,7 @@ function signed({ room, session }, rows, revision) {
         ? html`${session.value.signing({
             isGuest: meIn(room).is_guest || !mayWrite(room),
             fields: html`<label>${say.meaning} <select name="meaning">${meanings.map(option)}</select></label>${corrects(list, signatureOf)}`,
-            note: html`<p class="note">${say.legal} ${say.lineStays}</p>`,
+            note: html`<p class="note">${say.lineStays}</p>`,
             write: (body) => write(room, 'signature', 'signature', body).then((isDone) => isDone || codes.get('signature')),
           })}${errorOf('signature')}`
         : mayWrite(room)

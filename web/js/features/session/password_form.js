@@ -61,7 +61,7 @@ export class PasswordState {
     if (status === 0) this.error.value = say.noAnswer;
     else if (status === 401 && n > 0) this.error.value = say.wrong({ n, pause: pauseWords(pauseS) });
     else if (status === 401 && n === 0) this.#pause(waitS || pauseS, say.wrongPause);
-    else if (status === 429) this.#pause(waitS || 1, waitS > 5 ? '' : say.busy);
+    else if (status === 429) this.#pause(waitS || 1, answer.code === 'pause' ? '' : say.busy);
     else this.error.value = answer.detail || answer.title || say.noAnswer;
   }
 
@@ -81,12 +81,12 @@ export class PasswordState {
 }
 
 /** @param {PasswordState} state @param {{id: string, label: unknown, placeholder?: string, autocomplete?: string, name?: string}} field */
-export function passwordField(state, { id, label, placeholder = '', autocomplete = 'current-password', name = 'password' }) {
+export function passwordField(state, { id, label, placeholder = '', autocomplete = 'current-password', name = 'password', least = 1 }) {
   const look = (event) => {
     state.hasCapsLock.value = event.getModifierState?.('CapsLock') ?? false;
   };
   return html`${label ? html`<label for=${id}>${label}</label>` : nothing}
-    <input id=${id} name=${name} type="password" required maxlength="256" autocomplete=${autocomplete} placeholder=${placeholder}
+    <input id=${id} name=${name} type="password" required minlength=${least} maxlength="256" autocomplete=${autocomplete} placeholder=${placeholder}
       aria-describedby=${`${id}-caps ${id}-error`} @keydown=${look} @keyup=${look} @blur=${() => {
         state.hasCapsLock.value = false;
       }}>

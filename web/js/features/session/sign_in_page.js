@@ -6,6 +6,7 @@ import { placeOf } from '../../net/address.js';
 import { icon } from '../../parts/icons.js';
 import { styled } from '../../parts/lazy.js';
 import { mount } from '../../parts/mount.js';
+import { firstCard, takeToken } from './first_form.js';
 import { proxyPath, tellDone } from './hospital.js';
 import { PasswordState, passwordError, passwordField } from './password_form.js';
 import { ownPath } from './return_path.js';
@@ -14,7 +15,16 @@ import { say } from './later_words.js';
 /** @param {HTMLElement} host @param {string} id "first": the first administrator; "done": the small window @param {object} world {api, ownName, told: promise of the session, remembered, remember} @returns {() => void} leaves the page */
 export function signInPage(host, id, world) {
   const path = ownPath(new URLSearchParams(location.search).get('return'));
-  const page = { facts: signal(undefined), version: signal(''), state: new PasswordState(), path: path + keptFragment(), world };
+  const isFirst = id === 'first';
+  const page = {
+    isFirst,
+    token: isFirst ? takeToken() : '',
+    facts: signal(undefined),
+    version: signal(''),
+    state: new PasswordState(),
+    path: path + keptFragment(),
+    world,
+  };
   const unmount = mount(host, () => draw(page));
   document.title = `${say.signIn} – Beamroom`;
   void styled('js/features/session/session.css').catch(() => {});
@@ -64,6 +74,7 @@ function cards(page, facts) {
   if (!facts)
     return html`<section class="card sign-in" role="alert"><h1>${say.signIn}</h1><p>${say.noAnswer}</p>
       <button class="primary" @click=${() => location.reload()}>${say.tryAgain}</button></section>`;
+  if (page.isFirst) return firstCard(page.state, page.token);
   if (facts.identity)
     return html`<section class="card sign-in"><h1>${say.signIn}</h1><p>${say.stillProxy({ name: html`<b>${facts.identity.name || facts.identity.user}</b>` })}</p>
       <a class="button" href=${page.path}>${say.goOn}</a></section>`;

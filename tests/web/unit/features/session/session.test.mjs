@@ -47,7 +47,7 @@ test('of a wrong password it is said how many tries are left', async () => {
   assert.equal(one.error, 'User and password do not match. 1 try is left, then a pause of 1 minute.');
   const none = await after(401, { ...wrong, tries_left: 0, pause_s: 120 });
   assert.deepEqual([none.error, none.left], ['User and password do not match.', 120]);
-  const paused = await after(429, { title: 'Busy' }, { 'Retry-After': '90' });
+  const paused = await after(429, { title: 'Limit', code: 'pause' }, { 'Retry-After': '90' });
   assert.deepEqual([paused.error, paused.left], ['', 90]);
   const right = await after(201, { identity: { user: 'ann' } });
   assert.deepEqual([right.answer, right.error, right.left], [{ identity: { user: 'ann' } }, '', 0]);
