@@ -353,6 +353,11 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
       assert.ok(red > 1.5 * green && red > 1.5 * blue, `rgb ${red} ${green} ${blue}`);
       await isClean(page, 'open to everybody');
       await shoot(page, 'start-open');
+      const wall = await open.newPage('display/abcd-efgh');
+      const strip = wall.getByRole('note').filter({ hasText: 'open to everybody' });
+      await strip.waitFor();
+      assert.equal((await strip.boundingBox()).height, 36);
+      await wall.close();
     } finally {
       await open.stop();
     }

@@ -182,6 +182,14 @@ async function run() {
   }
 }
 
+/** Says in red, where it is so, that this server is open to everybody. Asked until there is an answer. */
+async function tellOpen() {
+  const facts = await api.version().catch(() => null);
+  if (!facts) setTimeout(tellOpen, retryMs);
+  else if (facts.open_to_everybody) $('.open').textContent = say.open;
+}
+void tellOpen();
+
 if (isId(room)) {
   setInterval(draw, tickMs);
   addEventListener('resize', draw);

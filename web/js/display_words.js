@@ -31,5 +31,6 @@ export const say = sentences('page.display', {
   picture: '{view} view; left {left}, right {right}, top {top}, bottom {bottom}',
   sharedPicture: 'Shared view; left {left}, right {right}, top {top}, bottom {bottom}',
   ended: 'The room has ended or sleeps.',
+  open: 'This server is open to everybody who reaches it. Anybody sees every plan here, under any name. Nothing can be signed.',
   noRoom: 'The address names no room.',
 });
