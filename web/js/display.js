@@ -33,7 +33,9 @@ const rendererWords = {
   closed: say.closed,
 };
 
-const api = makeApi((...request) => fetch(...request));
+let seat = null; // of a display that came by a link
+const ask = (path, init = {}) => fetch(path, seat ? { ...init, headers: { ...seat.headers, ...init.headers } } : init);
+const api = makeApi(ask);
 const room = location.pathname.split('/').pop();
 const $ = (selector) => document.querySelector(selector);
 const figure = $('figure');
@@ -139,7 +141,8 @@ function take({ fields, body }) {
 /** Shows the stream until it ends. */
 async function show(abort) {
   state.number = 0;
-  const answer = await fetch(`/api/v1/rooms/${room}/stream${location.search}`, { signal: abort.signal });
+  const answer = await ask(`/api/v1/rooms/${room}/stream${location.search}`, { signal: abort.signal });
+  if (answer.status === 401) throw new Problem({ detail: say.needsLink });
   if (!answer.ok) throw new Problem({ status: answer.status, ...(await answer.json().catch(() => ({}))) });
   tellFacts().catch(() => {}); // asked again soon
   const parts = new Parts();
@@ -158,8 +161,36 @@ async function tellFacts() {
   draw();
 }
 
+/** The token of the link leaves the address, and is kept for a reload of this tab. */
+function takeLink() {
+  const key = `wall:${room}`;
+  const link = new URLSearchParams(location.hash.slice(1)).get('link');
+  try {
+    if (link) sessionStorage.setItem(key, link);
+    if (link) history.replaceState(null, '', location.pathname + location.search);
+    return link ?? sessionStorage.getItem(key);
+  } catch {
+    return link; // a browser that keeps nothing: the address has to
+  }
+}
+
 async function run() {
+  const link = takeLink();
+  if (link) {
+    const { WallSeat } = await import('./wall_seat.js');
+    const tell = (words) => {
+      state.problem = words;
+      draw();
+    };
+    seat = new WallSeat(room, link.slice(0, 64), tell, () => tell(say.needsLink));
+  }
   for (;;) {
+    if (seat && !seat.isIn) {
+      await new Promise((done) => {
+        setTimeout(done, tickMs);
+      });
+      continue;
+    }
     const abort = new AbortController();
     // a connection that was cut without a word
     const watch = setInterval(() => {

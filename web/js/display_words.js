@@ -33,4 +33,5 @@ export const say = sentences('page.display', {
   ended: 'The room has ended or sleeps.',
   open: 'This server is open to everybody who reaches it. Anybody sees every plan here, under any name. Nothing can be signed.',
   noRoom: 'The address names no room.',
+  needsLink: 'This display needs a link: in the room, People, Make a link, as wall.',
 });

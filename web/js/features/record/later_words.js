@@ -47,6 +47,8 @@ export const say = sentences('record.later', {
   approved: 'Approved',
   seen: 'Seen',
   signatureOf: '{name}, {meaning}',
+  signedAs: '{name} ({user})',
+  notSignedIn: '“{name}”, not signed in',
   legal: 'Names are as members gave them; these lines are not electronic signatures in the legal sense.',
   lineStays: 'A line is never changed or deleted.',
   sign: 'Sign',

@@ -111,7 +111,7 @@ function under(rows, revision, isEarlier) {
             [say.name, say.meaning, say.role, say.byAtUtc],
             [38, 16, 16, 30],
             signed.map((line) => [
-              corrected(line.row.body.name, line),
+              corrected(signerOf(line.row), line),
               wordOf(meanings, line.row.body.meaning),
               wordOf(roles, line.row.body.role),
               by(line),
@@ -120,6 +120,9 @@ function under(rows, revision, isEarlier) {
         : html`<p class="values">${say.none}</p>`
     }<p class="values">${say.legal}</p>`;
 }
+
+/** A name that somebody typed stands in quotation marks. */
+const signerOf = ({ body, author_user: user }) => (user ? say.signedAs({ name: body.name, user }) : say.notSignedIn({ name: body.name }));
 
 /** @param {number[]} widths of the columns, in per cent: by their contents a long text would leave a few letters for a name */
 const table = (names, widths, rows) =>

@@ -95,7 +95,9 @@ export class PeopleState {
   async makeLink(link) {
     const made = await this.#act('link', () => this.#call('POST', 'links', link));
     if (!made) return false;
-    const url = new URL(roomPath(this.#world.room.id, made.token), location.href).href;
+    const { id } = this.#world.room;
+    const path = link.role === 'wall' ? `/display/${id}#link=${made.token}` : roomPath(id, made.token);
+    const url = new URL(path, location.href).href;
     const isCopied = await navigator.clipboard?.writeText(url).then(
       () => true,
       () => false,
