@@ -15,6 +15,7 @@ static const struct api_act acts[] = {
     { "POST", "/api/v1/rooms/{room}/notes", "item.put", "note" },
     { "PATCH", "/api/v1/rooms/{room}/notes/{note}", "item.put", "note" },
     { "DELETE", "/api/v1/rooms/{room}/notes/{note}", "item.delete", "note" },
+    { "POST", "/api/v1/rooms/{room}/notes/{note}/hide", "item.hide", "note" },
     { "POST", "/api/v1/rooms/{room}/bookmarks", "item.put", "bookmark" },
     { "PATCH", "/api/v1/rooms/{room}/bookmarks/{bookmark}", "item.put", "bookmark" },
     { "DELETE", "/api/v1/rooms/{room}/bookmarks/{bookmark}", "item.delete", "bookmark" },
@@ -140,8 +141,11 @@ static void answer_item(struct call *call, const char *row, bool was_sent_before
         call_answer_problem(call, &problem);
         return;
     }
-    call_answer_bytes(call, call->method == CALL_POST && !was_sent_before ? 201 : 200, "application/json",
-                      (uint8_t *)text, strlen(text));
+    call_answer_bytes(call,
+                      call->method == CALL_POST && !was_sent_before && strcmp(call->act->message, "item.hide") != 0
+                          ? 201
+                          : 200,
+                      "application/json", (uint8_t *)text, strlen(text));
 }
 
 static void act_done(void *context, const char *row, bool was_sent_before, const struct problem *problem)

@@ -11,7 +11,8 @@ enum { COLOR_OF_NOBODY = 10 }; /* the light grey of roles.c */
 
 static bool is_about_item(const struct message *message)
 {
-    return message->type == MESSAGE_ITEM_PUT || message->type == MESSAGE_ITEM_DELETE;
+    return message->type == MESSAGE_ITEM_PUT || message->type == MESSAGE_ITEM_DELETE ||
+           message->type == MESSAGE_ITEM_HIDE;
 }
 
 /* Whether who is no member may write or delete it. */
@@ -22,7 +23,9 @@ static bool is_of_anybody(const struct room *room, const struct message *message
     if (!is_about_item(message))
         return false;
     const bool is_put = message->type == MESSAGE_ITEM_PUT;
-    const struct item *item = is_put ? NULL : items_find(room, message->item_delete.item);
+    const bool is_hidden = message->type == MESSAGE_ITEM_HIDE;
+    const struct item *item =
+        is_put ? NULL : items_find(room, is_hidden ? message->item_hide.item : message->item_delete.item);
     if (!is_put && !item) /* that there is none is said later */
         return true;
     const enum wire_item_kind kind = is_put ? message->item_put.kind : item->kind;

@@ -72,6 +72,7 @@ struct room *room_create(const char *id, const char *plan_id, const struct room_
     known_init(room);
     admission_init(room);
     room->admits_guests = limits && limits->admits_guests;
+    room->is_open_to_everybody = limits && limits->is_open_to_everybody;
     links_init(room);
     look_init(room);
     recordings_init(room, limits && limits->recording_speed > 0 ? limits->recording_speed : 1);
@@ -307,6 +308,7 @@ static const struct {
     { MESSAGE_FRAME_SHOWN, member_frame_shown },
     { MESSAGE_ITEM_PUT, items_put },
     { MESSAGE_ITEM_DELETE, items_delete },
+    { MESSAGE_ITEM_HIDE, items_hide },
     { MESSAGE_POINTER, pointer_move },
     { MESSAGE_LOOK_HERE, look_here },
     { MESSAGE_LOOK_COME, look_come },

@@ -9,7 +9,10 @@ struct item { /* a reply is a note */
     enum wire_item_kind kind;
     uint32_t version;
     char author[64], author_name[161], author_color[8]; /* author_color: "#rrggbb" */
+    char author_user[STORE_USER];                       /* the author's, where they had signed in; "": none */
+    bool is_guest;                                      /* the author is one */
     char changed_name[161];                             /* who changed it last */
+    char hidden_by[161];                                /* of a note: who has hidden it; "": nobody */
     int64_t created_ms, changed_ms;                     /* since 1970, UTC */
     char parent[16];                                    /* of a reply: the note's id; "": none */
     char *row;                                          /* all of this with the body, as JSON */

@@ -70,7 +70,13 @@ char *item_row_text(const struct item *item, const char *body)
     cJSON_AddStringToObject(row, "author", item->author);
     cJSON_AddStringToObject(row, "author_name", item->author_name);
     cJSON_AddStringToObject(row, "author_color", item->author_color);
+    if (item->author_user[0])
+        cJSON_AddStringToObject(row, "author_user", item->author_user);
+    if (item->is_guest)
+        cJSON_AddTrueToObject(row, "is_guest");
     cJSON_AddStringToObject(row, "changed_name", item->changed_name);
+    if (item->hidden_by[0])
+        cJSON_AddStringToObject(row, "hidden_by", item->hidden_by);
     cJSON_AddNumberToObject(row, "created_ms", (double)item->created_ms);
     cJSON_AddNumberToObject(row, "changed_ms", (double)item->changed_ms);
     json_add(row, "body", cJSON_CreateRaw(body));
@@ -89,6 +95,13 @@ static bool take_text(const cJSON *row, const char *name, char *to, size_t size,
                            name, size - 1);
     memcpy(to, text, strlen(text) + 1);
     return true;
+}
+
+/* A text that may be left out. */
+static bool take_optional(const cJSON *row, const char *name, char *to, size_t size, struct problem *problem)
+{
+    to[0] = 0;
+    return !cJSON_GetObjectItemCaseSensitive(row, name) || take_text(row, name, to, size, problem);
 }
 
 static bool take_number(const cJSON *row, const char *name, double most, int64_t *to, struct problem *problem)
@@ -136,10 +149,13 @@ bool room_restore_item(struct room *room, const char *bytes, size_t n, struct pr
         take_text(row, "author_name", read.author_name, sizeof read.author_name, problem) &&
         take_text(row, "author_color", read.author_color, sizeof read.author_color, problem) &&
         take_text(row, "changed_name", read.changed_name, sizeof read.changed_name, problem) &&
+        take_optional(row, "author_user", read.author_user, sizeof read.author_user, problem) &&
+        take_optional(row, "hidden_by", read.hidden_by, sizeof read.hidden_by, problem) &&
         take_number(row, "version", UINT32_MAX - 1.0, &version, problem) &&
         take_number(row, "created_ms", 9007199254740991.0, &read.created_ms, problem) &&
         take_number(row, "changed_ms", 9007199254740991.0, &read.changed_ms, problem))
         body = item_body_text(room, read.kind, cJSON_GetObjectItemCaseSensitive(row, "body"), NULL, true, problem);
+    read.is_guest = json_flag(row, "is_guest", false);
     if (body && (!id_is_valid(read.id) || version == 0 || items_find(room, read.id))) {
         problem_set(problem, PROBLEM_VALIDATION, "id", "duplicate", "a kept item has no id or version of its own");
     } else if (body) {

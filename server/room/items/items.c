@@ -19,6 +19,7 @@
 #include "server/room/out/send.h"
 #include "server/room/state/event.h"
 #include "server/room/state/roles.h"
+#include "server/room/state/who.h"
 #include "server/wire/random.h"
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
@@ -77,6 +78,39 @@ static void tell(struct room *room, const char *id, const char *row, const struc
     tell_members(room, id, row, by->id, input);
 }
 
+/* Whether the member may change or delete what this author has written. With sign-in a note is its writer's alone. */
+static bool author_may(const struct room *room, const struct member *member, const struct item *item,
+                       struct problem *problem)
+{
+    const bool is_machine = who_is_machine(who_acts(room, member));
+    const bool is_own = item->author_user[0] ? who_is_same_user(item->author_user, member->user)
+                                             : member->id[0] && strcmp(item->author, member->id) ==
+                                                                    0; /* without a seat: not known again */
+    const bool is_free = item->kind == WIRE_ITEM_KIND_CHECK || item->kind == WIRE_ITEM_KIND_ACCEPTANCE;
+    if (is_free || is_own)
+        return true;
+    if (!is_machine && item->kind == WIRE_ITEM_KIND_NOTE)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/item", "", "this note is by %.40s, who alone changes it",
+                           item->author_name);
+    return role_rank(member->role) >= role_rank(WIRE_MEMBER_ROLE_PRESENTER) ||
+           problem_set(problem, PROBLEM_FORBIDDEN, "/item", "",
+                       "this %s is by %.40s: only its author or a member of role presenter changes or deletes it",
+                       item_word(item->kind), item->author_name);
+}
+
+/* Another change of the item is under way; then with problem. */
+static bool is_being_kept(const struct room *room, const struct item *item, struct problem *problem)
+{
+    for (const struct keeping *keeping = room->items->keeping; keeping; keeping = keeping->next)
+        if (strcmp(keeping->item.id, item->id) == 0) {
+            problem_set(problem, PROBLEM_CONFLICT, "/item", "",
+                        "another change of this %s by %.40s is just being kept: try again", item_word(item->kind),
+                        keeping->item.changed_name);
+            return true;
+        }
+    return false;
+}
+
 /* The item that a member may change or delete, which knows it in this version (0: whatever it is). NULL with problem.
  */
 static struct item *find_to_change(const struct room *room, const struct member *member, const char *id,
@@ -89,21 +123,8 @@ static struct item *find_to_change(const struct room *room, const struct member 
     }
     if (!record_may_change(room, item, problem) || !acceptance_may(room, member, item->kind, problem))
         return NULL;
-    const bool is_own = member->id[0] && strcmp(item->author, member->id) == 0; /* who has no seat is not known again */
-    if (item->kind != WIRE_ITEM_KIND_CHECK && item->kind != WIRE_ITEM_KIND_ACCEPTANCE && !is_own &&
-        member->role != WIRE_MEMBER_ROLE_PRESENTER) {
-        problem_set(problem, PROBLEM_FORBIDDEN, "/item", "",
-                    "this %s is by %.40s: only its author or a member of role presenter changes or deletes it",
-                    item_word(item->kind), item->author_name);
+    if (!author_may(room, member, item, problem) || is_being_kept(room, item, problem))
         return NULL;
-    }
-    for (const struct keeping *keeping = room->items->keeping; keeping; keeping = keeping->next)
-        if (strcmp(keeping->item.id, id) == 0) {
-            problem_set(problem, PROBLEM_CONFLICT, "/item", "",
-                        "another change of this %s by %.40s is just being kept: try again", item_word(item->kind),
-                        keeping->item.changed_name);
-            return NULL;
-        }
     if (version && version != item->version) {
         problem_set(problem, PROBLEM_CONFLICT, "/version", "",
                     "this %s was changed by %.40s meanwhile: it is at version %u, the change was made for %lld",
@@ -278,6 +299,28 @@ static bool give_id(struct room *room, const struct member *member, const struct
     return false;
 }
 
+/* The item becomes next with this row, which is taken; row NULL: with problem. before NULL: it is new. */
+static bool write_item(struct room *room, struct item *before, struct item *next, char *row,
+                       const struct member *member, uint32_t input, struct problem *problem)
+{
+    if (!row || !items_have_place(room, before, strlen(row), problem)) {
+        free(row);
+        return false;
+    }
+    if (room->callbacks.item_first) {
+        next->row = row;
+        return keep_first(room, next, before != NULL, member, input, problem);
+    }
+    struct item *item = take(room, before, next, row);
+    record_audit(room, item, member, NULL);
+    acceptance_audit(room, item, member, false);
+    tell(room, item->id, item->row, member, input);
+    (void)snprintf(room->call.item, sizeof room->call.item, "%s", item->id);
+    if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
+        acceptances_settle(room);
+    return true;
+}
+
 bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem)
 {
     const struct message_item_put *put = &message->item_put;
@@ -304,6 +347,8 @@ bool items_put(struct room *room, struct member *member, const struct message *m
             return room->call.was_sent_before;
         (void)snprintf(next.author, sizeof next.author, "%s", member->id);
         copy_name(next.author_name, member->name);
+        (void)snprintf(next.author_user, sizeof next.author_user, "%s", member->user);
+        next.is_guest = member->is_guest;
         (void)snprintf(next.author_color, sizeof next.author_color, "#%06x", color_rgb(member->color) & 0xffffffU);
         next.created_ms = clock_wall_ms(); /* only to be displayed */
         const char *parent = json_text(put->body, "parent");
@@ -319,22 +364,34 @@ bool items_put(struct room *room, struct member *member, const struct message *m
     if (body && !row)
         json_no_memory(problem, "an item");
     free(body);
-    if (!row || !items_have_place(room, before, strlen(row), problem)) {
-        free(row);
+    return write_item(room, before, &next, row, member, (uint32_t)put->input, problem);
+}
+
+bool items_hide(struct room *room, struct member *member, const struct message *message, struct problem *problem)
+{
+    const struct message_item_hide *asked = &message->item_hide;
+    const enum wire_member_role least =
+        who_is_machine(who_acts(room, member)) ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_PLANNER;
+    struct item *item = items_find(room, asked->item);
+    if (!item || item->kind != WIRE_ITEM_KIND_NOTE)
+        return problem_set(problem, PROBLEM_NOT_FOUND, "/item", "", "there is no note \"%.63s\", or not any more",
+                           asked->item);
+    if (role_rank(member->role) < role_rank(least))
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/item", "role", "a note is hidden by a member of role %s",
+                           wire_member_role_words.words[least]);
+    if (is_being_kept(room, item, problem))
         return false;
-    }
-    if (room->callbacks.item_first) {
-        next.row = row;
-        return keep_first(room, &next, before != NULL, member, (uint32_t)put->input, problem);
-    }
-    struct item *item = take(room, before, &next, row);
-    record_audit(room, item, member, NULL);
-    acceptance_audit(room, item, member, false);
-    tell(room, item->id, item->row, member, (uint32_t)put->input);
-    (void)snprintf(room->call.item, sizeof room->call.item, "%s", item->id);
-    if (item->kind == WIRE_ITEM_KIND_ACCEPTANCE)
-        acceptances_settle(room);
-    return true;
+    struct item next = *item;
+    next.version++;
+    copy_name(next.hidden_by, asked->hidden ? member->name : "");
+    cJSON *before = json_read(item->row, strlen(item->row), problem);
+    char *body = before ? json_print(cJSON_GetObjectItemCaseSensitive(before, "body")) : NULL;
+    char *row = body ? item_row_text(&next, body) : NULL;
+    if (!row)
+        json_no_memory(problem, "an item");
+    cJSON_Delete(before);
+    free(body);
+    return write_item(room, item, &next, row, member, (uint32_t)asked->input, problem);
 }
 
 bool items_delete(struct room *room, struct member *member, const struct message *message, struct problem *problem)

@@ -10,4 +10,5 @@
 bool items_put(struct room *room, struct member *member, const struct message *message, struct problem *problem);
 void items_written(struct room *room, uint64_t number, const struct problem *problem); /* room_item_written */
 void items_forget_keeping(struct room *room);                                          /* with the room */
+bool items_hide(struct room *room, struct member *member, const struct message *message, struct problem *problem);
 bool items_delete(struct room *room, struct member *member, const struct message *message, struct problem *problem);

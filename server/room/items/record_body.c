@@ -4,11 +4,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "server/auth/digest.h"
 #include "server/room/items/item_list.h"
 #include "server/room/out/audit.h"
 #include "server/room/state/body_check.h"
 #include "server/room/state/roles.h"
+#include "server/room/state/who.h"
 
 static bool is_of_record(enum wire_item_kind kind)
 {
@@ -165,29 +167,91 @@ cJSON *record_read_decision(const struct room *room, const cJSON *body, const st
     return read_fields(room, body, names, is_restored);
 }
 
+/* The proof of a signature: as it was kept, else that of who writes. */
+static void give_proof(const struct identity *who, const cJSON *kept, cJSON *read)
+{
+    const bool is_user = who ? who_is_user(who) : json_flag(kept, "signed_in", false);
+    if (!who && !cJSON_HasObjectItem(kept, "signed_in")) /* of before there was sign-in: it stays as it is */
+        return;
+    cJSON_AddBoolToObject(read, "signed_in", is_user);
+    if (!is_user)
+        return;
+    if (who) {
+        cJSON_AddStringToObject(read, "user", who->user);
+        cJSON_AddNumberToObject(read, "proved_ms", (double)who->proved_ms);
+        return;
+    }
+    json_copy_text(read, kept, "user");
+    cJSON_AddNumberToObject(read, "proved_ms", json_number(kept, "proved_ms", 0));
+}
+
 cJSON *record_read_signature(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
                              struct problem *problem)
 {
-    static const char *const names[] = { "name", "meaning", "corrects", "plan_revision", "role", NULL };
-    (void)before; /* never changed */
+    static const char *const names[] = { "name", "meaning",   "corrects", "plan_revision", "role", "signed_in",
+                                         "user", "proved_ms", NULL };
+    const struct identity *who = is_restored || !room->items->writer ? NULL : who_acts(room, room->items->writer);
+    const bool is_user = who && who_is_user(who); /* who signs then with the name of the sign-in */
+    (void)before;                                 /* never changed */
     if (!body_names_are(body, names, "/body", problem) ||
-        !body_check_text(cJSON_GetObjectItemCaseSensitive(body, "name"), "/body/name", RECORD_MAX_NAME, problem) ||
+        (!is_user &&
+         !body_check_text(cJSON_GetObjectItemCaseSensitive(body, "name"), "/body/name", RECORD_MAX_NAME, problem)) ||
         !check_word(body, "meaning", &wire_meaning_words, problem) ||
         !check_corrects(room, body, WIRE_ITEM_KIND_SIGNATURE, is_restored, problem))
         return NULL;
-    return read_fields(room, body, names, is_restored);
+    cJSON *given = cJSON_Duplicate(body, true);
+    if (is_user) {
+        cJSON_DeleteItemFromObjectCaseSensitive(given, "name");
+        cJSON_AddStringToObject(given, "name", who->name[0] ? who->name : who->user);
+    }
+    cJSON *read = read_fields(room, given, names, is_restored);
+    cJSON_Delete(given);
+    give_proof(who, body, read);
+    return read;
 }
 
 /* ---- rights ----------------------------------------------------------------------------------------------------- */
+
+/* Without sign-in, where a name is no more than a word, presenters alone decide. */
+static bool may_decide(const struct room *room, const struct member *member, struct problem *problem)
+{
+    const bool is_machine = who_is_machine(who_acts(room, member));
+    const enum wire_member_role least = is_machine ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_REVIEWER;
+    if (!member->is_guest && role_rank(member->role) >= role_rank(least))
+        return true;
+    if (member->is_guest)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role", "a guest decides and signs nothing");
+    return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role",
+                       "only a member of role presenter writes down what was decided");
+}
+
+/* A signature is of a person who has proved just now who they are; without sign-in it says that it is not. */
+static bool may_sign(const struct room *room, const struct member *member, struct problem *problem)
+{
+    const struct identity *who = who_acts(room, member);
+    const int64_t age_ms = clock_wall_ms() - who->proved_ms;
+    if (who_is_machine(who))
+        return !room->is_open_to_everybody ||
+               problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "open",
+                           "this server is open to everybody who reaches it: nothing can be signed");
+    if (member->is_guest || !who_is_user(who))
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role", "a guest decides and signs nothing");
+    if (who->source == IDENTITY_TOKEN || who->proved_ms <= 0)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "unproved",
+                           "this sign-in does not say when the person proved who they are, so nothing can be signed");
+    return (age_ms >= -RECORD_PROOF_MS && age_ms <= RECORD_PROOF_MS) ||
+           problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "confirm", "who signs confirms first who they are");
+}
 
 bool record_may_write(const struct room *room, const struct member *member, enum wire_item_kind kind,
                       struct problem *problem)
 {
     if (!is_of_record(kind))
         return true;
-    if (kind == WIRE_ITEM_KIND_DECISION && member->role != WIRE_MEMBER_ROLE_PRESENTER)
-        return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role",
-                           "only a member of role presenter writes down what was decided");
+    if (kind == WIRE_ITEM_KIND_DECISION && !may_decide(room, member, problem))
+        return false;
+    if (kind == WIRE_ITEM_KIND_SIGNATURE && !may_sign(room, member, problem))
+        return false;
     if (!room->files.revision[0]) {
         problem_set(problem, PROBLEM_BUSY, "", "",
                     "the revision of the plan's files is not known yet: GET /api/v1/plans/%s/revision", room->plan_id);
@@ -239,6 +303,8 @@ void record_audit(struct room *room, const struct item *item, const struct membe
     const struct audit_act act = act_of(room, item, by);
     digest_text(item->row, hex);
     cJSON_AddStringToObject(act.detail, "sha256", hex);
+    if (item->hidden_by[0])
+        cJSON_AddTrueToObject(act.detail, "hidden");
     if (is_append_only(item->kind)) {
         cJSON *row, *body = body_of(item, &row);
         json_copy_text(act.detail, body, item->kind == WIRE_ITEM_KIND_DECISION ? "decision" : "meaning");

@@ -16,6 +16,7 @@
 #include "server/room/out/send.h"
 #include "server/room/state/event.h"
 #include "server/room/state/member_list.h"
+#include "server/room/state/roles.h"
 #include "server/wire/json.h"
 #include "server/wire/random.h"
 
@@ -374,7 +375,7 @@ bool recording_stop(struct room *room, struct member *member, const struct messa
     (void)message;
     if (!room->recorder)
         return problem_set(problem, PROBLEM_CONFLICT, "", "", "the meeting is not being recorded");
-    if (!member_presents(room, member) && member->role != WIRE_MEMBER_ROLE_PRESENTER &&
+    if (!member_presents(room, member) && role_rank(member->role) < role_rank(WIRE_MEMBER_ROLE_PRESENTER) &&
         strcmp(room->recorder->facts->by, member->id) != 0)
         return refuse_not_presenter(room, problem, "end a recording that another member began");
     if (write_all(room)) {

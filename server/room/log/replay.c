@@ -418,9 +418,10 @@ bool replay_leave(struct room *room, struct member *member, const struct message
 bool replay_allows(const struct room *room, enum message_type type, struct problem *problem)
 {
     static const enum message_type refused[] = {
-        MESSAGE_SCENE_PATCH,  MESSAGE_PRESENT,        MESSAGE_SHOW_EVERYONE,   MESSAGE_CONTROL_REQUEST,
-        MESSAGE_CONTROL_GIVE, MESSAGE_CONTROL_REFUSE, MESSAGE_CONTROL_TAKE,    MESSAGE_CONTROL_LOCK,
-        MESSAGE_ITEM_PUT,     MESSAGE_ITEM_DELETE,    MESSAGE_RECORDING_START, MESSAGE_RECORDING_STOP,
+        MESSAGE_SCENE_PATCH,    MESSAGE_PRESENT,        MESSAGE_SHOW_EVERYONE, MESSAGE_CONTROL_REQUEST,
+        MESSAGE_CONTROL_GIVE,   MESSAGE_CONTROL_REFUSE, MESSAGE_CONTROL_TAKE,  MESSAGE_CONTROL_LOCK,
+        MESSAGE_ITEM_PUT,       MESSAGE_ITEM_DELETE,    MESSAGE_ITEM_HIDE,     MESSAGE_RECORDING_START,
+        MESSAGE_RECORDING_STOP,
     };
     for (size_t i = 0; room->replay && i < sizeof refused / sizeof refused[0]; i++)
         if (refused[i] == type)

@@ -212,7 +212,7 @@ struct room {
     int64_t now_us; /* the time last passed in: room_enter */
     int64_t due_us; /* when room_settle is due */
 
-    bool admits_guests; /* as in struct room_limits */
+    bool admits_guests, is_open_to_everybody; /* as in struct room_limits */
 
     struct room_renderer renderer;
     struct plan_files files;

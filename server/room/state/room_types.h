@@ -190,9 +190,10 @@ enum room_part {
 enum { ROOM_ALL_PARTS = ROOM_SCENE | ROOM_VIEWS | ROOM_MEMBERS | ROOM_LINKS | ROOM_PRESENCE | ROOM_PEOPLE };
 
 struct room_limits {
-    int max_members;        /* at most ROOM_MAX_MEMBERS */
-    double recording_speed; /* how many times as fast the clock of recordings and replays runs; 0: once */
-    bool admits_guests;     /* links may let in who has not signed in */
+    int max_members;           /* at most ROOM_MAX_MEMBERS */
+    double recording_speed;    /* how many times as fast the clock of recordings and replays runs; 0: once */
+    bool admits_guests;        /* links may let in who has not signed in */
+    bool is_open_to_everybody; /* though nobody signs in: nothing is signed */
 };
 
 /* Counters for /metrics. */
