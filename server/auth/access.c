@@ -1,11 +1,11 @@
 /* Grants as they were read, and the check of a right against them. */
 #include "server/auth/access.h"
 
-#include <pthread.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/lock.h"
 #include "core/base/mem.h"
 
 enum { MAX_FOLDER = 4096 };
@@ -25,7 +25,7 @@ struct grant {
 };
 
 struct access {
-    pthread_mutex_t mutex;
+    struct lock *lock;
     struct grant *grants;
     size_t n_grants;
 };
@@ -49,7 +49,7 @@ static void free_grants(struct grant *grants, size_t n)
 struct access *access_create(void)
 {
     struct access *access = mem_new(sizeof *access);
-    pthread_mutex_init(&access->mutex, NULL);
+    access->lock = lock_create();
     return access;
 }
 
@@ -58,7 +58,7 @@ void access_destroy(struct access *access)
     if (!access)
         return;
     free_grants(access->grants, access->n_grants);
-    pthread_mutex_destroy(&access->mutex);
+    lock_destroy(access->lock);
     free(access);
 }
 
@@ -170,12 +170,12 @@ bool access_set(struct access *access, const struct access_line *lines, size_t n
             free_grants(grants, n_lines);
             return false;
         }
-    pthread_mutex_lock(&access->mutex);
+    lock_hold(access->lock);
     struct grant *before = access->grants;
     const size_t n_before = access->n_grants;
     access->grants = grants;
     access->n_grants = n_lines;
-    pthread_mutex_unlock(&access->mutex);
+    lock_release(access->lock);
     free_grants(before, n_before);
     return true;
 }
@@ -240,8 +240,7 @@ static enum access_role granted(const struct access *access, const struct identi
     uint32_t group_hashes[IDENTITY_MAX_GROUPS];
     for (size_t i = 0; i < identity->n_groups; i++)
         group_hashes[i] = hash_of(identity->groups[i]);
-    struct access *locked = (struct access *)access; /* a lock changes nothing that a caller sees */
-    pthread_mutex_lock(&locked->mutex);
+    lock_hold(access->lock);
     for (size_t i = 0; i < access->n_grants; i++) {
         const struct grant *grant = &access->grants[i];
         if ((grant->role <= role && (!grant->sees_identity || *sees_identity)) || !is_on(grant, subject) ||
@@ -251,7 +250,7 @@ static enum access_role granted(const struct access *access, const struct identi
             role = grant->role;
         *sees_identity |= grant->sees_identity;
     }
-    pthread_mutex_unlock(&locked->mutex);
+    lock_release(access->lock);
     return role;
 }
 
