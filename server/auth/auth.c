@@ -87,6 +87,11 @@ void auth_tick(struct auth *auth)
     lock_release(auth->lock);
 }
 
+void auth_wipe(void *secret, size_t n)
+{
+    sodium_memzero(secret, n);
+}
+
 /* ---- life ------------------------------------------------------------------------------------------------------- */
 
 struct auth *auth_create(const struct auth_options *options, struct error *err)
@@ -133,6 +138,7 @@ void auth_destroy(struct auth *auth)
         auth->unwritten = waiting->next;
         store_accounts_free(waiting->accounts);
     }
+    queue_destroy(auth->jobs);
     throttle_destroy(auth->throttle);
     lock_destroy(auth->lock);
     free(auth);

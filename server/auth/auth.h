@@ -58,8 +58,9 @@ void auth_tick(struct auth *auth);
  * problem: a token that is not valid, or names of a proxy that cannot be read. */
 NODISCARD bool auth_identify(struct auth *auth, const struct credentials *credentials, struct identity *identity,
                              struct problem *problem);
-/* False: its session has ended, its token was revoked, its user was disabled or has other groups now. */
-bool auth_is_still(struct auth *auth, const struct identity *identity);
+/* False: its session has ended, its token was revoked, its user was disabled or has other groups now. proved_ms is
+ * brought up to date: of a session by auth_confirm, of one who comes by a proxy by their newest request from there. */
+bool auth_is_still(struct auth *auth, struct identity *identity);
 bool auth_is_local(const struct auth *auth);
 bool auth_is_proxied(const struct auth *auth);
 
@@ -104,6 +105,8 @@ NODISCARD bool auth_user_first(struct auth *auth, const char *secret, const char
                                const char *password, auth_done *done, void *context, struct problem *problem);
 /* True: nobody can sign in yet, and secret makes the first user within AUTH_FIRST_MS. */
 bool auth_first(struct auth *auth, char secret[AUTH_SECRET_TEXT]);
+
+void auth_wipe(void *secret, size_t n); /* so that it does not stay in memory */
 
 /* ---- users and tokens ------------------------------------------------------------------------------------------- */
 

@@ -33,6 +33,11 @@ struct owner {
     struct store_owner row;
 };
 
+struct proof { /* the newest sign-in at the proxy of a user at an address */
+    char user[IDENTITY_MAX_USER + 1], address[46];
+    int64_t proved_ms;
+};
+
 struct unwritten { /* the store was full */
     struct unwritten *next;
     struct store_accounts *accounts;
@@ -45,6 +50,7 @@ struct auth {
     struct token *tokens[AUTH_BUCKETS];
     struct session *sessions[AUTH_BUCKETS];
     struct owner *owners[AUTH_BUCKETS];
+    struct proof proofs[AUTH_BUCKETS]; /* of several users in a bucket, the last */
     size_t n_users, n_tokens, n_sessions;
     bool is_loaded;
     struct throttle *throttle;

@@ -30,6 +30,22 @@ static void name_proxy_session(struct identity *identity)
     (void)sodium_bin2hex(identity->session, sizeof identity->session, hash, 8);
 }
 
+static bool is_of(const struct proof *proof, const char *user, const char *address)
+{
+    return strcmp(proof->user, user) == 0 && strcmp(proof->address, address) == 0;
+}
+
+/* A WebSocket keeps the headers of its handshake, so a later sign-in shows in other requests alone. */
+static void note_proof(struct auth *auth, const struct identity *identity, const char *address)
+{
+    struct proof *proof = &auth->proofs[auth_bucket(identity->user)];
+    if (!identity->proved_ms || (is_of(proof, identity->user, address) && proof->proved_ms >= identity->proved_ms))
+        return;
+    *proof = (struct proof){ .proved_ms = identity->proved_ms };
+    (void)snprintf(proof->user, sizeof proof->user, "%s", identity->user);
+    (void)snprintf(proof->address, sizeof proof->address, "%s", address);
+}
+
 static bool identify_proxied(struct auth *auth, const struct credentials *credentials, struct identity *identity,
                              struct problem *problem)
 {
@@ -56,6 +72,7 @@ static bool identify_proxied(struct auth *auth, const struct credentials *creden
     identity->proved_ms = read_auth_time(credentials->auth_time, now_ms);
     identity->ends_ms = now_ms + auth->options.total_ms;
     name_proxy_session(identity);
+    note_proof(auth, identity, credentials->address ? credentials->address : "");
     return true;
 }
 
@@ -87,6 +104,7 @@ bool auth_identify(struct auth *auth, const struct credentials *credentials, str
     lock_hold(auth->lock);
     const bool is_known = identify(auth, credentials, identity, problem);
     lock_release(auth->lock);
+    identity->is_private = credentials->is_secure;
     (void)snprintf(identity->address, sizeof identity->address, "%s", credentials->address ? credentials->address : "");
     return is_known;
 }
@@ -104,22 +122,28 @@ static bool has_same_groups(const struct user *user, const struct identity *iden
     return true;
 }
 
-static bool is_still(struct auth *auth, const struct identity *identity, int64_t now_ms)
+static bool is_still(struct auth *auth, struct identity *identity, int64_t now_ms)
 {
     if (identity->source == IDENTITY_NOBODY || identity->source == IDENTITY_MACHINE)
         return true;
-    if (identity->source == IDENTITY_PROXY)
+    if (identity->source == IDENTITY_PROXY) {
+        const struct proof *proof = &auth->proofs[auth_bucket(identity->user)];
+        if (is_of(proof, identity->user, identity->address) && proof->proved_ms > identity->proved_ms)
+            identity->proved_ms = proof->proved_ms;
         return now_ms < identity->ends_ms && !auth_user_is_disabled(auth, identity->user);
+    }
     if (identity->source == IDENTITY_TOKEN) {
         const struct token *token = auth_find_token(auth, identity->session);
         return token && auth_token_is_alive(auth, token, now_ms);
     }
     const struct session *session = auth_find_session(auth, identity->session);
     const struct user *user = auth_find_user(auth, identity->user);
+    if (session)
+        identity->proved_ms = session->row.proved_ms;
     return session && user && auth_session_is_alive(auth, session, now_ms) && has_same_groups(user, identity);
 }
 
-bool auth_is_still(struct auth *auth, const struct identity *identity)
+bool auth_is_still(struct auth *auth, struct identity *identity)
 {
     lock_hold(auth->lock);
     const bool is_good = is_still(auth, identity, auth_now_ms(auth));

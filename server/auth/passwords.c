@@ -254,8 +254,6 @@ void auth_close(struct auth *auth)
     }
     if (auth->has_thread)
         (void)pthread_join(auth->thread, NULL);
-    queue_destroy(auth->jobs);
-    auth->jobs = NULL;
 }
 
 /* ---- asking ----------------------------------------------------------------------------------------------------- */
@@ -274,7 +272,7 @@ static struct job *make_job(enum job_kind kind, const char *user, const char *pa
 /* Takes job. */
 static bool hand_over(struct auth *auth, struct job *job, struct problem *problem)
 {
-    if (auth->jobs && queue_try_put(auth->jobs, job))
+    if (queue_try_put(auth->jobs, job))
         return true;
     job_free(job);
     problem_set(problem, PROBLEM_LIMIT, "", "", "%d passwords are being checked already", AUTH_QUEUE);

@@ -286,6 +286,11 @@ static bool identify(void *service, const struct credentials *credentials, struc
     return auth_identify(((struct service *)service)->sign_in.auth, credentials, identity, problem);
 }
 
+static bool is_still(void *service, struct identity *who)
+{
+    return auth_is_still(((struct service *)service)->sign_in.auth, who);
+}
+
 /* On SIGHUP. */
 static void reload(struct service *service)
 {
@@ -327,6 +332,16 @@ static bool start_tls(struct service *service, const struct options *options, st
     return service->tls != NULL;
 }
 
+/* Where nobody can sign in yet, the log has the address that makes the first administrator. */
+static void say_first(struct auth *auth, const char *url)
+{
+    char secret[AUTH_SECRET_TEXT];
+    if (!auth_first(auth, secret))
+        return;
+    log_warn("there are no users yet: within an hour, make the first administrator at %s/signin/first#%s", url, secret);
+    auth_wipe(secret, sizeof secret);
+}
+
 /* Serves until a signal comes. */
 static bool serve(struct options *options, struct error *err)
 {
@@ -335,6 +350,8 @@ static bool serve(struct options *options, struct error *err)
     struct local_peers proxy = { 0 };
     if (options->proxy_user && !local_peers_find(options->proxy_user, &proxy, err))
         return false;
+    struct service service = { 0 };
+    const bool is_signing_in = sign_in_create(&service.sign_in, options, err);
     char database[PATH_SIZE + 16];
     (void)snprintf(database, sizeof database, "%s/beamroom.db", data_folder);
     const struct net_options net_options = {
@@ -355,6 +372,9 @@ static bool serve(struct options *options, struct error *err)
         .room = { .max_members = (int)options->max_members, .recording_speed = (double)options->recording_speed },
         .allowed_origin = options->allowed_origin,
         .database = database,
+        .auth = service.sign_in.auth,
+        .is_still = is_still,
+        .rights = &service,
     };
     const char *identity_names[HEAD_N_IDENTITY];
     for (size_t i = 0; i < HEAD_N_IDENTITY; i++)
@@ -369,11 +389,9 @@ static bool serve(struct options *options, struct error *err)
                                                .max_upload_bytes = (uint64_t)options->max_upload_mib << 20,
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
                                                .is_secure_alone = options->tls_cert && port_of(options) == HTTPS_PORT,
+                                               .auth = service.sign_in.auth,
                                                .is_alone = is_alone };
-    struct service service = { 0 };
-    struct net *net = sign_in_create(&service.sign_in, options, err) && start_tls(&service, options, err)
-                          ? net_create(&net_options, err)
-                          : NULL;
+    struct net *net = is_signing_in && start_tls(&service, options, err) ? net_create(&net_options, err) : NULL;
     const struct front_options front_options = { .listen = listen,
                                                  .sockets = options->sockets,
                                                  .n_sockets = options->n_sockets,
@@ -402,11 +420,14 @@ static bool serve(struct options *options, struct error *err)
             if (options->is_open)
                 log_warn("open to everybody: whoever reaches %s may see and change every plan, as nobody signs in here",
                          front_url(front));
+            say_first(service.sign_in.auth, front_url(front));
             notify_send("READY=1");
             heartbeat = serve_on(&service);
         }
         notify_send("STOPPING=1");
     }
+    if (service.sign_in.auth)
+        auth_close(service.sign_in.auth); /* its answers are posted to the net thread */
     if (http) {
         front_close(front);
         http_stop_posting(http);

@@ -21,6 +21,20 @@ static const struct {
     { "GET", "/metrics", api_metrics },
     { "GET", "/api/v1/version", api_version },
     { "GET", "/api/v1/openapi.json", api_openapi },
+    { "GET", "/api/v1/session", api_session },
+    { "POST", "/api/v1/session", api_session_begin },
+    { "DELETE", "/api/v1/session", api_session_end },
+    { "POST", "/api/v1/session/confirm", api_session_confirm },
+    { "POST", "/api/v1/session/input", api_session_input },
+    { "POST", "/api/v1/session/first", api_session_first },
+    { "GET", "/signin/proxy", api_signin_proxy },
+    { "GET", "/api/v1/users", api_users },
+    { "POST", "/api/v1/users", api_user_add },
+    { "POST", "/api/v1/users/disable", api_user_disable },
+    { "POST", "/api/v1/users/password", api_user_password },
+    { "GET", "/api/v1/tokens", api_tokens },
+    { "POST", "/api/v1/tokens", api_token_make },
+    { "DELETE", "/api/v1/tokens/{token}", api_token_revoke },
     { "GET", "/api/v1/plans", api_plans },
     { "POST", "/api/v1/plans", api_plan_upload },
     { "GET", "/api/v1/plans/{plan}", api_plan },
@@ -69,10 +83,11 @@ static const struct {
 static const char in_room[] = "/api/v1/rooms/{room}";
 static const size_t api_n_routes = sizeof api_routes / sizeof api_routes[0];
 
-struct api *api_create(struct net *net, uint64_t max_upload_bytes, bool is_alone)
+struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_bytes, bool is_alone)
 {
     struct api *api = mem_new(sizeof *api);
     api->net = net;
+    api->auth = auth;
     api->max_upload_bytes = max_upload_bytes;
     api->is_alone = is_alone;
     api->started_us = clock_now_us();

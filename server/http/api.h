@@ -6,7 +6,7 @@
 struct api;
 
 /* max_upload_bytes 0: no uploads. is_alone: as in http.h. */
-struct api *api_create(struct net *net, uint64_t max_upload_bytes, bool is_alone);
+struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_bytes, bool is_alone);
 void api_destroy(struct api *api);
 
 struct api_act;

@@ -9,6 +9,21 @@ void api_metrics(struct api *api, struct call *call);
 void api_version(struct api *api, struct call *call);
 void api_openapi(struct api *api, struct call *call);
 
+void api_session(struct api *api, struct call *call);
+void api_session_begin(struct api *api, struct call *call);
+void api_session_end(struct api *api, struct call *call);
+void api_session_confirm(struct api *api, struct call *call);
+void api_session_input(struct api *api, struct call *call);
+void api_session_first(struct api *api, struct call *call);
+void api_signin_proxy(struct api *api, struct call *call);
+void api_users(struct api *api, struct call *call);
+void api_user_add(struct api *api, struct call *call);
+void api_user_disable(struct api *api, struct call *call);
+void api_user_password(struct api *api, struct call *call);
+void api_tokens(struct api *api, struct call *call);
+void api_token_make(struct api *api, struct call *call);
+void api_token_revoke(struct api *api, struct call *call);
+
 void api_plans(struct api *api, struct call *call);
 void api_plan(struct api *api, struct call *call);
 void api_plan_upload(struct api *api, struct call *call);

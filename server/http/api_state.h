@@ -29,7 +29,8 @@ struct api_job {
 struct api {
     struct net *net;
     uint64_t max_upload_bytes;
-    bool is_alone; /* as in http.h */
+    bool is_alone;     /* as in http.h */
+    struct auth *auth; /* never NULL */
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
     struct api_picture *pictures;  /* requested and not yet answered */

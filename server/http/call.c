@@ -129,6 +129,8 @@ void call_answer_problem(struct call *call, const struct problem *problem)
         (void)snprintf(seconds, sizeof seconds, "%d", (problem->retry_after_ms + 999) / 1000);
         call_add_header(call, "Retry-After", seconds);
     }
+    if (problem->type == PROBLEM_SIGN_IN)
+        call_add_header(call, "WWW-Authenticate", "Bearer realm=\"beamroom\""); /* RFC 9110 15.5.2 */
     call->bytes = (uint8_t *)text;
     call->n_bytes = strlen(text);
     finish(call, problem_status(problem->type), "application/problem+json");

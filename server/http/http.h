@@ -17,6 +17,7 @@ struct http_options {
     uint64_t max_upload_bytes;
     uint64_t disk_reserve_bytes; /* left free on the disk of upload_folder */
     bool is_secure_alone;        /* browsers that came by TLS are to use nothing else for this name (RFC 6797) */
+    struct auth *auth;           /* outlives the server */
     bool is_alone;               /* only this machine is answered */
 };
 

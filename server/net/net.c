@@ -12,6 +12,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/auth/auth.h"
 #include "server/net/asleep.h"
 #include "server/net/bridge.h"
 #include "server/net/keep.h"
@@ -22,6 +23,7 @@
 #include "server/net/net_state.h"
 #include "server/net/rooms.h"
 #include "server/net/schedule.h"
+#include "server/net/sign_ins.h"
 
 enum {
     MAX_TASKS = 4096, /* tasks that may wait; one more makes net_post wait */
@@ -103,7 +105,7 @@ static void sign_out(struct visitor *visitor)
 {
     struct net_room *room = visitor->room;
     if (!room) {
-        ws_bye(visitor->connection, WS_CLOSE_POLICY, "your sign-in has ended", -1);
+        ws_bye_code(visitor->connection, WS_CLOSE_POLICY, "sign-in", "your sign-in has ended", -1);
         return;
     }
     room_sign_in_over(room->room, visitor->connection, clock_now_us());
@@ -135,12 +137,13 @@ static void timer_fired(void *context)
     if (now_us >= net->fleet_tick_us) {
         fleet_tick(net->fleet);
         bridge_look_at_files(net, now_us);
-        look_at_identities(net, now_us);
         rooms_close_idle(net);
         keep_write_due(net, false);
         net->fleet_tick_us = now_us + (now_us < net->calm_from_us ? FLEET_TICK_US : calm_tick_us(net, now_us));
     }
     handle_due(net);
+    look_at_identities(net, now_us);
+    sign_ins_check(net, now_us);
 }
 
 bool net_rooms_are_known(const struct net *net, struct problem *problem)
@@ -334,15 +337,19 @@ static void handle_answer(struct net *net, void *argument)
     case STORE_FINE:
         net->store_fails = answer->event == STORE_FAILING;
         net->store_is_full = net->store_fails && answer->error.code == ERROR_LIMIT;
+        if (net->auth)
+            auth_store_fails(net->auth, net->store_fails);
         break;
     }
     store_answer_free(answer);
 }
 
-/* On the store's thread. */
+/* On the store's thread, or the caller's of store_create: nobody is served before accounts were read. */
 static void store_answered(void *context, struct store_answer *answer)
 {
     struct net *net = context;
+    if (answer->event == STORE_OPENED && net->auth)
+        auth_load(net->auth, answer->accounts, answer->is_new);
     struct task *task = mem_new(sizeof *task);
     *task = (struct task){ handle_answer, answer };
     while (!net_is_stopping(net)) { /* when it stops it waits for this thread, and no answer is needed */
@@ -475,6 +482,8 @@ static void *work(void *context)
         rooms_close(net, 0);
     }
     keep_write_due(net, true); /* what was recorded while rooms were closed */
+    if (net->auth)
+        auth_attach(net->auth, NULL);
     store_destroy(net->store); /* writes what it was handed over */
     net->store = NULL;
     int64_t end_us = clock_now_us() + FAREWELL_US;
@@ -498,6 +507,7 @@ struct net *net_create(const struct net_options *options, struct error *err)
     net->role_of = options->role_of;
     net->is_still = options->is_still;
     net->rights = options->rights;
+    net->auth = options->auth;
     net->rooms = mem_array((size_t)net->max_rooms, sizeof net->rooms[0], 1 << 20, err);
     net->tasks = queue_create(MAX_TASKS, free);
     const struct ws_callbacks callbacks = {
@@ -516,12 +526,16 @@ struct net *net_create(const struct net_options *options, struct error *err)
     const struct store_options store = { options->database, store_answered, net };
     if (options->database && !(net->store = store_create(&store, err)))
         goto fail;
+    if (net->auth)
+        auth_attach(net->auth, net->store);
     if (pthread_create(&net->thread, NULL, work, net) != 0) {
         error_set(err, ERROR_IO, "no thread could be started");
         goto fail;
     }
     return net;
 fail:
+    if (net->auth)
+        auth_attach(net->auth, NULL);
     atomic_store(&net->is_stopping, true);
     store_destroy(net->store);
     fleet_destroy(net->fleet);

@@ -8,6 +8,7 @@
 #include "server/store/store_rows.h"
 #include "server/wire/handshake.h"
 
+struct auth;
 struct net;
 
 struct net_audit_head { /* the newest row of the audit on disk */
@@ -37,6 +38,7 @@ struct net_options {
     const char *allowed_origin;
     /* the file in which rooms are kept over a restart; NULL: none are */
     const char *database;
+    struct auth *auth; /* accounts are kept in that file, too; outlives the net. NULL: nobody signs in */
 };
 
 /* Starts the thread. errors ERROR_IO, ERROR_MEMORY and those of fleet_create and store_create */

@@ -126,6 +126,8 @@ struct net {
     size_t n_rooms;
     int max_rooms, room_idle_close_s;
     struct room_limits limits;
+    struct auth *auth;   /* NULL: nobody signs in */
+    int64_t sign_ins_us; /* when sign-ins are looked at next */
     struct store *store; /* NULL: rooms are not kept */
     bool store_fails, store_is_full;
     struct asleep_room *asleep;

@@ -513,3 +513,10 @@ bool room_has_member(const struct room *room, void *connection)
 {
     return member_of_connection(room, connection) != NULL;
 }
+
+bool room_is_followed(const struct room *room, void *connection)
+{
+    const struct member *member = member_of_connection(room, connection);
+    return member && room->presenter && room->presenter != member && room->presenter->connection &&
+           member_follows(room, member);
+}

@@ -43,6 +43,8 @@ void room_connection_closed(struct room *room, void *connection, int64_t now_us)
  * then. */
 void room_connection_lost(struct room *room, void *connection, int64_t heard_us, int64_t now_us);
 bool room_has_member(const struct room *room, void *connection); /* it has said hello */
+/* True if the member at this connection follows another, who presents and is connected. */
+bool room_is_followed(const struct room *room, void *connection);
 
 /* Does what follows from all that came, and what is due with time: stills, dropping members that are away ... Each
  * entry but room_text_came ends with it. Returns when it is due again; INT64_MAX: only after another call. */

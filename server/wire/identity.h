@@ -34,6 +34,7 @@ struct identity {
     char name[IDENTITY_MAX_NAME + 1]; /* as people are shown it; "": none */
     char groups[IDENTITY_MAX_GROUPS][IDENTITY_MAX_USER + 1];
     size_t n_groups;
+    bool is_private;    /* it came over TLS of our own, the Unix socket or loopback, as passwords have to */
     unsigned scopes;    /* enum identity_scope */
     bool is_admin;      /* a local user of the group admin, whom no grant has to name; a proxy's groups never do this */
     char session[17];   /* names the session or token in the audit and when it is ended; opens nothing. "": none */

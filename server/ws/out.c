@@ -200,8 +200,15 @@ void ws_close(struct ws_connection *connection, enum ws_close_code code)
 
 void ws_bye(struct ws_connection *connection, enum ws_close_code code, const char *reason, int retry_ms)
 {
+    ws_bye_code(connection, code, "", reason, retry_ms);
+}
+
+void ws_bye_code(struct ws_connection *connection, enum ws_close_code code, const char *word, const char *reason,
+                 int retry_ms)
+{
     struct message message = { .type = MESSAGE_BYE, .bye = { .has_retry_ms = retry_ms >= 0, .retry_ms = retry_ms } };
     (void)snprintf(message.bye.reason, sizeof message.bye.reason, "%s", reason);
+    (void)snprintf(message.bye.code, sizeof message.bye.code, "%s", word);
     char *text = message_write(&message);
     if (text) /* without memory for it the close alone is sent */
         ws_send_text(connection, text);

@@ -91,3 +91,6 @@ void ws_send_frame(struct ws_connection *connection, const struct frame_header *
 void ws_close(struct ws_connection *connection, enum ws_close_code code); /* sends waiting messages first */
 /* Sends a bye with the reason, and closes; retry_ms < 0: the page is not to come back. */
 void ws_bye(struct ws_connection *connection, enum ws_close_code code, const char *reason, int retry_ms);
+/* Likewise; word: code of the message bye. */
+void ws_bye_code(struct ws_connection *connection, enum ws_close_code code, const char *word, const char *reason,
+                 int retry_ms);

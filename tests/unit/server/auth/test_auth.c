@@ -24,7 +24,7 @@ static void a_password_begins_a_session_that_its_cookie_alone_opens(void **state
     (void)state;
     char wrong[AUTH_SECRET_TEXT];
     auth_world_add_user("ann", "physics; board");
-    const struct auth_answer in = auth_world_sign_in("ann", "correct horse");
+    struct auth_answer in = auth_world_sign_in("ann", "correct horse");
     assert_string_equal(in.problem.detail, "");
     assert_int_equal(strlen(in.secret), 64);
     struct identity identity = auth_world_with_cookie("__Host-beamroom", in.secret);
@@ -52,7 +52,7 @@ static void a_session_ends_without_input_and_after_half_a_day(void **state)
     (void)state;
     auth_world_add_user("ann", "");
     struct auth_answer in = auth_world_sign_in("ann", "correct horse");
-    const struct identity identity = auth_world_with_cookie("__Host-beamroom", in.secret);
+    struct identity identity = auth_world_with_cookie("__Host-beamroom", in.secret);
     struct auth_times times;
     for (int i = 0; i < 12 * 60 / 25; i++) { /* input each 25 minutes, for as long as 12 hours */
         auth_world.now_ms += 25 * AUTH_MINUTE_MS;
@@ -212,7 +212,7 @@ static void a_confirmation_renews_the_proof(void **state)
     (void)state;
     struct problem problem = { 0 };
     auth_world_add_user("ann", "");
-    const struct auth_answer in = auth_world_sign_in("ann", "correct horse");
+    struct auth_answer in = auth_world_sign_in("ann", "correct horse");
     auth_world.now_ms += 7 * AUTH_MINUTE_MS;
     assert_true(auth_confirm(auth_world.auth, &in.identity, "wrong horse", auth_world_done, NULL, &problem));
     assert_string_equal(auth_world_await().problem.code, "password");
@@ -290,6 +290,11 @@ static void a_proxy_names_people_and_nobody_else_does(void **state)
     assert_string_equal(identity.groups[0], "physics");
     assert_int_equal(identity.proved_ms, 1767225000000);
     assert_true(auth_is_still(auth_world.auth, &identity));
+    struct identity later;
+    assert_true(
+        from_proxy("ann", NULL, NULL, "1767225060", &later, &problem)); /* signed in anew, which a WebSocket learns */
+    assert_true(auth_is_still(auth_world.auth, &identity));
+    assert_int_equal(identity.proved_ms, 1767225060000);
     assert_true(from_proxy("ann", NULL, "admin", "soon", &identity, &problem));
     assert_int_equal(identity.proved_ms, 0);
     assert_false(identity.is_admin);
@@ -421,8 +426,8 @@ static void accounts_outlive_the_daemon(void **state)
     store_answer_free(store_world_await(&world, STORE_OPENED));
     auth_attach(auth_world.auth, world.store);
     auth_world_add_user("ann", "physics");
-    const struct auth_answer in = auth_world_sign_in("ann", "correct horse"),
-                             other = auth_world_sign_in("ann", "correct horse");
+    struct auth_answer in = auth_world_sign_in("ann", "correct horse"),
+                       other = auth_world_sign_in("ann", "correct horse");
     assert_true(auth_token_create(auth_world.auth, &wanted, token, &made, &problem));
     auth_set_owner(auth_world.auth, "head", "ann");
     auth_session_end(auth_world.auth, other.identity.session);
@@ -465,7 +470,7 @@ static void a_call_is_identified_within_five_microseconds(void **state)
     free(all.users);
     free(all.sessions);
     auth_world_add_user("ann", "physics;board");
-    const struct auth_answer in = auth_world_sign_in("ann", "correct horse");
+    struct auth_answer in = auth_world_sign_in("ann", "correct horse");
     double best_us = 1e9;
     for (int k = 0; k < 20 && best_us > 5; k++) {
         const int64_t from_us = clock_now_us();
