@@ -151,7 +151,7 @@ static bool has_right(struct api *api, const struct call *call, const struct api
         (void)snprintf(what, sizeof what, "%s %s", route->method, route->path);
         cJSON_AddStringToObject(detail, "what", what);
         cJSON_AddStringToObject(detail, "why", problem->detail);
-        room_audit_call(room, call->member, call->client, "refused", detail, true, clock_now_us());
+        room_audit_call(room, &call->identity, call->member, call->client, "refused", detail, true, clock_now_us());
         return false;
     }
     return true;
@@ -249,7 +249,9 @@ void api_handle(struct api *api, struct call *call)
                 call_answer_problem(call, &problem);
                 return;
             }
+            net_set_caller(api->net, &call->identity);
             route.handle(api, call);
+            net_set_caller(api->net, NULL);
             return;
         }
         is_known = true;

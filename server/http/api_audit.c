@@ -27,9 +27,9 @@ static void audit_export(struct call *call)
     cJSON_AddStringToObject(detail, "media_type", call->media_type);
     cJSON_AddNumberToObject(detail, "bytes", (double)call->n_bytes);
     if (room)
-        room_audit_call(room, call->member, call->client, "export", detail, false, clock_now_us());
+        room_audit_call(room, &call->identity, call->member, call->client, "export", detail, false, clock_now_us());
     else
-        net_audit(net, call->client, "", is_of_room ? "" : call->ids[0], "export", detail);
+        net_audit_by(net, &call->identity, call->client, "", is_of_room ? "" : call->ids[0], "export", detail);
 }
 
 bool api_audit_has_place(const struct api *api, struct problem *problem)

@@ -16,6 +16,7 @@ struct api_listener { /* a program that listens to a room */
     struct feed *feed;
     struct room *room;
     struct room_listener *listener;
+    struct identity who;
     char *member;            /* as it named itself with the call; NULL: nobody */
     bool has_begun, is_over; /* it was told something; it is told nothing any more */
 };
@@ -66,7 +67,8 @@ static void told(void *context, const char *epoch, uint64_t number, const char *
     char id[48];
     if (listener->is_over)
         return;
-    if (!room_call_may(listener->room, listener->member, WIRE_RIGHT_LOOK, &problem)) { /* any more */
+    if (!net_identity_holds(listener->api->net, &listener->who) ||
+        !room_may(listener->room, &listener->who, listener->member, WIRE_RIGHT_LOOK, false, &problem)) { /* any more */
         put(listener, "bye", "", "{\"reason\":\"this room may not be looked at any more\"}");
         end_telling(listener);
         return;
@@ -168,6 +170,7 @@ void api_room_events(struct api *api, struct call *call)
     *listener = (struct api_listener){ .next = api->listeners,
                                        .api = api,
                                        .room = room,
+                                       .who = call->identity,
                                        .feed = feed_create_of_texts(call->wake, call->wake_context),
                                        .member = call->member ? mem_copy_text(call->member) : NULL };
     struct feed *feed = listener->feed;

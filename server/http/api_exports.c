@@ -78,9 +78,9 @@ static bool audit_told(struct api *api, const struct call *call, const cJSON *bo
     cJSON_AddStringToObject(detail, "what", what);
     cJSON_AddStringToObject(detail, "name", name);
     if (room)
-        room_audit_call(room, call->member, call->client, "export", detail, false, clock_now_us());
+        room_audit_call(room, &call->identity, call->member, call->client, "export", detail, false, clock_now_us());
     else
-        net_audit(api->net, call->client, call->ids[0], "", "export", detail);
+        net_audit_by(api->net, &call->identity, call->client, call->ids[0], "", "export", detail);
     return true;
 }
 

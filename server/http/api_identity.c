@@ -31,9 +31,10 @@ static void audit_identity(struct call *call)
     if (call->status >= 300)
         return;
     if (room && strcmp(room_plan_id(room), call->ids[0]) == 0)
-        room_audit_call(room, call->member, call->client, "identity", cJSON_CreateObject(), false, clock_now_us());
+        room_audit_call(room, &call->identity, call->member, call->client, "identity", cJSON_CreateObject(), false,
+                        clock_now_us());
     else
-        net_audit(net, call->client, "", call->ids[0], "identity", cJSON_CreateObject());
+        net_audit_by(net, &call->identity, call->client, "", call->ids[0], "identity", cJSON_CreateObject());
 }
 
 void api_plan_identity(struct api *api, struct call *call)

@@ -155,6 +155,6 @@ void api_room_link_new(struct api *api, struct call *call)
     if (wanted.allows_guests)
         cJSON_AddTrueToObject(made, "guests");
     cJSON_Delete(body);
-    room_audit_call(room, call->member, call->client, "link-made", made, false, clock_now_us());
+    room_audit_call(room, &call->identity, call->member, call->client, "link-made", made, false, clock_now_us());
     call_answer_json(call, 201, answer);
 }

@@ -38,7 +38,7 @@ void api_room_recording_delete(struct api *api, struct call *call)
     cJSON *detail = cJSON_CreateObject();
     cJSON_AddStringToObject(detail, "id", call->ids[1]);
     cJSON_AddStringToObject(detail, "state", wire_recording_state_words.words[WIRE_RECORDING_STATE_DELETED]);
-    room_audit_call(room, call->member, call->client, "recording", detail, false, clock_now_us());
+    room_audit_call(room, &call->identity, call->member, call->client, "recording", detail, false, clock_now_us());
     call_answer_nothing(call, 204);
 }
 

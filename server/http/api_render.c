@@ -98,7 +98,7 @@ static void audit_acceptances(struct api *api, const struct call *call, const ch
         cJSON_AddStringToObject(detail, "what", "picture");
         for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
             cJSON_AddStringToObject(detail, names[i], json_text(entry, names[i]));
-        net_audit(api->net, call->client, "", plan_id, "acceptance", detail);
+        net_audit_by(api->net, &call->identity, call->client, "", plan_id, "acceptance", detail);
     }
 }
 

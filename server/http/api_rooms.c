@@ -156,9 +156,9 @@ void api_room_delete(struct api *api, struct call *call)
     if (room && room_caller_name(room, call->member)[0])
         (void)snprintf(reason, sizeof reason, "the room was ended by %.160s", room_caller_name(room, call->member));
     if (room)
-        room_audit_call(room, call->member, call->client, "deleted", NULL, false, clock_now_us());
+        room_audit_call(room, &call->identity, call->member, call->client, "deleted", NULL, false, clock_now_us());
     else
-        net_audit(api->net, call->client, call->ids[0], "", "deleted", NULL);
+        net_audit_by(api->net, &call->identity, call->client, call->ids[0], "", "deleted", NULL);
     net_room_delete(api->net, call->ids[0], reason);
     call_answer_nothing(call, 204);
 }

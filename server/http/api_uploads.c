@@ -61,7 +61,7 @@ void api_plan_delete(struct api *api, struct call *call)
             return;
         cJSON *detail = cJSON_CreateObject();
         cJSON_AddStringToObject(detail, "why", reason);
-        net_audit(api->net, call->client, "", call->ids[0], "deleted", detail);
+        net_audit_by(api->net, &call->identity, call->client, "", call->ids[0], "deleted", detail);
         net_rooms_delete_of_plan(api->net, call->ids[0], call->client, reason);
     }
     if (fleet_remove_plan(fleet, call->ids[0], &problem))

@@ -45,6 +45,9 @@ cJSON *keep_audit_describe(const char *room, const char *plan, const struct room
     cJSON_AddStringToObject(json, "name", row->name);
     cJSON_AddStringToObject(json, "role", row->role);
     cJSON_AddStringToObject(json, "address", row->address);
+    cJSON_AddStringToObject(json, "user", row->user ? row->user : "");
+    cJSON_AddStringToObject(json, "source", row->source ? row->source : "");
+    cJSON_AddStringToObject(json, "session", row->session ? row->session : "");
     cJSON_AddStringToObject(json, "action", row->action);
     json_add(json, "detail", cJSON_CreateRaw(row->detail));
     json_add(json, "revision_before", row->before < 0 ? cJSON_CreateNull() : cJSON_CreateNumber((double)row->before));
@@ -107,24 +110,58 @@ bool net_audit_has_place(const struct net *net)
     return !net->store || net->n_audit_waiting < NET_MAX_AUDIT;
 }
 
-void net_audit(struct net *net, const char *address, const char *room, const char *plan, const char *action,
-               cJSON *detail)
+static void audit_what(struct net *net, const struct identity *who, const char *address, const char *room,
+                       const char *plan, const char *action, cJSON *detail, const char *result)
 {
     char *text = json_print(detail);
     const struct room_audit row = { .time_ms = clock_wall_ms(),
                                     .action = action,
                                     .member = "",
-                                    .name = "",
+                                    .name = who ? who->name : "",
                                     .role = "",
                                     .address = address,
+                                    .user = who ? who->user : "",
+                                    .source = who ? identity_source_word(who->source) : "",
+                                    .session = who ? who->session : "",
                                     .detail = text ? text : "{}",
-                                    .result = "done",
+                                    .result = result,
                                     .before = -1,
                                     .after = -1 };
     if (net->store)
         keep_row_and_loss(net, &net->audit, &net->n_audit, keep_audit_describe(room, plan, &row));
     cJSON_Delete(detail);
     free(text);
+}
+
+void net_audit(struct net *net, const char *address, const char *room, const char *plan, const char *action,
+               cJSON *detail)
+{
+    audit_what(net, NULL, address, room, plan, action, detail, "done");
+}
+
+void net_audit_by(struct net *net, const struct identity *who, const char *address, const char *room, const char *plan,
+                  const char *action, cJSON *detail)
+{
+    audit_what(net, who, address, room, plan, action, detail, "done");
+}
+
+void net_audit_refused(struct net *net, const struct identity *who, const char *address, const char *room,
+                       const char *plan, const char *action, cJSON *detail)
+{
+    audit_what(net, who, address, room, plan, action, detail, "refused");
+}
+
+void net_set_caller(struct net *net, const struct identity *who)
+{
+    net->has_caller = who != NULL;
+    if (who)
+        net->caller = *who;
+}
+
+const struct identity *keep_caller(void *context)
+{
+    const struct net *net = context;
+    return net->has_caller ? &net->caller : NULL;
 }
 
 struct net_audit_head net_audit_head(const struct net *net)

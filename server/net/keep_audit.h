@@ -8,6 +8,7 @@ struct net_room *keep_find(const struct net *net, const struct room *room);
 /* struct room_callbacks; context is the net */
 void keep_audited(void *context, struct room *room, const struct room_audit *row);
 bool keep_audit_has_place(void *context);
+const struct identity *keep_caller(void *context);
 /* The row as JSON, without its number. */
 cJSON *keep_audit_describe(const char *room, const char *plan, const struct room_audit *row);
 /* Adds a row (taken) that waits already. */

@@ -119,6 +119,12 @@ void net_session_over(struct net *net, const char *session)
             sign_out(visitor);
 }
 
+bool net_identity_holds(const struct net *net, const struct identity *who)
+{
+    struct identity now = *who;
+    return !net->is_still || !who->user[0] || net->is_still(net->rights, &now);
+}
+
 /* Signs out those whose identity does not hold any more. */
 static void look_at_identities(struct net *net, int64_t now_us)
 {

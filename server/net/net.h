@@ -126,6 +126,16 @@ bool net_audit_has_place(const struct net *net);
  * is taken. */
 void net_audit(struct net *net, const char *address, const char *room, const char *plan, const char *action,
                cJSON *detail);
+/* Like net_audit, by who. */
+void net_audit_by(struct net *net, const struct identity *who, const char *address, const char *room, const char *plan,
+                  const char *action, cJSON *detail);
+/* Like net_audit_by, for what was refused. */
+void net_audit_refused(struct net *net, const struct identity *who, const char *address, const char *room,
+                       const char *plan, const char *action, cJSON *detail);
+/* Whether this sign-in has not ended: asked of those who stay. */
+bool net_identity_holds(const struct net *net, const struct identity *who);
+/* Notes whose call is being handled, for what rooms record of it; NULL: none is. */
+void net_set_caller(struct net *net, const struct identity *who);
 struct net_audit_head net_audit_head(const struct net *net);
 size_t net_n_rooms(const struct net *net);
 struct room *net_room_at(const struct net *net, size_t index);

@@ -140,6 +140,8 @@ struct net {
     char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */
     size_t n_undeleted;
     uint64_t n_tickets;
+    struct identity caller; /* of the call that is being handled */
+    bool has_caller;
     char **audit; /* rows for the audit of no room that is open */
     size_t n_audit;
     size_t n_audit_waiting; /* rows that are not on disk yet, of all rooms, those under way included */

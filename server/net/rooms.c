@@ -103,6 +103,7 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .close = close_connection,
                                               .address = address,
                                               .identity = identity,
+                                              .caller = keep_caller,
                                               .role_of = role_of,
                                               .close_signed_out = close_signed_out,
                                               .context = net,
@@ -319,7 +320,7 @@ static void delete_of_plan(struct net *net, const char *id, const char *plan_id,
     cJSON *detail = cJSON_CreateObject();
     (void)snprintf(deleted, sizeof deleted, "%s", id);
     cJSON_AddStringToObject(detail, "why", reason);
-    net_audit(net, address, deleted, plan_id, "deleted", detail);
+    net_audit_by(net, keep_caller(net), address, deleted, plan_id, "deleted", detail);
     net_room_delete(net, deleted, reason);
 }
 

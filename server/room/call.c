@@ -63,14 +63,15 @@ bool room_patch_scene(struct room *room, const cJSON *patch, const char *caller,
     return ok;
 }
 
-void room_audit_call(struct room *room, const char *member, const char *address, const char *action, cJSON *detail,
-                     bool is_refused, int64_t now_us)
+void room_audit_call(struct room *room, const struct identity *who, const char *member, const char *address,
+                     const char *action, cJSON *detail, bool is_refused, int64_t now_us)
 {
     if (strcmp(action, "export") == 0 && room->files.revision[0])
         cJSON_AddStringToObject(detail, "plan_revision", room->files.revision);
     const struct audit_act act = { .by = room_caller(room, member),
                                    .action = action,
                                    .address = address,
+                                   .who = who,
                                    .detail = detail,
                                    .is_refused = is_refused,
                                    .before = -1,

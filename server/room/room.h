@@ -131,10 +131,10 @@ NODISCARD bool room_link_revoke_all(struct room *room, const char *id, const cha
 /* Makes a link; token gets 32 digits and a final zero. False with problem limit. */
 NODISCARD bool room_link_create(struct room *room, enum wire_member_role role, int64_t expires_s, bool is_one_use,
                                 int64_t now_us, char token[33], struct problem *problem);
-/* Records what a call over HTTP does in this room; member as in room_call_may; address: the client's, "": not known.
- * detail is taken. */
-void room_audit_call(struct room *room, const char *member, const char *address, const char *action, cJSON *detail,
-                     bool is_refused, int64_t now_us);
+/* Records what a call over HTTP does in this room; who: NULL, not known; member as in room_call_may; address: the
+ * client's, "": not known. detail is taken. */
+void room_audit_call(struct room *room, const struct identity *who, const char *member, const char *address,
+                     const char *action, cJSON *detail, bool is_refused, int64_t now_us);
 /* The revision of the plan's files has become known, or is another one; what is written of the record from then on
  * stands under it. "": it is not known, and nothing of the record is written. */
 void room_plan_revision(struct room *room, const char *revision);

@@ -44,6 +44,18 @@ struct identity {
     char folders[1024]; /* of a token: grant folders that it is held to, each ended by '\n'; "": none in particular */
 };
 
+/* A word for the audit. */
+static inline const char *identity_source_word(enum identity_source source)
+{
+    switch (source) {
+    case IDENTITY_MACHINE: return "machine";
+    case IDENTITY_PASSWORD: return "password";
+    case IDENTITY_PROXY: return "proxy";
+    case IDENTITY_TOKEN: return "token";
+    default: return "nobody";
+    }
+}
+
 /* The proof that a request brings. Pointers into it; NULL: it has none. */
 struct credentials {
     const char *cookie;        /* the header Cookie, whole */

@@ -179,7 +179,7 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
   let nGood = 0;
   for (const [path, routes] of Object.entries(spec.paths)) {
     const { get } = routes;
-    if (!get || path.endsWith('/identity') || path.endsWith('/ws') || path.endsWith('/stream')) continue;
+    if (!get || path.endsWith('/identity') || /\/(ws|stream|events)$/.test(path)) continue;
     const address = path.replace(
       /\{(\w+)\}/g,
       (_, name) => ({ plan: 'case-1', room, image: 'ct', region: 'box', level: 'level-1' })[name] ?? 'none',

@@ -8,6 +8,7 @@
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/auth/digest.h"
+#include "server/room/state/who.h"
 #include "server/wire/json_merge.h"
 
 struct audit {
@@ -65,6 +66,9 @@ static struct room_audit row_of(const struct gathered *act, const char *detail)
                                 .name = act->name,
                                 .role = act->member[0] ? wire_member_role_words.words[act->role] : "",
                                 .address = act->address,
+                                .user = act->user,
+                                .source = identity_source_word(act->source),
+                                .session = act->session,
                                 .detail = detail ? detail : "{}",
                                 .result = act->is_refused ? "refused" : "done",
                                 .before = act->before,
@@ -106,9 +110,29 @@ static const char *address_of(const struct room *room, const struct audit_act *a
     return act->by ? act->by->address : "";
 }
 
+static const struct identity *who_of(const struct room *room, const struct audit_act *act)
+{
+    static const struct identity nobody;
+    const struct identity *caller =
+        act->address && room->callbacks.caller ? room->callbacks.caller(room->callbacks.context) : NULL;
+    if (act->who || caller)
+        return act->who ? act->who : caller;
+    if (act->by)
+        return who_acts(room, act->by);
+    if (room->call.act && room->call.act->identity)
+        return room->call.act->identity;
+    return room->callbacks.identity ? &nobody : who_connects(room, NULL);
+}
+
 static enum wire_member_role role_of(const struct audit_act *act)
 {
     return act->by ? act->by->role : WIRE_MEMBER_ROLE_OBSERVER;
+}
+
+/* Whose sign-in is over keeps the seat, under the name of its user. */
+static const char *user_of(const struct identity *who, const struct audit_act *act)
+{
+    return who->user[0] || !act->by ? who->user : act->by->user;
 }
 
 /* Whether this act may share a row with what is gathered. Steps of a gesture (a key) may differ in their values; other
@@ -120,6 +144,10 @@ static bool is_same_act(const struct room *room, const struct gathered *found, c
         strcmp(found->member, act->by ? act->by->id : "") != 0 ||
         strcmp(found->name, act->by ? act->by->name : "") != 0 || strcmp(found->address, address_of(room, act)) != 0 ||
         found->role != role_of(act) || found->is_refused != act->is_refused)
+        return false;
+    const struct identity *who = who_of(room, act);
+    if (found->source != who->source || strcmp(found->session, who->session) != 0 ||
+        strcmp(found->user, user_of(who, act)) != 0)
         return false;
     return act->key ||
            (found->before == act->before && found->after == act->after && json_equal(found->detail, detail));
@@ -142,6 +170,10 @@ static void fill(const struct room *room, const struct audit_act *act, struct ga
     (void)snprintf(found->name, sizeof found->name, "%s", act->by ? act->by->name : "");
     (void)snprintf(found->address, sizeof found->address, "%s", address_of(room, act));
     found->role = role_of(act);
+    const struct identity *who = who_of(room, act);
+    found->source = who->source;
+    (void)snprintf(found->user, sizeof found->user, "%s", user_of(who, act));
+    (void)snprintf(found->session, sizeof found->session, "%s", who->session);
 }
 
 static struct gathered *begin(struct room *room, const struct audit_act *act)

@@ -5,17 +5,19 @@
 #include "server/room/state/room_state.h"
 
 struct audit_act {
-    const struct member *by; /* NULL: nobody of the room */
-    const char *action;      /* a word of room.h's list */
-    const char *key;         /* of a gesture: the fields that it changes; NULL: of another act */
-    const char *address;     /* NULL: that of the member */
-    cJSON *detail;           /* taken; NULL: {} */
+    const struct member *by;    /* NULL: nobody of the room */
+    const char *action;         /* a word of room.h's list */
+    const char *key;            /* of a gesture: the fields that it changes; NULL: of another act */
+    const char *address;        /* NULL: that of the member */
+    const struct identity *who; /* NULL: that of the call or of the member */
+    cJSON *detail;              /* taken; NULL: {} */
     bool is_refused;
     int64_t before, after; /* revisions of the scene; -1: does not apply */
 };
 
 struct gathered { /* acts for the audit that are one row */
-    char action[24], key[64], member[64], name[161], address[46];
+    char action[24], key[64], member[64], name[161], address[46], user[IDENTITY_MAX_USER + 1], session[17];
+    enum identity_source source;
     enum wire_member_role role;
     bool is_refused;
     cJSON *detail; /* of the last */

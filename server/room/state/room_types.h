@@ -87,6 +87,8 @@ struct room_audit {
     const char *action;
     const char *member, *name, *role; /* "": nobody of the room */
     const char *address;              /* from which it was done; "": not known */
+    /* who is signed in, how (identity_source_word) and in which session or by which token; NULL or "": not known */
+    const char *user, *source, *session;
     const char *detail; /* a JSON object; where acts were gathered, with times, their number, and since_ms, the time of
                            the oldest. Of an item it has sha256, of its row as it is kept */
     const char *result; /* "done" or "refused" */
@@ -146,6 +148,8 @@ struct room_callbacks {
     bool (*role_of)(void *context, const struct room *room, const struct identity *who, enum wire_member_role *role);
     /* Like close, with the code of the end that says that a sign-in is needed. NULL: close is called. */
     void (*close_signed_out)(void *context, void *connection);
+    /* The identity behind the call over HTTP that is being handled. NULL: none is, or it is not known. */
+    const struct identity *(*caller)(void *context);
     /* A row for the audit, to be committed with what else of the room is written, or before. NULL: there is no audit.
      */
     void (*audited)(void *context, struct room *room, const struct room_audit *row);

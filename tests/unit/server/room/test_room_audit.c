@@ -132,9 +132,9 @@ static void control_and_calls_are_recorded(void **state)
     assert_string_equal(row(0), "control m1 done {\"act\":\"given\",\"member\":\"m2\"} -1 -1");
     char caller[80];
     (void)snprintf(caller, sizeof caller, "m2 %s", heard(&ben, "welcome", "secret"));
-    room_audit_call(fake.room, caller, "192.0.2.7", "export", NULL, false, fake.now_us);
+    room_audit_call(fake.room, NULL, caller, "192.0.2.7", "export", NULL, false, fake.now_us);
     assert_string_equal(row(0), "export m2 done {} -1 1");
-    room_audit_call(fake.room, "m2 00000000000000000000000000000000", "", "export", NULL, false, fake.now_us);
+    room_audit_call(fake.room, NULL, "m2 00000000000000000000000000000000", "", "export", NULL, false, fake.now_us);
     assert_string_equal(row(0), "export  done {} -1 1");
 }
 
@@ -147,7 +147,7 @@ static void acts_that_differ_are_rows_of_their_own(void **state)
     for (size_t i = 0; i < 4; i++) {
         cJSON *detail = cJSON_CreateObject();
         cJSON_AddStringToObject(detail, "role", roles[i]);
-        room_audit_call(fake.room, NULL, i == 3 ? "192.0.2.8" : "192.0.2.7", "link-made", detail, false, fake.now_us);
+        room_audit_call(fake.room, NULL, NULL, i == 3 ? "192.0.2.8" : "192.0.2.7", "link-made", detail, false, fake.now_us);
     }
     room_audit_flush(fake.room, fake.now_us);
     assert_int_equal(fake.n_audited, before + 4);
@@ -186,7 +186,7 @@ static void a_long_detail_is_left_out_and_said(void **state)
     memset(text, 'x', sizeof text - 1);
     text[sizeof text - 1] = 0;
     cJSON_AddStringToObject(detail, "text", text);
-    room_audit_call(fake.room, NULL, "", "export", detail, false, fake.now_us);
+    room_audit_call(fake.room, NULL, NULL, "", "export", detail, false, fake.now_us);
     /* 1024 and {"text":""}; hashlib.sha256(b'{"text":"' + b'x' * 1024 + b'"}').hexdigest() */
     assert_string_equal(row(0), "export  done {\"left_out_bytes\":1035,\"sha256\":"
                                 "\"14383360d0a651d8fa415ec15f601ef6b818a0affdd5d8a9e602df732f53328a\"} -1 1");
