@@ -233,7 +233,9 @@ static bool is_owner(const struct identity *identity, const struct access_subjec
 static enum access_role granted(const struct access *access, const struct identity *identity,
                                 const struct access_subject *subject, bool *sees_identity)
 {
-    enum access_role role = is_owner(identity, subject) ? ACCESS_ROLE_PLANNER : ACCESS_ROLE_NONE;
+    enum access_role role = identity->is_admin            ? ACCESS_ROLE_ADMIN
+                            : is_owner(identity, subject) ? ACCESS_ROLE_PLANNER
+                                                          : ACCESS_ROLE_NONE;
     *sees_identity = false;
     if (!access || identity->user[0] == 0 || subject->kind == ACCESS_SUBJECT_KIND_NONE)
         return role;

@@ -373,6 +373,7 @@ static bool serve(struct options *options, struct error *err)
         .allowed_origin = options->allowed_origin,
         .database = database,
         .auth = service.sign_in.auth,
+        .access = service.sign_in.access,
         .is_still = is_still,
         .rights = &service,
     };

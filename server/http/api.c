@@ -7,6 +7,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/http/api_access.h"
 #include "server/http/api_acts.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
@@ -90,6 +91,7 @@ struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_b
     api->auth = auth;
     api->max_upload_bytes = max_upload_bytes;
     api->is_alone = is_alone;
+    api->rights = net_plan_rights(net);
     api->started_us = clock_now_us();
     return api;
 }
@@ -184,6 +186,8 @@ static void room_awoke(void *context, const char *room_id, const struct problem 
 static bool wakes_room(struct api *api, struct call *call, const struct api_route *route)
 {
     const char *room = call_query(call, "room");
+    if (room && !api_access_sees_room(api, call, room))
+        room = NULL;
     bool is_for_awake = (call->method == CALL_DELETE && !route->act && route->handle != api_room_link_revoke &&
                          route->handle != api_room_member_remove) ||
                         route->handle == api_room_ws || route->handle == api_room_stream ||
@@ -235,14 +239,16 @@ void api_handle(struct api *api, struct call *call)
         if (!path_matches(call, route.path))
             continue;
         if (strcmp(route.method, method_word(call->method)) == 0) {
+            call->route = route.path;
+            call->act = route.act;
+            if (!api_access_allows(api, call, &route, api_handle))
+                return;
             for (size_t k = 0; k < CALL_MAX_SEGMENTS && call->ids[k]; k++)
                 if (!id_is_valid(call->ids[k])) {
                     problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "\"%.60s\" is not an id", call->ids[k]);
                     call_answer_problem(call, &problem);
                     return;
                 }
-            call->route = route.path;
-            call->act = route.act;
             if (wakes_room(api, call, &route) || looks_for_plan(api, call, &route))
                 return;
             if (!room_can_be_looked_for(api, call, &route, &problem) || !has_right(api, call, &route, &problem)) {

@@ -2,6 +2,7 @@
 /* The HTTP API: its routes and their handlers. Net thread. Knows nothing of libmicrohttpd. */
 #include "server/http/call.h"
 #include "server/net/net.h"
+#include "server/net/plan_rights.h"
 
 struct api;
 

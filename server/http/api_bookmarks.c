@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/http/api_access.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_pictures.h"
 #include "server/wire/bookmark.h"
@@ -142,7 +143,8 @@ void api_permalink(struct api *api, struct call *call)
     cJSON *body = api_bookmark_of_token(api, call->ids[0]);
     if (!body && api_bookmark_sleeps(api, call, call->ids[0], api_permalink))
         return;
-    if (!body) {
+    if (!body || !api_access_to_plan(api, call, ACCESS_LOOK, json_text(body, "plan"))) {
+        cJSON_Delete(body);
         call_answer_text(call, 404, "text/html; charset=utf-8", nothing);
         return;
     }

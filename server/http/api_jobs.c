@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "server/http/api_handlers.h"
 
 static void update_upload(struct api *api, struct api_job *job)
@@ -99,13 +100,14 @@ void api_jobs_update(struct api *api)
         update_job(api, &api->jobs[n % API_MAX_JOBS]);
 }
 
-struct api_job *api_job_create(struct api *api, const char *kind)
+struct api_job *api_job_create(struct api *api, const struct call *call, const char *kind)
 {
     struct api_job *job = &api->jobs[api->n_jobs % API_MAX_JOBS];
     memset(job, 0, sizeof *job);
     api->n_jobs++;
     (void)snprintf(job->id, sizeof job->id, "%s-%zu", kind, api->n_jobs);
     job->kind = kind;
+    mem_put_text(job->user, sizeof job->user, call->identity.user);
     job->state = JOB_RUNNING;
     return job;
 }
@@ -119,17 +121,29 @@ void api_job_answer(struct api *api, struct call *call, struct api_job *job)
     call_answer_json(call, 202, job_document(job));
 }
 
-static struct api_job *find_job(struct api *api, struct call *call)
+struct api_job *api_job_find(struct api *api, const char *id)
 {
     size_t first = api->n_jobs > API_MAX_JOBS ? api->n_jobs - API_MAX_JOBS : 0;
     for (size_t n = first; n < api->n_jobs; n++)
-        if (strcmp(api->jobs[n % API_MAX_JOBS].id, call->ids[0]) == 0)
+        if (strcmp(api->jobs[n % API_MAX_JOBS].id, id) == 0)
             return &api->jobs[n % API_MAX_JOBS];
+    return NULL;
+}
+
+void api_job_answer_missing(struct call *call)
+{
     struct problem problem;
     problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no job \"%.63s\"; the last %d are kept", call->ids[0],
                 API_MAX_JOBS);
     call_answer_problem(call, &problem);
-    return NULL;
+}
+
+static struct api_job *find_job(struct api *api, struct call *call)
+{
+    struct api_job *job = api_job_find(api, call->ids[0]);
+    if (!job)
+        api_job_answer_missing(call);
+    return job;
 }
 
 void api_job(struct api *api, struct call *call)

@@ -5,7 +5,10 @@
 
 /* Brings the states of running jobs up to date with their plans and uploads. */
 void api_jobs_update(struct api *api);
-/* Makes a job; the oldest is forgotten. kind: "open" or "upload". */
-struct api_job *api_job_create(struct api *api, const char *kind);
+/* Makes a job of the caller's; the oldest is forgotten. kind: "open" or "upload". */
+struct api_job *api_job_create(struct api *api, const struct call *call, const char *kind);
+/* NULL: there is none, or not any more. */
+struct api_job *api_job_find(struct api *api, const char *id);
+void api_job_answer_missing(struct call *call);
 /* Answers the call with 202, the job, and its address. */
 void api_job_answer(struct api *api, struct call *call, struct api_job *job);

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/http/api_access.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 #include "server/http/api_queries.h"
@@ -51,7 +52,7 @@ void api_plans(struct api *api, struct call *call)
     cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "plans");
     struct fleet_plan plan;
     for (size_t i = 0; i < fleet_n_plans(fleet); i++)
-        if (fleet_plan_at(fleet, i, &plan))
+        if (fleet_plan_at(fleet, i, &plan) && api_access_to_plan(api, call, ACCESS_LOOK, plan.id))
             cJSON_AddItemToArray(list, plan_head(&plan));
     call_answer_json(call, 200, answer);
 }
@@ -113,7 +114,7 @@ void api_plan_open(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    struct api_job *job = api_job_create(api, "open");
+    struct api_job *job = api_job_create(api, call, "open");
     (void)snprintf(job->plan_id, sizeof job->plan_id, "%s", call->ids[0]);
     if (fleet_plan_find(net_fleet(api->net), call->ids[0], &plan))
         job->opening = plan.opening;

@@ -5,6 +5,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
+#include "server/http/api_access.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
 #include "server/http/api_recordings.h"
@@ -113,7 +114,7 @@ bool api_recording_sleeps(struct api *api, struct call *call, const cJSON *asked
                           void (*again)(struct api *api, struct call *call))
 {
     const char *id = json_text(asked, "room");
-    if (!id || !net_room_is_asleep(api->net, id))
+    if (!id || !net_room_is_asleep(api->net, id) || !api_access_sees_room(api, call, id))
         return false;
     struct sleeping *sleeping = mem_new(sizeof *sleeping);
     *sleeping = (struct sleeping){ call, again };
@@ -137,7 +138,8 @@ struct room *api_replay_new(struct api *api, const struct call *call, const cJSO
         return NULL;
     }
     const struct room *room = net_room_find(api->net, id);
-    if (!room) {
+    if (!room || !api_access_sees_room(api, call, id) ||
+        !api_access_to_plan(api, call, ACCESS_MEET, room_plan_id(room))) {
         problem_set(problem, PROBLEM_NOT_FOUND, "/recording/room", "", "there is no room \"%.63s\"", id);
         return NULL;
     }

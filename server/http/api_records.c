@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/http/api_access.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 
@@ -51,10 +52,12 @@ static void list_was_read(void *context, const struct net_record *records, size_
         call_answer_problem(context, problem);
         return;
     }
+    struct call *call = context;
     cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "records");
     for (size_t i = 0; i < n; i++)
-        json_append(list, describe(&records[i]));
-    call_answer_json(context, 200, answer);
+        if (api_access_to_plan(call->api, call, ACCESS_LOOK, records[i].plan))
+            json_append(list, describe(&records[i]));
+    call_answer_json(call, 200, answer);
 }
 
 static void one_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
@@ -63,10 +66,20 @@ static void one_was_read(void *context, const struct net_record *records, size_t
         call_answer_problem(context, problem);
         return;
     }
+    struct call *call = context;
+    if (!api_access_to_plan(call->api, call, ACCESS_LOOK,
+                            records[0].plan)) { /* in the words of one that is not there */
+        struct problem missing;
+        char text[100];
+        (void)snprintf(text, sizeof text, "there is no record \"%.63s\"", call->ids[0]);
+        problem_set(&missing, PROBLEM_NOT_FOUND, "", "", "%s", text);
+        call_answer_problem(call, &missing);
+        return;
+    }
     cJSON *answer = describe(&records[0]);
     json_add(answer, "item", cJSON_CreateRaw(records[0].item));
     json_add(answer, "body", cJSON_CreateRaw(records[0].body));
-    call_answer_json(context, 200, answer);
+    call_answer_json(call, 200, answer);
 }
 
 void api_records(struct api *api, struct call *call)

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "server/http/api_access.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_pictures.h"
@@ -30,7 +31,8 @@ void api_rooms(struct api *api, struct call *call)
 }
 
 /* The bookmark under this token and its plan's id, borrowed from it. NULL with problem. */
-static cJSON *find_bookmark(struct api *api, const cJSON *token, const char **plan_id, struct problem *problem)
+static cJSON *find_bookmark(struct api *api, const struct call *call, const cJSON *token, const char **plan_id,
+                            struct problem *problem)
 {
     if (!cJSON_IsString(token) || !id_is_valid(token->valuestring)) {
         problem_set(problem, PROBLEM_VALIDATION, "/saved", "pattern", "\"saved\" must be the token of a bookmark");
@@ -38,6 +40,11 @@ static cJSON *find_bookmark(struct api *api, const cJSON *token, const char **pl
     }
     cJSON *bookmark = api_bookmark_of_token(api, token->valuestring);
     *plan_id = json_text(bookmark, "plan");
+    if (bookmark && !api_access_to_plan(api, call, ACCESS_MEET, *plan_id)) {
+        cJSON_Delete(bookmark);
+        bookmark = NULL;
+        *plan_id = NULL;
+    }
     if (!bookmark)
         problem_set(problem, PROBLEM_NOT_FOUND, "/saved", "",
                     "nothing is saved under this link: the bookmark was deleted, or the link is not complete");
@@ -115,20 +122,21 @@ void api_room_new(struct api *api, struct call *call)
     else if (plan && (!plan_id || !id_is_valid(plan_id)))
         problem_set(&problem, PROBLEM_VALIDATION, "/plan", "pattern", "\"plan\" must be the id of a plan");
     else if (token && problem.type == PROBLEM_NONE)
-        bookmark = find_bookmark(api, token, &plan_id, &problem);
+        bookmark = find_bookmark(api, call, token, &plan_id, &problem);
     if (problem.type == PROBLEM_NOT_FOUND && net_rooms_are_known(api->net, &problem) &&
         api_bookmark_sleeps(api, call, token->valuestring, api_room_new)) {
         cJSON_Delete(body);
         return;
     }
-    struct fleet_plan known;
-    if (problem.type == PROBLEM_NONE && !fleet_plan_find(net_fleet(api->net), plan_id, &known) &&
-        api_lists_first(api, call, api_room_new)) {
+    bool may = problem.type == PROBLEM_NONE;
+    if (may && !api_access_makes_room(api, call, plan_id, &problem))
+        may = call->identity.source == IDENTITY_MACHINE; /* net_room_create says it, after what else there is to say */
+    if (problem.type == PROBLEM_NOT_FOUND && plan_id && api_lists_first(api, call, api_room_new)) {
         cJSON_Delete(bookmark);
         cJSON_Delete(body);
         return;
     }
-    struct room *room = problem.type == PROBLEM_NONE ? net_room_create(api->net, plan_id, bookmark, &problem) : NULL;
+    struct room *room = may ? net_room_create(api->net, plan_id, bookmark, &problem) : NULL;
     cJSON_Delete(bookmark);
     cJSON_Delete(body);
     if (!room) {

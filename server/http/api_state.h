@@ -15,10 +15,11 @@ enum {
 enum api_job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE, JOB_FAILED, JOB_CANCELLED };
 
 struct api_job {
-    char id[40], plan_id[64]; /* plan_id: "" until an upload is done */
-    const char *kind;         /* "open", "upload" */
-    uint64_t upload;          /* the fleet's number of the upload; 0: the job opens a plan */
-    uint32_t opening;         /* which opening of the plan: opening of struct fleet_plan */
+    char id[40], plan_id[64];         /* plan_id: "" until an upload is done */
+    char user[IDENTITY_MAX_USER + 1]; /* who made it; "": who has not signed in */
+    const char *kind;                 /* "open", "upload" */
+    uint64_t upload;                  /* the fleet's number of the upload; 0: the job opens a plan */
+    uint32_t opening;                 /* which opening of the plan: opening of struct fleet_plan */
     enum api_job_state state;
     char phase[200];
     double percent;
@@ -29,8 +30,9 @@ struct api_job {
 struct api {
     struct net *net;
     uint64_t max_upload_bytes;
-    bool is_alone;     /* as in http.h */
-    struct auth *auth; /* never NULL */
+    bool is_alone;                    /* as in http.h */
+    struct auth *auth;                /* never NULL */
+    const struct plan_rights *rights; /* of the net */
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];
     struct api_picture *pictures;  /* requested and not yet answered */

@@ -26,7 +26,7 @@ void api_plan_upload(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    struct api_job *job = api_job_create(api, "upload");
+    struct api_job *job = api_job_create(api, call, "upload");
     job->upload = number;
     log_info("upload %llu: %llu bytes", (unsigned long long)number, (unsigned long long)call->n_upload);
     api_job_answer(api, call, job);

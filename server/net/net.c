@@ -301,6 +301,11 @@ static void connection_closed(void *context, struct ws_connection *connection)
     free(visitor);
 }
 
+const struct plan_rights *net_plan_rights(const struct net *net)
+{
+    return &net->plan_rights;
+}
+
 struct fleet *net_fleet(struct net *net)
 {
     return net->fleet;
@@ -510,7 +515,7 @@ struct net *net_create(const struct net_options *options, struct error *err)
     net->max_rooms = options->max_rooms > 0 ? options->max_rooms : 200;
     net->room_idle_close_s = options->room_idle_close_s;
     net->limits = options->room;
-    net->role_of = options->role_of;
+    net->plan_rights = (struct plan_rights){ .access = options->access, .auth = options->auth };
     net->is_still = options->is_still;
     net->rights = options->rights;
     net->auth = options->auth;

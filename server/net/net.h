@@ -8,7 +8,9 @@
 #include "server/store/store_rows.h"
 #include "server/wire/handshake.h"
 
+struct access;
 struct auth;
+struct plan_rights;
 struct net;
 
 struct net_audit_head { /* the newest row of the audit on disk */
@@ -29,11 +31,10 @@ struct net_options {
     int room_idle_close_s;      /* a room with nobody connected is put to sleep after this, or deleted if nobody ever
                                    used it or rooms are not kept; 0: never */
     struct room_limits room;
-    /* The highest role that who has signed in may have in rooms on this plan; false: none. NULL: as false. */
-    bool (*role_of)(void *context, const struct identity *who, const char *plan_id, enum wire_member_role *role);
+    const struct access *access; /* grants; outlives the net. NULL: nobody signs in */
     /* Whether the identity of a connection still holds; proved_ms is brought up to date. NULL: it does. */
     bool (*is_still)(void *context, struct identity *who);
-    void *rights; /* context of both; net thread */
+    void *rights; /* context of it; net thread */
     /* a further Origin that may open a WebSocket, beside the request's own Host; NULL: none */
     const char *allowed_origin;
     /* the file in which rooms are kept over a restart; NULL: none are */
@@ -62,6 +63,8 @@ void net_adopt(struct net *net, int socket, const struct handshake *handshake, v
 /* The session or token of this name is over: its connections get bye, and members keep their seats. */
 void net_session_over(struct net *net, const char *session);
 struct fleet *net_fleet(struct net *net);
+/* How rights on plans are found out (plan_rights.h). */
+const struct plan_rights *net_plan_rights(const struct net *net);
 /* Creates a room and opens its plan. bookmark: of this plan, what the room begins with (room_begin_with); NULL: with
  * the plan's own scene. NULL with problem. */
 struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem);
@@ -113,6 +116,8 @@ NODISCARD bool net_can_write(struct net *net, struct problem *problem);
 struct room *net_replay_create(struct net *net, const struct room *of_room, const char *recording,
                                struct problem *problem);
 size_t net_n_asleep(const struct net *net);
+/* Whether this user may find the sleeping room of this id there. */
+bool net_asleep_is_seen_by(const struct net *net, const char *room_id, const struct identity *who);
 /* Like room_is_listed_to, for a sleeping room; true of each for the machine's person. */
 bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct identity *who);
 /* Like room_document, without members; the one last used is at 0. */

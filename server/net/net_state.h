@@ -8,6 +8,7 @@
 #include "core/base/queue.h"
 #include "server/fleet/fleet.h"
 #include "server/net/net.h"
+#include "server/net/plan_rights.h"
 #include "server/room/room.h"
 #include "server/store/store.h"
 #include "server/wire/identity.h"
@@ -147,7 +148,7 @@ struct net {
     size_t n_audit_waiting; /* rows that are not on disk yet, of all rooms, those under way included */
     uint64_t n_audit_lost;  /* rows that found neither disk nor memory since the last row that did */
     struct net_audit_head audit_head;
-    bool (*role_of)(void *context, const struct identity *who, const char *plan_id, enum wire_member_role *role);
+    struct plan_rights plan_rights;
     bool (*is_still)(void *context, struct identity *who);
     void *rights;
     int64_t still_us;    /* when identities are looked at next */

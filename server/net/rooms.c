@@ -44,7 +44,7 @@ static const struct identity *identity(void *context, void *connection)
 static bool role_of(void *context, const struct room *room, const struct identity *who, enum wire_member_role *role)
 {
     const struct net *net = context;
-    return net->role_of && net->role_of(net->rights, who, room_plan_id(room), role);
+    return plan_rights_role(&net->plan_rights, net->fleet, who, room_plan_id(room), role);
 }
 
 static void send_text(void *context, void *connection, const char *text)
@@ -369,13 +369,19 @@ size_t net_n_asleep(const struct net *net)
     return net->n_asleep;
 }
 
+bool net_asleep_is_seen_by(const struct net *net, const char *room_id, const struct identity *who)
+{
+    const struct asleep_room *room = asleep_find(net, room_id);
+    return room && net_asleep_is_listed_to(net, (size_t)(room - net->asleep), who);
+}
+
 bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct identity *who)
 {
     const struct store_summary *facts = &net->asleep[index].facts;
     enum wire_member_role role;
     if (who->source == IDENTITY_MACHINE || room_people_name(facts->owner, facts->people, who))
         return true;
-    if (!net->role_of || !net->role_of(net->rights, who, facts->plan, &role))
+    if (!plan_rights_role(&net->plan_rights, net->fleet, who, facts->plan, &role))
         return false;
     return facts->is_open || (!facts->owner[0] && role == WIRE_MEMBER_ROLE_PLANNER);
 }

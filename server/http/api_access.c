@@ -1,0 +1,203 @@
+/* Finds out the subject of a call's right, asks access_check, and answers who does not have it. */
+#include "server/http/api_access.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "server/front/address.h"
+#include "server/http/api_handlers.h"
+#include "server/http/api_jobs.h"
+#include "server/http/api_queries.h"
+
+static bool refuse_nobody(struct call *call)
+{
+    struct problem problem;
+    if (strcmp(call->route, "/p/{saved}") == 0 &&
+        id_is_valid(call->ids[0])) { /* an address that people open: after signing in it goes on */
+        char location[96];
+        (void)snprintf(location, sizeof location, "/signin?return=/p/%.63s", call->ids[0]);
+        call_add_header(call, "Location", location);
+        call_answer_nothing(call, 303);
+        return false;
+    }
+    problem_set(&problem, PROBLEM_SIGN_IN, "", "", "nobody has signed in: sign in first");
+    call_add_header(call, "WWW-Authenticate", "Bearer realm=\"Beamroom\"");
+    call_answer_problem(call, &problem);
+    return false;
+}
+
+static bool lacks_right(enum access_right right, struct problem *problem)
+{
+    return problem_set(problem, PROBLEM_FORBIDDEN, "", "role",
+                       "this needs the right \"%s\", which you do not have here", access_rights[right].word);
+}
+
+/* The caller sees that the subject is there. */
+static bool refuse_role(struct call *call, const struct access_route *need)
+{
+    struct problem problem;
+    if (call->identity.source == IDENTITY_NOBODY)
+        return refuse_nobody(call);
+    lacks_right(need->right, &problem);
+    call_answer_problem(call, &problem);
+    return false;
+}
+
+/* ---- plans ------------------------------------------------------------------------------------------------------ */
+
+bool api_access_to_plan(const struct api *api, const struct call *call, enum access_right right, const char *plan_id)
+{
+    return plan_rights_check(api->rights, net_fleet(api->net), &call->identity, right, plan_id);
+}
+
+static bool seat_allows(const struct api *api, const struct call *call, enum access_right right, const char *plan_id);
+
+static bool check_plan(struct api *api, struct call *call, const struct access_route *need, api_again *again)
+{
+    const char *id = call->ids[0];
+    struct fleet_plan found;
+    struct problem problem;
+    const bool is_there = fleet_plan_find(net_fleet(api->net), id, &found);
+    if (is_there && (api_access_to_plan(api, call, need->right, id) || seat_allows(api, call, need->right, id)))
+        return true;
+    if (is_there && (api_access_to_plan(api, call, ACCESS_LOOK, id) || seat_allows(api, call, ACCESS_LOOK, id)))
+        return refuse_role(call, need);
+    if (call->identity.source == IDENTITY_NOBODY)
+        return refuse_nobody(call);
+    if (api_lists_first(api, call, again)) /* as long as it takes for a plan that is not there */
+        return false;
+    fleet_no_plan(net_fleet(api->net), id, &problem);
+    call_answer_problem(call, &problem);
+    return false;
+}
+
+bool api_access_makes_room(const struct api *api, const struct call *call, const char *plan_id, struct problem *problem)
+{
+    struct fleet_plan found;
+    const bool is_there = fleet_plan_find(net_fleet(api->net), plan_id, &found);
+    if (is_there && api_access_to_plan(api, call, ACCESS_MEET, plan_id))
+        return true;
+    return is_there && api_access_to_plan(api, call, ACCESS_LOOK, plan_id)
+               ? lacks_right(ACCESS_MEET, problem)
+               : fleet_no_plan(net_fleet(api->net), plan_id, problem);
+}
+
+/* ---- rooms ------------------------------------------------------------------------------------------------------ */
+
+bool api_access_sees_room(const struct api *api, const struct call *call, const char *room_id)
+{
+    const struct room *room = net_room_find(api->net, room_id);
+    if (call->identity.source == IDENTITY_MACHINE)
+        return true;
+    return room ? room_caller_of(room, &call->identity, call->member).is_here
+                : net_asleep_is_seen_by(api->net, room_id, &call->identity);
+}
+
+/* The role of the caller as a member of the room; of the role wall it is the lowest. */
+static enum access_role role_in(const struct room *room, const struct call *call)
+{
+    static const enum access_role roles[] = {
+        [WIRE_MEMBER_ROLE_WALL] = ACCESS_ROLE_OBSERVER,     [WIRE_MEMBER_ROLE_OBSERVER] = ACCESS_ROLE_OBSERVER,
+        [WIRE_MEMBER_ROLE_REVIEWER] = ACCESS_ROLE_REVIEWER, [WIRE_MEMBER_ROLE_PRESENTER] = ACCESS_ROLE_PRESENTER,
+        [WIRE_MEMBER_ROLE_PLANNER] = ACCESS_ROLE_PLANNER,
+    };
+    const struct room_caller caller = room_caller_of(room, &call->identity, call->member);
+    return caller.is_here ? roles[caller.role] : ACCESS_ROLE_NONE;
+}
+
+/* What a seat in a room on this plan gives on the plan. */
+static bool seat_allows(const struct api *api, const struct call *call, enum access_right right, const char *plan_id)
+{
+    struct access_subject subject = { .kind = ACCESS_SUBJECT_KIND_PLAN };
+    for (size_t i = 0; call->member && i < net_n_rooms(api->net); i++) {
+        const struct room *room = net_room_at(api->net, i);
+        if (strcmp(room_plan_id(room), plan_id) != 0)
+            continue;
+        const enum access_role role = role_in(room, call);
+        subject.room_role = role > subject.room_role ? role : subject.room_role;
+    }
+    return subject.room_role > ACCESS_ROLE_NONE && access_check(NULL, &call->identity, right, &subject);
+}
+
+static bool check_room(struct api *api, struct call *call, const struct access_route *need)
+{
+    struct problem problem;
+    const struct room *room = net_room_find(api->net, call->ids[0]);
+    if (api_access_sees_room(api, call, call->ids[0])) {
+        struct plan_subject plan;
+        if (!room)
+            return true; /* asked again when it is awake */
+        plan_subject_fill(api->rights, net_fleet(api->net), room_plan_id(room), &plan);
+        plan.subject.kind = need->subject;
+        plan.subject.is_closed = true; /* but for those whom it lets in */
+        plan.subject.room_role = role_in(room, call);
+        return access_check(api->rights->access, &call->identity, need->right, &plan.subject) ||
+               refuse_role(call, need);
+    }
+    if (call->identity.source == IDENTITY_NOBODY)
+        return refuse_nobody(call);
+    if (net_rooms_are_known(api->net, &problem))
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
+    call_answer_problem(call, &problem);
+    return false;
+}
+
+/* ---- other subjects --------------------------------------------------------------------------------------------- */
+
+static bool check_job(struct api *api, struct call *call, const struct access_route *need)
+{
+    const struct api_job *job = api_job_find(api, call->ids[0]);
+    struct access_subject subject = { .kind = ACCESS_SUBJECT_KIND_ROOM, .is_closed = true }; /* but for its maker */
+    if (call->identity.source == IDENTITY_NOBODY)
+        return refuse_nobody(call);
+    if (job && job->user[0] && strcmp(job->user, call->identity.user) == 0)
+        subject.room_role = ACCESS_ROLE_PLANNER;
+    if (job && access_check(api->rights->access, &call->identity, need->right, &subject))
+        return true;
+    api_job_answer_missing(call);
+    return false;
+}
+
+static bool is_of_this_machine(const struct call *call)
+{
+    struct address client;
+    return address_read(call->client, strlen(call->client), &client) && address_is_loopback(&client);
+}
+
+static bool check_server(struct api *api, struct call *call, const struct access_route *need)
+{
+    const struct access_subject subject = { .kind = need->subject };
+    return access_check(api->rights->access, &call->identity, need->right, &subject) || refuse_role(call, need);
+}
+
+static bool check_subject(struct api *api, struct call *call, const struct access_route *need, api_again *again)
+{
+    switch (need->subject) {
+    case ACCESS_SUBJECT_KIND_PLAN: return check_plan(api, call, need, again);
+    case ACCESS_SUBJECT_KIND_ROOM: return check_room(api, call, need);
+    case ACCESS_SUBJECT_KIND_JOB: return check_job(api, call, need);
+    case ACCESS_SUBJECT_KIND_NONE:
+    case ACCESS_SUBJECT_KIND_SERVER:
+    case ACCESS_SUBJECT_KIND_UPLOADS: return check_server(api, call, need);
+    case ACCESS_SUBJECT_KIND_RECORD:
+    case ACCESS_SUBJECT_KIND_SAVED:
+    case ACCESS_SUBJECT_KIND_NAMED: /* its handler asks for the plan, once that is found: api_access_to_plan */
+        return call->identity.source != IDENTITY_NOBODY || refuse_nobody(call);
+    case ACCESS_N_SUBJECT_KINDS: break;
+    }
+    return refuse_role(call, need);
+}
+
+bool api_access_allows(struct api *api, struct call *call, const struct api_route *route, api_again *again)
+{
+    const struct access_route *need = access_route_find(route->method, route->path);
+    if (call->identity.source == IDENTITY_MACHINE || (need && need->right == ACCESS_FREE))
+        return true;
+    if (!need)
+        return refuse_nobody(call);
+    if (need->right == ACCESS_SERVE && strcmp(need->path, "/metrics") == 0 && is_of_this_machine(call))
+        return true;
+    if (call->identity.source == IDENTITY_NOBODY && !call->member)
+        return refuse_nobody(call);
+    return check_subject(api, call, need, again);
+}
