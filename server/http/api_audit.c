@@ -52,10 +52,18 @@ void api_audit_add_head(const struct api *api, struct call *call)
     call_add_header(call, "Audit-Head", text);
 }
 
+/* Guests of a room take no files away. */
+static bool may_take_away(const struct api *api, const struct call *call, struct problem *problem)
+{
+    const struct room *room = call->ids[0] ? net_room_find(api->net, call->ids[0]) : NULL;
+    return !room || !call->member || !room_caller_of(room, &call->identity, call->member).is_guest ||
+           problem_set(problem, PROBLEM_FORBIDDEN, "", "role", "a guest takes no files away");
+}
+
 bool api_audit_export(struct api *api, struct call *call, const char *what)
 {
     struct problem problem;
-    if (!api_audit_has_place(api, &problem)) {
+    if (!may_take_away(api, call, &problem) || !api_audit_has_place(api, &problem)) {
         call_answer_problem(call, &problem);
         return false;
     }

@@ -88,7 +88,8 @@ static const struct person *find_person(const struct admission *admission, const
     return found;
 }
 
-bool admission_role(const struct room *room, const struct identity *who, enum wire_member_role *role)
+/* Like admission_role, and true of who was removed. */
+static bool has_own_right(const struct room *room, const struct identity *who, enum wire_member_role *role)
 {
     const struct admission *admission = room->admission;
     if (!who_is_user(who) || !room->callbacks.role_of ||
@@ -111,6 +112,13 @@ static int find_removed(const struct admission *admission, const char *key)
     while (i < admission->n_removed && (!key[0] || strcmp(admission->removed[i].key, key) != 0))
         i++;
     return i < admission->n_removed ? i : -1;
+}
+
+bool admission_role(const struct room *room, const struct identity *who, enum wire_member_role *role)
+{
+    char key[WHO_KEY];
+    who_key(who, "", key);
+    return has_own_right(room, who, role) && find_removed(room->admission, key) < 0;
 }
 
 static void let_in_again(struct room *room, int index)
@@ -240,7 +248,7 @@ struct admitted admission_decide(struct room *room, const struct identity *who, 
         return by_link(room, who, hello->link, in);
     if (!who_is_machine(who) && !who_is_user(who))
         return refuse(in, "sign-in", needs_sign_in);
-    if (!who_is_machine(who) && !admission_role(room, who, &in.role))
+    if (!who_is_machine(who) && !has_own_right(room, who, &in.role))
         return refuse(in, "", is_closed);
     return refuses(room, in.key, NULL) ? refuse(in, "removed", was_removed) : in;
 }
@@ -371,7 +379,7 @@ bool admission_patch(struct room *room, const cJSON *patch, enum wire_member_rol
     }
     for (size_t i = 0; i < n; i++) {
         char key[WHO_KEY];
-        (void)snprintf(key, sizeof key, "user:%s", people[i].who);
+        who_key_of_user(people[i].who, key);
         const int index = find_removed(admission, key);
         if (index >= 0)
             let_in_again(room, index);

@@ -17,7 +17,7 @@ struct admitted { /* how a connection enters */
 void admission_init(struct room *room); /* with the room */
 void admission_free(struct room *room);
 
-/* The role that this identity, which has signed in, has in the room without a link. False: none. */
+/* The role that this identity, which has signed in, has in the room without a link. False: none, or it was removed. */
 bool admission_role(const struct room *room, const struct identity *who, enum wire_member_role *role);
 /* How the connection enters; seat NULL: as a new member, else as this one, which it has proved to be. */
 struct admitted admission_decide(struct room *room, const struct identity *who, const struct message_hello *hello,

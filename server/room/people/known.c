@@ -7,6 +7,7 @@
 
 #include "core/base/mem.h"
 #include "server/room/state/roles.h"
+#include "server/room/state/who.h"
 
 void known_init(struct room *room)
 {
@@ -41,6 +42,7 @@ void known_read(const struct store_member *kept, struct member *member)
     member->role = WIRE_MEMBER_ROLE_REVIEWER; /* of a member from before there were roles */
     (void)role_of_word(kept->role, &member->role);
     (void)snprintf(member->user, sizeof member->user, "%s", kept->user);
+    who_key_of_user(kept->user, member->person); /* of others it is not kept */
     (void)snprintf(member->link, sizeof member->link, "%s", kept->link);
     member->is_guest = kept->is_guest;
     for (int i = 0; i < ROLES_N_COLORS; i++) {

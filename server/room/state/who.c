@@ -21,10 +21,15 @@ const struct identity *who_acts(const struct room *room, const struct member *me
     return who_connects(room, member->connection);
 }
 
+void who_key_of_user(const char *user, char key[WHO_KEY])
+{
+    (void)snprintf(key, WHO_KEY, "%s%s", user[0] ? "user:" : "", user);
+}
+
 void who_key(const struct identity *who, const char *person, char key[WHO_KEY])
 {
     if (who_is_user(who))
-        (void)snprintf(key, WHO_KEY, "user:%s", who->user);
+        who_key_of_user(who->user, key);
     else
         (void)snprintf(key, WHO_KEY, "%s%s", who_is_machine(who) || !person[0] ? "" : "guest:", person);
 }
