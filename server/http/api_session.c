@@ -49,7 +49,7 @@ static cJSON *session_json(struct api *api, const struct identity *identity)
         auth_session_times(api->auth, identity, &times);
     add_time(json, "idle_ends_ms", times.idle_ends_ms);
     add_time(json, "ends_ms", identity->source == IDENTITY_PROXY ? 0 : times.ends_ms); /* a proxy does not say */
-    cJSON_AddBoolToObject(json, "guest_links", false);
+    cJSON_AddBoolToObject(json, "guest_links", net_admits_guests(api->net));
     return json;
 }
 

@@ -303,7 +303,7 @@ static void enter_again(struct net *net)
 {
     struct fleet_plan plan;
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
-        if (visitor->room && !visitor->holds_plan &&
+        if (visitor->room && !visitor->holds_plan && !visitor->waits &&
             fleet_plan_find(net->fleet, room_plan_id(visitor->room->room), &plan))
             bridge_enter(visitor);
 }

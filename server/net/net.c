@@ -167,7 +167,29 @@ static bool has_room(void *context, const struct handshake *handshake)
 {
     const char *id = handshake->room_id;
     struct problem problem;
+    if (handshake->identity.source !=
+        IDENTITY_MACHINE) /* a room that is not there is like one that is closed to them */
+        return id[0] != 0;
     return rooms_find(context, id) || asleep_find(context, id) || !net_rooms_are_known(context, &problem);
+}
+
+/* Says bye to who has spoken to a room that is not there, as such a room says it to those it is closed to. */
+static void refuse_absent(struct visitor *visitor)
+{
+    visitor->is_refused = true;
+    if (visitor->identity.source == IDENTITY_NOBODY)
+        ws_bye_code(visitor->connection, WS_CLOSE_POLICY, "sign-in", ROOM_NEEDS_SIGN_IN, -1);
+    else
+        ws_bye(visitor->connection, WS_CLOSE_NORMAL, ROOM_IS_CLOSED, -1);
+}
+
+/* A plan is loaded for members, not for whoever knows the address of a room. */
+static void enter_if_member(struct visitor *visitor)
+{
+    if (!visitor->waits || !visitor->room || !room_has_member(visitor->room->room, visitor->connection))
+        return;
+    visitor->waits = false;
+    bridge_enter(visitor);
 }
 
 static void free_early(struct visitor *visitor)
@@ -196,9 +218,11 @@ static void let_in(void *context, const char *id, const struct problem *problem)
                    problem && problem->type != PROBLEM_NOT_FOUND ? WS_RETRY_MS : -1);
             continue;
         }
-        bridge_enter(visitor);
+        if (!visitor->waits)
+            bridge_enter(visitor);
         for (const struct early_text *text = visitor->early; text && visitor->room; text = text->next)
             room_text_came(room->room, visitor->connection, text->text, text->n, clock_now_us());
+        enter_if_member(visitor);
         free_early(visitor);
         schedule_settle(room);
     }
@@ -231,15 +255,18 @@ static void connection_opened(void *context, struct ws_connection *connection, c
     *visitor = (struct visitor){
         .next = net->visitors, .connection = connection, .room = rooms_find(net, id), .identity = handshake->identity
     };
+    visitor->waits = handshake->identity.source != IDENTITY_MACHINE;
     net->visitors = visitor;
     ws_set_owner(connection, visitor);
     if (!visitor->room && asleep_find(net, id)) {
         (void)snprintf(visitor->asleep, sizeof visitor->asleep, "%s", id);
         asleep_wake(net, id, let_in, net);
-    } else if (visitor->room)
+    } else if (visitor->room && !visitor->waits)
         bridge_enter(visitor);
+    else if (visitor->room || (visitor->waits && net_rooms_are_known(net, &problem)))
+        return; /* what comes of it depends on the hello */
     else if (net_rooms_are_known(net, &problem))
-        ws_bye(connection, WS_CLOSE_NORMAL, "the room is closed", -1);
+        ws_bye(connection, WS_CLOSE_NORMAL, ROOM_IS_CLOSED, -1);
     else
         ws_bye(connection, WS_CLOSE_NORMAL, problem.detail, problem.retry_after_ms);
 }
@@ -253,9 +280,12 @@ static void message_received(void *context, struct ws_connection *connection, en
     struct net_room *room = visitor->room;
     if (visitor->asleep[0])
         keep_early(visitor, text, n);
+    else if (!room && visitor->waits && !visitor->is_refused)
+        refuse_absent(visitor);
     if (!room)
         return;
     schedule_room_at(room, room_text_came(room->room, connection, text, n, clock_now_us()));
+    enter_if_member(visitor);
     room->net->is_spoken_to = true;
 }
 

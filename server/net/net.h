@@ -115,6 +115,7 @@ NODISCARD bool net_can_write(struct net *net, struct problem *problem);
 /* A new room on the plan of that room, which plays this recording of it. NULL with problem. */
 struct room *net_replay_create(struct net *net, const struct room *of_room, const char *recording,
                                struct problem *problem);
+bool net_admits_guests(const struct net *net); /* links may let in who has not signed in */
 size_t net_n_asleep(const struct net *net);
 /* Whether this user may find the sleeping room of this id there. */
 bool net_asleep_is_seen_by(const struct net *net, const char *room_id, const struct identity *who);

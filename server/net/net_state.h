@@ -24,6 +24,8 @@ struct visitor { /* one WebSocket connection, from its opening on */
     struct early_text *early; /* what it has said meanwhile */
     size_t n_early_bytes;
     bool holds_plan; /* fleet_hold, on the room's plan */
+    bool waits;      /* the plan is not held before it is a member: others than the machine's person */
+    bool is_refused; /* bye was said, for want of a room */
     struct identity identity;
 };
 

@@ -364,6 +364,11 @@ void net_room_wake(struct net *net, const char *id,
     asleep_wake(net, id, done, context);
 }
 
+bool net_admits_guests(const struct net *net)
+{
+    return net->limits.admits_guests;
+}
+
 size_t net_n_asleep(const struct net *net)
 {
     return net->n_asleep;

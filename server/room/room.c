@@ -45,7 +45,7 @@
 #include "server/wire/json_merge.h"
 #include "server/wire/message.h"
 
-static const char room_is_closed[] = "the room is closed";
+static const char room_is_closed[] = ROOM_IS_CLOSED;
 static const char hello_first[] = "the first message must be hello";
 
 /* ---- life ------------------------------------------------------------------------------------------------------- */

@@ -16,8 +16,7 @@
 
 enum { WHO_BYTES = STORE_USER + 1, MAX_DIGITS = 9 };
 
-static const char is_closed[] = "the room is closed"; /* as of a room that is not there */
-static const char needs_sign_in[] = "sign in to enter this room";
+static const char is_closed[] = ROOM_IS_CLOSED, needs_sign_in[] = ROOM_NEEDS_SIGN_IN;
 static const char was_removed[] = "you were removed from this room: ask to be let in again";
 
 struct person {          /* who may come in without a link */

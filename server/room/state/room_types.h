@@ -46,6 +46,10 @@ enum {
     ROOM_DISPLAY_RETRY_MS = 5000
 };
 
+/* Why bye is said to those a room is closed to, as if it were not there; and to who has not signed in. */
+#define ROOM_IS_CLOSED "the room is closed"
+#define ROOM_NEEDS_SIGN_IN "sign in to enter this room"
+
 struct message; /* wire_gen.h */
 struct room;
 struct log_batch; /* meeting_log.h */
