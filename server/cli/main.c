@@ -17,13 +17,15 @@ static const struct command {
     { "info", "print what a plan holds and what was noticed while reading it", command_info },
     { "phantom", "write the demo plan, a made-up head", command_phantom },
     { "render", "draw one picture of a plan", command_render },
+    { "token", "make, list and revoke tokens of scripts at a running daemon", command_token },
+    { "user", "add, disable and list people who sign in at a running daemon", command_user },
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *out)
 {
     fputs("usage: beamroom COMMAND [OPTION]...\n"
-          "Works on boron neutron capture therapy plans without the daemon.\n\n",
+          "Works on boron neutron capture therapy plans without the daemon; manages who signs in there.\n\n",
           out);
     for (int i = 0; i < N_COMMANDS; i++)
         fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].about);

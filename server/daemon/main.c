@@ -332,6 +332,23 @@ static bool start_tls(struct service *service, const struct options *options, st
     return service->tls != NULL;
 }
 
+/* The sockets of proxies, and where people sign in the one of the data folder, by which `beamroom user` and `beamroom
+ * token` reach the daemon. Returns their number. */
+static size_t fill_sockets(const struct options *options, struct local_socket sockets[FRONT_ALL_SOCKETS])
+{
+    size_t n = options->n_sockets;
+    memcpy(sockets, options->sockets, sizeof options->sockets);
+    if (!options_signs_in(options))
+        return n;
+    struct local_socket *control = &sockets[n];
+    *control = (struct local_socket){ .mode = 0600, .is_control = true };
+    const int n_path = snprintf(control->path, sizeof control->path, "%s/" CONTROL_SOCKET_NAME, options->data_folder);
+    if (n_path < (int)sizeof control->path)
+        return n + 1;
+    log_warn("the path of the data folder is too long for a socket, so users and tokens are managed over HTTP alone");
+    return n;
+}
+
 /* Where nobody can sign in yet, the log has the address that makes the first administrator. */
 static void say_first(struct auth *auth, const char *url)
 {
@@ -396,9 +413,10 @@ static bool serve(struct options *options, struct error *err)
                                                .auth = service.sign_in.auth,
                                                .is_alone = is_alone };
     struct net *net = is_signing_in && start_tls(&service, options, err) ? net_create(&net_options, err) : NULL;
+    struct local_socket sockets[FRONT_ALL_SOCKETS];
     const struct front_options front_options = { .listen = listen,
-                                                 .sockets = options->sockets,
-                                                 .n_sockets = options->n_sockets,
+                                                 .sockets = sockets,
+                                                 .n_sockets = fill_sockets(options, sockets),
                                                  .proxy = proxy,
                                                  .identity_names = identity_names,
                                                  .takes_identity = options->is_proxied,

@@ -34,13 +34,13 @@ enum {
 struct arrival { /* a connection before it has a link */
     int socket;
     struct address peer;
-    bool is_plain;                /* of front_take_plain */
-    bool is_local, is_from_proxy; /* as in struct front_link */
-    struct local_process runs_as; /* is_local: the process at the other end */
+    bool is_plain;                            /* of front_take_plain */
+    bool is_local, is_from_proxy, is_control; /* as in struct front_link */
+    struct local_process runs_as;             /* is_local: the process at the other end */
 };
 
 static char wake_tag, library_tag,
-    listener_tags[1 + FRONT_MAX_SOCKETS]; /* their addresses mark events of descriptors */
+    listener_tags[1 + FRONT_ALL_SOCKETS]; /* their addresses mark events of descriptors */
 
 /* ---- the set of links ------------------------------------------------------------------------------------------- */
 
@@ -78,6 +78,7 @@ static struct front_link *create_link(struct front *front, const struct arrival 
                                  .peer = arrival->peer,
                                  .is_local = arrival->is_local,
                                  .is_from_proxy = arrival->is_from_proxy,
+                                 .is_control = arrival->is_control,
                                  .is_first = true,
                                  .client_readable = true };
     link->head_us = link->moved_us = clock_now_us();
@@ -128,7 +129,7 @@ static void begin_link(struct front *front, const struct arrival *arrival)
     (void)setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on); /* answers are written in few large pieces */
     if (arrival->is_plain)
         refuse_plain(link);
-    else if (arrival->is_local && !arrival->is_from_proxy)
+    else if (arrival->is_local && !arrival->is_from_proxy && !arrival->is_control)
         refuse_stranger(link, &arrival->runs_as);
     front_link_advance(link);
     if (link->state == LINK_HEAD && link->is_first && !may_wait)
@@ -147,10 +148,13 @@ static bool watch(struct front *front, int fd, void *tag)
     return fd >= 0 && epoll_ctl(front->epoll, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-static void accepted(struct front *front, bool is_local, int socket, const struct sockaddr_storage *address)
+static void accepted(struct front *front, size_t which, int socket, const struct sockaddr_storage *address)
 {
+    const bool is_local = which > 0;
     struct arrival arrival = { .socket = socket, .peer = address_of_peer(address), .is_local = is_local };
-    if (is_local)
+    if (is_local && front->options.sockets[which - 1].is_control)
+        arrival.is_control = local_peers_are_own(socket, &arrival.runs_as);
+    else if (is_local)
         arrival.is_from_proxy = local_peers_have(&front->options.proxy, socket, &arrival.runs_as);
     if (front->options.decrypt && !is_local)
         front->options.decrypt(front->options.context, socket, &arrival.peer);
@@ -160,7 +164,7 @@ static void accepted(struct front *front, bool is_local, int socket, const struc
 
 static void watch_listeners(struct front *front, bool is_watched)
 {
-    for (size_t i = 0; i <= FRONT_MAX_SOCKETS; i++) {
+    for (size_t i = 0; i <= FRONT_ALL_SOCKETS; i++) {
         if (front->listeners[i] < 0)
             continue;
         (void)epoll_ctl(front->epoll, EPOLL_CTL_DEL, front->listeners[i], NULL);
@@ -178,7 +182,7 @@ static void accept_some(struct front *front, size_t which)
         int socket =
             accept4(front->listeners[which], (struct sockaddr *)&address, &n_address, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket >= 0) {
-            accepted(front, which > 0, socket, &address);
+            accepted(front, which, socket, &address);
         } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
             log_warn("front: %s", strerror(errno));
             watch_listeners(front, false);
@@ -211,7 +215,7 @@ static void take_queued(struct front *front)
 
 static void close_listeners(struct front *front)
 {
-    for (size_t i = 0; i <= FRONT_MAX_SOCKETS; i++) {
+    for (size_t i = 0; i <= FRONT_ALL_SOCKETS; i++) {
         if (front->listeners[i] < 0)
             continue;
         if (i > 0) /* while it listens, so that it is not the file of another daemon, started meanwhile */
@@ -437,7 +441,7 @@ struct front *front_create(const struct front_options *options, struct error *er
     websocket_count_init(&front->websockets);
     front->taken = queue_create(FRONT_MAX_TAKEN, taken_drop);
     front->adopting = gate_create();
-    for (size_t i = 0; i <= FRONT_MAX_SOCKETS; i++)
+    for (size_t i = 0; i <= FRONT_ALL_SOCKETS; i++)
         front->listeners[i] = -1;
     front->epoll = epoll_create1(EPOLL_CLOEXEC);
     front->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
@@ -458,8 +462,13 @@ static bool open_listeners(struct front *front, struct error *err)
         (void)snprintf(front->url, sizeof front->url, "unix:%s", options->sockets[0].path);
     bool ok = !options->listen || front->listeners[0] >= 0;
     for (size_t i = 0; ok && i < options->n_sockets; i++) {
-        front->listeners[1 + i] = local_socket_open(&options->sockets[i], err);
-        ok = front->listeners[1 + i] >= 0;
+        struct error found = { 0 };
+        front->listeners[1 + i] = local_socket_open(&options->sockets[i], &found);
+        if (front->listeners[1 + i] < 0 && options->sockets[i].is_control)
+            log_warn("without %s, users and tokens are managed over HTTP alone: %s", options->sockets[i].path,
+                     found.text);
+        else if (front->listeners[1 + i] < 0)
+            ok = error_set(err, found.code, "%s", found.text);
     }
     return ok;
 }

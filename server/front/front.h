@@ -25,7 +25,8 @@ enum {
     /* WebSockets, in all (less than WS_MAX_CONNECTIONS, the limit of server/ws) and from one address. */
     FRONT_MAX_WEBSOCKETS = 1500,
     FRONT_MAX_WEBSOCKETS_PER_ADDRESS = 200,
-    FRONT_MAX_SOCKETS = 4, /* Unix sockets it listens at */
+    FRONT_MAX_SOCKETS = 4, /* Unix sockets of proxies */
+    FRONT_ALL_SOCKETS = FRONT_MAX_SOCKETS + 1,
     FRONT_MAX_TAKEN = 512, /* sockets given to front_take that the thread has not taken yet */
     FRONT_RETRY_MS = 5000, /* told to clients that are refused for a limit */
 
@@ -52,7 +53,7 @@ struct front_link; /* a client's connection */
 struct front_options {
     /* "127.0.0.1:8080", "[::1]:0"; a numeric address, port 0 lets the system choose. NULL: only the sockets */
     const char *listen;
-    struct local_socket *sockets; /* FRONT_MAX_SOCKETS at most; HTTP without TLS */
+    struct local_socket *sockets; /* FRONT_ALL_SOCKETS at most; HTTP without TLS */
     size_t n_sockets;
     struct local_peers proxy; /* the only ones who are answered at the sockets; their X-Forwarded-For is believed */
     const char *const *identity_names; /* as in struct head_rules; NULL: head_identity_names */

@@ -35,6 +35,7 @@ bool front_identify(struct front_link *link, const struct head_request *request,
                                              .groups = keep(&room, request->identity[HEAD_GROUPS]),
                                              .auth_time = keep(&room, request->identity[HEAD_AUTH_TIME]),
                                              .is_from_proxy = link->is_from_proxy,
+                                             .is_control = link->is_control,
                                              .is_secure =
                                                  options->decrypt || link->is_local || address_is_loopback(&link->peer),
                                              .address = address };

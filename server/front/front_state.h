@@ -29,6 +29,7 @@ struct front_link {
     struct address peer, counted, asked_by; /* asked_by: of the present request, behind trusted proxies */
     struct identity identity;               /* of who makes the present request */
     bool is_local, is_from_proxy;           /* it came by a Unix socket; of the proxy's user or group */
+    bool is_control;                        /* by the control socket, of the daemon's user or root */
     bool is_first;                          /* no head of this connection has been whole yet */
     bool is_counted, is_touched;
     bool is_started;                                    /* the library took the connection: it will report its end */
@@ -57,7 +58,7 @@ struct front {
     struct front_library library;
     struct queue *taken;                  /* from front_take */
     struct gate *adopting;                /* passed by each call of options.adopt; closed by front_close */
-    int listeners[1 + FRONT_MAX_SOCKETS]; /* TCP, then the Unix sockets; -1: none */
+    int listeners[1 + FRONT_ALL_SOCKETS]; /* TCP, then the Unix sockets; -1: none */
     int epoll, wake_fd;                   /* wake_fd: eventfd, written to wake the thread */
     int64_t accept_us; /* descriptors ran out: nothing is accepted before; 0: listeners are watched */
     pthread_t thread;

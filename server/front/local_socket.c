@@ -148,7 +148,7 @@ bool local_peers_find(const char *name, struct local_peers *peers, struct error 
            error_set(err, ERROR_NOT_FOUND, "--proxy-user %.64s: there is neither such a user nor such a group", name);
 }
 
-bool local_peers_have(const struct local_peers *peers, int socket, struct local_process *found)
+static bool find_process(int socket, struct local_process *found)
 {
     struct ucred ids;
     socklen_t n = sizeof ids;
@@ -156,5 +156,16 @@ bool local_peers_have(const struct local_peers *peers, int socket, struct local_
     if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &ids, &n) != 0)
         return false;
     *found = (struct local_process){ ids.uid, ids.gid };
-    return (peers->has_user && ids.uid == peers->user) || (peers->has_group && ids.gid == peers->group);
+    return true;
+}
+
+bool local_peers_have(const struct local_peers *peers, int socket, struct local_process *found)
+{
+    return find_process(socket, found) &&
+           ((peers->has_user && found->user == peers->user) || (peers->has_group && found->group == peers->group));
+}
+
+bool local_peers_are_own(int socket, struct local_process *found)
+{
+    return find_process(socket, found) && (found->user == 0 || found->user == geteuid());
 }

@@ -11,7 +11,8 @@ struct local_socket {
     char path[LOCAL_SOCKET_MAX_PATH + 1];
     char group[LOCAL_SOCKET_MAX_GROUP + 1]; /* who may connect beside the daemon's user; "": the daemon's own group */
     mode_t mode;
-    dev_t device; /* of the file, once it is open: so that no other one is removed */
+    bool is_control; /* not for a proxy: whoever runs as the daemon's user or root is the administrator there */
+    dev_t device;    /* of the file, once it is open: so that no other one is removed */
     ino_t number;
 };
 
@@ -40,3 +41,5 @@ void local_socket_remove(const struct local_socket *local); /* the file, before 
 NODISCARD bool local_peers_find(const char *name, struct local_peers *peers, struct error *err);
 /* True if the process that connected runs as that user, or with that group as its own. found: what it runs as. */
 bool local_peers_have(const struct local_peers *peers, int socket, struct local_process *found);
+/* True if it runs as the daemon's user or as root. */
+bool local_peers_are_own(int socket, struct local_process *found);

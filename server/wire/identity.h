@@ -5,6 +5,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Socket in the data folder: whoever may open it is the administrator. */
+#define CONTROL_SOCKET_NAME "control.sock"
+
 enum {
     IDENTITY_MAX_GROUPS = 32,
     IDENTITY_MAX_USER = 64, /* bytes of a user's id, and of a group's */
