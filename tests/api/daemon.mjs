@@ -81,7 +81,7 @@ export async function call(url, method = 'GET', body, headers = {}) {
     body: body === undefined || typeof body === 'string' ? body : JSON.stringify(body),
   });
   const type = answer.headers.get('content-type') ?? '';
-  const isEndless = type.startsWith('multipart/x-mixed-replace');
+  const isEndless = /^(multipart\/x-mixed-replace|text\/event-stream)/.test(type);
   if (isEndless) await answer.body.cancel();
   const text = isEndless ? '' : await answer.text();
   const json = /^application\/(.*\+)?json\b/.test(type) && text ? heldToSentences(parseStrict(text)) : undefined;
