@@ -128,10 +128,11 @@ static void was_read(void *context, const struct store_audit_row *rows, size_t n
         answer_page(call, rows, n, next_n);
 }
 
-/* Everybody who can reach a server where nobody signs in counts as the same person. */
+/* Who has signed in has the right, which was asked for. Everybody who can reach a server where nobody signs in counts
+ * as the same person. */
 static bool may_read(const struct api *api, const struct call *call, struct problem *problem)
 {
-    return api_is_of_this_machine(api, call) ||
+    return call->identity.source != IDENTITY_MACHINE || api_is_of_this_machine(api, call) ||
            problem_set(problem, PROBLEM_FORBIDDEN, "", "audit",
                        "the audit is given only to the person at the server's own machine (a listener on 127.0.0.1 or "
                        "[::1], without --open-to-everybody), as nobody signs in here");

@@ -7,11 +7,11 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
 
-/* Nobody signs in here, so everybody who can reach the server counts as the same person: names are given only where
- * that is the person at this machine. */
+/* Who has signed in has the right, which was asked for. Where nobody signs in, everybody who can reach the server
+ * counts as the same person: names are given only where that is the person at this machine. */
 static bool may_read(const struct api *api, const struct call *call, struct problem *problem)
 {
-    if (!api_is_of_this_machine(api, call))
+    if (call->identity.source == IDENTITY_MACHINE && !api_is_of_this_machine(api, call))
         return problem_set(problem, PROBLEM_FORBIDDEN, "", "identity",
                            "who a patient is is told only to the person at the server's own machine (a listener on "
                            "127.0.0.1 or [::1], without --open-to-everybody), as nobody signs in here");

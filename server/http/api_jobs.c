@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/auth/auth.h"
 #include "server/http/api_handlers.h"
 
 static void update_upload(struct api *api, struct api_job *job)
@@ -23,8 +24,11 @@ static void update_upload(struct api *api, struct api_job *job)
     job->state = (enum api_job_state)states[upload.state];
     (void)snprintf(job->phase, sizeof job->phase, "%s", upload.phase);
     job->percent = upload.percent;
-    if (upload.plan_id)
+    if (upload.plan_id && !job->plan_id[0]) {
         (void)snprintf(job->plan_id, sizeof job->plan_id, "%s", upload.plan_id);
+        if (api->auth && job->user[0])
+            auth_set_owner(api->auth, job->plan_id, job->user);
+    }
     if (upload.problem)
         job->problem = *upload.problem;
 }

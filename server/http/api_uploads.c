@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "core/base/log.h"
+#include "server/auth/auth.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 
@@ -64,8 +65,11 @@ void api_plan_delete(struct api *api, struct call *call)
         net_audit_by(api->net, &call->identity, call->client, "", call->ids[0], "deleted", detail);
         net_rooms_delete_of_plan(api->net, call->ids[0], call->client, reason);
     }
-    if (fleet_remove_plan(fleet, call->ids[0], &problem))
-        call_answer_nothing(call, 204);
-    else
+    if (!fleet_remove_plan(fleet, call->ids[0], &problem)) {
         call_answer_problem(call, &problem);
+        return;
+    }
+    if (api->auth)
+        auth_set_owner(api->auth, call->ids[0], "");
+    call_answer_nothing(call, 204);
 }
