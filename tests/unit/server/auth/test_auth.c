@@ -311,17 +311,10 @@ static void a_proxy_names_people_and_nobody_else_does(void **state)
 static void names_of_a_proxy_that_cannot_be_read_are_refused(void **state)
 {
     (void)state;
-    static const char *const users[] = { "a b",
-                                         "a,b",
-                                         "@ann",
-                                         "a\nb",
-                                         "a\xff",
-                                         "\xc3\x28",
-                                         "a\xe2\x80\xae"
-                                         "b",
-                                         "\xed\xa0\x80",
-                                         "\xf4\x90\x80\x80",
-                                         "\xc0\xaf" };
+    static const char *const users[] = {
+        "a b",     "a,b", "@ann", "a\nb", "a\xff", "\xc3\x28", "a\xe2\x80\xaeg", "\xed\xa0\x80", "\xf4\x90\x80\x80",
+        "\xc0\xaf"
+    };
     struct identity identity;
     struct problem problem;
     char text[400];
