@@ -50,6 +50,9 @@ const begun = told.then(async (facts) => {
   if (!facts || !(facts.sign_in.length || facts.open_to_everybody)) return;
   const { Session } = await import('./features/session/session.js');
   session.value = new Session(facts, { api, ownName, entered: () => entered && { ...entered, ...remembered(entered.room) }, signIn });
+  const { id } = placeOf(location);
+  const { link, member } = remembered(id);
+  if (facts.sign_in.length && !facts.identity && !link && !member) signIn(); // nothing lets anybody in
 });
 /** Asks who this is; what this page shows opens afterwards. */
 function signIn() {

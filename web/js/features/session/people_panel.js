@@ -101,8 +101,8 @@ export function peoplePanel(state, { room }, hasGuests) {
     if (event.key === 'Escape') close();
   };
   return html`<section class=${`card people ${state.mayManage ? '' : 'narrow'}`} role="dialog" tabindex="-1" aria-labelledby="people-head" @keydown=${onKey}>
-    <header><h2 id="people-head">${say.peopleIn}</h2><span class="dim">${say.room({ room: room.id })}</span>
-      <button class="icon-button" aria-label=${say.close} title=${say.close} @click=${close}>${icon('close')}</button></header>
+    <div class="people-head"><h2 id="people-head">${say.peopleIn}</h2><span class="dim">${say.room({ room: room.id })}</span>
+      <button class="icon-button" aria-label=${say.close} title=${say.close} @click=${close}>${icon('close')}</button></div>
     <div class="people-columns"><div><h3>${say.here} <span class="dim">${members.length}</span></h3>
       <ul class="people-here">${repeat(
         members,

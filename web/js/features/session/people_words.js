@@ -70,7 +70,7 @@ export const say = sentences('session.people', {
   until: 'until {time}',
   forOne: 'for one',
   end: 'End it',
-  endOf: 'End the link {name}',
+  endOf: 'End it: {name}',
   endAsks: '{n} who came by it {n|is|are} put out.',
   endNow: 'End it now',
   endNote: 'Ending a link puts out who came by it.',

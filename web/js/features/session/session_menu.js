@@ -43,8 +43,8 @@ export function menu(session) {
     session.isMenuOpen.value = false;
     event.currentTarget.querySelector('button').focus();
   };
-  return html`${chip(session)}<span class="anchor session-menu" @keydown=${onKey}><button class="ghost session-person" aria-haspopup="true" aria-expanded=${isOpen} aria-label=${say.signedIn({ name })} title=${say.signedIn({ name })} @click=${set(!isOpen)}>
-      <span class="avatar own small" aria-hidden="true">${initials(name)}</span><span class="session-name">${name}</span>${icon('chevronDown', 12)}</button>
+  return html`${chip(session)}<span class="anchor session-menu" @keydown=${onKey}><button class="ghost session-person" aria-haspopup="true" aria-expanded=${isOpen} title=${say.signedIn({ name })} @click=${set(!isOpen)}>
+      <span class="avatar own small" aria-hidden="true">${initials(name)}</span><span class="hidden">${say.signedIn({ name })}</span><span class="session-name" aria-hidden="true">${name}</span>${icon('chevronDown', 12)}</button>
     ${
       isOpen
         ? html`<div class="popover session-about"><p><b>${name}</b></p><p class="dim">${person.user}, ${sourceWords(person)}</p>
