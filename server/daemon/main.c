@@ -380,6 +380,7 @@ static bool serve(struct options *options, struct error *err)
                    .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
                    .renderer_path = options->renderer_path,
                    .gl = options->gl ? options->gl : "auto",
+                   .hides_folders = options_signs_in(options),
                    .stub_renderer = options->stub_renderer,
                    .max_renderer_bytes = (uint64_t)options->max_renderer_mib << 20,
                    .max_renderers = (int)options->max_renderers,

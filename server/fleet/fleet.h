@@ -55,6 +55,7 @@ struct fleet_options {
     uint64_t max_unpacked_bytes; /* of one uploaded archive; 0: 8 GiB */
     const char *renderer_path;   /* path of beamroom-render; NULL: beside the daemon's own executable */
     const char *gl;              /* "auto", ...; passed on to the renderer */
+    bool hides_folders;          /* ids of plans are hashes of their paths, and plans are not called by their folders */
     bool stub_renderer;          /* --stub: no GL at all, for tests */
     uint64_t max_cache_bytes;    /* of data/cache, all plans together; 0: 16 GiB */
     uint64_t disk_reserve_bytes; /* left free on the disk by caches; 0: they may fill it */

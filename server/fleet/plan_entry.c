@@ -67,6 +67,9 @@ struct plan_entry *plan_entry_find(const struct fleet *fleet, const char *id)
     for (size_t i = 0; i < fleet->n_plans; i++)
         if (!fleet->plans[i]->is_removed && strcmp(fleet->plans[i]->id, id) == 0)
             return fleet->plans[i];
+    for (size_t i = 0; i < fleet->n_plans; i++)
+        if (!fleet->plans[i]->is_removed && strcmp(fleet->plans[i]->other_id, id) == 0)
+            return fleet->plans[i];
     return NULL;
 }
 

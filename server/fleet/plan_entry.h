@@ -20,7 +20,9 @@ enum { PLAN_ID_SIZE = 64 };
 
 struct plan_entry {
     char id[PLAN_ID_SIZE];
-    char *folder; /* absolute, links resolved */
+    char other_id[PLAN_ID_SIZE]; /* its id where folders are hidden, or where they are not; rooms and records on the
+                                    disk may still have it */
+    char *folder;                /* absolute, links resolved */
     char name[128], note[512];
     bool is_phantom;
     bool has_plan_file;

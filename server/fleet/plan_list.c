@@ -8,18 +8,33 @@
 
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/auth/digest.h"
 #include "server/fleet/requests.h"
+
+/* An id that does not tell the folder's name: 16 digits of a hash of its path, of an uploaded plan of its name, which
+ * stays where the data folder is moved to another place. */
+static void make_hidden_id(const struct fleet *fleet, const char *path, char id[PLAN_ID_SIZE])
+{
+    char digest[DIGEST_TEXT], named[320];
+    const char *last = strrchr(path, '/');
+    (void)snprintf(named, sizeof named, "uploads/%.255s", last ? last + 1 : path);
+    digest_text(fleet_owns_folder(fleet, path) ? named : path, digest);
+    (void)snprintf(id, PLAN_ID_SIZE, "%.16s", digest);
+}
 
 static void add_plan(struct fleet *fleet, const struct plan_folder *found)
 {
-    char base[PLAN_ID_SIZE];
+    char base[PLAN_ID_SIZE], shown[PLAN_ID_SIZE];
     folder_make_id(found->name, base);
     struct plan_entry *plan = mem_new(sizeof *plan);
-    (void)snprintf(plan->id, sizeof plan->id, "%s", base);
-    for (int i = 2; plan_entry_find(fleet, plan->id); i++)
-        (void)snprintf(plan->id, sizeof plan->id, "%.52s-%d", base, i);
+    (void)snprintf(shown, sizeof shown, "%s", base);
+    for (int i = 2; plan_entry_find(fleet, shown); i++)
+        (void)snprintf(shown, sizeof shown, "%.52s-%d", base, i);
+    const bool hides = fleet->options.hides_folders;
+    (void)snprintf(hides ? plan->other_id : plan->id, PLAN_ID_SIZE, "%s", shown);
+    make_hidden_id(fleet, found->path, hides ? plan->id : plan->other_id);
     plan->folder = mem_copy_text(found->path);
-    (void)snprintf(plan->name, sizeof plan->name, "%s", found->name);
+    (void)snprintf(plan->name, sizeof plan->name, "%s", hides ? plan->id : found->name);
     plan->state = FLEET_CLOSED;
     plan->parts = cJSON_CreateArray();
     plan->fingerprint = found->fingerprint;

@@ -16,7 +16,9 @@ void plan_scans_start(struct fleet *fleet)
         if (!plan->wants_scan || plan->scan || plan->is_removed)
             continue;
         plan->scan = fleet_next_number(fleet);
-        char **arguments = fleet_arguments((const char *const[]){ fleet->renderer_path, "--scan", plan->folder, NULL });
+        const char *hide = fleet->options.hides_folders ? "--hide-folder" : NULL;
+        char **arguments =
+            fleet_arguments((const char *const[]){ fleet->renderer_path, "--scan", plan->folder, hide, NULL });
         if (!watch_start_program(fleet->watch, plan->scan, arguments, fleet->times.scan)) {
             plan->scan = 0;
             return; /* the next tick tries again */

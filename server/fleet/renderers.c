@@ -26,6 +26,8 @@ bool renderer_start(struct fleet *fleet, struct plan_entry *plan)
         words[n++] = "--max-bytes";
         words[n++] = limit;
     }
+    if (fleet->options.hides_folders)
+        words[n++] = "--hide-folder";
     if (fleet->options.stub_renderer)
         words[n++] = "--stub";
     plan->process = fleet_next_number(fleet);

@@ -209,6 +209,14 @@ static bool looks_for_plan(struct api *api, struct call *call, const struct api_
            !fleet_plan_find(net_fleet(api->net), call->ids[0], &plan) && api_lists_first(api, call, api_handle);
 }
 
+/* True: it is about a plan by an id that it does not have now, which rooms on the disk alone may have. */
+static bool is_of_other_id(struct api *api, const struct call *call)
+{
+    struct fleet_plan plan;
+    return strncmp(call->route, "/api/v1/plans/{plan}", 20) == 0 &&
+           fleet_plan_find(net_fleet(api->net), call->ids[0], &plan) && strcmp(plan.id, call->ids[0]) != 0;
+}
+
 /* False with problem: the call is about a room or a bookmark that may be on the disk, which cannot be read yet. */
 static bool room_can_be_looked_for(struct api *api, const struct call *call, const struct api_route *route,
                                    struct problem *problem)
@@ -251,7 +259,8 @@ void api_handle(struct api *api, struct call *call)
                 }
             if (wakes_room(api, call, &route) || looks_for_plan(api, call, &route))
                 return;
-            if (!room_can_be_looked_for(api, call, &route, &problem) || !has_right(api, call, &route, &problem)) {
+            if ((is_of_other_id(api, call) && !fleet_no_plan(net_fleet(api->net), call->ids[0], &problem)) ||
+                !room_can_be_looked_for(api, call, &route, &problem) || !has_right(api, call, &route, &problem)) {
                 call_answer_problem(call, &problem);
                 return;
             }

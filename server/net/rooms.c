@@ -82,6 +82,15 @@ static void close_signed_out(void *context, void *connection)
 
 /* ---- rooms ------------------------------------------------------------------------------------------------------ */
 
+/* The id that the plan has now: rooms on the disk may have that of a time when people signed in, or when they did not.
+ */
+static const char *plan_id_now(const struct net *net, const char *plan_id, char known[64])
+{
+    struct fleet_plan plan;
+    (void)snprintf(known, 64, "%s", fleet_plan_find(net->fleet, plan_id, &plan) ? plan.id : plan_id);
+    return known;
+}
+
 /* 40 random bits as "7q4k-m2wz". */
 static bool make_id(char id[16])
 {
@@ -250,7 +259,8 @@ struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *
     while (rooms_find(net, id) || asleep_find(net, id));
     if (!fleet_open(net->fleet, plan_id, problem))
         return NULL;
-    struct net_room *room = add_room(net, id, plan_id);
+    char known[64];
+    struct net_room *room = add_room(net, id, plan_id_now(net, plan_id, known));
     room->keep.changed = net->store ? ROOM_ALL_PARTS : 0;
     schedule_at(net, 0);
     if (bookmark && !room_begin_with(room->room, bookmark, problem)) {
@@ -329,8 +339,9 @@ void net_rooms_delete_of_plan(struct net *net, const char *plan_id, const char *
     for (size_t i = net->n_rooms; i-- > 0;)
         if (strcmp(room_plan_id(net->rooms[i]->room), plan_id) == 0)
             delete_of_plan(net, room_id(net->rooms[i]->room), plan_id, address, reason);
+    char known[64];
     for (size_t i = net->n_asleep; i-- > 0;)
-        if (strcmp(net->asleep[i].facts.plan, plan_id) == 0)
+        if (strcmp(plan_id_now(net, net->asleep[i].facts.plan, known), plan_id) == 0)
             delete_of_plan(net, net->asleep[i].facts.id, plan_id, address, reason);
 }
 
@@ -344,11 +355,12 @@ size_t net_n_decided(const struct net *net, const char *id)
 size_t net_n_decided_of_plan(const struct net *net, const char *plan_id)
 {
     size_t n = 0;
+    char known[64];
     for (size_t i = 0; i < net->n_rooms; i++)
         if (strcmp(room_plan_id(net->rooms[i]->room), plan_id) == 0)
             n += room_n_decided(net->rooms[i]->room);
     for (size_t i = 0; i < net->n_asleep; i++)
-        if (strcmp(net->asleep[i].facts.plan, plan_id) == 0)
+        if (strcmp(plan_id_now(net, net->asleep[i].facts.plan, known), plan_id) == 0)
             n += net->asleep[i].facts.n_decided;
     return n;
 }
@@ -394,8 +406,9 @@ bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct i
 cJSON *net_asleep_document(const struct net *net, size_t index)
 {
     const struct store_summary *facts = &net->asleep[index].facts;
-    return room_document_of(facts->id, facts->plan, facts->revision, WIRE_RENDERER_STATE_CLOSED,
-                            facts->created_ms / 1000);
+    char known[64];
+    return room_document_of(facts->id, plan_id_now(net, facts->plan, known), facts->revision,
+                            WIRE_RENDERER_STATE_CLOSED, facts->created_ms / 1000);
 }
 
 /* ---- the store -------------------------------------------------------------------------------------------------- */
@@ -426,7 +439,8 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
                     net->max_rooms);
     } else {
         asleep_remove(net, facts.id);
-        struct net_room *room = add_room(net, facts.id, facts.plan);
+        char known[64];
+        struct net_room *room = add_room(net, facts.id, plan_id_now(net, facts.plan, known));
         keep_restore(room, answer->room);
         bridge_report_plan(room);
         schedule_settle(room);

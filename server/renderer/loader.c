@@ -13,6 +13,7 @@
 #include "core/base/queue.h"
 #include "core/derive/shapes.h"
 #include "core/load/load.h"
+#include "core/load/part_names.h"
 #include "core/render/visible/visible.h"
 #include "server/renderer/answers.h"
 
@@ -27,6 +28,7 @@ enum {
 struct loader {
     char *folder, *plan_id, *cache_folder;
     uint64_t max_bytes;
+    bool hides_folder;
     struct inbox *inbox;
     atomic_bool cancel;
     pthread_t load_thread, quick_thread, shapes_thread;
@@ -143,6 +145,15 @@ static void store_in_cache(const struct loader *loader, const struct plan *plan,
         log_warn("the opened plan is not kept: %s", err.text);
 }
 
+/* Folders may be called after patients. */
+static void hide_folder(struct plan *plan, const char *folder, const char *id)
+{
+    char name[sizeof plan->name];
+    plan_folder_name(folder, name, sizeof name);
+    if (strcmp(plan->name, name) == 0)
+        (void)snprintf(plan->name, sizeof plan->name, "%s", id);
+}
+
 static void *load_main(void *argument)
 {
     struct loader *loader = argument;
@@ -153,6 +164,8 @@ static void *load_main(void *argument)
                                          .cache_folder = loader->cache_folder,
                                          .sources = &sources };
     struct plan *plan = plan_load(loader->folder, loader->plan_id, &options, &event.error);
+    if (plan && loader->hides_folder)
+        hide_folder(plan, loader->folder, loader->plan_id);
     loader->plan = event.plan = plan;
     if (plan)
         loader->derived = event.derived = derive_create(plan);
@@ -230,6 +243,7 @@ struct loader *loader_create(const struct loader_options *options, struct inbox 
     loader->folder = mem_copy_text(options->folder);
     loader->plan_id = mem_copy_text(options->plan_id);
     loader->max_bytes = options->max_bytes;
+    loader->hides_folder = options->hides_folder;
     loader->cache_folder = options->cache_folder ? mem_copy_text(options->cache_folder) : NULL;
     loader->inbox = inbox;
     atomic_init(&loader->cancel, false);

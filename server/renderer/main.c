@@ -12,6 +12,7 @@
 #include "core/annotate/font.h"
 #include "core/base/log.h"
 #include "core/base/standard_files.h"
+#include "core/load/part_names.h"
 #include "core/load/summary.h"
 #include "server/renderer/answers.h"
 #include "server/renderer/confine.h"
@@ -43,6 +44,7 @@ static void print_help(void)
         "  --stub             no graphics: grey pictures of the right size, for tests\n"
         "  --socket-fd FD     number of the open socket to the daemon\n"
         "  --plan-folder DIR  the plan to read; nothing else is readable from then on\n"
+        "  --hide-folder      a plan without a name of its own is called by its id, not by its folder\n"
         "  --plan-id ID       what the daemon calls the plan: letters a-z, digits, '-'\n"
         "  --cache DIR        folder that may be written\n"
         "  --max-file-bytes N  largest file it may write; 0 (default): no limit\n"
@@ -96,7 +98,8 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
         UNPACK,
         INTO,
         MAX_UNPACKED,
-        MAX_FILE
+        MAX_FILE,
+        HIDE
     };
     static const struct option options[] = {
         { "help", no_argument, NULL, HELP },
@@ -116,6 +119,7 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
         { "into", required_argument, NULL, INTO },
         { "max-unpacked-bytes", required_argument, NULL, MAX_UNPACKED },
         { "max-file-bytes", required_argument, NULL, MAX_FILE },
+        { "hide-folder", no_argument, NULL, HIDE },
         { NULL, 0, NULL, 0 },
     };
     *arguments = (struct arguments){ .session = { .socket = -1 } };
@@ -148,6 +152,7 @@ static int read_arguments(int argc, char **argv, struct arguments *arguments)
             arguments->max_file_bytes = number;
             break;
         case SCAN: arguments->scan = optarg; break;
+        case HIDE: arguments->session.hides_folder = true; break;
         case DIGEST: arguments->digest = optarg; break;
         case KNOWN: arguments->known = optarg; break;
         case PROBE: arguments->is_probe = true; break;
@@ -187,10 +192,14 @@ static int print_json(cJSON *json)
     return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 
-static int scan(const char *folder)
+static int scan(const char *folder, bool hides_folder)
 {
     static struct plan_summary summary;
+    char name[sizeof summary.name];
     plan_summarize(folder, &summary);
+    plan_folder_name(folder, name, sizeof name);
+    if (hides_folder && strcmp(summary.name, name) == 0)
+        summary.name[0] = 0;
     return print_json(answer_summary(&summary));
 }
 
@@ -256,7 +265,7 @@ int main(int argc, char **argv)
     session->cache = arguments.cache;
     session->max_bytes = arguments.max_bytes;
     if (arguments.scan)
-        return scan(arguments.scan);
+        return scan(arguments.scan, session->hides_folder);
     if (arguments.digest)
         return print_json(digest_folder(arguments.digest, arguments.known));
     if (arguments.is_probe)

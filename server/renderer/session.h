@@ -1,6 +1,7 @@
 #pragma once
 /* One opened plan on one socket: the main thread's loop. Reads packets, hands pictures to the pipeline and questions to
  * the loader, and sends their results. Never runs for longer than a few milliseconds at a time. */
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "core/render/render.h"
@@ -8,6 +9,7 @@
 struct session_options {
     int socket;
     const char *plan_folder, *plan_id;
+    bool hides_folder; /* as in loader_options */
     enum render_back_end back_end;
     bool is_stub;
     const char *confined; /* what confine() reported */
