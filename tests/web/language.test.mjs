@@ -234,6 +234,62 @@ describe('the page in another language', { skip: missing && `${missing} is not t
     }
   });
 
+  it('goes through signing in, and what people who signed in have', async () => {
+    const ours = await world.newRoom(); // whose first member may do everything
+    const person = { user: 'a.k', name: 'A 1', groups: [], source: 'password', proved_ms: 1 };
+    let identity = null;
+    const session = () => {
+      const ends = identity && Date.now() + 240000; // soon: the page says so
+      return { sign_in: ['local', 'proxy'], open_to_everybody: false, identity, idle_ends_ms: ends, ends_ms: ends, guest_links: true };
+    };
+    const page = await world.newPage('', { locale: language });
+    const answers = {
+      session: () => session(),
+      'session/input': () => session(),
+      'rooms/*/people': () => ({
+        owner: 'a.k',
+        is_open: false,
+        people: [{ who: '@g', role: 'reviewer' }],
+        removed: [{ user: 'b', name: 'A 1' }],
+      }),
+      'rooms/*/links': () => ({
+        links: [{ id: 'a', role: 'wall', expires_s: 60, one_use: true, used: false, guests: true, name: '', by: 'a.k', came: 1 }],
+      }),
+    };
+    for (const [path, answer] of Object.entries(answers))
+      await page.route(`**/api/v1/${path}`, (route) => route.fulfill({ json: answer() }));
+    hear(page, heard);
+    await page.goto('about:blank');
+    await page.goto(`${world.daemon.url}/modules.html#/rooms/${ours}?link=${'0'.repeat(32)}`);
+    await page.locator('#guest-name').waitFor();
+    await look(page, 'signing in');
+    identity = person;
+    await page.goto('about:blank');
+    await page.goto(`${world.daemon.url}/modules.html`);
+    await page.evaluate(() => sessionStorage.clear());
+    await page.goto('about:blank');
+    await page.goto(`${world.daemon.url}/modules.html#/rooms/${ours}`);
+    await full(page);
+    await page.locator('.people-button').click();
+    await page.locator('.people-links button').first().click();
+    await look(page, 'people');
+    await page.keyboard.press('Escape');
+    await page.locator('#tab-record').click();
+    await page.locator('.signing').waitFor();
+    await look(page, 'signing');
+    await page.locator('.session-person').click();
+    await look(page, 'who is signed in');
+    await page.keyboard.press('Escape');
+    identity = null;
+    await page.route('**/api/v1/rooms/*/record*', (route) => route.fulfill({ status: 401, json: { title: '' } }));
+    await page.route('**/api/v1/plans/**', (route) => route.fulfill({ status: 401, json: { title: '' } }));
+    await page.locator('#tab-probe').click();
+    await page.locator('#picture-2').click({ position: { x: 80, y: 80 } });
+    await page.locator('.again').waitFor();
+    await look(page, 'sign in again');
+    await page.context().close();
+  });
+
   later('presses each button of each panel', async () => {
     const page = await open(`modules.html#/rooms/${room}`, { acceptDownloads: true });
     page.on('dialog', (dialog) => dialog.dismiss());

@@ -173,6 +173,8 @@ export class Session {
     if (this.isOn) void styled('js/features/session/people.css').catch(() => {});
     this.people.value = people;
     const unmount = mount(host, () => [peoplePanel(people, world, this.facts.value.guest_links), againCard(this, world)]);
+    const onKey = ({ key }) => key === 'Escape' && people.close(); // also when what had the focus is gone
+    addEventListener('keydown', onKey);
     const stop = effect(() => {
       const isPaused = world.room.link.value.state === 'paused';
       if (isPaused && !this.endedAt.peek()) this.endedAt.value = Date.now();
@@ -184,6 +186,7 @@ export class Session {
     });
     return () => {
       stop();
+      removeEventListener('keydown', onKey);
       const page = document.querySelector('#page');
       page.inert = false;
       page.classList.remove('paused');
