@@ -17,7 +17,7 @@
 enum {
     PASSES = 2,
     MEMORY_BYTES = 19 << 20,
-    NICE = 10 /* pictures come first */
+    NICE = 15 /* pictures come first */
 };
 
 /* The hash of a password that nobody knows is checked where there is no user, so that the answer takes as long. */

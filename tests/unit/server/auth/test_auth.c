@@ -190,7 +190,7 @@ static void beyond_the_queue_a_password_is_to_be_sent_again(void **state)
     (void)state;
     auth_world_open(true, false, false);
     int n_taken = 0, n_refused = 0;
-    char user[8];
+    char user[16];
     for (int i = 0; i < 3 * AUTH_QUEUE; i++) {
         struct problem problem = { 0 };
         (void)snprintf(user, sizeof user, "u%d", i);
