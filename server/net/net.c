@@ -30,7 +30,6 @@ enum {
     FLEET_TICK_US = 250000,
     CALM_AFTER_US = 5000000, /* without a call and a message */
     CALM_TICK_US = 1000000,
-    STILL_EVERY_US = 20000000,  /* whether a sign-in holds is looked at again */
     REST_TICK_US = 60000000,    /* while nothing is under way that depends on time */
     FAREWELL_US = 1000000,      /* at the end, for the byes to be sent */
     RESTART_RETRY_MS = 2000,    /* when pages reconnect after a stop: about the time of a restart */
@@ -100,42 +99,6 @@ static void tick_within(struct net *net, int64_t within_us)
         net->fleet_tick_us = at_us;
 }
 
-/* The sign-in behind the connection is over. */
-static void sign_out(struct visitor *visitor)
-{
-    struct net_room *room = visitor->room;
-    if (!room) {
-        ws_bye_code(visitor->connection, WS_CLOSE_POLICY, "sign-in", "your sign-in has ended", -1);
-        return;
-    }
-    room_sign_in_over(room->room, visitor->connection, clock_now_us());
-    schedule_room(room);
-}
-
-void net_session_over(struct net *net, const char *session)
-{
-    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
-        if (session[0] && strcmp(visitor->identity.session, session) == 0)
-            sign_out(visitor);
-}
-
-bool net_identity_holds(const struct net *net, const struct identity *who)
-{
-    struct identity now = *who;
-    return !net->is_still || !who->user[0] || net->is_still(net->rights, &now);
-}
-
-/* Signs out those whose identity does not hold any more. */
-static void look_at_identities(struct net *net, int64_t now_us)
-{
-    if (!net->is_still || now_us < net->still_us)
-        return;
-    net->still_us = now_us + STILL_EVERY_US;
-    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
-        if (visitor->identity.user[0] && !net->is_still(net->rights, &visitor->identity))
-            sign_out(visitor);
-}
-
 static void timer_fired(void *context)
 {
     struct net *net = context;
@@ -148,7 +111,6 @@ static void timer_fired(void *context)
         net->fleet_tick_us = now_us + (now_us < net->calm_from_us ? FLEET_TICK_US : calm_tick_us(net, now_us));
     }
     handle_due(net);
-    look_at_identities(net, now_us);
     sign_ins_check(net, now_us);
 }
 

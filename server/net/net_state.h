@@ -153,8 +153,7 @@ struct net {
     struct plan_rights plan_rights;
     bool (*is_still)(void *context, struct identity *who);
     void *rights;
-    int64_t still_us;    /* when identities are looked at next */
-    bool store_was_open; /* so the rooms that sleep are known */
+    bool store_was_open;                                                         /* so the rooms that sleep are known */
     void (*files_looked)(struct net_room *entry, const struct fleet_plan *plan); /* keep_files_looked */
     int64_t look_us;                    /* when files of plans are looked at next */
     int64_t fleet_tick_us;              /* when fleet_tick is due */

@@ -1,8 +1,45 @@
-/* Tells server/auth of each visitor who follows. */
+/* Asks about the identity of each visitor from time to time. */
 #include "server/net/sign_ins.h"
 
+#include <string.h>
+
+#include "core/base/clock.h"
 #include "server/auth/auth.h"
 #include "server/net/schedule.h"
+
+/* The sign-in behind the connection is over. */
+static void sign_out(struct visitor *visitor)
+{
+    struct net_room *room = visitor->room;
+    if (!room) {
+        ws_bye_code(visitor->connection, WS_CLOSE_POLICY, "sign-in", "your sign-in has ended", -1);
+        return;
+    }
+    room_sign_in_over(room->room, visitor->connection, clock_now_us());
+    schedule_room(room);
+}
+
+void net_session_over(struct net *net, const char *session)
+{
+    for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
+        if (session[0] && strcmp(visitor->identity.session, session) == 0)
+            sign_out(visitor);
+}
+
+bool net_identity_holds(const struct net *net, const struct identity *who)
+{
+    struct identity now = *who;
+    return !net->is_still || !who->user[0] || net->is_still(net->rights, &now);
+}
+
+static void look_at(struct net *net, struct visitor *visitor)
+{
+    if (net->is_still && visitor->identity.user[0] && !net->is_still(net->rights, &visitor->identity))
+        sign_out(visitor);
+    else if (visitor->identity.source == IDENTITY_PASSWORD && visitor->room &&
+             room_is_followed(visitor->room->room, visitor->connection))
+        auth_session_used(net->auth, visitor->identity.session);
+}
 
 void sign_ins_check(struct net *net, int64_t now_us)
 {
@@ -11,10 +48,8 @@ void sign_ins_check(struct net *net, int64_t now_us)
     if (now_us >= net->sign_ins_us) {
         net->sign_ins_us = now_us + SIGN_INS_EVERY_MS * INT64_C(1000);
         auth_tick(net->auth);
-        for (const struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
-            if (visitor->identity.source == IDENTITY_PASSWORD && visitor->room &&
-                room_is_followed(visitor->room->room, visitor->connection))
-                auth_session_used(net->auth, visitor->identity.session);
+        for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
+            look_at(net, visitor);
     }
     schedule_at(net, net->sign_ins_us);
 }
