@@ -347,10 +347,15 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
     const open = await startWorld({ args: ['--open-to-everybody'] });
     try {
       const page = await open.newPage();
-      const notice = page.getByRole('note').filter({ hasText: 'Open to everybody' });
+      const notice = page.getByRole('note').filter({ hasText: 'Identities are masked here' });
       await notice.waitFor();
       const [red, green, blue] = await notice.locator('b').evaluate((element) => getComputedStyle(element).color.match(/\d+/g).map(Number));
       assert.ok(red > 1.5 * green && red > 1.5 * blue, `rgb ${red} ${green} ${blue}`);
+      const above = page.locator('.open-strip', {
+        hasText: 'This server is open to everybody who reaches it. Anybody sees every plan here',
+      });
+      await above.waitFor();
+      assert.equal((await above.boundingBox()).height, 36);
       await isClean(page, 'open to everybody');
       await shoot(page, 'start-open');
       const wall = await open.newPage('display/abcd-efgh');
@@ -362,7 +367,7 @@ describe('the start page', { skip: missing && `${missing} is not there` }, () =>
       await open.stop();
     }
     const page = await newPage();
-    assert.equal(await page.getByText('Open to everybody').count(), 0);
+    assert.equal(await page.getByText(/open to everybody|Identities are masked/i).count(), 0);
     await page.close();
   });
 });

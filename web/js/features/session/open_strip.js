@@ -5,9 +5,9 @@ import { say } from './later_words.js';
 
 export function openStrip() {
   if (document.querySelector('.open-strip')) return;
-  const strip = document.createElement('div');
+  const strip = document.createElement('aside');
   strip.className = 'open-strip';
-  strip.setAttribute('role', 'note');
+  strip.setAttribute('aria-label', say.openDoor);
   render(html`${icon('warning')}<p><b>${say.openDoor}</b> ${say.openDoorIs}</p>`, strip);
   document.body.prepend(strip);
   document.body.classList.add('open-to-everybody');

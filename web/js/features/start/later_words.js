@@ -91,6 +91,6 @@ export const say = sentences('start.later', {
   nobodyLooks: 'Nobody is looking at it.',
   peopleLook: '{n} {n|person is|people are} looking at it.',
   roomsEnd: 'Their {n|room ends|rooms end}.',
-  openDoor: 'Open to everybody',
-  openDoorIs: 'Nobody signs in: whoever reaches this server may see, change and delete every plan and room.',
+  openDoor: 'Identities are masked here and cannot be shown.',
+  openDoorIs: 'Without sign-in nobody has the right to it. Decisions are kept as “not signed”.',
 });
