@@ -113,6 +113,7 @@ void auth_wipe(void *secret, size_t n); /* so that it does not stay in memory */
 /* Disabling ends sessions and refuses tokens; of one who comes by a proxy, too, once a user of this name is disabled
  * here. False: not-found. */
 NODISCARD bool auth_user_disable(struct auth *auth, const char *user, bool is_disabled, struct problem *problem);
+bool auth_has_user(struct auth *auth, const char *user);
 /* Copies without passwords; the caller's, for free(). NULL: no memory. */
 struct store_user *auth_users(struct auth *auth, size_t *n);
 

@@ -289,6 +289,15 @@ static bool is_paused(struct auth *auth, const char *user, const char *address, 
     return state.waits_ms && !refuse_paused(&state, problem);
 }
 
+/* False: the database could not be opened since the start, so nobody is known. */
+static bool is_read(struct auth *auth, struct problem *problem)
+{
+    lock_hold(auth->lock);
+    const bool is_loaded = auth->is_loaded;
+    lock_release(auth->lock);
+    return is_loaded || refuse_busy(problem);
+}
+
 bool auth_sign_in(struct auth *auth, const char *user, const char *password, const char *address, bool is_secure_cookie,
                   auth_done *done, void *context, struct problem *problem)
 {
@@ -297,7 +306,7 @@ bool auth_sign_in(struct auth *auth, const char *user, const char *password, con
     if (strlen(user) > IDENTITY_MAX_USER || strlen(password) > AUTH_MAX_PASSWORD)
         return problem_set(problem, PROBLEM_VALIDATION, "", "length",
                            "a user has at most %d bytes, a password at most %d", IDENTITY_MAX_USER, AUTH_MAX_PASSWORD);
-    if (is_paused(auth, user, address, problem))
+    if (!is_read(auth, problem) || is_paused(auth, user, address, problem))
         return false;
     struct job *job = make_job(JOB_SIGN_IN, user, password, done, context);
     mem_put_text(job->address, sizeof job->address, address);

@@ -32,6 +32,14 @@ bool auth_user_disable(struct auth *auth, const char *id, bool is_disabled, stru
     return user || problem_set(problem, PROBLEM_NOT_FOUND, "", "", "there is no user \"%.64s\"", id);
 }
 
+bool auth_has_user(struct auth *auth, const char *user)
+{
+    lock_hold(auth->lock);
+    const bool has = auth_find_user(auth, user) != NULL;
+    lock_release(auth->lock);
+    return has;
+}
+
 static int by_id(const void *a, const void *b)
 {
     const struct store_user *one = a, *other = b;

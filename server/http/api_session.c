@@ -74,7 +74,9 @@ static void signed_in(struct api_waiting *waiting)
     char cookie[AUTH_MAX_COOKIE];
     struct call *call = waiting->call;
     if (waiting->answer.problem.type != PROBLEM_NONE) {
-        record(waiting->api, call, "sign-in-refused", waiting->user, waiting->answer.problem.code);
+        /* a name that is no user's may be a password in the wrong field */
+        const char *user = auth_has_user(waiting->api->auth, waiting->user) ? waiting->user : "";
+        record(waiting->api, call, "sign-in-refused", user, waiting->answer.problem.code);
         call_answer_problem(call, &waiting->answer.problem);
         return;
     }

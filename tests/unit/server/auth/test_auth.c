@@ -406,6 +406,15 @@ static void an_address_to_return_to_is_our_own(void **state)
         assert_false(auth_return_is_own(others[i]));
 }
 
+static void before_the_accounts_were_read_nobody_is_refused_as_unknown(void **state)
+{
+    (void)state;
+    auth_world_fresh();
+    const struct auth_answer answer = auth_world_sign_in("ann", "correct horse");
+    assert_int_equal(answer.problem.type, PROBLEM_BUSY);
+    assert_true(answer.problem.retry_after_ms > 0);
+}
+
 /* Accounts come back from the database after a restart: users, sessions, tokens, owners. No secret is there. */
 static void accounts_outlive_the_daemon(void **state)
 {
@@ -503,6 +512,7 @@ int main(void)
         TEST(the_first_user_is_made_once_and_within_an_hour),
         TEST(names_and_passwords_of_users_are_checked),
         TEST(an_address_to_return_to_is_our_own),
+        TEST(before_the_accounts_were_read_nobody_is_refused_as_unknown),
         TEST(accounts_outlive_the_daemon),
         TEST(a_call_is_identified_within_five_microseconds),
     };
