@@ -89,13 +89,14 @@ struct room_caller room_caller_of(const struct room *room, const struct identity
         return found;
     if (caller)
         return (struct room_caller){
-            .is_here = true, .is_member = true, .is_guest = caller->is_guest, .role = caller->role
+            .is_here = true, .is_member = true, .is_guest = caller->is_guest, .role = who_holds(who, caller->role)
         };
     found.is_here = true;
     if (who_is_machine(who))
         found.role = links_were_made(room) ? WIRE_MEMBER_ROLE_REVIEWER : WIRE_MEMBER_ROLE_PRESENTER;
     else
         found.is_here = admission_role(room, who, &found.role);
+    found.role = who_holds(who, found.role);
     return found;
 }
 

@@ -236,8 +236,8 @@ static struct admitted by_seat(const struct room *room, const struct identity *w
     return admission_role(room, who, &in.role) ? in : refuse(in, "", is_closed);
 }
 
-struct admitted admission_decide(struct room *room, const struct identity *who, const struct message_hello *hello,
-                                 const struct member *seat)
+static struct admitted decide(struct room *room, const struct identity *who, const struct message_hello *hello,
+                              const struct member *seat)
 {
     struct admitted in = { .role = role_of_newcomer(room), .code = "" };
     who_key(who, hello->person, in.key);
@@ -250,6 +250,14 @@ struct admitted admission_decide(struct room *room, const struct identity *who, 
     if (!who_is_machine(who) && !has_own_right(room, who, &in.role))
         return refuse(in, "", is_closed);
     return refuses(room, in.key, NULL) ? refuse(in, "removed", was_removed) : in;
+}
+
+struct admitted admission_decide(struct room *room, const struct identity *who, const struct message_hello *hello,
+                                 const struct member *seat)
+{
+    struct admitted in = decide(room, who, hello, seat);
+    in.role = who_holds(who, in.role);
+    return in;
 }
 
 /* ---- documents -------------------------------------------------------------------------------------------------- */

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "server/room/state/roles.h"
+
 static const struct identity machine = { .source = IDENTITY_MACHINE, .scopes = IDENTITY_SCOPE_ALL }, nobody;
 
 const struct identity *who_connects(const struct room *room, void *connection)
@@ -32,6 +34,12 @@ void who_key(const struct identity *who, const char *person, char key[WHO_KEY])
         who_key_of_user(who->user, key);
     else
         (void)snprintf(key, WHO_KEY, "%s%s", who_is_machine(who) || !person[0] ? "" : "guest:", person);
+}
+
+enum wire_member_role who_holds(const struct identity *who, enum wire_member_role role)
+{
+    const bool only_reads = who->source == IDENTITY_TOKEN && !(who->scopes & IDENTITY_SCOPE_PLAN);
+    return only_reads ? role_lower(role, WIRE_MEMBER_ROLE_OBSERVER) : role;
 }
 
 bool who_has_seat(const struct identity *who, const char *user, bool is_guest, enum wire_member_role role)

@@ -212,6 +212,13 @@ static void a_script_writes_under_its_users_name_and_signs_nothing(void **state)
 {
     char seat[100];
     (void)state;
+    script.scopes = IDENTITY_SCOPE_READ;
+    assert_false(call(&script, NULL, "{\"type\":\"item.put\",\"kind\":\"note\",\"body\":{\"text\":\"x\"}}").is_done);
+    hello(&dee, &script, "");
+    put(&dee, "note", "{\"text\":\"x\"}");
+    assert_string_equal(code(&dee), "role");
+    assert_int_equal(n_of(WIRE_ITEM_KIND_NOTE), 0);
+    script.scopes = IDENTITY_SCOPE_READ | IDENTITY_SCOPE_PLAN;
     assert_true(call(&script, NULL, "{\"type\":\"item.put\",\"kind\":\"note\",\"body\":{\"text\":\"x\"}}").is_done);
     cJSON *item = newest(&ann);
     assert_string_equal(json_text(item, "author_name"), "Rae");
