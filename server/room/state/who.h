@@ -24,7 +24,7 @@ const struct identity *who_acts(const struct room *room, const struct member *me
  * hello. */
 void who_key(const struct identity *who, const char *person, char key[WHO_KEY]);
 void who_key_of_user(const char *user, char key[WHO_KEY]); /* user "": "" */
-/* What of this role the identity holds: a token that may only read is an observer. */
+/* The part of this role that the identity holds: a token that may only read is an observer. */
 enum wire_member_role who_holds(const struct identity *who, enum wire_member_role role);
 /* Whether the seat of a member is this identity's: without sign-in each, else that of the same user, or of a guest or
  * wall who has not signed in. */

@@ -44,6 +44,11 @@ export class Items {
     return this.#give({ type: 'item.delete', item: of.id, version: of.version });
   }
 
+  /** Hides a note from everybody, or shows it again. @param {{id: string}} of @param {boolean} hidden */
+  hide(of, hidden) {
+    return this.#give({ type: 'item.hide', item: of.id, hidden });
+  }
+
   #give(message) {
     return new Promise((done, failed) => {
       const command = { message, input: this.#send(message), before: new Set(this.rows.peek().keys()), done, failed };

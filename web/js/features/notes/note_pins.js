@@ -4,6 +4,7 @@ import { heightOver } from '../../room/obliques.js';
 import { isResolved, pinStrength, pointOf, threadsOf } from './threads.js';
 import { say } from './later_words.js';
 import { listed } from '../../parts/format.js';
+import { textOf } from './note_words.js';
 import { toPicture } from '../../parts/vec.js';
 import { variables } from '../../parts/mount.js';
 
@@ -44,7 +45,7 @@ export function notePins({ room, ui }, { header, box, pane, plane, tolerance }) 
       y,
       strength,
     }) => html`<button class="note-pin" tabindex="-1" data-note=${note.id} data-chosen=${ui.note.value === note.id} data-off=${strength < 1}
-    title=${say.pinIs({ name: note.author_name, text: note.body.text.slice(0, 120) })} aria-label=${labelOf({ note, number, replies, strength })}
+    title=${say.pinIs({ name: note.author_name, text: textOf(note).slice(0, 120) })} aria-label=${labelOf({ note, number, replies, strength })}
     ${variables({ '--x': `${x.toFixed(1)}px`, '--y': `${y.toFixed(1)}px`, '--strength': String(strength.toFixed(2)), '--author': note.author_color })}
     @pointerdown=${keep} @pointerup=${keep} @dblclick=${keep} @keydown=${keep} @click=${() => open(note.id)}>${number}</button>`,
   )}</div>`;

@@ -9,7 +9,7 @@ import { position } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
 import { beginWith, focusField, leftOver, noteEditor } from './note_editor.js';
-import { byline, mayChange, mayWrite, meIn, words } from './note_words.js';
+import { byline, mayChange, mayHide, mayWrite, meIn, words } from './note_words.js';
 import { noteHere } from './feature.js';
 
 const filter = signal(noFilter);
@@ -166,7 +166,9 @@ function actions(world, thread) {
 
 function rowActions(world, row, replies) {
   const { room, ui } = world;
-  if (!mayChange(room, row)) return nothing;
+  const hide = () => void room.items.hide(row, !row.hidden_by).catch((problem) => ui.notify('err', problem.detail, 'notes'));
+  const hideButton = mayHide(room) ? html`<button class="link" @click=${hide}>${row.hidden_by ? say.unhide : say.hide}</button>` : nothing;
+  if (!mayChange(room, row)) return mayHide(room) ? html`<span class="note-row">${hideButton}</span>` : nothing;
   const edit = () => {
     editing.value = row.id;
     beginWith(room, `edit-${row.id}`, row.body.text);
@@ -184,7 +186,7 @@ function rowActions(world, row, replies) {
   const isAsked = deleting.value === row.id;
   const sure = replies.length ? say.deleteWith({ n: replies.length }) : say.deleteAll;
   return html`<span class="note-row"><button class="link" @click=${edit}>${say.edit}</button><button class=${classMap({ link: true, sure: isAsked })}
-    @click=${remove}>${isAsked ? sure : say.delete}</button></span>`;
+    @click=${remove}>${isAsked ? sure : say.delete}</button>${hideButton}</span>`;
 }
 
 /** Writes another body; a refusal is told. */
