@@ -9,6 +9,11 @@
 #include "server/http/api_jobs.h"
 #include "server/http/api_queries.h"
 
+static bool needs_sign_in(struct problem *problem)
+{
+    return problem_set(problem, PROBLEM_SIGN_IN, "", "", "nobody has signed in: sign in first");
+}
+
 static bool refuse_nobody(struct call *call)
 {
     struct problem problem;
@@ -20,7 +25,7 @@ static bool refuse_nobody(struct call *call)
         call_answer_nothing(call, 303);
         return false;
     }
-    problem_set(&problem, PROBLEM_SIGN_IN, "", "", "nobody has signed in: sign in first");
+    needs_sign_in(&problem);
     call_add_header(call, "WWW-Authenticate", "Bearer realm=\"Beamroom\"");
     call_answer_problem(call, &problem);
     return false;
@@ -162,6 +167,14 @@ static bool is_of_this_machine(const struct call *call)
 {
     struct address client;
     return address_read(call->client, strlen(call->client), &client) && address_is_loopback(&client);
+}
+
+bool api_access_may_upload(const struct api *api, const struct call *call, struct problem *problem)
+{
+    const struct access_subject uploads = { .kind = ACCESS_SUBJECT_KIND_UPLOADS };
+    if (access_check(api->rights->access, &call->identity, ACCESS_PLAN, &uploads))
+        return true;
+    return call->identity.source == IDENTITY_NOBODY ? needs_sign_in(problem) : lacks_right(ACCESS_PLAN, problem);
 }
 
 static bool check_server(struct api *api, struct call *call, const struct access_route *need)

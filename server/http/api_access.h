@@ -16,5 +16,7 @@ bool api_access_to_plan(const struct api *api, const struct call *call, enum acc
  * forbidden to who sees the plan. */
 NODISCARD bool api_access_makes_room(const struct api *api, const struct call *call, const char *plan_id,
                                      struct problem *problem);
+/* Whether the caller may upload, asked before a byte of an archive is kept. Any thread. */
+NODISCARD bool api_access_may_upload(const struct api *api, const struct call *call, struct problem *problem);
 /* Whether the caller may look at this room, awake or asleep. */
 bool api_access_sees_room(const struct api *api, const struct call *call, const char *room_id);

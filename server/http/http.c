@@ -17,6 +17,7 @@
 #include "core/base/queue.h"
 #include "server/front/front.h"
 #include "server/http/api.h"
+#include "server/http/api_access.h"
 #include "server/http/etag.h"
 #include "server/http/feed.h"
 #include "server/http/files.h"
@@ -278,7 +279,7 @@ static bool begin_archive(struct request *request)
     const char *length = MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, "Content-Length");
     unsigned long long n = length ? strtoull(length, NULL, 10) : 0;
     request->is_archive = true;
-    if (call->early.type == PROBLEM_NONE)
+    if (call->early.type == PROBLEM_NONE && api_access_may_upload(request->http->api, call, &call->early))
         request->archive = intake_begin(request->http->intake, call,
                                         !length         ? -1
                                         : n < INT64_MAX ? (int64_t)n
