@@ -112,6 +112,7 @@ static void answer_done(struct api_waiting *waiting, const char *action)
         return;
     }
     record(waiting->api, waiting->call, action, "user", waiting->user);
+    net_accounts_changed(waiting->api->net);
     call_answer_nothing(waiting->call, 204);
 }
 
@@ -176,6 +177,7 @@ void api_user_disable(struct api *api, struct call *call)
     if (ok)
         record(api, call, cJSON_IsTrue(is_disabled) ? "user-disabled" : "user-enabled", "user", user);
     cJSON_Delete(body);
+    net_accounts_changed(api->net);
     if (ok)
         call_answer_nothing(call, 204);
     else
@@ -288,5 +290,6 @@ void api_token_revoke(struct api *api, struct call *call)
         return;
     }
     record(api, call, "token-revoked", "token", call->ids[0]);
+    net_accounts_changed(api->net);
     call_answer_nothing(call, 204);
 }

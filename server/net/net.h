@@ -62,6 +62,8 @@ void net_adopt(struct net *net, int socket, const struct handshake *handshake, v
 /* On the net thread only: */
 /* The session or token of this name is over: its connections get bye, and members keep their seats. */
 void net_session_over(struct net *net, const char *session);
+/* A user was disabled, a password set, a token revoked: connections that this concerns end soon. */
+void net_accounts_changed(struct net *net);
 struct fleet *net_fleet(struct net *net);
 /* How rights on plans are found out (plan_rights.h). */
 const struct plan_rights *net_plan_rights(const struct net *net);

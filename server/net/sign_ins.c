@@ -26,6 +26,12 @@ void net_session_over(struct net *net, const char *session)
             sign_out(visitor);
 }
 
+void net_accounts_changed(struct net *net)
+{
+    net->sign_ins_us = 0;
+    schedule_at(net, 0);
+}
+
 bool net_identity_holds(const struct net *net, const struct identity *who)
 {
     struct identity now = *who;
