@@ -321,7 +321,7 @@ export const tours = {
     const link = await until(() => ann.locator('#invite-made').inputValue(), Boolean);
     await look(ann);
     await ann.keyboard.press('Escape');
-    const ben = await person(link.slice(link.indexOf('#')), 'Ben');
+    const ben = await person(link.slice(link.indexOf('rooms/')), 'Ben');
     await settled(ben);
     await ann.locator('#picture-2').focus();
     await ann.keyboard.press('p');

@@ -170,7 +170,7 @@ async function route() {
     });
   } else if (place === 'signin') {
     const { signInPage } = await import('./features/session/sign_in_page.js');
-    if (n === nRoutes) leave = signInPage(host, id, { api, ownName, told, remembered, remember });
+    if (n === nRoutes) leave = signInPage(host, id, { api, ownName, remembered, remember });
   } else if (place === 'p') {
     const { permalinkPage } = await import('./features/bookmarks/permalink.js');
     if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => enter(room, of, '', true) }); // going back does not make another room

@@ -81,6 +81,7 @@ export class Session {
     this.#askedAt = Date.now();
     const { status, answer } = await send('GET', 'session');
     if (status === 200) this.#told(answer);
+    else if (status === 401) this.#end(); // the proxy's own sign-in is over
   }
 
   #told(facts) {

@@ -8,11 +8,11 @@ import { styled } from '../../parts/lazy.js';
 import { mount } from '../../parts/mount.js';
 import { firstCard, takeToken } from './first_form.js';
 import { proxyPath, tellDone } from './hospital.js';
-import { PasswordState, passwordError, passwordField } from './password_form.js';
+import { PasswordState, passwordError, passwordField, send } from './password_form.js';
 import { ownPath } from './return_path.js';
 import { say } from './later_words.js';
 
-/** @param {HTMLElement} host @param {string} id "first": the first administrator; "done": the small window @param {object} world {api, ownName, told: promise of the session, remembered, remember} @returns {() => void} leaves the page */
+/** @param {HTMLElement} host @param {string} id "first": the first administrator; "done": the small window @param {object} world {api, ownName, remembered, remember} @returns {() => void} leaves the page */
 export function signInPage(host, id, world) {
   const path = ownPath(new URLSearchParams(location.search).get('return'));
   const isFirst = id === 'first';
@@ -37,6 +37,9 @@ export function signInPage(host, id, world) {
   };
 }
 
+/** A proxy that answers itself who has not signed in there. */
+const ofProxy = { sign_in: ['proxy'], identity: null, guest_links: false };
+
 /** A permalink's token, which came behind "#". */
 const keptFragment = () => (location.hash.startsWith('#/p/') ? location.hash : '');
 
@@ -46,13 +49,13 @@ function finish() {
 }
 
 async function begin(page, host) {
-  const { told, api } = page.world;
-  const facts = await told;
+  const { status, answer } = await send('GET', 'session');
+  const facts = status === 200 ? answer : status === 401 ? ofProxy : null;
   const isAsked = new URLSearchParams(location.search).has('return');
   if (facts && (!facts.sign_in.length || (facts.identity && isAsked))) return void location.replace(page.path);
   page.facts.value = facts;
   queueMicrotask(() => host.querySelector('.sign-in input, .sign-in button')?.focus());
-  page.version.value = (await api.version().catch(() => null))?.version ?? '';
+  page.version.value = (await page.world.api.version().catch(() => null))?.version ?? '';
 }
 
 /** The words on what opens after the sign-in. */
