@@ -1,90 +1,19 @@
 // Checks that every proxy has to pass in front of the daemon, each with its sample configuration. One file of tests for each program calls `proves`.
 import assert from 'node:assert/strict';
-import { chmodSync, createReadStream, existsSync, statSync } from 'node:fs';
+import { createReadStream, existsSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { call, demo, openPlan, sleep, startDaemon, until } from '../api/daemon.mjs';
+import { demo, sleep, until } from '../api/daemon.mjs';
 import { Client } from '../api/ws_client.mjs';
-import { full, missing, shoot, startBrowser } from '../web/browser.mjs';
-import { startProvider, startSignIn } from './people.mjs';
+import { full, missing, shoot } from '../web/browser.mjs';
 import { proxies } from './proxies.mjs';
 import { canary, canaryAddress, h2Shapes, sendH2Shapes, sendShapes, shapes } from './smuggling.mjs';
-import { auditOf, bigArchive, Caller, CLIENT, dropHome, folderIn, freePort, makeHome, NAME, openSecurely, peakMib } from './world.mjs';
+import { provesSignIn } from './sign_in.mjs';
+import { Site } from './site.mjs';
+import { auditOf, bigArchive, Caller, CLIENT, NAME, openSecurely, peakMib } from './world.mjs';
 
 const megabytes = 200;
 const NOTE = { body: { text: 'one' }, name: 'Script' };
-
-/** A whole world in front of which a proxy stands. */
-class World {
-  async start(name) {
-    const { start, signsIn, user } = proxies[name];
-    this.signsIn = signsIn;
-    this.home = makeHome(name.replace(/\W+/g, '-'));
-    const port = await freePort();
-    if (signsIn === 'proxy') this.people = await startSignIn();
-    if (signsIn === 'oidc') this.people = await startProvider(`https://${NAME}:${port}/oidc/back`);
-    const run = folderIn(this.home, 'beamroom');
-    chmodSync(run, 0o777); // the daemon does not stay root, so it cannot give the socket to a group either
-    const socket = join(run, 'http.sock');
-    const listens = user ? ['--listen', `unix:${socket},mode=0666`, '--proxy-user', user] : [];
-    this.daemon = await startDaemon({ args: ['--open-to-everybody', '--public-name', NAME, '--trusted-proxy', '127.0.0.1', ...listens] });
-    this.proxy = await start({ home: this.home, socket, daemon: Number(new URL(this.daemon.url).port), signIn: this.people?.port, port });
-    this.port = this.proxy.port;
-    this.host = `${NAME}:${this.port}`;
-    this.caller = new Caller(this.port);
-    await openPlan(this.daemon.url, 'phantom');
-    this.room = await this.newRoom();
-  }
-  async newRoom() {
-    return (await call(`${this.daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
-  }
-  /** A browser that finds the name here. */
-  async browse() {
-    if (this.browser) return;
-    const { chromium } = await import('playwright-core');
-    this.server = await startBrowser([`--host-resolver-rules=MAP ${NAME} 127.0.0.1`, '--no-proxy-server']);
-    this.browser = await chromium.connect(this.server.wsEndpoint());
-    this.context = await this.browser.newContext({ ignoreHTTPSErrors: true, viewport: { width: 1200, height: 800 } });
-    this.context.setDefaultTimeout(60000);
-  }
-  /** A page at an address, with what went wrong on it. Where somebody must sign in, ann does. */
-  async visit(path) {
-    await this.browse();
-    const page = await this.context.newPage();
-    const errors = [];
-    page.on('pageerror', (error) => errors.push(error.message));
-    page.on(
-      'response',
-      (answer) => answer.status() >= 400 && !/\/session$/.test(answer.url()) && errors.push(`${answer.status()} ${answer.url()}`),
-    );
-    await page.goto(`https://${this.host}${path}`);
-    if (this.signsIn === 'oidc' && (await page.locator('input[name=login]').count())) {
-      await page.fill('input[name=login]', 'ann');
-      await page.fill('input[name=password]', 'any');
-      await page.click('button[type=submit]');
-      await page.click('button[type=submit]'); // she agrees that the proxy learns who she is
-      await page.waitForURL(`https://${this.host}/**`);
-    }
-    return { page, errors };
-  }
-  /** The caller is signed in from here on, where that is asked for. */
-  async signIn() {
-    if (this.signsIn === 'proxy') await this.caller.call('/oauth2/start?rd=/');
-    if (this.signsIn !== 'oidc') return;
-    const { page } = await this.visit('/');
-    for (const { name, value } of await this.context.cookies(`https://${this.host}/`)) this.caller.cookies.set(name, value);
-    await page.close();
-  }
-  async stop() {
-    this.caller?.end();
-    await this.browser?.close();
-    await this.server?.close();
-    await this.proxy?.stop();
-    await this.daemon?.stop();
-    await this.people?.stop();
-    dropHome(this.home);
-  }
-}
 
 /** Sends a request on a connection that stays, and waits for the whole answer of JSON with a length, or chunked. */
 const askOn = (socket, world, path) =>
@@ -137,11 +66,10 @@ export function proves(name) {
   const { needs, signsIn, speaksH2, cutsByReload } = proxies[name];
   const absent = missing ?? (existsSync(needs) ? undefined : needs);
   describe(name, { skip: absent && `${absent} is not there` }, () => {
-    const world = new World();
+    const world = new Site();
     before(async () => {
       try {
         await world.start(name);
-        await world.signIn();
       } catch (error) {
         await world.stop(); // what runs still would keep this file from its end
         throw error;
@@ -154,17 +82,7 @@ export function proves(name) {
       assert.deepEqual([exitCode, signalCode], [null, null], `the daemon ended before its time: ${world.daemon.log().slice(-2000)}`);
     });
 
-    if (signsIn)
-      it('nobody gets in without a sign-in: neither a call nor a WebSocket', async () => {
-        const stranger = new Caller(world.port);
-        assert.equal((await stranger.call('/api/v1/plans')).status, 401);
-        assert.equal((await stranger.call(`/api/v1/rooms/${world.room}/notes`, { method: 'POST', body: NOTE })).status, 401);
-        stranger.end();
-        const socket = await openSecurely(world.port, { ALPNProtocols: ['http/1.1'] });
-        const client = await Client.open(`https://${world.host}`, `/api/v1/rooms/${world.room}/ws`, { Host: world.host }, socket);
-        assert.equal(client.status, 401);
-        client.cut();
-      });
+    provesSignIn(world);
 
     it('the page comes whole, with pictures of a room, at the address that was asked for', async () => {
       const { page, errors } = await world.visit(`/rooms/${world.room}`);
@@ -197,10 +115,7 @@ export function proves(name) {
       });
       const seconds = (Date.now() - begun) / 1000;
       assert.equal(status, 202, text);
-      const job = await until(
-        async () => (await call(`${world.daemon.url}/api/v1/jobs/${json.id}`)).json,
-        (one) => one.state !== 'running' && one.state !== 'queued',
-      );
+      const job = await world.jobEnds(json);
       assert.equal(job.state, 'done', JSON.stringify(job));
       const grown = [peakMib(world.daemon.child.pid) - daemonBefore, peakMib(world.proxy.child.pid) - proxyBefore];
       assert.ok(seconds < 120, `${seconds} s`);
@@ -283,7 +198,7 @@ export function proves(name) {
     const tryShapes = async (send, n) => {
       const room = await world.newRoom();
       const seen = auditOf(world.daemon.data).length;
-      const where = { port: world.port, host: world.host, room, cookie: world.caller.cookie };
+      const where = { port: world.port, host: world.host, room, cookie: world.caller.cookie, signsIn };
       const results = await send(where);
       assert.equal(results.length, n);
       await answersBelong(world);
@@ -299,16 +214,12 @@ export function proves(name) {
       it('the hidden requests of HTTP/2 stay what the proxy took them for', () => tryShapes(sendH2Shapes, Object.keys(h2Shapes).length));
     it('a hidden request that got through would be seen', async () => {
       const room = await world.newRoom();
-      const { hostname, port, host } = new URL(world.daemon.url);
-      const { connect } = await import('node:net');
-      const socket = connect(Number(port), hostname);
-      socket.write(canary({ host, room }, 250));
+      await world.sendPast(canary({ host: world.host, room, signsIn, cookie: world.caller.cookie }, 250));
       await until(
         () => auditOf(world.daemon.data),
         (rows) => rows.some(({ address }) => address === canaryAddress(250)),
         10000,
       );
-      socket.destroy();
     });
 
     it('a renewed certificate counts after a reload, and a meeting goes on', async () => {

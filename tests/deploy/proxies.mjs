@@ -17,7 +17,8 @@ const reloader = (home, program, tell) => () => {
   tell(program.child);
 };
 
-const me = userInfo().username;
+/** The user of these tests. */
+export const me = userInfo().username;
 /** Apache and nginx stay root in one process alone, the others are this user's. */
 const worker = me === 'root' ? 'www-data' : me;
 

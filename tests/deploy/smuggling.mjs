@@ -7,10 +7,11 @@ const J = 'Content-Type: application/json\r\n';
 
 /** The address that the canary of a shape claims. */
 export const canaryAddress = (n) => `203.0.113.${n + 1}`;
-/** @param {{host: string, room: string}} where @param {number} n of the shape */
-export function canary({ host, room }, n) {
+/** @param {{host: string, room: string, cookie: string, signsIn?: string}} where signsIn: it says who it is, as a proxy would; else its cookie does @param {number} n of the shape */
+export function canary({ host, room, signsIn, cookie }, n) {
+  const who = signsIn ? 'X-Beamroom-User: ann\r\nX-Beamroom-Groups: clinicians\r\n' : `Cookie: ${cookie}\r\n`;
   const body = '{"body":{"text":"hidden"},"name":"Script"}';
-  return `POST /api/v1/rooms/${room}/notes HTTP/1.1\r\nHost: ${host}\r\n${J}X-Forwarded-For: ${canaryAddress(n)}\r\nContent-Length: ${body.length}\r\n\r\n${body}`;
+  return `POST /api/v1/rooms/${room}/notes HTTP/1.1\r\nHost: ${host}\r\n${J}X-Forwarded-For: ${canaryAddress(n)}\r\n${who}Content-Length: ${body.length}\r\n\r\n${body}`;
 }
 
 const chunk = (text) => `${text.length.toString(16)}\r\n${text}\r\n`;
