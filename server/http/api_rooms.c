@@ -83,8 +83,8 @@ static void new_replay(struct api *api, struct call *call, cJSON *body)
         cJSON_Delete(body);
         return;
     }
-    struct room *room =
-        problem.type == PROBLEM_NONE ? api_replay_new(api, call, asked, json_text(body, "plan"), &problem) : NULL;
+    const bool may = problem.type == PROBLEM_NONE && net_may_own_more(api->net, call->identity.user, &problem);
+    struct room *room = may ? api_replay_new(api, call, asked, json_text(body, "plan"), &problem) : NULL;
     cJSON_Delete(body);
     if (room)
         answer_new(call, room);
@@ -136,6 +136,7 @@ void api_room_new(struct api *api, struct call *call)
         cJSON_Delete(body);
         return;
     }
+    may = may && net_may_own_more(api->net, call->identity.user, &problem);
     struct room *room = may ? net_room_create(api->net, plan_id, bookmark, &problem) : NULL;
     cJSON_Delete(bookmark);
     cJSON_Delete(body);

@@ -70,6 +70,8 @@ const struct plan_rights *net_plan_rights(const struct net *net);
 /* Creates a room and opens its plan. bookmark: of this plan, what the room begins with (room_begin_with); NULL: with
  * the plan's own scene. NULL with problem. */
 struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem);
+/* Nobody takes more than a quarter of the rooms there may be. user "": not looked at. False with problem. */
+bool net_may_own_more(const struct net *net, const char *user, struct problem *problem);
 struct room *net_room_find(struct net *net, const char *room_id);
 /* For good, also of one that sleeps; records of decisions stay. reason: as in room_end_because. */
 void net_room_delete(struct net *net, const char *room_id, const char *reason);

@@ -229,6 +229,22 @@ static bool make_place(struct net *net)
     return longest < net->n_rooms && put_to_sleep(net, longest);
 }
 
+bool net_may_own_more(const struct net *net, const char *user, struct problem *problem)
+{
+    const size_t most = (size_t)net->max_rooms / 4 ? (size_t)net->max_rooms / 4 : 1, most_kept = STORE_MAX_ROOMS / 4;
+    size_t n = 0, n_asleep = 0;
+    for (size_t i = 0; i < net->n_rooms; i++)
+        n += strcmp(room_owner(net->rooms[i]->room), user) == 0;
+    for (size_t i = 0; i < net->n_asleep && user[0]; i++)
+        n_asleep += strcmp(net->asleep[i].facts.owner, user) == 0;
+    if (!user[0] || (n < most && n + n_asleep < most_kept))
+        return true;
+    problem_set(problem, PROBLEM_LIMIT, "", "own", "%zu rooms of yours are in use and %zu sleep: delete some", n,
+                n_asleep);
+    problem->retry_after_ms = 60000;
+    return false;
+}
+
 struct room *net_room_create(struct net *net, const char *plan_id, const cJSON *bookmark, struct problem *problem)
 {
     char id[16];

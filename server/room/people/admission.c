@@ -59,6 +59,11 @@ void room_set_owner(struct room *room, const char *user)
     room_event(room, ROOM_PEOPLE, NULL);
 }
 
+const char *room_owner(const struct room *room)
+{
+    return room->admission->owner;
+}
+
 /* ---- without a link --------------------------------------------------------------------------------------------- */
 
 static bool is_named(const char *named, const struct identity *who)

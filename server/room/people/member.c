@@ -27,6 +27,7 @@
 
 static const char replaced[] = "this member has come back on another connection";
 static const char room_is_full[] = "the room is full";
+static const char too_many_tabs[] = "this person has too many tabs of the room open: close one";
 static const char old_page[] = "the page speaks another protocol version: reload it";
 static const char unrecorded[] = "what happens here is recorded, and the server's disk takes no more records now";
 enum { FULL_RETRY_MS = 30000, UNRECORDED_RETRY_MS = 10000 };
@@ -171,14 +172,17 @@ static const char *address_of(const struct room *room, void *connection)
 static void refuse_entry(struct room *room, void *connection, const struct message_hello *hello,
                          const struct admitted *in)
 {
+    const struct identity *who = who_connects(room, connection);
     const struct audit_act row = { .action = "refused",
                                    .address = address_of(room, connection),
+                                   .who = who,
                                    .detail = cJSON_CreateObject(),
                                    .is_refused = true,
                                    .before = -1,
                                    .after = -1 };
     cJSON_AddStringToObject(row.detail, "what", "hello");
-    cJSON_AddStringToObject(row.detail, "name", hello->name);
+    if (who_is_machine(who)) /* with sign-in it is anybody's word, and would make a row of each of a stranger's tries */
+        cJSON_AddStringToObject(row.detail, "name", hello->name);
     cJSON_AddStringToObject(row.detail, "why", in->refusal);
     audit_tell(room, &row);
     send_bye_for(room, connection, in->code, -1, in->refusal);
@@ -287,6 +291,15 @@ static struct member *take_place(struct room *room, void *connection, const stru
     return member;
 }
 
+/* Where people sign in, nobody fills a room alone. */
+static bool has_too_many_tabs(const struct room *room, const struct identity *who, const char *key)
+{
+    int n = 0;
+    for (int i = 0; i < room->members.n && key[0] && !who_is_machine(who); i++)
+        n += room->members.list[i]->connection && strcmp(room->members.list[i]->person, key) == 0;
+    return n >= ROOM_MAX_TABS;
+}
+
 struct member *member_hello(struct room *room, void *connection, const struct message_hello *hello)
 {
     const struct identity *who = who_connects(room, connection);
@@ -304,6 +317,10 @@ struct member *member_hello(struct room *room, void *connection, const struct me
     }
     if (!audit_has_place(room, NULL)) {
         send_bye(room, connection, UNRECORDED_RETRY_MS, unrecorded);
+        return NULL;
+    }
+    if (!member && has_too_many_tabs(room, who, in.key)) {
+        send_bye(room, connection, -1, too_many_tabs);
         return NULL;
     }
     const char *as = member ? "back" : in.link ? "link" : "new";

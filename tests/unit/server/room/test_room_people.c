@@ -228,6 +228,38 @@ static void one_users_tabs_are_one_person(void **state)
     cJSON_Delete(message);
 }
 
+static void nobody_fills_a_room_alone(void **state)
+{
+    static struct fake_page tabs[ROOM_MAX_TABS + 1];
+    (void)state;
+    fake_room_end(&fake);
+    fake_room_start_with(&fake, &(struct room_limits){ .max_members = 2 * ROOM_MAX_TABS });
+    fake_sign_in(&fake, role_of);
+    room_set_owner(fake.room, "pat");
+    for (int i = 0; i <= ROOM_MAX_TABS; i++) {
+        hello(&tabs[i], &pat, "");
+        assert_int_equal(tabs[i].is_closed, i == ROOM_MAX_TABS);
+    }
+    room_connection_closed(fake.room, &tabs[0], fake.now_us);
+    fake_page_end(&tabs[ROOM_MAX_TABS]);
+    hello(&tabs[ROOM_MAX_TABS], &pat, "");
+    assert_false(tabs[ROOM_MAX_TABS].is_closed);
+    room_destroy(fake.room);
+    for (int i = 0; i <= ROOM_MAX_TABS; i++)
+        fake_page_end(&tabs[i]);
+    fake_room_start(&fake, 3);
+}
+
+static void strangers_tries_are_a_row_of_the_audit_together(void **state)
+{
+    (void)state;
+    const size_t n_before = fake.n_audited;
+    hello(&ann, &nobody, ",\"name\":\"a\"");
+    hello(&ben, &nobody, ",\"name\":\"b\"");
+    hello(&cem, &nobody, ",\"name\":\"c\"");
+    assert_int_equal(fake.n_audited - n_before, 1);
+}
+
 static void the_end_of_a_sign_in_keeps_the_seat_and_not_control(void **state)
 {
     struct problem problem = { 0 };
@@ -512,6 +544,8 @@ int main(void)
         PEOPLE_TEST(names_come_from_the_sign_in_and_equal_ones_are_told_apart),
         PEOPLE_TEST(a_seat_is_its_users_alone),
         PEOPLE_TEST(one_users_tabs_are_one_person),
+        PEOPLE_TEST(nobody_fills_a_room_alone),
+        PEOPLE_TEST(strangers_tries_are_a_row_of_the_audit_together),
         PEOPLE_TEST(the_end_of_a_sign_in_keeps_the_seat_and_not_control),
         PEOPLE_TEST(who_comes_by_an_observers_link_is_an_observer),
         PEOPLE_TEST(an_unknown_link_tells_no_more_than_a_closed_room),

@@ -1,5 +1,6 @@
 /* Notes, decisions and signatures of people who have signed in, of guests, and of the machine's person. */
 #include "core/base/clock.h"
+#include "server/room/log/recorded_parts.h"
 #include "server/room/state/room_state.h"
 #include "server/wire/message.h"
 #include "tests/unit/room_set_up.h"
@@ -307,6 +308,23 @@ static void a_planner_hides_a_note_and_its_text_stays(void **state)
     cJSON_Delete(item);
 }
 
+static void a_recording_tells_users_and_guests(void **state)
+{
+    (void)state;
+    cJSON *members = recorded_members(fake.room);
+    const cJSON *rae_is = cJSON_GetObjectItem(members, "m2"), *gus_is = cJSON_GetObjectItem(members, "m3");
+    assert_string_equal(json_text(rae_is, "user"), "rae");
+    assert_null(cJSON_GetObjectItem(rae_is, "is_guest"));
+    assert_true(json_flag(gus_is, "is_guest", false));
+    assert_null(json_text(gus_is, "user"));
+    cJSON_Delete(members);
+    cJSON *record = room_record(fake.room);
+    const cJSON *present = cJSON_GetObjectItem(record, "present");
+    assert_string_equal(json_text(cJSON_GetArrayItem(present, 1), "user"), "rae");
+    assert_true(json_flag(cJSON_GetArrayItem(present, 2), "is_guest", false));
+    cJSON_Delete(record);
+}
+
 /* ---- on disk ---------------------------------------------------------------------------------------------------- */
 
 static void rows_come_back_as_they_were_kept(void **state)
@@ -365,6 +383,7 @@ int main(void)
         SIGNING_TEST(a_note_is_changed_by_its_writer_alone),
         SIGNING_TEST(a_guests_note_is_marked_and_its_own),
         SIGNING_TEST(a_planner_hides_a_note_and_its_text_stays),
+        SIGNING_TEST(a_recording_tells_users_and_guests),
         SIGNING_TEST(rows_come_back_as_they_were_kept),
         SIGNING_TEST(a_signature_from_before_there_was_sign_in_stays_as_it_is),
     };
