@@ -12,6 +12,7 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 #include "server/http/api_questions.h"
+#include "server/http/api_rates.h"
 
 static const struct {
     const char *method, *path;
@@ -92,12 +93,14 @@ struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_b
     api->max_upload_bytes = max_upload_bytes;
     api->is_alone = is_alone;
     api->rights = net_plan_rights(net);
+    api->rates = api_rates_create();
     api->started_us = clock_now_us();
     return api;
 }
 
 void api_destroy(struct api *api)
 {
+    api_rates_destroy(api->rates);
     free(api);
 }
 

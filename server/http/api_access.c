@@ -4,10 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "server/front/address.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
 #include "server/http/api_queries.h"
+#include "server/http/api_rates.h"
 
 static bool needs_sign_in(struct problem *problem)
 {
@@ -201,10 +203,36 @@ static bool check_subject(struct api *api, struct call *call, const struct acces
     return refuse_role(call, need);
 }
 
+/* Counts the call for its caller, once. False: it was answered, as there were too many. */
+static bool check_rates(struct api *api, struct call *call, const struct api_route *route)
+{
+    const char *path = route->path, *last = strrchr(path, '/');
+    const bool is_new = strcmp(route->method, "POST") == 0;
+    const bool is_stream = strcmp(last, "/stream") == 0 || strcmp(last, "/events") == 0;
+    const int64_t now_us = clock_now_us();
+    struct problem problem;
+    if (call->is_counted)
+        return true;
+    call->is_counted = true;
+    if (api_rates_take(api->rates, call, API_RATE_CALLS, now_us, &problem) &&
+        (!is_new || strcmp(path, "/api/v1/rooms") != 0 ||
+         api_rates_take(api->rates, call, API_RATE_ROOMS, now_us, &problem)) &&
+        (!is_new || strcmp(path, "/api/v1/plans") != 0 ||
+         api_rates_take(api->rates, call, API_RATE_UPLOADS, now_us, &problem)) &&
+        (!is_stream || api_rates_take(api->rates, call, API_RATE_STREAMS, now_us, &problem)))
+        return true;
+    call_answer_problem(call, &problem);
+    return false;
+}
+
 bool api_access_allows(struct api *api, struct call *call, const struct api_route *route, api_again *again)
 {
     const struct access_route *need = access_route_find(route->method, route->path);
-    if (call->identity.source == IDENTITY_MACHINE || (need && need->right == ACCESS_FREE))
+    if (call->identity.source == IDENTITY_MACHINE)
+        return true;
+    if (!check_rates(api, call, route))
+        return false;
+    if (need && need->right == ACCESS_FREE)
         return true;
     if (!need)
         return refuse_nobody(call);

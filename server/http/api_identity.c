@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "server/http/api_access.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
@@ -27,7 +28,7 @@ static void audit_identity(struct call *call)
 {
     struct net *net = ((struct api *)call->api)->net;
     const char *room_id = call_query(call, "room");
-    struct room *room = room_id ? net_room_find(net, room_id) : NULL;
+    struct room *room = room_id && api_access_sees_room(call->api, call, room_id) ? net_room_find(net, room_id) : NULL;
     if (call->status >= 300)
         return;
     if (room && strcmp(room_plan_id(room), call->ids[0]) == 0)

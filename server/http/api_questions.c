@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/base/mem.h"
+#include "server/http/api_access.h"
 #include "server/http/api_pictures.h"
 #include "server/http/api_queries.h"
 #include "server/wire/document.h"
@@ -165,7 +166,7 @@ static void plan_is_ready(void *context, struct packet *answer, const struct pro
     struct problem problem;
     struct fleet_plan plan;
     const char *room_id = call_query(call, "room");
-    struct room *room = room_id ? net_room_find(api->net, room_id) : NULL;
+    struct room *room = room_id && api_access_sees_room(api, call, room_id) ? net_room_find(api->net, room_id) : NULL;
     uint32_t revision;
     (void)answer;
     if (not_ready) {

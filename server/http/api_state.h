@@ -32,6 +32,7 @@ struct api {
     uint64_t max_upload_bytes;
     bool is_alone;                    /* as in http.h */
     struct auth *auth;                /* never NULL */
+    struct api_rates *rates;
     const struct plan_rights *rights; /* of the net */
     int64_t started_us;
     struct api_job jobs[API_MAX_JOBS];

@@ -55,6 +55,7 @@ struct call {
     struct call_pair headers[CALL_MAX_HEADERS];
     size_t n_headers;
 
+    bool is_counted;                      /* in the rates of its caller */
     bool has_listed;                      /* the plan folders were listed for it */
     void *api;                            /* the struct api that handles the call */
     void *context;                        /* for the handler, while it waits for the fleet */

@@ -20,7 +20,8 @@ export const ofMember = ({ member, secret }) => ({ 'Beamroom-Member': `${member}
 
 /** @param {typeof fetch} fetch @param {string} base */
 export function makeApi(fetch, base = '/api/v1') {
-  async function call(method, path, { body, signal, isPicture = false, more = {} } = {}) {
+  async function call(method, path, options = {}, tries = 3) {
+    const { body, signal, isPicture = false, more = {} } = options;
     let response;
     try {
       response = await fetch(`${base}/${path}`, {
@@ -35,6 +36,10 @@ export function makeApi(fetch, base = '/api/v1') {
     }
     const isJson = /json/.test(response.headers.get('Content-Type') ?? '');
     const answer = isJson ? told(await response.json().catch(() => null)) : null;
+    if (answer?.code === 'rate' && tries > 0) {
+      await new Promise((done) => setTimeout(done, answer.retry_after_ms));
+      return call(method, path, options, tries - 1);
+    }
     if (!response.ok) throw new Problem({ status: response.status, ...(answer ?? { detail: say.answered(response) }) });
     return isPicture ? response.blob() : answer;
   }

@@ -6,6 +6,7 @@
 
 #include "core/base/mem.h"
 #include "server/http/api.h"
+#include "server/http/api_rates.h"
 #include "server/http/call.h"
 #include "server/net/net.h"
 #include "server/net/plan_rights.h"
@@ -279,6 +280,31 @@ static void lists_have_what_may_be_looked_at(void **state)
     call_destroy(call);
 }
 
+static void who_calls_too_often_is_told_when_to_come_back_and_others_are_not_held_up(void **state)
+{
+    (void)state;
+    struct api_rates *rates = api_rates_create();
+    struct call *mallory = call_create(), *anna = call_create();
+    struct problem problem = { 0 };
+    int n = 0;
+    mem_put_text(mallory->client, sizeof mallory->client, "192.0.2.66");
+    mem_put_text(anna->identity.user, sizeof anna->identity.user, "192.0.2.66"); /* a user is no address */
+    const int64_t start_us = 1000000;
+    while (n < 1000 && api_rates_take(rates, mallory, API_RATE_ROOMS, start_us, &problem))
+        n++;
+    assert_int_equal(n, 40);
+    assert_int_equal(problem.type, PROBLEM_LIMIT);
+    assert_in_range(problem.retry_after_ms, 1900, 2100); /* 0.5 a second */
+    assert_true(api_rates_take(rates, anna, API_RATE_ROOMS, start_us, &problem));
+    assert_true(api_rates_take(rates, mallory, API_RATE_CALLS, start_us, &problem));
+    assert_false(api_rates_take(rates, mallory, API_RATE_ROOMS, start_us + 1900000, &problem));
+    assert_true(api_rates_take(rates, mallory, API_RATE_ROOMS, start_us + 2100000, &problem));
+    assert_false(api_rates_take(rates, mallory, API_RATE_ROOMS, start_us + 2100000, &problem));
+    call_destroy(mallory);
+    call_destroy(anna);
+    api_rates_destroy(rates);
+}
+
 int main(int argc, char **argv)
 {
     if (argc > 1)
@@ -287,6 +313,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(nobody_gets_nothing_but_what_is_free),
         cmocka_unit_test(a_plan_that_is_not_granted_is_as_one_that_is_not_there),
         cmocka_unit_test(lists_have_what_may_be_looked_at),
+        cmocka_unit_test(who_calls_too_often_is_told_when_to_come_back_and_others_are_not_held_up),
         cmocka_unit_test(rooms_jobs_and_plans_of_a_body_are_not_there_either),
     };
     return cmocka_run_group_tests(tests, begin, end);
