@@ -150,6 +150,13 @@ void fleet_release(struct fleet *fleet, const char *plan_id);
  * PROBLEM_STORAGE */
 NODISCARD bool fleet_remove_plan(struct fleet *fleet, const char *plan_id, struct problem *problem);
 
+/* Where a plan lies below the data folder: its folder, "" where it is not ours, and its cache. */
+void fleet_erase_paths(const struct fleet *fleet, const char *plan_id, char folder[1024], char cache[1024]);
+/* Ends its renderer and throws away its cache and, where it is ours, its folder, as fleet_remove_plan does; also of a
+ * plan that is not in the list any more. */
+NODISCARD bool fleet_erase_plan(struct fleet *fleet, const char *plan_id, struct problem *problem);
+bool fleet_is_removing(const struct fleet *fleet); /* something that was thrown away is still on the disk */
+
 /* An archive that is becoming a plan in data/plans. */
 enum fleet_upload_state { UPLOAD_QUEUED, UPLOAD_RUNNING, UPLOAD_DONE, UPLOAD_FAILED, UPLOAD_CANCELLED };
 struct fleet_upload {

@@ -20,6 +20,7 @@ struct remover {
     pthread_t thread;
     struct queue *paths;
     atomic_bool is_stopping;
+    atomic_size_t n_left; /* given and not removed */
 };
 
 /* Returns 0 when nothing is left, else the first errno. */
@@ -54,6 +55,7 @@ static void *work(void *argument)
         if (failed)
             log_warn("something in the data folder could not be removed: %s", strerror(failed));
         free(path);
+        atomic_fetch_sub(&remover->n_left, 1);
     }
     return NULL;
 }
@@ -85,8 +87,15 @@ void remover_destroy(struct remover *remover)
 
 void remover_put(struct remover *remover, char *path)
 {
+    atomic_fetch_add(&remover->n_left, 1);
     if (queue_try_put(remover->paths, path))
         return;
+    atomic_fetch_sub(&remover->n_left, 1);
     log_warn("too much waits to be removed; the next start of the server removes the rest");
     free(path);
+}
+
+bool remover_is_idle(const struct remover *remover)
+{
+    return atomic_load(&remover->n_left) == 0;
 }

@@ -11,3 +11,4 @@ NODISCARD struct remover *remover_create(struct error *err);
 void remover_destroy(struct remover *remover);
 /* Takes path, a file or folder that nobody else uses. Links are removed, not followed. Any thread; never waits. */
 void remover_put(struct remover *remover, char *path);
+bool remover_is_idle(const struct remover *remover); /* all that it was given is gone, or was given up with a warning */

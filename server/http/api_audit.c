@@ -16,10 +16,11 @@ bool api_is_of_this_machine(const struct api *api, const struct call *call)
 static void audit_export(struct call *call)
 {
     struct net *net = ((struct api *)call->api)->net;
-    static const char rooms[] = "/api/v1/rooms/";
+    static const char rooms[] = "/api/v1/rooms/", plans[] = "/api/v1/plans/";
     if (call->status >= 300)
         return;
     const bool is_of_room = strncmp(call->path, rooms, sizeof rooms - 1) == 0;
+    const bool is_of_plan = strncmp(call->path, plans, sizeof plans - 1) == 0;
     const char *room_id = is_of_room ? call->ids[0] : call_query(call, "room");
     struct room *room = room_id ? net_room_find(net, room_id) : NULL;
     cJSON *detail = cJSON_CreateObject();
@@ -29,7 +30,7 @@ static void audit_export(struct call *call)
     if (room)
         room_audit_call(room, &call->identity, call->member, call->client, "export", detail, false, clock_now_us());
     else
-        net_audit_by(net, &call->identity, call->client, "", is_of_room ? "" : call->ids[0], "export", detail);
+        net_audit_by(net, &call->identity, call->client, "", is_of_plan ? call->ids[0] : "", "export", detail);
 }
 
 bool api_audit_has_place(const struct api *api, struct problem *problem)

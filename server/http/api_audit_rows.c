@@ -36,6 +36,19 @@ static bool read_word(const struct call *call, const char *name, char *word, siz
     return true;
 }
 
+/* Reads a plan: its id, or the key that rows have. */
+static bool read_plan(const struct call *call, struct store_audit_query *query, struct problem *problem)
+{
+    char id[64], key[NET_AUDIT_PLAN_KEY];
+    if (!read_word(call, "plan", id, sizeof id, problem))
+        return false;
+    net_audit_plan_key(id, key);
+    const bool is_key = strncmp(id, "plan-", 5) == 0 && strlen(id) == NET_AUDIT_PLAN_KEY - 3 &&
+                        strspn(id + 5, "0123456789abcdef") == strlen(id) - 5;
+    (void)snprintf(query->plan, sizeof query->plan, "%s", is_key ? id : key);
+    return true;
+}
+
 static bool read_query(const struct call *call, struct store_audit_query *query, struct problem *problem)
 {
     double from = 0, to = LARGEST_WHOLE, limit = ROWS_BY_DEFAULT, cursor = LARGEST_WHOLE;
@@ -49,8 +62,7 @@ static bool read_query(const struct call *call, struct store_audit_query *query,
     query->to_ms = (int64_t)to;
     query->limit = (size_t)limit;
     query->before_n = (int64_t)cursor;
-    return read_word(call, "user", query->user, sizeof query->user, problem) &&
-           read_word(call, "plan", query->plan, sizeof query->plan, problem) &&
+    return read_word(call, "user", query->user, sizeof query->user, problem) && read_plan(call, query, problem) &&
            read_word(call, "room", query->room, sizeof query->room, problem) &&
            read_word(call, "action", query->action, sizeof query->action, problem);
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "server/auth/digest.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
 
@@ -67,6 +68,7 @@ static bool plan_revision_is_settled(struct api *api, struct room *room, struct 
 static bool audit_told(struct api *api, const struct call *call, const cJSON *body, struct problem *problem)
 {
     const char *what = "", *name = "";
+    char hex[DIGEST_TEXT];
     struct room *room = net_room_find(api->net, call->ids[0]);
     if (!read_told(body, &what, &name, problem))
         return false;
@@ -76,7 +78,8 @@ static bool audit_told(struct api *api, const struct call *call, const cJSON *bo
         return false;
     cJSON *detail = cJSON_CreateObject();
     cJSON_AddStringToObject(detail, "what", what);
-    cJSON_AddStringToObject(detail, "name", name);
+    digest_text(name, hex); /* names of files are made of the plan's */
+    cJSON_AddStringToObject(detail, "name_sha256", hex);
     if (room)
         room_audit_call(room, &call->identity, call->member, call->client, "export", detail, false, clock_now_us());
     else

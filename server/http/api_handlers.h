@@ -29,6 +29,7 @@ void api_plan(struct api *api, struct call *call);
 void api_plan_upload(struct api *api, struct call *call);
 void api_plan_delete(struct api *api, struct call *call);
 void api_plan_revision(struct api *api, struct call *call);
+void api_plan_erase(struct api *api, struct call *call);
 void api_plan_open(struct api *api, struct call *call);
 void api_plan_close(struct api *api, struct call *call);
 void api_job(struct api *api, struct call *call);

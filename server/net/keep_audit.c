@@ -8,6 +8,7 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/auth/digest.h"
 #include "server/net/schedule.h"
 #include "server/wire/json.h"
 
@@ -35,8 +36,17 @@ void keep_audit_add(struct net *net, char ***rows, size_t *n, char *row)
     (*rows)[(*n)++] = row;
 }
 
-cJSON *keep_audit_describe(const char *room, const char *plan, const struct room_audit *row)
+void net_audit_plan_key(const char *plan, char key[NET_AUDIT_PLAN_KEY])
 {
+    char hex[DIGEST_TEXT];
+    digest_text(plan, hex);
+    (void)snprintf(key, NET_AUDIT_PLAN_KEY, "%s%.*s", plan[0] ? "plan-" : "", plan[0] ? 16 : 0, hex);
+}
+
+cJSON *keep_audit_describe(const char *room, const char *plan_id, const struct room_audit *row)
+{
+    char plan[NET_AUDIT_PLAN_KEY];
+    net_audit_plan_key(plan_id, plan);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddNumberToObject(json, "time_ms", (double)row->time_ms);
     cJSON_AddStringToObject(json, "room", room);

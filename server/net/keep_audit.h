@@ -10,7 +10,7 @@ void keep_audited(void *context, struct room *room, const struct room_audit *row
 bool keep_audit_has_place(void *context);
 const struct identity *keep_caller(void *context);
 /* The row as JSON, without its number. */
-cJSON *keep_audit_describe(const char *room, const char *plan, const struct room_audit *row);
+cJSON *keep_audit_describe(const char *room, const char *plan_id, const struct room_audit *row);
 /* Adds a row (taken) that waits already. */
 void keep_audit_add(struct net *net, char ***rows, size_t *n, char *row);
 void keep_audit_write(struct net *net); /* hands over the rows of no room */

@@ -15,6 +15,7 @@
 #include "server/auth/auth.h"
 #include "server/net/asleep.h"
 #include "server/net/bridge.h"
+#include "server/net/erase.h"
 #include "server/net/keep.h"
 #include "server/net/keep_audit.h"
 #include "server/net/keep_audit_read.h"
@@ -105,6 +106,7 @@ static void timer_fired(void *context)
     int64_t now_us = clock_now_us();
     if (now_us >= net->fleet_tick_us) {
         fleet_tick(net->fleet);
+        erase_tick(net);
         bridge_look_at_files(net, now_us);
         rooms_close_idle(net);
         keep_write_due(net, false);
@@ -335,6 +337,7 @@ static void handle_answer(struct net *net, void *argument)
     case STORE_READ: rooms_was_read(net, answer); break;
     case STORE_PART: keep_part_was_read(net, answer); break;
     case STORE_RECORDS: keep_records_were_read(net, answer); break;
+    case STORE_ERASE: erase_answered(net, answer); break;
     case STORE_AUDIT: keep_audit_was_read(net, answer); break;
     case STORE_FAILING:
     case STORE_FINE:
@@ -479,6 +482,7 @@ static void *work(void *context)
     keep_readers_finish(net);
     keep_record_readers_finish(net);
     keep_audit_readers_finish(net);
+    erase_end(net);
     tell_listed(net, UINT64_MAX);
     while (net->n_rooms) {
         room_end_because(net->rooms[0]->room, "the server is being stopped");
@@ -523,6 +527,8 @@ struct net *net_create(const struct net_options *options, struct error *err)
     fleet.wake = wake;
     fleet.changed = bridge_fleet_changed;
     fleet.context = net;
+    if (options->database)
+        store_erase_resume(options->database); /* before the plans are listed */
     net->fleet = fleet_create(&fleet, err);
     if (!net->fleet)
         goto fail;

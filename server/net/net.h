@@ -132,6 +132,10 @@ NODISCARD cJSON *net_asleep_document(const struct net *net, size_t index);
 NODISCARD bool net_rooms_are_known(const struct net *net, struct problem *problem);
 /* False: too many rows of the audit wait for the disk. */
 bool net_audit_has_place(const struct net *net);
+/* The key that rows have in the stead of a plan's id, which may be made of a patient's name: "plan-" and 16 digits of
+ * its SHA-256. A row outlives what is erased. */
+enum { NET_AUDIT_PLAN_KEY = 24 };
+void net_audit_plan_key(const char *plan, char key[NET_AUDIT_PLAN_KEY]);
 /* Records what happened in no room that is in memory. address: the client's, "" not known; room, plan: "" none; detail
  * is taken. */
 void net_audit(struct net *net, const char *address, const char *room, const char *plan, const char *action,
@@ -142,6 +146,12 @@ void net_audit_by(struct net *net, const struct identity *who, const char *addre
 /* Like net_audit_by, for what was refused. */
 void net_audit_refused(struct net *net, const struct identity *who, const char *address, const char *room,
                        const char *plan, const char *action, cJSON *detail);
+/* Erases what is kept of a plan: rooms, recordings, cache and, where it lies in a folder of ours, the plan itself; the
+ * words of its records are struck out. done is called once, later, with problem where it could not be finished: then
+ * the next start goes on, if it was begun. reason: for the row of the audit. False with problem: nothing is erased. */
+typedef void net_erased(void *context, int64_t n_rooms, int64_t n_records, const struct problem *problem);
+NODISCARD bool net_erase_plan(struct net *net, const char *plan_id, const struct identity *who, const char *address,
+                              const char *reason, net_erased *done, void *context, struct problem *problem);
 /* Whether this sign-in has not ended: asked of those who stay. */
 bool net_identity_holds(const struct net *net, const struct identity *who);
 /* Notes whose call is being handled, for what rooms record of it; NULL: none is. */

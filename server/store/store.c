@@ -16,6 +16,7 @@
 #include "server/store/audit.h"
 #include "server/store/audit_read.h"
 #include "server/store/database.h"
+#include "server/store/erase.h"
 #include "server/store/heads.h"
 #include "server/store/recordings.h"
 #include "server/store/records.h"
@@ -31,7 +32,9 @@ enum request_kind {
     REQUEST_READ,
     REQUEST_READ_PART,
     REQUEST_READ_RECORDS,
-    REQUEST_READ_AUDIT
+    REQUEST_READ_AUDIT,
+    REQUEST_ERASE_BEGIN,
+    REQUEST_ERASE_FINISH
 };
 
 struct request {
@@ -44,6 +47,7 @@ struct request {
     char recording[64];              /* of a part that is read; of records, those before this one */
     int64_t t_ms;
     struct store_audit_query *query; /* of rows of the audit */
+    struct store_erase *erase;       /* of REQUEST_ERASE_... */
     struct error refusal;            /* why the room can never be written; its rows for the audit are left */
 };
 
@@ -85,6 +89,7 @@ static void request_free(void *item)
     store_room_free(request->room);
     store_accounts_free(request->accounts);
     free(request->query);
+    free(request->erase);
     free(request);
 }
 
@@ -373,6 +378,18 @@ static void read_audit(struct store *store, const struct request *request)
     answer(store, &read);
 }
 
+static void erase(struct store *store, const struct request *request)
+{
+    struct store_answer said = { .event = STORE_ERASE, .ticket = request->ticket };
+    write_pending(store);
+    if (!store->db || store->n_pending > 0)
+        said.error = store->failure;
+    else
+        erase_plan(store->db, store->path, request->erase, request->kind == REQUEST_ERASE_BEGIN, &said);
+    read_head(store, &said);
+    answer(store, &said);
+}
+
 static void take(struct store *store, struct request *request)
 {
     if (request->kind != REQUEST_WRITE && request->kind != REQUEST_WRITE_ACCOUNTS && request->kind != REQUEST_DELETE) {
@@ -382,6 +399,8 @@ static void take(struct store *store, struct request *request)
             read_part(store, request);
         else if (request->kind == REQUEST_READ_AUDIT)
             read_audit(store, request);
+        else if (request->kind == REQUEST_ERASE_BEGIN || request->kind == REQUEST_ERASE_FINISH)
+            erase(store, request);
         else
             read_records(store, request);
         request_free(request);
@@ -520,6 +539,18 @@ bool store_read_audit(struct store *store, const struct store_audit_query *query
     struct request *request = mem_new(sizeof *request);
     *request = (struct request){ .kind = REQUEST_READ_AUDIT, .ticket = ticket, .query = mem_new(sizeof *query) };
     *request->query = *query;
+    if (queue_try_put(store->queue, request))
+        return true;
+    request_free(request);
+    return false;
+}
+
+bool store_erase(struct store *store, const struct store_erase *what, bool is_begin, uint64_t ticket)
+{
+    struct request *request = mem_new(sizeof *request);
+    *request = (struct request){ .kind = is_begin ? REQUEST_ERASE_BEGIN : REQUEST_ERASE_FINISH, .ticket = ticket };
+    request->erase = mem_new(sizeof *what);
+    *request->erase = *what;
     if (queue_try_put(store->queue, request))
         return true;
     request_free(request);

@@ -28,6 +28,7 @@ enum store_event {
     STORE_READ,    /* room, or NULL with error */
     STORE_PART,    /* part, or NULL with error */
     STORE_AUDIT,   /* audit, the newest row first; NULL with error */
+    STORE_ERASE,   /* erased, or error: of store_erase_begin or store_erase_finish */
     STORE_RECORDS, /* records, without item and body, the newest first, or one with them; NULL with error */
     STORE_FAILING, /* nothing can be written now: error; tried again and again */
     STORE_FINE     /* it can be written again */
@@ -46,6 +47,7 @@ struct store_answer {
     size_t n_records;
     struct store_audit_row *audit; /* the receiver's */
     size_t n_audit_rows;
+    struct store_erased erased;
     int64_t next_n; /* of STORE_AUDIT: the rows with lower numbers were not looked at; 0: there are none */
     bool is_new;
     size_t n_audit;  /* of STORE_WRITTEN: rows of the audit that were in the write */
@@ -81,5 +83,10 @@ bool store_read(struct store *store, const char *room_id, uint64_t ticket);
 bool store_read_records(struct store *store, const char *id, const char *before, uint64_t ticket);
 /* Rows of the audit, the newest first, of the next STORE_AUDIT_LOOKED_AT ones below query->before_n. */
 bool store_read_audit(struct store *store, const struct store_audit_query *query, uint64_t ticket);
+/* is_begin: notes on the disk that this plan is to be erased; once that is answered without error it will be, also by
+ * the next start. Else erases it, after all writes before; with error: it is tried again at the next start. */
+bool store_erase(struct store *store, const struct store_erase *what, bool is_begin, uint64_t ticket);
+/* Erases what an earlier daemon did not come to erase. Before the database is opened and the plans are listed. */
+void store_erase_resume(const char *database);
 /* A part of a recording: the batches from the last one with a state at or before t_ms on, up to the next such one. */
 bool store_read_part(struct store *store, const char *room_id, const char *recording, int64_t t_ms, uint64_t ticket);

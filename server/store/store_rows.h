@@ -68,6 +68,18 @@ struct store_audit_row {
     char before[STORE_AUDIT_HASH], hash[STORE_AUDIT_HASH]; /* before: the hash of the row before it */
 };
 
+enum { STORE_ERASE_ID = 33, STORE_ERASE_ROW = 4096 };
+struct store_erase {         /* a plan that is to be erased */
+    char id[STORE_ERASE_ID]; /* of this erasing: hexadecimal digits */
+    char plan[64];
+    char row[STORE_ERASE_ROW];      /* for the audit, with action erase and, in detail, erase: the id */
+    char folder[1024], cache[1024]; /* below the folder of the database: trees that are removed; "": none */
+    int64_t n_rooms;                /* that were deleted before */
+};
+struct store_erased { /* how much it was */
+    int64_t n_rooms, n_records;
+};
+
 struct store_batch { /* of the events of a recording */
     uint32_t place;
     int64_t t_ms;

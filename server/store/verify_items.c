@@ -113,12 +113,13 @@ bool verify_items(sqlite3 *db, int64_t *n, struct error *err)
         " said.n = (SELECT max(n) FROM said WHERE said.room = items.room AND said.item = items.id)";
     static const char records[] =
         "SELECT records.kind, records.id, records.room, said.n, said.sha, records.item, said.record, records.body,"
-        " records.hash FROM records LEFT JOIN said ON said.n = (SELECT min(n) FROM said WHERE said.room = records.room AND"
-        " said.item = records.id AND said.action = records.kind)";
+        " records.hash FROM records LEFT JOIN said ON said.n = coalesce((SELECT max(n) FROM said WHERE said.room = records.room"
+        " AND said.item = records.id AND said.action = 'record-erased'), (SELECT min(n) FROM said WHERE said.room ="
+        " records.room AND said.item = records.id AND said.action = records.kind))";
     /* the newest row of each item, whose room was not deleted afterwards */
     static const char missing_items[] =
-        "SELECT action, item, room, n FROM said AS a WHERE item IS NOT NULL AND NOT is_deleted AND n = (SELECT max(n) FROM"
-        " said WHERE room = a.room AND item = a.item) AND NOT EXISTS(SELECT 1 FROM items WHERE items.room = a.room AND"
+        "SELECT action, item, room, n FROM said AS a WHERE item IS NOT NULL AND NOT is_deleted AND action <> 'record-erased'"
+        " AND n = (SELECT max(n) FROM said WHERE room = a.room AND item = a.item AND action <> 'record-erased') AND NOT EXISTS(SELECT 1 FROM items WHERE items.room = a.room AND"
         " items.id = a.item) AND NOT EXISTS(SELECT 1 FROM said AS d WHERE d.room = a.room AND d.action = 'deleted' AND"
         " d.n > a.n)";
     static const char missing_records[] =

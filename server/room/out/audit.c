@@ -129,7 +129,7 @@ static enum wire_member_role role_of(const struct audit_act *act)
     return act->by ? act->by->role : WIRE_MEMBER_ROLE_OBSERVER;
 }
 
-/* Whose sign-in is over keeps the seat, under the name of its user. */
+/* A member whose sign-in is over keeps the seat, under the name of its user. */
 static const char *user_of(const struct identity *who, const struct audit_act *act)
 {
     return who->user[0] || !act->by ? who->user : act->by->user;

@@ -147,7 +147,8 @@ static void acts_that_differ_are_rows_of_their_own(void **state)
     for (size_t i = 0; i < 4; i++) {
         cJSON *detail = cJSON_CreateObject();
         cJSON_AddStringToObject(detail, "role", roles[i]);
-        room_audit_call(fake.room, NULL, NULL, i == 3 ? "192.0.2.8" : "192.0.2.7", "link-made", detail, false, fake.now_us);
+        room_audit_call(fake.room, NULL, NULL, i == 3 ? "192.0.2.8" : "192.0.2.7", "link-made", detail, false,
+                        fake.now_us);
     }
     room_audit_flush(fake.room, fake.now_us);
     assert_int_equal(fake.n_audited, before + 4);
