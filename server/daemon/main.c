@@ -412,7 +412,7 @@ static bool serve(struct options *options, struct error *err)
                                                .disk_reserve_bytes = (uint64_t)options->disk_reserve_mib << 20,
                                                .is_secure_alone = options->tls_cert && port_of(options) == HTTPS_PORT,
                                                .auth = service.sign_in.auth,
-                                               .is_alone = is_alone };
+                                               .doors = { is_alone, options->is_open } };
     struct net *net = is_signing_in && start_tls(&service, options, err) ? net_create(&net_options, err) : NULL;
     struct local_socket sockets[FRONT_ALL_SOCKETS];
     const struct front_options front_options = { .listen = listen,

@@ -50,6 +50,29 @@ static const struct setting settings[] = {
       "the port speaks TLS: PEM of this server's certificate and those between it and its root; read again on SIGHUP",
       KIND_TEXT, AT(tls_cert), 0, 0 },
     { "tls-key", "FILE", "PEM of its key, without a passphrase; read again on SIGHUP", KIND_TEXT, AT(tls_key), 0, 0 },
+    { "sign-in", "HOW",
+      "none (default, for this machine alone), local (users and passwords kept here), proxy (a proxy at the Unix socket "
+      "says who they are) or local,proxy",
+      KIND_SIGN_IN, 0, 0, 0 },
+    { "grant", "'FOLDER WHO ROLE'",
+      "who may do what, as '/srv/plans @physics planner'; may be repeated; in the file read again on SIGHUP. FOLDER: a "
+      "path, uploads, pulls or *; WHO: a user, @group or *; ROLE: observer, reviewer, presenter, planner or admin, with "
+      "+identity for the patients' names",
+      KIND_GRANT, 0, 0, 0 },
+    { "guest-links", NULL, "links to rooms may let in people who have not signed in", KIND_FLAG, AT(admits_guests), 0,
+      0 },
+    { "session-idle-min", "N", "a sign-in ends after so many minutes without input; default 30", KIND_COUNT,
+      AT(session_idle_min), 1, 1440 },
+    { "session-max-h", "N", "a sign-in ends after so many hours; default 12", KIND_COUNT, AT(session_max_h), 1, 168 },
+    { "proxy-user-header", "NAME", "header by which the proxy says who makes a request; default X-Beamroom-User",
+      KIND_HEADER, AT(identity_names[HEAD_USER]), 0, 0 },
+    { "proxy-name-header", "NAME", "the person's name; default X-Beamroom-Name", KIND_HEADER,
+      AT(identity_names[HEAD_NAME]), 0, 0 },
+    { "proxy-groups-header", "NAME", "their groups, parted by commas; default X-Beamroom-Groups", KIND_HEADER,
+      AT(identity_names[HEAD_GROUPS]), 0, 0 },
+    { "proxy-auth-time-header", "NAME",
+      "when they signed in there, in seconds since 1970; default X-Beamroom-Auth-Time", KIND_HEADER,
+      AT(identity_names[HEAD_AUTH_TIME]), 0, 0 },
     { "gl", "NAME", "auto (default), egl-device, egl-surfaceless, osmesa or soft", KIND_TEXT, AT(gl), 0, 0 },
     { "renderer", "FILE", "the renderer's program; default: beamroom-render beside this one", KIND_TEXT,
       AT(renderer_path), 0, 0 },
@@ -286,20 +309,19 @@ static bool may_be_reached(const struct options *options, const struct address *
         return true;
     if (options->n_sockets > 0)
         return error_set(err, ERROR_FORMAT,
-                         "--listen unix:%.107s is for a proxy, and nobody signs in here: whoever reaches it could see "
-                         "and change every plan. Leave it away, or say --open-to-everybody",
+                         "--listen unix:%.80s is for a proxy, and nobody signs in here. Say --sign-in proxy, or "
+                         "--open-to-everybody: whoever reaches it then sees and changes every plan",
                          options->sockets[0].path);
     if (options->listen && !address_is_loopback(address))
         return error_set(
             err, ERROR_FORMAT,
-            "--listen %.80s lets others than this machine in, and nobody signs in here: whoever reaches the "
-            "port could see and change every plan. Listen on "
-            "127.0.0.1 or [::1], or say --open-to-everybody",
+            "--listen %.60s lets others than this machine in, and nobody signs in here. Say --sign-in local "
+            "with --tls-cert and --tls-key, or listen on 127.0.0.1 or [::1], or say --open-to-everybody",
             options->listen);
     return (options->n_public_names == 0 && options->n_trusted_proxies == 0) ||
            error_set(err, ERROR_FORMAT,
-                     "--%s is for a server that others reach, and nobody signs in here: whoever reaches it could see "
-                     "and change every plan. Leave it away, or say --open-to-everybody",
+                     "--%s is for a server that others reach, and nobody signs in here. Leave it away, or say "
+                     "--sign-in, or --open-to-everybody: whoever reaches it then sees and changes every plan",
                      options->n_public_names > 0 ? "public-name" : "trusted-proxy");
 }
 

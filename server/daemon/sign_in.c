@@ -70,6 +70,7 @@ static cJSON *new_in(const struct options_grants *grants, const struct options_g
 static void record(struct net *net, void *detail)
 {
     net_audit(net, "", "", "", "grants", detail);
+    net_grants_changed(net);
 }
 
 static void say_unchanged(struct net *net, const char *why)

@@ -86,13 +86,13 @@ static const struct {
 static const char in_room[] = "/api/v1/rooms/{room}";
 static const size_t api_n_routes = sizeof api_routes / sizeof api_routes[0];
 
-struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_bytes, bool is_alone)
+struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_bytes, const struct api_doors *doors)
 {
     struct api *api = mem_new(sizeof *api);
     api->net = net;
     api->auth = auth;
     api->max_upload_bytes = max_upload_bytes;
-    api->is_alone = is_alone;
+    api->doors = *doors;
     api->rights = net_plan_rights(net);
     api->rates = api_rates_create();
     api->started_us = clock_now_us();

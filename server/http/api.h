@@ -1,13 +1,14 @@
 #pragma once
 /* The HTTP API: its routes and their handlers. Net thread. Knows nothing of libmicrohttpd. */
+#include "server/http/api_doors.h"
 #include "server/http/call.h"
 #include "server/net/net.h"
 #include "server/net/plan_rights.h"
 
 struct api;
 
-/* max_upload_bytes 0: no uploads. is_alone: as in http.h. */
-struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_bytes, bool is_alone);
+/* max_upload_bytes 0: no uploads. */
+struct api *api_create(struct net *net, struct auth *auth, uint64_t max_upload_bytes, const struct api_doors *doors);
 void api_destroy(struct api *api);
 
 struct api_act;

@@ -10,7 +10,8 @@
 bool api_is_of_this_machine(const struct api *api, const struct call *call)
 {
     struct address client;
-    return api->is_alone && address_read(call->client, strlen(call->client), &client) && address_is_loopback(&client);
+    return api->doors.is_alone && address_read(call->client, strlen(call->client), &client) &&
+           address_is_loopback(&client);
 }
 
 static void audit_export(struct call *call)

@@ -43,7 +43,7 @@ static cJSON *session_json(struct api *api, const struct identity *identity)
     if (is_proxied)
         cJSON_AddItemToArray(ways, cJSON_CreateString("proxy"));
     json_add(json, "sign_in", ways);
-    cJSON_AddBoolToObject(json, "open_to_everybody", !api->is_alone && !is_local && !is_proxied);
+    cJSON_AddBoolToObject(json, "open_to_everybody", api->doors.is_open);
     json_add(json, "identity", is_somebody ? identity_json(identity) : cJSON_CreateNull());
     if (is_somebody)
         auth_session_times(api->auth, identity, &times);

@@ -30,7 +30,7 @@ struct api_job {
 struct api {
     struct net *net;
     uint64_t max_upload_bytes;
-    bool is_alone;                    /* as in http.h */
+    struct api_doors doors;
     struct auth *auth;                /* never NULL */
     struct api_rates *rates;
     const struct plan_rights *rights; /* of the net */

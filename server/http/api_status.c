@@ -54,7 +54,7 @@ void api_version(struct api *api, struct call *call)
     cJSON_AddItemToObject(answer, "gl", gl ? cJSON_Duplicate(gl, true) : cJSON_CreateNull());
     cJSON_AddItemToObject(answer, "problem", problem ? problem_to_json(problem) : cJSON_CreateNull());
     cJSON_AddNumberToObject(answer, "max_upload_bytes", (double)api->max_upload_bytes);
-    cJSON_AddBoolToObject(answer, "open_to_everybody", !api->is_alone);
+    cJSON_AddBoolToObject(answer, "open_to_everybody", api->doors.is_open);
     cJSON_AddStringToObject(answer, "intended_use", "Research and plan review. Not a medical device.");
     call_answer_json(call, 200, answer);
 }

@@ -507,8 +507,7 @@ struct http *http_create(struct net *net, struct front *front, const struct http
     http->net = net;
     http->front = front;
     http->is_secure_alone = options->is_secure_alone;
-    http->api =
-        api_create(net, options->auth, options->upload_folder ? options->max_upload_bytes : 0, options->is_alone);
+    http->api = api_create(net, options->auth, options->upload_folder ? options->max_upload_bytes : 0, &options->doors);
     http->max_archive_dropped = options->max_upload_bytes > HTTP_MIN_ARCHIVE_DROPPED ? (size_t)options->max_upload_bytes
                                                                                      : HTTP_MIN_ARCHIVE_DROPPED;
     http->posting = gate_create();

@@ -2,6 +2,7 @@
 /* The HTTP server: libmicrohttpd behind the front, on one thread. The page's files are answered there; calls of the API
  * are answered on the net thread, while the connection is suspended. */
 #include "server/front/front.h"
+#include "server/http/api_doors.h"
 #include "server/net/net.h"
 
 enum {
@@ -18,7 +19,7 @@ struct http_options {
     uint64_t disk_reserve_bytes; /* left free on the disk of upload_folder */
     bool is_secure_alone;        /* browsers that came by TLS are to use nothing else for this name (RFC 6797) */
     struct auth *auth;           /* outlives the server */
-    bool is_alone;               /* only this machine is answered */
+    struct api_doors doors;
 };
 
 /* Serves the requests of front, which begins to listen and starts its thread (front_serve). net and front outlive it.

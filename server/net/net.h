@@ -64,6 +64,7 @@ void net_adopt(struct net *net, int socket, const struct handshake *handshake, v
 void net_session_over(struct net *net, const char *session);
 /* A user was disabled, a password set, a token revoked: connections that this concerns end soon. */
 void net_accounts_changed(struct net *net);
+void net_grants_changed(struct net *net); /* as room_grants_changed, in each room that is awake */
 struct fleet *net_fleet(struct net *net);
 /* How rights on plans are found out (plan_rights.h). */
 const struct plan_rights *net_plan_rights(const struct net *net);

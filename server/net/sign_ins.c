@@ -32,6 +32,14 @@ void net_accounts_changed(struct net *net)
     schedule_at(net, 0);
 }
 
+void net_grants_changed(struct net *net)
+{
+    for (size_t i = 0; i < net->n_rooms; i++) {
+        room_grants_changed(net->rooms[i]->room, clock_now_us());
+        schedule_room(net->rooms[i]);
+    }
+}
+
 bool net_identity_holds(const struct net *net, const struct identity *who)
 {
     struct identity now = *who;

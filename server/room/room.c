@@ -33,6 +33,7 @@
 #include "server/room/state/member_list.h"
 #include "server/room/state/presence.h"
 #include "server/room/state/roles.h"
+#include "server/room/state/who.h"
 #include "server/room/streams/display.h"
 #include "server/room/streams/lag.h"
 #include "server/room/streams/main_view.h"
@@ -506,6 +507,31 @@ void room_sign_in_over(struct room *room, void *connection, int64_t now_us)
     send_bye_for(room, connection, "sign-in", -1, "your sign-in has ended");
     if (member)
         member_disconnected(room, member, now_us);
+    room_leave(room);
+}
+
+/* The member has the role of a link, or of whoever reaches the server, on which grants have no bearing. */
+static bool is_without_grants(const struct room *room, const struct member *member)
+{
+    return !member->connection || !member->user[0] || member->link[0] ||
+           who_is_machine(who_connects(room, member->connection));
+}
+
+void room_grants_changed(struct room *room, int64_t now_us)
+{
+    room_enter(room, now_us);
+    for (int i = 0; i < room->members.n; i++) {
+        struct member *member = room->members.list[i];
+        enum wire_member_role role;
+        if (is_without_grants(room, member))
+            continue;
+        const bool has_role = admission_role(room, who_connects(room, member->connection), &role);
+        if (has_role && role == member->role)
+            continue;
+        send_bye_for(room, member->connection, "", has_role ? 0 : -1,
+                     has_role ? "you have another role here now" : "you may not be in this room any more");
+        member_disconnected(room, member, now_us);
+    }
     room_leave(room);
 }
 

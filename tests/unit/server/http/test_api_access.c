@@ -123,7 +123,7 @@ static int begin(void **state)
     world.net = net_create(&options, &err);
     if (!world.net)
         fail_msg("%s", err.text);
-    world.api = api_create(world.net, NULL, 1 << 20, true);
+    world.api = api_create(world.net, NULL, 1 << 20, &(struct api_doors){ .is_alone = true });
     for (int i = 0; i < 600 && !net_plans_are_listed(world.net); i++)
         usleep(100000);
     return 0;
