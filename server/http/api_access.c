@@ -39,12 +39,26 @@ static bool lacks_right(enum access_right right, struct problem *problem)
                        "this needs the right \"%s\", which you do not have here", access_rights[right].word);
 }
 
+/* Records that somebody who has signed in asked for more than they have, of a plan or room that is there. */
+static void record_refusal(const struct call *call, const struct access_route *need)
+{
+    static const char rooms[] = "/api/v1/rooms/";
+    const struct api *api = call->api;
+    const bool is_of_room = strncmp(call->path, rooms, sizeof rooms - 1) == 0;
+    const char *id = call->ids[0] ? call->ids[0] : "";
+    if (call->identity.user[0])
+        net_audit_often(api->net, &call->identity, call->client, is_of_room ? id : "",
+                        need->subject == ACCESS_SUBJECT_KIND_PLAN ? id : "", "refused", access_rights[need->right].word,
+                        true);
+}
+
 /* The caller sees that the subject is there. */
 static bool refuse_role(struct call *call, const struct access_route *need)
 {
     struct problem problem;
     if (call->identity.source == IDENTITY_NOBODY)
         return refuse_nobody(call);
+    record_refusal(call, need);
     lacks_right(need->right, &problem);
     call_answer_problem(call, &problem);
     return false;
@@ -71,6 +85,8 @@ static bool check_plan(struct api *api, struct call *call, const struct access_r
         return refuse_role(call, need);
     if (call->identity.source == IDENTITY_NOBODY)
         return refuse_nobody(call);
+    if (is_there)
+        record_refusal(call, need);
     if (api_lists_first(api, call, again)) /* as long as it takes for a plan that is not there */
         return false;
     fleet_no_plan(net_fleet(api->net), id, &problem);
@@ -143,6 +159,8 @@ static bool check_room(struct api *api, struct call *call, const struct access_r
     }
     if (call->identity.source == IDENTITY_NOBODY)
         return refuse_nobody(call);
+    if (room || net_room_is_asleep(api->net, call->ids[0]))
+        record_refusal(call, need);
     if (net_rooms_are_known(api->net, &problem))
         problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
     call_answer_problem(call, &problem);

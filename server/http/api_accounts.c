@@ -15,7 +15,7 @@ static void record(struct api *api, const struct call *call, const char *action,
 {
     cJSON *detail = cJSON_CreateObject();
     cJSON_AddStringToObject(detail, name, value);
-    net_audit(api->net, call->client, "", "", action, detail);
+    net_audit_by(api->net, &call->identity, call->client, "", "", action, detail);
 }
 
 static void add_time(cJSON *json, const char *name, int64_t ms)

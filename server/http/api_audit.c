@@ -24,6 +24,11 @@ static void audit_export(struct call *call)
     const bool is_of_plan = strncmp(call->path, plans, sizeof plans - 1) == 0;
     const char *room_id = is_of_room ? call->ids[0] : call_query(call, "room");
     struct room *room = room_id ? net_room_find(net, room_id) : NULL;
+    if (strcmp(call->exported, "picture") == 0 && !room) { /* as fast as a script asks */
+        net_audit_often(net, &call->identity, call->client, "", is_of_plan ? call->ids[0] : "", "export",
+                        call->exported, false);
+        return;
+    }
     cJSON *detail = cJSON_CreateObject();
     cJSON_AddStringToObject(detail, "what", call->exported);
     cJSON_AddStringToObject(detail, "media_type", call->media_type);

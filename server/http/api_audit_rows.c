@@ -140,7 +140,7 @@ static void was_read(void *context, const struct store_audit_row *rows, size_t n
         answer_page(call, rows, n, next_n);
 }
 
-/* Who has signed in has the right, which was asked for. Everybody who can reach a server where nobody signs in counts
+/* Rights were asked of one who has signed in. Everybody who can reach a server where nobody signs in counts
  * as the same person. */
 static bool may_read(const struct api *api, const struct call *call, struct problem *problem)
 {

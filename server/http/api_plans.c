@@ -110,6 +110,7 @@ void api_plan_open(struct api *api, struct call *call)
     struct problem problem;
     if (!api_find_plan(api, call, &plan))
         return;
+    net_audit_often(api->net, &call->identity, call->client, "", call->ids[0], "open", "plan", false);
     if (!fleet_open(net_fleet(api->net), call->ids[0], &problem)) {
         call_answer_problem(call, &problem);
         return;

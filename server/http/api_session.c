@@ -66,7 +66,10 @@ static void record(struct api *api, const struct call *call, const char *action,
     cJSON_AddStringToObject(detail, "user", user);
     if (why)
         cJSON_AddStringToObject(detail, "why", why);
-    net_audit(api->net, call->client, "", "", action, detail);
+    struct identity who = call->identity;
+    if (!who.user[0])
+        (void)snprintf(who.user, sizeof who.user, "%s", user);
+    net_audit_by(api->net, &who, call->client, "", "", action, detail);
 }
 
 static void signed_in(struct api_waiting *waiting)

@@ -22,6 +22,7 @@
 #include "server/net/keep_recordings.h"
 #include "server/net/keep_records.h"
 #include "server/net/net_state.h"
+#include "server/net/often.h"
 #include "server/net/rooms.h"
 #include "server/net/schedule.h"
 #include "server/net/sign_ins.h"
@@ -107,6 +108,7 @@ static void timer_fired(void *context)
     if (now_us >= net->fleet_tick_us) {
         fleet_tick(net->fleet);
         erase_tick(net);
+        often_tick(net);
         bridge_look_at_files(net, now_us);
         rooms_close_idle(net);
         keep_write_due(net, false);
@@ -473,6 +475,7 @@ static void *work(void *context)
         room_recording_cut(net->rooms[i]->room, clock_now_us());
         room_audit_flush(net->rooms[i]->room, clock_now_us());
     }
+    often_finish(net);
     keep_write_due(net, true);
     for (struct visitor *visitor = net->visitors; visitor;
          visitor = visitor->next) /* before room_destroy says bye with another reason */

@@ -155,6 +155,9 @@ NODISCARD bool net_erase_plan(struct net *net, const char *plan_id, const struct
                               const char *reason, net_erased *done, void *context, struct problem *problem);
 /* Whether this sign-in has not ended: asked of those who stay. */
 bool net_identity_holds(const struct net *net, const struct identity *who);
+/* Records what may happen many times a second: the first at once, and equal ones as one row a minute. what: a word. */
+void net_audit_often(struct net *net, const struct identity *who, const char *address, const char *room,
+                     const char *plan, const char *action, const char *what, bool is_refused);
 /* Notes whose call is being handled, for what rooms record of it; NULL: none is. */
 void net_set_caller(struct net *net, const struct identity *who);
 struct net_audit_head net_audit_head(const struct net *net);

@@ -139,6 +139,8 @@ struct net {
     struct part_reader *readers;
     struct record_reader *record_readers;
     struct audit_reader *audit_readers;
+    struct often *often; /* often.c */
+    size_t n_often;
     struct erasing *erasing; /* erase.c; NULL: no plan is being erased */
     struct list_waiter *list_waiters;
     char (*undeleted)[64]; /* rooms whose deletion the store could not take yet */

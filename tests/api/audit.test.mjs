@@ -249,6 +249,15 @@ test('what the page makes by itself is recorded before it is made: who, what, it
   assert.deepEqual((await rowWith('export', (row) => row.room === gone)).detail, { what: 'notes', name_sha256: sha256('notes.txt') });
 });
 
+test('equal pictures and openings are a row at once and one a minute, or at the end', async () => {
+  const n = onDisk().filter(({ action, detail }) => action === 'open' && detail.what === 'plan').length;
+  for (let i = 0; i < 5; i++) assert.equal((await call(`${daemon.url}/api/v1/plans/phantom/open`, 'POST')).status, 202);
+  const opened = await rowWith('open', ({ detail, room }) => detail.what === 'plan' && !room);
+  assert.deepEqual([opened.plan, opened.source, opened.detail], [planKey, 'machine', { what: 'plan' }]);
+  assert.equal(n, 0);
+  assert.equal(onDisk().filter(({ action, detail }) => action === 'open' && detail.what === 'plan').length, 1);
+});
+
 test('the rows of a room outlive it, and a killed daemon', async () => {
   const other = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
   assert.equal((await call(`${daemon.url}/api/v1/rooms/${other}`, 'DELETE')).status, 204);
@@ -262,7 +271,10 @@ test('the rows of a room outlive it, and a killed daemon', async () => {
   room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
   await enter({ name: 'Ben' });
   await rowWith('open', (row) => row.name === 'Ben');
+  for (let i = 0; i < 3; i++) assert.equal((await call(`${daemon.url}/api/v1/plans/phantom/open`, 'POST')).status, 202);
   await daemon.stop();
+  const last = onDisk().filter(({ action, detail }) => action === 'open' && detail.what === 'plan');
+  assert.deepEqual([last.length, last.at(-1).detail.times], [3, 2], 'what was gathered is written at the end');
   const [, n, hash] = daemon.log().match(/audit: (\d+) rows, head ([0-9a-f]{64})(?![\s\S]*audit: )/);
   assert.deepEqual([Number(n), hash], [onDisk().length, onDisk().at(-1).hash], 'the log has the newest row');
   daemon = null;
