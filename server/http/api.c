@@ -39,6 +39,7 @@ static const struct {
     { "DELETE", "/api/v1/tokens/{token}", api_token_revoke },
     { "GET", "/api/v1/plans", api_plans },
     { "POST", "/api/v1/plans", api_plan_upload },
+    { "POST", "/api/v1/plans/search", api_plan_search },
     { "GET", "/api/v1/plans/{plan}", api_plan },
     { "DELETE", "/api/v1/plans/{plan}", api_plan_delete },
     { "GET", "/api/v1/plans/{plan}/revision", api_plan_revision },

@@ -25,6 +25,7 @@ void api_token_make(struct api *api, struct call *call);
 void api_token_revoke(struct api *api, struct call *call);
 
 void api_plans(struct api *api, struct call *call);
+void api_plan_search(struct api *api, struct call *call);
 void api_plan(struct api *api, struct call *call);
 void api_plan_upload(struct api *api, struct call *call);
 void api_plan_delete(struct api *api, struct call *call);
@@ -78,6 +79,8 @@ void api_room_acceptances(struct api *api, struct call *call);
 void api_room_control(struct api *api, struct call *call);
 void api_room_ws(struct api *api, struct call *call);
 
+/* The plan as it stands in lists; the caller's. */
+cJSON *api_plan_head(const struct fleet_plan *plan);
 /* The revision of the plan's files. False with problem: not known, busy while it is being found out. */
 NODISCARD bool api_plan_revision_known(struct api *api, const char *plan_id, struct fleet_revision *revision,
                                        struct problem *problem);

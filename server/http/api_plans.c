@@ -8,7 +8,7 @@
 #include "server/http/api_queries.h"
 #include "server/wire/sentence_json.h"
 
-static cJSON *plan_head(const struct fleet_plan *plan)
+cJSON *api_plan_head(const struct fleet_plan *plan)
 {
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "id", plan->id);
@@ -53,7 +53,7 @@ void api_plans(struct api *api, struct call *call)
     struct fleet_plan plan;
     for (size_t i = 0; i < fleet_n_plans(fleet); i++)
         if (fleet_plan_at(fleet, i, &plan) && api_access_to_plan(api, call, ACCESS_LOOK, plan.id))
-            cJSON_AddItemToArray(list, plan_head(&plan));
+            cJSON_AddItemToArray(list, api_plan_head(&plan));
     call_answer_json(call, 200, answer);
 }
 
@@ -62,7 +62,7 @@ void api_plan(struct api *api, struct call *call)
     struct fleet_plan plan;
     if (!api_find_plan(api, call, &plan))
         return;
-    cJSON *answer = plan_head(&plan);
+    cJSON *answer = api_plan_head(&plan);
     const cJSON *part;
     cJSON_ArrayForEach(part, plan.document) /* images, regions, ...: known only of a loaded plan */
     {

@@ -64,6 +64,8 @@ test('plans and jobs', async () => {
     '/api/v1/plans/phantom/identity',
   ])
     await ask(path);
+  assert.equal((await ask('/api/v1/plans/search', 'POST', { text: 'SNYDER' })).total, 1);
+  assert.equal((await ask('/api/v1/plans/search', 'POST', { text: 'nobody' })).total, 0);
   const { id } = await ask('/api/v1/plans/phantom/open', 'POST');
   await ask(`/api/v1/jobs/${id}`);
   await ask(`/api/v1/jobs/${id}`, 'DELETE');
@@ -167,7 +169,7 @@ test('the state of a sign-in, on a server on which nobody signs in', async () =>
 });
 
 /** Met by tests/api/sign_in.test.mjs, as nobody signs in here. */
-const elsewhere = ['answer.users', 'answer.tokens', 'answer.token_made'];
+const elsewhere = ['answer.users', 'answer.tokens', 'answer.token_made', 'answer.erased'];
 
 test('every schema of an answer was met', () => {
   const answers = new Set(
