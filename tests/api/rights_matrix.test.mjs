@@ -1,0 +1,323 @@
+// Who may do what, over HTTP: every route of proto/ by ten kinds of caller, on what is their own, granted to them, and neither.
+// Which right a route needs comes from proto/; which kind of caller has which right stands here. --stub: grey pictures.
+import assert from 'node:assert/strict';
+import { createHash } from 'node:crypto';
+import { chmodSync, cpSync, mkdirSync, mkdtempSync, readFileSync, realpathSync, rmSync } from 'node:fs';
+import { request } from 'node:http';
+import { tmpdir, userInfo } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { questionRoutes } from '../../proto/gen/packets.mjs';
+import { demo, startDaemon, until } from './daemon.mjs';
+import { Client } from './ws_client.mjs';
+
+const read = (name) => JSON.parse(readFileSync(new URL(`../../proto/${name}.json`, import.meta.url), 'utf8'));
+const described = [...read('http').routes, ...questionRoutes(read('packets'))];
+
+const reads = ['look', 'measure', 'export'];
+const rightsOf = {
+  none: [],
+  observer: ['look'],
+  reviewer: [...reads, 'point', 'note', 'scene', 'meet'],
+  presenter: [...reads, 'point', 'note', 'scene', 'meet', 'control'],
+  planner: [...reads, 'point', 'note', 'scene', 'meet', 'control', 'close', 'plan'],
+  admin: [...reads, 'point', 'note', 'scene', 'meet', 'control', 'close', 'plan', 'serve'],
+  reader: reads, // a token that may only read, of a planner
+  guest: ['look', 'point', 'note'], // of a link of the role reviewer
+  wall: ['look'],
+};
+/** Each kind of caller: what it has on what is its own, what is granted, and what is neither; on the server. */
+const kinds = {
+  nobody: { own: null, granted: 'none', foreign: 'none', server: 'none' },
+  observer: { own: null, granted: 'observer', foreign: 'none', server: 'none' },
+  reviewer: { own: 'reviewer', granted: 'reviewer', foreign: 'none', server: 'none' },
+  presenter: { own: 'presenter', granted: 'presenter', foreign: 'none', server: 'none' },
+  planner: { own: 'planner', granted: 'planner', foreign: 'none', server: 'none', uploads: 'planner' },
+  admin: { own: 'admin', granted: 'admin', foreign: 'admin', server: 'admin', uploads: 'admin' },
+  guest: { own: 'guest', granted: 'none', foreign: 'none', server: 'none' },
+  wall: { own: 'wall', granted: 'none', foreign: 'none', server: 'none' },
+  'token read': { own: 'reader', granted: 'reader', foreign: 'none', server: 'none' },
+  'token plan': { own: 'planner', granted: 'planner', foreign: 'none', server: 'none', uploads: 'planner' },
+};
+const isSignedIn = (kind) => !['nobody', 'guest', 'wall'].includes(kind);
+
+/** What an answer says about rights: signed-out, absent, forbidden or allowed. */
+function saidBy({ status, json, headers }) {
+  if (status === 401 || (status === 303 && headers.location?.startsWith('/signin?'))) return 'signed-out';
+  if (status === 403 && json?.code === 'role') return 'forbidden';
+  return status === 404 ? 'absent' : 'allowed';
+}
+
+/** What the answer to this route should say, by the right that it needs. Several words: each will do, as ids inside the subject are made up. */
+function expected({ path, needs: [right, subject] }, kind, which) {
+  const may = kinds[kind];
+  const nothing = isSignedIn(kind) ? ['absent'] : ['signed-out'];
+  const allowed = ['allowed', 'absent'];
+  if (right === 'free') return /session|signin/.test(path) ? [...allowed, 'signed-out'] : allowed; // signing in may say so itself
+  if (right === 'signed-in') return isSignedIn(kind) ? allowed : ['signed-out'];
+  if (['job', 'record', 'saved', 'named'].includes(subject) && !isSignedIn(kind)) return ['signed-out'];
+  if (['job', 'record', 'saved'].includes(subject)) return ['absent']; // made up
+  if (subject === 'named') return ['allowed']; // an empty body is told what is missing; rooms on plans: below
+  const whole = subject === 'server' ? may.server : subject === 'uploads' ? (may.uploads ?? 'none') : may[which];
+  const role = subject === 'room' && whole === 'reader' ? 'observer' : whole; // in rooms such a token looks
+  if (path === '/metrics' && !kinds[kind].bySocket) return allowed; // this machine's own
+  if (rightsOf[role].includes(right)) return allowed;
+  if (right === 'measure' && subject === 'plan' && role === 'guest') return allowed; // what a reviewer's page asks for
+  if (['server', 'uploads'].includes(subject)) return isSignedIn(kind) ? ['forbidden'] : ['signed-out'];
+  if (!rightsOf[role].includes('look')) return nothing;
+  return isSignedIn(kind) ? ['forbidden'] : subject === 'plan' ? ['signed-out'] : ['forbidden', 'signed-out'];
+}
+
+/** What must not be done for real while others are still to be asked. */
+const ends = ({ method, path }) =>
+  (method === 'DELETE' && /^\/api\/v1\/(rooms\/\{room\}|plans\/\{plan\})$/.test(path)) ||
+  /\/(close|erase)$/.test(path) ||
+  path.includes('/session') ||
+  path.endsWith('/people');
+
+describe('The matrix of rights', { concurrency: false }, () => {
+  let folder, socketPath, daemon;
+  const plans = {};
+  const rooms = { own: {} };
+  const callers = {};
+  const seats = [];
+
+  /** One call, of a stream the head alone. */
+  const ask = (kind, path, method = 'GET', body) =>
+    new Promise((done, failed) => {
+      const { headers, socket } = callers[kind];
+      const { hostname, port } = new URL(daemon.url);
+      const text = body === undefined ? undefined : JSON.stringify(body);
+      const call = request(
+        {
+          ...(socket ? { socketPath } : { hostname, port }),
+          path,
+          method,
+          agent: false,
+          headers: {
+            ...headers,
+            ...(text !== undefined && { 'Content-Type': 'application/json', 'Content-Length': Buffer.byteLength(text), 'If-Match': '*' }),
+          },
+        },
+        (answer) => {
+          let got = '';
+          const end = () => {
+            let json;
+            if (/json/.test(answer.headers['content-type'])) json = JSON.parse(got);
+            done({ status: answer.statusCode, headers: answer.headers, text: got, json });
+          };
+          if (/multipart|event-stream/.test(answer.headers['content-type'])) {
+            end();
+            call.destroy();
+            return;
+          }
+          answer.setEncoding('latin1');
+          answer.on('data', (part) => (got += part));
+          answer.on('end', end);
+        },
+      );
+      call.on('error', failed);
+      call.end(text);
+    });
+
+  const made = async (kind, path, body) => {
+    const answer = await ask(kind, path, 'POST', body);
+    assert.ok(answer.status < 300, `${kind} ${path}: ${answer.status} ${answer.text}`);
+    return answer.json;
+  };
+  const person = (user) => ({
+    socket: true,
+    headers: { Host: 'beamroom.example', 'X-Forwarded-For': '192.0.2.7', ...(user && { 'X-Beamroom-User': user }) },
+  });
+  const idOf = (path) => createHash('sha256').update(realpathSync(path)).digest('hex').slice(0, 16);
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'beamroom-matrix-'));
+    chmodSync(folder, 0o777);
+    for (const which of ['granted', 'foreign']) {
+      mkdirSync(join(folder, which));
+      cpSync(join(demo, 'phantom'), join(folder, which, `smith-john-${which}`), { recursive: true });
+      plans[which] = idOf(join(folder, which, `smith-john-${which}`));
+    }
+    socketPath = join(folder, 'http.sock');
+    const granted = ['observer', 'reviewer', 'presenter', 'planner'].map((role) => `${folder}/granted ${role} ${role}`);
+    daemon = await startDaemon({
+      plans: [join(folder, 'granted'), join(folder, 'foreign')],
+      args: [
+        ...['--stub', '--sign-in', 'proxy', '--guest-links', '--listen', `unix:${socketPath}`, '--proxy-user', userInfo().username],
+        ...['--public-name', 'beamroom.example'],
+        ...[...granted, '* admin admin', 'uploads planner planner'].flatMap((line) => ['--grant', line]),
+      ],
+    });
+    for (const kind of ['observer', 'reviewer', 'presenter', 'planner', 'admin']) callers[kind] = person(kind);
+    for (const kind of ['observer', 'reviewer', 'presenter', 'planner', 'admin']) kinds[kind].bySocket = true;
+    callers.nobody = { headers: {} };
+    for (const scope of ['read', 'plan']) {
+      const { token } = await made('admin', '/api/v1/tokens', { user: 'planner', name: `for ${scope}`, scope: [scope], days: 1 });
+      callers[`token ${scope}`] = { headers: { Authorization: `Bearer ${token}` } };
+    }
+    await until(
+      () => ask('admin', '/api/v1/plans'),
+      ({ json }) => json.plans.length === 2,
+    );
+    for (const kind of ['reviewer', 'presenter', 'planner', 'admin'])
+      rooms.own[kind] = (await made(kind, '/api/v1/rooms', { plan: plans.granted })).id;
+    rooms.own['token plan'] = rooms.own['token read'] = rooms.own.planner; // of one person
+    rooms.granted = (await made('planner', '/api/v1/rooms', { plan: plans.granted })).id;
+    assert.equal((await ask('planner', `/api/v1/rooms/${rooms.granted}/people`, 'PATCH', { is_open: true })).status, 200);
+    rooms.foreign = (await made('admin', '/api/v1/rooms', { plan: plans.foreign })).id;
+    for (const [kind, role] of [
+      ['guest', 'reviewer'],
+      ['wall', 'wall'],
+    ]) {
+      rooms.own[kind] = (await made('planner', '/api/v1/rooms', { plan: plans.granted })).id;
+      const { token } = await made('planner', `/api/v1/rooms/${rooms.own[kind]}/links`, { role, guests: true });
+      const client = await Client.enter(daemon.url, rooms.own[kind], { link: token, name: 'Somebody' });
+      callers[kind] = { headers: client.headers };
+      seats.push(client);
+    }
+  });
+  after(async () => {
+    for (const client of seats) client.cut();
+    assert.equal(await daemon?.stop(), 0);
+    rmSync(folder, { recursive: true, force: true });
+  });
+
+  const addressOf = (path, kind, which) =>
+    path
+      .replace('{plan}', which === 'own' ? plans.granted : plans[which])
+      .replace('{room}', which === 'own' ? rooms.own[kind] : rooms[which])
+      .replace(/\{\w+\}/g, 'x');
+
+  /** Cells of the matrix whose answer is not as the routes say. */
+  async function wrongCells(routes) {
+    const wrong = [];
+    for (const route of routes)
+      for (const kind of Object.keys(kinds))
+        for (const which of ['own', 'granted', 'foreign']) {
+          const isAbout = ['plan', 'room'].includes(route.needs[1]) || /\{(plan|room)\}/.test(route.path);
+          if (isAbout ? kinds[kind][which] === null : which !== 'granted') continue;
+          if (which === 'granted' && route.needs[1] === 'plan' && ['guest', 'wall'].includes(kind)) continue; // it is that of their room
+          const should = expected(route, kind, which);
+          if (should.includes('allowed') && ends(route)) continue;
+          const body = ['GET', 'DELETE'].includes(route.method) ? undefined : {};
+          const answer = await ask(kind, addressOf(route.path, kind, which), route.method, body);
+          if (!should.includes(saidBy(answer)))
+            wrong.push(
+              `${route.method} ${route.path}, ${kind}, ${which}: ${answer.status} ${answer.text.slice(0, 120)}, expected ${should}`,
+            );
+        }
+    return wrong;
+  }
+
+  test('each route answers each kind of caller by the right that it needs', async () => {
+    assert.deepEqual(await wrongCells(described), []);
+  });
+
+  test('a route that asked for another right than it says would be found', async () => {
+    const planted = (method, path, needs) => [{ ...described.find((route) => route.method === method && route.path === path), needs }];
+    assert.notEqual((await wrongCells(planted('GET', '/api/v1/plans/{plan}', ['free', 'none']))).length, 0);
+    assert.notEqual((await wrongCells(planted('GET', '/api/v1/rooms/{room}/scene', ['control', 'room']))).length, 0);
+    assert.notEqual((await wrongCells(planted('GET', '/api/v1/audit', ['signed-in', 'none']))).length, 0);
+  });
+
+  test('what may not be seen is byte for byte as what is not there', async () => {
+    const absent = { plan: '0123456789abcdef', room: 'zzzz-zzzz' };
+    for (const route of described.filter(({ needs }) => ['plan', 'room'].includes(needs[1])))
+      for (const kind of ['planner', 'token read']) {
+        const body = ['GET', 'DELETE'].includes(route.method) ? undefined : {};
+        const plain = ({ status, headers, text }, id) => {
+          const { date: _, ...rest } = headers;
+          return { status, headers: rest, text: text.replaceAll(id, 'ID') };
+        };
+        const subject = route.needs[1];
+        const at = (id) => route.path.replace(`{${subject}}`, id).replace(/\{\w+\}/g, 'x');
+        const foreign = { plan: plans.foreign, room: rooms.foreign }[subject];
+        assert.deepEqual(
+          plain(await ask(kind, at(foreign), route.method, body), foreign),
+          plain(await ask(kind, at(absent[subject]), route.method, body), absent[subject]),
+          `${route.method} ${route.path} ${kind}`,
+        );
+      }
+  });
+
+  test('lists have what may be seen; no address and no name tells the folder', async () => {
+    const ids = async (kind, path, list) => (await ask(kind, path)).json[list].map(({ id }) => id);
+    for (const kind of ['observer', 'planner', 'token read']) assert.deepEqual(await ids(kind, '/api/v1/plans', 'plans'), [plans.granted]);
+    assert.equal((await ids('admin', '/api/v1/plans', 'plans')).length, 2);
+    assert.ok(!(await ids('planner', '/api/v1/rooms', 'rooms')).includes(rooms.foreign));
+    assert.ok(!(await ids('reviewer', '/api/v1/rooms', 'rooms')).includes(rooms.own.planner));
+    for (const path of ['/api/v1/plans', `/api/v1/plans/${plans.granted}`, '/api/v1/rooms'])
+      assert.doesNotMatch((await ask('admin', path)).text, /smith/i, path);
+    assert.doesNotMatch(daemon.log(), /smith/i);
+  });
+
+  test('nobody enters a room without a link, whether it is there or not', async () => {
+    for (const room of [rooms.granted, rooms.foreign, rooms.own.planner]) {
+      const client = await Client.hello(daemon.url, room, { name: 'Stranger' });
+      const { code } = await client.message('bye');
+      assert.equal(code, 'sign-in');
+      client.cut();
+    }
+  });
+
+  test('an archive of who may not upload is refused before it is sent', async () => {
+    const before = await ask('admin', '/api/v1/plans');
+    for (const [kind, status] of [
+      ['nobody', 401],
+      ['guest', 401],
+      ['reviewer', 403],
+      ['token read', 403],
+    ]) {
+      const { headers, socket } = callers[kind];
+      const { hostname, port } = new URL(daemon.url);
+      const answer = await new Promise((done, failed) => {
+        const call = request(
+          {
+            ...(socket ? { socketPath } : { hostname, port }),
+            path: '/api/v1/plans',
+            method: 'POST',
+            agent: false,
+            headers: { ...headers, 'Content-Type': 'application/zip', 'Content-Length': 100000000 },
+          },
+          done,
+        );
+        call.on('error', failed);
+        call.flushHeaders(); // and not a byte of the body
+      });
+      answer.destroy();
+      assert.equal(answer.statusCode, status, kind);
+    }
+    assert.equal((await ask('admin', '/api/v1/plans')).text, before.text);
+  });
+
+  test('a question about a plan sees the scene of no room that the caller does not see', async () => {
+    const at = (room) => `/api/v1/plans/${plans.granted}/fits?room=${room}`;
+    const closed = await ask('presenter', at(rooms.own.planner)); // a room of somebody else, on a plan that is granted
+    const absent = await ask('presenter', at('zzzz-zzzz'));
+    assert.equal(closed.status, 404);
+    assert.equal(closed.text.replaceAll(rooms.own.planner, 'ID'), absent.text.replaceAll('zzzz-zzzz', 'ID'));
+    assert.equal((await ask('presenter', at(rooms.own.presenter))).status, 200);
+  });
+
+  test('a search finds what may be seen, and counts no other', async () => {
+    const found = async (kind, body) => (await ask(kind, '/api/v1/plans/search', 'POST', body)).json;
+    assert.equal((await found('planner', {})).total, 1);
+    assert.equal((await found('planner', { text: plans.foreign })).total, 0);
+    assert.equal((await found('admin', { text: 'smith' })).total, 0); // the folder's name is no name
+    const first = await found('admin', { text: 'SNYDER', limit: 1 });
+    assert.deepEqual([first.total, first.plans.length], [2, 1]);
+    const next = await found('admin', { text: 'snyder', limit: 1, cursor: first.next });
+    assert.deepEqual([next.total, next.plans.length, next.next], [2, 1, null]);
+    assert.notEqual(next.plans[0].id, first.plans[0].id);
+  });
+
+  test('rooms are made on plans by who may work with them', async () => {
+    const status = async (kind, plan) => (await ask(kind, '/api/v1/rooms', 'POST', { plan })).status;
+    assert.equal(await status('observer', plans.granted), 403);
+    assert.equal(await status('token read', plans.granted), 403);
+    assert.equal(await status('planner', plans.foreign), 404);
+    assert.equal(await status('token plan', plans.granted), 201);
+    assert.equal(await status('guest', plans.granted), 401);
+  });
+});
