@@ -31,7 +31,7 @@ struct api {
     struct net *net;
     uint64_t max_upload_bytes;
     struct api_doors doors;
-    struct auth *auth;                /* never NULL */
+    struct auth *auth; /* never NULL */
     struct api_rates *rates;
     const struct plan_rights *rights; /* of the net */
     int64_t started_us;
