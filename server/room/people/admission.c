@@ -307,7 +307,7 @@ static bool is_who(const char *text)
     const size_t n = text ? strlen(text) : 0;
     bool is_right = n >= 1 && n < WHO_BYTES && (text[0] == '@' ? n >= 2 : n < STORE_USER);
     for (size_t i = 0; is_right && i < n; i++)
-        is_right = text[i] > 32 && text[i] < 127 && (i == 0 || text[i] != '@');
+        is_right = (unsigned char)text[i] > 32 && text[i] != 127 && (i == 0 || text[i] != '@');
     return is_right;
 }
 
