@@ -17,9 +17,10 @@ export const bookmarksOf = (room) =>
 
 const own = ({ members, member }) => members.value.find(({ id }) => id === member.value);
 /** Observers look only. */
-export const canSave = (room) => room.canChange.value && own(room)?.role !== 'observer';
+export const canSave = (room) => room.canChange.value && !['observer', 'wall'].includes(own(room)?.role);
+const isOwn = (room, row) => (row.author_user ? row.author_user === own(room)?.user : row.author === room.member.value);
 export const canEdit = (room, row) =>
-  canSave(room) && (row.author === room.member.value || room.following.isPresenting.value || own(room)?.role === 'presenter');
+  canSave(room) && (isOwn(room, row) || room.following.isPresenting.value || ['presenter', 'planner'].includes(own(room)?.role));
 
 // ---- saving -------------------------------------------------------------------------------------------------------------
 

@@ -30,6 +30,7 @@ export const meanings = [
   ['seen', say.seen],
 ];
 export const roles = [
+  ['planner', say.isPlanner],
   ['presenter', say.isPresenter],
   ['reviewer', say.isReviewer],
   ['observer', say.isObserver],

@@ -90,6 +90,7 @@ export const say = sentences('record.later', {
   entry: 'Entry',
   state: 'State',
   role: 'Role',
+  isPlanner: 'planner',
   isPresenter: 'presenter',
   isReviewer: 'reviewer',
   isObserver: 'observer',

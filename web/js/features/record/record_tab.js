@@ -162,7 +162,8 @@ function decided({ room }, rows, revision) {
     if (await write(room, 'decision', 'decision', { decision: data.decision, text: data.text.trim(), corrects: data.corrects ?? '' }))
       form.reset();
   };
-  const isMine = meIn(room).role === 'presenter' && mayWrite(room);
+  const { user, is_guest: isGuest, role } = meIn(room);
+  const isMine = mayWrite(room) && !isGuest && (Boolean(user) || role === 'presenter'); // without sign-in presenters alone decide
   return html`<section class="block"><h3>${say.decision}</h3>${lines(list, say.decisions, decisionWords)}
     ${
       isMine
