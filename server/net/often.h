@@ -1,5 +1,5 @@
 #pragma once
-/* What may happen many times a second, as pictures and refusals, in rows for the audit: the first at once, and what is
+/* Rows for the audit of what may happen many times a second, as pictures and refusals: the first at once, and what is
  * equal to it in everything but its time as one row a minute, with its number. Internal to server/net; net thread. */
 #include "server/net/net_state.h"
 
