@@ -1,4 +1,4 @@
-// What each route and each message needs: checks that every one says so, and writes rights_gen.h and rights_gen.c, the table
+// The right that each route and each message needs: checks that every one names it, and writes rights_gen.h and rights_gen.c, the table
 // that server/auth/access.c and the API read, and the section of the reference page.
 import { notice, upper } from './names.mjs';
 

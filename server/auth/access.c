@@ -229,7 +229,7 @@ static bool is_owner(const struct identity *identity, const struct access_subjec
     return subject->owner && subject->owner[0] && strcmp(subject->owner, identity->user) == 0;
 }
 
-/* What grants give, and the ownership of what somebody made. */
+/* The role by grants, or as the owner of an upload or a job. */
 static enum access_role granted(const struct access *access, const struct identity *identity,
                                 const struct access_subject *subject, bool *sees_identity)
 {

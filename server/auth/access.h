@@ -1,7 +1,7 @@
 #pragma once
-/* Who may do what: the one place that decides it. Grants are lines FOLDER WHO ROLE of the configuration; what a call or
- * message needs stands in proto/ and comes as a generated table. Knows no rooms, plans or calls: who asks describes the
- * subject. Thread: any. */
+/* Rights: the one place that decides who may do what. Grants are lines FOLDER WHO ROLE of the configuration; what a
+ * call or message needs stands in proto/ and comes as a generated table. Knows no rooms, plans or calls: who asks
+ * describes the subject. Thread: any. */
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -48,5 +48,6 @@ bool access_check(const struct access *access, const struct identity *identity, 
 enum access_role access_role_on(const struct access *access, const struct identity *identity,
                                 const struct access_subject *subject);
 
-/* What a route needs: method and path as in proto/http.json. NULL: it is not described there, and nobody may use it. */
+/* The right that a route needs: method and path as in proto/http.json. NULL: it is not described there, and nobody may
+ * use it. */
 const struct access_route *access_route_find(const char *method, const char *path);

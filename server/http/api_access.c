@@ -128,7 +128,7 @@ static enum access_role role_in(const struct room *room, const struct call *call
     return caller.is_here ? roles[caller.role] : ACCESS_ROLE_NONE;
 }
 
-/* What a seat in a room on this plan gives on the plan. */
+/* The rights that a seat in a room on this plan gives on the plan. */
 static bool seat_allows(const struct api *api, const struct call *call, enum access_right right, const char *plan_id)
 {
     struct access_subject subject = { .kind = ACCESS_SUBJECT_KIND_PLAN };

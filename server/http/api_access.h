@@ -1,5 +1,5 @@
 #pragma once
-/* Who may make which call: the one check of rights, made where the route is known, before rooms are woken. Internal to
+/* The check of rights of calls, the only one, made where the route is known, before rooms are woken. Internal to
  * server/http; net thread. */
 #include "server/http/api_state.h"
 

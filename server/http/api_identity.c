@@ -8,8 +8,8 @@
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
 
-/* Who has signed in has the right, which was asked for. Where nobody signs in, everybody who can reach the server
- * counts as the same person: names are given only where that is the person at this machine. */
+/* A person who has signed in has the right, which was asked for. Where nobody signs in, everybody who can reach the
+ * server counts as the same person: names are given only where that is the person at this machine. */
 static bool may_read(const struct api *api, const struct call *call, struct problem *problem)
 {
     if (call->identity.source == IDENTITY_MACHINE && !api_is_of_this_machine(api, call))

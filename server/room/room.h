@@ -107,8 +107,8 @@ NODISCARD bool room_people_patch(struct room *room, const cJSON *patch, const st
 bool room_is_listed_to(const struct room *room, const struct identity *who);
 /* The sign-in behind this connection is over: the member is away, and keeps its seat. */
 void room_sign_in_over(struct room *room, void *connection, int64_t now_us);
-/* What is granted on the plan has changed: who has another role than before comes in again, and who has none is sent
- * away. Members keep their seats. */
+/* Looks at the roles of members anew, after grants have changed: a member with another role comes in again, one without
+ * is sent away. Members keep their seats. */
 void room_grants_changed(struct room *room, int64_t now_us);
 /* Whether a call over HTTP has the right in this room. member: "ID SECRET" of the member who makes it; NULL: of nobody
  * in the room, who then has the rights of a presenter in a room without links, else those of a reviewer who does not

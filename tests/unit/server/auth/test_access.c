@@ -1,4 +1,4 @@
-/* Who may do what: grants, tokens, owners and rooms, and every route and right by the ten kinds of caller. What each
+/* Rights: grants, tokens, owners and rooms, and every route and right by the ten kinds of caller. What each
  * kind may do stands here by right, as the hospital's table of roles has it; which right a route needs comes from
  * proto/. */
 #include <time.h>
@@ -228,7 +228,7 @@ enum {
     OF_ADMIN = OF_PLANNER | BIT(SERVE),
     OF_READER = OF_OBSERVER | BIT(MEASURE) | BIT(EXPORT)
 };
-/* Of each kind: the rights on what it made itself, on what was granted to it, and on the rest. Administrators are so
+/* The rights of each kind on what it made itself, on what was granted to it, and on the rest. Administrators are so
  * everywhere. Own of a guest and a wall: their room; a guest takes no files away and makes no rooms. */
 static const unsigned rights_of[N_KINDS][N_SUBJECTS] = {
     [NOBODY] = { ANYBODY, ANYBODY, ANYBODY },

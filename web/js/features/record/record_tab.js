@@ -180,7 +180,7 @@ function decided({ room }, rows, revision) {
 
 const signatureOf = ({ body }) => say.signatureOf({ name: body.name, meaning: wordOf(meanings, body.meaning) });
 
-/** Who is signed in signs under that name, and proves it once more; elsewhere a name is typed. */
+/** Signatures and the form for one: a person who is signed in signs under that name, and proves it once more; elsewhere a name is typed. */
 function signed({ room, session }, rows, revision) {
   const list = linesOf(rows, 'signature', revision);
   const submit = async (event) => {

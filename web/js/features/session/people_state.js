@@ -1,4 +1,4 @@
-// What the people panel knows of a room beside its members: who may come in without a link, and the links. Its acts.
+// The state of the people panel beside the members of the room: who may come in without a link, and the links. Its acts.
 import { signal } from '../../../lib/signals-core.js';
 import { roomPath } from '../../net/address.js';
 import { ofMember } from '../../net/api.js';
