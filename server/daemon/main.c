@@ -349,13 +349,17 @@ static size_t fill_sockets(const struct options *options, struct local_socket so
     return n;
 }
 
-/* Where nobody can sign in yet, the log has the address that makes the first administrator. */
-static void say_first(struct auth *auth, const char *url)
+/* Where nobody can sign in yet, the log has the address that makes the first administrator. A public name without TLS
+ * of our own is that of a proxy in front. */
+static void say_first(struct auth *auth, const struct options *options, const char *url)
 {
     char secret[AUTH_SECRET_TEXT];
     if (!auth_first(auth, secret))
         return;
-    log_warn("there are no users yet: within an hour, make the first administrator at %s/signin/first#%s", url, secret);
+    const bool has_proxy =
+        options->n_public_names > 0 && !options->tls_cert && strcmp(options->public_names[0], "*") != 0;
+    log_warn("there are no users yet: within an hour, make the first administrator at %s%s/signin/first#%s",
+             has_proxy ? "https://" : "", has_proxy ? options->public_names[0] : url, secret);
     auth_wipe(secret, sizeof secret);
 }
 
@@ -443,7 +447,7 @@ static bool serve(struct options *options, struct error *err)
             if (options->is_open)
                 log_warn("open to everybody: whoever reaches %s may see and change every plan, as nobody signs in here",
                          front_url(front));
-            say_first(service.sign_in.auth, front_url(front));
+            say_first(service.sign_in.auth, options, front_url(front));
             notify_send("READY=1");
             heartbeat = serve_on(&service);
         }

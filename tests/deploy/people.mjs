@@ -7,7 +7,7 @@ import { pathToFileURL } from 'node:url';
 
 /** @type {Record<string, {name: string, groups: string[]}>} */
 export const people = {
-  ann: { name: 'Ann Example', groups: ['clinicians', 'beamroom-admins'] },
+  ann: { name: 'Änn Łukasz Example', groups: ['clinicians', 'beamroom-admins'] },
   eve: { name: 'Eve Example', groups: ['physicists'] },
 };
 

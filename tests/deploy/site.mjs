@@ -87,7 +87,7 @@ export class Site {
   /** The caller is ann from here on, and so is the page of visit(). */
   async signIn() {
     if (!this.signsIn) {
-      const [, token] = /\/signin\/first#(\S+)/.exec(this.daemon.log());
+      const [, token] = new RegExp(`https://${NAME}/signin/first#(\\S+)`).exec(this.daemon.log());
       const first = { token, user: 'ann', name: people.ann.name, password: PASSWORD };
       const made = await this.caller.call('/api/v1/session/first', {
         method: 'POST',
