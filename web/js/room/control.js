@@ -4,6 +4,7 @@ import { roles } from '../../gen/wire.js';
 import { say } from './words.js';
 
 const topic = 'following';
+const forGuests = ['look', 'point', 'note'];
 
 export class Control {
   #room;
@@ -20,8 +21,9 @@ export class Control {
     this.requested = signal([]); // ids, the oldest request first
     /** The members who request control, the oldest request first. */
     this.requests = computed(() => this.requested.value.map((id) => this.member(id)).filter(Boolean));
+    this.me = computed(() => this.member(room.member.value));
     /** observer | reviewer | presenter: what this member may do; '' until the list of members has come. */
-    this.role = computed(() => this.member(room.member.value)?.role ?? '');
+    this.role = computed(() => this.me.value?.role ?? '');
     this.isRequesting = computed(() => this.requested.value.includes(room.member.value));
     /** Whether control can be had at once. */
     this.canTake = computed(
@@ -37,9 +39,10 @@ export class Control {
     return this.#room.members.value.find((member) => member.id === id);
   }
 
-  /** Whether a member with this role may do what needs the right; by default this member. */
-  may(right, role = this.role.value) {
-    return roles[role]?.includes(right) ?? false;
+  /** Whether the member, by default this one, may do what needs the right. A guest changes nothing of what the room shows. */
+  may(right, member = this.me.value) {
+    const isHeld = member?.is_guest && member.role !== 'wall' && !forGuests.includes(right);
+    return !isHeld && (roles[member?.role]?.includes(right) ?? false);
   }
 
   // ---- acts of the user -------------------------------------------------------------------------------------------

@@ -28,7 +28,7 @@ export const avatar = (member, size = 'small') =>
 
 /** Buttons of the presenter for another member. */
 function buttonsFor(member, { following, control }) {
-  if (!following.isPresenting.value || member.presenting || member.connected === false || !control.may('scene', member.role))
+  if (!following.isPresenting.value || member.presenting || member.connected === false || !control.may('scene', member))
     return nothing;
   const isAsking = control.requested.value.includes(member.id);
   return html`<span class="roster-buttons"><button aria-label=${say.giveTo(member)} @click=${() => control.give(member.id)}>${say.giveControl}</button>

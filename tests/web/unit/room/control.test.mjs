@@ -36,6 +36,18 @@ test('who may take control and who may request it', () => {
   assert.deepEqual(offered('presenter', presents), []);
 });
 
+test('a guest is offered no control, and cannot be given it, whatever the role', () => {
+  for (const role of ['reviewer', 'presenter', 'planner']) {
+    const guest = { role, is_guest: true };
+    const { room, connection } = roomWorld(members(null, ['m1', 'm2'], { ...roles, m1: guest }));
+    connection.receive(control());
+    assert.deepEqual(offers(room), []);
+    for (const right of ['look', 'point', 'note']) assert.equal(room.control.may(right), true, right);
+    for (const right of ['scene', 'control']) assert.equal(room.control.may(right, room.control.member('m1')), false, right);
+    assert.equal(room.control.may('scene', room.control.member('m2')), true);
+  }
+});
+
 test('a request is sent, withdrawn and refused in words', () => {
   const { room, connection, told } = reviewer();
   room.control.request();

@@ -30,7 +30,7 @@ function row(member, state, room) {
   const name = nameOf(member, members);
   const isMe = member.id === room.member.value;
   const canGive =
-    room.following.isPresenting.value && !member.presenting && member.connected !== false && room.control.may('scene', member.role);
+    room.following.isPresenting.value && !member.presenting && member.connected !== false && room.control.may('scene', member);
   const key = `remove:${member.id}`;
   return html`<li data-member=${member.id} data-away=${member.connected === false}>${avatar(member)}
     <span class="people-who"><span>${isMe ? say.you({ name }) : name} ${member.is_guest ? html`<span class="tag">${say.guest}</span>` : nothing}</span>
