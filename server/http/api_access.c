@@ -71,6 +71,12 @@ bool api_access_to_plan(const struct api *api, const struct call *call, enum acc
     return plan_rights_check(api->rights, net_fleet(api->net), &call->identity, right, plan_id);
 }
 
+bool api_access_to_found_plan(const struct api *api, const struct call *call, enum access_right right,
+                              const struct fleet_plan *plan)
+{
+    return plan_rights_check_found(api->rights, plan, &call->identity, right);
+}
+
 static bool seat_allows(const struct api *api, const struct call *call, enum access_right right, const char *plan_id);
 
 static bool check_plan(struct api *api, struct call *call, const struct access_route *need, api_again *again)

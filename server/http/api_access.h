@@ -12,6 +12,8 @@ bool api_access_allows(struct api *api, struct call *call, const struct api_rout
 /* For lists, and for routes whose subject is found out on the way: whether the caller has the right on this plan, by
  * grants or as its owner. */
 bool api_access_to_plan(const struct api *api, const struct call *call, enum access_right right, const char *plan_id);
+bool api_access_to_found_plan(const struct api *api, const struct call *call, enum access_right right,
+                              const struct fleet_plan *plan);
 /* Whether the caller may make a room on this plan. False with problem: not-found, as of a plan that is not there, or
  * forbidden to who sees the plan. */
 NODISCARD bool api_access_makes_room(const struct api *api, const struct call *call, const char *plan_id,

@@ -100,8 +100,8 @@ void api_plan_search(struct api *api, struct call *call)
     char last[64] = "";
     int n = 0, n_found = 0;
     for (size_t i = 0; i < fleet_n_plans(fleet); i++) {
-        if (!fleet_plan_at(fleet, i, &plan) || !api_access_to_plan(api, call, ACCESS_LOOK, plan.id) ||
-            !fleet_plan_at(fleet, i, &plan) || !is_found(&plan, &search))
+        if (!fleet_plan_at(fleet, i, &plan) || !api_access_to_found_plan(api, call, ACCESS_LOOK, &plan) ||
+            !is_found(&plan, &search))
             continue;
         n_found++;
         if (is_behind && n < search.limit) {

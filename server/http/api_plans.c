@@ -52,7 +52,7 @@ void api_plans(struct api *api, struct call *call)
     cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "plans");
     struct fleet_plan plan;
     for (size_t i = 0; i < fleet_n_plans(fleet); i++)
-        if (fleet_plan_at(fleet, i, &plan) && api_access_to_plan(api, call, ACCESS_LOOK, plan.id))
+        if (fleet_plan_at(fleet, i, &plan) && api_access_to_found_plan(api, call, ACCESS_LOOK, &plan))
             cJSON_AddItemToArray(list, api_plan_head(&plan));
     call_answer_json(call, 200, answer);
 }

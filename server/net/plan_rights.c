@@ -1,18 +1,34 @@
 /* Describes plans for access_check. */
 #include "server/net/plan_rights.h"
 
+static void describe(const struct plan_rights *rights, const struct fleet_plan *found, struct plan_subject *plan)
+{
+    *plan = (struct plan_subject){
+        .subject = { .kind = ACCESS_SUBJECT_KIND_PLAN, .folder = found->folder, .is_upload = found->is_uploaded }
+    };
+    if (rights->auth && found->is_uploaded)
+        auth_owner(rights->auth, found->id, plan->owner);
+    plan->subject.owner = plan->owner;
+}
+
 void plan_subject_fill(const struct plan_rights *rights, const struct fleet *fleet, const char *plan_id,
                        struct plan_subject *plan)
 {
     struct fleet_plan found;
-    *plan = (struct plan_subject){ .subject = { .kind = ACCESS_SUBJECT_KIND_PLAN } };
-    if (!fleet_plan_find(fleet, plan_id, &found))
-        return;
-    plan->subject.folder = found.folder;
-    plan->subject.is_upload = found.is_uploaded;
-    if (rights->auth && found.is_uploaded)
-        auth_owner(rights->auth, plan_id, plan->owner);
-    plan->subject.owner = plan->owner;
+    if (fleet_plan_find(fleet, plan_id, &found))
+        describe(rights, &found, plan);
+    else
+        *plan = (struct plan_subject){ .subject = { .kind = ACCESS_SUBJECT_KIND_PLAN } };
+}
+
+bool plan_rights_check_found(const struct plan_rights *rights, const struct fleet_plan *found,
+                             const struct identity *who, enum access_right right)
+{
+    struct plan_subject plan;
+    if (who->source == IDENTITY_MACHINE)
+        return true;
+    describe(rights, found, &plan);
+    return access_check(rights->access, who, right, &plan.subject);
 }
 
 bool plan_rights_check(const struct plan_rights *rights, const struct fleet *fleet, const struct identity *who,

@@ -23,6 +23,9 @@ void plan_subject_fill(const struct plan_rights *rights, const struct fleet *fle
 /* Whether the identity has the right on the plan by grants or as its owner, without regard to rooms. */
 bool plan_rights_check(const struct plan_rights *rights, const struct fleet *fleet, const struct identity *who,
                        enum access_right right, const char *plan_id);
+/* Like plan_rights_check, of a plan that was found; for lists. */
+bool plan_rights_check_found(const struct plan_rights *rights, const struct fleet_plan *found,
+                             const struct identity *who, enum access_right right);
 /* The highest role that who has signed in may have in rooms on the plan. False: none. */
 bool plan_rights_role(const struct plan_rights *rights, const struct fleet *fleet, const struct identity *who,
                       const char *plan_id, enum wire_member_role *role);
