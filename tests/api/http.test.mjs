@@ -95,6 +95,12 @@ describe('the server', () => {
   test('describes every address it has, and has every address it describes', async () => {
     const description = (await call(`${api}/openapi.json`)).json;
     assert.equal(description.openapi, '3.1.0');
+    // /plans/search is also an address of /plans/{plan}, for the methods that it does not have itself
+    const isOfAnother = (address, method) =>
+      Object.entries(description.paths).some(
+        ([path, operations]) =>
+          path !== address && operations[method] && new RegExp(`^${path.replace(/\{\w+\}/g, '[^/]+')}$`).test(address),
+      );
     for (const [path, operations] of Object.entries(description.paths)) {
       const address = url + path.replace(/\{\w+\}/g, 'no-such-thing');
       for (const method of ['get', 'post', 'patch', 'delete', 'put']) {
@@ -102,7 +108,7 @@ describe('the server', () => {
         if (operations[method]) {
           assert.notEqual(answer.status, 405, `${method} ${path}`);
           assert.doesNotMatch(answer.json?.detail ?? '', /^nothing is at/, `${method} ${path}`);
-        } else assertProblem(answer, 405, 'method');
+        } else if (!isOfAnother(path, method)) assertProblem(answer, 405, 'method');
       }
     }
   });
