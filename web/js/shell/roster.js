@@ -28,8 +28,7 @@ export const avatar = (member, size = 'small') =>
 
 /** Buttons of the presenter for another member. */
 function buttonsFor(member, { following, control }) {
-  if (!following.isPresenting.value || member.presenting || member.connected === false || !control.may('scene', member))
-    return nothing;
+  if (!following.isPresenting.value || member.presenting || member.connected === false || !control.may('scene', member)) return nothing;
   const isAsking = control.requested.value.includes(member.id);
   return html`<span class="roster-buttons"><button aria-label=${say.giveTo(member)} @click=${() => control.give(member.id)}>${say.giveControl}</button>
     ${isAsking ? html`<button aria-label=${say.refuseTo(member)} @click=${() => control.refuse(member.id)}>${say.refuse}</button>` : nothing}</span>`;
