@@ -63,7 +63,7 @@ static bool has_text(const char *in, const char *text)
     return n == 0 || (in && *in);
 }
 
-/* Of patients the masked form alone is looked at, which is known of a plan that was loaded. */
+/* Looks at the masked form of patients alone, which is known of a plan that was loaded. */
 static bool is_found(const struct fleet_plan *plan, const struct search *search)
 {
     const cJSON *patient;

@@ -1,4 +1,4 @@
-// Who may do what, over HTTP: every route of proto/ by ten kinds of caller, on what is their own, granted to them, and neither.
+// Rights over HTTP: every route of proto/ by ten kinds of caller, on what is their own, granted to them, and neither.
 // Which right a route needs comes from proto/; which kind of caller has which right stands here. --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
@@ -41,14 +41,14 @@ const kinds = {
 };
 const isSignedIn = (kind) => !['nobody', 'guest', 'wall'].includes(kind);
 
-/** What an answer says about rights: signed-out, absent, forbidden or allowed. */
+/** The words for an answer: signed-out, absent, forbidden or allowed. */
 function saidBy({ status, json, headers }) {
   if (status === 401 || (status === 303 && headers.location?.startsWith('/signin?'))) return 'signed-out';
   if (status === 403 && json?.code === 'role') return 'forbidden';
   return status === 404 ? 'absent' : 'allowed';
 }
 
-/** What the answer to this route should say, by the right that it needs. Several words: each will do, as ids inside the subject are made up. */
+/** The expected words for the answer to this route, by the right that it needs. Several words: each will do, as ids inside the subject are made up. */
 function expected({ path, needs: [right, subject] }, kind, which) {
   const may = kinds[kind];
   const nothing = isSignedIn(kind) ? ['absent'] : ['signed-out'];
@@ -68,7 +68,7 @@ function expected({ path, needs: [right, subject] }, kind, which) {
   return isSignedIn(kind) ? ['forbidden'] : subject === 'plan' ? ['signed-out'] : ['forbidden', 'signed-out'];
 }
 
-/** What must not be done for real while others are still to be asked. */
+/** Routes that must not be used for real while others are still to be asked. */
 const ends = ({ method, path }) =>
   (method === 'DELETE' && /^\/api\/v1\/(rooms\/\{room\}|plans\/\{plan\})$/.test(path)) ||
   /\/(close|erase)$/.test(path) ||
