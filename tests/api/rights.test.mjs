@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, describe, it } from 'node:test';
 import { call, openPlan, startDaemon } from './daemon.mjs';
+import { isRefused as isMessageRefused, rightOfMember, sent } from './sample_messages.mjs';
 import { Client } from './ws_client.mjs';
 
 const may = {
@@ -15,37 +16,7 @@ const may = {
 const nobodyMay = ['look', 'point', 'note'];
 
 const read = (name) => JSON.parse(readFileSync(new URL(`../../proto/${name}.json`, import.meta.url), 'utf8'));
-const messages = read('messages');
-/** The right of a member that a right stands for in a room: rights.json has it last, where it is another. */
-const ofMember = (word) => read('rights').rights.find(([right]) => right === word)[4] ?? word;
-const sent = messages.messages.filter(({ from, name }) => from === 'client' && name !== 'hello');
 const routes = read('http').routes.filter(({ path }) => path.includes('{room}'));
-
-/** A value that the field takes. */
-function valueOf(field) {
-  switch (field.type) {
-    case 'integer':
-    case 'number':
-      return field.min;
-    case 'bool':
-      return field.default ?? true;
-    case 'enum':
-      return messages.enums[field.enum].values[0][0];
-    case 'vec3':
-    case 'direction':
-      return [1, 1, 1];
-    case 'text':
-    case 'id':
-      return 'x';
-    default:
-      return {};
-  }
-}
-
-const messageOf = ({ name, fields }) => ({
-  type: name,
-  ...Object.fromEntries(fields.filter(({ required }) => required).map((field) => [field.name, valueOf(field)])),
-});
 
 describe('rights in a room', () => {
   let daemon;
@@ -97,14 +68,7 @@ describe('rights in a room', () => {
   for (const message of sent)
     it(`${message.name} needs ${message.needs[0]}`, async () => {
       for (const [role, { client }] of Object.entries(people)) {
-        const from = client.messages.length;
-        const time = Math.floor(performance.now() * 1000);
-        client.send(messageOf(message));
-        client.send({ type: 'ping', time_ms: time }); // answered in order
-        await client.message('pong', ({ time_ms }) => time_ms === time, from);
-        const refused = client.messages
-          .slice(from)
-          .some(({ type, to, problem }) => type === 'problem' && to === message.name && problem.code === 'role' && problem.status === 403);
+        const refused = await isMessageRefused(client, message);
         assert.equal(!refused, may[role].includes(message.needs[0]), `${role} ${refused ? 'was refused' : 'may'} ${message.name}`);
       }
     });
@@ -112,7 +76,7 @@ describe('rights in a room', () => {
   const endsRoom = ({ method, path }) => Number(method === 'DELETE' && path === '/api/v1/rooms/{room}'); // the last one
   for (const { method, path, needs } of routes.sort((a, b) => endsRoom(a) - endsRoom(b)))
     it(`${method} ${path} needs ${needs[0]}`, async () => {
-      const right = ofMember(needs[0]);
+      const right = rightOfMember(needs[0]);
       const within = path.slice('/api/v1/rooms/{room}'.length).replace(/\{\w+\}/g, 'x');
       const body = method === 'GET' || method === 'DELETE' ? undefined : {};
       const isRefused = async (more) => {

@@ -4,11 +4,13 @@ import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
 import { chmodSync, cpSync, mkdirSync, mkdtempSync, readFileSync, realpathSync, rmSync } from 'node:fs';
 import { request } from 'node:http';
+import { connect } from 'node:net';
 import { tmpdir, userInfo } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { questionRoutes } from '../../proto/gen/packets.mjs';
 import { demo, startDaemon, until } from './daemon.mjs';
+import { isRefused, sent } from './sample_messages.mjs';
 import { Client } from './ws_client.mjs';
 
 const read = (name) => JSON.parse(readFileSync(new URL(`../../proto/${name}.json`, import.meta.url), 'utf8'));
@@ -259,6 +261,35 @@ describe('The matrix of rights', { concurrency: false }, () => {
       assert.equal(code, 'sign-in');
       client.cut();
     }
+  });
+
+  /** A WebSocket of this kind of caller in the room, with the seat that it has there. */
+  async function enter(kind, room) {
+    const seat = seats[['guest', 'wall'].indexOf(kind)];
+    if (seat && room === rooms.own[kind]) return seat;
+    const { headers, socket } = callers[kind];
+    const client = await Client.open(daemon.url, `/api/v1/rooms/${room}/ws`, headers, socket ? connect(socketPath) : null);
+    client.send({ type: 'hello', protocol: 2, name: 'Somebody' });
+    return client;
+  }
+
+  test('each message of a room is refused to whom its right is not, and a room to whom it is closed', async () => {
+    const wrong = [];
+    for (const kind of Object.keys(kinds))
+      for (const which of ['own', 'granted', 'foreign']) {
+        const whole = kinds[kind][which];
+        if (whole === null) continue;
+        const role = whole === 'reader' ? 'observer' : whole;
+        const client = await enter(kind, which === 'own' ? rooms.own[kind] : rooms[which]);
+        const first = await client.until(() => client.messages.find(({ type }) => ['welcome', 'bye'].includes(type)), 'welcome or bye');
+        if ((first.type === 'welcome') !== (role !== 'none')) wrong.push(`${kind}, ${which}: ${first.type}`);
+        for (const message of first.type === 'welcome' ? sent : []) {
+          const may = rightsOf[role].includes(message.needs[0]);
+          if ((await isRefused(client, message)) === may) wrong.push(`${message.name}, ${kind}, ${which}: ${may ? 'refused' : 'done'}`);
+        }
+        if (!seats.includes(client)) client.cut();
+      }
+    assert.deepEqual(wrong, []);
   });
 
   test('an archive of who may not upload is refused before it is sent', async () => {
