@@ -60,19 +60,26 @@ static void end(struct api_listener *listener)
     free(listener);
 }
 
+/* False: its sign-in has ended, or it has no right to the room any more; it was told so. */
+static bool may_listen(struct api_listener *listener)
+{
+    struct problem problem;
+    if (net_identity_holds(listener->api->net, &listener->who) &&
+        room_may(listener->room, &listener->who, listener->member, WIRE_RIGHT_LOOK, false, &problem))
+        return true;
+    put(listener, "bye", "", "{\"reason\":\"this room may not be looked at any more\"}");
+    end_telling(listener);
+    return false;
+}
+
 static void told(void *context, const char *epoch, uint64_t number, const char *name, const char *text)
 {
     struct api_listener *listener = context;
-    struct problem problem;
     char id[48];
     if (listener->is_over)
         return;
-    if (!net_identity_holds(listener->api->net, &listener->who) ||
-        !room_may(listener->room, &listener->who, listener->member, WIRE_RIGHT_LOOK, false, &problem)) { /* any more */
-        put(listener, "bye", "", "{\"reason\":\"this room may not be looked at any more\"}");
-        end_telling(listener);
+    if (!may_listen(listener))
         return;
-    }
     fill_id(id, epoch, number);
     put(listener, name, id, text);
 }
@@ -138,6 +145,14 @@ static void end_those_over(struct api *api)
     }
 }
 
+void api_listeners_look(struct api *api)
+{
+    for (struct api_listener *listener = api->listeners; listener; listener = listener->next)
+        if (!listener->is_over)
+            (void)may_listen(listener);
+    end_those_over(api);
+}
+
 static bool has_place(const struct api *api, struct problem *problem)
 {
     size_t n = 0;
@@ -175,6 +190,7 @@ void api_room_events(struct api *api, struct call *call)
                                        .member = call->member ? mem_copy_text(call->member) : NULL };
     struct feed *feed = listener->feed;
     api->listeners = listener;
+    net_on_identities(api->net, api_streams_look, api);
     const struct room_listener_callbacks callbacks = { told, tell_state, room_ended, listener };
     const uint64_t number = read_id(call->last_event, epoch);
     listener->listener = room_listener_add(room, epoch, number, &callbacks, clock_now_us(), &problem);

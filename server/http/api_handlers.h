@@ -68,6 +68,9 @@ void api_room_stream(struct api *api, struct call *call);
 void api_room_events(struct api *api, struct call *call);
 /* The reader of this feed has gone: its listener leaves its room. False: it is no listener's. */
 bool api_listener_left(struct api *api, const struct feed *feed);
+/* Ends the streams of those whose sign-in has ended or who have no right to the room any more. */
+void api_streams_look(void *api);
+void api_listeners_look(struct api *api); /* of events; api_streams_look does both */
 void api_room_export(struct api *api, struct call *call);
 void api_room_link_new(struct api *api, struct call *call);
 void api_room_links(struct api *api, struct call *call);

@@ -11,15 +11,28 @@ struct api_display { /* a screen that looks at a room */
     struct api_display *next;
     struct api *api;
     struct feed *feed;
+    struct room *room;
     struct room_display *display;
+    struct identity who;
+    char *member; /* as it named itself with the call; NULL: nobody */
     char plan_id[64];
     bool holds_plan;
 };
 
+/* False: its sign-in has ended, or it has no right to the room any more. */
+static bool may_look(const struct api_display *display)
+{
+    struct problem problem;
+    return display->who.source == IDENTITY_MACHINE ||
+           (net_identity_holds(display->api->net, &display->who) &&
+            room_may(display->room, &display->who, display->member, WIRE_RIGHT_LOOK, false, &problem));
+}
+
 static void put_picture(void *context, struct frame *picture, const char *kind)
 {
     const struct api_display *display = context;
-    feed_put(display->feed, picture, kind);
+    if (may_look(display)) /* else api_streams_look ends it soon */
+        feed_put(display->feed, picture, kind);
 }
 
 static bool has_room(void *context)
@@ -44,7 +57,21 @@ static void end_display(void *context)
     if (display->holds_plan)
         fleet_release(net_fleet(display->api->net), display->plan_id);
     feed_end(display->feed);
+    free(display->member);
     free(display);
+}
+
+void api_streams_look(void *context)
+{
+    struct api *api = context;
+    for (struct api_display *display = api->displays, *next; display; display = next) {
+        next = display->next;
+        if (may_look(display))
+            continue;
+        room_display_remove(display->display);
+        end_display(display);
+    }
+    api_listeners_look(api);
 }
 
 void api_display_left(struct api *api, struct feed *feed)
@@ -74,10 +101,15 @@ void api_room_stream(struct api *api, struct call *call)
         return;
     }
     struct api_display *display = mem_new(sizeof *display);
-    *display =
-        (struct api_display){ .next = api->displays, .api = api, .feed = feed_create(call->wake, call->wake_context) };
+    *display = (struct api_display){ .next = api->displays,
+                                     .api = api,
+                                     .room = room,
+                                     .who = call->identity,
+                                     .member = call->member ? mem_copy_text(call->member) : NULL,
+                                     .feed = feed_create(call->wake, call->wake_context) };
     (void)snprintf(display->plan_id, sizeof display->plan_id, "%s", room_plan_id(room));
     api->displays = display;
+    net_on_identities(api->net, api_streams_look, api);
     const struct room_display_callbacks callbacks = { put_picture, has_room, tell_late, end_display, display };
     display->display = room_display_add(room, call_query(call, "view"), &callbacks, clock_now_us(), &problem);
     if (!display->display) {

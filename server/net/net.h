@@ -153,6 +153,9 @@ void net_audit_refused(struct net *net, const struct identity *who, const char *
 typedef void net_erased(void *context, int64_t n_rooms, int64_t n_records, const struct problem *problem);
 NODISCARD bool net_erase_plan(struct net *net, const char *plan_id, const struct identity *who, const char *address,
                               const char *reason, net_erased *done, void *context, struct problem *problem);
+/* looked is called whenever sign-ins may have ended or rights gone, and every 20 s where people sign in: whoever serves
+ * somebody for long asks then whether it still may. It is called from nowhere but the loop or a call. */
+void net_on_identities(struct net *net, void (*looked)(void *context), void *context);
 /* Whether this sign-in has not ended: asked of those who stay. */
 bool net_identity_holds(const struct net *net, const struct identity *who);
 /* Records what may happen many times a second: the first at once, and equal ones as one row a minute. what: a word. */

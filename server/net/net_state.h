@@ -156,6 +156,8 @@ struct net {
     struct plan_rights plan_rights;
     bool (*is_still)(void *context, struct identity *who);
     void *rights;
+    void (*identities_looked)(void *context); /* net_on_identities; NULL: nobody asks */
+    void *identities_context;
     bool store_was_open;                                                         /* so the rooms that sleep are known */
     void (*files_looked)(struct net_room *entry, const struct fleet_plan *plan); /* keep_files_looked */
     int64_t look_us;                    /* when files of plans are looked at next */

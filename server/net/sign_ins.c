@@ -19,11 +19,24 @@ static void sign_out(struct visitor *visitor)
     schedule_room(room);
 }
 
+void net_on_identities(struct net *net, void (*looked)(void *context), void *context)
+{
+    net->identities_looked = looked;
+    net->identities_context = context;
+}
+
+static void tell_looked(struct net *net)
+{
+    if (net->identities_looked)
+        net->identities_looked(net->identities_context);
+}
+
 void net_session_over(struct net *net, const char *session)
 {
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
         if (session[0] && strcmp(visitor->identity.session, session) == 0)
             sign_out(visitor);
+    tell_looked(net);
 }
 
 void net_accounts_changed(struct net *net)
@@ -38,6 +51,7 @@ void net_grants_changed(struct net *net)
         room_grants_changed(net->rooms[i]->room, clock_now_us());
         schedule_room(net->rooms[i]);
     }
+    tell_looked(net);
 }
 
 bool net_identity_holds(const struct net *net, const struct identity *who)
@@ -64,6 +78,7 @@ void sign_ins_check(struct net *net, int64_t now_us)
         auth_tick(net->auth);
         for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next)
             look_at(net, visitor);
+        tell_looked(net);
     }
     schedule_at(net, net->sign_ins_us);
 }

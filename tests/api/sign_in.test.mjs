@@ -107,6 +107,37 @@ describe('signing in here', () => {
     assert.equal((await api('/session/confirm', 'POST', { password })).status, 401);
   });
 
+  it('a stream of pictures and one of events end with the sign-in that they began with', async () => {
+    const plans = await until(
+      async () => (await api('/plans', 'GET', undefined, cookieOf(await signIn('ann')))).json.plans,
+      ({ length }) => length > 0,
+    );
+    const { id } = (await api('/rooms', 'POST', { plan: plans[0].id }, cookieOf(await signIn('ann')))).json;
+    const ends = [
+      (mine) => api('/session', 'DELETE', undefined, mine),
+      async () => assert.equal(beamroom(['user', 'passwd', 'ann'], `${password}\n`).status, 0), // which ends sign-ins
+    ];
+    for (const end of ends)
+      for (const what of ['stream', 'events']) {
+        const mine = cookieOf(await signIn('ann'));
+        const other = cookieOf(await signIn('ann'));
+        const entered = await Client.open(daemon.url, `/api/v1/rooms/${id}/ws`, other); // so that there are pictures
+        entered.send({ type: 'hello', protocol: 2 });
+        await entered.message('welcome');
+        const answer = await fetch(`${daemon.url}/api/v1/rooms/${id}/${what}`, { headers: mine });
+        assert.equal(answer.status, 200, what);
+        const reader = answer.body.getReader();
+        if (what === 'events') await reader.read(); // it runs
+        await end(mine);
+        const over = (async () => {
+          while (!(await reader.read()).done);
+          return true;
+        })().catch(() => true);
+        assert.equal(await Promise.race([over, sleep(10000).then(() => false)]), true, `${what} goes on`);
+        entered.cut();
+      }
+  });
+
   it('users are managed by the socket in the data folder, which is the daemon’s alone', async () => {
     assert.equal(statSync(join(data, 'control.sock')).mode & 0o777, 0o600);
     assert.equal(beamroom(['user', 'add', 'cem', '--name', 'Cem Example', '--groups', 'physics,board'], `${password}\n`).status, 0);
