@@ -237,6 +237,7 @@ void api_handle(struct api *api, struct call *call)
     struct problem problem;
     char allowed[64] = "";
     bool is_known = false;
+    net_on_identities(api->net, api_streams_look, api); /* on this thread: api_create is not */
     call->api = api;
     api_jobs_update(api);
     if (call->early.type != PROBLEM_NONE) {

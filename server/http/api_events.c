@@ -190,7 +190,6 @@ void api_room_events(struct api *api, struct call *call)
                                        .member = call->member ? mem_copy_text(call->member) : NULL };
     struct feed *feed = listener->feed;
     api->listeners = listener;
-    net_on_identities(api->net, api_streams_look, api);
     const struct room_listener_callbacks callbacks = { told, tell_state, room_ended, listener };
     const uint64_t number = read_id(call->last_event, epoch);
     listener->listener = room_listener_add(room, epoch, number, &callbacks, clock_now_us(), &problem);

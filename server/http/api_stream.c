@@ -109,7 +109,6 @@ void api_room_stream(struct api *api, struct call *call)
                                      .feed = feed_create(call->wake, call->wake_context) };
     (void)snprintf(display->plan_id, sizeof display->plan_id, "%s", room_plan_id(room));
     api->displays = display;
-    net_on_identities(api->net, api_streams_look, api);
     const struct room_display_callbacks callbacks = { put_picture, has_room, tell_late, end_display, display };
     display->display = room_display_add(room, call_query(call, "view"), &callbacks, clock_now_us(), &problem);
     if (!display->display) {
