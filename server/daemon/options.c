@@ -61,7 +61,7 @@ static const struct setting settings[] = {
       KIND_GRANT, 0, 0, 0 },
     { "guest-links", NULL, "links to rooms may let in people who have not signed in", KIND_FLAG, AT(admits_guests), 0,
       0 },
-    { "session-idle-min", "N", "a sign-in ends after so many minutes without input; default 30", KIND_COUNT,
+    { "session-idle-min", "N", "a sign-in by password ends after so many minutes without input; default 30", KIND_COUNT,
       AT(session_idle_min), 1, 1440 },
     { "session-max-h", "N", "a sign-in ends after so many hours; default 12", KIND_COUNT, AT(session_max_h), 1, 168 },
     { "proxy-user-header", "NAME", "header by which the proxy says who makes a request; default X-Beamroom-User",
