@@ -150,9 +150,15 @@ void fleet_release(struct fleet *fleet, const char *plan_id);
  * PROBLEM_STORAGE */
 NODISCARD bool fleet_remove_plan(struct fleet *fleet, const char *plan_id, struct problem *problem);
 
-/* Where a plan lies below the data folder: its folder, "" where it is not ours, and its cache. */
-void fleet_erase_paths(const struct fleet *fleet, const char *plan_id, char folder[1024], char cache[1024]);
-/* Ends its renderer and throws away its cache and, where it is ours, its folder, as fleet_remove_plan does; also of a
+/* How a plan that is to be erased may be called on the disk, and where it lies below the data folder. */
+struct fleet_erase {
+    char id[64], other_id[64]; /* the one of now; that of where people sign in, or do not; "": it is not known */
+    char folder[1024];         /* "": it is not ours */
+    char cache[1024], other_cache[1024]; /* by either id; "": none */
+};
+/* plan_id: either of them; of a plan that is not in the list any more no other is known. */
+void fleet_erase_of(const struct fleet *fleet, const char *plan_id, struct fleet_erase *what);
+/* Ends its renderer and throws away its caches and, where it is ours, its folder, as fleet_remove_plan does; also of a
  * plan that is not in the list any more. */
 NODISCARD bool fleet_erase_plan(struct fleet *fleet, const char *plan_id, struct problem *problem);
 bool fleet_is_removing(const struct fleet *fleet); /* something that was thrown away is still on the disk */

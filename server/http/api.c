@@ -214,11 +214,12 @@ static bool looks_for_plan(struct api *api, struct call *call, const struct api_
            !fleet_plan_find(net_fleet(api->net), call->ids[0], &plan) && api_lists_first(api, call, api_handle);
 }
 
-/* True: it is about a plan by an id that it does not have now, which rooms on the disk alone may have. */
-static bool is_of_other_id(struct api *api, const struct call *call)
+/* True: it is about a plan by an id that it does not have now, which rooms on the disk alone may have. Erasing goes by
+ * either. */
+static bool is_of_other_id(struct api *api, const struct call *call, const struct api_route *route)
 {
     struct fleet_plan plan;
-    return strncmp(call->route, "/api/v1/plans/{plan}", 20) == 0 &&
+    return route->handle != api_plan_erase && strncmp(call->route, "/api/v1/plans/{plan}", 20) == 0 &&
            fleet_plan_find(net_fleet(api->net), call->ids[0], &plan) && strcmp(plan.id, call->ids[0]) != 0;
 }
 
@@ -265,7 +266,7 @@ void api_handle(struct api *api, struct call *call)
                 }
             if (wakes_room(api, call, &route) || looks_for_plan(api, call, &route))
                 return;
-            if ((is_of_other_id(api, call) && !fleet_no_plan(net_fleet(api->net), call->ids[0], &problem)) ||
+            if ((is_of_other_id(api, call, &route) && !fleet_no_plan(net_fleet(api->net), call->ids[0], &problem)) ||
                 !room_can_be_looked_for(api, call, &route, &problem) || !has_right(api, call, &route, &problem)) {
                 call_answer_problem(call, &problem);
                 return;

@@ -60,6 +60,20 @@ static void list_was_read(void *context, const struct net_record *records, size_
     call_answer_json(call, 200, answer);
 }
 
+/* Goes on before the record of this id; one that the caller may not see is as one that is not there. */
+static void cursor_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
+{
+    struct call *call = context;
+    const struct api *api = call->api;
+    struct problem busy;
+    if (problem && problem->type != PROBLEM_NOT_FOUND)
+        call_answer_problem(call, problem);
+    else if (problem || n == 0 || !api_access_to_plan(api, call, ACCESS_LOOK, records[0].plan))
+        list_was_read(call, NULL, 0, NULL);
+    else if (!net_read_records(api->net, "", records[0].id, list_was_read, call, &busy))
+        call_answer_problem(call, &busy);
+}
+
 static void one_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
 {
     if (problem || n == 0) {
@@ -86,10 +100,12 @@ void api_records(struct api *api, struct call *call)
 {
     struct problem problem = { 0 };
     const char *before = call_query(call, "before");
+    const bool asks_first = before && call->identity.source != IDENTITY_MACHINE;
     if (before && !id_is_valid(before))
         problem_set(&problem, PROBLEM_VALIDATION, "/before", "pattern", "before must be the id of a record");
     if (problem.type != PROBLEM_NONE ||
-        !net_read_records(api->net, "", before ? before : "", list_was_read, call, &problem))
+        !net_read_records(api->net, asks_first ? before : "", before && !asks_first ? before : "",
+                          asks_first ? cursor_was_read : list_was_read, call, &problem))
         call_answer_problem(call, &problem);
 }
 

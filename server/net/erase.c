@@ -72,13 +72,18 @@ bool net_erase_plan(struct net *net, const char *plan_id, const struct identity 
         problem->retry_after_ms = 2000;
         return false;
     }
+    struct fleet_erase of;
     struct erasing *erasing = mem_new(sizeof *erasing);
     struct store_erase *what = &erasing->what;
     *erasing = (struct erasing){ .ticket = net->n_tickets + 1, .done = done, .context = context };
     random_hex(what->id, 16);
-    (void)snprintf(what->plan, sizeof what->plan, "%s", plan_id);
+    fleet_erase_of(net->fleet, plan_id, &of);
+    mem_put_text(what->plan, sizeof what->plan, of.id);
+    mem_put_text(what->other, sizeof what->other, of.other_id);
+    mem_put_text(what->folder, sizeof what->folder, of.folder);
+    mem_put_text(what->cache, sizeof what->cache, of.cache);
+    mem_put_text(what->other_cache, sizeof what->other_cache, of.other_cache);
     (void)snprintf(erasing->address, sizeof erasing->address, "%s", address);
-    fleet_erase_paths(net->fleet, plan_id, what->folder, what->cache);
     if (!make_row(what, who, address, reason) || !store_erase(net->store, what, true, erasing->ticket)) {
         free(erasing);
         problem_set(problem, PROBLEM_BUSY, "", "", "the disk has too much to do to erase a plan now");
@@ -95,9 +100,11 @@ static void remove_all(struct net *net)
 {
     struct erasing *erasing = net->erasing;
     struct problem problem;
-    const char *plan = erasing->what.plan;
+    const char *plan = erasing->what.plan, *other = erasing->what.other;
     const size_t n_before = net->n_rooms + net->n_asleep;
     net_rooms_delete_of_plan(net, plan, erasing->address, "its plan was erased");
+    if (other[0])
+        net_rooms_delete_of_plan(net, other, erasing->address, "its plan was erased");
     erasing->what.n_rooms = (int64_t)(n_before - net->n_rooms - net->n_asleep);
     erasing->step = ERASE_REMOVING;
     if (!fleet_erase_plan(net->fleet, plan, &problem) && problem.type != PROBLEM_NOT_FOUND)

@@ -148,8 +148,9 @@ void net_audit_by(struct net *net, const struct identity *who, const char *addre
 void net_audit_refused(struct net *net, const struct identity *who, const char *address, const char *room,
                        const char *plan, const char *action, cJSON *detail);
 /* Erases what is kept of a plan: rooms, recordings, cache and, where it lies in a folder of ours, the plan itself; the
- * words of its records are struck out. done is called once, later, with problem where it could not be finished: then
- * the next start goes on, if it was begun. reason: for the row of the audit. False with problem: nothing is erased. */
+ * words of its records are struck out. Of a plan that is listed under both its ids; plan_id is either. done is called
+ * once, later, with problem where it could not be finished: then the next start goes on, if it was begun. reason: for
+ * the row of the audit. False with problem: nothing is erased. */
 typedef void net_erased(void *context, int64_t n_rooms, int64_t n_records, const struct problem *problem);
 NODISCARD bool net_erase_plan(struct net *net, const char *plan_id, const struct identity *who, const char *address,
                               const char *reason, net_erased *done, void *context, struct problem *problem);

@@ -18,7 +18,8 @@
 #include "server/store/sql.h"
 
 enum { MAX_NOTE_BYTES = 64 << 10 };
-static const char note_head[] = "beamroom erase 1\n", note_mark[] = "-erase-";
+static const char note_head[] = "beamroom erase 2\n", note_mark[] = "-erase-";
+static const char old_head[] = "beamroom erase 1\n"; /* of notes without the other id */
 
 /* ---- the file beside the database --------------------------------------------------------------------------------- */
 
@@ -44,8 +45,8 @@ static bool flush_folder(const char *database)
 static bool write_note(const char *database, const struct store_erase *what, struct error *err)
 {
     char path[DATABASE_PATH_SIZE + 64], part[DATABASE_PATH_SIZE + 64], text[MAX_NOTE_BYTES];
-    const int n =
-        snprintf(text, sizeof text, "%s%s\n%s\n%s\n%s\n", note_head, what->plan, what->row, what->folder, what->cache);
+    const int n = snprintf(text, sizeof text, "%s%s\n%s\n%s\n%s\n%s\n%s\n", note_head, what->plan, what->row,
+                           what->folder, what->cache, what->other, what->other_cache);
     note_path(path, database, what->id, "");
     note_path(part, database, what->id, ".part");
     if (n < 0 || (size_t)n >= sizeof text)
@@ -59,6 +60,8 @@ static bool write_note(const char *database, const struct store_erase *what, str
     if (ok)
         return true;
     (void)unlink(part);
+    if (unlink(path) == 0) /* or the next start would erase, though the caller is told that nothing is erased */
+        (void)flush_folder(database);
     return error_set(err, reason == ENOSPC || reason == EDQUOT ? ERROR_LIMIT : ERROR_IO,
                      "what is to be erased cannot be noted: %s", strerror(reason));
 }
@@ -89,10 +92,14 @@ static bool read_note(const char *path, struct store_erase *what)
     if (fd >= 0)
         (void)close(fd);
     const char *at = text + sizeof note_head - 1;
-    const bool ok = n > 0 && strncmp(text, note_head, sizeof note_head - 1) == 0 &&
+    const bool is_old = strncmp(text, old_head, sizeof old_head - 1) == 0;
+    const bool ok = n > 0 && (is_old || strncmp(text, note_head, sizeof note_head - 1) == 0) &&
                     take_line(&at, what->plan, sizeof what->plan) && take_line(&at, what->row, sizeof what->row) &&
                     take_line(&at, what->folder, sizeof what->folder) &&
-                    take_line(&at, what->cache, sizeof what->cache) && is_below(what->folder) && is_below(what->cache);
+                    take_line(&at, what->cache, sizeof what->cache) &&
+                    (is_old || (take_line(&at, what->other, sizeof what->other) &&
+                                take_line(&at, what->other_cache, sizeof what->other_cache))) &&
+                    what->plan[0] && is_below(what->folder) && is_below(what->cache) && is_below(what->other_cache);
     free(text);
     return ok;
 }
@@ -140,7 +147,19 @@ static bool append(const struct erasing *erasing, const char *room, const char *
     return audit_append(erasing->db, rows, 1, erasing->err);
 }
 
-/* The first column of the first row, for free(); NULL: there is none. */
+/* The first column of the first row, for free(); NULL: there is none, or it cannot be read, with erasing->err.
+ * Finalizes the statement. */
+static char *read_first(const struct erasing *erasing, sqlite3_stmt *row)
+{
+    const int step = row ? sqlite3_step(row) : SQLITE_DONE;
+    char *text = step == SQLITE_ROW ? sql_copy_text(row, 0) : NULL;
+    if (step != SQLITE_ROW && step != SQLITE_DONE)
+        (void)sql_fail(erasing->db, "reading what is to be erased", erasing->err);
+    (void)sqlite3_finalize(row);
+    return text;
+}
+
+/* read_first, with a word or, where that is NULL, a number. */
 static char *read_text(const struct erasing *erasing, const char *sql, const char *word, int64_t n)
 {
     sqlite3_stmt *row = sql_prepare(erasing->db, sql, erasing->err);
@@ -148,9 +167,19 @@ static char *read_text(const struct erasing *erasing, const char *sql, const cha
         sql_bind_text(row, 1, word);
     else if (row)
         (void)sqlite3_bind_int64(row, 1, n);
-    char *text = row && sqlite3_step(row) == SQLITE_ROW ? sql_copy_text(row, 0) : NULL;
-    (void)sqlite3_finalize(row);
-    return text;
+    return read_first(erasing, row);
+}
+
+/* A statement with both ids of the plan; never with "", which struck records have. NULL with erasing->err. */
+static sqlite3_stmt *prepare_of_plan(const struct erasing *erasing, const char *sql)
+{
+    const struct store_erase *what = erasing->what;
+    sqlite3_stmt *row = sql_prepare(erasing->db, sql, erasing->err);
+    if (row) {
+        sql_bind_text(row, 1, what->plan);
+        sql_bind_text(row, 2, what->other[0] ? what->other : what->plan);
+    }
+    return row;
 }
 
 static bool was_done(const struct erasing *erasing)
@@ -166,9 +195,9 @@ static bool was_done(const struct erasing *erasing)
 
 static bool delete_rooms(const struct erasing *erasing)
 {
+    static const char next[] = "SELECT id FROM rooms WHERE plan IN (?1, ?2) LIMIT 1";
     bool ok = true;
-    for (char *room;
-         ok && (room = read_text(erasing, "SELECT id FROM rooms WHERE plan = ?1 LIMIT 1", erasing->what->plan, 0));) {
+    for (char *room; ok && (room = read_first(erasing, prepare_of_plan(erasing, next)));) {
         sqlite3_stmt *row = sql_prepare(erasing->db, "DELETE FROM rooms WHERE id = ?1", erasing->err);
         if (row)
             sql_bind_text(row, 1, room);
@@ -225,10 +254,10 @@ static bool strike(const struct erasing *erasing, int64_t n)
 /* The trigger that refuses changes is lifted inside the transaction, and made again as it was. */
 static bool strike_records(const struct erasing *erasing)
 {
-    static const char next[] = "SELECT min(n) FROM records WHERE plan = ?1";
+    static const char next[] = "SELECT min(n) FROM records WHERE plan IN (?1, ?2)";
     char *trigger = read_text(erasing, "SELECT sql FROM sqlite_schema WHERE name = ?1", "records_update", 0);
     bool ok = trigger && sql_run(erasing->db, "DROP TRIGGER records_update", erasing->err);
-    for (char *n; ok && (n = read_text(erasing, next, erasing->what->plan, 0)); free(n))
+    for (char *n; ok && (n = read_first(erasing, prepare_of_plan(erasing, next))); free(n))
         ok = strike(erasing, strtoll(n, NULL, 10));
     ok = ok && sql_run(erasing->db, trigger, erasing->err);
     free(trigger);
@@ -255,9 +284,7 @@ static bool append_row(const struct erasing *erasing)
 
 static bool delete_owner(const struct erasing *erasing)
 {
-    sqlite3_stmt *row = sql_prepare(erasing->db, "DELETE FROM owners WHERE plan = ?1", erasing->err);
-    if (row)
-        sql_bind_text(row, 1, erasing->what->plan);
+    sqlite3_stmt *row = prepare_of_plan(erasing, "DELETE FROM owners WHERE plan IN (?1, ?2)");
     const bool ok = row && sql_step(row, "erasing an owner", erasing->err);
     (void)sqlite3_finalize(row);
     return ok;
@@ -271,6 +298,7 @@ static bool erase_rows(const struct erasing *erasing)
     if (was_done(erasing))
         return sql_run(erasing->db, "COMMIT", erasing->err);
     const bool ok = delete_rooms(erasing) && strike_records(erasing) && delete_owner(erasing) && append_row(erasing) &&
+                    erasing->err->code == ERROR_NONE && /* else rows that cannot be read would stay unseen */
                     sql_run(erasing->db, "COMMIT", erasing->err);
     if (!ok && !sqlite3_get_autocommit(erasing->db))
         (void)sqlite3_exec(erasing->db, "ROLLBACK", NULL, NULL, NULL);
@@ -298,7 +326,7 @@ static bool finish(sqlite3 *db, const char *database, const struct store_erase *
     *done = (struct store_erased){ 0 };
     note_path(path, database, what->id, "");
     if (!remove_tree(database, what->folder, err) || !remove_tree(database, what->cache, err) ||
-        !erase_rows(&erasing) || !clean(db, err))
+        !remove_tree(database, what->other_cache, err) || !erase_rows(&erasing) || !clean(db, err))
         return false;
     return (unlink(path) == 0 && flush_folder(database)) ||
            error_set(err, ERROR_IO, "the note of what is erased cannot be removed: %s", strerror(errno));

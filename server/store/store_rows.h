@@ -69,12 +69,12 @@ struct store_audit_row {
 };
 
 enum { STORE_ERASE_ID = 33, STORE_ERASE_ROW = 4096 };
-struct store_erase {         /* a plan that is to be erased */
-    char id[STORE_ERASE_ID]; /* of this erasing: hexadecimal digits */
-    char plan[64];
-    char row[STORE_ERASE_ROW];      /* for the audit, with action erase and, in detail, erase: the id */
-    char folder[1024], cache[1024]; /* below the folder of the database: trees that are removed; "": none */
-    int64_t n_rooms;                /* that were deleted before */
+struct store_erase {           /* a plan that is to be erased */
+    char id[STORE_ERASE_ID];   /* of this erasing: hexadecimal digits */
+    char plan[64], other[64];  /* its ids: rows may have either; other "": it is not known */
+    char row[STORE_ERASE_ROW]; /* for the audit, with action erase and, in detail, erase: the id */
+    char folder[1024], cache[1024], other_cache[1024]; /* trees below the database's folder, to be removed; "": none */
+    int64_t n_rooms;                                   /* that were deleted before */
 };
 struct store_erased { /* how much it was */
     int64_t n_rooms, n_records;

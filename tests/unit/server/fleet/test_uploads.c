@@ -130,6 +130,47 @@ static void an_archive_becomes_a_plan_and_goes_again(void **state)
     world_end(&world);
 }
 
+/* The other id: 16 digits of sha256sum of "uploads/mr-x". */
+static void a_plan_is_erased_by_either_id_with_its_caches_under_both(void **state)
+{
+    (void)state;
+    static const char hidden[] = "7b9238705ce83b32";
+    struct world world;
+    struct problem problem = { 0 };
+    struct fleet_erase what;
+    char path[1200];
+    for (int hides = 0; hides < 2; hides++) {
+        world_begin(&world);
+        world_add_plan(&world, "head", "");
+        world.options.hides_folders = hides;
+        world_start(&world, 1);
+        const char *id = hides ? hidden : "mr-x", *other = hides ? "mr-x" : hidden;
+        assert_string_equal(wait_for_end(&world, begin_upload(&world, "Mr. X.tar.gz", "wrapped/ready")).plan_id, id);
+        wait_until_empty(&world);
+        for (int i = 0; i < 2; i++) {
+            fleet_erase_of(world.fleet, i ? other : id, &what);
+            assert_string_equal(what.id, id);
+            assert_string_equal(what.other_id, other);
+            assert_string_equal(what.folder, "plans/mr-x");
+            assert_memory_equal(what.cache, "cache/", 6);
+            assert_string_equal(what.cache + 6, id);
+            assert_string_equal(what.other_cache + 6, other);
+            snprintf(path, sizeof path, "%s/%s", world.data, i ? what.cache : what.other_cache);
+            assert_int_equal(mkdir(path, 0700), 0);
+        }
+        assert_true(fleet_erase_plan(world.fleet, hides ? id : other, &problem));
+        assert_int_equal(n_in(&world, "cache"), 0);
+        assert_int_equal(n_in(&world, "plans"), 0);
+        fleet_erase_of(world.fleet, "mr-x", &what);
+        assert_string_equal(what.id, "mr-x");
+        assert_string_equal(what.folder, "");
+        assert_string_equal(what.cache, "cache/mr-x");
+        assert_string_equal(what.other_id, "");
+        assert_string_equal(what.other_cache, "");
+        world_end(&world);
+    }
+}
+
 static void a_plan_of_a_configured_folder_is_never_removed(void **state)
 {
     (void)state;
@@ -327,6 +368,7 @@ int main(int argc, char **argv)
         return fake_renderer_main(argc, argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_archive_becomes_a_plan_and_goes_again),
+        cmocka_unit_test(a_plan_is_erased_by_either_id_with_its_caches_under_both),
         cmocka_unit_test(a_plan_of_a_configured_folder_is_never_removed),
         cmocka_unit_test(plans_of_one_name_get_numbers_and_keep_them),
         cmocka_unit_test(a_plan_without_a_name_is_called_after_the_day),

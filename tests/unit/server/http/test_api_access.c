@@ -1,10 +1,14 @@
 /* The check of rights in front of every route: each route of the API is called by somebody who has not signed in, by
- * somebody to whom nothing is granted and by one to whom one of two folders is. */
+ * somebody to whom nothing is granted and by one to whom one of two folders is. Records and rooms on the disk, some of
+ * which have the id that their plan had before. */
 #include <pthread.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/base/mem.h"
+#include "core/base/queue.h"
+#include "server/auth/digest.h"
 #include "server/http/api.h"
 #include "server/http/api_rates.h"
 #include "server/http/call.h"
@@ -13,9 +17,11 @@
 #include "tests/check.h"
 #include "tests/unit/data_folder.h"
 #include "tests/unit/fake_renderer.h"
+#include "tests/unit/store_world.h"
 
 static struct {
-    char folder[256], plans[300], data[300];
+    char folder[256], plans[300], data[300], database[300];
+    char hidden_two[20]; /* the other id of the plan that is not granted */
     struct net *net;
     struct api *api;
     struct access *access;
@@ -51,13 +57,16 @@ static enum call_method method_of(const char *word)
                                         : CALL_DELETE;
 }
 
-/* The answered call, for call_destroy. */
-static struct call *ask(const struct identity *who, const char *method, const char *path, const char *body)
+/* The answered call, for call_destroy. before: NULL, or that query parameter. */
+static struct call *ask_before(const struct identity *who, const char *method, const char *path, const char *before,
+                               const char *body)
 {
     struct call *call = call_create();
     struct asked asked = { .call = call };
     call->method = method_of(method);
     call_set_path(call, path);
+    if (before)
+        call->query[call->n_query++] = (struct call_pair){ mem_copy_text("before"), mem_copy_text(before) };
     call->identity = *who;
     call->content_type = strdup("application/json");
     call->body = body ? strdup(body) : NULL;
@@ -71,6 +80,11 @@ static struct call *ask(const struct identity *who, const char *method, const ch
         pthread_cond_wait(&world.changed, &world.mutex);
     pthread_mutex_unlock(&world.mutex);
     return call;
+}
+
+static struct call *ask(const struct identity *who, const char *method, const char *path, const char *body)
+{
+    return ask_before(who, method, path, NULL, body);
 }
 
 static struct identity person(const char *user)
@@ -93,6 +107,50 @@ static void put_plan(const char *folder, const char *plan)
     folder_put_text(path, "plan.json", "{}");
 }
 
+/* A record on disk, and a room on its plan. */
+static void put_record(struct store_world *store, const char *id, const char *plan)
+{
+    char text[100];
+    (void)snprintf(text, sizeof text, "r-%s", id);
+    struct store_room *room = store_made_room(text, 1, 10, 1);
+    mem_put_text(room->plan, sizeof room->plan, plan);
+    store_world_write(store, room);
+    room = mem_new(sizeof *room);
+    *room = (struct store_room){ .is_prompt = true, .n_records = 1 };
+    mem_put_text(room->id, sizeof room->id, text);
+    mem_put_text(room->plan, sizeof room->plan, plan);
+    room->records = mem_array(1, sizeof room->records[0], 1 << 20, NULL);
+    room->records[0] = (struct store_record){ .kind = "decision", .author_name = "Ann", .time_ms = 7 };
+    mem_put_text(room->records[0].id, sizeof room->records[0].id, id);
+    mem_put_text(room->records[0].room, sizeof room->records[0].room, text);
+    mem_put_text(room->records[0].plan, sizeof room->records[0].plan, plan);
+    room->records[0].item = mem_copy_text("{\"body\":{\"decision\":\"accept\"}}");
+    room->records[0].body = mem_copy_text("{}");
+    store_world_write(store, room);
+}
+
+static void put_records(void)
+{
+    char digest[DIGEST_TEXT], path[600], *real;
+    struct store_world store = { 0 };
+    (void)snprintf(path, sizeof path, "%s/other/two", world.plans);
+    assert_non_null(real = realpath(path, NULL));
+    digest_text(real, digest);
+    free(real);
+    (void)snprintf(world.hidden_two, sizeof world.hidden_two, "%.16s", digest);
+    mem_put_text(store.folder, sizeof store.folder, world.data);
+    store_world_open(&store);
+    store_answer_free(store_world_await(&store, STORE_OPENED));
+    put_record(&store, "i-1", "granted-one");
+    put_record(&store, "i-2", "other-two");
+    put_record(&store, "i-3", "granted-one");
+    put_record(&store, "i-4", world.hidden_two);
+    put_record(&store, "i-5", "gone");
+    mem_put_text(world.database, sizeof world.database, store.path);
+    store_world_close(&store); /* the folder stays */
+    queue_destroy(store.answers);
+}
+
 static int begin(void **state)
 {
     (void)state;
@@ -108,8 +166,11 @@ static int begin(void **state)
     (void)mkdir(world.data, 0700);
     (void)snprintf(line, sizeof line, "%s/granted olga observer", world.plans);
     world.access = access_create();
-    assert_true(access_set(world.access, (struct access_line[]){ { line, "m", 1 }, { "uploads paul planner", "m", 2 } },
-                           2, &err));
+    assert_true(access_set(world.access,
+                           (struct access_line[]){
+                               { line, "m", 1 }, { "uploads paul planner", "m", 2 }, { "* adam admin", "m", 3 } },
+                           3, &err));
+    put_records();
     const char *const plans[] = { world.plans };
     const struct net_options options = {
         .fleet = { .plan_folders = plans,
@@ -119,6 +180,7 @@ static int begin(void **state)
                    .stub_renderer = true,
                    .renderer_path = self },
         .access = world.access,
+        .database = world.database,
     };
     world.net = net_create(&options, &err);
     if (!world.net)
@@ -280,6 +342,69 @@ static void lists_have_what_may_be_looked_at(void **state)
     call_destroy(call);
 }
 
+/* The ids of the records before this one, with a space behind each. */
+static void ids_before(const struct identity *who, const char *id, char ids[100])
+{
+    struct problem problem;
+    struct call *call = ask_before(who, "GET", "/api/v1/records", id, NULL);
+    assert_int_equal(call->status, 200);
+    cJSON *json = json_read((const char *)call->bytes, call->n_bytes, &problem), *record;
+    size_t n = 0;
+    ids[0] = 0;
+    cJSON_ArrayForEach(record, cJSON_GetObjectItemCaseSensitive(json, "records")) n +=
+        (size_t)snprintf(ids + n, 100 - n, "%s ", json_text(record, "id"));
+    cJSON_Delete(json);
+    call_destroy(call);
+}
+
+static void records_before_one_that_may_not_be_seen_are_those_before_one_that_is_not_there(void **state)
+{
+    (void)state;
+    const struct identity olga = person("olga");
+    char ids[100];
+    ids_before(&machine, "i-4", ids);
+    assert_string_equal(ids, "i-3 i-2 i-1 ");
+    ids_before(&machine, "i-2", ids);
+    assert_string_equal(ids, "i-1 ");
+    ids_before(&olga, "i-3", ids);
+    assert_string_equal(ids, "i-1 ");
+    ids_before(&olga, "i-2", ids);
+    assert_string_equal(ids, "");
+    ids_before(&olga, "i-9", ids);
+    assert_string_equal(ids, "");
+}
+
+static void assert_answers(const struct identity *who, const char *plan, const char *reason, int status,
+                           const char *expected)
+{
+    char path[100], body[100], text[600];
+    (void)snprintf(path, sizeof path, "/api/v1/plans/%s/erase", plan);
+    (void)snprintf(body, sizeof body, "{\"reason\":\"%s\"}", reason);
+    struct call *call = ask(who, "POST", path, body);
+    (void)snprintf(text, sizeof text, "%.*s", (int)call->n_bytes, (const char *)call->bytes);
+    if (call->status != status || !strstr(text, expected))
+        fail_msg("%s: %d %s", path, call->status, text);
+    call_destroy(call);
+}
+
+static void a_plan_is_erased_by_either_id_under_both_and_one_that_is_gone_by_its_own(void **state)
+{
+    (void)state;
+    const struct identity olga = person("olga"), adam = person("adam");
+    char path[100];
+    (void)snprintf(path, sizeof path, "/api/v1/plans/%s", world.hidden_two);
+    struct call *call = ask(&machine, "GET", path, NULL); /* only erasing goes by the other id */
+    assert_int_equal(call->status, 404);
+    call_destroy(call);
+    assert_answers(&olga, world.hidden_two, "asked", 404, "there is no plan");
+    assert_answers(&olga, "gone", "asked", 404, "there is no plan");
+    assert_answers(&adam, world.hidden_two, "of other-TWO", 422, "/reason");
+    assert_answers(&adam, "other-two", world.hidden_two, 422, "/reason");
+    assert_answers(&adam, world.hidden_two, "asked", 200, "{\"rooms\":2,\"records\":2}");
+    assert_answers(&adam, "gone", "asked", 200, "{\"rooms\":1,\"records\":1}");
+    assert_answers(&adam, "granted-one", "asked", 200, "\"records\":2}");
+}
+
 static void who_calls_too_often_is_told_when_to_come_back_and_others_are_not_held_up(void **state)
 {
     (void)state;
@@ -315,6 +440,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(lists_have_what_may_be_looked_at),
         cmocka_unit_test(who_calls_too_often_is_told_when_to_come_back_and_others_are_not_held_up),
         cmocka_unit_test(rooms_jobs_and_plans_of_a_body_are_not_there_either),
+        cmocka_unit_test(records_before_one_that_may_not_be_seen_are_those_before_one_that_is_not_there),
+        cmocka_unit_test(a_plan_is_erased_by_either_id_under_both_and_one_that_is_gone_by_its_own),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }
