@@ -4,9 +4,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "server/cli/account_words.h"
+#include "server/cli/account_list.h"
 #include "server/cli/command.h"
-#include "server/cli/control.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/text.h"
 #include "server/wire/json.h"
@@ -30,12 +29,6 @@ static void print_help(void)
         stdout);
 }
 
-static int refused(const struct error *err)
-{
-    fprintf(stderr, "beamroom token: %s\n", err->text);
-    return EXIT_REFUSED;
-}
-
 static void print_text(const cJSON *object, const char *name)
 {
     const char *text = json_text(object, name);
@@ -57,24 +50,6 @@ static void print_token(const cJSON *token)
     if (gmtime_r(&expires, &utc))
         (void)strftime(day, sizeof day, "%Y-%m-%d", &utc);
     printf("%s %s\n", json_number(token, "revoked_ms", 0) > 0 ? "revoked, would last until" : "until", day);
-}
-
-static int list(const struct account_words *words)
-{
-    struct error err = { 0 };
-    cJSON *answer;
-    if (!control_call(words->data, "GET", "/api/v1/tokens", NULL, &answer, &err))
-        return refused(&err);
-    if (words->wants_json) {
-        char *text = json_print(answer);
-        puts(text ? text : "");
-        cJSON_free(text);
-    } else {
-        const cJSON *token;
-        cJSON_ArrayForEach(token, cJSON_GetObjectItemCaseSensitive(answer, "tokens")) print_token(token);
-    }
-    cJSON_Delete(answer);
-    return EXIT_DONE;
 }
 
 /* The words of a list that is parted by commas. */
@@ -104,7 +79,7 @@ static int create(const struct account_words *words)
     cJSON_AddItemToObject(body, "folders", folders);
     cJSON_AddNumberToObject(body, "days", strtod(words->days, NULL));
     if (!control_call(words->data, "POST", "/api/v1/tokens", body, &answer, &err))
-        return refused(&err);
+        return account_refused("token", &err);
     const char *token = json_text(answer, "token");
     puts(token ? token : "");
     cJSON_Delete(answer);
@@ -122,7 +97,7 @@ static int revoke(const struct account_words *words)
     }
     (void)snprintf(path, sizeof path, "/api/v1/tokens/%s", words->subject);
     if (!control_call(words->data, "DELETE", path, NULL, &answer, &err))
-        return refused(&err);
+        return account_refused("token", &err);
     cJSON_Delete(answer);
     return EXIT_DONE;
 }
@@ -137,7 +112,7 @@ int command_token(int argc, char **argv)
         return EXIT_DONE;
     }
     if (words.act && strcmp(words.act, "list") == 0 && !words.subject)
-        return list(&words);
+        return account_list(&words, "token", "/api/v1/tokens", "tokens", print_token);
     if (words.act && strcmp(words.act, "revoke") == 0 && words.subject)
         return revoke(&words);
     if (words.act && strcmp(words.act, "create") == 0 && !words.subject) {

@@ -2,9 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "server/cli/account_words.h"
+#include "server/cli/account_list.h"
 #include "server/cli/command.h"
-#include "server/cli/control.h"
 #include "server/cli/exit_code.h"
 #include "server/cli/password.h"
 #include "server/cli/text.h"
@@ -27,12 +26,6 @@ static void print_help(void)
         stdout);
 }
 
-static int refused(const struct error *err)
-{
-    fprintf(stderr, "beamroom user: %s\n", err->text);
-    return EXIT_REFUSED;
-}
-
 static void print_user(const cJSON *user)
 {
     const cJSON *group;
@@ -49,24 +42,6 @@ static void print_user(const cJSON *user)
     printf("\n");
 }
 
-static int list(const struct account_words *words)
-{
-    struct error err = { 0 };
-    cJSON *answer;
-    if (!control_call(words->data, "GET", "/api/v1/users", NULL, &answer, &err))
-        return refused(&err);
-    if (words->wants_json) {
-        char *text = json_print(answer);
-        puts(text ? text : "");
-        cJSON_free(text);
-    } else {
-        const cJSON *user;
-        cJSON_ArrayForEach(user, cJSON_GetObjectItemCaseSensitive(answer, "users")) print_user(user);
-    }
-    cJSON_Delete(answer);
-    return EXIT_DONE;
-}
-
 /* The body of a call about this user. */
 static cJSON *about(const struct account_words *words)
 {
@@ -80,7 +55,7 @@ static int send_body(const struct account_words *words, const char *path, cJSON 
     struct error err = { 0 };
     cJSON *answer = NULL;
     if (!control_call(words->data, "POST", path, body, &answer, &err))
-        return refused(&err);
+        return account_refused("user", &err);
     cJSON_Delete(answer);
     return EXIT_DONE;
 }
@@ -117,7 +92,7 @@ int command_user(int argc, char **argv)
         return EXIT_DONE;
     }
     if (words.act && strcmp(words.act, "list") == 0 && !words.subject)
-        return list(&words);
+        return account_list(&words, "user", "/api/v1/users", "users", print_user);
     if (words.act && words.subject) {
         if (strcmp(words.act, "add") == 0 || strcmp(words.act, "passwd") == 0)
             return with_password(&words, words.act[0] == 'a');

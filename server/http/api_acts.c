@@ -159,22 +159,10 @@ static void act_done(void *context, const char *row, bool was_sent_before, const
         call_answer_nothing(call, 204);
 }
 
-void api_room_act(struct api *api, struct call *call)
+void api_act_in(struct room *room, struct call *call, cJSON *json, const char *name)
 {
     struct problem problem = { 0 };
     struct message message;
-    char name[4 * MAX_NAME + 1];
-    struct room *room = api_find_room(api, call);
-    if (!room)
-        return;
-    if (call->act->kind && call->ids[1] && !room_item_is(room, call->ids[1], kind_of(call->act->kind))) {
-        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the room has no %s \"%.63s\"", call->act->kind, call->ids[1]);
-        call_answer_problem(call, &problem);
-        return;
-    }
-    cJSON *json = read_message(call, name);
-    if (!json)
-        return;
     char *text = json_print(json);
     cJSON_Delete(json);
     const bool is_read =
@@ -188,10 +176,27 @@ void api_room_act(struct api *api, struct call *call)
                                   .name = name,
                                   .identity = &call->identity,
                                   .address = call->client,
-                                  .key = call->key,
+                                  .key = call->act ? call->key : NULL,
                                   .message = &message,
                                   .done = act_done,
                                   .context = call };
     room_act(room, &act, clock_now_us()); /* answers the call, now or later */
     message_finish(&message);
+}
+
+void api_room_act(struct api *api, struct call *call)
+{
+    struct problem problem = { 0 };
+    char name[4 * MAX_NAME + 1];
+    struct room *room = api_find_room(api, call);
+    if (!room)
+        return;
+    if (call->act->kind && call->ids[1] && !room_item_is(room, call->ids[1], kind_of(call->act->kind))) {
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "the room has no %s \"%.63s\"", call->act->kind, call->ids[1]);
+        call_answer_problem(call, &problem);
+        return;
+    }
+    cJSON *json = read_message(call, name);
+    if (json)
+        api_act_in(room, call, json, name);
 }

@@ -11,5 +11,8 @@ extern const size_t api_n_acts;
 
 /* The route of the act number index. False after the last. */
 bool api_act_route(size_t index, struct api_route *route);
+/* Does what the message says, as the call's member or identity, and answers the call: with the item, else with 204.
+ * Takes json. name: who writes an item without being a member; NULL: none is said. */
+void api_act_in(struct room *room, struct call *call, cJSON *json, const char *name);
 /* Does what call->act says. */
 void api_room_act(struct api *api, struct call *call);

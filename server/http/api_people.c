@@ -1,12 +1,8 @@
 /* The people of a room: who may come in without a link; removing a member. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "core/base/clock.h"
+#include "server/http/api_acts.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_queries.h"
-#include "server/wire/message.h"
 
 void api_room_people(struct api *api, struct call *call)
 {
@@ -33,21 +29,8 @@ void api_room_people_patch(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
 }
 
-static void removed(void *context, const char *row, bool was_sent_before, const struct problem *problem)
-{
-    struct call *call = context;
-    (void)row;
-    (void)was_sent_before;
-    if (problem)
-        call_answer_problem(call, problem);
-    else
-        call_answer_nothing(call, 204);
-}
-
 void api_room_member_remove(struct api *api, struct call *call)
 {
-    struct problem problem = { 0 };
-    struct message message;
     const char *reason = call_query(call, "reason");
     struct room *room = api_find_room(api, call);
     if (!room)
@@ -57,21 +40,5 @@ void api_room_member_remove(struct api *api, struct call *call)
     cJSON_AddStringToObject(json, "member", call->ids[1]);
     if (reason)
         cJSON_AddStringToObject(json, "reason", reason);
-    char *text = json_print(json);
-    cJSON_Delete(json);
-    const bool is_read =
-        text ? message_read(text, strlen(text), true, &message, &problem) : json_no_memory(&problem, "a message");
-    free(text);
-    if (!is_read) {
-        call_answer_problem(call, &problem);
-        return;
-    }
-    const struct room_act act = { .member = call->member,
-                                  .identity = &call->identity,
-                                  .address = call->client,
-                                  .message = &message,
-                                  .done = removed,
-                                  .context = call };
-    room_act(room, &act, clock_now_us());
-    message_finish(&message);
+    api_act_in(room, call, json, NULL);
 }
