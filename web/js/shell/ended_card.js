@@ -6,6 +6,7 @@ import { whoIn } from '../features/start/who_in.js';
 import { say } from './later_words.js';
 import { say as sayAtOnce } from './words.js';
 
+const closed = 'the room is closed'; // the server says it of a room that is not there, too
 const sentence = (text) => (text ? `${text[0].toUpperCase()}${text.slice(1)}.` : say.noReason);
 
 /** The notes are in this page alone by now, when the room was deleted. */
@@ -24,6 +25,7 @@ export function endedCard(world) {
   const rooms = after.rooms.value.slice(0, 3);
   return html`<section class=${classMap({ card: true, ended: true, unknown: !wasIn })} role="alert">${icon('disconnected')}
     <div>${wasIn ? html`<b>${say.youLeft}</b>` : html`<h1>${room.link.value.isRefused ? say.refused : say.noRoom}</h1>`}<p>${sentence(room.link.value.reason)}</p>
+      ${!wasIn && world.session.value && room.link.value.reason === closed ? html`<p>${say.orNotAsked}</p>` : nothing}
       ${after.isPlanGone.value ? html`<p>${say.planGone}</p>` : nothing}
       ${after.error.value ? html`<p class="err">${icon('error')} ${after.error.value}</p>` : nothing}
       ${wasIn && room.lostAtEnd.value ? html`<p class="err">${icon('error')} ${say.changesLost}</p>` : nothing}

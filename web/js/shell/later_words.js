@@ -66,6 +66,7 @@ export const say = sentences('shell.later', {
   youLeft: 'You are no longer in this room',
   refused: 'You cannot enter this room',
   noRoom: 'There is no room at this address',
+  orNotAsked: 'Either it has ended, or it lets in only people who were asked in: ask who works in it for a link.',
   planGone: 'Its plan is no longer on this server.',
   changesLost: 'Your last changes did not reach it.',
   saveNotes: 'Save its notes as a file',
