@@ -34,6 +34,25 @@ async function roomOf(daemon) {
   return (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
 }
 
+test('who signs in over TLS gets a cookie that a browser sends over TLS to this server alone', async () => {
+  const daemon = await startDaemon({ args: [...flags, '--sign-in', 'local'] });
+  const password = 'correct horse';
+  const api = (path, method, body, headers) => call(`${daemon.url}/api/v1/session${path}`, method, body, headers);
+  const [, token] = await until(() => /\/signin\/first#([0-9a-f]{64})/.exec(daemon.log()), Boolean);
+  assert.equal((await api('/first', 'POST', { token, user: 'ann', name: 'Ann Example', password })).status, 204);
+  for (const headers of [{ Origin: daemon.url }, {}]) {
+    const begun = await api('', 'POST', { user: 'ann', password }, headers);
+    assert.equal(begun.status, 201);
+    const cookie = begun.headers.get('set-cookie');
+    assert.match(cookie, /^__Host-beamroom=[0-9a-f]{64}; Path=\/; HttpOnly; SameSite=Strict; Secure$/);
+    const [given] = cookie.split(';');
+    assert.equal((await api('', 'GET', undefined, { Cookie: given })).json.identity.user, 'ann');
+    const renamed = given.replace('__Host-', ''); // as another server of this host could set it, without TLS
+    assert.equal((await api('', 'GET', undefined, { Cookie: renamed })).json.identity, null);
+  }
+  assert.equal(await daemon.stop(), 0, daemon.log());
+});
+
 describe('over one port of TLS', () => {
   let daemon, room;
   before(async () => {
