@@ -1,11 +1,14 @@
 /* Shows a room's view to displays, as a stream of pictures without an end. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/base/clock.h"
 #include "core/base/mem.h"
 #include "server/http/api_handlers.h"
 #include "server/http/feed.h"
+
+enum { MAX_OF_PERSON = 4 }; /* displays that look at a room, where people sign in: half of what it takes */
 
 struct api_display { /* a screen that looks at a room */
     struct api_display *next;
@@ -86,6 +89,27 @@ void api_display_left(struct api *api, struct feed *feed)
     feed_leave(feed);
 }
 
+/* Whether the display is of the same person as the call, or of the same seat. */
+static bool is_of_caller(const struct api_display *display, const struct call *call)
+{
+    if (call->identity.user[0])
+        return strcmp(display->who.user, call->identity.user) == 0;
+    return call->member && display->member && strcmp(display->member, call->member) == 0;
+}
+
+static bool has_place_for(const struct api *api, const struct call *call, const struct room *room,
+                          struct problem *problem)
+{
+    size_t n = 0;
+    for (const struct api_display *display = api->displays; display; display = display->next)
+        n += display->room == room && is_of_caller(display, call);
+    if (call->identity.source == IDENTITY_MACHINE || n < MAX_OF_PERSON)
+        return true;
+    problem_set(problem, PROBLEM_LIMIT, "", "", "%zu displays of yours look at this room already", n);
+    problem->retry_after_ms = ROOM_DISPLAY_RETRY_MS;
+    return false;
+}
+
 void api_room_stream(struct api *api, struct call *call)
 {
     struct problem problem = { 0 };
@@ -96,7 +120,7 @@ void api_room_stream(struct api *api, struct call *call)
     } else if (!room) {
         problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
     }
-    if (!room) {
+    if (!room || !has_place_for(api, call, room, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
