@@ -193,7 +193,9 @@ static bool wakes_room(struct api *api, struct call *call, const struct api_rout
     const char *room = call_query(call, "room");
     if (room && !api_access_sees_room(api, call, room))
         room = NULL;
-    bool is_for_awake = (call->method == CALL_DELETE && !route->act && route->handle != api_room_link_revoke &&
+    /* whose right has to be looked at has it looked at in the room */
+    const bool may_be_deleted_asleep = call->method == CALL_DELETE && call->identity.source == IDENTITY_MACHINE;
+    bool is_for_awake = (may_be_deleted_asleep && !route->act && route->handle != api_room_link_revoke &&
                          route->handle != api_room_member_remove) ||
                         route->handle == api_room_ws || route->handle == api_room_stream ||
                         route->handle == api_room_events;

@@ -180,13 +180,21 @@ static bool check_room(struct api *api, struct call *call, const struct access_r
 static bool check_job(struct api *api, struct call *call, const struct access_route *need)
 {
     const struct api_job *job = api_job_find(api, call->ids[0]);
-    struct access_subject subject = { .kind = ACCESS_SUBJECT_KIND_ROOM, .is_closed = true }; /* but for its maker */
+    struct plan_subject plan = { .subject = { 0 } };
     if (call->identity.source == IDENTITY_NOBODY)
         return refuse_nobody(call);
+    if (job && job->plan_id[0])
+        plan_subject_fill(api->rights, net_fleet(api->net), job->plan_id, &plan);
+    plan.subject.is_upload = plan.subject.is_upload || (job && job->upload);
+    plan.subject.kind = ACCESS_SUBJECT_KIND_ROOM;
+    plan.subject.is_closed = true; /* but for its maker */
     if (job && job->user[0] && strcmp(job->user, call->identity.user) == 0)
-        subject.room_role = ACCESS_ROLE_PLANNER;
-    if (job && access_check(api->rights->access, &call->identity, need->right, &subject))
-        return true;
+        plan.subject.room_role = ACCESS_ROLE_PLANNER;
+    if (job && access_check(api->rights->access, &call->identity, need->right, &plan.subject)) {
+        const struct access_route ends_for_all = { .right = ACCESS_CLOSE };
+        return call->method != CALL_DELETE || job->upload ||
+               api_access_to_plan(api, call, ends_for_all.right, job->plan_id) || refuse_role(call, &ends_for_all);
+    }
     api_job_answer_missing(call);
     return false;
 }

@@ -6,12 +6,22 @@
 
 #include "core/base/clock.h"
 #include "server/front/address.h"
+#include "server/http/api_access.h"
 
 bool api_is_of_this_machine(const struct api *api, const struct call *call)
 {
     struct address client;
     return api->doors.is_alone && address_read(call->client, strlen(call->client), &client) &&
            address_is_loopback(&client);
+}
+
+/* The room on the call's plan in which it is made, as its address says; NULL: none that the caller sees. */
+static struct room *room_named(const struct call *call)
+{
+    const struct api *api = call->api;
+    const char *id = call_query(call, "room");
+    struct room *room = id && api_access_sees_room(api, call, id) ? net_room_find(api->net, id) : NULL;
+    return room && strcmp(room_plan_id(room), call->ids[0]) == 0 ? room : NULL;
 }
 
 static void audit_export(struct call *call)
@@ -22,8 +32,7 @@ static void audit_export(struct call *call)
         return;
     const bool is_of_room = strncmp(call->path, rooms, sizeof rooms - 1) == 0;
     const bool is_of_plan = strncmp(call->path, plans, sizeof plans - 1) == 0;
-    const char *room_id = is_of_room ? call->ids[0] : call_query(call, "room");
-    struct room *room = room_id ? net_room_find(net, room_id) : NULL;
+    struct room *room = is_of_room ? net_room_find(net, call->ids[0]) : is_of_plan ? room_named(call) : NULL;
     if (strcmp(call->exported, "picture") == 0 && !room) { /* as fast as a script asks */
         net_audit_often(net, &call->identity, call->client, "", is_of_plan ? call->ids[0] : "", "export",
                         call->exported, false);
@@ -59,18 +68,20 @@ void api_audit_add_head(const struct api *api, struct call *call)
     call_add_header(call, "Audit-Head", text);
 }
 
-/* Guests of a room take no files away. */
-static bool may_take_away(const struct api *api, const struct call *call, struct problem *problem)
+/* Guests of a room take no files away; pictures of its plan they see there. */
+static bool may_take_away(const struct api *api, const struct call *call, const char *what, struct problem *problem)
 {
     const struct room *room = call->ids[0] ? net_room_find(api->net, call->ids[0]) : NULL;
-    return !room || !call->member || !room_caller_of(room, &call->identity, call->member).is_guest ||
+    const bool is_guest = call->identity.source == IDENTITY_NOBODY ||
+                          (room && call->member && room_caller_of(room, &call->identity, call->member).is_guest);
+    return !is_guest || strcmp(what, "picture") == 0 ||
            problem_set(problem, PROBLEM_FORBIDDEN, "", "role", "a guest takes no files away");
 }
 
 bool api_audit_export(struct api *api, struct call *call, const char *what)
 {
     struct problem problem;
-    if (!may_take_away(api, call, &problem) || !api_audit_has_place(api, &problem)) {
+    if (!may_take_away(api, call, what, &problem) || !api_audit_has_place(api, &problem)) {
         call_answer_problem(call, &problem);
         return false;
     }

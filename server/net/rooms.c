@@ -412,11 +412,12 @@ bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct i
 {
     const struct store_summary *facts = &net->asleep[index].facts;
     enum wire_member_role role;
-    if (who->source == IDENTITY_MACHINE || room_people_name(facts->owner, facts->people, who))
+    if (who->source == IDENTITY_MACHINE)
         return true;
-    if (!plan_rights_role(&net->plan_rights, net->fleet, who, facts->plan, &role))
-        return false;
-    return facts->is_open || (!facts->owner[0] && role == WIRE_MEMBER_ROLE_PLANNER);
+    const bool has_role = plan_rights_role(&net->plan_rights, net->fleet, who, facts->plan, &role);
+    if (room_people_name(facts->owner, facts->people, who, has_role))
+        return true;
+    return has_role && (facts->is_open || (!facts->owner[0] && role == WIRE_MEMBER_ROLE_PLANNER));
 }
 
 cJSON *net_asleep_document(const struct net *net, size_t index)

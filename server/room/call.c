@@ -150,8 +150,8 @@ bool room_is_listed_to(const struct room *room, const struct identity *who)
     enum wire_member_role role;
     admission_facts(room, &kept);
     bool is_listed = admission_role(room, who, &role);
-    if (!is_listed && admission_write(room, &kept))
-        is_listed = room_people_name(kept.owner, kept.people, who);
+    if (!is_listed && admission_write(room, &kept)) /* else by a link alone */
+        is_listed = room_people_name("", kept.people, who, false);
     free(kept.people);
     return is_listed;
 }

@@ -142,6 +142,16 @@ describe('People of a room', () => {
       [[room, true]],
     );
     assert.deepEqual((await api('/rooms', zoe)).json, { rooms: [], n_asleep: 0 });
+    for (const [who, status] of [
+      [rae, 403], // a reviewer
+      [zoe, 404],
+    ])
+      assert.equal(
+        (await api(`/rooms/${room}?records=keep`, who, 'DELETE')).status,
+        status,
+        'a room that sleeps is not deleted without the right',
+      );
+    assert.equal((await api(`/rooms/${room}`, pat)).status, 200);
     const again = await hello(rae, seatOf(reviewer));
     assert.equal(again.first.member, reviewer.first.member);
     assert.equal((await hello(zoe, seatOf(reviewer))).first.type, 'bye');

@@ -331,6 +331,32 @@ describe('The matrix of rights', { concurrency: false }, () => {
     assert.equal((await ask('presenter', at(rooms.own.presenter))).status, 200);
   });
 
+  test('a guest takes no surface away as a file, of the plan whose pictures it sees', async () => {
+    const [{ id: region }] = (await ask('planner', `/api/v1/plans/${plans.granted}`)).json.regions;
+    const at = `/api/v1/plans/${plans.granted}/regions/${region}/surface?format=stl`;
+    const refused = await ask('guest', at);
+    assert.deepEqual([refused.status, refused.json?.code], [403, 'role']);
+    assert.notEqual((await ask('planner', at)).status, 403);
+  });
+
+  test('one person takes at most half of the displays of a room', async () => {
+    const streams = [];
+    const open = (kind) =>
+      new Promise((done, failed) => {
+        const { headers } = callers[kind];
+        const path = `/api/v1/rooms/${rooms.granted}/stream`;
+        const call = request({ socketPath, path, agent: false, headers }, (answer) => done(answer));
+        call.on('error', failed);
+        call.end();
+        streams.push(call);
+      });
+    for (let i = 0; i < 4; i++) assert.equal((await open('planner')).statusCode, 200);
+    const fifth = await open('planner');
+    assert.deepEqual([fifth.statusCode, Number(fifth.headers['retry-after']) > 0], [429, true]);
+    assert.equal((await open('presenter')).statusCode, 200);
+    for (const call of streams) call.destroy();
+  });
+
   test('a search finds what may be seen, and counts no other', async () => {
     const found = async (kind, body) => (await ask(kind, '/api/v1/plans/search', 'POST', body)).json;
     assert.equal((await found('planner', {})).total, 1);

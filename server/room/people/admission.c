@@ -425,15 +425,15 @@ static cJSON *write_removed(const struct admission *admission)
     return list;
 }
 
-/* The users who are or were in the room, for lists of rooms. */
+/* The users who have a seat by a link, for lists of rooms. */
 static cJSON *write_users(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
     for (int i = 0; i < room->members.n; i++)
-        if (room->members.list[i]->user[0])
+        if (room->members.list[i]->user[0] && room->members.list[i]->link[0])
             json_append(list, cJSON_CreateString(room->members.list[i]->user));
     for (int i = 0; i < room->known->n; i++)
-        if (room->known->list[i].user[0])
+        if (room->known->list[i].user[0] && room->known->list[i].link[0])
             json_append(list, cJSON_CreateString(room->known->list[i].user));
     return list;
 }
@@ -498,10 +498,10 @@ void admission_read(struct room *room, const struct store_room *kept)
     cJSON_Delete(json);
 }
 
-bool room_people_name(const char *owner, const char *people, const struct identity *who)
+bool room_people_name(const char *owner, const char *people, const struct identity *who, bool has_role)
 {
     char quoted[STORE_USER + 4];
-    bool is_there = owner[0] && strcmp(owner, who->user) == 0, may_be_there = false;
+    bool is_there = has_role && owner[0] && strcmp(owner, who->user) == 0, may_be_there = false;
     if (is_there || !people)
         return is_there;
     (void)snprintf(quoted, sizeof quoted, "\"%s\"", who->user);
@@ -516,10 +516,10 @@ bool room_people_name(const char *owner, const char *people, const struct identi
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(json, "people"))
     {
         const char *named = json_text(row, "who");
-        is_there = is_there || (named && is_named(named, who));
+        is_there = is_there || (has_role && named && is_named(named, who));
     }
     cJSON_ArrayForEach(row, cJSON_GetObjectItemCaseSensitive(json, "users")) is_there =
-        is_there || (cJSON_IsString(row) && strcmp(row->valuestring, who->user) == 0);
+        is_there || (!who->folders[0] && cJSON_IsString(row) && strcmp(row->valuestring, who->user) == 0);
     cJSON_Delete(json);
     return is_there;
 }

@@ -503,10 +503,12 @@ static void it_all_lasts_over_sleep(void **state)
     fake_say(&fake, &ann, "{\"type\":\"member.remove\",\"member\":\"m3\"}");
     cJSON *before = room_people(fake.room);
     assert_true(room_keep(fake.room, ROOM_ALL_PARTS, &kept));
-    assert_true(room_people_name(kept.owner, kept.people, &pat));
-    assert_true(room_people_name(kept.owner, kept.people, &rae)); /* of the group */
-    assert_false(room_people_name(kept.owner, kept.people, &zoe));
-    assert_false(room_people_name(kept.owner, kept.people, &oli));
+    assert_true(room_people_name(kept.owner, kept.people, &pat, true));
+    assert_false(room_people_name(kept.owner, kept.people, &pat, false)); /* the grant was withdrawn */
+    assert_true(room_people_name(kept.owner, kept.people, &rae, true));   /* of the group */
+    assert_false(room_people_name(kept.owner, kept.people, &rae, false));
+    assert_false(room_people_name(kept.owner, kept.people, &zoe, true));
+    assert_false(room_people_name(kept.owner, kept.people, &oli, true));
     (void)room_end(NULL);
     (void)start(NULL);
     room_set_owner(fake.room, "");
