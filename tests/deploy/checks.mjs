@@ -8,7 +8,7 @@ import { Client } from '../api/ws_client.mjs';
 import { full, missing, shoot } from '../web/browser.mjs';
 import { proxies } from './proxies.mjs';
 import { canary, canaryAddress, h2Shapes, sendH2Shapes, sendShapes, shapes } from './smuggling.mjs';
-import { provesSignIn } from './sign_in.mjs';
+import { provesFreshSignIn, provesSignIn } from './sign_in.mjs';
 import { Site } from './site.mjs';
 import { auditOf, bigArchive, Caller, CLIENT, NAME, openSecurely, peakMib } from './world.mjs';
 
@@ -83,6 +83,7 @@ export function proves(name) {
     });
 
     provesSignIn(world);
+    if (signsIn === 'oidc') provesFreshSignIn(world);
 
     it('the page comes whole, with pictures of a room, at the address that was asked for', async () => {
       const { page, errors } = await world.visit(`/rooms/${world.room}`);

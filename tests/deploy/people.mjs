@@ -62,13 +62,23 @@ export async function startSignIn() {
   };
 }
 
-/** An identity provider whose sign-in page takes any name of `people`. @param {string} back the address that the proxy wants people sent back to */
+/** An identity provider whose sign-in page takes any name of `people`. wait(S): its sessions are S seconds older.
+ *  @param {string} back the address that the proxy wants people sent back to */
 export async function startProvider(back) {
   // make test-proxies installs it there
-  const { Provider } = await import(pathToFileURL(resolve('build/deploy/node_modules/oidc-provider/lib/index.js')));
+  const load = (file) => import(pathToFileURL(resolve('build/deploy/node_modules/oidc-provider/lib', file)));
+  const [{ Provider }, { default: Memory }] = await Promise.all([load('index.js'), load('adapters/memory_adapter.js')]);
+  const sessions = new Map();
+  class Kept extends Memory {
+    async upsert(id, payload, expires) {
+      if (this.model === 'Session') sessions.set(id, payload);
+      await super.upsert(id, payload, expires);
+    }
+  }
   const server = createServer();
   const port = await listen(server, 0);
   const provider = new Provider(`http://127.0.0.1:${port}`, {
+    adapter: Kept,
     clients: [
       {
         client_id: 'beamroom',
@@ -91,6 +101,9 @@ export async function startProvider(back) {
   server.on('request', provider.callback());
   return {
     port,
+    wait: (seconds) => {
+      for (const session of sessions.values()) if (session.loginTs) session.loginTs -= seconds;
+    },
     stop: () =>
       new Promise((done) => {
         server.close(done);

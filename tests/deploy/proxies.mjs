@@ -93,22 +93,28 @@ const startHaproxy =
     return { ...program, port, reload: reloader(home, program, (child) => child.kill('SIGUSR2')) };
   };
 
-/** Debian's /etc/apache2, with the modules that the sample's first lines name. */
+const CACHE = '/var/cache/apache2/mod_auth_openidc/cache';
+
+/** Debian's /etc/apache2, with the modules that the sample's first lines name, and the folder of sessions as docs/admin.md makes it. */
 async function startApache({ home, socket, signIn, port }) {
   const { cert, key } = makeCertificate(home);
   const [etc, run] = [join(home, 'apache2'), folderIn(home, 'apache-run')];
   cpSync('/etc/apache2', etc, { recursive: true, verbatimSymlinks: true });
   rmSync(join(etc, 'sites-enabled'), { recursive: true, force: true });
-  const cache = folderIn(home, 'sessions');
-  for (const folder of [run, cache]) chmodSync(folder, 0o777);
+  chmodSync(run, 0o777);
+  const cache = join(home, 'sessions');
+  const [makesCache] = /^install -d .* \/var\/cache\/.*$/m.exec(readFileSync('docs/admin.md', 'utf8'));
+  const [command, ...words] = makesCache.replaceAll('www-data', worker).replace(CACHE, cache).split(' ');
+  execFileSync(command, words, { stdio: 'pipe' });
   const sample = replaced('apache-oidc.conf', [
+    [`#   ${makesCache}\n`, ''],
     ['/run/beamroom/http.sock', socket],
     ['<VirtualHost *:443>', `<VirtualHost 127.0.0.1:${port}>`],
     ['<VirtualHost *:80>', '<VirtualHost 127.0.0.1:1>'],
     ['https://login.example.org/', `http://127.0.0.1:${signIn}/`],
     [`https://${NAME}/oidc/back`, `https://${NAME}:${port}/oidc/back`],
     ['replace-by-the-secret-of-this-client', 'secret-of-the-test'],
-    ['/var/cache/apache2/mod_auth_openidc/cache', cache],
+    [CACHE, cache],
     ...CERTIFICATES(cert, key),
   ]);
   const [, modules] = /^# +a2enmod (.*)$/m.exec(sample);

@@ -104,3 +104,25 @@ export function provesSignIn(site) {
     await context.close();
   });
 }
+
+/** A signature needs a fresh password, which who knows the people asks for. @param {import('./site.mjs').Site} site */
+export function provesFreshSignIn(site) {
+  it('who signs out and in again, later than 5 minutes after the password, gives it again and can sign', async () => {
+    const context = await site.newContext();
+    const { page } = await site.visit('/signin/proxy?return=/', { context });
+    await site.passProvider(page);
+    await page.waitForURL(`https://${site.host}/`);
+    const provedMs = () => page.evaluate(async () => (await (await fetch('/api/v1/session')).json()).identity?.proved_ms);
+    const first = await provedMs();
+    site.people.wait(301);
+    assert.equal(await page.evaluate(async () => (await fetch('/api/v1/session', { method: 'DELETE' })).status), 204);
+    await page.goto(`https://${site.host}/signin/proxy?return=/`);
+    await page.fill('input[name=login]', 'ann');
+    await page.fill('input[name=password]', 'any');
+    await page.click('button[type=submit]');
+    await page.waitForURL(`https://${site.host}/`);
+    const again = await provedMs();
+    assert.ok(again >= first && Date.now() - again < 60000, `${again} after ${first}`);
+    await context.close();
+  });
+}
