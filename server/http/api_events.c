@@ -8,7 +8,11 @@
 #include "server/http/api_handlers.h"
 #include "server/http/feed.h"
 
-enum { MAX_LISTENERS = 64 };
+enum {
+    MAX_LISTENERS = 64,
+    MAX_OF_PERSON = 16,        /* where people sign in: a quarter of the server's */
+    MAX_OF_PERSON_IN_ROOM = 4, /* and of a room's */
+};
 
 struct api_listener { /* a program that listens to a room */
     struct api_listener *next;
@@ -153,16 +157,34 @@ void api_listeners_look(struct api *api)
     end_those_over(api);
 }
 
-static bool has_place(const struct api *api, struct problem *problem)
+/* Whether the listener is of the same person as the call, or of the same seat. */
+static bool is_of_caller(const struct api_listener *listener, const struct call *call)
 {
-    size_t n = 0;
-    for (const struct api_listener *listener = api->listeners; listener; listener = listener->next)
+    if (call->identity.user[0])
+        return strcmp(listener->who.user, call->identity.user) == 0;
+    return call->member && listener->member && strcmp(listener->member, call->member) == 0;
+}
+
+static bool has_place(const struct api *api, const struct call *call, const struct room *room, struct problem *problem)
+{
+    size_t n = 0, n_of_caller = 0, n_in_room = 0;
+    for (const struct api_listener *listener = api->listeners; listener; listener = listener->next) {
+        const bool is_capped = call->identity.source != IDENTITY_MACHINE && is_of_caller(listener, call);
         n++;
-    if (n < MAX_LISTENERS)
-        return true;
-    problem_set(problem, PROBLEM_LIMIT, "", "", "%zu programs listen to rooms of this server already", n);
-    problem->retry_after_ms = ROOM_DISPLAY_RETRY_MS;
-    return false;
+        n_of_caller += is_capped;
+        n_in_room += is_capped && listener->room == room;
+    }
+    bool is_free = true;
+    if (n >= MAX_LISTENERS)
+        is_free = problem_set(problem, PROBLEM_LIMIT, "", "", "%zu programs listen to rooms of this server already", n);
+    else if (n_in_room >= MAX_OF_PERSON_IN_ROOM)
+        is_free =
+            problem_set(problem, PROBLEM_LIMIT, "", "", "%zu programs of yours listen to this room already", n_in_room);
+    else if (n_of_caller >= MAX_OF_PERSON)
+        is_free = problem_set(problem, PROBLEM_LIMIT, "", "",
+                              "%zu programs of yours listen to rooms of this server already", n_of_caller);
+    problem->retry_after_ms = is_free ? 0 : ROOM_DISPLAY_RETRY_MS;
+    return is_free;
 }
 
 void api_room_events(struct api *api, struct call *call)
@@ -177,7 +199,7 @@ void api_room_events(struct api *api, struct call *call)
     } else if (!room) {
         problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no room \"%.63s\"", call->ids[0]);
     }
-    if (!room || !has_place(api, &problem)) {
+    if (!room || !has_place(api, call, room, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }

@@ -20,11 +20,14 @@ struct intake {
     uint64_t reserve_bytes, n_promised; /* n_promised: sum of the files' `promised` */
     uint64_t (*free_bytes)(void *context, int *failed);
     void *context;
+    struct intake_file *files;
     int n_files, window_ms;
 };
 
 struct intake_file {
     struct intake *intake;
+    struct intake_file *next;
+    char user[IDENTITY_MAX_USER + 1]; /* who sends it; "": nobody who has signed in */
     struct spool_file *spooled;
     char *path;
     uint64_t n_bytes, window_bytes; /* received in all; since the window began */
@@ -180,6 +183,23 @@ static bool is_granted(struct intake_file *file, size_t n, struct problem *probl
     return true;
 }
 
+/* True if there is a place for one more file of this user. */
+static bool check_number(const struct intake *intake, const char *user, struct problem *problem)
+{
+    int n = 0;
+    for (const struct intake_file *file = intake->files; file && user[0]; file = file->next)
+        n += strcmp(file->user, user) == 0;
+    bool is_free = true;
+    if (intake->n_files >= INTAKE_MAX_FILES)
+        is_free = problem_set(problem, PROBLEM_LIMIT, "", "",
+                              "%d archives are being received already; at most so many are at once", INTAKE_MAX_FILES);
+    else if (n >= INTAKE_MAX_OF_USER)
+        is_free = problem_set(problem, PROBLEM_LIMIT, "", "",
+                              "%d archives of yours are being received already; at most so many are at once", n);
+    problem->retry_after_ms = is_free ? 0 : INTAKE_RETRY_MS;
+    return is_free;
+}
+
 struct intake_file *intake_begin(struct intake *intake, const struct call *call, int64_t length,
                                  void (*moved)(void *context), void *context, struct problem *problem)
 {
@@ -193,17 +213,14 @@ struct intake_file *intake_begin(struct intake *intake, const struct call *call,
         refuse_size(intake, problem);
         return NULL;
     }
-    if (intake->n_files >= INTAKE_MAX_FILES) {
-        problem_set(problem, PROBLEM_LIMIT, "", "",
-                    "%d archives are being received already; at most so many are at once", INTAKE_MAX_FILES);
-        problem->retry_after_ms = INTAKE_RETRY_MS;
-        return NULL;
-    }
-    if (!check_space(intake, length > 0 ? (uint64_t)length : 0, problem))
+    if (!check_number(intake, call->identity.user, problem) ||
+        !check_space(intake, length > 0 ? (uint64_t)length : 0, problem))
         return NULL;
     size_t n = strlen(intake->folder) + 32;
     struct intake_file *file = mem_new(sizeof *file);
-    file->intake = intake;
+    *file = (struct intake_file){ .intake = intake, .next = intake->files };
+    (void)snprintf(file->user, sizeof file->user, "%s", call->identity.user);
+    intake->files = file;
     file->path = mem_new(n);
     (void)snprintf(file->path, n, "%s/%" PRIu64 ".part", intake->folder, ++intake->last_number);
     file->spooled = spool_open(intake->spool, file->path, moved, context);
@@ -258,6 +275,10 @@ bool intake_add(struct intake_file *file, const char *bytes, size_t n, size_t *n
 /* Takes file. */
 static void leave(struct intake_file *file, bool is_kept)
 {
+    struct intake_file **at = &file->intake->files;
+    while (*at != file)
+        at = &(*at)->next;
+    *at = file->next;
     spool_leave(file->spooled, is_kept);
     file->intake->n_files--;
     file->intake->n_promised -= file->promised;

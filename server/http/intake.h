@@ -5,6 +5,7 @@
 
 enum {
     INTAKE_MAX_FILES = 4,        /* at once */
+    INTAKE_MAX_OF_USER = 2,      /* of one user, who would hold all of them */
     INTAKE_STEP_BYTES = 8 << 20, /* disk space granted at a time to a sender that announces no length; the disk is
                                     checked again after each step */
     INTAKE_RETRY_MS = 5000,

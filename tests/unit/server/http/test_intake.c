@@ -424,6 +424,37 @@ static void a_fifth_at_once_is_told_when_to_come_again(void **state)
     intake_destroy(intake);
 }
 
+/* Begins to receive an archive of this user. */
+static struct intake_file *begin_of(struct intake *intake, const char *user, struct problem *problem)
+{
+    struct call *call = archive_call("application/zip");
+    snprintf(call->identity.user, sizeof call->identity.user, "%s", user);
+    struct intake_file *file = intake_begin(intake, call, 5, nothing, NULL, problem);
+    call_destroy(call);
+    return file;
+}
+
+static void one_user_leaves_places_to_others(void **state)
+{
+    (void)state;
+    struct intake *intake = intake_create(folder, 10, 0, NULL);
+    struct problem problem = { 0 };
+    struct intake_file *first = begin_of(intake, "pat", &problem), *second = begin_of(intake, "pat", &problem);
+    assert_true(first && second);
+    assert_null(begin_of(intake, "pat", &problem));
+    assert_int_equal(problem.type, PROBLEM_LIMIT);
+    assert_true(problem.retry_after_ms > 0);
+    struct intake_file *other = begin_of(intake, "rae", &problem);
+    assert_non_null(other);
+    intake_drop(first);
+    first = begin_of(intake, "pat", &problem);
+    assert_non_null(first);
+    intake_drop(other);
+    intake_drop(second);
+    intake_drop(first);
+    intake_destroy(intake);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -440,6 +471,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_disk_that_others_fill_meanwhile_is_noticed, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(who_trickles_gives_the_place_back, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_fifth_at_once_is_told_when_to_come_again, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(one_user_leaves_places_to_others, make_folder, remove_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
