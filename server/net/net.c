@@ -26,6 +26,7 @@
 #include "server/net/rooms.h"
 #include "server/net/schedule.h"
 #include "server/net/sign_ins.h"
+#include "server/net/strangers.h"
 
 enum {
     MAX_TASKS = 4096, /* tasks that may wait; one more makes net_post wait */
@@ -139,16 +140,6 @@ static bool has_room(void *context, const struct handshake *handshake)
     return rooms_find(context, id) || asleep_find(context, id) || !net_rooms_are_known(context, &problem);
 }
 
-/* Says bye to who has spoken to a room that is not there, as such a room says it to those it is closed to. */
-static void refuse_absent(struct visitor *visitor)
-{
-    visitor->is_refused = true;
-    if (visitor->identity.source == IDENTITY_NOBODY)
-        ws_bye_code(visitor->connection, WS_CLOSE_POLICY, "sign-in", ROOM_NEEDS_SIGN_IN, -1);
-    else
-        ws_bye(visitor->connection, WS_CLOSE_NORMAL, ROOM_IS_CLOSED, -1);
-}
-
 /* A plan is loaded for members, not for whoever knows the address of a room. */
 static void enter_if_member(struct visitor *visitor)
 {
@@ -174,7 +165,7 @@ static void let_in(void *context, const char *id, const struct problem *problem)
     struct net *net = context;
     struct net_room *room = problem ? NULL : rooms_find(net, id);
     for (struct visitor *visitor = net->visitors; visitor; visitor = visitor->next) {
-        if (strcmp(visitor->asleep, id) != 0)
+        if (visitor->is_outside || strcmp(visitor->asleep, id) != 0)
             continue;
         visitor->asleep[0] = 0;
         visitor->room = room;
@@ -212,6 +203,25 @@ static void keep_early(struct visitor *visitor, const char *text, size_t n)
     visitor->n_early_bytes += n + sizeof *early;
 }
 
+/* The first text of one to whom its room, which slept, is not listed: only a key wakes it. */
+static void knock(struct net *net, struct visitor *visitor, const char *text, size_t n)
+{
+    char id[sizeof visitor->asleep];
+    memcpy(id, visitor->asleep, sizeof id);
+    visitor->is_outside = false;
+    visitor->room = rooms_find(net, id);
+    if (!visitor->room && asleep_find(net, id) &&
+        (net_asleep_is_seen_by(net, id, &visitor->identity) || stranger_has_key(text, n))) {
+        keep_early(visitor, text, n);
+        if (visitor->asleep[0])
+            asleep_wake(net, id, let_in, net);
+        return;
+    }
+    visitor->asleep[0] = 0;
+    if (!visitor->room)
+        stranger_refuse(visitor, text, n);
+}
+
 static void connection_opened(void *context, struct ws_connection *connection, const struct handshake *handshake)
 {
     struct net *net = context;
@@ -226,7 +236,9 @@ static void connection_opened(void *context, struct ws_connection *connection, c
     ws_set_owner(connection, visitor);
     if (!visitor->room && asleep_find(net, id)) {
         (void)snprintf(visitor->asleep, sizeof visitor->asleep, "%s", id);
-        asleep_wake(net, id, let_in, net);
+        visitor->is_outside = !net_asleep_is_seen_by(net, id, &visitor->identity);
+        if (!visitor->is_outside)
+            asleep_wake(net, id, let_in, net);
     } else if (visitor->room && !visitor->waits)
         bridge_enter(visitor);
     else if (visitor->room || (visitor->waits && net_rooms_are_known(net, &problem)))
@@ -240,14 +252,15 @@ static void connection_opened(void *context, struct ws_connection *connection, c
 static void message_received(void *context, struct ws_connection *connection, enum ws_opcode kind, const char *text,
                              size_t n)
 {
-    (void)context;
-    (void)kind; /* always a text: ws refuses binary messages */
     struct visitor *visitor = ws_owner(connection);
-    struct net_room *room = visitor->room;
-    if (visitor->asleep[0])
+    (void)kind; /* always a text: ws refuses binary messages */
+    if (visitor->is_outside)
+        knock(context, visitor, text, n);
+    else if (visitor->asleep[0])
         keep_early(visitor, text, n);
-    else if (!room && visitor->waits && !visitor->is_refused)
-        refuse_absent(visitor);
+    else if (!visitor->room && visitor->waits && !visitor->is_refused)
+        stranger_refuse(visitor, text, n);
+    struct net_room *room = visitor->room;
     if (!room)
         return;
     schedule_room_at(room, room_text_came(room->room, connection, text, n, clock_now_us()));

@@ -26,6 +26,7 @@ struct visitor { /* one WebSocket connection, from its opening on */
     bool holds_plan; /* fleet_hold, on the room's plan */
     bool waits;      /* the plan is not held before it is a member: others than the machine's person */
     bool is_refused; /* bye was said, for want of a room */
+    bool is_outside; /* has said nothing; the room, which is not listed to it, is not woken for it */
     struct identity identity;
 };
 

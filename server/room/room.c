@@ -450,22 +450,30 @@ bool room_apply(struct room *room, struct member *member, const struct message *
     return true;
 }
 
+/* Answers a first message that is no hello. */
+static void refuse_first(struct room *room, void *connection, const char *text, size_t n, const struct problem *problem)
+{
+    if (!member_refuse_stranger(room, connection) && refuse(room, connection, text, n, problem))
+        send_bye(room, connection, -1, hello_first);
+}
+
 /* Applies the message of a text. Returns true for an acknowledgement that was taken. */
 static bool take_text(struct room *room, struct member *member, void *connection, const char *text, size_t n)
 {
     struct message message;
     struct problem problem = { 0 };
     if (!message_read(text, n, true, &message, &problem)) {
-        if (refuse(room, connection, text, n, &problem) && !member)
-            send_bye(room, connection, -1, hello_first);
+        if (member)
+            (void)refuse(room, connection, text, n, &problem);
+        else
+            refuse_first(room, connection, text, n, &problem);
         return false;
     }
     if (!member && message.type == MESSAGE_HELLO) {
         greet(room, connection, &message.hello);
     } else if (!member) {
         problem_set(&problem, PROBLEM_VALIDATION, "/type", "required", "%s", hello_first);
-        if (refuse(room, connection, text, n, &problem))
-            send_bye(room, connection, -1, hello_first);
+        refuse_first(room, connection, text, n, &problem);
     } else if (!room_apply(room, member, &message, &problem)) {
         (void)refuse(room, connection, text, n, &problem);
     }

@@ -1,6 +1,7 @@
 // Closed rooms of people who sign in: who gets in, as whom, what guests may, who is put out, and all of it after a kill. --stub: grey pictures.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
+import { request } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -73,6 +74,24 @@ describe('People of a room', () => {
     );
   });
 
+  test('nor does a first message that is no good, or a link that nobody made', async () => {
+    const first = async (who, text, id) => {
+      const client = await Client.open(daemon.url, `/api/v1/rooms/${id}/ws`, who);
+      client.send(text);
+      await client.until(() => client.closeCode, 'the end');
+      return [client.messages, client.closeCode];
+    };
+    const madeUp = { type: 'hello', protocol: 2, link: '0'.repeat(32) };
+    for (const who of [zoe, {}])
+      for (const text of [{ type: 'hello', protocol: 1 }, '{"type":"hello"', { type: 'present' }, madeUp, { ...madeUp, protocol: 1 }]) {
+        const here = await first(who, text, room);
+        assert.deepEqual(here, await first(who, text, 'zzzz-zzzz'));
+        assert.equal(here[0].length, 1);
+        assert.equal(here[0][0].code, who === zoe || typeof text.link === 'string' ? '' : 'sign-in');
+      }
+    assert.match((await first(pat, { type: 'hello', protocol: 1 }, room))[0][0].reason, /reload/);
+  });
+
   test('who is asked in comes in under the name of the sign-in, a guest by a link that says so', async () => {
     const asked = await api(`/rooms/${room}/people`, pat, 'PATCH', { people: [{ who: '@physics' }] });
     assert.deepEqual(asked.json, { owner: 'pat', is_open: false, people: [{ who: '@physics' }], removed: [] });
@@ -111,6 +130,28 @@ describe('People of a room', () => {
     for (const client of [owner, reviewer]) client.cut();
   });
 
+  test('one person listens four times to a room, and leaves places to others', async () => {
+    const link = (await api(`/rooms/${room}/links`, pat, 'POST', { role: 'reviewer', guests: true })).json;
+    const guest = await hello({}, { link: link.token, name: 'Gia', person: 'h' });
+    const streams = [];
+    const listen = (headers) =>
+      new Promise((done, failed) => {
+        const stream = request(`${daemon.url}/api/v1/rooms/${room}/events`, { headers, agent: false }, (answer) => {
+          done([answer.statusCode, Number(answer.headers['retry-after'] ?? 0) > 0]);
+          answer.on('error', () => {}); // it is cut off below
+        });
+        stream.on('error', failed);
+        stream.end();
+        streams.push(stream);
+      });
+    for (const who of [pat, headerOf(guest)]) {
+      for (let i = 0; i < 4; i++) assert.deepEqual(await listen(who), [200, false]);
+      assert.deepEqual(await listen(who), [429, true]);
+    }
+    for (const stream of streams) stream.destroy();
+    guest.cut();
+  });
+
   test('a signature has the name of the sign-in and is of who has just proved it', async () => {
     const reviewer = await hello(rae);
     await until(
@@ -142,6 +183,9 @@ describe('People of a room', () => {
       [[room, true]],
     );
     assert.deepEqual((await api('/rooms', zoe)).json, { rooms: [], n_asleep: 0 });
+    // strangers do not wake it, and hear what they hear of one that is not there
+    for (const who of [zoe, {}]) assert.deepEqual((await hello(who)).first, (await hello(who, {}, 'zzzz-zzzz')).first);
+    assert.equal((await api('/rooms', rae)).json.rooms[0].asleep, true);
     for (const [who, status] of [
       [rae, 403], // a reviewer
       [zoe, 404],

@@ -112,8 +112,7 @@ void known_forget(struct room *room, const struct member *member)
         const struct store_member *known = &room->known->list[i];
         const bool is_same = member->user[0]
                                  ? strcmp(known->user, member->user) == 0
-                                 : member->is_guest && known->is_guest && strcmp(known->link, member->link) == 0 &&
-                                       strcmp(known->name, member->name) == 0;
+                                 : member->is_guest && known->is_guest && strcmp(known->link, member->link) == 0;
         if (is_same)
             known_remove(room, i);
     }

@@ -17,7 +17,7 @@ void known_add(struct room *room, const struct store_member *kept);
 void known_add_member(struct room *room, const struct member *member);
 /* Whether a member with this id and secret left; seat gets what is kept of it. */
 bool known_has(const struct room *room, const char *id, const char *secret, struct member *seat);
-/* Those of the same user, or of the same guest as far as that can be told, cannot come back. */
+/* Those of the same user cannot come back; of a guest, all guests of its link, as any can be the same person. */
 void known_forget(struct room *room, const struct member *member);
 void known_forget_link(struct room *room, const char *digits); /* those who came in by this link */
 /* The member with this id and secret who left, as a new struct member that is not yet in the list; NULL: there is

@@ -28,6 +28,7 @@
 static const char replaced[] = "this member has come back on another connection";
 static const char room_is_full[] = "the room is full";
 static const char too_many_tabs[] = "this person has too many tabs of the room open: close one";
+static const char link_is_full[] = "as many as may come by one link are in the room already";
 static const char old_page[] = "the page speaks another protocol version: reload it";
 static const char unrecorded[] = "what happens here is recorded, and the server's disk takes no more records now";
 enum { FULL_RETRY_MS = 30000, UNRECORDED_RETRY_MS = 10000 };
@@ -291,38 +292,88 @@ static struct member *take_place(struct room *room, void *connection, const stru
     return member;
 }
 
-/* Where people sign in, nobody fills a room alone. */
-static bool has_too_many_tabs(const struct room *room, const struct identity *who, const char *key)
+static bool has_too_many_tabs(const struct room *room, const char *key)
 {
     int n = 0;
-    for (int i = 0; i < room->members.n && key[0] && !who_is_machine(who); i++)
+    for (int i = 0; i < room->members.n && key[0]; i++)
         n += room->members.list[i]->connection && strcmp(room->members.list[i]->person, key) == 0;
     return n >= ROOM_MAX_TABS;
+}
+
+/* Counts those who have not signed in, as each can be another person every time. seat NULL: a new member. */
+static bool is_link_full(const struct room *room, const struct admitted *in, const struct member *seat)
+{
+    const int most = room->members.max / 2 > ROOM_MIN_GUESTS ? room->members.max / 2 : ROOM_MIN_GUESTS;
+    char digits[9] = "";
+    int n = 0;
+    if (in->link)
+        link_digits(in->link, digits);
+    else if (seat)
+        (void)snprintf(digits, sizeof digits, "%s", seat->link);
+    for (int i = 0; i < room->members.n && digits[0]; i++) {
+        const struct member *member = room->members.list[i];
+        n += member->connection && !member->user[0] && strcmp(member->link, digits) == 0;
+    }
+    return n >= (in->role == WIRE_MEMBER_ROLE_WALL ? ROOM_MAX_WALLS : most);
+}
+
+/* Where people sign in, nobody fills a room alone. False: bye was said. */
+static bool leaves_places(struct room *room, void *connection, const struct identity *who, const struct admitted *in,
+                          const struct member *seat)
+{
+    if (who_is_machine(who) || (seat && seat->connection)) /* which takes no place more */
+        return true;
+    if (has_too_many_tabs(room, in->key))
+        send_bye(room, connection, -1, too_many_tabs);
+    else if (!who_is_user(who) && is_link_full(room, in, seat))
+        send_bye(room, connection, FULL_RETRY_MS, link_is_full);
+    else
+        return true;
+    return false;
+}
+
+/* Decides on the connection, with the seat that hello proves, if it does. False: bye was said. */
+static bool is_let_in(struct room *room, void *connection, const struct identity *who,
+                      const struct message_hello *hello, const struct member *seat, struct admitted *in)
+{
+    *in = admission_decide(room, who, hello, seat);
+    if (in->refusal[0]) {
+        refuse_entry(room, connection, hello, in);
+        return false;
+    }
+    if (hello->protocol != WIRE_PROTOCOL) { /* who is not let in is not even told that there is a room */
+        send_bye(room, connection, -1, old_page);
+        return false;
+    }
+    if (!audit_has_place(room, NULL)) {
+        send_bye(room, connection, UNRECORDED_RETRY_MS, unrecorded);
+        return false;
+    }
+    return leaves_places(room, connection, who, in, seat);
+}
+
+bool member_refuse_stranger(struct room *room, void *connection)
+{
+    static const struct message_hello nothing;
+    const struct identity *who = who_connects(room, connection);
+    if (who_is_machine(who))
+        return false;
+    const struct admitted in = admission_decide(room, who, &nothing, NULL);
+    if (in.refusal[0])
+        refuse_entry(room, connection, &nothing, &in);
+    return in.refusal[0] != 0;
 }
 
 struct member *member_hello(struct room *room, void *connection, const struct message_hello *hello)
 {
     const struct identity *who = who_connects(room, connection);
-    if (hello->protocol != WIRE_PROTOCOL) {
-        send_bye(room, connection, -1, old_page);
-        return NULL;
-    }
+    struct admitted in;
     struct member *member = find_seat(room, who, hello);
     struct member *left = member ? NULL : find_known_seat(room, who, hello);
-    const struct admitted in = admission_decide(room, who, hello, member ? member : left);
+    const bool enters = is_let_in(room, connection, who, hello, member ? member : left, &in);
     free(left);
-    if (in.refusal[0]) {
-        refuse_entry(room, connection, hello, &in);
+    if (!enters)
         return NULL;
-    }
-    if (!audit_has_place(room, NULL)) {
-        send_bye(room, connection, UNRECORDED_RETRY_MS, unrecorded);
-        return NULL;
-    }
-    if (!member && has_too_many_tabs(room, who, in.key)) {
-        send_bye(room, connection, -1, too_many_tabs);
-        return NULL;
-    }
     const char *as = member ? "back" : in.link ? "link" : "new";
     if (member)
         sit_down_again(room, member);

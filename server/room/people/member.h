@@ -5,6 +5,9 @@
 
 /* Makes the connection a member; returns false when it was refused with bye. */
 struct member *member_hello(struct room *room, void *connection, const struct message_hello *hello);
+/* Says bye to a connection that has said something else than hello and could not enter by what it is: nothing tells it
+ * whether there is the room. False: it could. */
+bool member_refuse_stranger(struct room *room, void *connection);
 /* Sends the list of members and the presenter, to a newcomer and to the others. */
 void members_show(struct room *room, struct member *member);
 void member_disconnected(struct room *room, struct member *member, int64_t heard_us); /* away since heard_us */

@@ -19,6 +19,13 @@ static bool is_same_person(const struct member *a, const struct member *b)
     return a == b || who_is_same_user(a->user, b->user) || (a->person[0] && strcmp(a->person, b->person) == 0);
 }
 
+/* The seat of a guest who is away can be one that the removed guest left under another name; their link is ended. */
+static bool is_left_by_guest(const struct member *removed, const struct member *seat)
+{
+    return removed->is_guest && seat->is_guest && !seat->connection && removed->link[0] &&
+           strcmp(removed->link, seat->link) == 0;
+}
+
 static void audit_removed(struct room *room, const struct member *member, const struct member *by, const char *reason)
 {
     const struct audit_act row = {
@@ -49,7 +56,7 @@ static void remove_person(struct room *room, const struct member *member, const 
     admission_ban(room, member);
     for (int i = 0; i < room->members.n;) {
         struct member *other = room->members.list[i];
-        if (other != member && !is_same_person(&person, other)) {
+        if (other != member && !is_same_person(&person, other) && !is_left_by_guest(&person, other)) {
             i++;
             continue;
         }

@@ -25,6 +25,8 @@ enum {
     ROOM_REQUEST_AGAIN_S = 10, /* after a refusal, before control can be requested again */
     ROOM_MAX_LINKS = 32,       /* valid at once */
     ROOM_MAX_TABS = 16,        /* connected seats of one person, where people sign in */
+    ROOM_MIN_GUESTS = 8,       /* that one link lets be connected, where people sign in, or half of the room's places */
+    ROOM_MAX_WALLS = 4,        /* connected walls of one link, where people sign in */
     ROOM_MAX_PEOPLE = 100,     /* who may come in without a link */
     ROOM_MAX_REMOVED = 64,     /* members that were removed and are not let in again; the first is forgotten */
     ROOM_LINK_MIN_S = 60,

@@ -1,68 +1,5 @@
 /* People of a room: the ones who come in, and the ones who are removed. */
-#include "tests/unit/room_set_up.h"
-
-/* Pat is planner, Rae reviewer, Oli observer on the plan; Zoe has no role on it. Two are called Pat. */
-static const struct identity pat = { .source = IDENTITY_PASSWORD, .user = "pat", .name = "Pat Lee" },
-                             pat_too = { .source = IDENTITY_PROXY, .user = "plee", .name = "Pat Lee" },
-                             rae = { .source = IDENTITY_PASSWORD,
-                                     .user = "rae",
-                                     .name = "Rae",
-                                     .groups = { "physics" },
-                                     .n_groups = 1 },
-                             oli = { .source = IDENTITY_PASSWORD, .user = "oli", .name = "Oli" },
-                             zoe = { .source = IDENTITY_PASSWORD, .user = "zoe", .name = "Zoe" },
-                             nobody = { .source = IDENTITY_NOBODY };
-
-static bool role_of(const struct identity *who, enum wire_member_role *role)
-{
-    static const struct {
-        const struct identity *who;
-        enum wire_member_role role;
-    } roles[] = { { &pat, WIRE_MEMBER_ROLE_PLANNER },
-                  { &pat_too, WIRE_MEMBER_ROLE_PLANNER },
-                  { &rae, WIRE_MEMBER_ROLE_REVIEWER },
-                  { &oli, WIRE_MEMBER_ROLE_OBSERVER } };
-    for (size_t i = 0; i < sizeof roles / sizeof roles[0]; i++)
-        if (strcmp(who->user, roles[i].who->user) == 0) {
-            *role = roles[i].role;
-            return true;
-        }
-    return false;
-}
-
-/* A room of Pat's, which lets guests in by links that say so. */
-static int start(void **state)
-{
-    (void)state;
-    fake_room_start_with(&fake, &(struct room_limits){ .max_members = 8, .admits_guests = true });
-    fake_sign_in(&fake, role_of);
-    room_set_owner(fake.room, "pat");
-    fake_plan_ready(&fake, true);
-    return 0;
-}
-#define PEOPLE_TEST(name) cmocka_unit_test_setup_teardown(name, start, room_end)
-
-static void hello(struct fake_page *page, const struct identity *who, const char *more)
-{
-    page->identity = who;
-    fake_say(&fake, page, "{\"type\":\"hello\",\"protocol\":2%s}", more);
-}
-
-static void by_link(struct fake_page *page, const struct identity *who, const char *token)
-{
-    char more[100];
-    (void)snprintf(more, sizeof more, ",\"link\":\"%s\",\"name\":\"Gus\",\"person\":\"p%p\"", token, (void *)page);
-    hello(page, who, more);
-}
-
-static void make_link(enum wire_member_role role, bool allows_guests, char token[33])
-{
-    struct problem problem = { 0 };
-    const struct room_link wanted = {
-        .role = role, .expires_s = 3600, .allows_guests = allows_guests, .maker = "pat", .name = "Thursday"
-    };
-    assert_true(room_link_make(fake.room, &wanted, fake.now_us, token, &problem));
-}
+#include "tests/unit/people_set_up.h"
 
 static bool patch(const char *json, struct problem *problem)
 {
@@ -90,33 +27,18 @@ static const char *of_member(const struct fake_page *page, const char *id, const
     return text;
 }
 
-static const char *me(const struct fake_page *page)
-{
-    static char id[64];
-    (void)snprintf(id, sizeof id, "%s", heard(page, "welcome", "member"));
-    return id;
-}
-
-static void expect_refused(const struct fake_page *page, const char *code, const char *reason)
-{
-    assert_true(page->is_closed);
-    assert_int_equal(fake_n_heard(page, "welcome"), 0);
-    assert_string_equal(heard(page, "bye", "code"), code);
-    assert_string_equal(heard(page, "bye", "reason"), reason);
-}
-
 /* ---- closed ----------------------------------------------------------------------------------------------------- */
 
 static void a_room_is_closed_to_all_but_its_owner(void **state)
 {
     (void)state;
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     assert_string_equal(of_member(&ann, me(&ann), "role"), "planner");
-    hello(&ben, &rae, "");
+    say_hello(&ben, &rae, "");
     expect_refused(&ben, "", "the room is closed");
-    hello(&cem, &pat_too, ""); /* has rights enough on the plan, and was not asked */
+    say_hello(&cem, &pat_too, ""); /* has rights enough on the plan, and was not asked */
     expect_refused(&cem, "", "the room is closed");
-    hello(&dee, &nobody, "");
+    say_hello(&dee, &nobody, "");
     expect_refused(&dee, "sign-in", "sign in to enter this room");
     assert_true(dee.is_signed_out && !ben.is_signed_out);
 }
@@ -128,11 +50,11 @@ static void who_is_asked_by_name_or_group_comes_in_with_no_more_than_the_plan_gi
     assert_true(patch("{\"people\":[{\"who\":\"@physics\",\"role\":\"presenter\"},{\"who\":\"plee\",\"role\":"
                       "\"reviewer\"},{\"who\":\"zoe\"}]}",
                       &problem));
-    hello(&ann, &rae, "");
+    say_hello(&ann, &rae, "");
     assert_string_equal(of_member(&ann, me(&ann), "role"), "reviewer"); /* the plan gives no more */
-    hello(&ben, &pat_too, "");
+    say_hello(&ben, &pat_too, "");
     assert_string_equal(of_member(&ben, me(&ben), "role"), "reviewer"); /* the room gives no more */
-    hello(&cem, &zoe, "");
+    say_hello(&cem, &zoe, "");
     expect_refused(&cem, "", "the room is closed"); /* has no role on the plan at all */
 }
 
@@ -141,9 +63,9 @@ static void an_open_room_lets_in_who_has_a_role_on_the_plan(void **state)
     struct problem problem = { 0 };
     (void)state;
     assert_true(patch("{\"is_open\":true}", &problem));
-    hello(&ann, &oli, "");
+    say_hello(&ann, &oli, "");
     assert_string_equal(of_member(&ann, me(&ann), "role"), "observer");
-    hello(&ben, &zoe, "");
+    say_hello(&ben, &zoe, "");
     expect_refused(&ben, "", "the room is closed");
 }
 
@@ -178,9 +100,9 @@ static void a_room_from_before_sign_in_is_open_to_planners_alone(void **state)
 {
     (void)state;
     room_set_owner(fake.room, "");
-    hello(&ann, &rae, "");
+    say_hello(&ann, &rae, "");
     expect_refused(&ann, "", "the room is closed");
-    hello(&ben, &pat_too, "");
+    say_hello(&ben, &pat_too, "");
     assert_string_equal(of_member(&ben, me(&ben), "role"), "planner");
 }
 
@@ -191,8 +113,8 @@ static void names_come_from_the_sign_in_and_equal_ones_are_told_apart(void **sta
     struct problem problem = { 0 };
     (void)state;
     assert_true(patch("{\"people\":[{\"who\":\"plee\"}]}", &problem));
-    hello(&ann, &pat, ",\"name\":\"Professor\"");
-    hello(&ben, &pat_too, ",\"name\":\"Professor\"");
+    say_hello(&ann, &pat, ",\"name\":\"Professor\"");
+    say_hello(&ben, &pat_too, ",\"name\":\"Professor\"");
     assert_string_equal(heard(&ann, "welcome", "name"), "Pat Lee");
     assert_string_equal(of_member(&ben, "m1", "name"), "Pat Lee");
     assert_string_equal(of_member(&ben, "m1", "user"), "pat");
@@ -206,14 +128,14 @@ static void a_seat_is_its_users_alone(void **state)
     char seat[200];
     (void)state;
     assert_true(patch("{\"people\":[{\"who\":\"plee\"}]}", &problem));
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     (void)snprintf(seat, sizeof seat, ",\"member\":\"m1\",\"secret\":\"%s\"", heard(&ann, "welcome", "secret"));
-    hello(&ben, &pat_too, seat);
+    say_hello(&ben, &pat_too, seat);
     assert_string_equal(heard(&ben, "welcome", "member"), "m2");
     assert_false(ann.is_closed);
-    hello(&cem, &nobody, seat);
+    say_hello(&cem, &nobody, seat);
     expect_refused(&cem, "sign-in", "sign in to enter this room");
-    hello(&dee, &pat, seat);
+    say_hello(&dee, &pat, seat);
     assert_string_equal(heard(&dee, "welcome", "member"), "m1");
     assert_true(ann.is_closed);
 }
@@ -221,8 +143,8 @@ static void a_seat_is_its_users_alone(void **state)
 static void one_users_tabs_are_one_person(void **state)
 {
     (void)state;
-    hello(&ann, &pat, ",\"person\":\"one\"");
-    hello(&ben, &pat, ",\"person\":\"two\""); /* another browser */
+    say_hello(&ann, &pat, ",\"person\":\"one\"");
+    say_hello(&ben, &pat, ",\"person\":\"two\""); /* another browser */
     cJSON *message = fake_heard(&ben, "members");
     assert_int_equal(json_number(cJSON_GetArrayItem(cJSON_GetObjectItem(message, "members"), 0), "tabs", 0), 2);
     cJSON_Delete(message);
@@ -232,17 +154,14 @@ static void nobody_fills_a_room_alone(void **state)
 {
     static struct fake_page tabs[ROOM_MAX_TABS + 1];
     (void)state;
-    fake_room_end(&fake);
-    fake_room_start_with(&fake, &(struct room_limits){ .max_members = 2 * ROOM_MAX_TABS });
-    fake_sign_in(&fake, role_of);
-    room_set_owner(fake.room, "pat");
+    people_start_again(2 * ROOM_MAX_TABS);
     for (int i = 0; i <= ROOM_MAX_TABS; i++) {
-        hello(&tabs[i], &pat, "");
+        say_hello(&tabs[i], &pat, "");
         assert_int_equal(tabs[i].is_closed, i == ROOM_MAX_TABS);
     }
     room_connection_closed(fake.room, &tabs[0], fake.now_us);
     fake_page_end(&tabs[ROOM_MAX_TABS]);
-    hello(&tabs[ROOM_MAX_TABS], &pat, "");
+    say_hello(&tabs[ROOM_MAX_TABS], &pat, "");
     assert_false(tabs[ROOM_MAX_TABS].is_closed);
     room_destroy(fake.room);
     for (int i = 0; i <= ROOM_MAX_TABS; i++)
@@ -250,13 +169,36 @@ static void nobody_fills_a_room_alone(void **state)
     fake_room_start(&fake, 3);
 }
 
+static void what_is_no_hello_is_told_no_more_than_a_hello(void **state)
+{
+    static const char *const texts[] = { "{\"type\":\"hello\",\"protocol\":1}", "{\"type\":\"hello\"",
+                                         "{\"type\":\"?\"}", "{\"type\":\"present\"}" };
+    (void)state;
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        struct fake_page *const pages[] = { &ann, &ben, &cem };
+        ann.identity = &zoe;
+        ben.identity = &nobody;
+        cem.identity = &pat;
+        for (size_t k = 0; k < 3; k++)
+            fake_say(&fake, pages[k], "%s", texts[i]);
+        expect_refused(&ann, "", "the room is closed");
+        expect_refused(&ben, "sign-in", "sign in to enter this room");
+        expect_refused(&cem, "",
+                       i == 0 ? "the page speaks another protocol version: reload it"
+                              : "the first message must be hello");
+        assert_int_equal(ann.n_texts + ben.n_texts, 2);
+        for (size_t k = 0; k < 3; k++)
+            fake_page_end(pages[k]);
+    }
+}
+
 static void strangers_tries_are_a_row_of_the_audit_together(void **state)
 {
     (void)state;
     const size_t n_before = fake.n_audited;
-    hello(&ann, &nobody, ",\"name\":\"a\"");
-    hello(&ben, &nobody, ",\"name\":\"b\"");
-    hello(&cem, &nobody, ",\"name\":\"c\"");
+    say_hello(&ann, &nobody, ",\"name\":\"a\"");
+    say_hello(&ben, &nobody, ",\"name\":\"b\"");
+    say_hello(&cem, &nobody, ",\"name\":\"c\"");
     assert_int_equal(fake.n_audited - n_before, 1);
 }
 
@@ -266,8 +208,8 @@ static void the_end_of_a_sign_in_keeps_the_seat_and_not_control(void **state)
     char seat[200];
     (void)state;
     assert_true(patch("{\"people\":[{\"who\":\"rae\"}]}", &problem));
-    hello(&ann, &pat, "");
-    hello(&ben, &rae, "");
+    say_hello(&ann, &pat, "");
+    say_hello(&ben, &rae, "");
     (void)snprintf(seat, sizeof seat, ",\"member\":\"m1\",\"secret\":\"%s\"", heard(&ann, "welcome", "secret"));
     assert_string_equal(of_member(&ben, "m1", "presenting"), "true");
     room_sign_in_over(fake.room, &ann, fake.now_us);
@@ -277,7 +219,7 @@ static void the_end_of_a_sign_in_keeps_the_seat_and_not_control(void **state)
     fake.again_us = fake.now_us;
     fake_pass(&fake, ROOM_PRESENTER_KEPT_S * 1000 + 10);
     assert_string_equal(of_member(&ben, "m2", "presenting"), "true"); /* alone there now */
-    hello(&cem, &pat, seat);
+    say_hello(&cem, &pat, seat);
     assert_string_equal(heard(&cem, "welcome", "member"), "m1");
     assert_string_equal(of_member(&cem, "m2", "presenting"), "true");
     assert_string_equal(of_member(&cem, "m1", "presenting"), "");
@@ -293,9 +235,9 @@ static void who_comes_by_an_observers_link_is_an_observer(void **state)
     by_link(&ann, &zoe, token);
     assert_string_equal(of_member(&ann, me(&ann), "role"), "observer");
     (void)snprintf(seat, sizeof seat, ",\"member\":\"m1\",\"secret\":\"%s\"", heard(&ann, "welcome", "secret"));
-    hello(&ben, &zoe, seat); /* comes back, and leaves the link away */
+    say_hello(&ben, &zoe, seat); /* comes back, and leaves the link away */
     assert_string_equal(of_member(&ben, "m1", "role"), "observer");
-    hello(&cem, &zoe, ""); /* the link alone has let them in */
+    say_hello(&cem, &zoe, ""); /* the link alone has let them in */
     expect_refused(&cem, "", "the room is closed");
     by_link(&dee, &nobody, token);
     expect_refused(&dee, "sign-in", "sign in to enter this room");
@@ -339,9 +281,9 @@ static void a_guest_comes_back_by_its_seat_while_guests_may(void **state)
     make_link(WIRE_MEMBER_ROLE_OBSERVER, true, token);
     by_link(&ann, &nobody, token);
     (void)snprintf(seat, sizeof seat, ",\"member\":\"m1\",\"secret\":\"%s\"", heard(&ann, "welcome", "secret"));
-    hello(&ben, &nobody, seat);
+    say_hello(&ben, &nobody, seat);
     assert_string_equal(of_member(&ben, "m1", "is_guest"), "true");
-    hello(&cem, &rae, seat); /* who has signed in is nobody's guest */
+    say_hello(&cem, &rae, seat); /* who has signed in is nobody's guest */
     expect_refused(&cem, "", "the room is closed");
 }
 
@@ -350,10 +292,10 @@ static void a_wall_looks_has_no_name_in_attendance_and_no_seat(void **state)
     char token[33];
     (void)state;
     make_link(WIRE_MEMBER_ROLE_WALL, false, token);
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     char more[100];
     (void)snprintf(more, sizeof more, ",\"link\":\"%s\"", token);
-    hello(&ben, &nobody, more);
+    say_hello(&ben, &nobody, more);
     assert_string_equal(of_member(&ann, "m2", "role"), "wall");
     assert_string_equal(of_member(&ann, "m2", "name"), "Thursday"); /* the link's */
     fake_say(&fake, &ben, "{\"type\":\"pointer\",\"view\":0,\"point_mm\":[1,2,3]}");
@@ -370,7 +312,7 @@ static void a_link_tells_who_made_it_and_its_end_can_put_out_who_came_by_it(void
     char token[33], digits[9];
     (void)state;
     make_link(WIRE_MEMBER_ROLE_OBSERVER, true, token);
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     by_link(&ben, &nobody, token);
     by_link(&cem, &zoe, token);
     room_link_digits(token, digits);
@@ -386,6 +328,53 @@ static void a_link_tells_who_made_it_and_its_end_can_put_out_who_came_by_it(void
     assert_int_equal(room_n_connected(fake.room), 1);
 }
 
+/* A guest by this link in each page, until one is refused. Returns how many came in. */
+static int fill(struct fake_page *pages, int n, const char *token)
+{
+    int n_in = 0;
+    for (; n_in < n; n_in++) {
+        by_link(&pages[n_in], &nobody, token);
+        if (pages[n_in].is_closed)
+            break;
+    }
+    return n_in;
+}
+
+static void one_link_fills_no_room(void **state)
+{
+    enum { MAX = 20 };
+    static struct fake_page guests[MAX], walls[MAX];
+    char token[33], wall[33], seat[200], bye[200];
+    (void)state;
+    people_start_again(MAX);
+    make_link(WIRE_MEMBER_ROLE_OBSERVER, true, token);
+    make_link(WIRE_MEMBER_ROLE_WALL, false, wall);
+    assert_int_equal(fill(guests, MAX, token), MAX / 2);
+    (void)snprintf(bye, sizeof bye, "%s", heard(&guests[MAX / 2], "bye", "reason"));
+    assert_string_equal(bye, "as many as may come by one link are in the room already");
+    cJSON *message = fake_heard(&guests[MAX / 2], "bye");
+    assert_true(json_number(message, "retry_ms", -1) > 0);
+    cJSON_Delete(message);
+    assert_int_equal(fill(walls, MAX, wall), ROOM_MAX_WALLS);
+    by_link(&ann, &zoe, token); /* has signed in */
+    assert_false(ann.is_closed);
+    (void)snprintf(seat, sizeof seat, ",\"member\":\"m1\",\"secret\":\"%s\"", heard(&guests[0], "welcome", "secret"));
+    room_connection_closed(fake.room, &guests[0], fake.now_us);
+    by_link(&ben, &nobody, token);
+    assert_false(ben.is_closed);
+    say_hello(&cem, &nobody, seat); /* whose place another one has taken */
+    expect_refused(&cem, "", bye);
+    room_connection_closed(fake.room, &ben, fake.now_us);
+    say_hello(&dee, &nobody, seat);
+    assert_string_equal(heard(&dee, "welcome", "member"), "m1");
+    room_destroy(fake.room);
+    for (int i = 0; i < MAX; i++) {
+        fake_page_end(&guests[i]);
+        fake_page_end(&walls[i]);
+    }
+    fake_room_start(&fake, 3);
+}
+
 /* ---- removing --------------------------------------------------------------------------------------------------- */
 
 static void who_is_removed_is_told_by_whom_and_stays_out_until_asked_again(void **state)
@@ -394,8 +383,8 @@ static void who_is_removed_is_told_by_whom_and_stays_out_until_asked_again(void 
     char seat[200];
     (void)state;
     assert_true(patch("{\"people\":[{\"who\":\"rae\"}]}", &problem));
-    hello(&ann, &pat, "");
-    hello(&ben, &rae, "");
+    say_hello(&ann, &pat, "");
+    say_hello(&ben, &rae, "");
     (void)snprintf(seat, sizeof seat, ",\"member\":\"m2\",\"secret\":\"%s\"", heard(&ben, "welcome", "secret"));
     fake_say(&fake, &ben, "{\"type\":\"member.remove\",\"member\":\"m1\"}");
     assert_string_equal(refused(&ben), "403 ");
@@ -408,14 +397,14 @@ static void who_is_removed_is_told_by_whom_and_stays_out_until_asked_again(void 
     assert_string_equal(fake.audit[(fake.n_audited - 2) % 16],
                         "removed m1 done {\"member\":\"m2\",\"name\":\"Rae\",\"user\":\"rae\",\"reason\":\"wrong "
                         "meeting\"} -1 -1");
-    hello(&cem, &rae, seat);
+    say_hello(&cem, &rae, seat);
     expect_refused(&cem, "", "the room is closed");
     assert_true(patch("{\"people\":[{\"who\":\"@physics\"}]}", &problem)); /* their group is asked, not they */
-    hello(&dee, &rae, "");
+    say_hello(&dee, &rae, "");
     expect_refused(&dee, "removed", "you were removed from this room: ask to be let in again");
     fake_page_end(&dee);
     assert_true(patch("{\"people\":[{\"who\":\"rae\"}]}", &problem));
-    hello(&dee, &rae, "");
+    say_hello(&dee, &rae, "");
     assert_string_equal(heard(&dee, "welcome", "member"), "m3");
 }
 
@@ -424,7 +413,7 @@ static void who_was_removed_comes_in_by_a_later_link_alone(void **state)
     char old[33], new[33];
     (void)state;
     make_link(WIRE_MEMBER_ROLE_OBSERVER, false, old);
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     by_link(&ben, &zoe, old);
     fake_say(&fake, &ann, "{\"type\":\"member.remove\",\"member\":\"m2\"}");
     by_link(&cem, &zoe, old);
@@ -439,12 +428,37 @@ static void a_removed_guests_link_lets_in_nobody_else(void **state)
     char token[33];
     (void)state;
     make_link(WIRE_MEMBER_ROLE_OBSERVER, true, token);
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     by_link(&ben, &nobody, token);
     fake_say(&fake, &ann, "{\"type\":\"member.remove\",\"member\":\"m2\"}");
     assert_true(ben.is_closed);
     by_link(&cem, &nobody, token);
     expect_refused(&cem, "", "the room is closed");
+}
+
+static void a_removed_guest_has_no_earlier_seat_to_come_back_to(void **state)
+{
+    (void)state;
+    for (int is_long_ago = 0; is_long_ago < 2; is_long_ago++) {
+        char token[33], more[200], seat[200];
+        make_link(WIRE_MEMBER_ROLE_OBSERVER, true, token);
+        say_hello(&ann, &pat, "");
+        (void)snprintf(more, sizeof more, ",\"link\":\"%s\",\"name\":\"Other\",\"person\":\"other\"", token);
+        say_hello(&ben, &nobody, more);
+        (void)snprintf(seat, sizeof seat, ",\"member\":\"%s\",\"secret\":\"", me(&ben));
+        (void)snprintf(seat + strlen(seat), sizeof seat - strlen(seat), "%s\"", heard(&ben, "welcome", "secret"));
+        room_connection_closed(fake.room, &ben, fake.now_us);
+        fake_pass(&fake, is_long_ago ? ROOM_MEMBER_KEPT_S * 1000 + 10 : 10);
+        by_link(&cem, &nobody, token);
+        fake_say(&fake, &ann, "{\"type\":\"member.remove\",\"member\":\"%s\"}", me(&cem));
+        assert_true(cem.is_closed);
+        say_hello(&dee, &nobody, seat);
+        expect_refused(&dee, "sign-in", "sign in to enter this room");
+        struct fake_page *const pages[] = { &ann, &ben, &cem, &dee };
+        room_connection_closed(fake.room, &ann, fake.now_us);
+        for (size_t k = 0; k < 4; k++)
+            fake_page_end(pages[k]);
+    }
 }
 
 static void the_last_planner_stays_and_nobody_removes_themself(void **state)
@@ -454,13 +468,13 @@ static void the_last_planner_stays_and_nobody_removes_themself(void **state)
     (void)state;
     assert_true(patch("{\"people\":[{\"who\":\"plee\"}]}", &problem));
     make_link(WIRE_MEMBER_ROLE_PRESENTER, false, token);
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     by_link(&ben, &zoe, token);
     fake_say(&fake, &ben, "{\"type\":\"member.remove\",\"member\":\"m1\"}");
     assert_string_equal(refused(&ben), "409 /member");
     fake_say(&fake, &ann, "{\"type\":\"member.remove\",\"member\":\"m1\"}");
     assert_string_equal(refused(&ann), "409 /member");
-    hello(&cem, &pat_too, "");
+    say_hello(&cem, &pat_too, "");
     fake_say(&fake, &ben, "{\"type\":\"member.remove\",\"member\":\"m1\"}"); /* there is another one now */
     assert_true(ann.is_closed);
     assert_string_equal(of_member(&ben, "m3", "role"), "planner");
@@ -472,7 +486,7 @@ static void a_call_has_the_role_of_its_seat_or_its_person(void **state)
 {
     char seat[100];
     (void)state;
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     (void)snprintf(seat, sizeof seat, "m1 %s", heard(&ann, "welcome", "secret"));
     struct room_caller caller = room_caller_of(fake.room, &pat, seat);
     assert_true(caller.is_here && caller.is_member && caller.role == WIRE_MEMBER_ROLE_PLANNER);
@@ -495,7 +509,7 @@ static void it_all_lasts_over_sleep(void **state)
     (void)state;
     assert_true(patch("{\"people\":[{\"who\":\"@physics\",\"role\":\"observer\"}]}", &problem));
     make_link(WIRE_MEMBER_ROLE_OBSERVER, true, token);
-    hello(&ann, &pat, "");
+    say_hello(&ann, &pat, "");
     by_link(&ben, &nobody, token);
     by_link(&cem, &zoe, token);
     (void)snprintf(seat, sizeof seat, ",\"member\":\"m1\",\"secret\":\"%s\"", heard(&ann, "welcome", "secret"));
@@ -510,7 +524,7 @@ static void it_all_lasts_over_sleep(void **state)
     assert_false(room_people_name(kept.owner, kept.people, &zoe, true));
     assert_false(room_people_name(kept.owner, kept.people, &oli, true));
     (void)room_end(NULL);
-    (void)start(NULL);
+    (void)people_start(NULL);
     room_set_owner(fake.room, "");
     room_restore(fake.room, &kept, fake.now_us);
     room_kept_finish(&kept);
@@ -518,16 +532,16 @@ static void it_all_lasts_over_sleep(void **state)
     assert_true(cJSON_Compare(before, after, true));
     cJSON_Delete(before);
     cJSON_Delete(after);
-    hello(&ann, &pat_too, seat);
+    say_hello(&ann, &pat_too, seat);
     expect_refused(&ann, "", "the room is closed");
     fake_page_end(&ann);
-    hello(&ann, &pat, seat);
+    say_hello(&ann, &pat, seat);
     assert_string_equal(heard(&ann, "welcome", "member"), "m1");
-    hello(&ben, &nobody, guest);
+    say_hello(&ben, &nobody, guest);
     assert_string_equal(of_member(&ben, "m2", "is_guest"), "true");
     by_link(&cem, &zoe, token);
     expect_refused(&cem, "removed", "you were removed from this room: ask to be let in again");
-    hello(&dee, &rae, "");
+    say_hello(&dee, &rae, "");
     assert_string_equal(of_member(&dee, "m4", "role"), "observer");
     cJSON *links = room_links(fake.room, fake.now_us);
     assert_string_equal(json_text(cJSON_GetArrayItem(links, 0), "by"), "pat");
@@ -547,6 +561,7 @@ int main(void)
         PEOPLE_TEST(a_seat_is_its_users_alone),
         PEOPLE_TEST(one_users_tabs_are_one_person),
         PEOPLE_TEST(nobody_fills_a_room_alone),
+        PEOPLE_TEST(what_is_no_hello_is_told_no_more_than_a_hello),
         PEOPLE_TEST(strangers_tries_are_a_row_of_the_audit_together),
         PEOPLE_TEST(the_end_of_a_sign_in_keeps_the_seat_and_not_control),
         PEOPLE_TEST(who_comes_by_an_observers_link_is_an_observer),
@@ -555,9 +570,11 @@ int main(void)
         PEOPLE_TEST(a_guest_comes_back_by_its_seat_while_guests_may),
         PEOPLE_TEST(a_wall_looks_has_no_name_in_attendance_and_no_seat),
         PEOPLE_TEST(a_link_tells_who_made_it_and_its_end_can_put_out_who_came_by_it),
+        PEOPLE_TEST(one_link_fills_no_room),
         PEOPLE_TEST(who_is_removed_is_told_by_whom_and_stays_out_until_asked_again),
         PEOPLE_TEST(who_was_removed_comes_in_by_a_later_link_alone),
         PEOPLE_TEST(a_removed_guests_link_lets_in_nobody_else),
+        PEOPLE_TEST(a_removed_guest_has_no_earlier_seat_to_come_back_to),
         PEOPLE_TEST(the_last_planner_stays_and_nobody_removes_themself),
         PEOPLE_TEST(a_call_has_the_role_of_its_seat_or_its_person),
         PEOPLE_TEST(it_all_lasts_over_sleep),
