@@ -53,16 +53,29 @@ const state = {
   plan: '',
 };
 
-const painter = new Painter($('canvas'), {
-  decode: (picture, type) => createImageBitmap(new Blob([picture], { type })),
-  schedule: (callback) => requestAnimationFrame(callback),
-  onPainted: (header, isDrawn) => {
-    if (!isDrawn) return;
-    state.header = header;
-    state.changedAt = Date.now();
-    draw();
-  },
-});
+const makePainter = () =>
+  new Painter($('canvas'), {
+    decode: (picture, type) => createImageBitmap(new Blob([picture], { type })),
+    schedule: (callback) => requestAnimationFrame(callback),
+    onPainted: (header, isDrawn) => {
+      if (!isDrawn) return;
+      state.header = header;
+      state.changedAt = Date.now();
+      draw();
+    },
+  });
+let painter = makePainter();
+let abort = new AbortController(); // of the stream
+
+/** Nobody may look here any more: no picture of a patient stays on the screen. @param {string} why */
+function shut(why) {
+  abort.abort();
+  painter.stop();
+  painter = makePainter();
+  $('canvas').width = 1; // clears it
+  Object.assign(state, { heardAt: 0, header: null, number: 0, facts: null, problem: why });
+  draw();
+}
 
 /** The picture as large as the screen allows, whole. */
 function place() {
@@ -139,16 +152,18 @@ function take({ fields, body }) {
 }
 
 /** Shows the stream until it ends. */
-async function show(abort) {
+async function show() {
+  const { signal } = abort;
   state.number = 0;
-  const answer = await ask(`/api/v1/rooms/${room}/stream${location.search}`, { signal: abort.signal });
-  if (answer.status === 401) throw new Problem({ detail: say.needsLink });
+  const answer = await ask(`/api/v1/rooms/${room}/stream${location.search}`, { signal });
+  if (answer.status === 401) return shut(say.needsLink);
   if (!answer.ok) throw new Problem({ status: answer.status, ...(await answer.json().catch(() => ({}))) });
   tellFacts().catch(() => {}); // asked again soon
   const parts = new Parts();
   const reader = answer.body.getReader();
   for (;;) {
     const { done, value } = await reader.read();
+    if (signal.aborted) return;
     if (done) throw new Problem({ detail: say.ended });
     parts.push(value).forEach(take);
   }
@@ -178,11 +193,7 @@ async function run() {
   const link = takeLink();
   if (link) {
     const { WallSeat } = await import('./wall_seat.js');
-    const tell = (words) => {
-      state.problem = words;
-      draw();
-    };
-    seat = new WallSeat(room, link.slice(0, 64), tell, () => tell(say.needsLink));
+    seat = new WallSeat(room, link.slice(0, 64), shut, () => shut(say.needsLink));
   }
   for (;;) {
     if (seat && !seat.isIn) {
@@ -191,7 +202,7 @@ async function run() {
       });
       continue;
     }
-    const abort = new AbortController();
+    abort = new AbortController();
     // a connection that was cut without a word
     const watch = setInterval(() => {
       if (state.number && performance.now() - state.heardAt > 2 * lostMs) abort.abort();
@@ -199,7 +210,7 @@ async function run() {
     const facts = setInterval(() => {
       tellFacts().catch(() => {});
     }, factsMs);
-    await show(abort).catch((error) => {
+    await show().catch((error) => {
       abort.abort();
       state.facts = null;
       if (error instanceof Problem) state.problem = error.message;

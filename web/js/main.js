@@ -2,6 +2,7 @@
 import { signal } from '../lib/signals-core.js';
 import { Connection } from './net/connection.js';
 import { placeOf, roomPath } from './net/address.js';
+import { isPersonal, keptFor } from './net/kept.js';
 import { makeApi } from './net/api.js';
 import { sendPlan } from './net/upload.js';
 import { Hooks } from './hooks.js';
@@ -45,7 +46,14 @@ const api = makeApi(async (path, init) => {
   if (answer.status === 401) void begun.then(() => (session.peek() ? session.peek().refused() : signIn()));
   return answer;
 });
-const told = api.call('GET', 'session').catch(() => null);
+let user = ''; // who is signed in
+const told = api.call('GET', 'session').then(
+  (facts) => {
+    user = facts.identity?.user ?? '';
+    return facts;
+  },
+  () => null,
+);
 const begun = told.then(async (facts) => {
   if (!facts || !(facts.sign_in.length || facts.open_to_everybody)) return;
   const { Session } = await import('./features/session/session.js');
@@ -66,7 +74,7 @@ function go(path, isInstead = false) {
 }
 /** Goes to a room. @param {string} plan its plan, '' if not known @param {string} link token of the link that lets in */
 function enter(room, plan = '', link = '', isInstead = false) {
-  remember(room, { ...(plan && { plan }), ...(link && { link }) });
+  remember(room, { ...(plan && { plan }), ...(link && { link, isNew: true }) });
   go(roomPath(room), isInstead);
 }
 const ownName = new OwnName(storage());
@@ -76,13 +84,15 @@ const send = ({ publicName, ...task }) => sendPlan({ ...task, url: api.uploadUrl
 
 const inMemory = new Map(); // what a browser that keeps nothing forgets at a reload
 
-/** Facts of a room that this tab keeps over reloads: {member, secret} that it was, the token of the link that lets it in, the plan, with which it goes on after the room. */
+/** What this tab keeps of a room, for who is signed in (net/kept.js). */
 function remembered(room) {
+  let kept;
   try {
-    return JSON.parse(sessionStorage.getItem(`room ${room}`)) ?? {};
+    kept = JSON.parse(sessionStorage.getItem(`room ${room}`));
   } catch {
-    return inMemory.get(room) ?? {};
+    kept = inMemory.get(room);
   }
+  return keptFor(kept ?? {}, user);
 }
 
 function remember(room, part) {
@@ -124,10 +134,12 @@ function connect(room) {
   );
   connection.addEventListener('message', ({ detail }) => {
     if (detail.type !== 'welcome') return;
-    remember(room, { member: detail.member, secret: detail.secret, plan: detail.plan_id });
+    remember(room, { member: detail.member, secret: detail.secret, isNew: false, plan: detail.plan_id });
+    void told.then(() => remember(room, { user }));
     entered = { room, connection };
   });
-  connection.addEventListener('paused', () => entered ?? signIn());
+  // the card over the room is for a person; a guest, too, signs in on the page for that
+  connection.addEventListener('paused', () => void begun.then(() => (entered && session.peek()?.person.peek()) || signIn()));
   return connection;
 }
 
@@ -139,7 +151,7 @@ async function route() {
   const { place, id, plan, link } = placeOf(location);
   if (place === 'rooms' && (plan || link || location.hash.startsWith('#/'))) {
     // the token leaves the address and the history before anything else happens
-    remember(id, { ...(plan && { plan }), ...(link && { link }) });
+    remember(id, { ...(plan && { plan }), ...(link && { link, isNew: true }) });
     history.replaceState(null, '', roomPath(id));
   }
   if (shown === `${place} ${id}` && !link) return; // another fragment: the skip link's target, not a page
@@ -150,10 +162,11 @@ async function route() {
   const n = ++nRoutes;
   const host = document.querySelector('#page');
   if (place === 'rooms') {
-    const { link: token, member, isGuest } = remembered(id);
-    const facts = token && !member && !isGuest && (await told); // a guest says a name first
+    const before = remembered(id);
+    const facts = (isPersonal(before) || (before.link && !before.member)) && (await told);
     if (n !== nRoutes) return;
-    if (facts?.guest_links && !facts.identity && facts.sign_in.length) return signIn();
+    // a guest says a name first; a seat waits for its person
+    if (facts?.sign_in.length && !facts.identity && (before.user || (facts.guest_links && !before.isGuest))) return signIn();
     leave = roomPage(host, id, {
       api,
       connect,

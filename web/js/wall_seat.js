@@ -20,12 +20,16 @@ export class WallSeat {
     connection.addEventListener('message', ({ detail }) => {
       if (detail.type === 'welcome') this.#member = detail;
     });
-    connection.addEventListener('ended', ({ detail }) => ended(detail.reason));
-    connection.addEventListener('paused', refused);
+    const out = (tell) => {
+      this.#member = null;
+      tell();
+    };
+    connection.addEventListener('ended', ({ detail }) => out(() => ended(detail.reason)));
+    connection.addEventListener('paused', () => out(refused));
     connection.open();
   }
 
-  /** False until the room has let the display in. */
+  /** False until the room has let the display in, and after it has put it out. */
   get isIn() {
     return this.#member !== null;
   }

@@ -7,11 +7,18 @@ export class FakeConnection extends EventTarget {
   sent = [];
   isOpen = true;
   names = [];
+  pausedAs = null;
 
   rename(name) {
     this.names.push(name);
     this.isOpen = false;
     this.tell('renewing');
+  }
+
+  pause(seat) {
+    this.pausedAs = seat;
+    this.isOpen = false;
+    this.tell('paused');
   }
 
   send(message) {

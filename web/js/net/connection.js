@@ -107,6 +107,11 @@ export class Connection extends EventTarget {
   /** Takes another name: comes back at once, as the same member. */
   rename(name) {
     this.#identity.name = name;
+    this.renew();
+  }
+
+  /** Comes back at once, as the same member: under another name, or by a new sign-in, as a socket belongs to that with which it was opened. */
+  renew() {
     if (this.#isEnded) return;
     if (!this.#isWelcome) return void this.retryNow(); // an attempt under way may have told the old name
     this.#replaced = this.#socket;
@@ -138,10 +143,11 @@ export class Connection extends EventTarget {
     this.#leave();
   }
 
-  /** Stands still until retryNow(): the person is not signed in any more. The member and its secret are kept. */
-  pause() {
+  /** Stands still until retryNow(): the person is not signed in any more. The member and its secret are kept. @param {object} seat {member, secret, name} as whom it comes back, if not as who it is */
+  pause(seat = {}) {
     if (this.#isEnded || this.#isPaused) return;
     this.#isPaused = true;
+    Object.assign(this.#identity, seat);
     this.#leave();
     this.#tell('paused');
   }

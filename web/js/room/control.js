@@ -45,6 +45,11 @@ export class Control {
     return !isHeld && (roles[member?.role]?.includes(right) ?? false);
   }
 
+  /** A guest takes no files away. */
+  get mayExport() {
+    return !this.me.value?.is_guest;
+  }
+
   // ---- acts of the user -------------------------------------------------------------------------------------------
 
   request() {

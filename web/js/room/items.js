@@ -98,7 +98,7 @@ export class Items {
     for (const command of this.#own) command.input = 0;
   }
 
-  /** All rows, after entering or coming back. What the rows show to be done is not sent again. */
+  /** All rows, after entering or coming back. What the rows show to be done is not sent again by resend(). */
   replace(items, me) {
     this.rows.value = new Map(items.map((item) => [item.id, item]));
     for (const command of [...this.#own]) {
@@ -114,12 +114,14 @@ export class Items {
             : items.find((item) => !before.has(item.id) && item.author === me && same(item));
       const isDone =
         message.type === 'item.delete' ? !this.rows.value.has(message.item) : found && found.version > message.version && same(found);
-      if (isDone) {
-        this.#keep(this.#own.filter((other) => other !== command));
-        command.done(found);
-      } else {
-        command.input = this.#send(message);
-      }
+      if (!isDone) continue;
+      this.#keep(this.#own.filter((other) => other !== command));
+      command.done(found);
     }
+  }
+
+  /** Sends what waits for a connection. */
+  resend() {
+    for (const command of this.#own) command.input ||= this.#send(command.message);
   }
 }

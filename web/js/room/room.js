@@ -26,6 +26,7 @@ export class RoomState {
   #restored = false;
   #isLoaded = false; // since the last welcome: the server has a scene
   #latency = new Latency();
+  #seat = null; // {member, secret, name, user} whose changes are kept; user as the server names it, '' without sign-in
 
   /**
    * @param {string} id
@@ -77,7 +78,7 @@ export class RoomState {
       refused: () => this.#tooLarge(),
     });
     this.pointers = new Pointers(this, { clock, schedule, send: (message) => connection.send(message) });
-    this.items = new Items((message) => this.#sending.act(message));
+    this.items = new Items((message) => (this.#sending.isHeld ? 0 : this.#sending.act(message)));
     /** Which acceptances count, as the server says; the items of kind acceptance hold the rest. */
     this.files = signal(null); // {changed_ms, read_ms} while the plan's files are not what is shown
     this.acceptances = signal({ known: false, items: [] });
@@ -354,13 +355,30 @@ export class RoomState {
     }
   }
 
+  /** Who came back is another person than the one who gave what is kept: nothing of it is sent, and it stands still until that one is back. */
+  #isOther(members) {
+    const { identity } = this;
+    const row = members.find(({ id }) => id === identity.member);
+    const user = row?.user ?? '';
+    if (row && this.#seat && user !== this.#seat.user) {
+      this.identity = this.#seat;
+      this.member.value = this.#seat.member;
+      this.#connection.pause(this.#seat);
+      return true;
+    }
+    if (row) this.#seat = { ...identity, user };
+    return false;
+  }
+
   #membersChanged(members) {
+    if (this.#sending.isHeld && this.#isOther(members)) return;
     if (this.following.membersChanged(members))
       for (const view of this.views)
         if (view.isOpen.value && String(view.document.value.size_px) !== String(view.ownSize)) this.#resize(view);
     if (this.#sending.isHeld) {
       if (!this.following.isPresenting.value) this.#dropKept();
       this.#sending.release();
+      this.items.resend();
     }
     this.#shareOwn();
   }

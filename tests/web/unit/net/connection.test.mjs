@@ -418,3 +418,20 @@ test('at the end of a sign-in it stands still until it is told to go on, as the 
     );
   }
 });
+
+test('by a new sign-in it comes back on a new socket, as the old one ends with the old sign-in', () => {
+  const { connection, sockets } = fakeConnection();
+  sockets[0].open();
+  sockets[0].welcome();
+  connection.renew();
+  assert.deepEqual([sockets.length, sockets[0].isClosed], [2, undefined]);
+  sockets[1].open();
+  assert.deepEqual([sockets[1].sent[0].member, sockets[1].sent[0].secret], ['m-1', 'abc']);
+  sockets[0].tell({ type: 'bye', reason: 'your sign-in has ended', code: 'sign-in', retry_ms: null });
+  sockets[1].welcome();
+  assert.equal(connection.isOpen, true);
+  connection.pause({ member: 'm-0', secret: 'own', name: 'A' });
+  connection.renew();
+  sockets[2].open();
+  assert.deepEqual([sockets[2].sent[0].member, sockets[2].sent[0].secret], ['m-0', 'own'], 'as whom it was told to');
+});

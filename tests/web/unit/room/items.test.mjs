@@ -68,6 +68,31 @@ test('what was written without a connection is sent after it, what the server ha
   assert.equal((await kept).id, 'i-2');
 });
 
+test('what a person wrote without a connection is not sent when another one comes back, but once that person is back', async () => {
+  const list = (user, id = 'm1') => ({
+    type: 'members',
+    members: [{ id, name: user, connected: true, following: false, presenting: true, user }],
+  });
+  const { room, connection, flush, lose, back } = roomWorld(list('ann'));
+  lose();
+  const kept = room.items.put('note', body('of Ann'));
+  room.patchScene({ regions: { brain: { opacity: 0.3 } } });
+  const sent = () => connection.sent.filter(({ type }) => type.startsWith('item.') || type === 'scene.patch');
+  back(list('ben', 'm2'), { member: 'm2', secret: 'of Ben', name: 'Ben' });
+  assert.deepEqual([sent(), room.link.value.state, room.items.nPending.value], [[], 'paused', 1]);
+  const { member, secret, name } = connection.pausedAs;
+  assert.deepEqual([member, secret, name, room.member.value], ['m1', 's', 'Reviewer 1', 'm1'], 'the seat is the first one again');
+  flush();
+  assert.deepEqual(sent(), []);
+  back(list('ann'));
+  assert.deepEqual(
+    sent().map(({ type }) => type),
+    ['scene.patch', 'item.put'],
+  );
+  connection.receive({ type: 'item', id: 'i-2', item: row('i-2', 'of Ann'), by: 'm1', input: sentItems(connection)[0].input });
+  assert.equal((await kept).id, 'i-2');
+});
+
 test('a deleted item is gone; of what others write, what came before somebody listens is told too', () => {
   const { room, connection } = roomWorld();
   connection.receive({ type: 'item', id: 'i-1', item: row('i-1', 'one', { author: 'm2' }), by: 'm2', input: 0 });

@@ -15,6 +15,7 @@ const fresh = (world) => {
 
 export function exportMenu(world) {
   const { room, ui } = world;
+  if (!room.control.mayExport) return nothing;
   const isOpen = ui.popover.value === 'beam-export';
   const answer = isOpen ? fresh(world) : null;
   const save = (make) => (event) => {

@@ -48,7 +48,7 @@ export function pinsBlock(world) {
     ({ id }) =>
     (event) =>
       room.patchScene({ probes: { [id]: null } }, how(ui, event));
-  return html`<section class="block"><h3 class="dose-head">${say.pins} <span class="dim">${plan.doses.length ? (quantityWords[scene.dose.quantity] ?? scene.dose.quantity) : ''}</span><span class="grow"></span><button class="dose-small" @click=${() => exportRows(world, 'probes', `${room.planId.value}-probes.csv`, pinRows(plan, scene, known))}>CSV</button></h3>
+  return html`<section class="block"><h3 class="dose-head">${say.pins} <span class="dim">${plan.doses.length ? (quantityWords[scene.dose.quantity] ?? scene.dose.quantity) : ''}</span><span class="grow"></span>${room.control.mayExport ? html`<button class="dose-small" @click=${() => exportRows(world, 'probes', `${room.planId.value}-probes.csv`, pinRows(plan, scene, known))}>CSV</button>` : nothing}</h3>
     <table class="dose-pins"><thead><tr><th scope="col">${say.pinColumn}</th><th scope="col">${say.inColumn}</th>${image ? html`<th scope="col">${image.modality}</th>` : nothing}${plan.doses.length ? html`<th scope="col">${unitText(unit ?? '')}</th><th scope="col">%</th>` : nothing}<th scope="col"><span class="hidden">${say.remove}</span></th></tr></thead>
     <tbody>${pins.map((pin) => {
       const answer = known[pin.id]?.result;

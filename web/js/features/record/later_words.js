@@ -49,7 +49,7 @@ export const say = sentences('record.later', {
   signatureOf: '{name}, {meaning}',
   signedAs: '{name} ({user})',
   notSignedIn: '“{name}”, not signed in',
-  legal: 'Names are as members gave them; these lines are not electronic signatures in the legal sense.',
+  legal: 'Names are those of the sign-in, without one as members gave them; these lines are not electronic signatures in the legal sense.',
   lineStays: 'A line is never changed or deleted.',
   sign: 'Sign',
   present: 'Present',

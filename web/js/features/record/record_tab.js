@@ -180,7 +180,7 @@ function decided({ room }, rows, revision) {
 
 const signatureOf = ({ body }) => say.signatureOf({ name: body.name, meaning: wordOf(meanings, body.meaning) });
 
-/** Signatures and the form for one: a person who is signed in signs under that name, and proves it once more; elsewhere a name is typed. */
+/** Signatures and the form for one: a person who is signed in signs under that name, and proves it once more; elsewhere a name is typed, but on a server that is open to everybody. */
 function signed({ room, session }, rows, revision) {
   const list = linesOf(rows, 'signature', revision);
   const submit = async (event) => {
@@ -192,8 +192,9 @@ function signed({ room, session }, rows, revision) {
   };
   return html`<section class="block"><h3>${say.signatures}</h3>${lines(list, say.signatures, signatureWords)}
     ${
-      session.value?.isOn
+      session.value
         ? html`${session.value.signing({
+            room: room.id,
             isGuest: meIn(room).is_guest || !mayWrite(room),
             fields: html`<label>${say.meaning} <select name="meaning">${meanings.map(option)}</select></label>${corrects(list, signatureOf)}`,
             note: html`<p class="note">${say.lineStays}</p>`,
@@ -236,6 +237,7 @@ function earlier(rows, revision) {
 
 function exports(world) {
   const { room, ui } = world;
+  if (!room.control.mayExport) return nothing;
   const save = async () => {
     try {
       saveBlob(

@@ -26,7 +26,7 @@ export function figuresDialog(world) {
   const n = rows.filter((row) => row.result || row.error).length;
   return html`<section class="card compare" role="dialog" tabindex="-1" aria-label=${say.compared}>
     <div class="card-head"><h2>${say.comparedOf({ region: region.name })}</h2><span class="grow"></span>
-      <button ?disabled=${!rows.length || n < rows.length} @click=${() => exportRows(world, 'methods', `${room.planId.value}-${region.id}-methods.csv`, figureRows(rows))}>CSV</button>
+      ${room.control.mayExport ? html`<button ?disabled=${!rows.length || n < rows.length} @click=${() => exportRows(world, 'methods', `${room.planId.value}-${region.id}-methods.csv`, figureRows(rows))}>CSV</button>` : nothing}
       <button class="icon-button" aria-label=${say.close} @click=${() => {
         ui.popover.value = '';
       }}>${icon('close')}</button></div>

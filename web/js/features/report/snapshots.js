@@ -16,7 +16,8 @@ async function load() {
 }
 
 export function snapshotMenu(world) {
-  const { ui } = world;
+  const { ui, room } = world;
+  if (!room.control.mayExport) return nothing;
   const isOpen = ui.popover.value === 'snapshot';
   return html`<span class="anchor"><button class="tool plain" tabindex="-1" title=${say.snapshotOf} aria-label=${say.snapshot} aria-haspopup="menu"
       aria-expanded=${isOpen} @click=${() => ui.toggle('snapshot')}>${icon('camera')}</button>

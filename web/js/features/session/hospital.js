@@ -14,8 +14,8 @@ export function tellDone() {
   told.close();
 }
 
-/** Opens the window; calls back with the session once somebody has signed in. @returns {(() => void)|null} stops; null: the browser did not open it */
-export function openWindow(signedIn) {
+/** Opens the window; calls back with the session once somebody has signed in. @param {(answer: object) => unknown} isDone whether the session is that of a new sign-in: who proves it once more is signed in already @returns {(() => void)|null} stops; null: the browser did not open it */
+export function openWindow(signedIn, isDone = ({ identity }) => identity) {
   const opened = window.open(proxyPath('/signin/done'), 'beamroom-sign-in', 'popup,width=520,height=700');
   if (!opened) return null;
   const told = new BroadcastChannel(channel);
@@ -27,7 +27,7 @@ export function openWindow(signedIn) {
   };
   const look = async () => {
     const { status, answer } = await send('GET', 'session');
-    if (isStopped || status !== 200 || !answer.identity) return;
+    if (isStopped || status !== 200 || !isDone(answer)) return;
     stop();
     opened.close();
     signedIn(answer);

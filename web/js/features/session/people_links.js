@@ -14,15 +14,19 @@ const times = [
 ];
 const year = 365 * day; // of a wall alone
 
+/** What a form asks for. A display that comes back after a loss of the connection comes by its link again: that is never for one use. @param {FormData} data */
+export function linkOf(data) {
+  const [role, name] = [data.get('role'), data.get('name').trim()];
+  const isOne = role !== 'wall' && data.has('one');
+  return { role, expires_s: Number(data.get('expires')), one_use: isOne, guests: data.has('guests'), ...(name && { name }) };
+}
+
 function makePart(state, room, hasGuests) {
   const { url, isCopied } = state.made.value;
   const submit = async (event) => {
     event.preventDefault();
     const form = event.target;
-    const data = new FormData(form);
-    const name = data.get('name').trim();
-    const link = { role: data.get('role'), expires_s: Number(data.get('expires')), one_use: data.has('one'), guests: data.has('guests') };
-    if (await state.makeLink({ ...link, ...(name && { name }) })) form.reset();
+    if (await state.makeLink(linkOf(new FormData(form)))) form.reset();
   };
   return html`<section><h3>${say.makeLink} <span class="dim">${say.forThisRoom}</span></h3><form class="people-link" @submit=${submit}>
     <label>${say.linkName}<input name="name" type="text" maxlength="40" autocomplete="off"></label>

@@ -1,5 +1,5 @@
 // The sign-in of this browser: the person, its end, and what happens then. Loaded where people sign in.
-import { effect, signal } from '../../../lib/signals-core.js';
+import { computed, effect, signal } from '../../../lib/signals-core.js';
 import { ofMember } from '../../net/api.js';
 import { styled } from '../../parts/lazy.js';
 import { mount } from '../../parts/mount.js';
@@ -9,12 +9,13 @@ import { openStrip } from './open_strip.js';
 import { peoplePanel } from './people_panel.js';
 import { PeopleState } from './people_state.js';
 import { invites, menu } from './session_menu.js';
-import { signing } from './signing.js';
+import { forgetSigning, signing } from './signing.js';
 
 const lookMs = 5000;
 const askMs = 60000; // the proxy's own end is met by asking
 const inputMs = 60000; // input is told at most this often
 const soonMs = 5 * 60000; // before the end the page says so
+const firstField = '.again button, .again input:not([readonly])'; // of the card; the hidden one is for the browser's list of passwords
 const inputs = ['pointerdown', 'keydown', 'wheel', 'touchstart'];
 
 export class Session {
@@ -127,7 +128,7 @@ export class Session {
     this.waiting.peek()?.();
     this.waiting.value = null;
     this.#told(facts);
-    this.#world.entered()?.connection.retryNow();
+    this.#world.entered()?.connection.renew(); // also one that is open: the server ends it with the sign-in that it was opened by
     return null;
   }
 
@@ -176,17 +177,33 @@ export class Session {
     const unmount = mount(host, () => [peoplePanel(people, world, this.facts.value.guest_links), againCard(this, world)]);
     const onKey = ({ key }) => key === 'Escape' && people.close(); // also when what had the focus is gone
     addEventListener('keydown', onKey);
+    const paused = computed(() => world.room.link.value.state === 'paused');
+    const covered = computed(() => paused.value || this.isStaying.value);
     const stop = effect(() => {
-      const isPaused = world.room.link.value.state === 'paused';
+      const isPaused = paused.value;
       if (isPaused && !this.endedAt.peek()) this.endedAt.value = Date.now();
       const page = document.querySelector('#page');
       page.inert = isPaused;
       page.classList.toggle('paused', isPaused);
       if (isPaused) people.close();
-      if (isPaused) queueMicrotask(() => host.querySelector('button, input')?.focus());
+    });
+    let opener = null; // what had the focus before the card
+    const stopFocus = effect(() => {
+      const isCovered = covered.value;
+      if (isCovered) opener = document.activeElement;
+      queueMicrotask(() => {
+        if (isCovered) return void host.querySelector(firstField)?.focus();
+        if (opener?.isConnected && document.activeElement === document.body) opener.focus();
+        opener = null;
+      });
     });
     return () => {
+      stopFocus();
       stop();
+      this.waiting.peek()?.();
+      this.waiting.value = null;
+      this.isStaying.value = false;
+      forgetSigning();
       removeEventListener('keydown', onKey);
       const page = document.querySelector('#page');
       page.inert = false;

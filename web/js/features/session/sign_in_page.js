@@ -20,6 +20,7 @@ export function signInPage(host, id, world) {
     isFirst,
     token: isFirst ? takeToken() : '',
     facts: signal(undefined),
+    why: signal(''), // there are no facts
     version: signal(''),
     state: new PasswordState(),
     path: path + keptFragment(),
@@ -52,7 +53,9 @@ async function begin(page, host) {
   const { status, answer } = await send('GET', 'session');
   const facts = status === 200 ? answer : status === 401 ? ofProxy : null;
   const isAsked = new URLSearchParams(location.search).has('return');
-  if (facts && (!facts.sign_in.length || (facts.identity && isAsked))) return void location.replace(page.path);
+  const isIn = facts?.identity && (isAsked || (facts.identity.source !== 'proxy' && !page.isFirst)); // out of a proxy's sign-in leads only the proxy
+  if (facts && (!facts.sign_in.length || isIn)) return void location.replace(page.path);
+  if (!facts) page.why.value = answer.detail || answer.title || say.noAnswer;
   page.facts.value = facts;
   queueMicrotask(() => host.querySelector('.sign-in input, .sign-in button')?.focus());
   page.version.value = (await page.world.api.version().catch(() => null))?.version ?? '';
@@ -75,7 +78,7 @@ function draw(page) {
 
 function cards(page, facts) {
   if (!facts)
-    return html`<section class="card sign-in" role="alert"><h1>${say.signIn}</h1><p>${say.noAnswer}</p>
+    return html`<section class="card sign-in" role="alert"><h1>${say.signIn}</h1><p>${page.why.value}</p>
       <button class="primary" @click=${() => location.reload()}>${say.tryAgain}</button></section>`;
   if (page.isFirst) return firstCard(page.state, page.token);
   if (facts.identity)
@@ -115,13 +118,13 @@ function localForm({ state, path }, hasProxy) {
 /** A guest has a link to a room, and no account. */
 function guestCard({ path, world }, facts) {
   const { place, id } = placeOf({ pathname: path, hash: '' });
-  const { link, isGuest } = place === 'rooms' ? world.remembered(id) : {};
-  if (!facts.guest_links || !link) return nothing;
+  const { link, isGuest, user, isNew } = place === 'rooms' ? world.remembered(id) : {};
+  if (!facts.guest_links || !link || (user && !isNew)) return nothing; // the link by which a person came in is that person's
   if (isGuest) return html`<section class="card sign-in" role="status"><p>${say.noGuest}</p></section>`;
   const submit = (event) => {
     event.preventDefault();
     world.ownName.set(new FormData(event.target).get('name'));
-    world.remember(id, { isGuest: true });
+    world.remember(id, { isGuest: true, member: '', secret: '', user: '' });
     location.replace(path);
   };
   return html`<section class="card sign-in" aria-labelledby="guest-head"><h2 id="guest-head">${say.guest}</h2><p class="sign-in-about">${say.guestIs({ room: html`<b>${id}</b>` })}</p>

@@ -9,48 +9,59 @@ import { sourceWords } from './session_menu.js';
 import { say } from './later_words.js';
 
 const state = new PasswordState();
-const unproved = signal(null); // what is signed after a sign-in at the hospital
+const unproved = signal(''); // the room for whose record a fresh sign-in at the hospital is wanted; the signature itself stays in the form
 const notice = signal('');
 
-/** Writes it; where the server wants a fresh proof, keeps it for after that. */
-async function sign(body, write) {
-  const done = await write(body);
-  unproved.value = done === 'confirm' ? body : null;
-  return done === true;
+/** Nobody of the room that is left waits for a proof any more. */
+export function forgetSigning() {
+  unproved.value = '';
+  notice.value = '';
 }
 
-/** @param {import('./session.js').Session} session @param {{isGuest: boolean, fields: unknown, note: unknown, write: (body: object) => Promise<true|string>}} form write tells the code of a refusal */
-export function signing(session, { isGuest, fields, note, write }) {
+/** Writes what the form holds at this moment; the server may want a fresh proof first. */
+async function sign(element, name, { room, write }) {
+  const { meaning, corrects = '' } = Object.fromEntries(new FormData(element));
+  const done = await write({ name, meaning, corrects });
+  unproved.value = done === 'confirm' ? room : '';
+  if (done === true) element.reset();
+}
+
+/** @param {import('./session.js').Session} session @param {{room: string, isGuest: boolean, fields: unknown, note: unknown, write: (body: object) => Promise<true|string>}} form room: its id; write tells the code of a refusal */
+export function signing(session, form) {
+  if (!session.isOn) return html`<p class="note">${say.openDoorIs}</p>`;
   const person = session.person.value;
-  if (!person || isGuest) return html`<p class="note">${say.noSigning}</p>`;
+  if (!person || form.isGuest) return html`<p class="note">${say.noSigning}</p>`;
   const name = person.name || person.user;
   const byPassword = person.source !== 'proxy';
   const submit = async (event) => {
     event.preventDefault();
-    const form = event.target;
-    const { password, meaning, corrects = '' } = Object.fromEntries(new FormData(form));
+    const element = event.target;
     notice.value = '';
-    if (byPassword && !(await state.send('POST', 'session/confirm', { password }))) return;
-    if (await sign({ name, meaning, corrects }, write)) form.reset();
+    if (byPassword && !(await state.send('POST', 'session/confirm', { password: new FormData(element).get('password') }))) return;
+    await sign(element, name, form);
   };
-  const atHospital = () => {
-    session.waiting.peek()?.();
-    const stop = openWindow((facts) => {
+  const atHospital = ({ currentTarget: { form: element } }) => {
+    const before = person.proved_ms ?? 0;
+    const signedIn = (facts) => {
       session.waiting.value = null;
       const wrong = session.goOn(facts);
       notice.value = wrong ? say.notYou(wrong) : '';
-      if (!wrong) void sign(unproved.peek(), write);
-    });
+      if (wrong || unproved.peek() !== form.room) return;
+      if (element.isConnected) void sign(element, name, form);
+      else unproved.value = ''; // nobody saw what would be signed
+    };
+    session.waiting.peek()?.();
+    const stop = openWindow(signedIn, ({ identity }) => identity?.proved_ms > before);
     session.waiting.value = stop;
     notice.value = stop ? '' : say.windowBlocked;
   };
   return html`<form class="record-form signing" method="post" @submit=${submit}>
     <div class="again-who"><span class="avatar own" aria-hidden="true">${initials(name)}</span><span><b>${name}</b><br><span class="dim">${person.user}, ${sourceWords(person)}</span></span></div>
-    <p class="dim">${say.signAs}</p>${fields}
+    <p class="dim">${say.signAs}</p>${form.fields}
     ${byPassword ? html`<div class="sign-in-form"><input class="hidden" type="text" name="user" autocomplete="username" tabindex="-1" aria-hidden="true" readonly .value=${person.user}>${passwordField(state, { id: 'sign-password', label: say.oncePassword })}</div>${passwordError(state, 'sign-password')}` : nothing}
-    ${note}
+    ${form.note}
     ${
-      unproved.value && !byPassword
+      unproved.value === form.room && !byPassword
         ? html`<p class="note">${say.onceHospital}</p><button type="button" class="primary" @click=${atHospital}>${icon('hospital')} ${say.hospital}</button>`
         : html`<div class="note-buttons"><button ?disabled=${state.isBusy.value || state.leftS.value > 0}>${say.sign}</button></div>`
     }

@@ -4,6 +4,7 @@ import { test } from 'node:test';
 import { load } from '../../page.mjs';
 
 const { ownPath } = await load('features/session/return_path.js');
+const { Session } = await load('features/session/session.js');
 const { PasswordState, leftWords, pauseWords } = await load('features/session/password_form.js');
 
 test('a sign-in leads back to paths of this server alone', () => {
@@ -51,4 +52,30 @@ test('of a wrong password it is said how many tries are left', async () => {
   assert.deepEqual([paused.error, paused.left], ['', 90]);
   const right = await after(201, { identity: { user: 'ann' } });
   assert.deepEqual([right.answer, right.error, right.left], [{ identity: { user: 'ann' } }, '', 0]);
+});
+
+test('who signs in again comes back by the new sign-in, also on a connection that is open; another person does not', () => {
+  const { addEventListener, setInterval, document } = globalThis;
+  const link = { rel: '', href: '', addEventListener() {} };
+  Object.assign(globalThis, {
+    addEventListener: () => {},
+    setInterval: () => 0,
+    document: { ...document, createElement: () => link, head: { append() {} } },
+  });
+  let nRenewed = 0;
+  const connection = { renew: () => nRenewed++ };
+  const facts = (user) => ({
+    sign_in: ['local'],
+    open_to_everybody: false,
+    identity: { user, name: '', source: 'password' },
+    idle_ends_ms: null,
+    ends_ms: null,
+  });
+  const session = new Session(facts('ann'), { api: {}, ownName: { isFixed: {} }, entered: () => ({ room: 'r', connection }), signIn() {} });
+  session.isStaying.value = true;
+  assert.deepEqual(session.goOn(facts('ben')), { other: 'ben', name: 'ann' });
+  assert.deepEqual([nRenewed, session.isStaying.value], [0, true]);
+  assert.equal(session.goOn(facts('ann')), null);
+  assert.deepEqual([nRenewed, session.isStaying.value], [1, false]);
+  Object.assign(globalThis, { addEventListener, setInterval, document });
 });

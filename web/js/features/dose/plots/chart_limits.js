@@ -122,7 +122,7 @@ export function limitsBlock(world) {
         ? form(world, isDisabled)
         : html`<div class="buttons"><button ?disabled=${isDisabled || rows.length >= mostConstraints || !ownRegions(plan, room.scene.value).length} @click=${() => start('', { region: ownRegions(plan, room.scene.value)[0].id, quantity: room.scene.value.dose.quantity, metric: 'D95%', side: 'at-least', limit: '', tissue: '' })}>${say.add}</button>
       <button ?disabled=${isDisabled} title=${say.columns} @click=${(event) => event.currentTarget.nextElementSibling.click()}>${icon('upload', 12)}<span>${say.importCsv}</span></button><input class="hidden" type="file" accept=".csv,text/csv" tabindex="-1" aria-hidden="true" @change=${(event) => read(world, event)}>
-      <button ?disabled=${!rows.length} @click=${() => exportFile(world, 'limits', `${room.planId.value}-limits.csv`, constraintsCsv(rows, plan), 'text/csv')}>${icon('download', 12)}<span>CSV</span></button></div>`
+      ${room.control.mayExport ? html`<button ?disabled=${!rows.length} @click=${() => exportFile(world, 'limits', `${room.planId.value}-limits.csv`, constraintsCsv(rows, plan), 'text/csv')}>${icon('download', 12)}<span>CSV</span></button>` : nothing}</div>`
     }
     ${
       curves.importError.value

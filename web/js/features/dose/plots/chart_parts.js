@@ -8,6 +8,7 @@ import { say } from './words.js';
 
 /** @param {'dvh'|'profile'} id @param {{csv: () => string, json: () => string}|null} files null: there is nothing to save */
 export function downloads(world, id, files) {
+  if (!world.room.control.mayExport) return nothing;
   const name = `${world.room.planId.value}-${id}`;
   return html`<div class="chart-files" role="group" aria-label=${say.save}><button class="small" ?disabled=${!files} title=${say.saveCsv} @click=${() => exportFile(world, id, `${name}.csv`, files.csv(), 'text/csv')}>${icon('download', 12)} CSV</button>
     <button class="small" ?disabled=${!files} title=${say.saveJson} @click=${() => exportFile(world, id, `${name}.json`, files.json(), 'application/json')}>${icon('download', 12)} JSON</button></div>`;
