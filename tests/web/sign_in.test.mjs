@@ -51,6 +51,8 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
     assert.deepEqual(await axe(page), []);
     await page.keyboard.press('Enter');
     await page.locator('.start [data-plan]').first().waitFor();
+    await page.goto(`${world.daemon.url}/signin`); // who is signed in goes on
+    await page.locator('.start [data-plan]').first().waitFor();
     await page.getByRole('button', { name: 'Signed in as Dr Ann Keller' }).click();
     await page.getByText('ann.keller, account of this server').waitFor();
     assert.deepEqual(await axe(page), []);
@@ -84,13 +86,15 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
   });
 
   it('stands still when the sign-in ends in a room, and comes back to the same seat', async () => {
-    const seat = () => page.evaluate((id) => JSON.parse(sessionStorage.getItem(`room ${id}`)).member, room);
+    const seat = () => page.evaluate((id) => JSON.parse(sessionStorage.getItem(`room ${id}`)), room);
     const before = await seat();
+    assert.equal(before.user, 'ann.keller', 'it is kept whose seat it is');
     await endSession(page, world.daemon.url);
     const card = page.getByRole('dialog', { name: 'Sign in again' });
     await card.waitFor();
     assert.match(await badges(page), /^(paused|,)+$/);
     assert.equal(await page.evaluate(() => document.querySelector('#page').inert), true);
+    await page.waitForFunction(() => document.activeElement.id === 'again-password');
     assert.deepEqual(await axe(page), []);
     await shoot(page, 'sign-in-again');
     await page.fill('#again-password', 'wrong');
@@ -100,7 +104,7 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
     await page.keyboard.press('Enter');
     await card.waitFor({ state: 'detached' });
     await full(page);
-    assert.equal(await seat(), before);
+    assert.equal((await seat()).member, before.member);
   });
 
   it('a guest comes in by a link that admits guests, under a name, and is marked', async () => {
@@ -119,6 +123,8 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
     await guest.keyboard.press('Enter');
     await full(guest);
     assert.equal(guest.url(), `${world.daemon.url}/rooms/${room}`);
+    const camera = (on) => on.getByRole('button', { name: 'Snapshot', exact: true }).count();
+    assert.deepEqual([await camera(page), await camera(guest)], [1, 0], 'a guest takes no files away');
     const row = page.locator('.people-here li', { hasText: 'Prof. Lind' });
     await row.locator('.tag', { hasText: 'guest' }).waitFor();
     await page.locator('.people-links tr', { hasText: 'Umeå' }).waitFor();
@@ -146,10 +152,12 @@ describe('signing in', { skip: missing && `${missing} is missing` }, () => {
     assert.equal(wall.url(), `${world.daemon.url}/display/${room}`);
     await page.locator('.people-here li', { hasText: 'wall' }).waitFor();
     await page
-      .locator('.people-links')
+      .locator('.people-links tr', { hasText: 'wall' })
       .getByRole('button', { name: /^End it/ })
-      .first()
       .click();
+    await wall.locator('figure').waitFor({ state: 'hidden' });
+    assert.equal(await wall.evaluate(() => document.querySelector('canvas').width), 1, 'no picture of a patient stays');
+    assert.notEqual(await wall.locator('.notice').textContent(), '');
     await page.keyboard.press('Escape');
     await wall.context().close();
     const without = await visit(`display/${room}`);
