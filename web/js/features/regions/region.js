@@ -57,7 +57,7 @@ export function regionBlock(world, region) {
             }}><span>${say.compare}</span></button>`
           : nothing
       }</div>
-    ${region.voxels && isExportable(style.representation) && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
+    ${region.voxels && isExportable(style.representation) && world.room.control.mayExport && !isRefused(world, region, style.representation) ? downloads(world, region, style.representation) : nothing}</section>`;
 }
 
 /** Choice of what colours the region in 3-D, and those inside it. */
