@@ -163,7 +163,7 @@ async function route() {
   const host = document.querySelector('#page');
   if (place === 'rooms') {
     const before = remembered(id);
-    const facts = (isPersonal(before) || (before.link && !before.member)) && (await told);
+    const facts = isPersonal(before) || (before.link && !before.member) ? await told : null;
     if (n !== nRoutes) return;
     // a guest says a name first; a seat waits for its person
     if (facts?.sign_in.length && !facts.identity && (before.user || (facts.guest_links && !before.isGuest))) return signIn();
