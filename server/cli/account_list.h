@@ -1,5 +1,5 @@
 #pragma once
-/* What `beamroom user` and `beamroom token` print of a running daemon. */
+/* Lists that `beamroom user` and `beamroom token` print of a running daemon. */
 #include "server/cli/account_words.h"
 #include "server/cli/control.h"
 
