@@ -2,8 +2,9 @@
 // a chain. Made-up DICOM; nobody's data.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
-import { mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from 'node:fs';
+import { request } from 'node:http';
+import { tmpdir, userInfo } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { bin, call, openPlan, sleep, startDaemon, until } from './daemon.mjs';
@@ -37,11 +38,36 @@ function found(folder) {
 }
 const verify = (data) => spawnSync(join(bin, 'beamroomd'), ['--verify-audit', join(data, 'beamroom.db')], { encoding: 'utf8' });
 
+/** The arguments for people who sign in, all of them administrators, at a proxy in front of the socket. */
+const signsIn = (socketPath) => [
+  ...['--sign-in', 'proxy', '--listen', `unix:${socketPath}`, '--proxy-user', userInfo().username],
+  ...['--public-name', 'beamroom.example', '--grant', '* admin admin'],
+];
+/** A call of such an administrator. */
+const asAdmin = (socketPath, path, method = 'GET', body) =>
+  new Promise((done, failed) => {
+    const text = body === undefined ? '' : JSON.stringify(body);
+    const headers = {
+      Host: 'beamroom.example',
+      'X-Forwarded-For': '192.0.2.7',
+      'X-Beamroom-User': 'admin',
+      ...(text && { 'Content-Type': 'application/json', 'Content-Length': Buffer.byteLength(text) }),
+    };
+    const sent = request({ socketPath, path: `/api/v1${path}`, method, agent: false, headers }, (answer) => {
+      let got = '';
+      answer.setEncoding('utf8');
+      answer.on('data', (part) => (got += part));
+      answer.on('end', () => done({ status: answer.statusCode, text: got, json: got ? JSON.parse(got) : undefined }));
+    });
+    sent.on('error', failed);
+    sent.end(text);
+  });
+
 /** A daemon with the plan uploaded, or given, and a room on it in which everything says who it is about. */
-async function begin({ isGiven = false } = {}) {
+async function begin({ isGiven = false, folder = given } = {}) {
   const data = mkdtempSync(join(home, 'data-'));
-  const plans = isGiven ? [given] : [mkdtempSync(join(home, 'none-'))];
-  const start = () => startDaemon({ data, plans, args: ['--stub'] });
+  const plans = isGiven ? [folder] : [mkdtempSync(join(home, 'none-'))];
+  const start = (more = []) => startDaemon({ data, plans, args: ['--stub', ...more] });
   const daemon = await start();
   const api = `${daemon.url}/api/v1`;
   let plan = 'quirin-zweifel';
@@ -155,4 +181,80 @@ test('a kill leaves all of it, or nothing: what was begun is finished by the nex
     assert.equal(verify(data).stderr, '');
   }
   assert.ok(ends.includes(1), `${ends}`);
+});
+
+test('what was written where nobody signed in is erased where people sign in, by the id of now and by the one before', async (t) => {
+  for (const [isGiven, isByOld] of [
+    [false, false],
+    [true, true],
+  ]) {
+    const { data, daemon, plan: old, ann, start } = await begin({ isGiven });
+    ann.cut();
+    await daemon.stop();
+    assert.ok(found(data).some((name) => name.startsWith('cache')) && found(data).some((name) => name.startsWith('beamroom.db')));
+    const socketPath = join(home, `${isGiven}.sock`);
+    const again = await start(signsIn(socketPath));
+    t.after(() => again.stop());
+    const { json } = await until(
+      () => asAdmin(socketPath, '/plans'),
+      ({ json: list }) => list.plans?.length === 1,
+    );
+    const [{ id }] = json.plans;
+    assert.notEqual(id, old);
+    const erase = (plan, reason) => asAdmin(socketPath, `/plans/${plan}/erase`, 'POST', { reason });
+    assert.deepEqual([(await erase(id, `of ${old}`)).status, (await erase(old, `of ${id}`)).status], [422, 422], 'neither id is a reason');
+    const answer = await erase(isByOld ? old : id, 'asked');
+    assert.deepEqual([answer.status, answer.json], [200, { rooms: 1, records: 1 }], answer.text);
+    assert.deepEqual(found(data), []);
+    await again.stop();
+    assert.equal(verify(data).stderr, '');
+    assert.deepEqual(found(data), []);
+  }
+});
+
+test('what was written where people sign in is erased where nobody does', async (t) => {
+  const socketPath = join(home, 'back.sock');
+  const { data, daemon, plan: old, ann, start } = await begin();
+  ann.cut();
+  await daemon.stop();
+  const signed = await start(signsIn(socketPath));
+  t.after(() => signed.stop());
+  const { json } = await until(
+    () => asAdmin(socketPath, '/plans'),
+    ({ json: list }) => list.plans?.length === 1,
+  );
+  const [{ id }] = json.plans;
+  assert.equal((await asAdmin(socketPath, '/rooms', 'POST', { plan: id })).status, 201);
+  assert.equal((await asAdmin(socketPath, `/plans/${id}/open`, 'POST')).status, 202);
+  await until(
+    () => asAdmin(socketPath, `/plans/${id}`),
+    ({ json: plan }) => plan.state === 'ready',
+  );
+  await signed.stop();
+  const again = await start();
+  t.after(() => again.stop());
+  const answer = await call(`${again.url}/api/v1/plans/${id}/erase`, 'POST', { reason: 'asked' });
+  assert.deepEqual([answer.status, answer.json], [200, { rooms: 2, records: 1 }], answer.text);
+  assert.deepEqual(readdirSync(join(data, 'cache')), []);
+  assert.equal((await call(`${again.url}/api/v1/plans/${old}`)).status, 404);
+  await again.stop();
+});
+
+test('what is kept of a plan whose folder is gone is erased by its id, also where people sign in', async (t) => {
+  const folder = mkdtempSync(join(home, 'gone-'));
+  cpSync(given, folder, { recursive: true });
+  const { data, daemon, plan, ann, start } = await begin({ isGiven: true, folder });
+  ann.cut();
+  await daemon.stop();
+  rmSync(join(folder, 'quirin-zweifel'), { recursive: true });
+  const socketPath = join(home, 'gone.sock');
+  const again = await start(signsIn(socketPath));
+  t.after(() => again.stop());
+  const answer = await until(
+    () => asAdmin(socketPath, `/plans/${plan}/erase`, 'POST', { reason: 'asked' }),
+    ({ status }) => status !== 503,
+  );
+  assert.deepEqual([answer.status, answer.json], [200, { rooms: 1, records: 1 }], answer.text);
+  assert.deepEqual(found(data), []);
+  await again.stop();
 });

@@ -357,6 +357,34 @@ describe('The matrix of rights', { concurrency: false }, () => {
     for (const call of streams) call.destroy();
   });
 
+  test('records before one that may not be seen are those before one that is not there', async () => {
+    const decided = async (plan) => {
+      const room = await made('admin', '/api/v1/rooms', { plan });
+      const client = await enter('admin', room.id);
+      await client.message('welcome');
+      await until(
+        () => ask('admin', `/api/v1/plans/${plan}/revision`),
+        ({ status }) => status === 200,
+      );
+      client.send({ type: 'item.put', kind: 'decision', body: { decision: 'accept', text: 'As shown' }, input: 1 });
+      const { item } = await client.message('item', (m) => m.input === 1);
+      client.cut();
+      return item.id;
+    };
+    const own = await decided(plans.granted);
+    const foreign = await decided(plans.foreign);
+    const newest = await decided(plans.granted);
+    const before = async (kind, id) => {
+      const { status, json } = await ask(kind, `/api/v1/records?before=${id}`);
+      return [status, json.records.map((record) => record.id)];
+    };
+    assert.deepEqual(await before('admin', newest), [200, [foreign, own]]);
+    assert.deepEqual(await before('planner', newest), [200, [own]]);
+    assert.deepEqual(await before('admin', foreign), [200, [own]]);
+    assert.deepEqual(await before('planner', 'i-0000000000'), [200, []]);
+    assert.deepEqual(await before('planner', foreign), [200, []]);
+  });
+
   test('a search finds what may be seen, and counts no other', async () => {
     const found = async (kind, body) => (await ask(kind, '/api/v1/plans/search', 'POST', body)).json;
     assert.equal((await found('planner', {})).total, 1);
