@@ -84,7 +84,7 @@ const send = ({ publicName, ...task }) => sendPlan({ ...task, url: api.uploadUrl
 
 const inMemory = new Map(); // what a browser that keeps nothing forgets at a reload
 
-/** What this tab keeps of a room, for who is signed in (net/kept.js). */
+/** Facts that this tab keeps of a room, for who is signed in (net/kept.js). */
 function remembered(room) {
   let kept;
   try {

@@ -355,7 +355,7 @@ export class RoomState {
     }
   }
 
-  /** Who came back is another person than the one who gave what is kept: nothing of it is sent, and it stands still until that one is back. */
+  /** True when another person came back than the one who gave what is kept: nothing of it is sent, and the room stands still until that one is back. */
   #isOther(members) {
     const { identity } = this;
     const row = members.find(({ id }) => id === identity.member);

@@ -1,4 +1,4 @@
-// What a tab keeps of a room is for the person who was in it.
+// Facts of a room that a tab keeps are for the person who was in it.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { load } from '../page.mjs';

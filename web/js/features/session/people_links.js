@@ -14,7 +14,7 @@ const times = [
 ];
 const year = 365 * day; // of a wall alone
 
-/** What a form asks for. A display that comes back after a loss of the connection comes by its link again: that is never for one use. @param {FormData} data */
+/** The link that a form asks for. A display that comes back after a loss of the connection comes by its link again: that is never for one use. @param {FormData} data */
 export function linkOf(data) {
   const [role, name] = [data.get('role'), data.get('name').trim()];
   const isOne = role !== 'wall' && data.has('one');

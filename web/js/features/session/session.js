@@ -15,7 +15,6 @@ const lookMs = 5000;
 const askMs = 60000; // the proxy's own end is met by asking
 const inputMs = 60000; // input is told at most this often
 const soonMs = 5 * 60000; // before the end the page says so
-const firstField = '.again button, .again input:not([readonly])'; // of the card; the hidden one is for the browser's list of passwords
 const inputs = ['pointerdown', 'keydown', 'wheel', 'touchstart'];
 
 export class Session {
@@ -192,7 +191,7 @@ export class Session {
       const isCovered = covered.value;
       if (isCovered) opener = document.activeElement;
       queueMicrotask(() => {
-        if (isCovered) return void host.querySelector(firstField)?.focus();
+        if (isCovered) return void host.querySelector('.again :is(button, input:not([readonly]))')?.focus();
         if (opener?.isConnected && document.activeElement === document.body) opener.focus();
         opener = null;
       });
