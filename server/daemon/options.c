@@ -269,6 +269,7 @@ static bool read_file(struct options *options, const char *name, const bool *giv
         return error_set(err, ERROR_IO, "--config %.100s: %s", name, strerror(errno));
     bool ok = true;
     for (int number = 1; ok && fgets(line, sizeof line, file); number++) {
+        options->grants.last_line = number;
         if (!strchr(line, '\n') && !feof(file)) {
             ok =
                 error_set(err, ERROR_LIMIT, "%.100s line %d: longer than %d bytes", name, number, OPTIONS_MAX_LINE - 2);
@@ -438,6 +439,7 @@ bool options_read_grants(const struct options *options, struct options_grants *g
         *grants = read.grants;
     else
         options_grants_finish(&read.grants);
+    grants->last_line = read.grants.last_line;
     return ok;
 }
 

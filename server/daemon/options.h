@@ -17,6 +17,7 @@ struct options_grants {
         int line;    /* of the configuration file; 0: of the command line */
     } * list;
     size_t n;
+    int last_line; /* of the configuration file: the last that was read, so the wrong one where reading failed */
 };
 
 struct options {
@@ -53,7 +54,8 @@ struct options {
 /* Fills options with the defaults, the command line and its --config file; the command line wins.
  *   errors ERROR_FORMAT, ERROR_RANGE, ERROR_LIMIT, ERROR_IO; the sentence names the flag, or file and line */
 NODISCARD bool options_read(struct options *options, int argc, char **argv, struct error *err);
-/* Reads the grants anew, as they stand in the configuration file now. False: grants is empty. errors as options_read */
+/* Reads the grants anew, as they stand in the configuration file now. False: grants is empty, but for last_line.
+ *   errors as options_read */
 NODISCARD bool options_read_grants(const struct options *options, struct options_grants *grants, struct error *err);
 void options_grants_finish(struct options_grants *grants);
 bool options_signs_in(const struct options *options); /* people have to sign in */

@@ -9,8 +9,20 @@
 #include "core/base/mem.h"
 #include "server/wire/json.h"
 
-/* Hands the grants to access. */
-static bool use_grants(struct access *access, const char *file, const struct options_grants *grants, struct error *err)
+/* The first line that is wrong by itself; 0: none in the file is. */
+static int find_wrong(const struct access_line *lines, size_t n)
+{
+    struct access *trial = access_create();
+    size_t i = 0;
+    while (i < n && access_set(trial, &lines[i], 1, NULL))
+        i++;
+    access_destroy(trial);
+    return i < n ? lines[i].line : 0;
+}
+
+/* Hands the grants to access. wrong_line: where that fails, the line of the file; 0: none of it. */
+static bool use_grants(struct access *access, const char *file, const struct options_grants *grants, int *wrong_line,
+                       struct error *err)
 {
     struct access_line *lines = mem_new((grants->n + 1) * sizeof *lines);
     for (size_t i = 0; i < grants->n; i++)
@@ -18,6 +30,7 @@ static bool use_grants(struct access *access, const char *file, const struct opt
                                          .file = grants->list[i].line ? file : "the command line",
                                          .line = grants->list[i].line };
     const bool ok = access_set(access, lines, grants->n, err);
+    *wrong_line = ok ? 0 : find_wrong(lines, grants->n);
     free(lines);
     return ok;
 }
@@ -33,8 +46,9 @@ bool sign_in_create(struct sign_in *sign_in, const struct options *options, stru
     if (!sign_in->auth || !options_signs_in(options))
         return sign_in->auth != NULL;
     sign_in->access = access_create();
+    int wrong_line;
     return options_read_grants(options, &sign_in->grants, err) &&
-           use_grants(sign_in->access, options->config, &sign_in->grants, err);
+           use_grants(sign_in->access, options->config, &sign_in->grants, &wrong_line, err);
 }
 
 void sign_in_finish(struct sign_in *sign_in)
@@ -73,11 +87,17 @@ static void record(struct net *net, void *detail)
     net_grants_changed(net);
 }
 
-static void say_unchanged(struct net *net, const char *why)
+/* A line may name a patient, as folders do: the log says which one is wrong, the audit has its text. */
+static void say_unchanged(struct net *net, const char *file, int line, const struct error *err)
 {
     cJSON *detail = cJSON_CreateObject();
-    cJSON_AddStringToObject(detail, "refused", why);
-    log_error("grants: those in use stay: %s", why);
+    cJSON_AddStringToObject(detail, "refused", err->text);
+    if (err->code != ERROR_FORMAT)
+        log_error("grants: those in use stay: %s", err->text);
+    else if (line)
+        log_error("grants: those in use stay: %s, line %d is wrong; the audit says why", file, line);
+    else
+        log_error("grants: those in use stay: one of the command line is wrong; the audit says why");
     net_post(net, record, detail);
 }
 
@@ -96,12 +116,14 @@ void sign_in_reload(struct sign_in *sign_in, struct net *net)
 {
     struct options_grants grants;
     struct error err = { 0 };
+    const char *file = sign_in->options->config;
+    int wrong_line;
     if (!sign_in->access)
         return;
     if (!options_read_grants(sign_in->options, &grants, &err)) {
-        say_unchanged(net, err.text);
-    } else if (!use_grants(sign_in->access, sign_in->options->config, &grants, &err)) {
-        say_unchanged(net, err.text);
+        say_unchanged(net, file, grants.last_line, &err);
+    } else if (!use_grants(sign_in->access, file, &grants, &wrong_line, &err)) {
+        say_unchanged(net, file, wrong_line, &err);
         options_grants_finish(&grants);
     } else {
         say_changed(net, &sign_in->grants, &grants);
