@@ -85,8 +85,9 @@ void auth_write_owner(struct auth *auth, const struct store_owner *row);
 bool auth_can_keep(const struct auth *auth, struct problem *problem);
 
 struct session *auth_find_session(struct auth *auth, const char *id);
-/* The session whose cookie this header has, and which has not ended; NULL: there is none. */
-struct session *auth_session_of_cookie(struct auth *auth, const char *cookies);
+/* The session whose cookie this header has, and which has not ended; NULL: there is none. is_https: only the cookie
+ * that no other host of the domain can set counts. */
+struct session *auth_session_of_cookie(struct auth *auth, const char *cookies, bool is_https);
 bool auth_session_is_alive(const struct auth *auth, const struct session *session, int64_t now_ms);
 /* Begins one; the secret for the cookie is told here alone. NULL: no memory. */
 struct session *auth_session_begin(struct auth *auth, const struct user *user, const char *address,

@@ -90,8 +90,9 @@ static bool identify(struct auth *auth, const struct credentials *credentials, s
         return found > 0;
     if (auth->options.is_proxied && credentials->is_from_proxy && credentials->user && credentials->user[0])
         return identify_proxied(auth, credentials, identity, problem);
-    struct session *session =
-        auth->options.is_local && credentials->cookie ? auth_session_of_cookie(auth, credentials->cookie) : NULL;
+    struct session *session = auth->options.is_local && credentials->cookie
+                                  ? auth_session_of_cookie(auth, credentials->cookie, credentials->is_https)
+                                  : NULL;
     if (session)
         auth_session_identity(auth, session, identity);
     return true;

@@ -106,13 +106,13 @@ static struct session *find_by_secret(struct auth *auth, const char *name, const
     return session;
 }
 
-struct session *auth_session_of_cookie(struct auth *auth, const char *cookies)
+struct session *auth_session_of_cookie(struct auth *auth, const char *cookies, bool is_https)
 {
     char secret[AUTH_SECRET_TEXT] = "";
     struct session *session = NULL;
     if (read_cookie(cookies, secure_name, secret))
         session = find_by_secret(auth, secure_name, secret);
-    if (!session && read_cookie(cookies, plain_name, secret))
+    if (!session && !is_https && read_cookie(cookies, plain_name, secret))
         session = find_by_secret(auth, plain_name, secret);
     sodium_memzero(secret, sizeof secret);
     return session && auth_session_is_alive(auth, session, auth_now_ms(auth)) &&

@@ -118,6 +118,8 @@ struct front_link *front_find(struct front *front, int socket);
 void front_client(const struct front_link *link, char text[ADDRESS_TEXT]);
 /* True if its bytes came by TLS, which was decrypted here. */
 bool front_link_is_encrypted(const struct front_link *link);
+/* Likewise, or it came by a proxy at a Unix socket: browsers know this server by https. */
+bool front_link_is_https(const struct front_link *link);
 /* The identity of the present request. */
 const struct identity *front_identity(const struct front_link *link);
 void front_link_closed(struct front_link *link); /* the library closed its end */

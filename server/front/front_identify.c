@@ -20,6 +20,11 @@ static const char *keep(struct room *room, struct head_text text)
     return copy;
 }
 
+bool front_link_is_https(const struct front_link *link)
+{
+    return (link->front->options.decrypt && !link->is_local) || link->is_from_proxy;
+}
+
 bool front_identify(struct front_link *link, const struct head_request *request, const struct address *client,
                     struct problem *problem)
 {
@@ -38,6 +43,7 @@ bool front_identify(struct front_link *link, const struct head_request *request,
                                              .is_control = link->is_control,
                                              .is_secure =
                                                  options->decrypt || link->is_local || address_is_loopback(&link->peer),
+                                             .is_https = front_link_is_https(link),
                                              .address = address };
     link->identity = (struct identity){ .source = IDENTITY_NOBODY };
     return !options->identify || options->identify(options->context, &credentials, &link->identity, problem);

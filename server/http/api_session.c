@@ -90,10 +90,10 @@ static void signed_in(struct api_waiting *waiting)
     call_answer_json(call, 201, session_json(waiting->api, &waiting->answer.identity));
 }
 
-/* The browser says by which scheme the page came, also behind a proxy. */
+/* Where the way does not say it, as behind a proxy on loopback, the browser says by which scheme the page came. */
 static bool is_by_https(const struct call *call)
 {
-    return call->origin ? strncasecmp(call->origin, "https://", 8) == 0 : call->is_secure;
+    return call->is_https || (call->origin && strncasecmp(call->origin, "https://", 8) == 0);
 }
 
 void api_session_begin(struct api *api, struct call *call)

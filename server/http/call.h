@@ -37,6 +37,7 @@ struct call {
     char *if_match, *if_none_match, *content_type, *origin, *host, *fetch_site, *member, *key,
         *last_event;          /* NULL when not sent */
     bool is_secure;           /* it came by TLS, which was decrypted here */
+    bool is_https;            /* likewise, or by a proxy at a Unix socket */
     char client[46];          /* address of the client, behind trusted proxies; "": not known */
     struct identity identity; /* who makes it */
     char *body;

@@ -336,6 +336,7 @@ static struct request *request_create(struct http *http, struct MHD_Connection *
     call->wake = wake_reader;
     call->wake_context = http->front;
     call->is_secure = request->link && front_link_is_encrypted(request->link);
+    call->is_https = request->link && front_link_is_https(request->link);
     call->method = method_of(method);
     call_set_path(call, path_of(url));
     MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, add_query, call);

@@ -68,5 +68,6 @@ struct credentials {
     bool is_from_proxy; /* it came over the Unix socket, from a process of the proxy's user or group */
     bool is_control;    /* it came over the control socket of the data folder, from the daemon's user or root */
     bool is_secure;     /* over TLS of our own, the Unix socket or loopback */
+    bool is_https;      /* over TLS of our own, or the Unix socket of a proxy: the browser's way is https */
     const char *address;
 };

@@ -47,6 +47,34 @@ static void a_password_begins_a_session_that_its_cookie_alone_opens(void **state
     assert_int_equal(auth_world_with_cookie("__Host-beamroom", "").source, IDENTITY_NOBODY);
 }
 
+static struct identity with_cookie_of(const char *name, const char *secret, bool is_https)
+{
+    char cookie[200];
+    struct identity identity;
+    struct problem problem = { 0 };
+    (void)snprintf(cookie, sizeof cookie, "%s=%s", name, secret);
+    assert_true(auth_identify(auth_world.auth,
+                              &(struct credentials){ .cookie = cookie, .is_https = is_https, .address = "192.0.2.7" },
+                              &identity, &problem));
+    return identity;
+}
+
+/* Another host of the domain can plant the plain cookie: where people come by https, it opens nothing. */
+static void the_plain_cookie_counts_on_plain_loopback_alone(void **state)
+{
+    (void)state;
+    struct problem problem = { 0 };
+    auth_world_add_user("ann", "");
+    assert_true(
+        auth_sign_in(auth_world.auth, "ann", "correct horse", "127.0.0.1", false, auth_world_done, NULL, &problem));
+    const struct auth_answer plain = auth_world_await(), kept = auth_world_sign_in("ann", "correct horse");
+    assert_int_equal(with_cookie_of("beamroom", plain.secret, false).source, IDENTITY_PASSWORD);
+    assert_int_equal(with_cookie_of("beamroom", plain.secret, true).source, IDENTITY_NOBODY);
+    assert_int_equal(with_cookie_of("__Host-beamroom", plain.secret, true).source, IDENTITY_NOBODY);
+    assert_int_equal(with_cookie_of("__Host-beamroom", kept.secret, true).source, IDENTITY_PASSWORD);
+    assert_int_equal(with_cookie_of("__Host-beamroom", kept.secret, false).source, IDENTITY_PASSWORD);
+}
+
 static void a_session_ends_without_input_and_after_half_a_day(void **state)
 {
     (void)state;
@@ -497,6 +525,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, auth_world_set_up, auth_world_tear_down)
     const struct CMUnitTest tests[] = {
         TEST(a_password_begins_a_session_that_its_cookie_alone_opens),
+        TEST(the_plain_cookie_counts_on_plain_loopback_alone),
         TEST(a_session_ends_without_input_and_after_half_a_day),
         TEST(signing_out_disabling_and_a_new_password_end_sessions),
         TEST(wrong_passwords_pause_also_for_users_who_do_not_exist),

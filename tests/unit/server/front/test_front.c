@@ -93,6 +93,7 @@ static bool identify(void *context, const struct credentials *credentials, struc
     assert_string_equal(identity->user, "");
     assert_int_equal(credentials->is_secure,
                      credentials->is_from_proxy || strncmp(credentials->address, "127.", 4) == 0);
+    assert_int_equal(credentials->is_https, credentials->is_from_proxy);
     if (credentials->user)
         (void)snprintf(identity->user, sizeof identity->user, "%s/%s/%s/%s", credentials->user, credentials->name,
                        credentials->groups, credentials->auth_time);
