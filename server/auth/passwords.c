@@ -69,11 +69,37 @@ static bool refuse_paused(const struct throttle_state *state, struct problem *pr
     return false;
 }
 
+static struct throttle_state stricter(const struct throttle_state *a, const struct throttle_state *b)
+{
+    if (a->waits_ms != b->waits_ms)
+        return a->waits_ms > b->waits_ms ? *a : *b;
+    return a->tries_left < b->tries_left ? *a : *b;
+}
+
+/* The pause of a user at an address, or, of who signs in, of the network. Who confirms has proved before who they are,
+ * and is not kept from signing by strangers of the same network. Under the lock. */
+static struct throttle_state look_for_pause(struct auth *auth, enum job_kind kind, const char *user,
+                                            const char *address)
+{
+    const int64_t now_ms = auth_now_ms(auth);
+    const struct throttle_state own = throttle_look(auth->throttle, user, address, now_ms);
+    if (kind == JOB_CONFIRM)
+        return own;
+    const struct throttle_state network = throttle_look(auth->throttle, NULL, address, now_ms);
+    return stricter(&own, &network);
+}
+
 /* The answer to a wrong password, counted. Under the lock. */
 static void count_wrong(struct auth *auth, const struct job *job, struct auth_answer *answer)
 {
-    struct throttle_state state = throttle_fail(auth->throttle, job->user, job->address, auth_now_ms(auth));
+    const int64_t now_ms = auth_now_ms(auth);
+    const struct throttle_state own = throttle_fail(auth->throttle, job->user, job->address, now_ms);
+    struct throttle_state state = own;
     struct user *user = auth_find_user(auth, job->user);
+    if (job->kind != JOB_CONFIRM) {
+        const struct throttle_state network = throttle_fail(auth->throttle, NULL, job->address, now_ms);
+        state = stricter(&own, &network);
+    }
     answer->is_wrong = true;
     answer->tries_left = state.tries_left;
     answer->pause_s = (int)((state.waits_ms ? state.waits_ms : state.pause_ms) / 1000);
@@ -83,7 +109,7 @@ static void count_wrong(struct auth *auth, const struct job *job, struct auth_an
     answer->problem.retry_after_ms = (int)state.waits_ms;
     if (user) {
         user->row.n_failed++;
-        user->row.locked_until_ms = state.waits_ms ? auth_now_ms(auth) + state.waits_ms : 0;
+        user->row.locked_until_ms = own.waits_ms ? now_ms + own.waits_ms : 0;
         auth_write_user(auth, user);
     }
 }
@@ -115,7 +141,7 @@ static void check_password(struct auth *auth, const struct job *job, struct auth
 {
     char hash[sizeof((struct store_user *)NULL)->password];
     lock_hold(auth->lock);
-    const struct throttle_state state = throttle_look(auth->throttle, job->user, job->address, auth_now_ms(auth));
+    const struct throttle_state state = look_for_pause(auth, job->kind, job->user, job->address);
     struct user *user = auth_find_user(auth, job->user);
     const bool can_sign_in = user && !user->row.is_disabled && user->row.password[0];
     (void)snprintf(hash, sizeof hash, "%s", can_sign_in ? user->row.password : auth->no_user);
@@ -206,6 +232,16 @@ static void set_password(struct auth *auth, const struct job *job, struct auth_a
 
 /* ---- the thread ------------------------------------------------------------------------------------------------- */
 
+/* A sign-in that waited does not any more, or was not taken. */
+static void leave(struct auth *auth, const struct job *job)
+{
+    if (job->kind != JOB_SIGN_IN)
+        return;
+    lock_hold(auth->lock);
+    throttle_leave(auth->throttle, job->address);
+    lock_release(auth->lock);
+}
+
 static void run(struct auth *auth, struct job *job)
 {
     struct auth_answer answer = { .problem = { .type = PROBLEM_NONE } };
@@ -214,6 +250,7 @@ static void run(struct auth *auth, struct job *job)
     else
         set_password(auth, job, &answer);
     sodium_memzero(job->password, sizeof job->password);
+    leave(auth, job);
     job->done(job->context, &answer);
     sodium_memzero(&answer, sizeof answer);
 }
@@ -269,22 +306,38 @@ static struct job *make_job(enum job_kind kind, const char *user, const char *pa
     return job;
 }
 
+static bool refuse_full(int n, struct problem *problem)
+{
+    problem_set(problem, PROBLEM_LIMIT, "", "", "%d passwords are being checked already", n);
+    problem->retry_after_ms = AUTH_RETRY_MS;
+    return false;
+}
+
 /* Takes job. */
 static bool hand_over(struct auth *auth, struct job *job, struct problem *problem)
 {
     if (queue_try_put(auth->jobs, job))
         return true;
+    leave(auth, job);
     job_free(job);
-    problem_set(problem, PROBLEM_LIMIT, "", "", "%d passwords are being checked already", AUTH_QUEUE);
-    problem->retry_after_ms = AUTH_RETRY_MS;
-    return false;
+    return refuse_full(AUTH_QUEUE, problem);
+}
+
+/* Whether another sign-in from this address may wait; then it does. */
+static bool enter(struct auth *auth, const char *address, struct problem *problem)
+{
+    lock_hold(auth->lock);
+    const bool may = throttle_enter(auth->throttle, address, auth_now_ms(auth));
+    lock_release(auth->lock);
+    return may || refuse_full(THROTTLE_NETWORK_WAITING, problem);
 }
 
 /* A password that is checked may be any text that fits; one that cannot be right is wrong like others. */
-static bool is_paused(struct auth *auth, const char *user, const char *address, struct problem *problem)
+static bool is_paused(struct auth *auth, enum job_kind kind, const char *user, const char *address,
+                      struct problem *problem)
 {
     lock_hold(auth->lock);
-    const struct throttle_state state = throttle_look(auth->throttle, user, address, auth_now_ms(auth));
+    const struct throttle_state state = look_for_pause(auth, kind, user, address);
     lock_release(auth->lock);
     return state.waits_ms && !refuse_paused(&state, problem);
 }
@@ -306,7 +359,8 @@ bool auth_sign_in(struct auth *auth, const char *user, const char *password, con
     if (strlen(user) > IDENTITY_MAX_USER || strlen(password) > AUTH_MAX_PASSWORD)
         return problem_set(problem, PROBLEM_VALIDATION, "", "length",
                            "a user has at most %d bytes, a password at most %d", IDENTITY_MAX_USER, AUTH_MAX_PASSWORD);
-    if (!is_read(auth, problem) || is_paused(auth, user, address, problem))
+    if (!is_read(auth, problem) || is_paused(auth, JOB_SIGN_IN, user, address, problem) ||
+        !enter(auth, address, problem))
         return false;
     struct job *job = make_job(JOB_SIGN_IN, user, password, done, context);
     mem_put_text(job->address, sizeof job->address, address);
@@ -323,7 +377,7 @@ bool auth_confirm(struct auth *auth, const struct identity *identity, const char
     if (strlen(password) > AUTH_MAX_PASSWORD)
         return problem_set(problem, PROBLEM_VALIDATION, "/password", "length", "a password has at most %d bytes",
                            AUTH_MAX_PASSWORD);
-    if (is_paused(auth, identity->user, identity->address, problem))
+    if (is_paused(auth, JOB_CONFIRM, identity->user, identity->address, problem))
         return false;
     struct job *job = make_job(JOB_CONFIRM, identity->user, password, done, context);
     job->identity = *identity;

@@ -60,16 +60,25 @@ void api_session(struct api *api, struct call *call)
 
 /* ---- with a password -------------------------------------------------------------------------------------------- */
 
-static void record(struct api *api, const struct call *call, const char *action, const char *user, const char *why)
+static void record(struct api *api, const struct call *call, const char *action, const char *user)
 {
     cJSON *detail = cJSON_CreateObject();
     cJSON_AddStringToObject(detail, "user", user);
-    if (why)
-        cJSON_AddStringToObject(detail, "why", why);
     struct identity who = call->identity;
     if (!who.user[0])
         (void)snprintf(who.user, sizeof who.user, "%s", user);
     net_audit_by(api->net, &who, call->client, "", "", action, detail);
+}
+
+/* Records a password that was refused: anybody may send many, so equal ones are one row a minute. user: "" where it is
+ * no user's name, so all such of an address are equal. */
+static void record_refused(const struct api_waiting *waiting, const char *action, const char *user)
+{
+    const char *code = waiting->answer.problem.code;
+    struct identity who = waiting->call->identity;
+    if (!who.user[0])
+        (void)snprintf(who.user, sizeof who.user, "%s", user);
+    net_audit_often(waiting->api->net, &who, waiting->call->client, "", "", action, code[0] ? code : "not-now", true);
 }
 
 static void signed_in(struct api_waiting *waiting)
@@ -79,11 +88,11 @@ static void signed_in(struct api_waiting *waiting)
     if (waiting->answer.problem.type != PROBLEM_NONE) {
         /* a name that is no user's may be a password in the wrong field */
         const char *user = auth_has_user(waiting->api->auth, waiting->user) ? waiting->user : "";
-        record(waiting->api, call, "sign-in-refused", user, waiting->answer.problem.code);
+        record_refused(waiting, "sign-in-refused", user);
         call_answer_problem(call, &waiting->answer.problem);
         return;
     }
-    record(waiting->api, call, "sign-in", waiting->user, NULL);
+    record(waiting->api, call, "sign-in", waiting->user);
     auth_cookie(waiting->answer.secret, waiting->is_secure_cookie, cookie);
     call_add_header(call, "Set-Cookie", cookie);
     auth_wipe(cookie, sizeof cookie);
@@ -116,7 +125,7 @@ void api_session_begin(struct api *api, struct call *call)
 static void confirmed(struct api_waiting *waiting)
 {
     if (waiting->answer.problem.type != PROBLEM_NONE) {
-        record(waiting->api, waiting->call, "confirm-refused", waiting->user, waiting->answer.problem.code);
+        record_refused(waiting, "confirm-refused", waiting->user);
         call_answer_problem(waiting->call, &waiting->answer.problem);
         return;
     }
@@ -144,7 +153,7 @@ static void first_made(struct api_waiting *waiting)
         call_answer_problem(waiting->call, &waiting->answer.problem);
         return;
     }
-    record(waiting->api, waiting->call, "user-first", waiting->user, NULL);
+    record(waiting->api, waiting->call, "user-first", waiting->user);
     call_answer_nothing(waiting->call, 204);
 }
 
@@ -177,7 +186,7 @@ void api_session_end(struct api *api, struct call *call)
 {
     char cookie[AUTH_MAX_COOKIE];
     if (call->identity.source == IDENTITY_PASSWORD) {
-        record(api, call, "sign-out", call->identity.user, NULL);
+        record(api, call, "sign-out", call->identity.user);
         auth_session_end(api->auth, call->identity.session);
         net_session_over(api->net, call->identity.session);
     }
@@ -212,7 +221,7 @@ void api_signin_proxy(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    record(api, call, "sign-in", call->identity.user, NULL);
+    record(api, call, "sign-in", call->identity.user);
     call_add_header(call, "Location", path ? path : "/signin/done");
     call_answer_nothing(call, 303);
 }

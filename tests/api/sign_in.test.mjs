@@ -95,7 +95,16 @@ describe('signing in here', () => {
       const seconds = Number(paused.headers.get('retry-after'));
       assert.ok(seconds > 50 && seconds <= 60, `${seconds}`);
     }
-    assert.equal((await signIn('ann')).status, 201);
+    const mine = cookieOf(await signIn('ann'));
+    const { rows } = await until(
+      async () => (await api('/audit?action=sign-in-refused', 'GET', undefined, mine)).json,
+      ({ rows }) => rows.length >= 2,
+    );
+    const told = rows.map(({ user, result, detail }) => [user, result, detail.what]);
+    assert.deepEqual(told.sort(), [
+      ['', 'refused', 'password'], // a name that is nobody's may be a password
+      ['bob', 'refused', 'password'],
+    ]); // and more of the same, as a number, after a minute
   });
 
   it('the password is given again to confirm', async () => {
