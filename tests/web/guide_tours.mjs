@@ -366,6 +366,7 @@ export const tours = {
     await toRegion(page, 'tumour');
     await page.locator('#picture-1').focus();
     await button(page, 'Snapshot').click();
+    await page.getByRole('menuitem', { name: 'Add it to the report to print' }).waitFor();
     await look(page);
     await page.getByRole('menuitem', { name: 'Add it to the report to print' }).click();
     await page.getByText('In the report to print: 1 picture').waitFor();
