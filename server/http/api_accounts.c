@@ -126,37 +126,29 @@ static void password_set(struct api_waiting *waiting)
     answer_done(waiting, "user-password");
 }
 
+static bool ask_user_add(struct api_waiting *waiting, const struct api_text *texts, struct problem *problem)
+{
+    return auth_user_add(waiting->api->auth, texts[0].value, texts[1].value, texts[3].value, texts[2].value, api_waited,
+                         waiting, problem);
+}
+
 void api_user_add(struct api *api, struct call *call)
 {
     struct api_text texts[] = {
         { .name = "user" }, { .name = "name" }, { .name = "password" }, { .name = "groups", .is_optional = true }
     };
-    struct problem problem = { 0 };
-    if (!api_may_sign_in(api, call, true))
-        return;
-    cJSON *body = api_texts_read(call, texts, 4);
-    if (!body)
-        return;
-    struct api_waiting *waiting = api_wait(api, call, texts[0].value, user_added);
-    const bool was_taken = auth_user_add(api->auth, texts[0].value, texts[1].value, texts[3].value, texts[2].value,
-                                         api_waited, waiting, &problem);
-    api_texts_finish(body);
-    api_wait_or_answer(waiting, was_taken, &problem);
+    api_ask_passwords(api, call, texts, 4, &(struct api_asking){ ask_user_add, user_added });
+}
+
+static bool ask_user_password(struct api_waiting *waiting, const struct api_text *texts, struct problem *problem)
+{
+    return auth_user_password(waiting->api->auth, texts[0].value, texts[1].value, api_waited, waiting, problem);
 }
 
 void api_user_password(struct api *api, struct call *call)
 {
     struct api_text texts[] = { { .name = "user" }, { .name = "password" } };
-    struct problem problem = { 0 };
-    if (!api_may_sign_in(api, call, true))
-        return;
-    cJSON *body = api_texts_read(call, texts, 2);
-    if (!body)
-        return;
-    struct api_waiting *waiting = api_wait(api, call, texts[0].value, password_set);
-    const bool was_taken = auth_user_password(api->auth, texts[0].value, texts[1].value, api_waited, waiting, &problem);
-    api_texts_finish(body);
-    api_wait_or_answer(waiting, was_taken, &problem);
+    api_ask_passwords(api, call, texts, 2, &(struct api_asking){ ask_user_password, password_set });
 }
 
 void api_user_disable(struct api *api, struct call *call)

@@ -26,7 +26,16 @@ static bool take_text(const cJSON *item, struct api_text *texts, size_t n, struc
     return true;
 }
 
-cJSON *api_texts_read(struct call *call, struct api_text *texts, size_t n)
+static void finish_texts(cJSON *body)
+{
+    for (cJSON *item = body->child; item; item = item->next)
+        if (cJSON_IsString(item))
+            auth_wipe(item->valuestring, strlen(item->valuestring));
+    cJSON_Delete(body);
+}
+
+/* NULL: the call was answered. The call's own copy of the body is wiped. */
+static cJSON *read_texts(struct call *call, struct api_text *texts, size_t n)
 {
     static const char *const media_types[] = { "application/json", NULL };
     struct problem problem = { 0 };
@@ -49,17 +58,9 @@ cJSON *api_texts_read(struct call *call, struct api_text *texts, size_t n)
     }
     if (is_right)
         return body;
-    api_texts_finish(body);
+    finish_texts(body);
     call_answer_problem(call, &problem);
     return NULL;
-}
-
-void api_texts_finish(cJSON *body)
-{
-    for (cJSON *item = body->child; item; item = item->next)
-        if (cJSON_IsString(item))
-            auth_wipe(item->valuestring, strlen(item->valuestring));
-    cJSON_Delete(body);
 }
 
 bool api_may_sign_in(struct api *api, struct call *call, bool is_private)
@@ -74,17 +75,6 @@ bool api_may_sign_in(struct api *api, struct call *call, bool is_private)
         return true;
     call_answer_problem(call, &problem);
     return false;
-}
-
-struct api_waiting *api_wait(struct api *api, struct call *call, const char *user,
-                             void (*then)(struct api_waiting *waiting))
-{
-    struct api_waiting *waiting = mem_new(sizeof *waiting);
-    waiting->api = api;
-    waiting->call = call;
-    waiting->then = then;
-    mem_put_text(waiting->user, sizeof waiting->user, user);
-    return waiting;
 }
 
 static void waiting_free(struct api_waiting *waiting)
@@ -108,10 +98,32 @@ void api_waited(void *context, const struct auth_answer *answer)
     net_post(waiting->api->net, answer_waiting, waiting);
 }
 
-void api_wait_or_answer(struct api_waiting *waiting, bool was_taken, const struct problem *problem)
+static const char *user_of(const struct call *call, const struct api_text *texts, size_t n)
 {
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(texts[i].name, "user") == 0)
+            return texts[i].value;
+    return call->identity.user;
+}
+
+void api_ask_passwords(struct api *api, struct call *call, struct api_text *texts, size_t n,
+                       const struct api_asking *asking)
+{
+    struct problem problem = { 0 };
+    if (!api_may_sign_in(api, call, true))
+        return;
+    cJSON *body = read_texts(call, texts, n);
+    if (!body)
+        return;
+    struct api_waiting *waiting = mem_new(sizeof *waiting);
+    waiting->api = api;
+    waiting->call = call;
+    waiting->then = asking->then;
+    mem_put_text(waiting->user, sizeof waiting->user, user_of(call, texts, n));
+    const bool was_taken = asking->ask(waiting, texts, &problem);
+    finish_texts(body);
     if (was_taken)
         return;
-    call_answer_problem(waiting->call, problem);
+    call_answer_problem(call, &problem);
     waiting_free(waiting);
 }

@@ -105,21 +105,17 @@ static bool is_by_https(const struct call *call)
     return call->is_https || (call->origin && strncasecmp(call->origin, "https://", 8) == 0);
 }
 
+static bool ask_sign_in(struct api_waiting *waiting, const struct api_text *texts, struct problem *problem)
+{
+    waiting->is_secure_cookie = is_by_https(waiting->call);
+    return auth_sign_in(waiting->api->auth, texts[0].value, texts[1].value, waiting->call->client,
+                        waiting->is_secure_cookie, api_waited, waiting, problem);
+}
+
 void api_session_begin(struct api *api, struct call *call)
 {
     struct api_text texts[] = { { .name = "user" }, { .name = "password" } };
-    struct problem problem = { 0 };
-    if (!api_may_sign_in(api, call, true))
-        return;
-    cJSON *body = api_texts_read(call, texts, 2);
-    if (!body)
-        return;
-    struct api_waiting *waiting = api_wait(api, call, texts[0].value, signed_in);
-    waiting->is_secure_cookie = is_by_https(call);
-    const bool was_taken = auth_sign_in(api->auth, texts[0].value, texts[1].value, call->client,
-                                        waiting->is_secure_cookie, api_waited, waiting, &problem);
-    api_texts_finish(body);
-    api_wait_or_answer(waiting, was_taken, &problem);
+    api_ask_passwords(api, call, texts, 2, &(struct api_asking){ ask_sign_in, signed_in });
 }
 
 static void confirmed(struct api_waiting *waiting)
@@ -132,19 +128,15 @@ static void confirmed(struct api_waiting *waiting)
     call_answer_json(waiting->call, 200, session_json(waiting->api, &waiting->answer.identity));
 }
 
+static bool ask_confirm(struct api_waiting *waiting, const struct api_text *texts, struct problem *problem)
+{
+    return auth_confirm(waiting->api->auth, &waiting->call->identity, texts[0].value, api_waited, waiting, problem);
+}
+
 void api_session_confirm(struct api *api, struct call *call)
 {
     struct api_text texts[] = { { .name = "password" } };
-    struct problem problem = { 0 };
-    if (!api_may_sign_in(api, call, true))
-        return;
-    cJSON *body = api_texts_read(call, texts, 1);
-    if (!body)
-        return;
-    struct api_waiting *waiting = api_wait(api, call, call->identity.user, confirmed);
-    const bool was_taken = auth_confirm(api->auth, &call->identity, texts[0].value, api_waited, waiting, &problem);
-    api_texts_finish(body);
-    api_wait_or_answer(waiting, was_taken, &problem);
+    api_ask_passwords(api, call, texts, 1, &(struct api_asking){ ask_confirm, confirmed });
 }
 
 static void first_made(struct api_waiting *waiting)
@@ -157,20 +149,16 @@ static void first_made(struct api_waiting *waiting)
     call_answer_nothing(waiting->call, 204);
 }
 
+static bool ask_first(struct api_waiting *waiting, const struct api_text *texts, struct problem *problem)
+{
+    return auth_user_first(waiting->api->auth, texts[0].value, texts[1].value, texts[2].value, texts[3].value,
+                           api_waited, waiting, problem);
+}
+
 void api_session_first(struct api *api, struct call *call)
 {
     struct api_text texts[] = { { .name = "token" }, { .name = "user" }, { .name = "name" }, { .name = "password" } };
-    struct problem problem = { 0 };
-    if (!api_may_sign_in(api, call, true))
-        return;
-    cJSON *body = api_texts_read(call, texts, 4);
-    if (!body)
-        return;
-    struct api_waiting *waiting = api_wait(api, call, texts[1].value, first_made);
-    const bool was_taken = auth_user_first(api->auth, texts[0].value, texts[1].value, texts[2].value, texts[3].value,
-                                           api_waited, waiting, &problem);
-    api_texts_finish(body);
-    api_wait_or_answer(waiting, was_taken, &problem);
+    api_ask_passwords(api, call, texts, 4, &(struct api_asking){ ask_first, first_made });
 }
 
 /* ---- without ---------------------------------------------------------------------------------------------------- */
