@@ -121,7 +121,7 @@ static struct item *find_to_change(const struct room *room, const struct member 
         problem_set(problem, PROBLEM_NOT_FOUND, "/item", "", "there is no item \"%.63s\", or not any more", id);
         return NULL;
     }
-    if (!record_may_change(room, item, problem) || !acceptance_may(room, member, item->kind, problem))
+    if (!record_may_change(room, member, item, problem) || !acceptance_may(room, member, item->kind, problem))
         return NULL;
     if (!author_may(room, member, item, problem) || is_being_kept(room, item, problem))
         return NULL;

@@ -212,15 +212,20 @@ cJSON *record_read_signature(const struct room *room, const cJSON *body, const s
 
 /* ---- rights ----------------------------------------------------------------------------------------------------- */
 
+/* Guests look, point and, by their link, write notes; a record is of people who are known. */
+static bool is_no_guest(const struct member *member, const char *where, struct problem *problem)
+{
+    return !member->is_guest ||
+           problem_set(problem, PROBLEM_FORBIDDEN, where, "role", "a guest writes nothing into the record of a review");
+}
+
 /* Without sign-in, where a name is no more than a word, presenters alone decide. */
 static bool may_decide(const struct room *room, const struct member *member, struct problem *problem)
 {
     const bool is_machine = who_is_machine(who_acts(room, member));
     const enum wire_member_role least = is_machine ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_REVIEWER;
-    if (!member->is_guest && role_rank(member->role) >= role_rank(least))
+    if (role_rank(member->role) >= role_rank(least))
         return true;
-    if (member->is_guest)
-        return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role", "a guest decides and signs nothing");
     return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role",
                        "only a member of role presenter writes down what was decided");
 }
@@ -234,8 +239,8 @@ static bool may_sign(const struct room *room, const struct member *member, struc
         return !room->is_open_to_everybody ||
                problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "open",
                            "this server is open to everybody who reaches it: nothing can be signed");
-    if (member->is_guest || !who_is_user(who))
-        return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role", "a guest decides and signs nothing");
+    if (!who_is_user(who))
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "role", "only who has signed in signs");
     if (who->source == IDENTITY_TOKEN || who->proved_ms <= 0)
         return problem_set(problem, PROBLEM_FORBIDDEN, "/kind", "unproved",
                            "this sign-in does not say when the person proved who they are, so nothing can be signed");
@@ -248,6 +253,8 @@ bool record_may_write(const struct room *room, const struct member *member, enum
 {
     if (!is_of_record(kind))
         return true;
+    if (!is_no_guest(member, "/kind", problem))
+        return false;
     if (kind == WIRE_ITEM_KIND_DECISION && !may_decide(room, member, problem))
         return false;
     if (kind == WIRE_ITEM_KIND_SIGNATURE && !may_sign(room, member, problem))
@@ -266,8 +273,11 @@ bool record_may_write(const struct room *room, const struct member *member, enum
     return !is_append_only(kind) || audit_has_place(room, problem);
 }
 
-bool record_may_change(const struct room *room, const struct item *item, struct problem *problem)
+bool record_may_change(const struct room *room, const struct member *member, const struct item *item,
+                       struct problem *problem)
 {
+    if (is_of_record(item->kind) && !is_no_guest(member, "/item", problem))
+        return false;
     if (is_append_only(item->kind))
         return problem_set(problem, PROBLEM_FORBIDDEN, "/item", "append-only",
                            "a %s is never changed or deleted: write another one that corrects it",

@@ -25,8 +25,9 @@ NODISCARD cJSON *record_read_signature(const struct room *room, const cJSON *bod
 /* Whether this member may write an item of this kind now; true for kinds that are not of the record. */
 bool record_may_write(const struct room *room, const struct member *member, enum wire_item_kind kind,
                       struct problem *problem);
-/* Whether an item may be changed or deleted at all; true for kinds that are not of the record. */
-bool record_may_change(const struct room *room, const struct item *item, struct problem *problem);
+/* Whether this member may change or delete an item, if anybody may; true for kinds that are not of the record. */
+bool record_may_change(const struct room *room, const struct member *member, const struct item *item,
+                       struct problem *problem);
 /* Records in the audit that `by` put this item: its id, version and the SHA-256 of its row; of a decision or signature
  * also its words, and the SHA-256 of the record of that moment (record; NULL: there is none). */
 void record_audit(struct room *room, const struct item *item, const struct member *by, const char *record);

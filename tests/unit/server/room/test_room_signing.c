@@ -143,13 +143,26 @@ static void a_proxy_that_does_not_tell_the_time_signs_never(void **state)
     assert_int_equal(n_of(WIRE_ITEM_KIND_SIGNATURE), 0);
 }
 
-static void a_guest_neither_decides_nor_signs(void **state)
+static void a_guest_neither_decides_nor_signs_nor_ticks_the_checklist(void **state)
 {
+    static const char check[] = "{\"entry\":\"identity\",\"text\":\"Who it is\",\"state\":\"ok\"}";
     (void)state;
+    put(&cem, "check", check);
+    assert_string_equal(code(&cem), "role");
+    assert_int_equal(n_of(WIRE_ITEM_KIND_CHECK), 0);
+    put(&ben, "check", check);
+    assert_int_equal(n_of(WIRE_ITEM_KIND_CHECK), 1);
+    cJSON *item = newest(&ben);
+    fake_say(&fake, &cem, "{\"type\":\"item.delete\",\"item\":\"%s\",\"version\":1}", json_text(item, "id"));
+    fake_say(&fake, &cem, "{\"type\":\"item.put\",\"kind\":\"check\",\"item\":\"%s\",\"version\":1,\"body\":%s}",
+             json_text(item, "id"), check);
+    cJSON_Delete(item);
+    assert_int_equal(fake_n_heard(&cem, "problem"), 3);
+    assert_int_equal(n_of(WIRE_ITEM_KIND_CHECK), 1);
     put(&cem, "signature", signature);
     assert_string_equal(code(&cem), "role");
     put(&cem, "decision", "{\"decision\":\"accept\"}");
-    assert_int_equal(fake_n_heard(&cem, "problem"), 2);
+    assert_int_equal(fake_n_heard(&cem, "problem"), 5);
     assert_int_equal(n_of(WIRE_ITEM_KIND_SIGNATURE) + n_of(WIRE_ITEM_KIND_DECISION), 0);
 }
 
@@ -376,7 +389,7 @@ int main(void)
         SIGNING_TEST(a_signature_is_of_the_person_signed_in_whatever_name_is_given),
         SIGNING_TEST(who_proved_too_long_ago_confirms_first),
         SIGNING_TEST(a_proxy_that_does_not_tell_the_time_signs_never),
-        SIGNING_TEST(a_guest_neither_decides_nor_signs),
+        SIGNING_TEST(a_guest_neither_decides_nor_signs_nor_ticks_the_checklist),
         SIGNING_TEST(a_reviewer_decides_and_an_observer_does_not),
         SIGNING_TEST(without_sign_in_a_signature_says_so),
         SIGNING_TEST(a_script_writes_under_its_users_name_and_signs_nothing),

@@ -10,7 +10,7 @@ import { Record } from './record.js';
 import { saveBlob } from '../../room/exports.js';
 import { icon } from '../../parts/icons.js';
 import { styled } from '../../parts/lazy.js';
-import { mayWrite, meIn } from '../notes/note_words.js';
+import { mayWrite as mayWriteNotes, meIn } from '../notes/note_words.js';
 
 const command = 'beamroomd --verify-audit';
 const records = new WeakMap(); // by room
@@ -18,6 +18,9 @@ const failed = signal({}); // by form: why the server refused what was last writ
 const codes = new Map(); // by form: the code of that refusal
 const kept = signal({}); // by form: that it is being kept until what was written is on the server's disk, then since when
 const comments = new Map(); // by entry: what is being written about it
+
+/** Whether this member may write into the record; a guest may write notes at most. */
+const mayWrite = (room) => mayWriteNotes(room) && !meIn(room).is_guest;
 
 function recordOf({ room }) {
   if (!records.has(room)) records.set(room, new Record(room, globalThis));
@@ -162,8 +165,8 @@ function decided({ room }, rows, revision) {
     if (await write(room, 'decision', 'decision', { decision: data.decision, text: data.text.trim(), corrects: data.corrects ?? '' }))
       form.reset();
   };
-  const { user, is_guest: isGuest, role } = meIn(room);
-  const isMine = mayWrite(room) && !isGuest && (Boolean(user) || role === 'presenter'); // without sign-in presenters alone decide
+  const { user, role } = meIn(room);
+  const isMine = mayWrite(room) && (Boolean(user) || role === 'presenter'); // without sign-in presenters alone decide
   return html`<section class="block"><h3>${say.decision}</h3>${lines(list, say.decisions, decisionWords)}
     ${
       isMine
@@ -195,7 +198,7 @@ function signed({ room, session }, rows, revision) {
       session.value
         ? html`${session.value.signing({
             room: room.id,
-            isGuest: meIn(room).is_guest || !mayWrite(room),
+            isGuest: !mayWrite(room),
             fields: html`<label>${say.meaning} <select name="meaning">${meanings.map(option)}</select></label>${corrects(list, signatureOf)}`,
             note: html`<p class="note">${say.lineStays}</p>`,
             write: (body) => write(room, 'signature', 'signature', body).then((isDone) => isDone || codes.get('signature')),

@@ -28,7 +28,7 @@ export const say = sentences('session.later', {
   guestIs: 'Your link lets you into the room {room}, and nowhere else.',
   guestName: 'Your name, as the others will see it',
   guestNote:
-    'Guests see masked identities, look and point, and write notes only if the link lets them. They do not present, decide or sign, and are marked “guest” to everybody and in the record.',
+    'Guests see masked identities, look and point, and write notes only if the link lets them. They do not present, write nothing into checklist, decisions and signatures, and are marked “guest” to everybody and in the record.',
   noGuest: 'This link lets in only people who sign in.',
   research: 'Research use. Not for diagnosis or treatment decisions.',
   done: 'You are signed in. This window can be closed.',
