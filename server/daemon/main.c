@@ -395,6 +395,7 @@ static bool serve(struct options *options, struct error *err)
                   .recording_speed = (double)options->recording_speed,
                   .admits_guests = options->admits_guests,
                   .is_open_to_everybody = options->is_open },
+        .is_alone = !options->is_open && !options_signs_in(options),
         .allowed_origin = options->allowed_origin,
         .database = database,
         .auth = service.sign_in.auth,

@@ -59,6 +59,8 @@ static const struct {
     { "PATCH", "/api/v1/rooms/{room}/scene", api_room_scene_patch },
     { "GET", "/api/v1/rooms/{room}/members", api_room_members },
     { "DELETE", "/api/v1/rooms/{room}/members/{member}", api_room_member_remove },
+    { "GET", "/api/v1/rooms/{room}/identity", api_room_identity },
+    { "POST", "/api/v1/rooms/{room}/members/{member}/identity", api_room_wall_identity },
     { "GET", "/api/v1/rooms/{room}/people", api_room_people },
     { "PATCH", "/api/v1/rooms/{room}/people", api_room_people_patch },
     { "GET", "/api/v1/rooms/{room}/notes", api_room_notes },

@@ -38,6 +38,8 @@ void api_job_cancel(struct api *api, struct call *call);
 void api_plan_render(struct api *api, struct call *call);
 void api_plan_surface(struct api *api, struct call *call);
 void api_plan_identity(struct api *api, struct call *call);
+void api_room_identity(struct api *api, struct call *call);
+void api_room_wall_identity(struct api *api, struct call *call);
 
 void api_rooms(struct api *api, struct call *call);
 void api_room_new(struct api *api, struct call *call);

@@ -1,5 +1,5 @@
-/* GET /plans/{plan}/identity: the only answer that names patients in full. As every answer of the API it is not stored
- * (Cache-Control: no-store). */
+/* GET /plans/{plan}/identity, and GET /rooms/{room}/identity for a wall on which somebody has it shown: the only
+ * answers that name patients in full. As every answer of the API they are not stored (Cache-Control: no-store). */
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -31,11 +31,13 @@ static void audit_identity(struct call *call)
     struct room *room = room_id && api_access_sees_room(call->api, call, room_id) ? net_room_find(net, room_id) : NULL;
     if (call->status >= 300)
         return;
-    if (room && strcmp(room_plan_id(room), call->ids[0]) == 0)
+    if (room && strcmp(room_plan_id(room), call->ids[0]) == 0) {
+        room_identity_read(room, call->member, clock_now_us());
         room_audit_call(room, &call->identity, call->member, call->client, "identity", cJSON_CreateObject(), false,
                         clock_now_us());
-    else
+    } else {
         net_audit_by(net, &call->identity, call->client, "", call->ids[0], "identity", cJSON_CreateObject());
+    }
 }
 
 void api_plan_identity(struct api *api, struct call *call)
@@ -52,4 +54,74 @@ void api_plan_identity(struct api *api, struct call *call)
     call->answering = audit_identity;
     packet_init(&question, PACKET_IDENTITY);
     api_query_send(api, call, call->ids[0], &question, api_query_answer);
+}
+
+/* ---- on the walls of a room ------------------------------------------------------------------------------------- */
+
+static void audit_wall(struct call *call)
+{
+    struct room *room = net_room_find(((struct api *)call->api)->net, call->ids[0]);
+    if (room && call->status < 300)
+        room_audit_call(room, &call->identity, call->member, call->client, "identity", cJSON_CreateObject(), false,
+                        clock_now_us());
+}
+
+void api_room_identity(struct api *api, struct call *call)
+{
+    const struct room *room = api_find_room(api, call);
+    struct problem problem;
+    struct packet question;
+    if (!room)
+        return;
+    if (!room_wall_is_naming(room, call->member)) {
+        problem_set(&problem, PROBLEM_FORBIDDEN, "", "identity",
+                    "nobody has the patient named on this wall: send Beamroom-Member of a wall that names the patient");
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!api_audit_has_place(api, &problem)) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    call->answering = audit_wall;
+    packet_init(&question, PACKET_IDENTITY);
+    api_query_send(api, call, room_plan_id(room), &question, api_query_answer);
+}
+
+static bool read_shown(struct call *call, bool *is_shown)
+{
+    static const char *const media_types[] = { "application/json", NULL };
+    struct problem problem;
+    cJSON *body;
+    if (!call_read_object(call, media_types, &body))
+        return false;
+    const cJSON *shown = cJSON_GetObjectItemCaseSensitive(body, "shown");
+    const bool is_right = cJSON_IsBool(shown) && cJSON_GetArraySize(body) == 1;
+    *is_shown = cJSON_IsTrue(shown);
+    cJSON_Delete(body);
+    if (!is_right) {
+        problem_set(&problem, PROBLEM_VALIDATION, "/shown", "type", "expected is one field, shown: true or false");
+        call_answer_problem(call, &problem);
+    }
+    return is_right;
+}
+
+void api_room_wall_identity(struct api *api, struct call *call)
+{
+    struct room *room = api_find_room(api, call);
+    struct problem problem;
+    bool is_shown;
+    if (!room)
+        return;
+    if (!may_read(api, call, &problem)) {
+        call_answer_problem(call, &problem);
+        return;
+    }
+    if (!read_shown(call, &is_shown))
+        return;
+    if (room_wall_name(room, call->ids[1], is_shown, &call->identity, call->member, call->client, clock_now_us(),
+                       &problem))
+        call_answer_nothing(call, 204);
+    else
+        call_answer_problem(call, &problem);
 }

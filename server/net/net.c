@@ -528,6 +528,7 @@ struct net *net_create(const struct net_options *options, struct error *err)
     net->room_idle_close_s = options->room_idle_close_s;
     net->limits = options->room;
     net->plan_rights = (struct plan_rights){ .access = options->access, .auth = options->auth };
+    net->is_alone = options->is_alone;
     net->is_still = options->is_still;
     net->rights = options->rights;
     net->auth = options->auth;

@@ -32,6 +32,7 @@ struct net_options {
                                    used it or rooms are not kept; 0: never */
     struct room_limits room;
     const struct access *access; /* grants; outlives the net. NULL: nobody signs in */
+    bool is_alone;               /* nobody signs in, and only this machine is answered */
     /* Whether the identity of a connection still holds; proved_ms is brought up to date. NULL: it does. */
     bool (*is_still)(void *context, struct identity *who);
     void *rights; /* context of it; net thread */

@@ -155,6 +155,7 @@ struct net {
     uint64_t n_audit_lost;  /* rows that found neither disk nor memory since the last row that did */
     struct net_audit_head audit_head;
     struct plan_rights plan_rights;
+    bool is_alone; /* as in struct net_options */
     bool (*is_still)(void *context, struct identity *who);
     void *rights;
     void (*identities_looked)(void *context); /* net_on_identities; NULL: nobody asks */

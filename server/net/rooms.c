@@ -47,6 +47,20 @@ static bool role_of(void *context, const struct room *room, const struct identit
     return plan_rights_role(&net->plan_rights, net->fleet, who, room_plan_id(room), role);
 }
 
+static bool is_loopback(const char *client)
+{
+    return strncmp(client, "127.", 4) == 0 || strcmp(client, "::1") == 0;
+}
+
+static bool sees_identity(void *context, const struct room *room, void *connection)
+{
+    const struct net *net = context;
+    const struct identity *who = identity(context, connection);
+    if (who->source == IDENTITY_MACHINE)
+        return net->is_alone && is_loopback(ws_client(connection));
+    return plan_rights_check(&net->plan_rights, net->fleet, who, ACCESS_IDENTITY, room_plan_id(room));
+}
+
 static void send_text(void *context, void *connection, const char *text)
 {
     (void)context;
@@ -114,6 +128,7 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .identity = identity,
                                               .caller = keep_caller,
                                               .role_of = role_of,
+                                              .sees_identity = sees_identity,
                                               .close_signed_out = close_signed_out,
                                               .context = net,
                                               .item_changed = keep_item_changed,

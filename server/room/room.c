@@ -203,6 +203,20 @@ static void set_state(struct room *room, enum wire_renderer_state state, const c
     room->renderer.problem = problem ? *problem : (struct problem){ 0 };
 }
 
+/* The plan was read anew: it may be another patient's. */
+static void forget_identity(struct room *room)
+{
+    bool was_named = false;
+    for (int i = 0; i < room->members.n; i++) {
+        struct member *member = room->members.list[i];
+        was_named = was_named || member->is_naming;
+        member->is_naming = false;
+        member->read_identity_us = 0;
+    }
+    if (was_named)
+        send_members(room);
+}
+
 bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON *default_scene, const char *gl,
                      bool is_software, int64_t now_us)
 {
@@ -219,6 +233,7 @@ bool room_plan_ready(struct room *room, const cJSON *plan_document, const cJSON 
         streams_restart_pace(room);
     }
     set_state(room, WIRE_RENDERER_STATE_READY, NULL, 0, NULL);
+    forget_identity(room);
     acceptances_revision(room, "");
     streams_forget_requests(room);
     streams_changed(room, true);

@@ -123,6 +123,15 @@ NODISCARD bool room_act_may(const struct room *room, const char *member, enum wi
 void room_act(struct room *room, const struct room_act *act, int64_t now_us);
 /* {presenter, locked, requests}, as in the message control. */
 NODISCARD cJSON *room_control(const struct room *room);
+/* The wall of this id names the patient from now on, or does not any more; as long as it is connected and the plan's
+ * files are the same. Whoever asks has the right identity on the plan. False with problem not-found. caller, address:
+ * as in room_audit_call. */
+NODISCARD bool room_wall_name(struct room *room, const char *wall, bool is_named, const struct identity *who,
+                              const char *caller, const char *address, int64_t now_us, struct problem *problem);
+/* Whether the caller is a wall that names the patient. */
+bool room_wall_is_naming(const struct room *room, const char *caller);
+/* This member of the room has just read whom the plan is of. */
+void room_identity_read(struct room *room, const char *caller, int64_t now_us);
 /* [{id, role, expires_s, one_use, used}]: the links that let somebody in; id is room_link_digits of the token. */
 NODISCARD cJSON *room_links(struct room *room, int64_t now_us);
 /* The link lets nobody in any more; who came in by it stays. by: as member in room_call_may. False: there is no such

@@ -143,6 +143,68 @@ test('identity is told in full, is never stored, and each time is a row of the a
   assert.equal(auditRows().length, 2); /* what was refused gave nothing away */
 });
 
+test('a wall names the patient when somebody with the right has it so, alone, until its connection ends', async () => {
+  const [ann] = clients;
+  const base = `${api}/rooms/${room}`;
+  assert.equal(ann.welcome.sees_identity, true);
+  const link = (await call(`${base}/links`, 'POST', { role: 'wall', expires_s: 600 }, ann.headers)).json.token;
+  const enter = async () => {
+    const client = await Client.enter(daemon.url, room, { link });
+    clients.push(client);
+    return client;
+  };
+  const [wall, hall] = [await enter(), await enter()];
+  const read = (client) => call(`${base}/identity`, 'GET', undefined, client.headers);
+  const name = (of, shown, headers = ann.headers) => call(`${base}/members/${of.welcome.member}/identity`, 'POST', { shown }, headers);
+  const naming = async () => (await call(`${base}/members`)).json.members.filter(({ is_naming: is }) => is).map(({ id }) => id);
+  assert.deepEqual([(await read(wall)).status, (await read(ann)).json.code], [403, 'identity']);
+  assert.equal((await name(wall, 'yes')).json.pointer, '/shown');
+  assert.equal((await name(ann, true)).status, 404); /* no wall */
+  assert.deepEqual(await naming(), []);
+  assert.equal((await name(wall, true)).status, 204);
+  assert.deepEqual(await naming(), [wall.welcome.member]);
+  const told = await read(wall);
+  assert.deepEqual([told.status, told.headers.get('cache-control'), told.json.patients[0].name], [200, 'no-store', 'Zweifel^Quirin']);
+  for (const client of [hall, ann]) assert.equal((await read(client)).status, 403);
+  assert.equal((await call(`${base}/identity`)).status, 403);
+  assert.equal((await name(wall, false)).status, 204);
+  assert.equal((await read(wall)).status, 403);
+  assert.equal((await name(wall, true)).status, 204);
+  wall.cut();
+  await until(naming, (ids) => ids.length === 0);
+  assert.equal((await name(wall, true)).status, 404); /* it has no seat that waits */
+  for (const { member, headers } of [hall.welcome].map((welcome) => ({ ...welcome, headers: ann.headers }))) {
+    assert.equal((await call(`${base}/members/${member}/identity`, 'POST', { shown: true }, headers)).status, 204);
+    await call(`${api}/plans/case-1/close`, 'POST', {});
+    await openPlan(daemon.url, 'case-1'); /* read anew: it might be another's */
+    await until(naming, (ids) => ids.length === 0);
+  }
+});
+
+test('whom the plan is of is OK by the word of who has read it in this room', async () => {
+  const [ann] = clients;
+  const checks = `${api}/rooms/${room}/checks`;
+  await until(
+    () => call(`${api}/plans/case-1/revision`),
+    ({ status }) => status === 200,
+  );
+  const check = (body, headers) => call(checks, 'POST', { body: { text: 'Whom the plan is of', comment: '', ...body } }, headers);
+  const refused = await check({ entry: 'identity', state: 'ok' }, ann.headers);
+  assert.deepEqual([refused.status, refused.json.code, refused.json.pointer], [403, 'identity', '/body/state']);
+  assert.equal((await call(`${api}/plans/case-1/identity?room=${room}`, 'GET', undefined, ann.headers)).status, 200);
+  const done = await check({ entry: 'identity', state: 'ok' }, ann.headers);
+  assert.deepEqual([done.status, done.json.body?.seen], [201, 'Q. Z. …419'], done.text);
+  const ben = await Client.enter(daemon.url, room, { name: 'Ben' });
+  clients.push(ben);
+  const change = (version, body) =>
+    call(`${checks}/${done.json.id}`, 'PATCH', { version, body: { entry: 'identity', text: 'Whom the plan is of', ...body } }, ben.headers);
+  const said = await change(1, { state: 'ok', comment: 'a word more' }); /* it was OK, and stays so by the first one's word */
+  assert.deepEqual([said.status, said.json.body?.seen], [200, 'Q. Z. …419'], said.text);
+  const doubted = await change(2, { state: 'issue', comment: 'another birth date' });
+  assert.deepEqual([doubted.status, doubted.json.body?.seen], [200, undefined], doubted.text);
+  assert.equal((await change(3, { state: 'ok', comment: '' })).status, 403); /* Ben has not read it */
+});
+
 test('a server that others may reach tells nobody', async () => {
   for (const args of [[], ['--public-name', 'beamroom.example'], ['--listen', '0.0.0.0:0'], ['--trusted-proxy', '127.0.0.1']]) {
     const open = await startDaemon({ plans: [plans], args: ['--stub', '--open-to-everybody', ...args] });
@@ -181,7 +243,7 @@ test('no other answer, and nothing on the disk or in the log, says who the patie
   let nGood = 0;
   for (const [path, routes] of Object.entries(spec.paths)) {
     const { get } = routes;
-    if (!get || path.endsWith('/identity') || /\/(ws|stream|events)$/.test(path)) continue;
+    if (!get || path === '/api/v1/plans/{plan}/identity' || /\/(ws|stream|events)$/.test(path)) continue;
     const address = path.replace(
       /\{(\w+)\}/g,
       (_, name) => ({ plan: 'case-1', room, image: 'ct', region: 'box', level: 'level-1' })[name] ?? 'none',

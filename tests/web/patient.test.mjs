@@ -4,8 +4,9 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { until } from '../api/daemon.mjs';
+import { call, until } from '../api/daemon.mjs';
 import { putDose, putWhole } from '../api/made_dicom.mjs';
+import { Client } from '../api/ws_client.mjs';
 import { axe } from './axe.mjs';
 import { full, missing, shoot, startWorld } from './browser.mjs';
 
@@ -60,6 +61,27 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     await page.getByRole('button', { name: 'Mask it again' }).click();
     await shows(page.locator('.patient-button'), 'Q. Z. …419');
     assert.ok(!(await page.evaluate(() => document.documentElement.outerHTML)).includes('Quirin'));
+  });
+
+  it('a wall of the room names the patient when that is asked for it, and is masked again by the same button', async () => {
+    const room = page.url().split('/').pop();
+    const { token: link } = (await call(`${world.daemon.url}/api/v1/rooms/${room}/links`, 'POST', { role: 'wall', expires_s: 600 })).json;
+    const wall = await Client.enter(world.daemon.url, room, { link });
+    const read = () => call(`${world.daemon.url}/api/v1/rooms/${room}/identity`, 'GET', undefined, wall.headers);
+    if ((await page.locator('.patient-card').count()) === 0) await page.locator('.patient-button').click();
+    await page.getByRole('button', { name: 'On the wall …' }).click();
+    await shows(page.locator('.patient-card'), 'Everybody in the room will read the name.');
+    assert.deepEqual(await axe(page), []);
+    await page.getByRole('button', { name: 'Show the name there' }).click();
+    await page.getByRole('button', { name: 'Mask it there' }).waitFor();
+    assert.equal((await read()).json.patients[0].name, 'Zweifel^Quirin');
+    await shoot(page, 'patient-wall');
+    await shows(page.locator('.patient-button'), 'Q. Z. …419'); // the page itself stays masked
+    await page.getByRole('button', { name: 'Mask it there' }).click();
+    await page.getByRole('button', { name: 'Show the name there' }).waitFor();
+    assert.equal((await read()).status, 403);
+    wall.cut();
+    await shows(page.locator('.patient-card'), 'No wall is in this room');
   });
 
   it('a plan without DICOM says that it names nobody; the phantom says that it is one', async () => {

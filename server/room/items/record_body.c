@@ -131,6 +131,54 @@ static bool check_entry(const struct room *room, const cJSON *body, const struct
     return true;
 }
 
+static bool is_ok(const cJSON *body)
+{
+    const char *state = json_text(body, "state");
+    return state && strcmp(state, "ok") == 0;
+}
+
+/* The patient that the plan document shows, masked; NULL: the files name nobody. */
+static const char *patient_of(const struct room *room)
+{
+    const cJSON *patients = cJSON_GetObjectItemCaseSensitive(room->shared.plan, "patients");
+    const int shown = (int)json_number(room->shared.plan, "shown_patient", 0);
+    return json_text(cJSON_GetArrayItem(patients, shown), "masked");
+}
+
+static bool has_read_identity(const struct room *room)
+{
+    const struct member *writer = room->items->writer;
+    return writer && writer->read_identity_us &&
+           room->now_us - writer->read_identity_us <= RECORD_IDENTITY_MS * INT64_C(1000);
+}
+
+/* Gives the patient that the entry "identity" keeps, masked, a text for cJSON_Delete; NULL: none. False with problem:
+ * the entry is OK by the word of who has just read whom the plan is of, or of a phantom. */
+static bool check_seen(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
+                       cJSON **seen, struct problem *problem)
+{
+    const char *entry = json_text(body, "entry"), *patient = patient_of(room);
+    *seen = NULL;
+    if (!entry || strcmp(entry, "identity") != 0 || !is_ok(body))
+        return true;
+    cJSON *row = NULL, *old = before && !is_restored ? body_of(before, &row) : NULL;
+    const cJSON *kept = is_restored ? body : is_ok(old) ? old : NULL;
+    if (kept && json_text(kept, "seen"))
+        *seen = cJSON_CreateString(json_text(kept, "seen"));
+    cJSON_Delete(row);
+    if (kept || json_flag(room->shared.plan, "is_phantom", false))
+        return true;
+    if (!patient)
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/body/state", "identity",
+                           "the files do not say whom the plan is of: this entry is open or an issue");
+    if (!has_read_identity(room))
+        return problem_set(problem, PROBLEM_FORBIDDEN, "/body/state", "identity",
+                           "whom the plan is of is OK by the word of who has it shown in this room: show it to "
+                           "yourself first");
+    *seen = cJSON_CreateString(patient);
+    return true;
+}
+
 /* Copies the fields before the plan's revision; that and the role are given. */
 static cJSON *read_fields(const struct room *room, const cJSON *body, const char *const *names, bool is_restored)
 {
@@ -144,14 +192,19 @@ static cJSON *read_fields(const struct room *room, const cJSON *body, const char
 cJSON *record_read_check(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,
                          struct problem *problem)
 {
-    static const char *const names[] = { "entry", "text", "state", "comment", "plan_revision", "role", NULL };
+    static const char *const names[] = { "entry", "text", "state", "comment", "plan_revision", "role", "seen", NULL };
+    cJSON *seen;
     if (!body_names_are(body, names, "/body", problem) ||
         !body_check_text(cJSON_GetObjectItemCaseSensitive(body, "text"), "/body/text", RECORD_MAX_ENTRY, problem) ||
         !check_word(body, "state", &wire_check_state_words, problem) ||
         !check_optional(body, "comment", RECORD_MAX_TEXT, problem) ||
-        !check_entry(room, body, before, is_restored, problem))
+        !check_entry(room, body, before, is_restored, problem) ||
+        !check_seen(room, body, before, is_restored, &seen, problem))
         return NULL;
-    return read_fields(room, body, names, is_restored);
+    cJSON *read = read_fields(room, body, names, is_restored);
+    if (seen)
+        json_add(read, "seen", seen);
+    return read;
 }
 
 cJSON *record_read_decision(const struct room *room, const cJSON *body, const struct item *before, bool is_restored,

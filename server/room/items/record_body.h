@@ -6,16 +6,18 @@
 #include "server/room/items/item_list.h"
 
 enum {
-    RECORD_MAX_TEXT = 2000,          /* characters of what is said about an entry or a decision */
-    RECORD_MAX_ENTRY = 200,          /* of an entry's own words */
-    RECORD_MAX_NAME = 80,            /* of a name that signs */
-    RECORD_PROOF_MS = 5 * 60 * 1000, /* how long before signing a person has proved who they are */
+    RECORD_MAX_TEXT = 2000,              /* characters of what is said about an entry or a decision */
+    RECORD_MAX_ENTRY = 200,              /* of an entry's own words */
+    RECORD_MAX_NAME = 80,                /* of a name that signs */
+    RECORD_PROOF_MS = 5 * 60 * 1000,     /* how long before signing a person has proved who they are */
+    RECORD_IDENTITY_MS = 15 * 60 * 1000, /* how long who has read whom the plan is of may say that it is OK */
     RECORD_MAX_BYTES = 16384
 };
 
 /* Like note_body_read. A check: {entry, text, state, comment}, entry "" for one that members added; a decision:
  * {decision, text, corrects}; a signature: {name, meaning, corrects}, of who has signed in without name. Read are also
- * plan_revision and role, which the server adds, and of a signature signed_in, user and proved_ms. */
+ * plan_revision and role, which the server adds, of a signature signed_in, user and proved_ms, and of the check
+ * "identity" that is OK whom its writer was told, masked: seen. */
 NODISCARD cJSON *record_read_check(const struct room *room, const cJSON *body, const struct item *before,
                                    bool is_restored, struct problem *problem);
 NODISCARD cJSON *record_read_decision(const struct room *room, const cJSON *body, const struct item *before,

@@ -101,6 +101,7 @@ void member_disconnected(struct room *room, struct member *member, int64_t heard
     member->is_lost = false;
     views_close(room, member);
     member->connection = NULL;
+    member->is_naming = false;
     member->away_us = heard_us;
     control_left(room, member);
     audit_flush(room, member);
@@ -204,6 +205,8 @@ static void welcome_member(struct room *room, struct member *member)
     welcome->scene = room->shared.scene;
     welcome->revision = room->shared.revision;
     (void)snprintf(welcome->gl, sizeof welcome->gl, "%s", room->renderer.gl);
+    welcome->sees_identity = room->callbacks.sees_identity &&
+                             room->callbacks.sees_identity(room->callbacks.context, room, member->connection);
     cJSON *items = items_rows(room);
     welcome->items = items;
     send_to_member(room, member, &message);
@@ -240,6 +243,7 @@ static void sit_down_again(struct room *room, struct member *member)
     void *old = member->connection; /* half-open: the page notices a lost connection before the server does */
     member->is_lost = false;
     member->connection = NULL;
+    member->is_naming = false;
     views_close(room, member);
     if (old)
         send_bye(room, old, -1, replaced);

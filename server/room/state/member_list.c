@@ -90,6 +90,8 @@ cJSON *room_members(const struct room *room)
         cJSON_AddStringToObject(item, "lag", wire_member_lag_words.words[member->lag]);
         cJSON_AddNumberToObject(item, "tabs", n_tabs(room, member));
         member_say_who(member, item);
+        if (member->is_naming)
+            cJSON_AddTrueToObject(item, "is_naming");
         json_append(list, item);
     }
     return list;

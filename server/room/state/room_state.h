@@ -122,6 +122,8 @@ struct member {
     int active;                           /* number of the view in which it works; 0: not known */
     bool has_told_active;                 /* by a message of its own */
     uint64_t n_bytes;                     /* of the pictures sent in its views, without that of watch */
+    bool is_naming;                       /* a wall: the patient's name is shown on it */
+    int64_t read_identity_us;             /* when it last read whom the plan is of; 0: never */
     struct {                              /* the small picture of the presenter */
         bool is_wanted;
         bool is_late;      /* as it was told */

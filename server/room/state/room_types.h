@@ -153,6 +153,8 @@ struct room_callbacks {
     /* The highest role that this identity, which has signed in, may have in the room by what it may do with its plan.
      * False: none, and it enters by a link alone. NULL: as false. */
     bool (*role_of)(void *context, const struct room *room, const struct identity *who, enum wire_member_role *role);
+    /* Whether who is at this connection may read whom the plan is of. NULL: nobody may. */
+    bool (*sees_identity)(void *context, const struct room *room, void *connection);
     /* Like close, with the code of the end that says that a sign-in is needed. NULL: close is called. */
     void (*close_signed_out)(void *context, void *connection);
     /* The identity behind the call over HTTP that is being handled. NULL: none is, or it is not known. */

@@ -61,6 +61,7 @@ export class RoomState {
     this.isScenePending = signal(false);
     this.renderer = signal({ state: 'starting', phase: '', percent: 0, problem: null });
     this.gl = signal('');
+    this.seesIdentity = signal(false); // whether this member may ask whom the plan is of
     this.latencyMs = this.#latency.medianMs; // input to paint
     this.pingMs = signal(null);
     this.views = allViews.map(({ kind, ...more }, index) => new ViewState(index + 1, kind, more));
@@ -346,6 +347,7 @@ export class RoomState {
     this.identity = { member: message.member, secret: message.secret, name: message.name };
     this.planId.value = message.plan_id;
     this.gl.value = message.gl;
+    this.seesIdentity.value = message.sees_identity;
     this.#isLoaded = false;
     this.#loaded(message);
     this.items.replace(message.items ?? [], message.member);

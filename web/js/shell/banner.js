@@ -11,8 +11,9 @@ import { roving } from '../parts/roving.js';
 import { stripEnd } from './tools.js';
 import { say } from './words.js';
 
-export const brand = () =>
-  html`<a class="brand" href="/" title=${say.allPlans} aria-label=${say.brand}>${icon('logo', 20)}<b>Beamroom</b></a>`;
+/** hasWord: in a room the place is the patient's. */
+export const brand = (hasWord = true) =>
+  html`<a class="brand" href="/" title=${say.allPlans} aria-label=${say.brand}>${icon('logo', 20)}${hasWord ? html`<b>Beamroom</b>` : nothing}</a>`;
 
 const invite = later(() => import('./invite.js'), 'js/shell/invite.css');
 
@@ -46,7 +47,7 @@ export function banner(world) {
   const members = room.members.value.filter((member) => member.connected !== false);
   const own = members.find((member) => member.id === you);
   const others = members.filter((member) => member.id !== you);
-  return html`${brand()}<i class="rule"></i>${partsOf('bannerStart', world)}
+  return html`${brand(false)}<i class="rule"></i>${partsOf('bannerStart', world)}
     <div class="plan-name"><h1 title=${plan?.name ?? ''}><span>${plan?.name ?? room.planId.value}</span></h1>
       <span class="dim plan-id">${say.planId({ id: html`<code>${room.planId.value}</code>` })}</span>${partsOf('bannerName', world)}</div>
     ${partsOf('bannerFacts', world)}

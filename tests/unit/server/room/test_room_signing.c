@@ -145,7 +145,7 @@ static void a_proxy_that_does_not_tell_the_time_signs_never(void **state)
 
 static void a_guest_neither_decides_nor_signs_nor_ticks_the_checklist(void **state)
 {
-    static const char check[] = "{\"entry\":\"identity\",\"text\":\"Who it is\",\"state\":\"ok\"}";
+    static const char check[] = "{\"entry\":\"beam\",\"text\":\"Who it is\",\"state\":\"ok\"}";
     (void)state;
     put(&cem, "check", check);
     assert_string_equal(code(&cem), "role");

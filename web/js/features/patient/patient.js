@@ -18,6 +18,9 @@ export function patientButton(world) {
   if (plan.isPhantom) return html`<span class="patient"><span class="tag phantom">${say.phantom}</span></span><i class="rule"></i>`;
   const patient = shownPatient(plan, scene);
   if (!patient) return html`<span class="patient">${unknown}</span><i class="rule"></i>`;
+  // without the right nothing opens
+  if (!room.seesIdentity.value)
+    return html`<span class="patient masked"><b class="patient-name">${patient.masked}</b></span><i class="rule"></i>`;
   const shown = card.loaded.value?.shownIdentity(world);
   const idBorn = shown ? html`<span class="dim">${say.idBorn({ id: shown.id, date: dateWords(shown.birth) })}</span>` : nothing;
   return html`<span class="patient masked anchor"><button class="patient-button" aria-expanded=${ui.popover.value === 'patient'}

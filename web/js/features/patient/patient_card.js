@@ -1,6 +1,7 @@
 // The card of the patient: shows the full identity to this person alone, for a while. It is kept in this module and nowhere else.
 import { html, nothing } from '../../../lib/lit-html.js';
 import { effect, signal } from '../../../lib/signals-core.js';
+import { ofMember } from '../../net/api.js';
 import { identityOf, shownPatient } from '../../room/identity.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
@@ -54,7 +55,8 @@ async function show({ room, api }) {
   const asked = room.plan.peek();
   state.value = { error: '', isAsked: true };
   try {
-    const { patients } = await api.call('GET', `plans/${encodeURIComponent(room.planId.peek())}/identity`);
+    const path = `plans/${encodeURIComponent(room.planId.peek())}/identity?room=${room.id}`;
+    const { patients } = await api.call('GET', path, { more: ofMember(room.identity) });
     const [plan, scene] = [room.plan.peek(), room.scene.peek()];
     const found = plan === asked ? identityOf(plan, scene, patients) : null;
     hide();
@@ -75,6 +77,32 @@ async function show({ room, api }) {
   }
 }
 
+// ---- on a wall ------------------------------------------------------------------------------------------------------------
+
+const isOnWalls = signal(false); // that part of the card is open
+
+/** Has the patient named on this wall, or masked again. */
+async function nameOnWall({ room, api }, wall, shown) {
+  try {
+    await api.call('POST', `rooms/${room.id}/members/${wall.id}/identity`, { body: { shown }, more: ofMember(room.identity) });
+    state.value = { error: '', isAsked: false };
+  } catch (problem) {
+    state.value = { error: problem.message, isAsked: false };
+  }
+}
+
+/** The walls of the room: each is asked about by itself, as a room may have one among colleagues and one in a hall. */
+function walls(world) {
+  const list = world.room.members.value.filter(({ role, connected }) => role === 'wall' && connected !== false);
+  if (!list.length) return html`<p class="note">${say.noWall}</p>`;
+  return html`<ul class="patient-walls" aria-label=${say.walls}>${list.map(
+    (
+      wall,
+    ) => html`<li><span>${wall.name}</span><button class=${wall.is_naming ? '' : 'bad'} @click=${() => nameOnWall(world, wall, !wall.is_naming)}>
+      ${icon(wall.is_naming ? 'eyeOff' : 'eye')}<span>${wall.is_naming ? say.maskOnWall : say.nameOnWall}</span></button></li>`,
+  )}</ul><p class="note warn">${say.everybodyReads}</p>`;
+}
+
 export function patientCard(world) {
   const known = shownIdentity(world);
   const { error, isAsked } = state.value;
@@ -83,10 +111,17 @@ export function patientCard(world) {
       known
         ? html`<p><b>${known.name}</b></p>
           <dl><dt>${say.id}</dt><dd>${known.id || say.notGiven}</dd><dt>${say.born}</dt><dd>${known.birth || say.notGiven}</dd></dl>
-          <div class="buttons"><button @click=${hide}>${icon('eyeOff')}<span>${say.mask}</span></button></div>`
+          <div class="buttons"><button @click=${hide}>${icon('eyeOff')}<span>${say.mask}</span></button>${onWall()}</div>`
         : html`<p class="note">${say.masked}</p><div class="buttons">
-          <button class="primary" ?disabled=${isAsked} @click=${() => show(world)}>${icon('eye')}<span>${say.show}</span></button></div>`
+          <button class="primary" ?disabled=${isAsked} @click=${() => show(world)}>${icon('eye')}<span>${say.show}</span></button>${onWall()}</div>`
     }
+    ${isOnWalls.value ? walls(world) : nothing}
     ${error ? html`<p class="note err" role="alert">${error}</p>` : nothing}
     <p class="note">${say.alone({ n: shownMinutes })}</p></div>`;
+
+  function onWall() {
+    return html`<button aria-expanded=${isOnWalls.value} @click=${() => {
+      isOnWalls.value = !isOnWalls.value;
+    }}>${say.onWall}</button>`;
+  }
 }
