@@ -1,5 +1,7 @@
 // wire.js: the descriptions as data for the page; web/js/wire/check.js reads them.
-// Without the sentences "about", which are half of the text and nothing that the page needs, and the words "undo", which are in undo_words.js.
+// Without the sentences "about", which are half of the text, units, spaces and names of list items, of which the page reads nothing, and the words "undo",
+// which are in undo_words.js.
+const unread = ['about', 'undo', 'unit', 'space', 'names'];
 const wordsOf = (enums) => Object.fromEntries(Object.entries(enums).map(([name, { values }]) => [name, values.map(([word]) => word)]));
 
 /** Words of enums and fields of objects, of a checked description of documents. */
@@ -10,8 +12,8 @@ export function tables({ enums, objects, documents }) {
   };
 }
 
-const text = (value) =>
-  JSON.stringify(value, (key, part) => ((key === 'about' || key === 'undo') && typeof part === 'string' ? undefined : part), 1);
+const isFact = (part) => typeof part === 'string' || Array.isArray(part); // not an object or message of that name
+const text = (value) => JSON.stringify(value, (key, part) => (unread.includes(key) && isFact(part) ? undefined : part), 1);
 
 export function wireScript(scene, messages) {
   const { enums, objects } = tables(scene);

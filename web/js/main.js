@@ -4,11 +4,10 @@ import { Connection } from './net/connection.js';
 import { placeOf, roomPath } from './net/address.js';
 import { isPersonal, keptFor } from './net/kept.js';
 import { makeApi } from './net/api.js';
-import { sendPlan } from './net/upload.js';
 import { Hooks } from './hooks.js';
 import { roomPage } from './shell/room_page.js';
 import { OwnName } from './room/own_name.js';
-import { Thumbnails } from './features/start/thumbnails.js';
+import { styled } from './parts/lazy.js';
 import { Redraw } from './parts/redraw.js';
 import { Decoder } from './pane/decoder.js';
 import { keepTextVisible } from './parts/visible_text.js';
@@ -78,9 +77,7 @@ function enter(room, plan = '', link = '', isInstead = false) {
   go(roomPath(room), isInstead);
 }
 const ownName = new OwnName(storage());
-const thumbnails = new Thumbnails(api, URL);
-
-const send = ({ publicName, ...task }) => sendPlan({ ...task, url: api.uploadUrl(publicName), makeRequest: () => new XMLHttpRequest() });
+let thumbnails = null; // of the start page, kept while rooms are visited
 
 const inMemory = new Map(); // what a browser that keeps nothing forgets at a reload
 
@@ -188,7 +185,14 @@ async function route() {
     const { permalinkPage } = await import('./features/bookmarks/permalink.js');
     if (n === nRoutes) leave = permalinkPage(host, id, { api, enter: (room, of) => enter(room, of, '', true) }); // going back does not make another room
   } else {
-    const { startPage } = await import('./features/start/start_page.js'); // a file of its own: who opens a room by its link does not load it
+    // files of their own: who opens a room by its link does not load them
+    const [{ startPage, sendPlan, Thumbnails }] = await Promise.all([
+      import('./features/start/start_page.js'),
+      styled('js/features/start/start.css'),
+    ]);
+    thumbnails ??= new Thumbnails(api, URL);
+    const send = ({ publicName, ...task }) =>
+      sendPlan({ ...task, url: api.uploadUrl(publicName), makeRequest: () => new XMLHttpRequest() });
     if (n === nRoutes) leave = startPage(host, { api, clock, enter, send, ownName, session, thumbnails });
   }
 }

@@ -26,6 +26,7 @@ import { loadBlocks } from './selection.js';
 import { status } from './status.js';
 import { toolStrip } from './tools.js';
 import { tree } from './tree.js';
+import { undoNames } from './undo_buttons.js';
 import { say } from './words.js';
 
 const probeMs = 60;
@@ -217,6 +218,7 @@ function loadBeforeClicks() {
     abort.abort();
     loadBlocks();
     card.load();
+    undoNames.load();
   };
   for (const event of ['pointerover', 'keydown', 'touchstart']) addEventListener(event, load, { signal: abort.signal, passive: true });
   return () => abort.abort();

@@ -7,7 +7,7 @@ import { say } from './words.js';
 export const clip = {
   sections: [{ id: 'clip', name: say.section, icon: 'clip', place: 7, has: hasClips, note: clipNote, rows: clipRows }],
   kinds: { clip: 'clip' },
-  blocks: later(() => import('./later_blocks.js')),
+  blocks: later(() => import('./later_blocks.js'), 'js/features/clip/clip.css'),
   isSoon: true,
   keys: { c: ({ room, ui }, at) => toggleClips(room, ui, at), k: ({ room, ui }, at) => toggleCaps(room, ui, at) },
 };

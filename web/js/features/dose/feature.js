@@ -8,7 +8,7 @@ import { ChartLoader, hasCharts } from './plots/chart_loader.js';
 import { say } from './words.js';
 
 const panels = later(() => import('./later_rows.js'));
-const drawn = later(() => import('./later_drawn.js'));
+const drawn = later(() => import('./later_drawn.js'), 'js/features/dose/dose.css');
 
 /** Exports of later_rows.js; null for a plan without doses, and until it is loaded. */
 const ofDose = (room) => (room.plan.value?.doses.length ? known(panels) : null);
@@ -68,7 +68,7 @@ export const dose = {
     },
   ],
   kinds: { dose: 'doses', quantity: 'doses', dosing: 'doses', level: 'doses' },
-  blocks: later(() => import('./later_blocks.js')),
+  blocks: later(() => import('./later_blocks.js'), 'js/features/dose/dose.css'),
   isSoon: true,
   tabs: [{ id: 'dvh', name: say.dvh, inSheet: hasCharts, draw: ({ charts }) => charts.draw('sheet') }],
   keys: { d: toggle('wash'), i: toggle('lines'), q: withDose(pinHere) },

@@ -16,7 +16,7 @@ export const image = {
     { id: 'images', name: say.section, icon: 'image', place: 1, has: (plan) => plan.images.length, note: () => '', rows: imageRows },
   ],
   kinds: { view: '', image: 'images', volume: 'images' },
-  blocks: later(() => import('./later_blocks.js')),
+  blocks: later(() => import('./later_blocks.js'), 'js/features/image/image.css'),
   isSoon: true,
   pane: (world, { kind, number }) => ({ legend: () => (isInSpace(kind) ? nothing : imageLegend(world, number)) }),
 };

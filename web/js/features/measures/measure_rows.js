@@ -4,11 +4,9 @@ import { repeat } from '../../../lib/directives/repeat.js';
 import { kindName } from './measures.js';
 import { measureName, valueTexts } from './measure_words.js';
 import { eye, name, treeRow } from '../../parts/tree_row.js';
-import { say } from './words.js';
+import { say } from './drawn_words.js';
 
 export const measuresOf = (scene) => Object.entries(scene?.measures ?? {});
-
-export const hasMeasures = (plan, scene) => measuresOf(scene).length > 0;
 
 export const showMeasure = ({ room, ui }, id, visible, event) =>
   room.patchScene({ measures: { [id]: { visible } } }, { view: ui.active.value, at: event.timeStamp });

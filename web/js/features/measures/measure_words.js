@@ -3,7 +3,7 @@ import { shortId } from '../../room/marks.js';
 import { kinds, pointsOf, valueOf } from './measures.js';
 import { shownImage } from '../../room/plan.js';
 import { number, significant, unitText } from '../../parts/format.js';
-import { say } from './words.js';
+import { say } from './drawn_words.js';
 
 export const kindIcons = { distance: 'measure', angle: 'angle', polyline: 'polyline', ellipse: 'ellipse' };
 export { kinds };

@@ -3,7 +3,7 @@ import { add, cross, dot, length, scale, subtract, unit } from '../../parts/vec.
 import { replaced } from '../../parts/lists.js';
 import { freeNumber } from '../../room/marks.js';
 import { heightOver } from '../../room/obliques.js';
-import { say } from './words.js';
+import { say } from './drawn_words.js';
 
 export const mostMeasures = 64; // proto/scene.json
 export const mostPoints = 64;

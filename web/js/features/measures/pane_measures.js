@@ -6,7 +6,7 @@ import { isInSpace } from '../../room/kinds.js';
 import { measureOverlay } from './measure_overlay.js';
 import { toPicture } from '../../parts/vec.js';
 import { measureName, valueTexts } from './measure_words.js';
-import { say } from './words.js';
+import { say } from './drawn_words.js';
 
 const [mousePx, fingerPx] = [10, 22]; // how far from a point a press still takes it
 const samePx = 4;

@@ -4,7 +4,7 @@ import { hasClips, isClipped } from '../clip/clip_rows.js';
 import { obliqueNote, obliqueRows, obliquesOf } from './oblique_rows.js';
 import { say } from './words.js';
 
-const blocks = later(() => import('./later_blocks.js'));
+const blocks = later(() => import('./later_blocks.js'), 'js/features/clip/clip.css');
 
 /** Whether a slice may be cut by a line, or one is being drawn. */
 const hasLines = (world) => Boolean(world.ui.picking.value || Object.keys(obliquesOf(world)).length || isClipped(world));

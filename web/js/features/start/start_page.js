@@ -17,6 +17,10 @@ import { reportLines } from '../../parts/report.js';
 import { openDroppedSnapshot } from '../report/later_snapshots.js';
 import { dropZone, listenDrops } from './upload.js';
 
+// what main.js gives the page, and nothing else needs
+export { sendPlan } from '../../net/upload.js';
+export { Thumbnails } from './thumbnails.js';
+
 /** @param {HTMLElement} host @param {object} world {api, clock, enter, send, ownName, session, thumbnails} @returns {() => void} leaves the page */
 export function startPage(host, world) {
   const state = new PlansState({ ...world, seen: (plans) => void world.thumbnails.update(plans) });
