@@ -88,8 +88,8 @@ static struct derive_result *build(struct derive *derive, const struct derive_re
         *working = (struct working){ .dose = dose, .choice = choice, .field = field, .percent = percent->voxels };
         working->is_summed = dose_is_summed(dose, choice->shown, choice->quantity);
         for (size_t r = 0; r < choice->n_rows; r++)
-            working->factors[r] =
-                dose_factors_of(dose, choice->shown, choice->quantity, &choice->rows[r], choice->blood_ppm);
+            working->factors[r] = dose_factors_of(dose, choice->shown, choice->quantity, &choice->rows[r],
+                                                  choice->blood_ppm + choice->parts[0].more_ppm);
         parallel_run(parallel_cores(), work_some, working);
         volume_measure(percent);
         derive_result_init(&error->base, &kind, sizeof *error + grid_n_voxels(&percent->grid) * sizeof(float));

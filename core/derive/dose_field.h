@@ -11,6 +11,7 @@ struct dose_choice {
     struct {
         size_t dose; /* index in the plan */
         double factor;
+        double more_ppm;     /* of boron in blood, beside blood_ppm, while this part is given */
     } parts[PLAN_MAX_DOSES]; /* what is summed; the first is the dose shown. The finest of their grids is the sum's */
     size_t n_parts;
     size_t unit_of; /* index in the plan of the dose in whose unit the values are; the parts' units convert to it */

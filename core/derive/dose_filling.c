@@ -89,8 +89,8 @@ static bool list_part(struct dose_filling *filling, const struct plan *plan, con
         struct summand summand = { .values = component->values, .mask = dose->mask };
         bool is_used = false;
         for (size_t r = 0; r < choice->n_rows; r++) {
-            struct dose_factors factors =
-                dose_factors_of(dose, choice->shown, choice->quantity, &choice->rows[r], choice->blood_ppm);
+            struct dose_factors factors = dose_factors_of(dose, choice->shown, choice->quantity, &choice->rows[r],
+                                                          choice->blood_ppm + choice->parts[part].more_ppm);
             double factor = factors.of[component->quantity] * choice->parts[part].factor * unit;
             bool is_in = dose_is_summed(dose, choice->shown, choice->quantity)
                              ? dose_is_summand(component->quantity)

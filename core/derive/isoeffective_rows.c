@@ -42,7 +42,8 @@ static struct dose_field *component_field(struct derive *derive, const struct do
         const struct dose_component *component =
             dose_component_of(&derive_plan(derive)->doses[choice->parts[p].dose], quantity);
         if (component) {
-            of.parts[of.n_parts++] = choice->parts[p];
+            of.parts[of.n_parts] = choice->parts[p];
+            of.parts[of.n_parts++].more_ppm = component->is_per_ppm ? choice->parts[p].more_ppm : 0;
             is_per_ppm |= component->is_per_ppm;
         }
     }

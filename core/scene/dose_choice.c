@@ -1,6 +1,7 @@
 /* Turns a scene's dose into the recipe of its field. */
 #include "core/scene/dose_choice.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -194,8 +195,11 @@ static bool end_choice(const struct snapshot *snapshot, const char *tissue, stru
                                                                 ? part->components[c].quantity == DOSE_BORON
                                                                 : part->components[c].quantity == choice->quantity);
     }
-    if (!has_boron)
-        choice->blood_ppm = 0; /* what does not depend on it is one and the same field */
+    if (has_boron)
+        return true;
+    choice->blood_ppm = 0; /* what does not depend on it is one and the same field */
+    for (size_t p = 0; p < choice->n_parts; p++)
+        choice->parts[p].more_ppm = 0;
     return true;
 }
 
@@ -308,5 +312,45 @@ bool dose_choice_compared(const struct snapshot *snapshot, size_t second, enum s
     if (!begin_choice(snapshot, second, factor_beside(snapshot, second), quantity, choice, why))
         return false;
     choice->unit_of = (size_t)snapshot->dose;
+    return end_choice(snapshot, tissue, choice, why);
+}
+
+/* False: the quantity holds boron of a concentration that nothing here changes, and that is not ppm. */
+static bool follows_ppm(const struct dose *dose, const struct dose_choice *choice, double ppm)
+{
+    bool is_summed = dose_is_summed(dose, choice->shown, choice->quantity);
+    for (size_t c = 0; c < dose->n_components; c++) {
+        const struct dose_component *component = &dose->components[c];
+        bool is_in = is_summed ? dose_is_summand(component->quantity) : component->quantity == choice->quantity;
+        bool holds_boron = component->quantity == DOSE_BORON || component->quantity == DOSE_BLOOD_BORON ||
+                           component->quantity == DOSE_TOTAL || component->quantity == DOSE_WEIGHTED_TOTAL;
+        bool is_the_same = component->has_boron_ppm && fabs(component->boron_ppm - ppm) <= 1e-6 * ppm;
+        if (is_in && holds_boron && !component->is_per_ppm && !is_the_same)
+            return false;
+    }
+    return true;
+}
+
+bool dose_choice_given(const struct snapshot *snapshot, const struct dose_given *given, size_t n,
+                       enum scene_dose_quantity quantity, const char *tissue, struct dose_choice *choice,
+                       struct error *why)
+{
+    for (size_t i = 0; i < n; i++) {
+        const struct dose *dose = &snapshot->plan->doses[given[i].dose];
+        struct fit_use use = i == 0 ? snapshot->fits.doses[given[0].dose]
+                                    : dose_join_of(&snapshot->fits, given[i].dose, given[i].factor, given[0].dose,
+                                                   given[0].factor, DOSE_JOIN_GIVEN);
+        if (!fit_is_used(&use))
+            return refuse(snapshot, given[i].dose, &use, why);
+        if (!(i == 0 ? begin_choice(snapshot, given[0].dose, given[0].factor, quantity, choice, why)
+                     : add_part(snapshot->plan, choice, given[i].dose, given[i].factor, why)))
+            return false;
+        choice->blood_ppm = given[0].blood_ppm;
+        choice->parts[choice->n_parts - 1].more_ppm = given[i].blood_ppm - given[0].blood_ppm;
+        if (given[i].is_measured && !follows_ppm(dose, choice, given[i].blood_ppm))
+            return error_set(why, ERROR_STATE,
+                             "dose \"%s\" does not give boron per ppm: a measured concentration cannot be used with it",
+                             dose->id);
+    }
     return end_choice(snapshot, tissue, choice, why);
 }

@@ -9,8 +9,9 @@
 int scene_dose_index(const struct plan *plan, const struct scene *scene);
 
 struct snapshot;
-/* The field that a snapshot shows of a dose of the plan; of the dose that is named with the doses added to it. This and
- * dose_choice_compared are the only ways to the values of a dose: they use what the snapshot's fits use. Doses added
+/* The field that a snapshot shows of a dose of the plan; of the dose that is named with the doses added to it. This,
+ * dose_choice_compared and dose_choice_given are the only ways to the values of a dose: they use what the snapshot's
+ * fits use. Doses added
  * that are not used are left out: dose_part_use tells.
  *   quantity   the scene's, or another one to be read out beside it
  *   returns    false with a sentence: nothing can be shown
@@ -31,6 +32,20 @@ int dose_index_of(const struct plan *plan, const char *id); /* -1: none */
  * id; "": each tissue's own. For the figures of regions, which no choice of how a dose is drawn may change. */
 NODISCARD bool dose_choice_in(const struct snapshot *snapshot, size_t dose, enum scene_dose_quantity quantity,
                               const char *tissue, struct dose_choice *choice, struct error *why);
+/* A field of an irradiation. */
+struct dose_given {
+    size_t dose; /* index in the plan */
+    double factor;
+    double blood_ppm; /* boron-10 in blood while it is given */
+    bool is_measured; /* blood_ppm was measured, so the dose has to depend on it */
+};
+/* The sum of fields that are given one after the other, in the unit of the first; without the scene's factor and
+ * dose.sum. tissue: as in dose_choice_in.
+ * errors   those of dose_choice_of; ERROR_STATE a field is not used with the first, or is measured and its dose holds
+ *          boron of another concentration, or of one that is not stated */
+NODISCARD bool dose_choice_given(const struct snapshot *snapshot, const struct dose_given *given, size_t n,
+                                 enum scene_dose_quantity quantity, const char *tissue, struct dose_choice *choice,
+                                 struct error *why);
 /* Which univels count in a scene's figures of regions. */
 enum region_population scene_population(const struct plan *plan, const struct scene *scene);
 /* False: no such word; "" and "usual" are what is usual for the plan. */

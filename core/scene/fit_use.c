@@ -189,7 +189,8 @@ struct fit_use dose_join_of(const struct scene_fits *fits, size_t second, double
     struct fit fit = fit_of(fits->plan, parts[0], parts[1]);
     char pers[2][FIT_PER_SIZE];
     if (strcmp(dose_per_counted(doses[0], second_factor, pers[0]), dose_per_counted(doses[1], first_factor, pers[1])) ==
-        0)
+            0 ||
+        join == DOSE_JOIN_GIVEN)
         fit.reasons &= ~(1U << FIT_PER);
     if (join == DOSE_JOIN_COMPARE)
         fit.reasons &= ~(1U << FIT_PLAN);

@@ -63,6 +63,7 @@ const char *dose_per_counted(const struct dose *dose, double factor, char word[F
 /* How two doses are put together. */
 enum dose_join {
     DOSE_JOIN_SUM,    /* added: of one treatment plan, else a person's word */
+    DOSE_JOIN_GIVEN,  /* added, brought to one output of the source before */
     DOSE_JOIN_COMPARE /* beside each other: of any treatment plan of the same patient and frame */
 };
 /* Whether a second dose is used with the first one. factor: how many times each counts. */

@@ -1,5 +1,6 @@
 #pragma once
 /* Inside server/renderer: what the answers to questions about doses have in common. */
+#include "core/dose/dvh_metrics.h"
 #include "core/scene/dose_scale.h"
 #include "server/wire/document.h"
 
@@ -33,3 +34,8 @@ NODISCARD struct snapshot *dose_snapshot_in(const struct snapshot *snapshot, con
 /* {basis, population} of figures of regions. */
 void dose_add_population(cJSON *json, const struct snapshot *snapshot, const struct dose_choice *choice,
                          const char *tissue, enum region_population population);
+
+/* False with why: the region has no univels, or is not used. */
+NODISCARD bool dose_is_counted(const struct snapshot *snapshot, size_t region, struct error *why);
+/* The unit of a figure: the dose's, "%", "cm3" or "". */
+const char *dose_metric_unit(const struct dvh_metric *metric, const char *dose_unit);

@@ -93,7 +93,7 @@ cJSON *answer_coverage(struct question *question, struct derive *derived, struct
 
 /* ---- constraints ------------------------------------------------------------------------------------------------ */
 
-static const char *unit_of(const struct dvh_metric *metric, const char *dose_unit)
+const char *dose_metric_unit(const struct dvh_metric *metric, const char *dose_unit)
 {
     switch (metric->kind) {
     case DVH_VOLUME_PERCENT: return "%";
@@ -108,6 +108,18 @@ static bool is_met(const struct scene_constraint *constraint, double value)
     return constraint->side == SCENE_LIMIT_SIDE_AT_MOST ? value <= constraint->limit : value >= constraint->limit;
 }
 
+bool dose_is_counted(const struct snapshot *snapshot, size_t region, struct error *why)
+{
+    const struct scene_fits *fits = &snapshot->fits;
+    if (snapshot->plan->regions.regions[region].n_voxels == 0)
+        return error_set(why, ERROR_NOT_FOUND, "the region has no univels");
+    if (fit_is_used(region_use(fits, region)))
+        return true;
+    char sentence[FIT_WHY_SIZE];
+    fit_use_sentence(fits, fit_part_of_region(snapshot->plan, region), region_use(fits, region), sentence);
+    return error_set(why, ERROR_STATE, "%s", sentence);
+}
+
 /* The figure's bounds; false with why: nothing can be said. */
 static bool find_figure(const struct snapshot *snapshot, const struct scene_constraint *constraint,
                         const struct dose_asked *asked, const struct dvh_metric *metric, struct dvh *dvh, double *least,
@@ -117,15 +129,8 @@ static bool find_figure(const struct snapshot *snapshot, const struct scene_cons
     const struct region *region = region_find(set, constraint->region);
     if (!region)
         return error_set(why, ERROR_NOT_FOUND, "no region is chosen");
-    if (region->n_voxels == 0)
-        return error_set(why, ERROR_NOT_FOUND, "the region has no univels");
-    const struct scene_fits *fits = &snapshot->fits;
-    if (!fit_is_used(region_use(fits, (size_t)(region - set->regions)))) {
-        char sentence[FIT_WHY_SIZE];
-        size_t r = (size_t)(region - set->regions);
-        fit_use_sentence(fits, fit_part_of_region(snapshot->plan, r), region_use(fits, r), sentence);
-        return error_set(why, ERROR_STATE, "%s", sentence);
-    }
+    if (!dose_is_counted(snapshot, (size_t)(region - set->regions), why))
+        return false;
     if (!dose_histogram_get(snapshot->derived, &asked->choice, (size_t)(region - set->regions),
                             scene_population(snapshot->plan, &snapshot->scene), DOSE_BY_REGION, 1, dvh, why))
         return false;
@@ -158,7 +163,7 @@ static void add_verdict(cJSON *json, const struct snapshot *snapshot, const stru
     json_add_finite(json, "value", least == most ? least : NAN);
     json_add_finite(json, "least", least);
     json_add_finite(json, "most", most);
-    cJSON_AddStringToObject(json, "unit", unit_of(&metric, asked.unit));
+    cJSON_AddStringToObject(json, "unit", dose_metric_unit(&metric, asked.unit));
     cJSON_AddItemToObject(json, "met", is_known ? cJSON_CreateBool(is_met(constraint, least)) : cJSON_CreateNull());
     reason_add_json(json, "reason", is_known ? NULL : why.text);
     json_add_finite(json, "volume_cm3", (dvh.n + dvh.n_missing) * dvh.univel_cm3);

@@ -1,7 +1,7 @@
 // Histograms, coverage and limits of a scene's dose over HTTP.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -12,6 +12,7 @@ const skip = brain && existsSync(brain) ? false : 'no real plans on this machine
 const smaller = realData && join(realData, 'cases', 'dose-grid-smaller.zip');
 const phantom = realData && join(realData, 'dicomrt-oncentra-phantom');
 const isoeffective = JSON.parse(readFileSync('proto/dose_presets.json', 'utf8')).isoeffective[0].name;
+const fields0 = 'goorley'; // the demo plan's dose
 let daemon, room, folder;
 const api = (rest) => call(`${daemon.url}/api/v1/plans/${rest}`);
 const near = (value, expected, share) => assert.ok(Math.abs(value - expected) <= share * Math.abs(expected), `${value}, not ${expected}`);
@@ -19,7 +20,14 @@ const near = (value, expected, share) => assert.ok(Math.abs(value - expected) <=
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'beamroom-dvh-'));
   if (!skip) cpSync(phantom, join(folder, 'stated'), { recursive: true });
-  daemon = await startDaemon(skip ? {} : { plans: [demo, brain, folder] });
+  // the demo plan with a second field: the same components, per 30 seconds
+  cpSync(join(demo, 'phantom'), join(folder, 'fields'), { recursive: true });
+  const fields = JSON.parse(readFileSync(join(folder, 'fields', 'plan.json'), 'utf8'));
+  fields.doses.push({ ...fields.doses[0], id: 'second', per: '30 seconds at 1e10 n/cm2/s' });
+  fields.doses.push({ ...fields.doses[0], id: 'unsaid', per: '' });
+  fields.doses.push({ ...fields.doses[0], id: 'fractions', per: 'fraction' });
+  writeFileSync(join(folder, 'fields', 'plan.json'), JSON.stringify(fields));
+  daemon = await startDaemon(skip ? { plans: [demo, folder] } : { plans: [demo, brain, folder] });
   await openPlan(daemon.url, 'phantom');
   room = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'phantom' })).json.id;
 });
@@ -389,4 +397,93 @@ test('histograms that an RTDOSE file carries stand beside ours, and ours agree w
   assert.equal(ours.length, theirs.length);
   ours.sort((a, b) => a - b).forEach((mean, index) => near(mean, theirs[index], 1e-5)); // numpy's own means
   assert.equal((await ask('dvh', {}, '&regions=brain')).json.curves[0].stated, null);
+});
+
+test('the irradiation time is where each limit is reached, the first of them ends it, and targets have their dose then', async () => {
+  await openPlan(daemon.url, 'fields');
+  const made = (await call(`${daemon.url}/api/v1/rooms`, 'POST', { plan: 'fields' })).json.id;
+  const asked = async (question, override, more = '') => {
+    const view = encodeURIComponent(JSON.stringify({ override }));
+    const { status, json } = await call(`${daemon.url}/api/v1/plans/fields/${question}?room=${made}&view=${view}${more}`);
+    assert.equal(status, 200, JSON.stringify(json));
+    return json;
+  };
+  const curve = async (dose, region) => (await asked('dvh', { dose }, `&regions=${region}&metrics=D95%,D2cc`)).curves[0];
+  const limit = (region, metric, side, value) => ({ region, quantity: 'weighted', metric, side, limit: value });
+  const constraints = {
+    mean: limit('brain', 'mean', 'at-most', 7),
+    max: limit('brain', 'max', 'at-most', 12.5),
+    volume: limit('brain', 'V10', 'at-most', 100),
+    target: limit('tumour', 'D95%', 'at-least', 20),
+    iso: { ...limit('brain', 'mean', 'at-most', 7), quantity: 'isoeffective' },
+  };
+
+  // one field: figures of the histogram, which are per minute, say how many minutes each limit lasts
+  const brain15 = await curve({ blood_ppm: 15 }, 'brain');
+  const one = await asked('irradiation', { constraints, dose: { blood_ppm: 15 } });
+  const rowOf = ({ limits }, id) => limits.find((row) => row.id === id);
+  assert.equal(one.output, 'min at 1e10 n/cm2/s');
+  near(rowOf(one, 'mean').units, 7 / brain15.mean, 1e-6);
+  near(rowOf(one, 'max').units, 12.5 / brain15.max, 1e-6);
+  assert.deepEqual([rowOf(one, 'volume').is_never, rowOf(one, 'volume').units], [true, null]);
+  const first = rowOf(one, 'mean').units < rowOf(one, 'max').units ? 'mean' : 'max';
+  assert.deepEqual([one.first, one.is_certain], [first, false], 'the isoeffective limit may come first');
+  assert.match(rowOf(one, 'iso').reason, /isoeffective/);
+  assert.deepEqual(
+    one.limits.filter((row) => row.is_first).map(({ id }) => id),
+    [first],
+  );
+  near(one.units, rowOf(one, first).units, 0);
+  near(one.minutes, one.units, 0);
+  near(rowOf(one, first).value, constraints[first].limit, 1e-9);
+  const tumour15 = await curve({ blood_ppm: 15 }, 'tumour');
+  assert.deepEqual(
+    one.targets.map(({ region, unit }) => [region, unit]),
+    [
+      ['target', 'Gy(w)'],
+      ['tumour', 'Gy(w)'],
+    ],
+  );
+  const target = one.targets[1];
+  near(target.d95, one.units * tumour15.metrics['D95%'], 1e-6);
+  near(target.mean, one.units * tumour15.mean, 1e-6);
+  near(target.min, one.units * tumour15.min, 1e-6);
+  near(rowOf(one, 'target').units, 20 / tumour15.metrics['D95%'], 1e-6);
+  delete constraints.iso;
+  assert.equal((await asked('irradiation', { constraints, dose: { blood_ppm: 15 } })).is_certain, true);
+
+  // measured boron replaces the one that is shown, and neither factor nor sum changes anything
+  const brain22 = await curve({ blood_ppm: 22 }, 'brain');
+  const measured = await asked('irradiation', {
+    constraints,
+    dose: { blood_ppm: 15, factor: 30, sum: { second: { factor: 2 } } },
+    irradiation: { blood_ppm: 22 },
+  });
+  near(rowOf(measured, 'mean').units, 7 / brain22.mean, 1e-6);
+  assert.deepEqual([measured.fields.length, measured.fields[0].is_measured, measured.fields[0].blood_ppm], [1, true, 22]);
+
+  // two fields, three quarters and a quarter of the output, each with its own boron: the second is per half a minute
+  const both = await asked('irradiation', {
+    constraints,
+    irradiation: { blood_ppm: 22, fields: { [fields0]: { share: 3 }, second: { share: 1, blood_ppm: 15 } } },
+  });
+  assert.deepEqual(
+    both.fields.map(({ dose, share, blood_ppm: ppm }) => [dose, share, ppm]),
+    [
+      [fields0, 0.75, 22],
+      ['second', 0.25, 15],
+    ],
+  );
+  near(rowOf(both, 'mean').units, 7 / (0.75 * brain22.mean + 0.25 * 2 * brain15.mean), 1e-6);
+  near(both.fields[1].units, both.units / 4, 1e-12);
+
+  // what a dose is per decides what can be said
+  const unsaid = await asked('irradiation', { constraints, irradiation: { fields: { unsaid: {} } } });
+  assert.deepEqual([unsaid.output, unsaid.first, unsaid.units, unsaid.targets[0].mean], [null, null, null, null]);
+  assert.match(unsaid.reason, /does not say what it is per/);
+  const mixed = await asked('irradiation', { constraints, irradiation: { fields: { [fields0]: {}, fractions: {} } } });
+  assert.match(mixed.reason, /no output of the source in common/);
+  const counted = await asked('irradiation', { constraints, irradiation: { rate: 5, fields: { fractions: {} } } });
+  assert.deepEqual([counted.output, counted.minutes], ['fraction', null]);
+  near(rowOf(counted, 'mean').units, 7 / brain15.mean, 1e-6);
 });
