@@ -481,7 +481,7 @@ struct pipeline *pipeline_create(enum render_back_end back_end, bool stub, const
 static bool calls_for(struct pipeline *pipeline, const struct pipeline_request *request)
 {
     return request->source != atomic_load(&pipeline->drawn_source) ||
-           (atomic_load(&pipeline->drawn_is_still) && !request->render.is_still);
+           (atomic_load(&pipeline->drawn_is_still) && !request->render.is_still && !request->is_last);
 }
 
 bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *request, struct error *err)
@@ -489,7 +489,7 @@ bool pipeline_submit(struct pipeline *pipeline, const struct pipeline_request *r
     struct picture *picture = mem_new(sizeof *picture);
     picture->request = *request;
     picture->turn = (struct turns_item){ .source = request->source,
-                                         .is_still = request->render.is_still,
+                                         .is_still = request->render.is_still || request->is_last,
                                          .is_acted = request->is_acted };
     if (atomic_fetch_add(&pipeline->n_waiting, 1) < PIPELINE_MAX_WAITING &&
         send(pipeline, &(struct message){ .kind = MESSAGE_REQUEST, .picture = picture })) {

@@ -21,6 +21,7 @@ void pipeline_annotation_destroy(struct pipeline_annotation *annotation);
 struct pipeline_request {
     uint64_t id;               /* the caller's; stands in the frame */
     uint64_t source;           /* the pictures of one source share its time on the render thread (turns.h) */
+    bool is_last;              /* of a wall: moving pictures of its source that are none go before it */
     bool is_acted;             /* of the view in which a person acts: goes before other moving ones of its source */
     struct snapshot *snapshot; /* one reference, taken */
     struct render_options render;

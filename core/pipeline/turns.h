@@ -24,7 +24,7 @@ enum {
 /* A request that waits, or whose picture is paused. */
 struct turns_item {
     uint64_t source;
-    bool is_still;
+    bool is_still;   /* or waits like one */
     bool is_acted;   /* of the view in which a person acts; counts for moving pictures alone */
     bool is_held;    /* must not be chosen now */
     bool is_begun;   /* was chosen before */

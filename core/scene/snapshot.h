@@ -49,6 +49,12 @@ NODISCARD struct snapshot *snapshot_create(struct derive *derived, struct scene 
 NODISCARD struct snapshot *snapshot_create_accepted(struct derive *derived, struct scene *scene, struct view *view,
                                                     const struct acceptances *acceptances, uint32_t scene_revision,
                                                     char field[128], struct error *err);
+/* Width of the full picture in the unit of width_px and of sizes of points: its pixels, unless the view has a
+ * pixel_ratio. */
+static inline double snapshot_line_width(const struct snapshot *snapshot)
+{
+    return snapshot->view.size_px[0] / snapshot->view.pixel_ratio;
+}
 struct snapshot *snapshot_ref(const struct snapshot *snapshot);
 void snapshot_unref(const struct snapshot *snapshot);
 

@@ -151,6 +151,7 @@ void bridge_render(void *context, struct room *room, const struct room_render *r
     render->detail = request->coarse ? PACKET_DETAIL_COARSE : PACKET_DETAIL_FULL;
     render->still = request->is_still;
     render->acted = request->is_acted;
+    render->last = request->is_of_wall;
     render->half = request->is_reduced[0];
     render->quarter = request->is_reduced[1];
     render->marked = request->is_marked;

@@ -164,6 +164,7 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
         .id = (uint64_t)render->id,
         .source = source_number(render->source),
         .is_acted = render->acted,
+        .is_last = render->last,
         .snapshot = snapshot,
         .render = { width > 1 ? width : 1, height > 1 ? height : 1, is_coarse ? SURFACE_COARSE : SURFACE_FULL,
                     render->still },

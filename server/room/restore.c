@@ -12,6 +12,7 @@
 #include "server/room/room.h"
 #include "server/room/state/presence.h"
 #include "server/room/streams/stream.h"
+#include "server/room/streams/wall.h"
 #include "server/wire/document.h"
 #include "server/wire/json.h"
 
@@ -26,7 +27,8 @@ static bool write_members(const struct room *room, struct store_room *kept)
     for (int i = 0; i < room->known->n; i++)
         kept->members[kept->n_members++] = room->known->list[i];
     for (int i = 0; i < room->members.n; i++)
-        known_write(room->members.list[i], &kept->members[kept->n_members++]);
+        if (!member_is_wall(room->members.list[i])) /* has no seat to come back to */
+            known_write(room->members.list[i], &kept->members[kept->n_members++]);
     return true;
 }
 
@@ -88,7 +90,7 @@ static void read_members(struct room *room, const struct store_room *kept)
         const struct store_member *from = &kept->members[i];
         if (!id_is_valid(from->id))
             continue;
-        if (from->has_left || room->members.n == room->members.max) {
+        if (from->has_left || room->members.n == room->members.max /* of people */) {
             known_add(room, from);
             continue;
         }

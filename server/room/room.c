@@ -39,6 +39,7 @@
 #include "server/room/streams/main_view.h"
 #include "server/room/streams/pictures.h"
 #include "server/room/streams/stream.h"
+#include "server/room/streams/wall.h"
 #include "server/room/streams/watch.h"
 #include "server/room/views/beginning.h"
 #include "server/room/views/member_view.h"
@@ -310,6 +311,7 @@ static const struct {
     { MESSAGE_VIEW_PATCH, member_view_patch },
     { MESSAGE_VIEW_ACTIVE, member_view_active },
     { MESSAGE_VIEW_CLOSE, member_view_close },
+    { MESSAGE_WALL_LAYOUT, wall_layout_set },
     { MESSAGE_WATCH, watch_set },
     { MESSAGE_FOLLOW, member_follow },
     { MESSAGE_PRESENT, presenter_present },
@@ -358,7 +360,7 @@ void room_audit_refused(struct room *room, const struct member *member, const ch
 /* Messages to a newcomer after welcome, in this order. */
 static void (*const shown_to_newcomer[])(struct room *room, struct member *member) = {
     acceptances_tell, send_renderer_state, control_send, saved_show,     files_show,
-    members_show,     pointers_show,       look_show,    recording_show, replay_show,
+    members_show,     pointers_show,       look_show,    recording_show, replay_show, walls_show,
 };
 
 static void greet(struct room *room, void *connection, const struct message_hello *hello)
@@ -406,7 +408,7 @@ static const struct {
     { pointers_settle, false },  { look_settle, false },         { saved_settle, false },
     { replay_settle, false },    { displays_settle, false },     { members_settle_lost, true },
     { members_settle, false },   { control_settle, true },       { main_view_settle, true },
-    { displays_follow, true },   { watches_follow, true },       { streams_send_watches, false },
+    { displays_follow, true }, { walls_follow, true },   { watches_follow, true },       { streams_send_watches, false },
     { watches_settle, false },   { members_settle_away, false }, { streams_request_due, true },
     { presenter_due_us, false }, { send_members_due, false },    { recording_settle, false },
     { audit_settle, false },

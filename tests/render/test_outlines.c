@@ -211,17 +211,21 @@ static void a_dark_pixel_to_each_side_sets_a_line_off_from_bone(void **state)
     struct grid grid = made_cube_grid(20);
     struct plan *plan = made_plan(&grid, block, pair, 2);
     made_plan_add_image(plan, &grid, VOXEL_F32, white);
-    struct scene scene = outlined(plan, SCENE_OUTLINE_METHOD_SURFACE, vec3(0.5, 0.5, 0.5));
-    shots_style(&scene, "ball")->representation = SCENE_REPRESENTATION_UNIVELS;
-    scene.outline.width_px = 4;
-    struct image *image = take(plan, scene, shots_view(SCENE_KIND_AXIAL, origin, 10));
     static const uint8_t halo[3] = { 0x07, 0x08, 0x0a }, line[3] = { 0x20, 0xff, 0x20 }, bone[3] = { 255, 255, 255 };
-    for (int x = 244; x < 256; x++) {
-        const uint8_t *wanted = x >= 248 && x < 252 ? line : x >= 247 && x < 253 ? halo : bone;
-        for (int c = 0; c < 3; c++)
-            assert_close(shots_pixel(image, x, 150)[c], wanted[c], 1);
+    for (int ratio = 1; ratio <= 2; ratio++) { /* a line of 2 is 4 px wide on a screen with pixel_ratio 2, its halo 2 */
+        struct scene scene = outlined(plan, SCENE_OUTLINE_METHOD_SURFACE, vec3(0.5, 0.5, 0.5));
+        shots_style(&scene, "ball")->representation = SCENE_REPRESENTATION_UNIVELS;
+        scene.outline.width_px = 4.0 / ratio;
+        struct view view = shots_view(SCENE_KIND_AXIAL, origin, 10);
+        view.pixel_ratio = ratio;
+        struct image *image = take(plan, scene, view);
+        for (int x = 244; x < 256; x++) {
+            const uint8_t *wanted = x >= 248 && x < 252 ? line : x >= 248 - ratio && x < 252 + ratio ? halo : bone;
+            for (int c = 0; c < 3; c++)
+                assert_close(shots_pixel(image, x, 150)[c], wanted[c], 1);
+        }
+        image_destroy(image);
     }
-    image_destroy(image);
     shots_forget(plan);
 }
 

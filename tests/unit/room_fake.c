@@ -23,7 +23,8 @@ static void render(void *context, struct room *room, const struct room_render *r
                                .coarse = request->coarse,
                                .is_acted = request->is_acted,
                                .is_reduced = { request->is_reduced[0], request->is_reduced[1] },
-                               .is_marked = request->is_marked };
+                               .is_marked = request->is_marked,
+                               .is_of_wall = request->is_of_wall };
 }
 
 static void forget(void *context, struct room *room, uint64_t request)

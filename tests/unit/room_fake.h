@@ -23,7 +23,7 @@ struct fake_request {
     uint32_t scene_revision;
     int scale_percent, quality;
     bool is_still, full_color, coarse, is_acted, is_answered, is_forgotten;
-    bool is_reduced[IMAGE_N_REDUCED], is_marked;
+    bool is_reduced[IMAGE_N_REDUCED], is_marked, is_of_wall;
 };
 
 struct fake_room {

@@ -12,7 +12,7 @@ static void set_program(const struct gl_frame *frame, const struct draw *draw)
     const struct gl *gl = frame->gl;
     const struct gl_program *program = &frame->programs->marks;
     const uint32_t *size = draw->marks.labels->grid.size, rgb = draw->color_rgb;
-    double samples_per_px = (double)frame->target->width_px / frame->view_width_px;
+    double samples_per_px = (double)frame->target->width_px / frame->view_line_width;
     gl->UseProgram(program->name);
     gl->UniformMatrix4fv(program->clip_from_lps, 1, GL_FALSE, frame->clip_from_lps);
     gl->Uniform4f(program->scale, (float)size[0], (float)size[1], (float)size[2], 0);

@@ -380,7 +380,7 @@ struct gl_picture *gl_picture_begin(struct gl_renderer *renderer, const struct d
                                         .plan = scope->snapshot->plan,
                                         .list = list,
                                         .camera = scope->camera,
-                                        .view_width_px = (int)scope->snapshot->view.size_px[0] };
+                                        .view_line_width = snapshot_line_width(scope->snapshot) };
     return picture;
 }
 

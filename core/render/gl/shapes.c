@@ -97,7 +97,7 @@ static void draw_rectangles(const struct gl_frame *frame, const struct draw *dra
     const struct gl *gl = frame->gl;
     const struct gl_shape *shape = shape_of(draw);
     const struct visible_cue cue = draw->shape.cue;
-    double samples_per_px = (double)frame->target->width_px / frame->view_width_px;
+    double samples_per_px = (double)frame->target->width_px / frame->view_line_width;
     float edges[3][4];
     for (int i = 0; i < 3; i++)
         for (int row = 0; row < 4; row++) {

@@ -114,7 +114,7 @@ static const struct gl_program *use_program(const struct gl_frame *frame, const 
     const struct gl_program *program = &frame->programs->tracks;
     const struct draw_tracks *tracks = &draw->tracks;
     const struct tracks_shown *shown = &tracks->shown;
-    const double samples_per_px = (double)frame->target->width_px / frame->view_width_px,
+    const double samples_per_px = (double)frame->target->width_px / frame->view_line_width,
                  width = draw_tracks_width(tracks, samples_per_px);
     const struct vec3 *f = &frame->camera->forward;
     const struct visible_cue *cue = &tracks->cue;

@@ -112,7 +112,7 @@ static const struct soft_paint *add_paint(struct soft_frame *frame, const struct
 
 static struct soft_item make_item(const struct soft_frame *frame, const struct draw *draw)
 {
-    double samples_per_px = (double)frame->width / frame->scope->snapshot->view.size_px[0];
+    double samples_per_px = frame->width / snapshot_line_width(frame->scope->snapshot);
     return (struct soft_item){
         .shape = (const struct soft_shape *)draw->shape.drawable,
         .lighting = make_lighting(frame, draw),
@@ -196,7 +196,7 @@ static struct soft_plane make_labels(const struct soft_frame *frame, const struc
 static void add_marks(struct soft_frame *frame, const struct draw *draw)
 {
     soft_marks_init(&frame->marks[frame->n_marks++], draw, &frame->scope->camera->clip_from_lps_mm, frame->width,
-                    frame->height, (double)frame->width / frame->scope->snapshot->view.size_px[0]);
+                    frame->height, frame->width / snapshot_line_width(frame->scope->snapshot));
 }
 
 static bool make_volume(struct soft_frame *frame, const struct draw *draw, struct error *err)

@@ -59,7 +59,7 @@ void soft_track_view_init(struct soft_track_view *view, const struct draw *draw,
 {
     const struct camera *camera = scope->camera;
     const struct draw_tracks *tracks = &draw->tracks;
-    const double samples_per_px = (double)width / scope->snapshot->view.size_px[0];
+    const double samples_per_px = width / snapshot_line_width(scope->snapshot);
     const struct vec3 *f = &camera->forward;
     *view = (struct soft_track_view){ .tracks = tracks, .width = width, .height = height, .n_bands = n_bands };
     for (int column = 0; column < 4; column++) {

@@ -514,7 +514,7 @@ bool overlay_draw(struct overlay *overlay, const struct draw_scope *scope, const
                              .scope = scope,
                              .image = image,
                              .paint = paint_create(image, err),
-                             .scale = (double)image->width_px / scope->snapshot->view.size_px[0],
+                             .scale = image->width_px / snapshot_line_width(scope->snapshot),
                              .check = check };
     bool is_good = target.paint && paint_halos(&target, list, err);
     for (size_t i = list->n_in_image; is_good && i < list->n; i++)

@@ -261,6 +261,10 @@ struct admitted admission_decide(struct room *room, const struct identity *who, 
                                  const struct member *seat)
 {
     struct admitted in = decide(room, who, hello, seat);
+    if (hello->wall) {
+        in.role = WIRE_MEMBER_ROLE_WALL;
+        in.is_guest = false;
+    }
     in.role = who_holds(who, in.role);
     return in;
 }

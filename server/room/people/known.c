@@ -138,7 +138,9 @@ struct member *known_back(struct room *room, const char *id, const char *secret)
 
 enum wire_member_role role_of_newcomer(const struct room *room)
 {
-    bool is_first = room->members.n == 0;
+    bool is_first = true;
+    for (int i = 0; is_first && i < room->members.n; i++)
+        is_first = room->members.list[i]->role == WIRE_MEMBER_ROLE_WALL;
     for (int i = 0; is_first && i < room->known->n; i++)
         is_first = strcmp(room->known->list[i].role, wire_member_role_words.words[WIRE_MEMBER_ROLE_PRESENTER]) != 0;
     return is_first ? WIRE_MEMBER_ROLE_PRESENTER : WIRE_MEMBER_ROLE_REVIEWER;

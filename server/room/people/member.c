@@ -22,6 +22,7 @@
 #include "server/room/state/secret.h"
 #include "server/room/state/who.h"
 #include "server/room/streams/lag.h"
+#include "server/room/streams/wall.h"
 #include "server/room/views/marks.h"
 #include "server/room/views/member_view.h"
 
@@ -121,15 +122,25 @@ static bool name_is_taken(const struct room *room, const char *name)
     return false;
 }
 
-/* Makes room for one more member by dropping the one away longest, who does not present. Returns false when there is
- * none. */
-static bool make_place(struct room *room)
+static int n_walls(const struct room *room)
 {
-    if (room->members.n < room->members.max)
+    int n = 0;
+    for (int i = 0; i < room->members.n; i++)
+        n += member_is_wall(room->members.list[i]);
+    return n;
+}
+
+/* Makes room for one more member by dropping the one away longest, who does not present. Returns false when there is
+ * none. Walls have places of their own. */
+static bool make_place(struct room *room, enum wire_member_role role)
+{
+    if (role == WIRE_MEMBER_ROLE_WALL)
+        return n_walls(room) < ROOM_MAX_WALLS_IN;
+    if (room->members.n - n_walls(room) < room->members.max)
         return true;
     int longest = -1;
     for (int i = 0; i < room->members.n; i++)
-        if (!room->members.list[i]->connection && !member_presents(room, room->members.list[i]) &&
+        if (!room->members.list[i]->connection && !member_is_wall(room->members.list[i]) && !member_presents(room, room->members.list[i]) &&
             (longest < 0 || room->members.list[i]->away_us < room->members.list[longest]->away_us))
             longest = i;
     if (longest < 0)
@@ -251,9 +262,11 @@ static void sit_down_again(struct room *room, struct member *member)
 
 static const char *name_of(const struct identity *who, const struct message_hello *hello, const struct admitted *in)
 {
+    if (in->role == WIRE_MEMBER_ROLE_WALL) /* nobody's name */
+        return !hello->name[0] && in->link ? in->link->name : who_is_user(who) ? "" : hello->name;
     if (who_is_user(who))
         return who->name[0] ? who->name : who->user;
-    return !hello->name[0] && in->link && in->role == WIRE_MEMBER_ROLE_WALL ? in->link->name : hello->name;
+    return hello->name;
 }
 
 static void name_member(struct room *room, struct member *member, const struct identity *who,
@@ -279,7 +292,7 @@ static void name_member(struct room *room, struct member *member, const struct i
 static struct member *take_place(struct room *room, void *connection, const struct identity *who,
                                  const struct message_hello *hello, const struct admitted *in, const char **as)
 {
-    if (!make_place(room))
+    if (!make_place(room, in->role))
         return NULL;
     struct member *left = find_known_seat(room, who, hello), *member = NULL;
     *as = left ? "back" : *as;

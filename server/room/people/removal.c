@@ -8,10 +8,12 @@
 #include "server/room/out/send.h"
 #include "server/room/people/admission.h"
 #include "server/room/people/known.h"
+#include "server/room/people/links.h"
 #include "server/room/people/member.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/roles.h"
 #include "server/room/state/who.h"
+#include "server/room/streams/wall.h"
 
 /* Tabs of one person, and seats of one user, are removed together. */
 static bool is_same_person(const struct member *a, const struct member *b)
@@ -86,12 +88,27 @@ static bool is_last_planner(const struct room *room, const struct member *member
     return member->role == WIRE_MEMBER_ROLE_PLANNER;
 }
 
+/* A wall alone: nobody's other seats, and nobody stays out but by its link. */
+static void remove_wall(struct room *room, struct member *wall, const struct member *by, const char *reason)
+{
+    if (wall->link[0])
+        (void)link_end(room, wall->link);
+    audit_removed(room, wall, by, reason);
+    say_bye(room, wall, by ? by->name : "", reason);
+    member_drop(room, wall);
+    send_members(room);
+}
+
 bool member_remove(struct room *room, struct member *by, const struct message *message, struct problem *problem)
 {
-    const struct member *member = find(room, message->member_remove.member);
+    struct member *member = find(room, message->member_remove.member);
     if (!member)
         return problem_set(problem, PROBLEM_NOT_FOUND, "/member", "", "there is no member \"%.63s\" in this room",
                            message->member_remove.member);
+    if (member_is_wall(member)) {
+        remove_wall(room, member, by, message->member_remove.reason);
+        return true;
+    }
     if (is_same_person(by, member))
         return problem_set(problem, PROBLEM_CONFLICT, "/member", "own", "nobody removes themself: leave the room");
     if (is_last_planner(room, member))

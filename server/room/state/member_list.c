@@ -101,6 +101,6 @@ size_t room_n_connected(const struct room *room)
 {
     size_t n = 0;
     for (int i = 0; i < room->members.n; i++)
-        n += room->members.list[i]->connection != NULL;
+        n += room->members.list[i]->connection && room->members.list[i]->role != WIRE_MEMBER_ROLE_WALL;
     return n;
 }

@@ -74,7 +74,7 @@ int color_of_newcomer(const struct room *room)
 {
     int n_of[ROLES_N_COLORS] = { 0 }, best = 0;
     for (int i = 0; i < room->members.n; i++)
-        n_of[room->members.list[i]->color]++;
+        n_of[room->members.list[i]->color] += room->members.list[i]->role != WIRE_MEMBER_ROLE_WALL;
     for (int i = 1; i < ROLES_N_COLORS; i++)
         if (n_of[i] < n_of[best])
             best = i;

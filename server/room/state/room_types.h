@@ -26,6 +26,7 @@ enum {
     ROOM_MAX_LINKS = 32,       /* valid at once */
     ROOM_MAX_TABS = 16,        /* connected seats of one person, where people sign in */
     ROOM_MIN_GUESTS = 8,       /* that one link lets be connected, where people sign in, or half of the room's places */
+    ROOM_MAX_WALLS_IN = 8,     /* walls of one room; they take no place of a person */
     ROOM_MAX_WALLS = 4,        /* connected walls of one link, where people sign in */
     ROOM_MAX_PEOPLE = 100,     /* who may come in without a link */
     ROOM_MAX_REMOVED = 64,     /* members that were removed and are not let in again; the first is forgotten */
@@ -79,6 +80,7 @@ struct room_render {
     int scale_percent, quality;
     bool is_still, full_color, coarse; /* coarse: coarse surfaces are good enough */
     bool is_acted;                     /* of the view in which a member acts: its pictures go first */
+    bool is_of_wall;                   /* of a view of walls: its pictures go last */
     bool is_reduced[IMAGE_N_REDUCED];  /* the reduced pictures that are wanted beside it (size_class.h) */
     bool is_marked;                    /* also with the words for a draft, if the scene has one */
     const char *member;                /* id of the member whose own view it is; NULL: a shared view */

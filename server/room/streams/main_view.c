@@ -7,6 +7,7 @@
 
 void main_view_acted(struct member *member, int number)
 {
+    member->worked = number;
     if (!member->has_told_active)
         member->active = number;
 }

@@ -8,6 +8,7 @@
 #include "server/room/streams/display.h"
 #include "server/room/streams/size_class.h"
 #include "server/room/streams/stream.h"
+#include "server/room/streams/wall.h"
 #include "server/room/streams/watch.h"
 
 enum { STILL_QUALITY = 92 };
@@ -46,7 +47,7 @@ static bool has_credit(const struct room *room, const struct stream *stream)
 /* Id of the member whose own view it is; NULL: shared, or without a viewer. */
 static const char *owner_of(const struct stream *stream)
 {
-    return stream->is_shared || !stream->viewers ? NULL : stream->viewers->member->id;
+    return stream->is_shared || stream->is_of_wall || !stream->viewers ? NULL : stream->viewers->member->id;
 }
 
 /* False: not now, but at retry_us. */
@@ -63,6 +64,8 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
                                  .is_still = is_still,
                                  .n_outstanding = n_outstanding(stream) + 1 };
     stream->requested_version = stream->version;
+    if (!is_still)
+        stream->wall_requested_us = room->now_us;
     if (is_still)
         stream->still_requested_version = stream->version;
     struct pace_choice choice = { .scale_percent = 100, .quality = STILL_QUALITY };
@@ -78,6 +81,7 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
                                   .full_color = is_still,
                                   .coarse = choice.coarse,
                                   .is_acted = stream->acted_us > 0 && room->now_us - stream->acted_us < acted_for_us,
+                                  .is_of_wall = stream->is_of_wall,
                                   .is_marked = stream->displays != NULL,
                                   .member = owner_of(stream) };
     size_classes_needed(room, stream, choice.scale_percent, is_still, render.is_reduced);
@@ -90,7 +94,9 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
  * can change that: each comes as an event. */
 static int64_t request_due(struct room *room, struct stream *stream)
 {
-    const int64_t still_due_us = stream->changed_us + still_after_us;
+    const int64_t still_due_us =
+        stream->changed_us + still_after_us + (stream->is_of_wall ? WALL_STILL_LATER_US : 0);
+    const int most = stream->is_of_wall ? 1 : 2;
     for (;;) {
         bool wants_still = stream->still_requested_version < stream->version,
              wants_moving = stream->requested_version < stream->version;
@@ -100,13 +106,15 @@ static int64_t request_due(struct room *room, struct stream *stream)
             return stream->displays ? room->now_us + DISPLAY_AGAIN_US : INT64_MAX;
         if (room->now_us < stream->retry_us)
             return stream->retry_us;
-        if (n_outstanding(stream) >= 2)
+        if (n_outstanding(stream) >= most)
             return INT64_MAX;
         if (wants_still && room->now_us >= still_due_us && !still_is_outstanding(stream)) {
             if (!request_picture(room, stream, true))
                 return stream->retry_us;
             continue;
         }
+        if (wants_moving && stream->is_of_wall && room->now_us < wall_due_us(stream))
+            return wall_due_us(stream);
         if (wants_moving) {
             /* The second request is made when the first is drawn and being compressed. Made earlier it would wait and
              * show an older state. */
@@ -200,7 +208,7 @@ void stream_send_picture(struct room *room, struct member *member, struct member
     header.sequence = view->sent_sequence;
     header.input_id = view->input;
     header.scene_revision = revision_held(room, stream);
-    if (stream->is_shared)
+    if (stream->is_shared || stream->is_of_wall)
         header.flags |= FRAME_SHARED;
     room->counters.frames_sent++;
     room->counters.frame_bytes += picture->n_bytes;

@@ -12,6 +12,7 @@
 #include "server/room/state/event.h"
 #include "server/room/state/reach.h"
 #include "server/room/streams/display.h"
+#include "server/room/streams/wall.h"
 #include "server/wire/json_merge.h"
 
 struct stream *stream_shared(const struct room *room, const cJSON *view)
@@ -62,6 +63,8 @@ struct stream *stream_create(struct room *room, cJSON *view, bool is_shared)
     if (is_shared)
         destroy_unseen_obliques(room);
     stream->view = view;
+    stream->number = ++room->streams.n_made;
+    stream->n_document = ++room->streams.n_documents;
     stream->kind = view_kind(view);
     stream->is_shared = is_shared;
     stream->scene_is_stale = true;
@@ -168,6 +171,7 @@ bool stream_set_view(struct room *room, struct stream *stream, cJSON *view)
     send_view_forget(stream);
     cJSON_Delete(stream->view);
     stream->view = view;
+    stream->n_document = ++room->streams.n_documents;
     stream->scene_is_stale = true;
     if (stream->is_shared)
         room_event(room, ROOM_VIEWS, NULL);
@@ -255,6 +259,11 @@ char *streams_write(const struct room *room)
         cJSON_AddStringToObject(item, "mover", stream->mover);
         json_append(list, item);
     }
+    if (room->walls.layout != WIRE_WALL_LAYOUT_FOUR) {
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, "walls", walls_layout(room));
+        json_append(list, item);
+    }
     char *text = list ? json_print(list) : NULL;
     cJSON_Delete(list);
     return text;
@@ -268,6 +277,10 @@ void streams_read(struct room *room, const cJSON *list)
     {
         struct problem problem = { 0 };
         const cJSON *kept = cJSON_GetObjectItemCaseSensitive(item, "view");
+        if (!kept && json_text(item, "walls")) {
+            walls_read(room, json_text(item, "walls"));
+            continue;
+        }
         cJSON *view = kept && n++ < 64 ? view_document_patch(NULL, kept, &problem) : NULL;
         if (!view) {
             log_error("room %s: a kept view is left out: %s", room->id, problem.detail);

@@ -11,6 +11,7 @@
 #include "server/room/streams/main_view.h"
 #include "server/room/streams/pictures.h"
 #include "server/room/streams/stream.h"
+#include "server/room/streams/wall.h"
 
 /* ---- joining and leaving a stream ------------------------------------------------------------------------------- */
 
@@ -170,6 +171,23 @@ static void send_members_if(struct room *room, const struct member *member, bool
         send_members(room);
 }
 
+/* The wall's view shows the stream for such documents. Takes document. */
+static bool join_wall(struct room *room, struct member *member, struct member_view *view, cJSON *document,
+                      struct problem *problem)
+{
+    read_size(document, view->size_px);
+    struct stream *stream = wall_stream(room, document, problem);
+    if (!stream)
+        return false;
+    view_join(room, member, view, stream, true);
+    return true;
+}
+
+static bool refuse_wall(struct problem *problem)
+{
+    return problem_set(problem, PROBLEM_CONFLICT, "", "wall", "a wall has no views but those that follow");
+}
+
 /* ---- opening, changing, closing --------------------------------------------------------------------------------- */
 
 static struct member_view *open_view(struct member *member, int64_t number, struct problem *problem)
@@ -192,6 +210,13 @@ bool member_view_open(struct room *room, struct member *member, const struct mes
     if (!override_is_valid(room, document, problem)) {
         cJSON_Delete(document);
         return false;
+    }
+    if (member_is_wall(member)) {
+        if (!join_wall(room, member, view, document, problem))
+            return false;
+        view_add_input(view, (uint32_t)open->input);
+        send_joined(room, member, (int)open->view - 1);
+        return true;
     }
     read_size(document, size_px);
     if (open->follow && !(document = document_to_share(room, member, document, problem)))
@@ -224,6 +249,22 @@ static bool patch_of_follower(struct room *room, struct member_view *view, const
     return true;
 }
 
+/* A wall gives the view another size. Takes document. */
+static bool patch_of_wall(struct room *room, struct member *member, struct member_view *view,
+                          const struct message_view_patch *patch, cJSON *document, struct problem *problem)
+{
+    for (const cJSON *field = patch->patch->child; field; field = field->next)
+        if (strcmp(field->string, "size_px") != 0 && strcmp(field->string, "pixel_ratio") != 0) {
+            cJSON_Delete(document);
+            return refuse_wall(problem);
+        }
+    if (!join_wall(room, member, view, document, problem))
+        return false;
+    view_add_input(view, (uint32_t)patch->input);
+    send_joined(room, member, (int)patch->view - 1);
+    return true;
+}
+
 bool member_view_patch(struct room *room, struct member *member, const struct message *message, struct problem *problem)
 {
     const struct message_view_patch *patch = &message->view_patch;
@@ -234,7 +275,10 @@ bool member_view_patch(struct room *room, struct member *member, const struct me
     cJSON *document = view_document_patch(stream->view, patch->patch, problem);
     if (!document)
         return false;
-    main_view_patched(member, (int)patch->view, patch->patch);
+    if (member_is_wall(member))
+        return patch_of_wall(room, member, view, patch, document, problem);
+    if (patch->acted)
+        main_view_patched(member, (int)patch->view, patch->patch);
     if (view->is_following && !member_presents(room, member)) {
         bool is_kept = patch_of_follower(room, view, patch->patch, document, problem);
         cJSON_Delete(document);
@@ -487,6 +531,8 @@ bool member_follow(struct room *room, struct member *member, const struct messag
     if (!follow->follow && member_presents(room, member))
         return problem_set(problem, PROBLEM_NOT_PRESENTER, "/follow", "",
                            "the presenter cannot leave: the presenter's views are the room's");
+    if (!follow->follow && member_is_wall(member))
+        return refuse_wall(problem);
     bool followed = member_follows(room, member);
     if (!(follow->follow ? views_follow(room, member, (uint32_t)follow->input, problem)
                          : views_leave(room, member, follow->views, (uint32_t)follow->input, problem)))
