@@ -359,8 +359,8 @@ void room_audit_refused(struct room *room, const struct member *member, const ch
 
 /* Messages to a newcomer after welcome, in this order. */
 static void (*const shown_to_newcomer[])(struct room *room, struct member *member) = {
-    acceptances_tell, send_renderer_state, control_send, saved_show,     files_show,
-    members_show,     pointers_show,       look_show,    recording_show, replay_show, walls_show,
+    acceptances_tell, send_renderer_state, control_send,   saved_show,  files_show, members_show,
+    pointers_show,    look_show,           recording_show, replay_show, walls_show,
 };
 
 static void greet(struct room *room, void *connection, const struct message_hello *hello)
@@ -405,13 +405,13 @@ static const struct {
     int64_t (*settle)(struct room *room);
     bool is_at_once; /* after each message; the others once for all messages that have come together */
 } following[] = {
-    { pointers_settle, false },  { look_settle, false },         { saved_settle, false },
-    { replay_settle, false },    { displays_settle, false },     { members_settle_lost, true },
-    { members_settle, false },   { control_settle, true },       { main_view_settle, true },
-    { displays_follow, true }, { walls_follow, true },   { watches_follow, true },       { streams_send_watches, false },
-    { watches_settle, false },   { members_settle_away, false }, { streams_request_due, true },
-    { presenter_due_us, false }, { send_members_due, false },    { recording_settle, false },
-    { audit_settle, false },
+    { pointers_settle, false },      { look_settle, false },      { saved_settle, false },
+    { replay_settle, false },        { displays_settle, false },  { members_settle_lost, true },
+    { members_settle, false },       { control_settle, true },    { main_view_settle, true },
+    { displays_follow, true },       { walls_follow, true },      { watches_follow, true },
+    { streams_send_watches, false }, { watches_settle, false },   { members_settle_away, false },
+    { streams_request_due, true },   { presenter_due_us, false }, { send_members_due, false },
+    { recording_settle, false },     { audit_settle, false },
 };
 
 static int64_t settle(struct room *room, bool only_at_once)

@@ -140,7 +140,8 @@ static bool make_place(struct room *room, enum wire_member_role role)
         return true;
     int longest = -1;
     for (int i = 0; i < room->members.n; i++)
-        if (!room->members.list[i]->connection && !member_is_wall(room->members.list[i]) && !member_presents(room, room->members.list[i]) &&
+        if (!room->members.list[i]->connection && !member_is_wall(room->members.list[i]) &&
+            !member_presents(room, room->members.list[i]) &&
             (longest < 0 || room->members.list[i]->away_us < room->members.list[longest]->away_us))
             longest = i;
     if (longest < 0)

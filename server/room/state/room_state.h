@@ -32,11 +32,11 @@ struct stream {
     cJSON *scene;        /* the scene with the view's override; NULL: the room's scene */
     bool scene_is_stale; /* scene is made anew before the next request */
     bool is_shared;
-    bool is_of_wall;             /* follows the shared stream of its kind (wall.h) */
-    uint64_t number;             /* counts streams from 1, never the same twice */
-    uint64_t n_document;         /* another one for each document of any stream */
-    uint64_t followed;           /* of a wall: n_document of the shared one that it shows; 0: none */
-    int64_t wall_requested_us;   /* of a wall: when a moving picture was last requested */
+    bool is_of_wall;           /* follows the shared stream of its kind (wall.h) */
+    uint64_t number;           /* counts streams from 1, never the same twice */
+    uint64_t n_document;       /* another one for each document of any stream */
+    uint64_t followed;         /* of a wall: n_document of the shared one that it shows; 0: none */
+    int64_t wall_requested_us; /* of a wall: when a moving picture was last requested */
     int kind;
     char mover[64];         /* shared: id of the presenter who moved it last; "": nobody has yet */
     uint64_t version;       /* counts changes of what the picture shows */
@@ -125,7 +125,7 @@ struct member {
     int64_t lag_until_us;                 /* it is told at least until then */
     struct member_view views[ROOM_WATCH]; /* the last one is that of watch */
     int active;                           /* number of the view in which it works; 0: not known */
-    int worked; /* number of the view in which it last changed what is seen; 0: none */
+    int worked;                           /* number of the view in which it last changed what is seen; 0: none */
     bool has_told_active;                 /* by a message of its own */
     uint64_t n_bytes;                     /* of the pictures sent in its views, without that of watch */
     bool is_naming;                       /* a wall: the patient's name is shown on it */

@@ -94,8 +94,7 @@ static bool request_picture(struct room *room, struct stream *stream, bool is_st
  * can change that: each comes as an event. */
 static int64_t request_due(struct room *room, struct stream *stream)
 {
-    const int64_t still_due_us =
-        stream->changed_us + still_after_us + (stream->is_of_wall ? WALL_STILL_LATER_US : 0);
+    const int64_t still_due_us = stream->changed_us + still_after_us + (stream->is_of_wall ? WALL_STILL_LATER_US : 0);
     const int most = stream->is_of_wall ? 1 : 2;
     for (;;) {
         bool wants_still = stream->still_requested_version < stream->version,

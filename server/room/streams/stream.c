@@ -12,7 +12,6 @@
 #include "server/room/state/event.h"
 #include "server/room/state/reach.h"
 #include "server/room/streams/display.h"
-#include "server/room/streams/wall.h"
 #include "server/wire/json_merge.h"
 
 struct stream *stream_shared(const struct room *room, const cJSON *view)
@@ -248,6 +247,14 @@ void streams_restart_pace(struct room *room)
 
 /* ---- kept views ------------------------------------------------------------------------------------------------- */
 
+/* A layout that is none changes nothing. */
+static void read_walls(struct room *room, const char *layout)
+{
+    for (size_t i = 0; i < wire_wall_layout_words.n; i++)
+        if (strcmp(layout, wire_wall_layout_words.words[i]) == 0)
+            room->walls.layout = (enum wire_wall_layout)i;
+}
+
 char *streams_write(const struct room *room)
 {
     cJSON *list = cJSON_CreateArray();
@@ -261,7 +268,7 @@ char *streams_write(const struct room *room)
     }
     if (room->walls.layout != WIRE_WALL_LAYOUT_FOUR) {
         cJSON *item = cJSON_CreateObject();
-        cJSON_AddStringToObject(item, "walls", walls_layout(room));
+        cJSON_AddStringToObject(item, "walls", wire_wall_layout_words.words[room->walls.layout]);
         json_append(list, item);
     }
     char *text = list ? json_print(list) : NULL;
@@ -278,7 +285,7 @@ void streams_read(struct room *room, const cJSON *list)
         struct problem problem = { 0 };
         const cJSON *kept = cJSON_GetObjectItemCaseSensitive(item, "view");
         if (!kept && json_text(item, "walls")) {
-            walls_read(room, json_text(item, "walls"));
+            read_walls(room, json_text(item, "walls"));
             continue;
         }
         cJSON *view = kept && n++ < 64 ? view_document_patch(NULL, kept, &problem) : NULL;

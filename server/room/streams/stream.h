@@ -28,8 +28,8 @@ void streams_scene_changed(struct room *room, const cJSON *before, const cJSON *
 /* Forgets outstanding requests without a word to the renderer: it is gone. */
 void streams_forget_requests(struct room *room);
 void streams_restart_pace(struct room *room);
-/* The shared views as they are kept: [{view, mover}]. The text is the caller's; NULL: no memory. Reading leaves out
- * what is not a view. */
+/* The shared views as they are kept: [{view, mover}], and {walls} where walls have another layout than four. The text
+ * is the caller's; NULL: no memory. Reading leaves out what is not a view. */
 NODISCARD char *streams_write(const struct room *room);
 void streams_read(struct room *room, const cJSON *list);
 bool view_has_override(const cJSON *view);

@@ -97,8 +97,7 @@ static bool is_same_size(const cJSON *a, const cJSON *b)
 {
     static const char *const fields[] = { "size_px", "pixel_ratio" };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
-        if (!json_equal(cJSON_GetObjectItemCaseSensitive(a, fields[i]),
-                        cJSON_GetObjectItemCaseSensitive(b, fields[i])))
+        if (!json_equal(cJSON_GetObjectItemCaseSensitive(a, fields[i]), cJSON_GetObjectItemCaseSensitive(b, fields[i])))
             return false;
     return true;
 }
@@ -234,16 +233,4 @@ bool wall_layout_set(struct room *room, struct member *member, const struct mess
         if (!member_is_wall(room->members.list[i])) /* walls: walls_follow */
             walls_show(room, room->members.list[i]);
     return true;
-}
-
-const char *walls_layout(const struct room *room)
-{
-    return wire_wall_layout_words.words[room->walls.layout];
-}
-
-void walls_read(struct room *room, const char *layout)
-{
-    for (size_t i = 0; layout && i < wire_wall_layout_words.n; i++)
-        if (strcmp(layout, wire_wall_layout_words.words[i]) == 0)
-            room->walls.layout = (enum wire_wall_layout)i;
 }

@@ -10,7 +10,7 @@
 #include "server/wire/message.h"
 
 enum {
-    WALL_EVERY_US = 50000,      /* between two requests of moving pictures for one stream */
+    WALL_EVERY_US = 50000,       /* between two requests of moving pictures for one stream */
     WALL_STILL_LATER_US = 200000 /* after the stills of people */
 };
 
@@ -28,6 +28,3 @@ int64_t walls_follow(struct room *room);
 void walls_show(struct room *room, struct member *member);
 /* The handler of wall.layout. */
 bool wall_layout_set(struct room *room, struct member *member, const struct message *message, struct problem *problem);
-/* The layout as it is kept; read: NULL, or what is no layout, changes nothing. */
-const char *walls_layout(const struct room *room);
-void walls_read(struct room *room, const char *layout);

@@ -1,4 +1,5 @@
-/* Walls: members with views of their own size that follow the presenter, places of their own, and what they are told. */
+/* Walls: members with views of their own size that follow the presenter, places of their own, and what they are told.
+ */
 #include <math.h>
 
 #include "tests/unit/room_set_up.h"
@@ -229,8 +230,9 @@ static void a_wall_is_told_at_once_in_which_view_the_presenter_changed_something
     show(&wall, 1, "3d", 837, 434);
     assert_string_equal(active_kind(&wall), "3d");
     fake_say(&fake, &ann, "{\"type\":\"view.active\",\"view\":2}"); /* chosen: nothing of it has changed yet */
-    fake_say(&fake, &ann, "{\"type\":\"scene.patch\",\"patch\":{\"image\":{\"slices\":{\"coronal\":{\"position_mm\":7}}}},"
-                          "\"view\":4}");
+    fake_say(&fake, &ann,
+             "{\"type\":\"scene.patch\",\"patch\":{\"image\":{\"slices\":{\"coronal\":{\"position_mm\":7}}}},"
+             "\"view\":4}");
     assert_string_equal(active_kind(&wall), "coronal");
     fake_say(&fake, &ann, "{\"type\":\"view.patch\",\"view\":3,\"patch\":{\"camera\":{\"height_mm\":90}}}");
     assert_string_equal(active_kind(&wall), "sagittal");
