@@ -382,15 +382,18 @@ struct image *annotate_image(const struct image *image, const struct annotations
     struct caption caption = { .margin_px = text_px * 3 / 4, .width_px = width_px };
     struct image *out = NULL;
     bool is_done = false;
-    if (!(caption.fonts[0] = font_create(text_px, err)) || !(caption.fonts[1] = font_create(text_px * 5 / 4, err)) ||
-        !put_caption(&caption, annotations, err))
+    const int on_picture_px = annotations->has_no_caption ? text_px * 3 / 2 : text_px; /* printed at half a page, too */
+    if (!(caption.fonts[0] = font_create(on_picture_px, err)) ||
+        !(caption.fonts[1] = font_create(text_px * 5 / 4, err)) ||
+        (!annotations->has_no_caption && !put_caption(&caption, annotations, err)))
         goto done;
     int caption_px = caption.y_px < ANNOTATE_MAX_CAPTION_PX ? caption.y_px : ANNOTATE_MAX_CAPTION_PX;
     if (!(out = copy_onto_white(image, width_px, image->height_px + caption_px, err)))
         goto done;
     const struct canvas canvas = { out, image->width_px, image->height_px, ink };
-    is_done = paint_on_picture(&canvas, caption.fonts[0], annotations, err) &&
-              paint_caption(&caption, annotations, caption_px, out, image->height_px, err);
+    is_done =
+        paint_on_picture(&canvas, caption.fonts[0], annotations, err) &&
+        (annotations->has_no_caption || paint_caption(&caption, annotations, caption_px, out, image->height_px, err));
 done:
     font_destroy(caption.fonts[0]);
     font_destroy(caption.fonts[1]);

@@ -32,8 +32,11 @@ static bool annotate(struct picture *picture, struct error *err)
     const struct pipeline_annotation *annotation = picture->request.annotation;
     struct annotations annotations;
     struct image *annotated = NULL;
-    if (annotations_describe(&annotations, picture->request.snapshot, picture->image->width_px, annotation->date, err))
+    if (annotations_describe(&annotations, picture->request.snapshot, picture->image->width_px, annotation->date,
+                             err)) {
+        annotations.has_no_caption = annotation->is_caption_apart;
         annotated = annotate_image(picture->image, &annotations, err);
+    }
     annotations_finish(&annotations);
     image_destroy(picture->image);
     picture->image = annotated;

@@ -13,8 +13,9 @@ struct pipeline;
 /* A picture for a report: core/annotate. */
 struct pipeline_annotation {
     char date[ANNOTATE_DATE_SIZE];
-    const char *keyword; /* of the text in a PNG; borrowed, a constant */
-    char *text;          /* owned: kept in a PNG; JPEGs carry none */
+    const char *keyword;   /* of the text in a PNG; borrowed, a constant */
+    char *text;            /* owned: kept in a PNG; JPEGs carry none */
+    bool is_caption_apart; /* letters and scale bar alone */
 };
 void pipeline_annotation_destroy(struct pipeline_annotation *annotation);
 

@@ -52,6 +52,7 @@ void api_room_notes(struct api *api, struct call *call);
 void api_audit(struct api *api, struct call *call);
 void api_records(struct api *api, struct call *call);
 void api_record(struct api *api, struct call *call);
+void api_record_figure(struct api *api, struct call *call);
 /* Whether a room or plan (what) with these many decisions and signatures may be deleted: records=keep was said where
  * there are any. False: the call was answered. */
 bool api_may_delete(struct call *call, size_t n_decided, const char *what);

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/mem.h"
 #include "server/http/api_access.h"
 #include "server/http/api_audit.h"
 #include "server/http/api_handlers.h"
@@ -74,22 +75,28 @@ static void cursor_was_read(void *context, const struct net_record *records, siz
         call_answer_problem(call, &busy);
 }
 
+/* False: the call was answered. One that the caller may not see is as one that is not there. */
+static bool may_see(struct call *call, const struct net_record *records, size_t n, const struct problem *problem)
+{
+    struct problem missing;
+    char text[100];
+    if (problem || n == 0) {
+        call_answer_problem(call, problem);
+        return false;
+    }
+    if (api_access_to_plan(call->api, call, ACCESS_LOOK, records[0].plan))
+        return true;
+    (void)snprintf(text, sizeof text, "there is no record \"%.63s\"", call->ids[0]);
+    problem_set(&missing, PROBLEM_NOT_FOUND, "", "", "%s", text);
+    call_answer_problem(call, &missing);
+    return false;
+}
+
 static void one_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
 {
-    if (problem || n == 0) {
-        call_answer_problem(context, problem);
-        return;
-    }
     struct call *call = context;
-    if (!api_access_to_plan(call->api, call, ACCESS_LOOK,
-                            records[0].plan)) { /* in the words of one that is not there */
-        struct problem missing;
-        char text[100];
-        (void)snprintf(text, sizeof text, "there is no record \"%.63s\"", call->ids[0]);
-        problem_set(&missing, PROBLEM_NOT_FOUND, "", "", "%s", text);
-        call_answer_problem(call, &missing);
+    if (!may_see(call, records, n, problem))
         return;
-    }
     cJSON *answer = describe(&records[0]);
     json_add(answer, "item", cJSON_CreateRaw(records[0].item));
     json_add(answer, "body", cJSON_CreateRaw(records[0].body));
@@ -114,5 +121,35 @@ void api_record(struct api *api, struct call *call)
     struct problem problem;
     if (api_audit_export(api, call, "record") &&
         !net_read_records(api->net, call->ids[0], "", one_was_read, call, &problem))
+        call_answer_problem(call, &problem);
+}
+
+static void figure_was_read(void *context, const struct net_record *records, size_t n, const struct problem *problem)
+{
+    struct call *call = context;
+    if (!may_see(call, records, n, problem))
+        return;
+    const char *word = call->ids[1];
+    const int place = word[0] >= '1' && word[0] <= '0' + STORE_FIGURES && !word[1] ? word[0] - '1' : -1;
+    const struct store_figure *figure = place >= 0 ? &records[0].figures[place] : NULL;
+    uint8_t *copy = figure && figure->bytes ? mem_array(figure->n_bytes, 1, STORE_MAX_FIGURE_BYTES, NULL) : NULL;
+    struct problem missing;
+    if (copy) {
+        memcpy(copy, figure->bytes, figure->n_bytes);
+        call_answer_bytes(call, 200, "image/jpeg", copy, figure->n_bytes);
+        return;
+    }
+    if (figure && figure->bytes)
+        problem_set(&missing, PROBLEM_MEMORY, "", "", "there is no memory for the picture");
+    else
+        problem_set(&missing, PROBLEM_NOT_FOUND, "", "", "this record has no picture \"%.20s\"", word);
+    call_answer_problem(call, &missing);
+}
+
+void api_record_figure(struct api *api, struct call *call)
+{
+    struct problem problem;
+    if (api_audit_export(api, call, "record") &&
+        !net_read_records(api->net, call->ids[0], "", figure_was_read, call, &problem))
         call_answer_problem(call, &problem);
 }

@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "server/net/keep_audit.h"
+#include "server/net/keep_figures.h"
 #include "server/net/keep_recordings.h"
 #include "server/net/schedule.h"
 #include "server/wire/json.h"
@@ -190,7 +191,7 @@ bool keep_item_first(void *context, struct room *room, uint64_t number, const st
 static struct prompt_write *take_waiting(struct net_room *entry)
 {
     for (struct prompt_write **at = &entry->keep.prompts; *at; at = &(*at)->next)
-        if ((*at)->row) {
+        if ((*at)->row && !(*at)->gathering) {
             struct prompt_write *prompt = *at;
             *at = prompt->next;
             return prompt;
@@ -198,30 +199,55 @@ static struct prompt_write *take_waiting(struct net_room *entry)
     return NULL;
 }
 
-void keep_files_looked(struct net_room *entry, const struct fleet_plan *plan)
+/* Hands what has waited to the store, or says why it is not kept. prompt is out of the list; taken. */
+static void write_waiting(struct net_room *entry, struct prompt_write *prompt, struct problem *problem)
 {
     struct net *net = entry->net;
+    struct store_room *row = prompt->row;
+    prompt->row = NULL;
+    if (problem->type == PROBLEM_NONE && !store_write(net->store, row, prompt->ticket))
+        (void)refuse_to_keep(net, false, problem);
+    if (problem->type == PROBLEM_NONE) {
+        prompt->next = entry->keep.prompts;
+        entry->keep.prompts = prompt;
+        return;
+    }
+    net->n_audit_waiting--;
+    store_room_free(row);
+    room_item_written(entry->room, prompt->number, problem, clock_now_us());
+    free(prompt);
+}
+
+/* All that a decision is kept with is there, as far as it can be had. */
+static void gathered(struct net_room *entry, struct prompt_write *prompt)
+{
+    struct problem problem = { 0 };
+    struct prompt_write **at = &entry->keep.prompts;
+    while (*at != prompt)
+        at = &(*at)->next;
+    *at = prompt->next;
+    if (!keep_can_write(entry->net, &problem))
+        log_warn("room %s: a decision is not kept: the disk cannot be written", room_id(entry->room));
+    write_waiting(entry, prompt, &problem);
+    schedule_room(entry);
+}
+
+void keep_files_looked(struct net_room *entry, const struct fleet_plan *plan)
+{
     struct prompt_write *prompt;
     while (!plan->files_are_looked_at && (prompt = take_waiting(entry))) {
         struct problem problem = { 0 };
-        struct store_room *row = prompt->row;
-        prompt->row = NULL;
         if (plan->files_changed_ms || !plan->revision[0])
             problem_set(&problem, PROBLEM_CONFLICT, "", "files",
                         "the plan's files %s: this was not kept and does not count; have them read anew",
                         plan->files_changed_ms ? "have changed on the disk since they were read"
                                                : "cannot be read now");
-        else if (!store_write(net->store, row, prompt->ticket))
-            (void)refuse_to_keep(net, false, &problem);
-        if (problem.type == PROBLEM_NONE) {
+        if (problem.type == PROBLEM_NONE && keep_figures_begin(entry, prompt, gathered)) {
             prompt->next = entry->keep.prompts;
             entry->keep.prompts = prompt;
             continue;
         }
-        net->n_audit_waiting--;
-        store_room_free(row);
-        room_item_written(entry->room, prompt->number, &problem, clock_now_us());
-        free(prompt);
+        write_waiting(entry, prompt, &problem);
     }
 }
 
@@ -280,6 +306,7 @@ void keep_room_finish(struct net_room *room)
     while (room->keep.prompts) {
         struct prompt_write *prompt = room->keep.prompts;
         room->keep.prompts = prompt->next;
+        keep_figures_forget(room, prompt);
         if (prompt->row)
             room->net->n_audit_waiting--;
         store_room_free(prompt->row);
@@ -353,6 +380,7 @@ void keep_write_due(struct net *net, bool is_last)
 {
     const int64_t longer_us = (KEEP_VIEWS_PAUSE_MS - KEEP_PAUSE_MS) * INT64_C(1000);
     const int64_t now_us = clock_now_us(), again_us = now_us + KEEP_PAUSE_MS * INT64_C(1000);
+    keep_figures_due(net);
     while (net->store && net->n_undeleted && store_delete(net->store, net->undeleted[net->n_undeleted - 1], 0))
         net->n_undeleted--;
     if (net->store && net->n_audit)

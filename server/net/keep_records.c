@@ -45,7 +45,8 @@ static void give(const struct record_reader *reader, const struct store_answer *
                                        .item = record->item,
                                        .body = record->body,
                                        .hash = record->hash,
-                                       .time_ms = record->time_ms };
+                                       .time_ms = record->time_ms,
+                                       .figures = record->figures };
     }
     reader->done(reader->context, list, answer->n_records, NULL);
     free(list);

@@ -105,6 +105,7 @@ NODISCARD bool net_recording_read(struct net *net, const char *room, const char 
 struct net_record {
     const char *id, *room, *plan, *kind, *author, *author_name, *item, *body, *hash;
     int64_t time_ms;
+    const struct store_figure *figures; /* [STORE_FIGURES], of one record alone */
 };
 typedef void net_records_read(void *context, const struct net_record *records, size_t n, const struct problem *problem);
 NODISCARD bool net_read_records(struct net *net, const char *id, const char *before, net_records_read *done,

@@ -45,10 +45,13 @@ struct picture_request { /* sent to the fleet and not yet answered */
     bool is_override;                      /* the packet carries a scene of its own */
 };
 
+struct gathering;
+
 struct prompt_write { /* of one item, which counts when it is on disk */
     struct prompt_write *next;
-    uint64_t ticket, number; /* of the store; of the room */
-    struct store_room *row;  /* waits until the plan's files were looked at; NULL: it is with the store */
+    uint64_t ticket, number;     /* of the store; of the room */
+    struct store_room *row;      /* waits until the plan's files were looked at; NULL: it is with the store */
+    struct gathering *gathering; /* then, of a decision, for its pictures (keep_figures.h); NULL: for nothing of that */
 };
 
 struct net_room { /* a room and what the net thread keeps beside it */

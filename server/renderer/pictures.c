@@ -2,17 +2,19 @@
 #include "server/renderer/pictures.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
+#include "core/annotate/describe.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
 #include "core/render/visible/visible.h"
 #include "server/wire/document.h"
 #include "server/wire/snapshot_record.h"
 
-enum { WARM_UP_PX = 64, MAX_REQUESTS = 2 * PIPELINE_MAX_WAITING };
+enum { WARM_UP_PX = 64, MAX_REQUESTS = 2 * PIPELINE_MAX_WAITING, MAX_CAPTION_ITEMS = 100 };
 #define WARM_UP_ID UINT64_MAX       /* never the id of a packet, so its picture is dropped */
 #define NO_REQUEST (UINT64_MAX - 1) /* likewise */
 
@@ -22,6 +24,7 @@ struct picture_request {
     uint32_t scene_revision;
     struct snapshot *snapshot; /* a reference */
     enum surface_detail detail;
+    bool is_caption_apart;
 };
 
 struct pictures {
@@ -184,6 +187,9 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
         link_send_problem(pictures->options.link, render->id, &problem);
         return;
     }
+    if (drawn.annotation)
+        drawn.annotation->is_caption_apart = render->caption_apart;
+    request->is_caption_apart = render->annotations && render->caption_apart;
     request->scene_revision = scene_revision;
     request->snapshot = snapshot_ref(snapshot);
     request->detail = drawn.render.detail;
@@ -235,6 +241,38 @@ static cJSON *missing_of(const struct picture_request *request)
         cJSON_AddItemToArray(list, region);
     }
     return json;
+}
+
+static const char *const row_words[ANNOTATION_N_ROWS] = {
+    [ANNOTATION_TITLE] = "title",     [ANNOTATION_PANE] = "pane",       [ANNOTATION_BEAM] = "beam",
+    [ANNOTATION_REGIONS] = "regions", [ANNOTATION_DOSE] = "dose",       [ANNOTATION_LEVELS] = "levels",
+    [ANNOTATION_METHODS] = "methods", [ANNOTATION_MISSING] = "missing", [ANNOTATION_ORIGIN] = "origin",
+    [ANNOTATION_USE] = "use"
+};
+
+/* The caption as [{row, rgb, text}], at most MAX_CAPTION_ITEMS. NULL: no memory for it. */
+static cJSON *caption_of(const struct picture_request *request, int width_px)
+{
+    struct annotations annotations;
+    struct error err = { 0 };
+    cJSON *list = cJSON_CreateArray();
+    if (!annotations_describe(&annotations, request->snapshot, width_px, "", &err))
+        annotations.n_items = 0;
+    for (size_t i = 0; i < annotations.n_items && i < MAX_CAPTION_ITEMS; i++) {
+        struct annotation_item *item = &annotations.items[i];
+        char rgb[8];
+        cJSON *row = cJSON_CreateObject();
+        for (char *at = item->text; *at; at++) /* so that each byte stays at most two in JSON */
+            if ((unsigned char)*at < 0x20)
+                *at = ' ';
+        (void)snprintf(rgb, sizeof rgb, "#%02x%02x%02x", item->rgb[0], item->rgb[1], item->rgb[2]);
+        cJSON_AddStringToObject(row, "row", row_words[item->row]);
+        cJSON_AddStringToObject(row, "rgb", item->has_chip ? rgb : "");
+        cJSON_AddStringToObject(row, "text", item->text);
+        cJSON_AddItemToArray(list, row);
+    }
+    annotations_finish(&annotations);
+    return list;
 }
 
 static void append(uint8_t *bytes, size_t *n_bytes, const struct encoded *picture)
@@ -305,7 +343,10 @@ void pictures_send_frame(struct pictures *pictures, const struct pipeline_frame 
     fields->is_coarse = frame->timing.is_coarse;
     fields->n_triangles = (int64_t)frame->timing.n_triangles;
     fields->missing = missing;
+    cJSON *caption = request->is_caption_apart ? caption_of(request, frame->width_px) : NULL;
+    fields->caption = caption;
     end_request(request);
     send_all(pictures, &packet, frame);
+    cJSON_Delete(caption);
     cJSON_Delete(missing);
 }

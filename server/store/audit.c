@@ -11,11 +11,16 @@
 
 const char audit_no_hash[STORE_AUDIT_HASH] = "0000000000000000000000000000000000000000000000000000000000000000";
 
-void audit_digest(const char *text, char hash[STORE_AUDIT_HASH])
+void audit_digest_bytes(const void *data, size_t n, char hash[STORE_AUDIT_HASH])
 {
     unsigned char bytes[crypto_hash_sha256_BYTES];
-    (void)crypto_hash_sha256(bytes, (const unsigned char *)text, strlen(text));
+    (void)crypto_hash_sha256(bytes, data, n);
     (void)sodium_bin2hex(hash, STORE_AUDIT_HASH, bytes, sizeof bytes);
+}
+
+void audit_digest(const char *text, char hash[STORE_AUDIT_HASH])
+{
+    audit_digest_bytes(text, strlen(text), hash);
 }
 
 void audit_hash(const char before[STORE_AUDIT_HASH], const char *text, char hash[STORE_AUDIT_HASH])

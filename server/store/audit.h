@@ -20,6 +20,7 @@ bool audit_has_row(sqlite3 *db, const struct audit_head *row); /* with this numb
 NODISCARD bool audit_append(sqlite3 *db, char *const *rows, size_t n, struct error *err);
 /* Hash of a row with this text, after a row with the hash `before`. */
 void audit_hash(const char before[STORE_AUDIT_HASH], const char *text, char hash[STORE_AUDIT_HASH]);
-/* SHA-256 of a text. */
+/* SHA-256 of bytes; of a text. */
+void audit_digest_bytes(const void *data, size_t n, char hash[STORE_AUDIT_HASH]);
 void audit_digest(const char *text, char hash[STORE_AUDIT_HASH]);
 extern const char audit_no_hash[STORE_AUDIT_HASH]; /* before row 1 */

@@ -217,6 +217,16 @@ static const char struck[] =
     " json_extract(item, '$.body.decision') END, 'plan_revision', CASE WHEN json_valid(item) THEN"
     " json_extract(item, '$.body.plan_revision') END)) FROM records WHERE n = ?1";
 
+static bool delete_figures(const struct erasing *erasing, int64_t n)
+{
+    sqlite3_stmt *row = sql_prepare(erasing->db, "DELETE FROM record_figures WHERE record = ?1", erasing->err);
+    if (row)
+        (void)sqlite3_bind_int64(row, 1, n);
+    const bool ok = row && sql_step(row, "erasing a record", erasing->err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
 static bool strike(const struct erasing *erasing, int64_t n)
 {
     char body[128], detail[300], item_hash[STORE_AUDIT_HASH], body_hash[STORE_AUDIT_HASH];
@@ -238,7 +248,8 @@ static bool strike(const struct erasing *erasing, int64_t n)
         sql_bind_text(row, 4, body_hash);
         (void)snprintf(detail, sizeof detail, "{\"item\":\"%.63s\",\"sha256\":\"%s\",\"record_sha256\":\"%s\"}", id,
                        item_hash, body_hash);
-        ok = sql_step(row, "erasing a record", erasing->err) && append(erasing, room, "record-erased", detail);
+        ok = sql_step(row, "erasing a record", erasing->err) && delete_figures(erasing, n) &&
+             append(erasing, room, "record-erased", detail);
         erasing->done->n_records++;
     } else {
         error_set(erasing->err, ERROR_IO, "a record cannot be read to be erased");
@@ -251,16 +262,20 @@ static bool strike(const struct erasing *erasing, int64_t n)
     return ok;
 }
 
-/* The trigger that refuses changes is lifted inside the transaction, and made again as it was. */
+/* The triggers that refuse changes are lifted inside the transaction, and made again as they were. */
 static bool strike_records(const struct erasing *erasing)
 {
     static const char next[] = "SELECT min(n) FROM records WHERE plan IN (?1, ?2)";
-    char *trigger = read_text(erasing, "SELECT sql FROM sqlite_schema WHERE name = ?1", "records_update", 0);
-    bool ok = trigger && sql_run(erasing->db, "DROP TRIGGER records_update", erasing->err);
+    static const char by_name[] = "SELECT sql FROM sqlite_schema WHERE name = ?1";
+    char *trigger = read_text(erasing, by_name, "records_update", 0),
+         *of_figures = read_text(erasing, by_name, "record_figures_delete", 0);
+    bool ok = trigger && of_figures && sql_run(erasing->db, "DROP TRIGGER records_update", erasing->err) &&
+              sql_run(erasing->db, "DROP TRIGGER record_figures_delete", erasing->err);
     for (char *n; ok && (n = read_first(erasing, prepare_of_plan(erasing, next))); free(n))
         ok = strike(erasing, strtoll(n, NULL, 10));
-    ok = ok && sql_run(erasing->db, trigger, erasing->err);
+    ok = ok && sql_run(erasing->db, trigger, erasing->err) && sql_run(erasing->db, of_figures, erasing->err);
     free(trigger);
+    free(of_figures);
     return ok;
 }
 

@@ -2,6 +2,7 @@
 #include "server/store/records.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/base/mem.h"
 #include "server/store/audit.h"
@@ -12,7 +13,34 @@ void store_record_finish(struct store_record *record)
 {
     free(record->item);
     free(record->body);
+    for (size_t i = 0; i < STORE_FIGURES; i++)
+        free(record->figures[i].bytes);
     *record = (struct store_record){ 0 };
+}
+
+/* The pictures of the record that was added last. */
+static bool write_figures(sqlite3 *db, const struct store_record *record, struct error *err)
+{
+    const sqlite3_int64 n = sqlite3_last_insert_rowid(db);
+    bool ok = true;
+    for (int i = 0; ok && i < STORE_FIGURES; i++) {
+        const struct store_figure *figure = &record->figures[i];
+        char hash[STORE_AUDIT_HASH];
+        if (!figure->bytes)
+            continue;
+        sqlite3_stmt *row =
+            sql_prepare(db, "INSERT INTO record_figures(record, place, bytes, hash) VALUES(?1, ?2, ?3, ?4)", err);
+        if (!row)
+            return false;
+        audit_digest_bytes(figure->bytes, figure->n_bytes, hash);
+        (void)sqlite3_bind_int64(row, 1, n);
+        (void)sqlite3_bind_int(row, 2, i);
+        (void)sqlite3_bind_blob64(row, 3, figure->bytes, figure->n_bytes, SQLITE_STATIC);
+        sql_bind_text(row, 4, hash);
+        ok = sql_step(row, "writing a record", err);
+        (void)sqlite3_finalize(row);
+    }
+    return ok;
 }
 
 bool records_write(sqlite3 *db, const struct store_room *room, struct error *err)
@@ -39,7 +67,36 @@ bool records_write(sqlite3 *db, const struct store_room *room, struct error *err
         sql_bind_text(row, 8, record->item);
         sql_bind_text(row, 9, record->body);
         sql_bind_text(row, 10, hash);
-        ok = sql_step(row, "writing a record", err);
+        ok = sql_step(row, "writing a record", err) && write_figures(db, record, err);
+    }
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
+/* The pictures of the newest record of this id. */
+static bool read_figures(sqlite3 *db, struct store_record *record, struct error *err)
+{
+    sqlite3_stmt *row = sql_prepare(db,
+                                    "SELECT place, bytes FROM record_figures WHERE record = (SELECT max(n) FROM records"
+                                    " WHERE id = ?1) AND place BETWEEN 0 AND ?2",
+                                    err);
+    bool ok = row != NULL;
+    if (row) {
+        sql_bind_text(row, 1, record->id);
+        (void)sqlite3_bind_int(row, 2, STORE_FIGURES - 1);
+    }
+    for (int step; ok && (step = sqlite3_step(row)) != SQLITE_DONE;) {
+        if (step != SQLITE_ROW)
+            ok = sql_fail(db, "reading records", err);
+        struct store_figure *figure = &record->figures[ok ? sqlite3_column_int(row, 0) : 0];
+        const int n = ok ? sqlite3_column_bytes(row, 1) : 0;
+        const void *bytes = n > 0 && n <= STORE_MAX_FIGURE_BYTES ? sqlite3_column_blob(row, 1) : NULL;
+        if (!bytes || figure->bytes)
+            continue;
+        figure->bytes = mem_array((size_t)n, 1, STORE_MAX_FIGURE_BYTES, err);
+        ok = figure->bytes != NULL;
+        if (ok)
+            memcpy(figure->bytes, bytes, figure->n_bytes = (size_t)n);
     }
     (void)sqlite3_finalize(row);
     return ok;
@@ -88,6 +145,8 @@ struct store_record *records_read(sqlite3 *db, const char *id, const char *befor
             ok = read_record(row, is_whole, &records[(*n)++]) || error_set(err, ERROR_MEMORY, "no memory for a record");
     }
     (void)sqlite3_finalize(row);
+    if (ok && is_whole && *n == 1)
+        ok = read_figures(db, &records[0], err);
     if (ok && is_whole && *n == 0)
         ok = error_set(err, ERROR_NOT_FOUND, "there is no record \"%.63s\"", id);
     if (ok)

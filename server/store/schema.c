@@ -79,6 +79,13 @@ static const char *const steps[] = {
     "ALTER TABLE links ADD COLUMN maker TEXT NOT NULL DEFAULT '';"
     "ALTER TABLE links ADD COLUMN name TEXT NOT NULL DEFAULT '';"
     "ALTER TABLE links ADD COLUMN allows_guests INTEGER NOT NULL DEFAULT 0;",
+    /* 8: the pictures that are kept with the record of a decision */
+    "CREATE TABLE record_figures(record INTEGER NOT NULL, place INTEGER NOT NULL, bytes BLOB NOT NULL,"
+    " hash TEXT NOT NULL, PRIMARY KEY(record, place)) STRICT;"
+    "CREATE TRIGGER record_figures_update BEFORE UPDATE ON record_figures"
+    " BEGIN SELECT RAISE(ABORT, 'a record is never changed'); END;"
+    "CREATE TRIGGER record_figures_delete BEFORE DELETE ON record_figures"
+    " BEGIN SELECT RAISE(ABORT, 'a record is never deleted'); END;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

@@ -44,11 +44,18 @@ struct store_item { /* a note or a bookmark */
 
 /* Record of a decision or signature with all that was shown and said then. Its table only grows, and outlives room and
  * plan. */
+enum { STORE_FIGURES = 4, STORE_MAX_FIGURE_BYTES = 8 << 20 };
+struct store_figure {
+    uint8_t *bytes; /* a JPEG */
+    size_t n_bytes;
+};
 struct store_record {
     char id[64], room[64], plan[64], kind[16], author[64], author_name[164]; /* id: the item's */
     int64_t time_ms;                                                         /* since 1970 */
     char *item, *body;           /* the row of the item as it is kept; JSON */
     char hash[STORE_AUDIT_HASH]; /* SHA-256 of body; written by the store */
+    struct store_figure
+        figures[STORE_FIGURES]; /* by their place; bytes NULL: there is none. Read with one record alone */
 };
 void store_record_finish(struct store_record *record);
 

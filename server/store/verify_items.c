@@ -76,12 +76,38 @@ static bool check_record(sqlite3_stmt *row, struct error *err)
                      found.kind, found.id, found.room, found.n);
 }
 
+/* A picture beside its record, which names it by its hash. */
+static bool check_figure(sqlite3_stmt *row, struct error *err)
+{
+    struct found found;
+    char hash[STORE_AUDIT_HASH], computed[STORE_AUDIT_HASH];
+    read_found(row, &found);
+    sql_text(row, 6, hash, sizeof hash);
+    const int n = sqlite3_column_bytes(row, 5);
+    const void *bytes = sqlite3_column_blob(row, 5);
+    audit_digest_bytes(bytes ? bytes : "", bytes ? (size_t)n : 0, computed);
+    return (strcmp(found.sha, computed) == 0 && strcmp(hash, computed) == 0) ||
+           error_set(err, ERROR_FORMAT,
+                     "picture %lld of the record of %s %s of room %s is not the one that the record names: it was "
+                     "changed in the database",
+                     found.n + 1, found.kind, found.id, found.room);
+}
+
 static bool refuse_missing(sqlite3_stmt *row, struct error *err)
 {
     struct found found;
     read_found(row, &found);
     return error_set(err, ERROR_FORMAT, "%s %s of room %s, which row %lld put, is not in the database any more",
                      found.kind, found.id, found.room, found.n);
+}
+
+static bool refuse_missing_figure(sqlite3_stmt *row, struct error *err)
+{
+    struct found found;
+    read_found(row, &found);
+    return error_set(err, ERROR_FORMAT,
+                     "a picture of the record of decision %s of room %s is not in the database any more", found.id,
+                     found.room);
 }
 
 static bool refuse_cut(sqlite3_stmt *row, struct error *err)
@@ -103,6 +129,32 @@ static bool for_each(sqlite3 *db, const char *sql, double number, bool (*check)(
         ok = step == SQLITE_ROW ? check(row, err) : sql_fail(db, "comparing items with the audit", err);
     (void)sqlite3_finalize(row);
     return ok;
+}
+
+static bool check_figures(sqlite3 *db, struct error *err)
+{
+    static const char has_figures[] = "SELECT 1 FROM sqlite_schema WHERE name = 'record_figures'";
+    static const char figures[] =
+        "SELECT coalesce(records.kind, ''), coalesce(records.id, ''), coalesce(records.room, ''), place,"
+        " coalesce((SELECT json_extract(value, '$.sha256') FROM json_each(CASE WHEN json_valid(records.body) THEN"
+        " records.body ELSE '{}' END, '$.kept.figures') WHERE json_extract(value, '$.place') = place), ''), bytes,"
+        " record_figures.hash FROM record_figures LEFT JOIN records ON records.n = record_figures.record";
+    /* pictures that a record names and that are not there; in a database without their table: all */
+#define NAMED_FIGURES \
+    "SELECT records.kind, records.id, records.room, 0, '' FROM records, json_each(CASE WHEN json_valid(records.body)" \
+    " THEN records.body ELSE '{}' END, '$.kept.figures') AS f"
+    static const char named_figures[] = NAMED_FIGURES;
+    static const char missing_figures[] =
+        NAMED_FIGURES " WHERE NOT EXISTS(SELECT 1 FROM record_figures AS g WHERE g.record = records.n AND g.place ="
+                      " json_extract(f.value, '$.place'))";
+    int64_t n = 0;
+    sqlite3_stmt *row = sql_prepare(db, has_figures, err);
+    if (!row)
+        return false;
+    const bool is_there = sqlite3_step(row) == SQLITE_ROW;
+    (void)sqlite3_finalize(row);
+    return (!is_there || for_each(db, figures, 0, check_figure, &n, err)) &&
+           for_each(db, is_there ? missing_figures : named_figures, 0, refuse_missing_figure, &n, err);
 }
 
 bool verify_items(sqlite3 *db, int64_t *n, struct error *err)
@@ -138,6 +190,6 @@ bool verify_items(sqlite3 *db, int64_t *n, struct error *err)
     (void)sqlite3_finalize(row);
     return ok && for_each(db, items, since_ms, check_item, n, err) && for_each(db, records, 0, check_record, n, err) &&
            for_each(db, missing_items, 0, refuse_missing, &n_missing, err) &&
-           for_each(db, missing_records, 0, refuse_missing, &n_missing, err) &&
+           for_each(db, missing_records, 0, refuse_missing, &n_missing, err) && check_figures(db, err) &&
            for_each(db, cut_recordings, 0, refuse_cut, &n_missing, err);
 }

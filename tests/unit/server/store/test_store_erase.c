@@ -49,6 +49,7 @@ static void put_plan(const char *plan, const char *room_id, const char *record_i
     (void)snprintf(text, sizeof text, "{\"body\":{\"decision\":\"accept\",\"text\":\"of %s\"}}", plan);
     room->records[0].item = mem_copy_text(text);
     room->records[0].body = mem_copy_text(text);
+    room->records[0].figures[2] = (struct store_figure){ mem_array(4, 1, 4, NULL), 4 };
     store_world_write(&world, room);
     (void)snprintf(text, sizeof text, "INSERT INTO owners VALUES('%s', 'ann')", plan);
     store_file_run(world.path, text);
@@ -128,6 +129,8 @@ static void assert_erased(int n)
                      n == 2 ? 0 : 1);
     assert_int_equal(count("SELECT count(*) FROM records WHERE plan = 'other' AND body LIKE '%of other%'"), 1);
     assert_int_equal(count("SELECT count(*) FROM rooms WHERE plan = 'other'"), 1);
+    assert_int_equal(count("SELECT count(*) FROM record_figures"), 3 - n); /* pictures go with the words */
+    assert_int_equal(count("SELECT count(*) FROM sqlite_schema WHERE type = 'trigger' AND name LIKE 'record%'"), 4);
     assert_false(has_cache(hidden_id));
     assert_int_equal(has_cache(folder_id), n < 2);
     assert_true(has_cache("other"));

@@ -127,6 +127,37 @@ static const char *refusal(const char *sql)
     return text;
 }
 
+/* Pictures come back by their place with one record alone, and are never changed. */
+static void pictures_are_kept_with_their_record(void **state)
+{
+    (void)state;
+    struct store_room *room = decision("7q4k-m2wz", "i-1");
+    room->records[0].figures[0] = (struct store_figure){ (uint8_t *)mem_copy_text("axial"), 5 };
+    room->records[0].figures[3] = (struct store_figure){ (uint8_t *)mem_copy_text("space"), 5 };
+    write(room, ERROR_NONE);
+    write(decision("7q4k-m2wz", "i-2"), ERROR_NONE);
+    assert_true(store_delete(world.store, "7q4k-m2wz", 6));
+    store_answer_free(store_world_await(&world, STORE_WRITTEN));
+    assert_true(store_read_records(world.store, "i-1", "", 7));
+    struct store_answer *one = store_world_await(&world, STORE_RECORDS);
+    assert_int_equal(one->records[0].figures[0].n_bytes, 5);
+    assert_memory_equal(one->records[0].figures[0].bytes, "axial", 5);
+    assert_null(one->records[0].figures[1].bytes);
+    assert_memory_equal(one->records[0].figures[3].bytes, "space", 5);
+    store_answer_free(one);
+    assert_true(store_read_records(world.store, "i-2", "", 8));
+    one = store_world_await(&world, STORE_RECORDS);
+    assert_null(one->records[0].figures[0].bytes);
+    store_answer_free(one);
+    /* hashlib.sha256(b'axial').hexdigest() */
+    assert_int_equal(store_file_number(world.path,
+                                       "SELECT count(*) FROM record_figures WHERE place = 0 AND hash ="
+                                       " '7671186edb83b48c9a9db7896d59e9f1a138d4949f60ab926593c0224df29328'"),
+                     1);
+    assert_string_equal(refusal("UPDATE record_figures SET bytes = x'00'"), "a record is never changed");
+    assert_string_equal(refusal("DELETE FROM record_figures"), "a record is never deleted");
+}
+
 static void the_database_refuses_to_change_or_delete_a_record(void **state)
 {
     (void)state;
@@ -204,6 +235,7 @@ int main(void)
         TEST(a_record_is_written_with_its_item_and_outlives_the_room),
         TEST(what_cannot_be_written_leaves_nothing),
         TEST(records_are_listed_from_the_newest_on),
+        TEST(pictures_are_kept_with_their_record),
         TEST(the_database_refuses_to_change_or_delete_a_record),
         TEST(a_recording_without_its_end_says_so),
         TEST(a_database_of_version_5_keeps_its_recording_and_gets_records),

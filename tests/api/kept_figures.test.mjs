@@ -1,0 +1,178 @@
+// Decisions are kept with what was shown: four pictures, the dose, its histogram and the limits of that moment, in a table that neither the end of the
+// room nor that of the plan touches; a renderer that is gone takes no decision along; --verify-audit knows every picture.
+import assert from 'node:assert/strict';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { copyFileSync, cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { bin, call, openPlan, startDaemon, until } from './daemon.mjs';
+import { Client } from './ws_client.mjs';
+
+const sha256 = (bytes) => createHash('sha256').update(bytes).digest('hex');
+let data, folder, daemon, api;
+const clients = [];
+before(async () => {
+  data = mkdtempSync(join(tmpdir(), 'beamroom-kept-'));
+  folder = mkdtempSync(join(tmpdir(), 'beamroom-plans-'));
+  execFileSync(join(bin, 'beamroom'), ['phantom', join(folder, 'small'), '--size', '48x48x32']);
+  cpSync(join(folder, 'small'), join(folder, 'other'), { recursive: true });
+  daemon = await startDaemon({ data, plans: [folder], args: ['--gl', 'soft'], env: { TZ: 'Europe/Helsinki' } });
+  api = `${daemon.url}/api/v1`;
+});
+after(async () => {
+  for (const client of clients) client.cut();
+  await daemon?.stop();
+  for (const at of [data, folder]) rmSync(at, { recursive: true, force: true });
+});
+
+let input = 0;
+async function put(client, kind, body) {
+  client.send({ type: 'item.put', kind, body, input: ++input });
+  const { item } = await client.message('item', (m) => m.input === input, 0, 60000);
+  return item;
+}
+async function change(room, client, patch) {
+  const at = `${api}/rooms/${room}/scene`,
+    etag = (await call(at)).headers.get('etag');
+  const { status, text } = await call(at, 'PATCH', patch, { ...client.headers, 'If-Match': etag });
+  assert.equal(status, 200, text);
+}
+async function enter(plan, patch) {
+  await openPlan(daemon.url, plan);
+  const room = (await call(`${api}/rooms`, 'POST', { plan })).json.id,
+    client = await Client.enter(daemon.url, room, { name: 'Ann' });
+  clients.push(client);
+  await until(
+    () => call(`${api}/rooms/${room}/record`),
+    ({ status }) => status === 200,
+  );
+  if (patch) await change(room, client, patch);
+  return { room, client };
+}
+async function picture(url) {
+  const answer = await fetch(url);
+  return { status: answer.status, type: answer.headers.get('content-type'), bytes: Buffer.from(await answer.arrayBuffer()) };
+}
+const limits = {
+  image: { slices: { axial: { position_mm: 10 } } },
+  dose: { wash: { visible: true }, lines: { visible: true } },
+  constraints: { 'limit-1': { region: 'target', quantity: 'weighted', metric: 'mean', side: 'at-least', limit: 1 } },
+};
+const jpegSize = (bytes) => {
+  for (let at = 2; ; at += 2 + bytes.readUInt16BE(at + 2))
+    if (bytes[at + 1] >= 0xc0 && bytes[at + 1] <= 0xc2) return [bytes.readUInt16BE(at + 7), bytes.readUInt16BE(at + 5)];
+};
+
+test('a decision is kept with pictures, histogram and limits of that moment, and both survive room and plan', async () => {
+  const { room, client } = await enter('small', limits);
+  const item = await put(client, 'decision', { decision: 'accept', text: 'As shown' });
+  await change(room, client, { dose: { quantity: 'boron' } });
+  const at = `${api}/records/${item.id}`,
+    one = await call(at),
+    { kept, scene } = one.json.body;
+  assert.deepEqual(kept.missing, []);
+  assert.deepEqual(kept.zone, { name: 'EET', offset_min: 120 });
+  assert.equal(scene.dose.quantity, 'weighted', 'of the moment of the decision');
+  assert.equal(kept.dose.quantity, 'weighted');
+  assert.equal(kept.dvh.curves.length, kept.plan.regions.length);
+  assert.deepEqual(
+    kept.limits.constraints.map(({ id, region, limit }) => [id, region, limit]),
+    [['limit-1', 'target', 1]],
+  );
+  assert.equal(kept.beam.is_draft, false);
+  assert.equal(kept.identity_sha256, undefined, 'a phantom has none');
+  assert.deepEqual(
+    kept.figures.map(({ place, kind, width_px: width, height_px: height }) => [place, kind, width, height]),
+    ['axial', 'sagittal', 'coronal', '3d'].map((kind, place) => [place, kind, 1600, 1200]),
+  );
+  const words = (row) => kept.figures[0].caption.filter((item) => item.row === row).map(({ text }) => text);
+  assert.deepEqual(words('pane').slice(0, 2), ['Axial', 'S 10.0 mm']);
+  assert.ok(
+    words('pane').some((text) => /\b40\b.*\b400\b/.test(text)),
+    `the window: ${words('pane')}`,
+  );
+  assert.ok(
+    words('dose').some((text) => /100 % = .* Gy\(w\)/.test(text)),
+    `the basis: ${words('dose')}`,
+  );
+  if (process.env.KEEP_PICTURES) writeFileSync('/tmp/rec/kept.json', JSON.stringify(one.json, null, 1));
+  for (const { place, sha256: hash, n_bytes: nBytes } of kept.figures) {
+    const { status, type, bytes } = await picture(`${at}/figures/${place + 1}`);
+    assert.deepEqual([status, type], [200, 'image/jpeg']);
+    if (process.env.KEEP_PICTURES) writeFileSync(`/tmp/rec/fig${place}.jpg`, bytes);
+    assert.deepEqual([bytes.length, sha256(bytes), jpegSize(bytes)], [nBytes, hash, [1600, 1200]]);
+  }
+  for (const wrong of ['0', '5', '11', 'x']) assert.equal((await call(`${at}/figures/${wrong}`)).status, 404);
+  assert.equal((await call(`${api}/rooms/${room}?records=keep`, 'DELETE', undefined, client.headers)).status, 204);
+  assert.equal((await call(`${api}/plans/small/close`, 'POST')).status, 204);
+  rmSync(join(folder, 'small'), { recursive: true });
+  await until(
+    async () => (await call(`${api}/plans`)).json.plans.map(({ id }) => id),
+    (ids) => !ids.includes('small'),
+  );
+  assert.equal((await call(at)).json.sha256, one.json.sha256);
+  assert.equal(sha256((await picture(`${at}/figures/1`)).bytes), kept.figures[0].sha256);
+});
+
+test('a decision without its renderer is kept all the same, and says what is missing', async () => {
+  const { client } = await enter('other');
+  assert.equal((await call(`${api}/plans/other/close`, 'POST')).status, 204);
+  const item = await put(client, 'decision', { decision: 'defer', text: '' });
+  const { kept } = (await call(`${api}/records/${item.id}`)).json.body;
+  assert.deepEqual(kept.figures, []);
+  assert.deepEqual(kept.missing.map(({ what }) => what).sort(), [
+    '3-D picture',
+    'axial picture',
+    'beam',
+    'coronal picture',
+    'dose',
+    'dvh',
+    'fits',
+    'identity',
+    'limits',
+    'sagittal picture',
+  ]);
+  assert.ok(kept.missing.every(({ why }) => why.length > 5));
+});
+
+test('the check of the audit knows each picture: a changed one and one that was taken away are found', async () => {
+  for (const client of clients.splice(0)) client.cut();
+  await daemon.stop();
+  daemon = null;
+  const check = (file) => spawnSync(join(bin, 'beamroomd'), ['--verify-audit', file], { encoding: 'utf8' });
+  const database = join(data, 'beamroom.db');
+  assert.equal(check(database).status, 0, check(database).stderr);
+  for (const [change, said] of [
+    ["UPDATE record_figures SET bytes = x'00' WHERE place = 2", /picture 3 of the record of decision .* was changed in the database/],
+    ['DELETE FROM record_figures WHERE place = 0', /a picture of the record of decision .* is not in the database any more/],
+    ['DROP TABLE record_figures', /a picture of the record of decision .* is not in the database any more/],
+  ]) {
+    const copy = join(data, 'changed.db');
+    copyFileSync(database, copy);
+    const lift = 'DROP TRIGGER record_figures_update; DROP TRIGGER record_figures_delete;';
+    execFileSync('python3', [
+      '-c',
+      'import sqlite3, sys; d = sqlite3.connect(sys.argv[1]); d.executescript(sys.argv[2]); d.commit()',
+      copy,
+      `${lift}${change}`,
+    ]);
+    const { status, stderr, stdout } = check(copy);
+    assert.notEqual(status, 0, change);
+    assert.match(stderr + stdout, said);
+    assert.throws(() =>
+      execFileSync(
+        'python3',
+        [
+          '-c',
+          'import sqlite3, sys; sqlite3.connect(sys.argv[1]).execute(sys.argv[2])',
+          database,
+          change.replace('DROP TABLE', 'DELETE FROM'),
+        ],
+        { stdio: 'pipe' },
+      ),
+    );
+  }
+  assert.ok(readFileSync(database).length > 0);
+});
