@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { call, until } from '../api/daemon.mjs';
-import { putDose, putWhole } from '../api/made_dicom.mjs';
+import { putDose, putPlan, putStructs, putWhole } from '../api/made_dicom.mjs';
 import { Client } from '../api/ws_client.mjs';
 import { axe } from './axe.mjs';
 import { full, missing, shoot, startWorld } from './browser.mjs';
@@ -20,6 +20,12 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
   before(async () => {
     putWhole(join(folder, 'case-1'), quirin, { approval: 'APPROVED' });
     putDose(join(folder, 'case-1'), other, { uid: '1.2.89', file: 'other.dcm' });
+    putWhole(join(folder, 'case-2'), quirin, { approval: 'APPROVED' });
+    putStructs(join(folder, 'case-2'), quirin, { uid: '1.2.64', file: 'structs2.dcm', left: 2 });
+    const second = { uid: '1.2.74', label: 'BNCT-1', file: 'plan2.dcm', beam: 'Back', structs: '1.2.64', approval: 'REJECTED' };
+    putPlan(join(folder, 'case-2'), quirin, { ...second, date: '20261012' });
+    putDose(join(folder, 'case-2'), quirin, { uid: '1.2.84', plan: '1.2.74', file: 'dose2.dcm' });
+    putDose(join(folder, 'case-2'), quirin, { uid: '1.2.85', file: 'dose3.dcm' });
     world = await startWorld({ plans: [folder] });
     page = await world.newPage(`rooms/${await world.newRoom('case-1')}`, { viewport: { width: 1440, height: 900 } });
     await full(page, 2);
@@ -82,6 +88,38 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     assert.equal((await read()).status, 403);
     wall.cut();
     await shows(page.locator('.patient-card'), 'No wall is in this room');
+  });
+
+  it('of two plans the banner switches dose, beam and structure set together, in one step to undo', async () => {
+    const room = await world.newRoom('case-2');
+    const two = await world.newPage(`rooms/${room}`, { viewport: { width: 1440, height: 900 } });
+    await full(two, 2);
+    await shows(two.locator('.banner .plan-name'), 'plan 1 of 2');
+    await shows(two.locator('.fit-bar.plain'), '2 plans in this folder. Shown: BNCT-2, approved.');
+    const heads = () => two.locator('.row-group').allTextContents();
+    assert.deepEqual((await heads()).slice(0, 3), ['Plan BNCT-2 · approved', 'Plan BNCT-1 · rejected', 'No plan stated']);
+    const facts = async () => {
+      const { dose, beam, regions } = await world.scene(room);
+      return [dose.id, beam.id, Object.entries(regions).map(([id, { visible }]) => `${id} ${visible}`)].flat(2);
+    };
+    const before = await facts();
+    await two.locator('.plan-button').click();
+    assert.deepEqual(await axe(two), []);
+    await two.getByRole('menuitemradio', { name: /BNCT-1/ }).click();
+    await shows(two.locator('.banner .approval'), 'Rejected');
+    await shows(two.locator('.fit-bar[role=alert]'), 'This plan was rejected.');
+    const document = await (await fetch(`${world.daemon.url}/api/v1/plans/case-2`)).json();
+    const of = (list, plan) => list.find((part) => part.plan === document.treatment_plans.findIndex(({ label }) => label === plan)).id;
+    const other = await until(facts, (now) => now.join() !== before.join());
+    assert.deepEqual(other.slice(0, 2), [of(document.doses, 'BNCT-1'), of(document.beams, 'BNCT-1')]);
+    const [first, second] = document.regions;
+    assert.deepEqual(other.slice(2).sort(), [`${first.id} false`, `${second.id} true`].sort());
+    assert.deepEqual((await heads()).slice(0, 2), ['Plan BNCT-1 · rejected', 'Plan BNCT-2 · approved']);
+    await shoot(two, 'patient-plans');
+    await two.getByRole('button', { name: /^Undo/ }).first().click();
+    await shows(two.locator('.banner .plan-name'), 'plan 1 of 2');
+    await until(facts, (now) => now.join() === before.join());
+    await two.context().close();
   });
 
   it('a plan without DICOM says that it names nobody; the phantom says that it is one', async () => {

@@ -22,4 +22,9 @@ export const say = sentences('room.later', {
   restarting: 'Not known yet: the renderer is being started again.',
   opening: 'Not known yet: the plan is being opened.',
   noDose: 'This plan has no dose.',
+  groupNoPlan: 'No plan stated',
+  groupApproved: 'Plan {plan} · approved',
+  groupUnapproved: 'Plan {plan} · unapproved',
+  groupRejected: 'Plan {plan} · rejected',
+  groupNotStated: 'Plan {plan} · approval not stated',
 });

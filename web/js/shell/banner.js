@@ -1,5 +1,5 @@
 // The banner of a room: name of the plan, its warnings, members, invitation, help.
-import { initials } from '../parts/format.js';
+import { initials, listed } from '../parts/format.js';
 import { html, nothing } from '../../lib/lit-html.js';
 import { troubles } from '../room/plan.js';
 import { partsOf } from '../features/index.js';
@@ -39,17 +39,26 @@ function warnings({ room, ui }) {
   return html`<button class="chip" title=${say.openReport} aria-label=${say.troubles({ troubles: words })} @click=${() => ui.showTab('plan')}><span class=${`pill ${isError ? 'err' : 'warn'}`}>${icon(isError ? 'error' : 'warning')}<span>${words}</span></span></button>`;
 }
 
+/** The shown plan; below it its folder, by name where that is not what stands above. */
+function planName(world) {
+  const { room } = world;
+  const plan = room.plan.value;
+  const own = partsOf('bannerPlan', world).find(Boolean);
+  const folder = plan?.name ?? room.planId.value;
+  const below = own ? listed(folder, own.place) : say.planId({ id: html`<code>${room.planId.value}</code>` });
+  return html`<div class=${own ? 'anchor plan-name labelled' : 'plan-name'}><h1 title=${folder}><span>${own?.name ?? folder}</span></h1>
+    <span class="dim plan-id">${below}</span>${partsOf('bannerName', world)}${own?.menu ?? nothing}</div>`;
+}
+
 export function banner(world) {
   const { room, ui } = world;
-  const plan = room.plan.value;
   const you = room.member.value;
   const isTouch = ui.isTouch.value;
   const members = room.members.value.filter((member) => member.connected !== false);
   const own = members.find((member) => member.id === you);
   const others = members.filter((member) => member.id !== you);
   return html`${brand(false)}<i class="rule"></i>${partsOf('bannerStart', world)}
-    <div class="plan-name"><h1 title=${plan?.name ?? ''}><span>${plan?.name ?? room.planId.value}</span></h1>
-      <span class="dim plan-id">${say.planId({ id: html`<code>${room.planId.value}</code>` })}</span>${partsOf('bannerName', world)}</div>
+    ${planName(world)}
     ${partsOf('bannerFacts', world)}
     ${warnings(world)}
     <span class="grow"></span>

@@ -3,8 +3,8 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { classMap } from '../../../lib/directives/class-map.js';
 import { beamName, chosenBeam, lookOf, lookPatch } from './beams.js';
 import { isDraftOn } from './beam_ui.js';
-import { isOfOther } from '../../room/identity.js';
 import { beamWords } from '../../room/plan.js';
+import { isOfOtherPlan, planGroups } from '../../room/plan_groups.js';
 import { toggleMove } from './feature.js';
 import { presetRows } from './preset_menu.js';
 import { draftFigures, draftWords, keptName } from './beam_words.js';
@@ -19,7 +19,15 @@ export const beamNote = ({ room }) => (isDraftOn(room) ? say.draftOn : '');
 export function beamRows(world) {
   const { room } = world;
   const { beams, curves } = room.plan.value;
-  return html`${beams.filter((beam) => !isOfOther(room.plan.value, room.scene.value, beam)).map((beam) => beamRow(world, beam))}${draftRow(world)}${Object.entries(room.scene.value.beam.kept).map(([id, line]) => keptRow(world, id, line))}${curves.map((curve) => curveRow(world, curve))}${presetRows(world)}`;
+  return html`${planGroups(room.plan.value, room.scene.value, beams).map(({ head, parts }) => html`${group(head)}${parts.map((beam) => beamRow(world, beam))}`)}${ofRoom(world)}${draftRow(world)}${Object.entries(room.scene.value.beam.kept).map(([id, line]) => keptRow(world, id, line))}${curves.map((curve) => curveRow(world, curve))}${presetRows(world)}`;
+}
+
+const group = (head) => (head ? html`<li class="row-group" role="presentation">${head}</li>` : nothing);
+
+/** Before the drafts, where plans have groups of their own. */
+function ofRoom({ room }) {
+  const hasDrafts = isDraftOn(room) || Object.keys(room.scene.value.beam.kept).length > 0;
+  return group(hasDrafts && room.plan.value.treatmentPlans.length > 1 ? say.ofRoom : '');
 }
 
 function beamRow(world, beam) {
@@ -28,7 +36,7 @@ function beamRow(world, beam) {
   const look = lookOf(scene, beam.id);
   const words = beamName(beam);
   const about = beamWords(beam);
-  const tail = beam === chosenBeam(plan, scene) ? say.chosen : about;
+  const tail = beam === chosenBeam(plan, scene) ? say.chosen : isOfOtherPlan(plan, scene, beam) ? say.compareOnly : about;
   const toggle = (event) =>
     room.patchScene(lookPatch(room.scene.value, beam.id, { visible: !look.visible }), { view: ui.active.value, at: event.timeStamp });
   return treeRow(

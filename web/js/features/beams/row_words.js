@@ -4,6 +4,8 @@ import { sentences } from '../../parts/sentences.js';
 export const say = sentences('beams.rows', {
   draftOn: 'draft',
   chosen: 'chosen',
+  compareOnly: 'compare only',
+  ofRoom: 'Of this room · not the plan’s',
   show: 'Show {beam}',
   showLine: 'Show its line and aperture',
   hideLine: 'Hide its line and aperture',

@@ -17,8 +17,8 @@ import {
   toggledPatch,
   unitOf,
 } from '../../room/dose.js';
-import { isOfOther, shownTreatmentPlan } from '../../room/identity.js';
 import { doseWords } from '../../room/plan.js';
+import { isOfOtherPlan, planGroups } from '../../room/plan_groups.js';
 import { levelActions, levelRows } from './dose_levels.js';
 import { referenceSelect, tissueSelect } from './dose_reference.js';
 import { typed } from '../../parts/fields.js';
@@ -50,24 +50,13 @@ export function doseRows(world) {
     ${switchRow(world, 'lines', say.lines, 'I')}${washRow(world)}${switchRow(world, 'surfaces', say.surfaces, '')}`;
 }
 
-const approvals = { APPROVED: say.approved, UNAPPROVED: say.unapproved, REJECTED: say.rejected };
-const planWords = ({ label, approval }) => (approvals[(approval ?? '').toUpperCase()] ?? say.notStated)({ plan: label });
-
-/** The doses; of several treatment plans under the name of each, the shown plan's first. Those of other patients stand elsewhere. */
+/** The doses, by their treatment plans. Those of other patients stand elsewhere. */
 function grouped(world, shown) {
   const [plan, scene] = [world.room.plan.value, world.room.scene.value];
-  const own = plan.doses.filter((dose) => !isOfOther(plan, scene, dose));
-  const row = (dose) => doseRow(world, dose, dose === shown);
-  if (plan.treatmentPlans.length < 2) return own.map(row);
-  const first = shownTreatmentPlan(plan, scene);
-  const groups = [first, ...plan.treatmentPlans.filter((one) => one !== first), undefined];
-  return groups
-    .map((treatment) => [treatment, own.filter((dose) => plan.treatmentPlans[dose.plan] === treatment)])
-    .filter(([, doses]) => doses.length)
-    .map(
-      ([treatment, doses]) =>
-        html`<li class="row-group" role="presentation">${treatment ? planWords(treatment) : say.noPlan}${treatment && treatment !== first ? html`<span class="dim"> · ${say.compareOnly}</span>` : nothing}</li>${doses.map(row)}`,
-    );
+  return planGroups(plan, scene, plan.doses).map(
+    ({ head, parts }) =>
+      html`${head ? html`<li class="row-group" role="presentation">${head}</li>` : nothing}${parts.map((dose) => doseRow(world, dose, dose === shown))}`,
+  );
 }
 
 function doseRow(world, dose, isShown) {
@@ -76,7 +65,8 @@ function doseRow(world, dose, isShown) {
   const { lines, wash, surfaces } = scene.dose;
   const isVisible = isShown && (lines.visible || wash.visible || surfaces.visible);
   const words = doseName(dose);
-  const tail = isShown && room.plan.value.doses.length > 1 ? say.chosen : dose.unit;
+  const isOther = isOfOtherPlan(room.plan.value, scene, dose);
+  const tail = isShown && room.plan.value.doses.length > 1 ? say.chosen : isOther ? say.compareOnly : dose.unit;
   const toggle = (event) => room.patchScene(toggledPatch(room.plan.value, room.scene.value, dose, isShown), how(ui, event));
   const choose = (event) => !isShown && room.patchScene(choosePatch(room.plan.value, room.scene.value, dose), how(ui, event));
   return treeRow(

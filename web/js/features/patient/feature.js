@@ -1,5 +1,5 @@
 // The patient: masked, and the card with the full identity.
-import { approval, patientBlock, patientButton } from './patient.js';
+import { approval, patientBlock, patientButton, planBar, planName } from './patient.js';
 
 /** @type {import('../index.js').Feature} */
-export const patient = { bannerStart: patientButton, bannerFacts: approval, planTop: patientBlock };
+export const patient = { bannerStart: patientButton, bannerPlan: planName, bannerFacts: approval, bar: planBar, planTop: patientBlock };

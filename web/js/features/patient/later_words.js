@@ -1,9 +1,32 @@
-// The words on the card of the patient.
+// The words on the card of the patient, and of the treatment plans of a folder.
 import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('patient.later', {
   changed: 'The files have changed since this page opened them. Open the plan again to read whose it is.',
   patient: 'Patient',
+  patientAndPlan: 'Patient and plan',
+  isPhantom: 'phantom',
+  plan: 'Plan',
+  ofDate: 'of {date}',
+  approval: 'Approval',
+  plans: 'Plans in this folder',
+  decided: 'Decision of this room',
+  decidedOn: 'decided {date}: {decision}',
+  accept: 'accept',
+  'accept-with-changes': 'accept with changes',
+  reject: 'reject',
+  defer: 'defer',
+  identityFrom: 'Identity from',
+  fromFiles: 'the DICOM files',
+  rejectedOn: 'This plan was rejected on {date} by {name}.',
+  rejectedAt: 'This plan was rejected on {date}.',
+  rejectedBy: 'This plan was rejected by {name}.',
+  rejected: 'This plan was rejected.',
+  plansHere: 'Treatment plans of this folder',
+  noDose: 'no dose in this folder',
+  switchIs: 'Changes dose, beams, structure set and prescription together.',
+  nPlans: '{n} {n|plan|plans} in this folder.',
+  shownPlan: 'Shown: {plan}, {approval}.',
   id: 'Id',
   born: 'Born',
   notGiven: 'not given',

@@ -3,7 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { approvalOf, dateWords, shownPatient, shownTreatmentPlan, unknownWords } from '../../room/identity.js';
 import { listed } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
-import { later } from '../../parts/lazy.js';
+import { known, later } from '../../parts/lazy.js';
 import { say } from './words.js';
 
 const card = later(() => import('./patient_card.js'), 'js/features/fits/fit.css');
@@ -29,6 +29,30 @@ export function patientButton(world) {
       ${ui.popover.value === 'patient' ? card.draw(({ patientCard }) => patientCard(world)) : nothing}</span><i class="rule"></i>`;
 }
 
+const plans = later(() => import('./plan_switch.js'), 'js/features/fits/fit.css');
+const several = (plan) => (plan?.treatmentPlans.length ?? 0) > 1;
+
+/** The name of the plan: of a folder with RTPLAN that of the shown one, which is the switch where there are several; null: the folder's own. */
+export function planName({ room, ui }) {
+  const plan = room.plan.value;
+  const treatment = shownTreatmentPlan(plan, room.scene.value);
+  if (!treatment?.label) return null;
+  if (!several(plan) || ui.arrangement.value.size === 'phone') return { name: treatment.label, place: '' }; // there the Plan tab has the switch
+  const isOpen = ui.popover.value === 'plans';
+  const place = say.planOf({ n: plan.treatmentPlans.indexOf(treatment) + 1, all: plan.treatmentPlans.length });
+  const name = html`<button class="plan-button" title=${say.switchPlan} aria-haspopup="menu" aria-expanded=${isOpen} aria-label=${listed(treatment.label, place)}
+    @click=${() => ui.toggle('plans')}><span>${treatment.label}</span>${icon('chevronDown', 12)}</button>`;
+  return { name, place, menu: isOpen ? plans.draw(({ planMenu }) => planMenu({ room, ui })) : nothing };
+}
+
+const isRejected = (treatment) => approvalOf(treatment)[1] === 'err';
+
+/** At first, where there are several; always where the shown one was rejected. */
+export function planBar(world) {
+  const plan = world.room.plan.value;
+  return several(plan) || plan?.treatmentPlans.some(isRejected) ? known(plans)?.plansBar(world) : nothing;
+}
+
 const planIs = { ok: say.planApproved, warn: say.planUnapproved, err: say.planRejected, dim: say.planNotStated };
 
 /** The approval of the shown treatment plan, beside its name; nothing for plans without RTPLAN. */
@@ -40,16 +64,7 @@ export function approval({ room }) {
   return html`<span class=${`pill approval ${kind}`} title=${title}>${picture ? icon(picture, 12) : nothing}<span>${word}</span></span>`;
 }
 
+const block = later(() => import('./plan_block.js'), 'js/features/fits/fit.css');
+
 /** Patient and plan, at the top of the Plan tab. */
-export function patientBlock({ room }) {
-  const [plan, scene] = [room.plan.value, room.scene.value];
-  const patient = shownPatient(plan, scene);
-  const treatment = shownTreatmentPlan(plan, scene);
-  const rows = [
-    [say.patient, patient?.masked ?? (plan.isPhantom ? say.isPhantom : unknownWords)],
-    treatment && [say.plan, listed(treatment.label, dateWords(treatment.date) && say.ofDate({ date: dateWords(treatment.date) }))],
-    treatment && [say.approval, listed(approvalOf(treatment)[0], dateWords(treatment.review_date), treatment.reviewer)],
-    plan.treatmentPlans.length > 1 && [say.plans, plan.treatmentPlans.map(({ label }) => label).join(', ')],
-  ].filter(Boolean);
-  return html`<section class="block"><h3>${say.patientAndPlan}</h3><dl>${rows.map(([name, value]) => html`<dt>${name}</dt><dd>${value}</dd>`)}</dl></section>`;
-}
+export const patientBlock = (world) => block.draw(({ planBlock }) => planBlock(world));

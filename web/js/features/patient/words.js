@@ -11,11 +11,6 @@ export const say = sentences('patient', {
   planUnapproved: 'Plan {plan}: unapproved',
   planRejected: 'Plan {plan}: rejected',
   planNotStated: 'Plan {plan}: approval not stated',
-  patientAndPlan: 'Patient and plan',
-  patient: 'Patient',
-  isPhantom: 'phantom',
-  plan: 'Plan',
-  ofDate: 'of {date}',
-  approval: 'Approval',
-  plans: 'Plans in this folder',
+  planOf: 'plan {n} of {all}',
+  switchPlan: 'Show another treatment plan',
 });
