@@ -54,6 +54,7 @@ static const struct {
     { "GET", "/api/v1/rooms", api_rooms },
     { "POST", "/api/v1/rooms", api_room_new },
     { "GET", "/api/v1/rooms/{room}", api_room },
+    { "PATCH", "/api/v1/rooms/{room}", api_room_patch },
     { "DELETE", "/api/v1/rooms/{room}", api_room_delete },
     { "GET", "/api/v1/rooms/{room}/scene", api_room_scene },
     { "PATCH", "/api/v1/rooms/{room}/scene", api_room_scene_patch },

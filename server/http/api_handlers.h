@@ -44,6 +44,7 @@ void api_room_wall_identity(struct api *api, struct call *call);
 void api_rooms(struct api *api, struct call *call);
 void api_room_new(struct api *api, struct call *call);
 void api_room(struct api *api, struct call *call);
+void api_room_patch(struct api *api, struct call *call);
 void api_room_delete(struct api *api, struct call *call);
 void api_room_scene(struct api *api, struct call *call);
 void api_room_scene_patch(struct api *api, struct call *call);

@@ -10,22 +10,25 @@
 #include "server/http/api_queries.h"
 #include "server/http/api_recordings.h"
 #include "server/http/etag.h"
+#include "server/room/state/body_check.h"
 
 enum { MAX_ASLEEP = 100 }; /* rooms that sleep, in the list of rooms */
 
 void api_rooms(struct api *api, struct call *call)
 {
-    cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "rooms");
-    const struct identity *who = &call->identity;
+    cJSON *answer = cJSON_CreateObject(), *list = cJSON_AddArrayToObject(answer, "rooms"), *row;
     size_t n_asleep = 0;
-    for (size_t i = 0; i < net_n_rooms(api->net); i++) {
-        const struct room *room = net_room_at(api->net, i);
-        if (who->source == IDENTITY_MACHINE || room_is_listed_to(room, who))
-            json_append(list, room_document(room));
+    for (size_t i = 0; i < net_n_rooms(api->net); i++)
+        if ((row = net_room_row(api->net, i, &call->identity)))
+            json_append(list, row);
+    for (size_t i = 0; i < net_n_asleep(api->net); i++) {
+        if (!(row = net_asleep_row(api->net, i, &call->identity)))
+            continue;
+        if (n_asleep++ < MAX_ASLEEP)
+            json_append(list, row);
+        else
+            cJSON_Delete(row);
     }
-    for (size_t i = 0; i < net_n_asleep(api->net); i++)
-        if (net_asleep_is_listed_to(api->net, i, who) && n_asleep++ < MAX_ASLEEP)
-            json_append(list, net_asleep_document(api->net, i));
     cJSON_AddNumberToObject(answer, "n_asleep", (double)n_asleep);
     call_answer_json(call, 200, answer);
 }
@@ -152,6 +155,47 @@ void api_room(struct api *api, struct call *call)
     struct room *room = api_find_room(api, call);
     if (room)
         call_answer_json(call, 200, document_of(room));
+}
+
+/* The name that is asked for, borrowed from the body; "": none, as of a new room. */
+static bool read_name(const cJSON *body, const char **name, struct problem *problem)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(body, "name"), *other;
+    cJSON_ArrayForEach(other, body)
+    {
+        if (other != item)
+            return problem_set(problem, PROBLEM_VALIDATION, "/", "unknown-field", "%.60s is not a field of a room",
+                               other->string);
+    }
+    *name = "";
+    if (!item)
+        return problem_set(problem, PROBLEM_VALIDATION, "/name", "required", "which name? \"name\" is missing");
+    if (cJSON_IsNull(item))
+        return true;
+    if (!body_check_text(item, "/name", ROOM_NAME_LETTERS, problem))
+        return false;
+    *name = item->valuestring;
+    return strpbrk(*name, "\r\n\t") == NULL ||
+           problem_set(problem, PROBLEM_VALIDATION, "/name", "pattern", "the name of a room is one line");
+}
+
+void api_room_patch(struct api *api, struct call *call)
+{
+    static const char *const media_types[] = { "application/merge-patch+json", "application/json", NULL };
+    struct problem problem = { 0 };
+    struct room *room = api_find_room(api, call);
+    const char *name;
+    cJSON *body;
+    if (!room || !call_read_object(call, media_types, &body))
+        return;
+    const bool ok = read_name(body, &name, &problem) && net_can_write(api->net, &problem);
+    if (ok)
+        room_rename(room, name, &call->identity, call->member, call->client, clock_now_us());
+    cJSON_Delete(body);
+    if (ok)
+        call_answer_json(call, 200, document_of(room));
+    else
+        call_answer_problem(call, &problem);
 }
 
 void api_room_delete(struct api *api, struct call *call)

@@ -38,12 +38,14 @@ static bool reserve(struct net *net, size_t n)
 void asleep_add(struct net *net, const struct store_summary *facts)
 {
     if (!reserve(net, 1)) { /* it is found again after a restart */
-        free(facts->people);
+        struct store_summary lost = *facts;
+        store_summary_finish(&lost);
         return;
     }
     memmove(net->asleep + 1, net->asleep, net->n_asleep * sizeof net->asleep[0]);
     net->asleep[0] = (struct asleep_room){ .facts = *facts };
     net->n_asleep++;
+    net->n_unchanged += !facts->is_changed;
 }
 
 void asleep_add_all(struct net *net, struct store_summary *rooms, size_t n)
@@ -54,7 +56,8 @@ void asleep_add_all(struct net *net, struct store_summary *rooms, size_t n)
         if (id_is_valid(rooms[i].id) && id_is_valid(rooms[i].plan) && !is_awake(net, rooms[i].id) &&
             !asleep_find(net, rooms[i].id)) {
             net->asleep[net->n_asleep++] = (struct asleep_room){ .facts = rooms[i] };
-            rooms[i].people = NULL;
+            rooms[i].people = rooms[i].names = rooms[i].users = NULL;
+            net->n_unchanged += !rooms[i].is_changed;
         }
 }
 
@@ -63,7 +66,8 @@ void asleep_remove(struct net *net, const char *id)
     struct asleep_room *room = asleep_find(net, id);
     if (!room)
         return;
-    free(room->facts.people);
+    net->n_unchanged -= !room->facts.is_changed;
+    store_summary_finish(&room->facts);
     net->n_asleep--;
     memmove(room, room + 1, (size_t)(net->asleep + net->n_asleep - room) * sizeof *room);
 }
@@ -150,7 +154,7 @@ struct asleep_room *asleep_of_answer(const struct net *net, const struct store_a
 void asleep_finish(struct net *net)
 {
     for (size_t i = 0; i < net->n_asleep; i++)
-        free(net->asleep[i].facts.people);
+        store_summary_finish(&net->asleep[i].facts);
     free(net->asleep);
     net->asleep = NULL;
     net->n_asleep = 0;

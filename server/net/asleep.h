@@ -4,7 +4,7 @@
 #include "server/net/net_state.h"
 
 struct asleep_room *asleep_find(const struct net *net, const char *room_id);
-void asleep_add(struct net *net, const struct store_summary *facts); /* the one last used; takes facts->people */
+void asleep_add(struct net *net, const struct store_summary *facts); /* the one last used; takes what it owns */
 /* Adds those that are not awake or listed yet, in their order, and takes what they own. */
 void asleep_add_all(struct net *net, struct store_summary *rooms, size_t n);
 void asleep_remove(struct net *net, const char *room_id);

@@ -138,7 +138,7 @@ struct net {
     struct store *store; /* NULL: rooms are not kept */
     bool store_fails, store_is_full;
     struct asleep_room *asleep;
-    size_t n_asleep;
+    size_t n_asleep, n_unchanged; /* n_unchanged: of them, in which nobody changed anything */
     struct waiter *waiters;
     struct part_reader *readers;
     struct record_reader *record_readers;

@@ -193,7 +193,12 @@ static bool put_to_sleep(struct net *net, size_t index)
     (void)snprintf(facts.id, sizeof facts.id, "%s", room_id(room->room));
     (void)snprintf(facts.plan, sizeof facts.plan, "%s", room_plan_id(room->room));
     (void)snprintf(facts.owner, sizeof facts.owner, "%s", kept.owner);
+    (void)snprintf(facts.name, sizeof facts.name, "%s", kept.name);
     facts.is_open = kept.is_open;
+    facts.is_changed = kept.is_changed;
+    facts.n_notes = (uint32_t)room_n_notes(room->room);
+    facts.names = room_names_in(room->room);
+    facts.users = room_users_in(room->room);
     facts.people = kept.people;
     kept.people = NULL;
     room_kept_finish(&kept);
@@ -206,29 +211,41 @@ static bool put_to_sleep(struct net *net, size_t index)
 int64_t rooms_idle_left_us(const struct net *net, int64_t now_us)
 {
     int64_t least_us = INT64_MAX;
-    for (size_t i = 0; net->room_idle_close_s > 0 && i < net->n_rooms; i++) {
-        const int64_t since_us = net->rooms[i]->empty_since_us,
-                      left_us = since_us + net->room_idle_close_s * INT64_C(1000000) - now_us;
+    const int64_t idle_us = net->room_idle_close_s * INT64_C(1000000),
+                  wall_us = net->n_unchanged ? clock_wall_ms() * 1000 : 0;
+    for (size_t i = 0; idle_us > 0 && i < net->n_rooms; i++) {
+        const int64_t since_us = net->rooms[i]->empty_since_us, left_us = since_us + idle_us - now_us;
         if (since_us && left_us < least_us)
+            least_us = left_us;
+    }
+    for (size_t i = 0; idle_us > 0 && net->n_unchanged && i < net->n_asleep; i++) {
+        const int64_t left_us = net->asleep[i].facts.used_ms * 1000 + idle_us - wall_us;
+        if (!net->asleep[i].facts.is_changed && left_us < least_us)
             least_us = left_us;
     }
     return least_us > 0 ? least_us : 0;
 }
 
+static const char nothing_changed[] = "nobody was in the room for a long time, and nobody had changed anything in it";
+
 void rooms_close_idle(struct net *net)
 {
-    int64_t now_us = clock_now_us(), after_us = net->room_idle_close_s * INT64_C(1000000);
+    const int64_t now_us = clock_now_us(), after_us = net->room_idle_close_s * INT64_C(1000000),
+                  before_ms = net->n_unchanged ? clock_wall_ms() - after_us / 1000 : 0;
     for (size_t i = net->n_rooms; net->room_idle_close_s > 0 && i-- > 0;) {
         const struct net_room *room = net->rooms[i];
         if (!room->empty_since_us || now_us - room->empty_since_us < after_us)
             continue;
-        if (put_to_sleep(net, i)) {
+        if (room_was_changed(room->room) && put_to_sleep(net, i)) {
             log_info("room put to sleep: nobody there for %d s", net->room_idle_close_s);
-        } else if (!net->store || !room_was_used(room->room)) {
+        } else if (!net->store || !room_was_used(room->room) || !room_was_changed(room->room)) {
             log_info("room closed: nobody there for %d s", net->room_idle_close_s);
-            net_room_delete(net, room_id(room->room), "nobody was in the room for a long time");
+            net_room_delete(net, room_id(room->room), nothing_changed);
         }
     }
+    for (size_t i = net->n_asleep; net->room_idle_close_s > 0 && net->n_unchanged && i-- > 0;)
+        if (!net->asleep[i].facts.is_changed && !net->asleep[i].ticket && net->asleep[i].facts.used_ms <= before_ms)
+            net_room_delete(net, net->asleep[i].facts.id, nothing_changed);
 }
 
 /* True if one more room may be awake, perhaps because another one was put to sleep. */
@@ -435,12 +452,58 @@ bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct i
     return has_role && (facts->is_open || (!facts->owner[0] && role == WIRE_MEMBER_ROLE_PLANNER));
 }
 
-cJSON *net_asleep_document(const struct net *net, size_t index)
+/* Whether the user was in the room, owns it, or was asked in: a row of these is theirs. */
+static bool is_line_of(const char *lines, const char *line)
+{
+    const size_t n = strlen(line);
+    for (const char *at = lines; n && at && (at = strstr(at, line)); at++)
+        if ((at == lines || at[-1] == '\n') && at[n] == '\n')
+            return true;
+    return false;
+}
+
+static cJSON *add_use(cJSON *row, bool is_mine, int64_t used_ms)
+{
+    cJSON_AddBoolToObject(row, "is_mine", is_mine);
+    cJSON_AddNumberToObject(row, "used_ms", (double)used_ms);
+    return row;
+}
+
+cJSON *net_room_row(const struct net *net, size_t index, const struct identity *who)
+{
+    const struct net_room *entry = net->rooms[index];
+    const bool is_machine = who->source == IDENTITY_MACHINE;
+    struct store_room kept;
+    if (!is_machine && !room_is_listed_to(entry->room, who))
+        return NULL;
+    if (entry->empty_since_us && room_n_named(entry->room) > 0 && !room_was_changed(entry->room))
+        return NULL; /* it leaves no trace */
+    bool is_mine = is_machine || strcmp(room_owner(entry->room), who->user) == 0 || room_was_in(entry->room, who);
+    if (!is_mine && room_keep(entry->room, ROOM_PEOPLE, &kept)) {
+        is_mine = room_people_name(kept.owner, kept.people, who, true);
+        room_kept_finish(&kept);
+    }
+    const int64_t empty_ms = entry->empty_since_us ? (clock_now_us() - entry->empty_since_us) / 1000 : 0;
+    return add_use(room_document(entry->room), is_mine, clock_wall_ms() - empty_ms);
+}
+
+cJSON *net_asleep_row(const struct net *net, size_t index, const struct identity *who)
 {
     const struct store_summary *facts = &net->asleep[index].facts;
     char known[64];
-    return room_document_of(facts->id, plan_id_now(net, facts->plan, known), facts->revision,
-                            WIRE_RENDERER_STATE_CLOSED, facts->created_ms / 1000);
+    if (!facts->is_changed || !net_asleep_is_listed_to(net, index, who))
+        return NULL;
+    const struct room_facts row = { .id = facts->id,
+                                    .plan_id = plan_id_now(net, facts->plan, known),
+                                    .name = facts->name,
+                                    .names = facts->names,
+                                    .revision = facts->revision,
+                                    .renderer = WIRE_RENDERER_STATE_CLOSED,
+                                    .created_at_s = facts->created_ms / 1000,
+                                    .n_notes = facts->n_notes };
+    const bool is_mine = who->source == IDENTITY_MACHINE || is_line_of(facts->users, who->user) ||
+                         room_people_name(facts->owner, facts->people, who, true);
+    return add_use(room_document_of(&row), is_mine, facts->used_ms);
 }
 
 /* ---- the store -------------------------------------------------------------------------------------------------- */
@@ -462,7 +525,9 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
     }
     if (!asleep)
         return;
-    const struct store_summary facts = asleep->facts;
+    char id[64], plan[64];
+    (void)snprintf(id, sizeof id, "%s", asleep->facts.id);
+    (void)snprintf(plan, sizeof plan, "%s", asleep->facts.plan);
     asleep->ticket = 0;
     if (!answer->room) {
         problem_set(&problem, PROBLEM_STORAGE, "", "", "the room cannot be read from the disk: %s", answer->error.text);
@@ -470,14 +535,14 @@ void rooms_was_read(struct net *net, const struct store_answer *answer)
         problem_set(&problem, PROBLEM_LIMIT, "", "", "there are %zu rooms in use, at most %d are allowed", net->n_rooms,
                     net->max_rooms);
     } else {
-        asleep_remove(net, facts.id);
+        asleep_remove(net, id);
         char known[64];
-        struct net_room *room = add_room(net, facts.id, plan_id_now(net, facts.plan, known));
+        struct net_room *room = add_room(net, id, plan_id_now(net, plan, known));
         keep_restore(room, answer->room);
         bridge_report_plan(room);
         schedule_settle(room);
     }
-    asleep_tell(net, facts.id, problem.type == PROBLEM_NONE ? NULL : &problem);
+    asleep_tell(net, id, problem.type == PROBLEM_NONE ? NULL : &problem);
     if (token[0])
         asleep_tell(net, token, problem.type == PROBLEM_NONE ? NULL : &problem);
 }

@@ -11,6 +11,7 @@
 #include "server/room/people/admission.h"
 #include "server/room/people/control.h"
 #include "server/room/people/links.h"
+#include "server/room/people/naming.h"
 #include "server/room/people/removal.h"
 #include "server/room/state/member_list.h"
 #include "server/room/state/roles.h"
@@ -121,6 +122,14 @@ bool room_may(const struct room *room, const struct identity *who, const char *m
     return is_free || refuse_not_presenter(room, problem, "change the scene");
 }
 
+void room_rename(struct room *room, const char *name, const struct identity *who, const char *member,
+                 const char *address, int64_t now_us)
+{
+    room_enter(room, now_us);
+    name_set(room, name, who, room_caller(room, member), address);
+    room_leave(room);
+}
+
 cJSON *room_people(const struct room *room)
 {
     return admission_document(room);
@@ -178,21 +187,34 @@ bool room_act_may(const struct room *room, const char *member, enum wire_right r
     return true;
 }
 
-static cJSON *make_document(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,
-                            int64_t created_at_s, bool is_asleep, cJSON *members)
+static cJSON *read_lines(const char *lines)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (size_t n; lines && (n = strcspn(lines, "\n")) > 0; lines += n + (lines[n] == '\n')) {
+        char line[STORE_PERSON];
+        (void)snprintf(line, sizeof line, "%.*s", (int)(n < sizeof line ? n : sizeof line - 1), lines);
+        json_append(list, cJSON_CreateString(line));
+    }
+    return list;
+}
+
+static cJSON *make_document(const struct room_facts *facts, bool is_asleep, cJSON *members)
 {
     char created[32];
     struct tm utc;
-    time_t seconds = (time_t)created_at_s;
+    time_t seconds = (time_t)facts->created_at_s;
     gmtime_r(&seconds, &utc);
     (void)strftime(created, sizeof created, "%Y-%m-%dT%H:%M:%SZ", &utc);
     cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "id", id);
-    cJSON_AddStringToObject(json, "plan", plan_id);
-    cJSON_AddNumberToObject(json, "revision", revision);
-    cJSON_AddStringToObject(json, "renderer", wire_renderer_state_words.words[renderer]);
+    cJSON_AddStringToObject(json, "id", facts->id);
+    cJSON_AddStringToObject(json, "name", facts->name);
+    cJSON_AddStringToObject(json, "plan", facts->plan_id);
+    cJSON_AddNumberToObject(json, "revision", facts->revision);
+    cJSON_AddStringToObject(json, "renderer", wire_renderer_state_words.words[facts->renderer]);
     cJSON_AddStringToObject(json, "created_at", created);
     cJSON_AddBoolToObject(json, "asleep", is_asleep);
+    cJSON_AddNumberToObject(json, "n_notes", (double)facts->n_notes);
+    json_add(json, "were_in", read_lines(facts->names));
     json_add(json, "members", members);
     return json;
 }
@@ -230,14 +252,23 @@ bool room_link_revoke(struct room *room, const char *id, const char *by, const c
 
 cJSON *room_document(const struct room *room)
 {
-    return make_document(room->id, room->plan_id, room->shared.revision, room->renderer.state, room->created_at_s,
-                         false, room_members(room));
+    char *names = room_names_in(room);
+    const struct room_facts facts = { .id = room->id,
+                                      .plan_id = room->plan_id,
+                                      .name = room->name,
+                                      .names = names,
+                                      .revision = room->shared.revision,
+                                      .renderer = room->renderer.state,
+                                      .created_at_s = room->created_at_s,
+                                      .n_notes = room_n_notes(room) };
+    cJSON *json = make_document(&facts, false, room_members(room));
+    free(names);
+    return json;
 }
 
-cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision, enum wire_renderer_state renderer,
-                        int64_t created_at_s)
+cJSON *room_document_of(const struct room_facts *facts)
 {
-    return make_document(id, plan_id, revision, renderer, created_at_s, true, cJSON_CreateArray());
+    return make_document(facts, true, cJSON_CreateArray());
 }
 
 void room_audit_flush(struct room *room, int64_t now_us)

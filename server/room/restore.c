@@ -41,6 +41,8 @@ bool room_keep(const struct room *room, unsigned parts, struct store_room *kept)
                                  .has_links = links_were_made(room) };
     (void)snprintf(kept->id, sizeof kept->id, "%s", room->id);
     (void)snprintf(kept->plan, sizeof kept->plan, "%s", room->plan_id);
+    (void)snprintf(kept->name, sizeof kept->name, "%s", room->name);
+    kept->is_changed = room_was_changed(room);
     admission_facts(room, kept);
     if (room->presenter)
         (void)snprintf(kept->presenter, sizeof kept->presenter, "%s", room->presenter->id);
@@ -110,7 +112,8 @@ void room_restore(struct room *room, const struct store_room *kept, int64_t now_
     room->shared.revision = kept->revision;
     room->members.n_named =
         kept->n_named > room->members.n_named ? kept->n_named : room->members.n_named; /* items were restored before */
-    room->shared.is_changed = true;
+    room->shared.is_changed = kept->is_changed;
+    (void)snprintf(room->name, sizeof room->name, "%s", kept->name);
     cJSON *scene = read_json(room, kept->scene, "the scene");
     if (cJSON_IsObject(scene))
         room->shared.restored = scene;

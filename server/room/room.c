@@ -26,6 +26,7 @@
 #include "server/room/people/links.h"
 #include "server/room/people/look.h"
 #include "server/room/people/member.h"
+#include "server/room/people/naming.h"
 #include "server/room/people/pointers.h"
 #include "server/room/people/presenter.h"
 #include "server/room/people/removal.h"
@@ -131,6 +132,11 @@ const char *room_plan_id(const struct room *room)
     return room->plan_id;
 }
 
+const char *room_name(const struct room *room)
+{
+    return room->name;
+}
+
 void room_end_because(struct room *room, const char *reason)
 {
     (void)snprintf(room->end_reason, sizeof room->end_reason, "%s", reason);
@@ -139,6 +145,12 @@ void room_end_because(struct room *room, const char *reason)
 bool room_was_used(const struct room *room)
 {
     return !room->replay && (room->members.n_named > 0 || links_were_made(room) || room->shared.is_changed);
+}
+
+bool room_was_changed(const struct room *room)
+{
+    return room->replay || room->shared.is_changed || room->name[0] || links_were_made(room) || room->items->first ||
+           events_n_item_changes(room) > 0 || room->recordings->n > 0;
 }
 
 uint32_t room_n_named(const struct room *room)
@@ -151,6 +163,14 @@ size_t room_n_decided(const struct room *room)
     size_t n = 0;
     for (const struct item *item = room->items->first; item; item = item->next)
         n += record_is_wanted(item->kind);
+    return n;
+}
+
+size_t room_n_notes(const struct room *room)
+{
+    size_t n = 0;
+    for (const struct item *item = room->items->first; item; item = item->next)
+        n += item->kind == WIRE_ITEM_KIND_NOTE;
     return n;
 }
 
@@ -359,8 +379,8 @@ void room_audit_refused(struct room *room, const struct member *member, const ch
 
 /* Messages to a newcomer after welcome, in this order. */
 static void (*const shown_to_newcomer[])(struct room *room, struct member *member) = {
-    acceptances_tell, send_renderer_state, control_send,   saved_show,  files_show, members_show,
-    pointers_show,    look_show,           recording_show, replay_show, walls_show,
+    acceptances_tell, send_renderer_state, control_send, saved_show,     files_show,  members_show,
+    name_show,        pointers_show,       look_show,    recording_show, replay_show, walls_show,
 };
 
 static void greet(struct room *room, void *connection, const struct message_hello *hello)

@@ -22,6 +22,18 @@ size_t room_n_decided(const struct room *room);
 const char *room_caller_name(const struct room *room, const char *member);
 const char *room_id(const struct room *room);
 const char *room_plan_id(const struct room *room);
+const char *room_name(const struct room *room); /* "": none was given */
+/* Gives the room a name of at most ROOM_NAME_LETTERS letters, "": none; members are told. who, member and address: as
+ * in room_audit_call. */
+void room_rename(struct room *room, const char *name, const struct identity *who, const char *member,
+                 const char *address, int64_t now_us);
+/* Whether the user of this identity has or had a seat. */
+bool room_was_in(const struct room *room, const struct identity *who);
+/* For free(): names of up to ROOM_MAX_NAMES of those who were in, each ended by '\n'; users likewise, of all. NULL: no
+ * memory. */
+NODISCARD char *room_names_in(const struct room *room);
+NODISCARD char *room_users_in(const struct room *room);
+size_t room_n_notes(const struct room *room);
 
 /* The renderer's state, sent on to all members. Pictures are requested only while it is ready. Each new renderer
  * process is reported by room_plan_ready: all pictures are requested anew, requests to the old process are forgotten.
@@ -80,9 +92,15 @@ NODISCARD bool room_patch_scene(struct room *room, const cJSON *patch, const cha
                                 int64_t now_us, struct problem *problem);
 /* {id, plan, revision, members: [...], created_at...}: what GET /rooms/{id} gives. */
 NODISCARD cJSON *room_document(const struct room *room);
+struct room_facts {                          /* of a room in a list */
+    const char *id, *plan_id, *name, *names; /* names: as room_names_in */
+    uint32_t revision;
+    enum wire_renderer_state renderer;
+    int64_t created_at_s;
+    size_t n_notes;
+};
 /* Like room_document, for a sleeping room: without members, and with asleep true. */
-NODISCARD cJSON *room_document_of(const char *id, const char *plan_id, uint32_t revision,
-                                  enum wire_renderer_state renderer, int64_t created_at_s);
+NODISCARD cJSON *room_document_of(const struct room_facts *facts);
 /* The caller over HTTP, as the room sees it. */
 struct room_caller {
     bool is_here;   /* it has a role in the room; false: it is answered as if the room were not there */
@@ -178,6 +196,9 @@ void room_replay_came(struct room *room, const char *const *texts, size_t n, int
 
 /* True once a member has entered, a link was made, or the scene was changed. */
 bool room_was_used(const struct room *room);
+/* True once a person has changed something that is kept: the scene, an item, a link, the people, the name, a recording.
+ * Where somebody looks, cameras and slices, is no change. */
+bool room_was_changed(const struct room *room);
 /* How many members the room has ever had. */
 uint32_t room_n_named(const struct room *room);
 /* Whether the room has a use for the revision of the plan's files as they are now: it plays, or records and does not

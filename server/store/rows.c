@@ -41,10 +41,12 @@ static bool write_row(sqlite3 *db, const struct store_room *room, struct error *
     sqlite3_stmt *row = sql_prepare(
         db,
         "INSERT INTO rooms(id, plan, created_ms, used_ms, revision, n_named, presenter, scene, views, has_links,"
-        " presence, owner, people, is_open) VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)"
+        " presence, owner, people, is_open, name, is_changed)"
+        " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)"
         " ON CONFLICT(id) DO UPDATE SET used_ms = ?4, revision = ?5, n_named = ?6, presenter = ?7,"
         " scene = coalesce(?8, scene), views = coalesce(?9, views), has_links = ?10,"
-        " presence = coalesce(?11, presence), owner = ?12, people = coalesce(?13, people), is_open = ?14",
+        " presence = coalesce(?11, presence), owner = ?12, people = coalesce(?13, people), is_open = ?14,"
+        " name = ?15, is_changed = ?16",
         err);
     if (!row)
         return false;
@@ -62,6 +64,8 @@ static bool write_row(sqlite3 *db, const struct store_room *room, struct error *
     sql_bind_text(row, 12, room->owner);
     sql_bind_text(row, 13, room->people);
     (void)sqlite3_bind_int(row, 14, room->is_open);
+    sql_bind_text(row, 15, room->name);
+    (void)sqlite3_bind_int(row, 16, room->is_changed);
     bool ok = sql_step(row, "writing a room", err);
     (void)sqlite3_finalize(row);
     return ok;
@@ -218,7 +222,8 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
 {
     sqlite3_stmt *row = sql_prepare(db,
                                     "SELECT id, plan, created_ms, used_ms, revision, n_named, presenter, scene,"
-                                    " views, has_links, presence, owner, people, is_open FROM rooms WHERE id = ?1",
+                                    " views, has_links, presence, owner, people, is_open, name, is_changed FROM rooms"
+                                    " WHERE id = ?1",
                                     err);
     if (!row)
         return false;
@@ -240,6 +245,8 @@ static bool read_row(sqlite3 *db, const char *id, struct store_room *room, struc
         sql_text(row, 11, room->owner, sizeof room->owner);
         room->people = sql_copy_text(row, 12);
         room->is_open = sqlite3_column_int(row, 13) != 0;
+        sql_text(row, 14, room->name, sizeof room->name);
+        room->is_changed = sqlite3_column_int(row, 15) != 0;
     } else if (step == SQLITE_DONE) {
         error_set(err, ERROR_NOT_FOUND, "there is no room \"%.63s\"", id);
     } else {
@@ -349,6 +356,11 @@ static bool read_summary(sqlite3_stmt *row, void *to)
     sql_text(row, 7, room->owner, sizeof room->owner);
     room->is_open = sqlite3_column_int(row, 8) != 0;
     room->people = sql_copy_text(row, 9);
+    sql_text(row, 10, room->name, sizeof room->name);
+    room->is_changed = sqlite3_column_int(row, 11) != 0;
+    room->n_notes = (uint32_t)sqlite3_column_int64(row, 12);
+    room->names = sql_copy_text(row, 13);
+    room->users = sql_copy_text(row, 14);
     return true;
 }
 
@@ -399,10 +411,17 @@ struct store_room *rows_read_saved(sqlite3 *db, const char *token, struct error 
     return rows_read_room(db, id, err);
 }
 
+void store_summary_finish(struct store_summary *room)
+{
+    free(room->people);
+    free(room->names);
+    free(room->users);
+}
+
 void store_summaries_free(struct store_summary *rooms, size_t n)
 {
     for (size_t i = 0; rooms && i < n; i++)
-        free(rooms[i].people);
+        store_summary_finish(&rooms[i]);
     free(rooms);
 }
 
@@ -410,13 +429,17 @@ struct store_summary *rows_list_rooms(sqlite3 *db, size_t most, size_t *n, struc
 {
     void *list = mem_new(1);
     *n = 0;
-    if (rows_read_list(
-            db,
-            "SELECT id, plan, created_ms, used_ms, revision,"
-            " (SELECT count(*) FROM members WHERE members.room = rooms.id),"
-            " (SELECT count(*) FROM records WHERE records.room = rooms.id), owner, is_open, people FROM rooms"
-            " ORDER BY used_ms DESC, id",
-            NULL, sizeof(struct store_summary), most, read_summary, &list, n, err))
+    if (rows_read_list(db,
+                       "SELECT id, plan, created_ms, used_ms, revision,"
+                       " (SELECT count(*) FROM members WHERE members.room = rooms.id),"
+                       " (SELECT count(*) FROM records WHERE records.room = rooms.id), owner, is_open, people,"
+                       " name, is_changed, (SELECT count(*) FROM items WHERE items.room = rooms.id AND kind = 'note'),"
+                       " (SELECT group_concat(name || char(10), '') FROM (SELECT DISTINCT name FROM members"
+                       "   WHERE members.room = rooms.id AND role <> 'wall' LIMIT 8)),"
+                       " (SELECT group_concat(user || char(10), '') FROM (SELECT DISTINCT user FROM members"
+                       "   WHERE members.room = rooms.id AND user <> '')) FROM rooms"
+                       " ORDER BY used_ms DESC, id",
+                       NULL, sizeof(struct store_summary), most, read_summary, &list, n, err))
         return list;
     store_summaries_free(list, *n);
     return NULL;

@@ -86,6 +86,9 @@ static const char *const steps[] = {
     " BEGIN SELECT RAISE(ABORT, 'a record is never changed'); END;"
     "CREATE TRIGGER record_figures_delete BEFORE DELETE ON record_figures"
     " BEGIN SELECT RAISE(ABORT, 'a record is never deleted'); END;",
+    /* 9: names of rooms; whether a person changed something in them: of earlier ones it is not known, and they stay */
+    "ALTER TABLE rooms ADD COLUMN name TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE rooms ADD COLUMN is_changed INTEGER NOT NULL DEFAULT 1;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

@@ -14,6 +14,7 @@ enum {
     STORE_MAX_PART_BYTES = 64 << 20, /* of a recording, that are read at once */
     STORE_AUDIT_HASH = 65,           /* a hash of the audit as text */
     STORE_USER = 65,                 /* bytes of a user's or group's id, with the end */
+    STORE_ROOM_NAME = 321,           /* of the name of a room */
     STORE_PERSON = 164,              /* of a name as people read it */
     STORE_GROUPS = 2113,             /* of a list of groups */
     STORE_MAX_ACCOUNTS = 10000       /* users, tokens, sessions or owners that are read */
@@ -117,6 +118,8 @@ struct store_room {
     uint32_t revision, n_named;           /* of the scene; members ever made */
     bool has_links;                       /* there is or was one */
     bool is_open;                         /* who may see its plan may come in without a link */
+    bool is_changed;                      /* a person has changed something in it */
+    char name[STORE_ROOM_NAME];           /* "": none was given */
     char owner[STORE_USER];               /* user; "": nobody's */
     char *people;                         /* JSON: who may come in without a link; NULL when read: nobody */
     char *scene, *views;                  /* JSON; NULL when read: the plan was never loaded */
@@ -141,12 +144,15 @@ struct store_room {
 struct store_summary {
     char id[64], plan[64];
     int64_t created_ms, used_ms;
-    uint32_t revision, n_members, n_decided; /* n_decided: decisions and signatures */
-    bool is_open;
+    uint32_t revision, n_members, n_decided, n_notes; /* n_decided: decisions and signatures */
+    bool is_open, is_changed;
+    char name[STORE_ROOM_NAME];
+    char *names, *users; /* of members: names of some, ids of all who signed in; each ended by '\n'. NULL: none */
     char owner[STORE_USER];
     char *people; /* as in store_room */
 };
 
+void store_summary_finish(struct store_summary *room);
 void store_summaries_free(struct store_summary *rooms, size_t n);
 
 void store_room_free(struct store_room *room);

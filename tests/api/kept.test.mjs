@@ -196,7 +196,7 @@ test('an orderly stop keeps the last change, too', async () => {
   await end(daemon);
 });
 
-test('an idle room that people used sleeps and wakes; one that nobody entered is closed; a deleted one is gone', async () => {
+test('an idle room that people changed sleeps and wakes; one that nobody entered or changed is closed; a deleted one is gone', async () => {
   const folder = join(data, 'idle');
   const daemon = await start(['--room-idle-close', '2'], folder);
   const used = await newRoom(daemon),
@@ -204,18 +204,29 @@ test('an idle room that people used sleeps and wakes; one that nobody entered is
   const deleted = await newRoom(daemon),
     ben = await enter(daemon, deleted);
   const unused = await newRoom(daemon);
-  await ready(ann);
+  const lookedAt = await newRoom(daemon),
+    cia = await enter(daemon, lookedAt);
+  for (const client of [ann, ben, cia]) await ready(client);
   const { revision } = await patch(ann, 44);
-  ann.cut();
-  ben.cut();
+  await patch(ben, 45);
+  cia.send({ type: 'view.open', view: 1, document: { size_px: [64, 48] } });
+  await cia.frame(() => true);
+  cia.send({ type: 'view.patch', view: 1, input: 1, patch: { eye: [0, -500, 0] } }); // looking is no change
+  assert.ok((await rooms(daemon)).rooms.some(({ id }) => id === lookedAt));
+  for (const client of [ann, ben, cia]) client.cut();
+  await until(
+    () => rooms(daemon),
+    (list) => !list.rooms.some(({ id }) => id === lookedAt),
+  );
   await until(
     () => rooms(daemon),
     (list) => list.n_asleep === 2 && list.rooms.length === 2,
   );
-  await until(
-    () => onDisk(unused, folder),
-    (row) => row === null,
-  );
+  for (const id of [unused, lookedAt])
+    await until(
+      () => onDisk(id, folder),
+      (row) => row === null,
+    );
   assert.equal((await call(`${daemon.api}/rooms/${deleted}`, 'DELETE')).status, 204);
   assert.equal((await call(`${daemon.api}/rooms/${deleted}`)).status, 404);
   assert.equal((await call(`${daemon.api}/rooms/${unused}`)).status, 404);
@@ -229,11 +240,82 @@ test('an idle room that people used sleeps and wakes; one that nobody entered is
   await end(daemon);
 });
 
+test('a name is kept, told to members, listed awake and asleep, and in the audit; a room without a change outlives a restart until it is idle', async () => {
+  const folder = join(data, 'named');
+  let daemon = await start([], folder);
+  const [named, other] = [await newRoom(daemon), await newRoom(daemon)];
+  const ann = await enter(daemon, named, { name: 'Ann' }),
+    ben = await enter(daemon, other, { name: 'Ben' });
+  const give = (name, id = named) => call(`${daemon.api}/rooms/${id}`, 'PATCH', { name });
+  assert.equal((await call(`${daemon.api}/rooms/${named}`)).json.name, '');
+  const given = await give('Second look · 2 Ω');
+  assert.equal(given.json.name, 'Second look · 2 Ω', given.text);
+  assert.equal((await ann.message('room')).name, 'Second look · 2 Ω');
+  for (const [body, code, pointer] of [
+    [{}, 'required', '/name'],
+    [{ name: '' }, 'length', '/name'],
+    [{ name: 'x'.repeat(81) }, 'length', '/name'],
+    [{ name: 'two\nlines' }, 'pattern', '/name'],
+    [{ name: 7 }, 'type', '/name'],
+    [{ plan: 'phantom' }, 'unknown-field', '/'],
+  ]) {
+    const { status, json } = await call(`${daemon.api}/rooms/${named}`, 'PATCH', body);
+    assert.deepEqual([status, json.code, json.pointer], [422, code, pointer], JSON.stringify(json));
+  }
+  assert.equal((await give('No', 'no-such-room')).status, 404);
+  ann.send({ type: 'item.put', input: 1, kind: 'note', body: { text: 'look' } });
+  await ann.message('item');
+  await until(
+    () => onDisk(named, folder),
+    (row) => row?.name === 'Second look · 2 Ω',
+  );
+  await until(
+    () => onDisk(other, folder),
+    (row) => row !== null,
+  );
+  for (const client of [ann, ben]) client.cut();
+  await end(daemon);
+  daemon = await start([], folder);
+  const [row, ...rest] = (await rooms(daemon)).rooms;
+  assert.deepEqual(rest, [], 'a room without a change is not listed while nobody is in it');
+  assert.deepEqual(
+    [row.id, row.name, row.asleep, row.n_notes, row.were_in, row.is_mine],
+    [named, 'Second look · 2 Ω', true, 1, ['Ann'], true],
+  );
+  assert.ok(Math.abs(Date.now() - row.used_ms) < 60_000);
+  const back = await enter(daemon, other, { member: ben.welcome.member, secret: ben.welcome.secret });
+  assert.equal(back.welcome.member, ben.welcome.member, 'who was there comes back');
+  const again = await enter(daemon, named);
+  assert.equal((await again.message('room')).name, 'Second look · 2 Ω');
+  assert.equal((await give(null)).json.name, '');
+  assert.equal((await again.message('room', ({ name }) => name === '')).name, '');
+  const audit = await until(
+    () => call(`${daemon.api}/audit?action=renamed`),
+    ({ json }) => json.rows.length === 2,
+  );
+  assert.deepEqual(audit.json.rows.map(({ room, detail }) => [room, detail]).reverse(), [
+    [named, { from: '', to: 'Second look · 2 Ω' }],
+    [named, { from: 'Second look · 2 Ω', to: '' }],
+  ]);
+  for (const client of [back, again]) client.cut();
+  await end(daemon);
+  daemon = await start(['--room-idle-close', '1'], folder);
+  await until(
+    () => onDisk(other, folder),
+    (gone) => gone === null,
+  );
+  assert.notEqual(onDisk(named, folder), null);
+  await end(daemon);
+});
+
 test('while all rooms are in use no other wakes; an empty one makes place', async () => {
   const folder = join(data, 'most');
   let daemon = await start([], folder);
   const ids = [await newRoom(daemon), await newRoom(daemon)];
-  for (const id of ids) (await enter(daemon, id)).cut();
+  for (const id of ids) {
+    await call(`${daemon.api}/rooms/${id}`, 'PATCH', { name: 'kept' });
+    (await enter(daemon, id)).cut();
+  }
   await until(
     () => ids.map((id) => onDisk(id, folder)?.members.length),
     (n) => n.every((members) => members === 1),

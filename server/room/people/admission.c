@@ -407,6 +407,7 @@ bool admission_patch(struct room *room, const cJSON *patch, enum wire_member_rol
     }
     if (is_open)
         admission->is_open = cJSON_IsTrue(is_open);
+    room->shared.is_changed = true;
     room_event(room, ROOM_PEOPLE, NULL);
     return true;
 }

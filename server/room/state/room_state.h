@@ -177,7 +177,7 @@ struct shared_documents {           /* documents that all members have */
     cJSON *plan, *defaults, *scene; /* NULL before the plan is ready */
     cJSON *restored;                /* the scene as it was kept, until the plan is ready; else NULL */
     uint32_t revision;              /* of the scene */
-    bool is_changed;                /* the scene was changed since the room was made */
+    bool is_changed;                /* a person changed the scene, or something beside it that is told nowhere else */
 };
 
 struct beginning { /* the bookmark that the room was made from; all NULL: none */
@@ -218,6 +218,7 @@ struct saved;
 
 struct room {
     char id[64], plan_id[64];
+    char name[ROOM_NAME_BYTES]; /* "": none was given */
     int64_t created_at_s;
     char end_reason[200]; /* "": the room is closed */
     struct room_callbacks callbacks;

@@ -194,6 +194,9 @@ struct room_act {
 };
 
 /* Parts of a room that are kept on disk. */
+enum { ROOM_MAX_NAMES = 8 }; /* of those who were in a room, in a list */
+enum { ROOM_NAME_LETTERS = 80, ROOM_NAME_BYTES = 4 * ROOM_NAME_LETTERS + 1 };
+
 enum room_part {
     ROOM_SCENE = 1,
     ROOM_VIEWS = 2,
