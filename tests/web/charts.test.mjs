@@ -337,6 +337,20 @@ describe('plots of dose', { skip: missing && `${missing} is not there` }, () => 
       ])
         await page.locator(`[data-limit="${id}"] .chart-verdict`, { hasText: new RegExp(`^\\s*${word}$`) }).waitFor();
       assert.ok((await page.locator('[data-limit="a"] .chart-value').textContent()).startsWith(max.toPrecision(3)));
+      // 0.98 of the maximum, as the table rounds it, is reached after 0.98 of the unit that the dose is per
+      const ends = page.locator('.chart-ends', { hasText: /0\.9(79|80|81) min at 1e10 n\/cm²\/s/ });
+      await ends.waitFor();
+      assert.match(await ends.textContent(), /brain max ≤ [\d.]+ Gy\(w\) is reached first.*A limit that is not known may come before it/s);
+      assert.match(await page.locator('[data-until="c"]').textContent(), /not known: the isoeffective dose/);
+      await page.locator('.chart-irradiation').getByLabel('Boron in blood, measured', { exact: true }).fill('30');
+      await page.keyboard.press('Tab');
+      await page.locator('.chart-irradiation', { hasText: 'boron 30.0 ppm in blood, measured' }).waitFor();
+      assert.equal((await world.scene(room)).irradiation.blood_ppm, 30);
+      assert.equal((await scene()).blood_ppm, 15, 'what is drawn keeps its boron');
+      const [minutes] = /[\d.]+(?= min at)/.exec(await page.locator('.chart-ends').textContent());
+      assert.ok(Number(minutes) < 0.98, 'more boron, less time');
+      await page.keyboard.press('Control+z');
+      await page.locator('.chart-irradiation', { hasText: 'boron 15.0 ppm in blood, as shown' }).waitFor();
       await page.context().close();
     },
   );

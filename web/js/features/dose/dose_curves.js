@@ -29,6 +29,7 @@ export class DoseCurves {
   #dvh;
   #profile;
   #limits;
+  #irradiation;
 
   /** @param {{room: import('../../room/room.js').RoomState, api: object, clock: object}} world */
   constructor({ room, api, clock }) {
@@ -62,11 +63,14 @@ export class DoseCurves {
     this.#profile = live(() => (this.isProfileShown.value ? this.#along() : null), clock);
     this.#limits = live(() => (this.areLimitsShown.value ? this.#kept() : null), clock);
 
+    this.#irradiation = live(() => (this.areLimitsShown.value ? this.#until() : null), clock);
+
     const read = (asked, as) =>
       computed(() => ({ ...asked.state.value, result: asked.state.value.result && as(asked.state.value.result) }));
     this.dvh = read(this.#dvh, readDvh);
     this.profile = read(this.#profile, readProfile);
     this.limits = this.#limits.state;
+    this.irradiation = this.#irradiation.state;
     /** The curves that are drawn: of the regions chosen, of the dose shown and of the one it is compared with. */
     this.curves = computed(() => {
       const ids = new Set(this.shownRegions.value.map(({ id }) => id));
@@ -81,7 +85,7 @@ export class DoseCurves {
   }
 
   stop() {
-    for (const asked of [this.#dvh, this.#profile, this.#limits]) asked.stop();
+    for (const asked of [this.#dvh, this.#profile, this.#limits, this.#irradiation]) asked.stop();
   }
 
   /** True while the server knows the scene that this page shows. */
@@ -139,5 +143,11 @@ export class DoseCurves {
   #kept() {
     const constraints = this.#room.scene.value?.constraints ?? {};
     return Object.keys(constraints).length ? this.#question('constraints', constraints, {}) : null;
+  }
+
+  /** How long to irradiate until each limit is reached. */
+  #until() {
+    const { constraints = {}, irradiation = {} } = this.#room.scene.value ?? {};
+    return Object.keys(constraints).length ? this.#question('irradiation', [constraints, irradiation], {}) : null;
   }
 }

@@ -5,6 +5,8 @@ import { populationWords } from '../dose_population.js';
 import { lookOf } from '../dose_profile.js';
 import { axisWords, bandName, basisWords, leftWords } from './chart_dvh.js';
 import { limitBasis, limitPopulation, limitRows, limitWords, valueWords, verdictWord } from './chart_limits.js';
+import { basisOf, headline, tables } from './irradiation.js';
+import { say as irradiationWords } from './irradiation_words.js';
 import { depthWords, readOuts } from './chart_profile.js';
 import { basisRows, doseName, quantityName, regionName, unitPer } from './chart_words.js';
 import { listed, number, significant, unitText } from '../../../parts/format.js';
@@ -62,7 +64,7 @@ export function printed(world) {
   const { room, curves } = world;
   const [plan, scene] = [room.plan.value, room.scene.value];
   if (!plan || !scene?.dose) return nothing;
-  return html`${histograms(world, plan, scene)}${profile(world, scene)}${limits(world)}${curves.dvh.value.error ? html`<p class="values">${say.histogramError({ reason: curves.dvh.value.error })}</p>` : nothing}`;
+  return html`${histograms(world, plan, scene)}${profile(world, scene)}${limits(world)}${irradiation(world)}${curves.dvh.value.error ? html`<p class="values">${say.histogramError({ reason: curves.dvh.value.error })}</p>` : nothing}`;
 }
 
 function histograms(world, plan, scene) {
@@ -140,4 +142,11 @@ function limits(world) {
   if (!rows.length) return nothing;
   return html`<h2>${say.limits}</h2>${limitPopulation(world) ? html`<p class="values">${say.univelsOfEach({ population: limitPopulation(world) })}</p>` : nothing}<div class="numbers-scroll" role="group" tabindex="0" aria-label=${say.limits}><table class="numbers-table"><thead><tr><th scope="col">${say.region}</th><th scope="col">${say.limit}</th><th scope="col">${say.quantity}</th><th scope="col">${say.weights}</th><th scope="col">${say.value}</th><th scope="col">${say.met}</th></tr></thead>
     <tbody>${rows.map((row) => html`<tr><th scope="row">${limitWords(world, row)[0]}</th><td>${limitWords(world, row)[1]}</td><td>${quantityName(row.constraint.quantity)}</td><td>${limitBasis(world, row) || '–'}</td><td>${valueWords(row)}</td><td>${verdictWord(row.verdict)}${row.verdict.reason ? `: ${row.verdict.reason}` : ''}</td></tr>`)}</tbody></table></div>`;
+}
+
+function irradiation(world) {
+  const { result } = world.curves.irradiation.value;
+  if (!result?.limits.length) return nothing;
+  const { words, doubt } = headline(world, result);
+  return html`<h2>${irradiationWords.title}</h2><p class="values">${words} ${doubt} ${basisOf(result)}</p>${tables(world, result)}<p class="values">${result.method}</p>`;
 }

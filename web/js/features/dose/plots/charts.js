@@ -2,6 +2,7 @@
 import { effect } from '../../../../lib/signals-core.js';
 import { DoseCurves } from '../dose_curves.js';
 import { limitsBlock } from './chart_limits.js';
+import { irradiationBlock } from './irradiation.js';
 import { drawer, sheet } from './chart_drawer.js';
 import { Highlight } from './chart_highlight.js';
 import { printed } from './chart_printed.js';
@@ -25,7 +26,7 @@ export function makeCharts(room_world) {
   return {
     drawer: () => drawer(world),
     sheet: () => sheet(world),
-    limits: () => limitsBlock(world),
+    limits: () => [limitsBlock(world), irradiationBlock(world)],
     printed: () => printed(world),
     stop() {
       stop();
