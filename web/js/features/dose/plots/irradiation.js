@@ -27,7 +27,7 @@ export function timeWords(result, units, minutes) {
 
 const limitName = (world, row) => limitWords(world, { constraint: row }).join(' ');
 
-/** What a limit says: "38.2", "between ...", or why nothing. */
+/** Says when a limit is reached: "up to 38.2", "never", or why it is not known. */
 function reached(row) {
   if (row.is_never) return say.never;
   if (!isThere(row, 'units')) return say.notKnown({ reason: row.reason ?? say.noAnswer });
