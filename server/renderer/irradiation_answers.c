@@ -251,11 +251,13 @@ static void add_targets(cJSON *json, const struct irradiation *all, enum scene_d
     }
 }
 
-static void add_limits(cJSON *json, const struct irradiation *all)
+static bool add_limits(cJSON *json, const struct irradiation *all, struct error *err)
 {
     const struct scene *scene = &all->snapshot->scene;
-    struct limit *limits = mem_new((scene->n_constraints + 1) * sizeof *limits);
+    struct limit *limits = mem_array(scene->n_constraints + 1, sizeof *limits, UINT64_MAX, err);
     bool is_certain;
+    if (!limits)
+        return false;
     for (size_t i = 0; i < scene->n_constraints; i++)
         find_limit(all, &scene->constraints[i].value, &limits[i]);
     int first = first_limit(limits, scene->n_constraints, &is_certain);
@@ -272,6 +274,7 @@ static void add_limits(cJSON *json, const struct irradiation *all)
     }
     add_targets(json, all, first >= 0 ? limits[first].constraint->quantity : SCENE_DOSE_QUANTITY_WEIGHTED, output);
     free(limits);
+    return true;
 }
 
 /* Answers {output, rate, rate_unit, minutes_per_unit, reason, weights, first, is_certain, units, minutes, fields,
@@ -281,6 +284,7 @@ cJSON *answer_irradiation(struct question *question, struct derive *derived, str
     const struct snapshot *snapshot = question->snapshot;
     const struct scene_irradiation *asked = &snapshot->scene.irradiation;
     struct irradiation all = { .snapshot = snapshot };
+    struct error err = { 0 };
     (void)derived;
     if (!dose_is_there(snapshot, problem))
         return NULL;
@@ -293,7 +297,11 @@ cJSON *answer_irradiation(struct question *question, struct derive *derived, str
     json_add_finite(json, "minutes_per_unit", all.minutes);
     reason_add_json(json, "reason", all.why.code ? all.why.text : NULL);
     dose_add_weights(json, snapshot);
-    add_limits(json, &all);
+    if (!add_limits(json, &all, &err)) {
+        cJSON_Delete(json);
+        (void)problem_from_error(problem, &err);
+        return NULL;
+    }
     cJSON_AddStringToObject(json, "method",
                             "Each dose as its file has it, per unit of the source's output, times its share; boron as "
                             "measured in blood. Doses grow in proportion to the output, so a limit of a dose is "
