@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "server/http/coding.h"
 
-enum { FILES_MAX = 500, FILES_MAX_BYTES = 8 << 20 /* of one file, and of one compressed copy */ };
+enum { FILES_MAX = 1000, FILES_MAX_BYTES = 8 << 20 /* of one file, and of one compressed copy */ };
 
 /* The contents of a file in one content coding. */
 struct file_form {
