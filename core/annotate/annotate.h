@@ -50,6 +50,7 @@ struct annotations {
     bool has_no_caption;           /* letters and scale bar alone: the items are told elsewhere */
     struct annotation_item *items; /* owned; [n_items], row by row */
     size_t n_items;
+    size_t patient; /* number of the item that names the patient, masked, counted from 1; 0: none does */
 };
 /* Appends an item, of the row of the last one or of a later row; the caller has made room for it. */
 struct annotation_item *annotation_add(struct annotations *annotations, enum annotation_row row);

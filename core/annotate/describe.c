@@ -13,6 +13,7 @@
 #include "core/annotate/marks.h"
 #include "core/annotate/words.h"
 #include "core/base/mem.h"
+#include "core/plan/identity.h"
 #include "core/render/visible/visible.h"
 
 enum { MAX_OTHER_ITEMS = 96 }; /* beside regions */
@@ -360,6 +361,27 @@ static void add_origin(struct annotations *annotations, const struct snapshot *s
     add_words(annotations, ANNOTATION_USE, "Not a medical device.");
 }
 
+static void add_patient(struct annotations *annotations, const struct plan *plan)
+{
+    char masked[IDENTITY_MASK_SIZE];
+    const int shown = plan_shown_patient(plan);
+    if (shown < 0)
+        return;
+    identity_mask(&plan->patients[shown], masked);
+    add_words(annotations, ANNOTATION_TITLE, masked);
+    annotations->patient = annotations->n_items;
+}
+
+void annotations_name_patient(struct annotations *annotations, const struct plan *plan)
+{
+    char words[IDENTITY_WORDS_SIZE];
+    const int shown = plan_shown_patient(plan);
+    if (annotations->patient == 0 || shown < 0)
+        return;
+    identity_words(&plan->patients[shown], words);
+    (void)snprintf(annotations->items[annotations->patient - 1].text, ANNOTATION_TEXT_SIZE, "%s", words);
+}
+
 bool annotations_describe(struct annotations *annotations, const struct snapshot *snapshot, int width_px,
                           const char *date, struct error *err)
 {
@@ -383,6 +405,7 @@ bool annotations_describe(struct annotations *annotations, const struct snapshot
     add_words(annotations, ANNOTATION_TITLE, plan->name[0] ? plan->name : plan->id);
     if (plan->is_phantom && !strstr(plan->name, "hantom"))
         add_words(annotations, ANNOTATION_TITLE, "(phantom)");
+    add_patient(annotations, plan);
     add_pane(annotations, snapshot, &camera);
     beam_describe(annotations, snapshot);
     if (!add_regions(annotations, snapshot, missing, n_missing, err))

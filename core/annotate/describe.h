@@ -7,6 +7,9 @@ enum { ANNOTATE_DATE_SIZE = 24 };
 /* The time in UTC, as "2026-07-01 09:30 UTC"; seconds since 1970. */
 void annotate_date(int64_t unix_s, char date[ANNOTATE_DATE_SIZE]);
 
+/* Names the patient in full in the caption of annotations that annotations_describe has filled. */
+void annotations_name_patient(struct annotations *annotations, const struct plan *plan);
+
 /* Fills annotations, for annotations_finish, also on failure. After the picture of width_px was drawn with full detail:
  * regions whose shape was refused are listed as missing. On a slice pane only regions that reach to its plane are
  * listed. date: as annotate_date gives it.

@@ -34,6 +34,8 @@ static bool annotate(struct picture *picture, struct error *err)
     struct image *annotated = NULL;
     if (annotations_describe(&annotations, picture->request.snapshot, picture->image->width_px, annotation->date,
                              err)) {
+        if (annotation->is_named)
+            annotations_name_patient(&annotations, picture->request.snapshot->plan);
         annotations.has_no_caption = annotation->is_caption_apart;
         annotated = annotate_image(picture->image, &annotations, err);
     }

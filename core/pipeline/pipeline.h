@@ -16,6 +16,7 @@ struct pipeline_annotation {
     const char *keyword;   /* of the text in a PNG; borrowed, a constant */
     char *text;            /* owned: kept in a PNG; JPEGs carry none */
     bool is_caption_apart; /* letters and scale bar alone */
+    bool is_named;         /* the caption has the patient in full */
 };
 void pipeline_annotation_destroy(struct pipeline_annotation *annotation);
 

@@ -173,6 +173,51 @@ static bool is_shown_before(const struct treatment_plan *a, const struct treatme
     return by_approval ? by_approval < 0 : by_date ? by_date > 0 : strcmp(a->time, b->time) > 0;
 }
 
+/* Adds text, cut at a whole character where there is no room. */
+static void append_text(char *out, const char *text, size_t n, bool is_upper)
+{
+    uint32_t code;
+    for (size_t at = 0, step;
+         at < n && strlen(out) + 5 < IDENTITY_WORDS_SIZE && (step = read_character(text + at, &code)) > 0; at += step)
+        append_character(out, IDENTITY_WORDS_SIZE, is_upper ? upper(code) : code);
+}
+
+static void append_words(char *out, const char *text)
+{
+    append_text(out, text, strlen(text), false);
+}
+
+static void append_part(char *out, const char *label, const char *text)
+{
+    if (!text[0])
+        return;
+    append_words(out, out[0] ? ", " : "");
+    append_words(out, label);
+    append_words(out, text);
+}
+
+void identity_words(const struct plan_patient *patient, char out[IDENTITY_WORDS_SIZE])
+{
+    const size_t n = strcspn(patient->name, "=");
+    const struct component family = component_of(patient->name, n, 0);
+    const char *birth = patient->birth_date;
+    char born[sizeof patient->birth_date + 2];
+    if (strlen(birth) == 8)
+        (void)snprintf(born, sizeof born, "%.4s-%.2s-%.2s", birth, birth + 4, birth + 6);
+    else
+        (void)snprintf(born, sizeof born, "%s", birth);
+    out[0] = 0;
+    append_text(out, family.text, family.n, family.n < n);
+    for (int i = 1; i <= 2; i++) {
+        const struct component given = component_of(patient->name, n, i);
+        if (given.n && out[0])
+            append_words(out, strchr(out, ',') ? " " : ", ");
+        append_text(out, given.text, given.n, false);
+    }
+    append_part(out, "id ", patient->id);
+    append_part(out, "born ", born);
+}
+
 int plan_shown_treatment_plan(const struct plan *plan)
 {
     int best = plan->n_treatment_plans > 0 ? 0 : -1;

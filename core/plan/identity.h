@@ -13,6 +13,10 @@ enum { IDENTITY_MASK_SIZE = 48 };
  *   source  DICOM PS3.5 6.2.1 (person names) */
 void identity_mask(const struct plan_patient *patient, char out[IDENTITY_MASK_SIZE]);
 
+/* "ZWEIFEL, Quirin, id 77-30419, born 1961-04-12": whom the files name, in full, for who has asked. */
+enum { IDENTITY_WORDS_SIZE = 240 };
+void identity_words(const struct plan_patient *patient, char out[IDENTITY_WORDS_SIZE]);
+
 /* The treatment plan that is shown first: approved before without statement, before unapproved, before rejected; then
  * the newest by date and time, then the first. -1: the plan has none. */
 int plan_shown_treatment_plan(const struct plan *plan);

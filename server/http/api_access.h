@@ -14,6 +14,10 @@ bool api_access_allows(struct api *api, struct call *call, const struct api_rout
 bool api_access_to_plan(const struct api *api, const struct call *call, enum access_right right, const char *plan_id);
 bool api_access_to_found_plan(const struct api *api, const struct call *call, enum access_right right,
                               const struct fleet_plan *plan);
+/* Whether the caller may be given the names of the plan's patients; where nobody signs in that is the person at the
+ * server's own machine. False with problem. */
+NODISCARD bool api_may_name(const struct api *api, const struct call *call, const char *plan_id,
+                            struct problem *problem);
 /* Whether the caller may make a room on this plan. False with problem: not-found, as of a plan that is not there, or
  * forbidden to who sees the plan. */
 NODISCARD bool api_access_makes_room(const struct api *api, const struct call *call, const char *plan_id,

@@ -24,6 +24,15 @@ static bool may_read(const struct api *api, const struct call *call, struct prob
     return api_audit_has_place(api, problem);
 }
 
+bool api_may_name(const struct api *api, const struct call *call, const char *plan_id, struct problem *problem)
+{
+    if (!may_read(api, call, problem))
+        return false;
+    return api_access_to_plan(api, call, ACCESS_IDENTITY, plan_id) ||
+           problem_set(problem, PROBLEM_FORBIDDEN, "", "role",
+                       "this needs the right \"%s\", which you do not have here", access_rights[ACCESS_IDENTITY].word);
+}
+
 static void audit_identity(struct call *call)
 {
     struct net *net = ((struct api *)call->api)->net;

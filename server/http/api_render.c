@@ -140,8 +140,8 @@ static void render_when_ready(void *context, struct packet *answer, const struct
         goto refuse;
     audit_acceptances(api, call, request->plan_id, accepted);
     api_picture_request(api, call, request->plan_id, shown, acceptances, NULL, view, json_text(request->body, "format"),
-                        json_number(request->body, "quality", 92), json_flag(request->body, "annotations", false),
-                        NULL);
+                        json_number(request->body, "quality", 92),
+                        json_flag(request->body, "annotations", false) ? API_CAPTION_MASKED : API_CAPTION_NONE, NULL);
     goto done;
 refuse:
     call_answer_problem(call, &problem);

@@ -346,6 +346,31 @@ static void snapshot_when_ready(void *context, struct packet *answer, const stru
         api_room_snapshot(call->api, call);
 }
 
+static bool query_flag(const struct call *call, const char *name, bool *flag, struct problem *problem)
+{
+    const char *word = call_query(call, name);
+    char where[32];
+    *flag = word && strcmp(word, "true") == 0;
+    (void)snprintf(where, sizeof where, "/%s", name);
+    return !word || *flag || strcmp(word, "false") == 0 ||
+           problem_set(problem, PROBLEM_VALIDATION, where, "type", "%s is \"%.20s\", expected true or false", name,
+                       word);
+}
+
+/* False with problem: the call is wrong, or has no right to the patient's name. */
+static bool read_caption(const struct api *api, const struct call *call, const struct room *room,
+                         enum api_caption *caption, struct problem *problem)
+{
+    bool is_annotated, is_named;
+    if (!query_flag(call, "annotations", &is_annotated, problem) || !query_flag(call, "identity", &is_named, problem))
+        return false;
+    *caption = !is_annotated ? API_CAPTION_NONE : is_named ? API_CAPTION_NAMED : API_CAPTION_MASKED;
+    if (is_named && !is_annotated)
+        return problem_set(problem, PROBLEM_VALIDATION, "/identity", "annotations",
+                           "the patient is named in the caption: annotations has to be true");
+    return !is_named || api_may_name(api, call, room_plan_id(room), problem);
+}
+
 void api_room_snapshot(struct api *api, struct call *call)
 {
     struct problem problem;
@@ -359,11 +384,8 @@ void api_room_snapshot(struct api *api, struct call *call)
         call_answer_problem(call, &problem);
         return;
     }
-    const char *word = call_query(call, "annotations");
-    bool annotations = word && strcmp(word, "true") == 0;
-    if (word && !annotations && strcmp(word, "false") != 0) {
-        problem_set(&problem, PROBLEM_VALIDATION, "/annotations", "type",
-                    "annotations is \"%.20s\", expected true or false", word);
+    enum api_caption caption;
+    if (!read_caption(api, call, room, &caption, &problem)) {
         call_answer_problem(call, &problem);
         return;
     }
@@ -381,14 +403,14 @@ void api_room_snapshot(struct api *api, struct call *call)
     cJSON *view = api_view_parameter(call);
     if (!view)
         return;
-    if (!api_audit_export(api, call, "snapshot")) {
+    if (!api_audit_export(api, call, caption == API_CAPTION_NAMED ? "snapshot-named" : "snapshot")) {
         cJSON_Delete(view);
         return;
     }
     cJSON *shown = room_scene_for_view(room, view, &problem);
     if (shown) {
         api_picture_request(api, call, plan_id, shown, room_acceptances(room), &revision, view,
-                            call_query(call, "format"), quality, annotations, NULL);
+                            call_query(call, "format"), quality, caption, NULL);
     } else {
         problem_below(&problem, "/view");
         call_answer_problem(call, &problem);

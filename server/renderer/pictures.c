@@ -187,8 +187,10 @@ void pictures_start(struct pictures *pictures, const struct packet_render *rende
         link_send_problem(pictures->options.link, render->id, &problem);
         return;
     }
-    if (drawn.annotation)
+    if (drawn.annotation) {
         drawn.annotation->is_caption_apart = render->caption_apart;
+        drawn.annotation->is_named = render->named;
+    }
     request->is_caption_apart = render->annotations && render->caption_apart;
     request->scene_revision = scene_revision;
     request->snapshot = snapshot_ref(snapshot);

@@ -205,6 +205,18 @@ test('whom the plan is of is OK by the word of who has read it in this room', as
   assert.equal((await change(3, { state: 'ok', comment: '' })).status, 403); /* Ben has not read it */
 });
 
+test('a snapshot has the patient masked in its caption, and in full for who asks for it and may', async () => {
+  const [ann] = clients;
+  const snapshot = (query, headers = ann.headers) => fetch(`${api}/rooms/${room}/snapshot?annotations=true${query}`, { headers });
+  const [masked, named] = [await snapshot(''), await snapshot('&identity=true')];
+  const [a, b] = [masked, named].map(async (answer) => Buffer.from(await answer.arrayBuffer()));
+  assert.deepEqual([masked.status, named.status], [200, 200]);
+  assert.notDeepEqual(await a, await b);
+  for (const bytes of [await a, await b]) assertMasked('the texts of a snapshot', textsOf(bytes)); /* the name is in the pixels alone */
+  assert.equal((await (await fetch(`${api}/rooms/${room}/snapshot?identity=true`)).json()).pointer, '/identity');
+  assert.equal((await (await snapshot('&identity=yes')).json()).pointer, '/identity');
+});
+
 test('a server that others may reach tells nobody', async () => {
   for (const args of [[], ['--public-name', 'beamroom.example'], ['--listen', '0.0.0.0:0'], ['--trusted-proxy', '127.0.0.1']]) {
     const open = await startDaemon({ plans: [plans], args: ['--stub', '--open-to-everybody', ...args] });

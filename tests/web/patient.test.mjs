@@ -8,7 +8,7 @@ import { call, until } from '../api/daemon.mjs';
 import { putDose, putPlan, putStructs, putWhole } from '../api/made_dicom.mjs';
 import { Client } from '../api/ws_client.mjs';
 import { axe } from './axe.mjs';
-import { full, missing, shoot, startWorld } from './browser.mjs';
+import { bytesOf, full, missing, shoot, startWorld } from './browser.mjs';
 
 const quirin = { id: '77-30419', name: 'Zweifel^Quirin', birthDate: '19610412' };
 const other = { id: '88-50327', name: 'Morgen^Ottilie', birthDate: '19550723', study: '1.2.32', frame: '1.2.42' };
@@ -88,6 +88,23 @@ describe('whose plan it is', { skip: missing && `${missing} is not there` }, () 
     assert.equal((await read()).status, 403);
     wall.cut();
     await shows(page.locator('.patient-card'), 'No wall is in this room');
+  });
+
+  it('a snapshot has the name only when that is ticked, off each time', async () => {
+    const menu = page.getByRole('button', { name: 'Snapshot', exact: true });
+    const tick = page.getByRole('checkbox', { name: 'with the patient’s identity' });
+    const save = async () => {
+      const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('menuitem', { name: /Save/ }).click()]);
+      assert.ok(!/Quirin|Zweifel|30419/i.test(download.suggestedFilename()));
+      return bytesOf(download);
+    };
+    await menu.click();
+    await tick.check();
+    assert.deepEqual(await axe(page), []);
+    const named = await save();
+    await menu.click();
+    assert.equal(await tick.isChecked(), false);
+    assert.notDeepEqual(await save(), named);
   });
 
   it('of two plans the banner switches dose, beam and structure set together, in one step to undo', async () => {

@@ -87,10 +87,14 @@ export function makeApi(fetch, base = '/api/v1') {
       call('GET', `plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`, { signal }),
     surfaceUrl: (plan, region, query) => `${base}/plans/${id(plan)}/regions/${id(region)}/surface?${new URLSearchParams(query)}`,
     /** The annotated picture as a PNG. @returns {Promise<Blob>} */
-    snapshot: (room, view) =>
-      call('GET', `rooms/${id(room.id)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true`, {
-        isPicture: true,
-        more: ofMember(room.identity),
-      }),
+    snapshot: (room, view, isNamed = false) =>
+      call(
+        'GET',
+        `rooms/${id(room.id)}/snapshot?view=${id(JSON.stringify(view))}&format=png&annotations=true${isNamed ? '&identity=true' : ''}`,
+        {
+          isPicture: true,
+          more: ofMember(room.identity),
+        },
+      ),
   };
 }

@@ -56,10 +56,10 @@ export function printable(world, what, name) {
     });
 }
 
-/** The view as a picture with letters, scale and caption; the server records it. */
-export async function savePicture({ api, room, ui }, view, document) {
+/** The view as a picture with letters, scale and caption; the server records it. isNamed: with the patient's name, of who may read it. */
+export async function savePicture({ api, room, ui }, view, document, isNamed) {
   try {
-    saveBlob(`${room.planId.value}-${view.kind}.png`, await api.snapshot(room, document));
+    saveBlob(`${room.planId.value}-${view.kind}.png`, await api.snapshot(room, document, isNamed));
   } catch (problem) {
     ui.notify('err', say.noSnapshot({ reason: problem.message }), 'snapshot');
   }

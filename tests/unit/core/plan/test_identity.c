@@ -31,6 +31,38 @@ static void a_name_gives_its_initials(void **state)
     assert_mask("(Voss)^'Anna'", "", "A. V.");
 }
 
+static void assert_words(const char *name, const char *id, const char *birth, const char *expected)
+{
+    struct plan_patient patient = { 0 };
+    char found[IDENTITY_WORDS_SIZE];
+    snprintf(patient.name, sizeof patient.name, "%s", name);
+    snprintf(patient.id, sizeof patient.id, "%s", id);
+    snprintf(patient.birth_date, sizeof patient.birth_date, "%s", birth);
+    identity_words(&patient, found);
+    assert_string_equal(found, expected);
+}
+
+static void in_full_the_family_stands_first_in_capitals(void **state)
+{
+    char name[200], id[130];
+    (void)state;
+    assert_words("Voss^Anna^Maria^Dr.", "88-20417", "19610412", "VOSS, Anna Maria, id 88-20417, born 1961-04-12");
+    assert_words("\xc3\x9cnal^\xc3\xa9va=x", "1", "", "\xc3\x9cNAL, \xc3\xa9va, id 1"); /* Ünal^éva */
+    assert_words("Anna Voss", "", "1961", "Anna Voss, born 1961");
+    assert_words("^Anna", "7", "", "Anna, id 7");
+    assert_words("", "7", "", "id 7");
+    assert_words("", "", "", "");
+    memset(name, 'n', sizeof name - 1);
+    memset(id, '7', sizeof id - 1);
+    name[sizeof name - 1] = id[sizeof id - 1] = 0;
+    struct plan_patient longest = { .birth_date = "19610412" };
+    char found[IDENTITY_WORDS_SIZE];
+    memcpy(longest.name, name, sizeof longest.name);
+    memcpy(longest.id, id, sizeof longest.id);
+    identity_words(&longest, found); /* cut, and not beyond its end */
+    assert_true(strlen(found) < IDENTITY_WORDS_SIZE);
+}
+
 static void the_first_group_with_a_letter_counts(void **state)
 {
     (void)state;
@@ -115,6 +147,7 @@ int main(void)
         cmocka_unit_test(a_name_gives_its_initials),
         cmocka_unit_test(the_first_group_with_a_letter_counts),
         cmocka_unit_test(the_end_of_an_id_is_short_where_the_id_is),
+        cmocka_unit_test(in_full_the_family_stands_first_in_capitals),
         cmocka_unit_test(characters_that_are_not_seen_are_no_part_of_it),
         cmocka_unit_test(the_longest_mask_fits),
         cmocka_unit_test(an_approved_plan_is_shown_first_then_the_newest),

@@ -1,5 +1,6 @@
 // Snapshots, loaded when the menu of the camera button opens or a picture comes back: what the menu does, pictures shown again, those of another plan.
 import { html, nothing } from '../../../lib/lit-html.js';
+import { shownPatient } from '../../room/identity.js';
 import { icon } from '../../parts/icons.js';
 import { styled } from '../../parts/lazy.js';
 import { say } from './later_words.js';
@@ -19,11 +20,11 @@ function viewDocument(view) {
   return { ...view.document.value, size_px: [Math.round(width * factor), Math.round(height * factor)] };
 }
 
-async function save(world) {
+async function save(world, isNamed) {
   const view = world.room.view(world.ui.active.value);
   const document = viewDocument(view);
   try {
-    await (await import('../../room/exports.js')).savePicture(world, view, document);
+    await (await import('../../room/exports.js')).savePicture(world, view, document, isNamed);
   } catch {
     world.ui.notify('err', say.noAnswer, 'snapshot');
   }
@@ -56,14 +57,16 @@ export function menu(world) {
   const hasPicture = Boolean(room.view(ui.active.value).painted.value);
   const n = printout.entries.value.length;
   const act = (run) => (event) => {
+    const isNamed = event.currentTarget.closest('.snapshots').querySelector('input')?.checked ?? false; // off each time the menu opens
     event.currentTarget.closest('.anchor').querySelector('button').focus(); // the item goes
     ui.popover.value = '';
-    run(world);
+    run(world, isNamed);
   };
   return html`<div class="popover snapshots"><div class="menu" role="menu" aria-label=${say.snapshot} @keydown=${menuKeys}>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(save)}>${icon('image')}<span>${say.save}</span></button>
       <button role="menuitem" ?disabled=${!hasPicture} @click=${act(add)}>${icon('camera')}<span>${say.add}</span></button>
       <button role="menuitem" @click=${act(openPrintout)}>${icon('print')}<span>${say.report}</span><span class="tag">${n}</span></button></div>
+      ${room.seesIdentity.value && shownPatient(room.plan.value, room.scene.value) ? html`<label class="snapshot-named"><input type="checkbox"> ${say.withIdentity}</label>` : nothing}
       <p class="note">${say.about}</p></div>`;
 }
 

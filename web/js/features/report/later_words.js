@@ -6,6 +6,7 @@ export const say = sentences('report.later', {
   save: 'Save the active pane as PNG',
   add: 'Add it to the report to print',
   report: 'Report to print',
+  withIdentity: 'with the patient’s identity',
   about: 'With letters, scale and caption. Drop the PNG on this page to see it again as it was.',
   noAnswer: 'No snapshot: the server does not answer.',
   noSnapshot: 'No snapshot: {why}',
