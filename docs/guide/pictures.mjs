@@ -22,7 +22,7 @@ try {
       const cell = (text) => text.replaceAll('|', '\\|');
       const lines = rows.map(([key, what]) => `| ${cell(key)} | ${cell(what)} |`);
       const head =
-        '# Keys and mouse\n\nAs the page lists them under ?. Keys act in the pane that has the focus. Made by `make guide-pictures`.\n';
+        '# Keys and mouse\n\nAs the page lists them under ?, where the first ones can be changed. Keys act on the pane with the light header, from anywhere but text fields,\nlists of choice and dialogs. Made by `make guide-pictures`.\n';
       writeFileSync(join(folder, 'keys.md'), `${head}\n| key | what it does |\n|---|---|\n${lines.join('\n')}\n`);
     },
   });

@@ -57,6 +57,8 @@ describe('the room page for screen readers and keyboards', { skip: missing && `$
   once('every function of a row is reached by keys', async () => {
     const room = await world.newRoom();
     const page = await world.newPage(`rooms/${room}`, sizes.wide);
+    await page.evaluate(() => localStorage.setItem('beamroom keys', JSON.stringify({ areSinglesOff: true }))); // then letters find rows
+    await page.reload();
     await full(page);
     const tree = page.locator('[role="tree"]');
     const current = () => page.evaluate(() => document.activeElement.getAttribute('aria-activedescendant'));

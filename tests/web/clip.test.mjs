@@ -153,7 +153,7 @@ describe('clip planes and oblique planes', { skip: missing && `${missing} is not
     await page.keyboard.press('k');
     await comes((now) => [now.clip.axial_low.cap, now.clip.sagittal_high.cap].join(), 'false,false');
     await page.locator('[aria-label="Help"]').click();
-    assert.match(await page.locator('.help dl').textContent(), /All clip planes off.*Caps of the clip planes/s);
+    assert.match(await page.locator('.help-keys').textContent(), /All clip planes off.*Caps of the clip planes/s);
     await page.keyboard.press('Escape');
   });
 

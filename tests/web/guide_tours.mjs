@@ -430,9 +430,10 @@ export const tours = {
     await page.locator('.help dl').waitFor();
     await look(page);
     keys(
-      await page.locator('.help dl').evaluate((list) => {
+      await page.locator('.help').evaluate((list) => {
         const text = (name) => [...list.querySelectorAll(name)].map((element) => element.textContent.trim());
-        return text('dt').map((key, at) => [key, text('dd')[at]]);
+        const commands = text('.help-keys li > span').map((what, at) => [text('.help-key')[at].split(/\s+/).join(', '), what]);
+        return [...commands, ...text('dt').map((key, at) => [key, text('dd')[at]])];
       }),
     );
   },

@@ -235,7 +235,7 @@ describe('measures on the page', { skip: missing && `${missing} is not there` },
     assert.equal(await page.locator('[aria-label="Measure"]').getAttribute('aria-pressed'), 'true');
     assert.equal(await page.locator('[data-measure="draft"]').count(), 0);
     await page.locator('.help, [aria-label="Help"]').first().click();
-    assert.match(await page.locator('.help dl').textContent(), /Measure in a slice/);
+    assert.match(await page.locator('.help-keys').textContent(), /Measure in a slice/);
     await page.context().close();
   });
 

@@ -27,7 +27,7 @@ import { tracks } from './tracks/feature.js';
  * @property {boolean} [isSoon] blocks are loaded before the first click
  * @property {(world) => unknown} [aboveBlock] in Selection above the block of any kind
  * @property {Tab[]} [tabs] of the inspector
- * @property {Record<string, (world, at: number, event: KeyboardEvent) => void>} [keys] of the pane that has the focus, by letter
+ * @property {Record<string, (world, at: number, event: KeyboardEvent) => void>} [keys] commands of the active pane, by their name in room/commands.js
  * @property {(world, event: KeyboardEvent, at: number) => (() => void)|null} [key] what another key does there
  * @property {(world) => unknown} [bar] above the panes
  * @property {{has: (plan) => boolean, draw: (world) => unknown}} [drawer] beside the panes

@@ -29,8 +29,8 @@ export function menu({ room, ui }, actions, isDisabled) {
       @click=${act((at) => cameras.lookFrom(name, at))}>${letter}</button>`,
     )}</div>
     <div class="view-acts">
-      <button ?disabled=${isDisabled} title=${say.fitIs} @click=${act((at) => cameras.fit(at))}>${say.fit}</button>
-      <button ?disabled=${isDisabled} title=${say.resetIs} @click=${act((at) => cameras.reset(at))}>${say.reset}</button>
+      <button ?disabled=${isDisabled} title=${ui.keys.tip(say.fitIs, 'fit')} @click=${act((at) => cameras.fit(at))}>${say.fit}</button>
+      <button ?disabled=${isDisabled} title=${ui.keys.tip(say.resetIs, 'reset')} @click=${act((at) => cameras.reset(at))}>${say.reset}</button>
       <button ?disabled=${isDisabled} title=${say.rollLeftIs} aria-label=${say.rollLeft} @click=${act((at) => cameras.roll(5, at))}>${icon('rollLeft')}</button>
       <button ?disabled=${isDisabled} title=${say.rollRightIs} aria-label=${say.rollRight} @click=${act((at) => cameras.roll(-5, at))}>${icon('rollRight')}</button></div>
     ${segment(

@@ -4,9 +4,9 @@ import { sentences } from '../parts/sentences.js';
 export const say = sentences('pane.later', {
   camera: 'Camera',
   lookFrom: 'Look from',
-  fitIs: 'Fit to the selected region or measure (G)',
+  fitIs: 'Fit to the selected region or measure',
   fit: 'Fit',
-  resetIs: 'Reset this view (R)',
+  resetIs: 'Reset this view',
   reset: 'Reset',
   rollLeftIs: 'Roll to the left by 5° (,)',
   rollLeft: 'Roll to the left',

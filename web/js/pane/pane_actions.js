@@ -3,6 +3,7 @@ import { beamShown } from '../room/beam_line.js';
 import { features } from '../features/index.js';
 import { layouts } from '../room/layout.js';
 import { originAt, planeOfView, positionOf, stepAcross } from '../room/obliques.js';
+import { isSingle } from '../room/commands.js';
 import { crosshair, crosshairPatch, shownImage } from '../room/plan.js';
 import { Pointed } from '../room/pointed.js';
 import { isInSpace, isTilted } from '../room/kinds.js';
@@ -244,16 +245,23 @@ export class PaneActions {
 
   // ---- keys of the focused pane -------------------------------------------------------------------------------------------
 
-  /** @param {KeyboardEvent} event @returns {boolean} whether the key was used */
-  key(event) {
-    if (event.altKey || event.metaKey) return false;
+  /** @param {KeyboardEvent} event @param {boolean} isHere the focus is in the pane, or on nothing that has keys of its own @returns {boolean} whether the key was used */
+  key(event, isHere = true) {
     const at = event.timeStamp;
-    const act =
-      this.tools.key(event, at) ?? this.#otherKey(event, at) ?? (event.ctrlKey ? this.#panKey(event.key, at) : this.#keyAction(event, at));
+    const { areSinglesOff } = this.#ui.keys;
+    const isFixed = !(event.altKey || event.metaKey) && (isHere || isSingle(event.key)) && !(areSinglesOff.value && isSingle(event.key));
+    const act = (isFixed ? this.#fixedKey(event, at) : null) ?? this.#command(this.#ui.keys.commandOf(event), event, isHere);
     if (!act || !this.#room.canChange.value) return false;
     this.pointed.hide();
     act();
     return true;
+  }
+
+  /** What keys do that nobody changes: arrows and pages, digits, those of a tool. */
+  #fixedKey(event, at) {
+    return (
+      this.tools.key(event, at) ?? this.#otherKey(event, at) ?? (event.ctrlKey ? this.#panKey(event.key, at) : this.#placedKey(event, at))
+    );
   }
 
   #panKey(key, at) {
@@ -261,22 +269,20 @@ export class PaneActions {
     return dx === undefined ? null : () => this.cameras.panStep(dx, dy, at);
   }
 
-  #keyAction(event, at) {
-    const { key, code, shiftKey } = event;
+  #placedKey({ key, code, shiftKey }, at) {
     const layout = shiftKey && layouts[/^Digit([1-7])$/.exec(code)?.[1] - 1];
     if (layout && (layout.id !== 'beam' || beamShown(this.#room.plan.value, this.#room.scene.value)))
       return () => this.#ui.setLayout(layout.id);
     const look = /^Numpad[137]$/.test(code) && this.is3d ? looks[code.at(-1)][shiftKey ? 1 : 0] : null;
     if (look) return () => this.cameras.lookFrom(look, at);
-    if (/^[1-5]$/.test(key) && code.startsWith('Digit') && this.window.image) return () => this.window.setPreset(key, at);
-    const arrows = this.is3d
+    const preset = shiftKey ? '' : /^Digit([1-5])$/.exec(code)?.[1];
+    if (preset && this.window.image) return () => this.window.setPreset(preset, at);
+    const own = this.is3d
       ? {
           ArrowLeft: () => this.cameras.orbit(keyDegrees, 0, at),
           ArrowRight: () => this.cameras.orbit(-keyDegrees, 0, at),
           ArrowUp: () => this.cameras.orbit(0, -keyDegrees, at),
           ArrowDown: () => this.cameras.orbit(0, keyDegrees, at),
-          ',': () => this.cameras.roll(keyDegrees, at),
-          '.': () => this.cameras.roll(-keyDegrees, at),
         }
       : {
           ArrowUp: () => this.stepSlice(1, at),
@@ -286,27 +292,28 @@ export class PaneActions {
           PageUp: () => this.stepSlice(10, at),
           PageDown: () => this.stepSlice(-10, at),
         };
-    const common = {
-      '+': () => this.cameras.zoom(keyZoom, null, at),
-      '=': () => this.cameras.zoom(keyZoom, null, at),
-      '-': () => this.cameras.zoom(1 / keyZoom, null, at),
-      r: () => this.reset(at),
-      ' ': () => this.reset(at),
-      g: () => this.cameras.fit(at),
-      f: () => this.#room.following.toggle(),
-      v: () => this.#ui.toggleDrawer(),
-      w: () => this.#toggleTool('window'),
-      m: () => this.#toggleTool('measure'),
-      z: () => this.#toggleTool('zoom'),
-      Enter: () => this.#ui.maximise(this.#number),
-    };
-    const name = key.length === 1 ? key.toLowerCase() : key;
-    return arrows[key] ?? common[name] ?? this.#featureKey(name, event, at);
+    return own[key] ?? (key === 'Enter' ? () => this.#ui.maximise(this.#number) : null);
   }
 
-  #featureKey(name, event, at) {
-    const act = features.find(({ keys }) => keys?.[name])?.keys[name];
-    return act ? () => act(this.#world, at, event) : null;
+  /** @param {string} command of room/commands.js */
+  #command(command, event, isHere) {
+    if (!command || (!isHere && event.key === ' ')) return null;
+    const at = event.timeStamp;
+    const inSpace = { rollLeft: () => this.cameras.roll(keyDegrees, at), rollRight: () => this.cameras.roll(-keyDegrees, at) };
+    const own = {
+      ...(this.is3d && inSpace),
+      zoomIn: () => this.cameras.zoom(keyZoom, null, at),
+      zoomOut: () => this.cameras.zoom(1 / keyZoom, null, at),
+      reset: () => this.reset(at),
+      fit: () => this.cameras.fit(at),
+      follow: () => this.#room.following.toggle(),
+      drawer: () => this.#ui.toggleDrawer(),
+      window: () => this.#toggleTool('window'),
+      measure: () => this.#toggleTool('measure'),
+      zoom: () => this.#toggleTool('zoom'),
+    };
+    const act = features.find(({ keys }) => keys?.[command])?.keys[command];
+    return own[command] ?? (act ? () => act(this.#world, at, event) : null);
   }
 
   #otherKey(event, at) {

@@ -51,3 +51,6 @@ export function segment(label, options, chosen, isDisabled, choose) {
 export function checkbox(name, isOn, isDisabled, change, about) {
   return html`<label title=${about ?? nothing}><input type="checkbox" .checked=${live(isOn)} ?disabled=${isDisabled} @change=${(event) => change(event.target.checked, event)}>${name}</label>`;
 }
+
+/** A key as a mark behind words; nothing for a command without a key. @param {string} text */
+export const keyMark = (text) => (text ? html` <kbd>${text}</kbd>` : nothing);

@@ -61,7 +61,7 @@ export class Following {
     });
     this.hasLostControl = false;
     this.#act(false);
-    notify('ok', say.onYourOwn, 'following', { word: say.return, keys: say.returnKeys, act: () => this.return() });
+    notify('ok', say.onYourOwn, 'following', { word: say.return, keys: (hotkeys) => hotkeys.orEscape('follow'), act: () => this.return() });
     return true;
   }
 

@@ -1,6 +1,7 @@
 // State of this page alone: tool, layout, selection, unfolded panels. Nothing of it is sent; the browser keeps the layout.
 import { batch, computed, effect, signal } from '../../lib/signals-core.js';
 import { arrange } from './arrangement.js';
+import { Hotkeys } from './hotkeys.js';
 import { Layout } from './layout.js';
 
 const toastMs = 6000;
@@ -13,6 +14,7 @@ export class UiState {
   constructor(clock, storage = null) {
     this.#clock = clock;
     this.panes = new Layout(storage);
+    this.keys = new Hotkeys(storage);
     this.tool = signal('crosshair'); // crosshair | window | pan | zoom | measure | beam
     this.measureKind = signal('distance'); // what the tool measures
     this.draft = signal(null); // the measure that is being drawn: {view, kind, points, at: where the pointer is}
@@ -68,7 +70,7 @@ export class UiState {
 
   /**
    * @param {'ok'|'warn'|'err'} kind @param {string} topic a newer message replaces an older one on the same topic
-   * @param {{word: string, keys?: string, act: () => void}} [action] a button in the message @param {number} [ms] how long it is shown
+   * @param {{word: string, keys?: (hotkeys: Hotkeys) => string, act: () => void}} [action] a button in the message @param {number} [ms] how long it is shown
    */
   notify = (kind, text, topic = text, action = null, ms = toastMs) => {
     const toast = { id: this.#nextToast++, kind, text, topic, action };

@@ -210,29 +210,13 @@ export class Undo {
   }
 }
 
-/**
- * Makes every press of a pointer one step, and Ctrl+Z, Ctrl+Shift+Z and Ctrl+Y undo and redo, but in a text field its own.
- * @param {EventTarget} target the window @param {Undo} undo @returns {() => void} stops it
- */
+/** Makes every press of a pointer one step. @param {EventTarget} target the window @param {Undo} undo @returns {() => void} stops it */
 export function listenUndo(target, undo) {
   const abort = new AbortController();
   const on = (type, listener, capture) => target.addEventListener(type, listener, { signal: abort.signal, capture });
   on('pointerdown', () => undo.press(), true);
   on('pointerup', () => undo.release()); // after the listeners of what was pressed, whose last change belongs to the drag
   on('pointercancel', () => undo.release());
-  on('keydown', (event) => {
-    if (
-      !(event.ctrlKey || event.metaKey) ||
-      event.altKey ||
-      event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea')
-    )
-      return;
-    const key = event.key.toLowerCase();
-    if (key === 'y' || (key === 'z' && event.shiftKey)) undo.redo();
-    else if (key === 'z') undo.undo();
-    else return;
-    event.preventDefault();
-  });
   return () => abort.abort();
 }
 

@@ -82,5 +82,5 @@ export function banner(world) {
           : nothing
       }</span>`
     }
-    ${world.session.value?.who() ?? nothing}<button class="icon-button" title=${say.keysTip} aria-label=${say.help} aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
+    ${world.session.value?.who() ?? nothing}<button class="icon-button" title=${ui.keys.tip(say.keysTip, 'help')} aria-label=${say.help} aria-expanded=${ui.popover.value === 'help'} @click=${() => ui.toggle('help')}>${icon('help')}</button>`;
 }

@@ -1,6 +1,7 @@
 // The room chip: who presents, whether this member follows or is on their own, and what can be done about it.
 import { html, nothing } from '../../lib/lit-html.js';
 import { effect, untracked } from '../../lib/signals-core.js';
+import { keyMark } from '../parts/fields.js';
 import { dayTime } from '../parts/format.js';
 import { icon } from '../parts/icons.js';
 import { known, later } from '../parts/lazy.js';
@@ -20,7 +21,12 @@ function words({ following, control, recording }) {
     case 'own':
       return {
         text: replay ?? say.onMyOwn,
-        act: { word: say.return, keys: 'F', about: name ? say.returnTo({ name }) : say.returnToShared, do: () => following.return() },
+        act: {
+          word: say.return,
+          command: 'follow',
+          about: name ? say.returnTo({ name }) : say.returnToShared,
+          do: () => following.return(),
+        },
       };
     case 'away':
       return { text: say.away({ name }) };
@@ -78,6 +84,6 @@ export function roomChip(world, place) {
     <button class="chip-main" aria-haspopup="dialog" aria-expanded=${isOpen} title=${say.whoIsHere} @click=${() => ui.toggle(name)}>${icon(marks[room.following.standing.value], 12)}
       ${room.recording.running.value ? html`<b class="chip-recorded">${say.recorded}</b>` : nothing}
       <span class="chip-words"><b>${text}</b>${more ? html` <span class="dim">${more}</span>` : nothing}</span></button>
-    ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.keys ? html` <kbd>${act.keys}</kbd>` : nothing}</button>` : nothing}
+    ${act ? html`<button class="chip-act" title=${act.about} @click=${act.do}>${act.word}${act.command ? keyMark(ui.keys.text(act.command)) : nothing}</button>` : nothing}
     ${isOpen ? html`<div class="popover room-members" role="dialog" aria-label=${say.membersOf}>${roster.draw((loaded) => loaded.roster(world))}</div>` : nothing}</span>`;
 }

@@ -18,6 +18,7 @@ import { later } from '../parts/lazy.js';
 import { mount } from '../parts/mount.js';
 import { Pane } from '../pane/pane.js';
 import { giveOblique } from '../pane/pane_kind.js';
+import { listenKeys } from './page_keys.js';
 import { paneSwitch } from './pane_switch.js';
 import { offerName, requestLines } from './room_chip.js';
 import { savedLine } from './saved.js';
@@ -125,7 +126,8 @@ export function roomPage(
     ...features.flatMap((feature) => feature.start?.(world) ?? []),
   );
   stops.push(
-    listenKeys(ui, room),
+    listenKeys(globalThis, world, () => Boolean(document.querySelector('[aria-modal="true"], dialog[open]'))),
+    listenPresses(ui),
     listenUndo(globalThis, undo),
     moveFocus(host, ui),
     watchEnd(host, room, after, plan),
@@ -260,19 +262,11 @@ function moveFocus(host, ui) {
   });
 }
 
-function listenKeys(ui, room) {
-  const onKey = (event) => {
-    const isTyping = event.target.matches?.('input:not([type=range]):not([type=checkbox]), textarea');
-    if (event.key === 'Escape') ui.escape(() => room.pointers.stop() || room.following.return());
-    else if (event.key === '?' && !isTyping) ui.toggle('help');
-  };
+/** A press beside an open popover closes it. */
+function listenPresses(ui) {
   const onPress = (event) => {
     if (ui.popover.value && !dialogs.includes(ui.popover.value) && !event.target.closest('.anchor')) ui.popover.value = '';
   };
-  addEventListener('keydown', onKey);
   addEventListener('pointerdown', onPress);
-  return () => {
-    removeEventListener('keydown', onKey);
-    removeEventListener('pointerdown', onPress);
-  };
+  return () => removeEventListener('pointerdown', onPress);
 }

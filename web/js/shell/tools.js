@@ -14,10 +14,10 @@ import { say } from './words.js';
 
 const tools = [
   ['crosshair', say.crosshair, say.crosshairIs],
-  ['window', say.window, say.windowIs],
+  ['window', say.window, say.windowIs, 'window'],
   ['pan', say.pan, say.panIs],
-  ['zoom', say.zoom, say.zoomIs],
-  ['measure', say.measure, say.measureIs],
+  ['zoom', say.zoom, say.zoomIs, 'zoom'],
+  ['measure', say.measure, say.measureIs, 'measure'],
 ];
 
 /** With the tool comes the choice of what is measured. */
@@ -28,8 +28,8 @@ function choose(ui, id) {
 
 const tool = (
   ui,
-  [id, name, title],
-) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${title} aria-pressed=${ui.tool.value === id}
+  [id, name, title, command],
+) => html`<button class=${classMap({ tool: true, on: ui.tool.value === id })} title=${command ? ui.keys.tip(title, command) : title} aria-pressed=${ui.tool.value === id}
   aria-label=${name} tabindex=${id === 'crosshair' ? 0 : -1} @click=${() => choose(ui, id)}>${icon(id)}<span class="word">${name}</span></button>`;
 
 const stripOf = (place, ...args) => features.map(({ strip }) => strip?.[place]?.(...args));
@@ -48,7 +48,7 @@ function strip(world) {
     ${layoutButtons(world)}${panesMenu(world)}
     <i class="rule"></i>
     ${stripOf('show', world)}<button class=${classMap({ tool: true, plain: true, on: isPicture })} tabindex="-1" title=${say.pictureIs} aria-label=${say.picture} aria-pressed=${isPicture} @click=${() => ui.choose('view')}>${icon('cube')}</button>
-    ${hasDrawer(world.room.plan.value) ? html`<button class=${classMap({ tool: true, plain: true, on: ui.isDrawerOpen.value })} tabindex="-1" title=${say.plotsIs} aria-label=${say.plots} aria-pressed=${ui.isDrawerOpen.value} @click=${() => ui.toggleDrawer()}>${icon('drawer')}</button>` : nothing}
+    ${hasDrawer(world.room.plan.value) ? html`<button class=${classMap({ tool: true, plain: true, on: ui.isDrawerOpen.value })} tabindex="-1" title=${ui.keys.tip(say.plotsIs, 'drawer')} aria-label=${say.plots} aria-pressed=${ui.isDrawerOpen.value} @click=${() => ui.toggleDrawer()}>${icon('drawer')}</button>` : nothing}
     <span class="grow"></span>
     ${stripOf('meet', world)}${roomChip(world, 'strip')}
     ${stripEnd(world)}
@@ -61,7 +61,7 @@ export function stripEnd(world) {
   const active = panes()[ui.active.value - 1];
   return html`
     ${undoButtons(world)}
-    <button class="tool plain" tabindex="-1" title=${say.resetIs} aria-label=${say.reset} ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
+    <button class="tool plain" tabindex="-1" title=${ui.keys.tip(say.resetIs, 'reset')} aria-label=${say.reset} ?disabled=${!room.canChange.value} @click=${(event) => active.actions.reset(event.timeStamp)}>${icon('reset')}</button>
     ${stripOf('end', world)}`;
 }
 

@@ -1,4 +1,4 @@
-// Keys in the tree: up, down, Home, End, letters; left and right fold; Space toggles the eye, Enter selects, Shift with left or right changes the opacity.
+// Keys in the tree: up, down, Home, End, while single keys are off letters too; left and right fold; Space toggles the eye, Enter selects, Shift with left or right changes the opacity.
 
 const typingMs = 700; // letters typed within this time belong together
 let typed = { text: '', at: 0 };
@@ -37,7 +37,7 @@ export function treeKeys(event, ui) {
     Enter: () => (isSection ? send('row-toggle', event) : item?.click()),
   }[key];
   if (act) act();
-  else if (key.length === 1 && key !== '?' && !event.ctrlKey) find(key, timeStamp, items, at, go);
+  else if (ui.keys.areSinglesOff.value && key.length === 1 && !event.ctrlKey) find(key, timeStamp, items, at, go);
   else return;
   event.preventDefault();
   event.stopPropagation();

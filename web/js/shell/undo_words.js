@@ -69,15 +69,15 @@ function valueText(change, wanted, room) {
 }
 
 const ways = {
-  undo: { keys: 'Ctrl+Z', wanted: 'before', none: say.undoNone, step: say.undo, stepTo: say.undoTo },
-  redo: { keys: 'Ctrl+Shift+Z', wanted: 'after', none: say.redoNone, step: say.redo, stepTo: say.redoTo },
+  undo: { wanted: 'before', none: say.undoNone, step: say.undo, stepTo: say.undoTo },
+  redo: { wanted: 'after', none: say.redoNone, step: say.redo, stepTo: say.redoTo },
 };
 
-/** "Undo: opacity of brain, to 100 % (Ctrl+Z)" @param {'undo'|'redo'} way */
+/** "Undo: opacity of brain, to 100 %" @param {'undo'|'redo'} way */
 export function stepTitle(way, changes, room) {
-  const { keys, wanted, none, step, stepTo } = ways[way];
-  if (!changes) return none({ keys });
+  const { wanted, none, step, stepTo } = ways[way];
+  if (!changes) return none;
   const value = changes.length === 1 ? valueText(changes[0], wanted, room) : '';
   const name = stepName(changes, room);
-  return value ? stepTo({ step: name, value, keys }) : step({ step: name, keys });
+  return value ? stepTo({ step: name, value }) : step({ step: name });
 }

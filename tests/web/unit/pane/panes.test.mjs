@@ -93,7 +93,7 @@ test('an act on several views is one step, and one with the same act just before
   zoomTo(room, 80); // the wheel is turned on
   wait(joinMs + 1);
   zoomTo(room, 70);
-  assert.equal(stepTitle('undo', undo.next.value, room), 'Undo: camera of axial, sagittal (Ctrl+Z)');
+  assert.equal(stepTitle('undo', undo.next.value, room), 'Undo: camera of axial, sagittal');
   undo.undo();
   assert.deepEqual(heights(room), [80, 80]);
   undo.undo();

@@ -17,7 +17,7 @@ export function draftBar(world) {
   const isComparing = isComparingIn(room);
   const compare = (event) => {
     if (toggleCompare(room, { view: ui.active.value, at: event.timeStamp })) ui.choose('beam', '');
-    else ui.notify('ok', say.youFollow, 'beam');
+    else ui.notify('ok', ui.keys.tip(say.youFollow, 'follow'), 'beam');
   };
   const moved = draftWords(plan, withDraft(scene));
   return html`<div class="beam-bars"><div class="beam-bar" role="group" aria-label=${say.draftBeam}>${icon('warning')}<p><span role="status"><b>${say.draftBeamIs}</b> ${draftBelongs(plan, scene)}</span> <span class="beam-moved">${isComparing ? say.comparing({ planned: html`<b>${say.plannedShown}</b>`, moved }) : moved}</span></p>

@@ -30,7 +30,7 @@ export function beamBlock(world, isDisabled) {
   const why = error || (facts ? '' : waitReason(room));
   return html`<section class="block beam-block"><h3>${icon('target')} <span>${beam ? say.beamNamed({ beam: beamName(beam) }) : say.draftBeam}</span>${isChosen && plan.beams.length > 1 ? html` <span class="dim">${say.chosen}</span>` : nothing}</h3>
       ${geometry(world, beam, isDraft, facts, isOld)}${why ? html`<p class="note why" role="status">${icon('warning', 12)} ${why}</p>` : nothing}
-      <div class="buttons"><button title=${say.eyeIs} @click=${() => eyeOf(world, beam, isChosen)}>${say.eye}</button>
+      <div class="buttons"><button title=${world.ui.keys.tip(say.eyeIs, 'beamEye')} @click=${() => eyeOf(world, beam, isChosen)}>${say.eye}</button>
         ${isChosen ? nothing : html`<button title=${say.chooseIs} ?disabled=${isDisabled} @click=${(event) => choose(world, beam.id, event)}>${say.choose}</button>`}
         ${
           !isChosen

@@ -326,5 +326,9 @@ export function applyPreset({ room, ui, undo }, id, at) {
       if (Object.keys(view).length) changeView(room, number, view, at);
     }),
   );
-  ui.notify('ok', say.changed({ name, changes: words.join(', ') }), 'preset', { word: say.undo, keys: 'Ctrl+Z', act: () => undo.undo() });
+  ui.notify('ok', say.changed({ name, changes: words.join(', ') }), 'preset', {
+    word: say.undo,
+    keys: (hotkeys) => hotkeys.text('undo'),
+    act: () => undo.undo(),
+  });
 }

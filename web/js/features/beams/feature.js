@@ -38,7 +38,7 @@ export const beams = {
   ],
   kinds: { beam: 'beams', kept: 'beams', preset: 'beams', curve: 'beams' },
   blocks: editing,
-  keys: { b: ({ room, ui }) => toggleBeamEye(room, ui) },
+  keys: { beamEye: ({ room, ui }) => toggleBeamEye(room, ui) },
   key: beamKey,
   bar: (world) => (editing.loaded.value || world.room.scene.value?.beam?.draft.enabled ? known(editing)?.draftBar(world) : null),
   strip: { mode: (world) => ofBeams(world.room)?.moveTool(world) },

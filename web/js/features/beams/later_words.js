@@ -4,7 +4,7 @@ import { sentences } from '../../parts/sentences.js';
 export const say = sentences('beams.later', {
   samePoint: 'Entry and target would be the same point.',
   fullOfKept: 'There are {n} kept drafts already: delete one first.',
-  youFollow: 'You follow the presenter. Look for yourself (F) to compare.',
+  youFollow: 'You follow the presenter. Look for yourself to compare.',
   draftBeam: 'Draft beam',
   draftBeamIs: 'Draft beam:',
   comparing: '{planned}, draft: {moved}',
@@ -32,7 +32,7 @@ export const say = sentences('beams.later', {
   draftNew: 'Draft a new position',
   beamNamed: 'Beam {beam}',
   chosen: 'chosen',
-  eyeIs: 'Look along the beam (B)',
+  eyeIs: 'Look along the beam',
   eye: "Beam's eye",
   chooseIs: "The beam's-eye view, the beam slice and the read-outs are of the chosen beam",
   choose: 'Choose',

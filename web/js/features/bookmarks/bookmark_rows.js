@@ -47,7 +47,7 @@ function told(world, opened, isQuiet = false) {
   else if (!world.room.following.isPresenting.value && !isQuiet)
     world.ui.notify('ok', say.openedOwn({ name: opened.name }), 'saved', {
       word: say.return,
-      keys: say.escOrF,
+      keys: (hotkeys) => hotkeys.orEscape('follow'),
       act: () => world.room.following.return(),
     });
 }

@@ -17,7 +17,6 @@ export const say = sentences('bookmarks.later', {
   lost: '{n} {n|thing|things} of it cannot be shown: {detail}, ….',
   all: 'All',
   return: 'Return',
-  escOrF: 'Esc or F',
   wasDeleted: 'This saved view was deleted.',
   saveView: 'Save this view',
   nameOfView: 'Name of the view',

@@ -9,5 +9,5 @@ export const clip = {
   kinds: { clip: 'clip' },
   blocks: later(() => import('./later_blocks.js'), 'js/features/clip/clip.css'),
   isSoon: true,
-  keys: { c: ({ room, ui }, at) => toggleClips(room, ui, at), k: ({ room, ui }, at) => toggleCaps(room, ui, at) },
+  keys: { clips: ({ room, ui }, at) => toggleClips(room, ui, at), caps: ({ room, ui }, at) => toggleCaps(room, ui, at) },
 };

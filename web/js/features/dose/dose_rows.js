@@ -47,7 +47,7 @@ export function doseRows(world) {
     ${controlRow(world, 'reference', html`<span class="dose-word">100 %</span>${referenceSelect(world, { tabindex: -1 })}`, say.hundredIs)}
     ${isWeighted(scene.dose.quantity) || dependsOnBlood(dose, scene.dose.quantity) ? controlRow(world, 'tissue', html`<span class="dose-word">${say.weights}</span>${tissueSelect(world, { tabindex: -1 })}`, say.weightsOf) : nothing}
     ${levelRows(world)}${levelActions(world)}
-    ${switchRow(world, 'lines', say.lines, 'I')}${washRow(world)}${switchRow(world, 'surfaces', say.surfaces, '')}`;
+    ${switchRow(world, 'lines', say.lines)}${washRow(world)}${switchRow(world, 'surfaces', say.surfaces)}`;
 }
 
 /** The doses, by their treatment plans. Those of other patients stand elsewhere. */
@@ -138,12 +138,12 @@ function controlRow({ ui }, id, content, label) {
     }} @row-toggle=${enter}>${content}</li>`;
 }
 
-const switchWords = (visible, key) => {
+const switchWords = (ui, visible, id) => {
   const words = visible ? say.hide : say.showOne;
-  return key ? say.keyed({ words, key }) : words;
+  return id === 'surfaces' ? words : ui.keys.tip(words, id);
 };
 
-function switchRow(world, id, words, key) {
+function switchRow(world, id, words) {
   const { room, ui } = world;
   const { visible } = room.scene.value.dose[id];
   const toggle = (event) => room.patchScene({ dose: { [id]: { visible: !visible } } }, how(ui, event));
@@ -153,12 +153,12 @@ function switchRow(world, id, words, key) {
       kind: 'dosing',
       id,
       words: [words, id === 'surfaces' ? say.in3d : ''],
-      title: key ? say.keyed({ words, key }) : words,
+      title: id === 'surfaces' ? words : ui.keys.tip(words, id),
       isOn: visible,
       toggle,
     },
     html`
-    ${eye(visible, words, switchWords(visible, key), !room.canChange.value, toggle)}${name(words)} <span class="tail">${id === 'surfaces' ? say.in3d : ''}</span>`,
+    ${eye(visible, words, switchWords(ui, visible, id), !room.canChange.value, toggle)}${name(words)} <span class="tail">${id === 'surfaces' ? say.in3d : ''}</span>`,
   );
 }
 
@@ -171,9 +171,9 @@ function washRow(world) {
   const words = (wash.style === 'smooth' ? say.washSmooth : say.washBands)({ percent: number(wash.below_percent) });
   return treeRow(
     world,
-    { kind: 'dosing', id: 'wash', words: [say.wash], more: [words], title: say.keyed({ words, key: 'D' }), isOn: wash.visible, toggle },
+    { kind: 'dosing', id: 'wash', words: [say.wash], more: [words], title: ui.keys.tip(words, 'wash'), isOn: wash.visible, toggle },
     html`
-    ${eye(wash.visible, say.wash, switchWords(wash.visible, 'D'), isDisabled, toggle)}${name(say.wash)}
+    ${eye(wash.visible, say.wash, switchWords(ui, wash.visible, 'wash'), isDisabled, toggle)}${name(say.wash)}
     <select class="dose-style" aria-label=${say.washStyle} tabindex="-1" ?disabled=${isDisabled} @click=${still} @change=${(event) => change({ style: event.target.value }, event)}>
       ${[
         ['bands', say.bands],

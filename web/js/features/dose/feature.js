@@ -71,7 +71,7 @@ export const dose = {
   blocks: later(() => import('./later_blocks.js'), 'js/features/dose/dose.css'),
   isSoon: true,
   tabs: [{ id: 'dvh', name: say.dvh, inSheet: hasCharts, draw: ({ charts }) => charts.draw('sheet') }],
-  keys: { d: toggle('wash'), i: toggle('lines'), q: withDose(pinHere) },
+  keys: { wash: toggle('wash'), lines: toggle('lines'), pin: withDose(pinHere) },
   drawer: { has: hasCharts, draw: ({ charts }) => charts.draw('drawer') },
   strip: {
     show: (world, size) => doseTools(world, (part, at) => ofDose(world.room)?.toggleDose(world.room, world.ui, part, at), size),
@@ -81,7 +81,7 @@ export const dose = {
   planParts: ({ room, charts }) => (room.plan.value.doses.length ? charts.draw('limits') : nothing),
   probeTool: (world) =>
     ofDose(world.room)
-      ? html`<button class="icon-button" title=${say.pinIs} aria-label=${say.pin} ?disabled=${!world.room.canChange.value} @click=${(event) => pinHere(world, event.timeStamp)}>${icon('marker')}</button>`
+      ? html`<button class="icon-button" title=${world.ui.keys.tip(say.pinIs, 'pin')} aria-label=${say.pin} ?disabled=${!world.room.canChange.value} @click=${(event) => pinHere(world, event.timeStamp)}>${icon('marker')}</button>`
       : nothing,
   probe: (world) => html`${ofDose(world.room)?.doseAtCrosshair(world)}${ofDrawnDose(world.room)?.pinsBlock(world)}`,
   here: (world) => ofDose(world.room)?.doseHere(world),

@@ -19,7 +19,6 @@ export const say = sentences('dose.rows', {
   notInDose: '{quantity}: not in this dose',
   unitNotKnown: 'unit not known',
   in3d: 'in 3-D',
-  keyed: '{words} ({key})',
   hide: 'Hide',
   showOne: 'Show',
   washBands: 'Wash, bands from {percent} %',

@@ -5,10 +5,10 @@ export const say = sentences('dose', {
   noDose: 'This plan has no dose.',
   section: 'Doses',
   dvh: 'DVH',
-  pinIs: 'Pin these values (Q)',
+  pinIs: 'Pin these values',
   pin: 'Pin these values',
   isodose: 'Isodose',
-  isodoseIs: 'Isodose lines (I)',
+  isodoseIs: 'Isodose lines',
   wash: 'Wash',
-  washIs: 'Wash of dose (D)',
+  washIs: 'Wash of dose',
 });

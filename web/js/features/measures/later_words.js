@@ -13,7 +13,6 @@ export const say = sentences('measures.later', {
   measure: 'Measure',
   what: 'What is measured',
   inSlice: 'In a slice; Esc ends it. By keys: Enter sets a point at the crosshair.',
-  keyM: 'Key M',
   draw: 'Draw in a slice',
   add: 'Add at the crosshair',
   full: 'There are {n} measures already: delete one first.',

@@ -51,7 +51,7 @@ export function measuresBlock(world, isDisabled) {
         choose,
       )}</div>
       <p class="note">${howTo[kind]} ${say.inSlice}</p>
-      <div class="buttons"><button class=${classMap({ on: isTool })} aria-pressed=${isTool} title=${say.keyM} @click=${() => {
+      <div class="buttons"><button class=${classMap({ on: isTool })} aria-pressed=${isTool} title=${ui.keys.tip(say.draw, 'measure')} @click=${() => {
         ui.tool.value = isTool ? 'crosshair' : 'measure';
       }}>${say.draw}</button>
         <button ?disabled=${isDisabled} @click=${(event) => addAtCrosshair(world, kind, event)}>${say.add}</button></div></section>

@@ -38,7 +38,7 @@ export const notes = {
       draw: (world) => parts.draw(({ notesTab }) => notesTab(world)),
     },
   ],
-  keys: { n: noteHere },
+  keys: { note: noteHere },
   start: watchNotes,
   pane: (world) => ({ pins: (place) => ofNotes(world.room)?.notePins(world, place()) }),
 };

@@ -5,6 +5,7 @@ import { repeat } from '../../../lib/directives/repeat.js';
 import { signal } from '../../../lib/signals-core.js';
 import { authorsOf, filtered, isResolved, noFilter, pointOf, threadsOf } from './threads.js';
 import { crosshairPatch, shownImage } from '../../room/plan.js';
+import { keyMark } from '../../parts/fields.js';
 import { position } from '../../parts/format.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
@@ -52,7 +53,7 @@ function head(world) {
   const anchor = ui.newNote.value;
   if (!anchor)
     return html`<section class="block note-new">
-      <button @click=${() => noteHere(world)}>${icon('plus', 12)} ${say.atCrosshair({ key: html`<kbd>N</kbd>` })}</button>
+      <button @click=${() => noteHere(world)}>${icon('plus', 12)} ${say.atCrosshair({ key: keyMark(world.ui.keys.text('note')) })}</button>
       ${
         region
           ? html`<button @click=${() => {

@@ -25,7 +25,7 @@ function refusal({ pointers }) {
   return pointers.mayPoint.peek() ? '' : say.observer;
 }
 
-/** Key P: pointing on or off; with Shift it asks everybody to look here. */
+/** Pointing on or off; isAsking: asks everybody to look here. */
 export function pointKey(room, ui, isAsking) {
   const why = refusal(room);
   if (why) return void ui.notify('ok', why, 'point');
@@ -35,7 +35,7 @@ export function pointKey(room, ui, isAsking) {
 
 /** @type {import('../index.js').Feature} */
 export const pointers = {
-  keys: { p: ({ room, ui }, at, { shiftKey }) => pointKey(room, ui, shiftKey) },
+  keys: { point: ({ room, ui }) => pointKey(room, ui, false), askToLook: ({ room, ui }) => pointKey(room, ui, true) },
   strip: { meet: (world, isDock) => panels.loaded.value?.pointTools(world, isDock) },
   start: startPointers,
 };

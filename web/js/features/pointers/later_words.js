@@ -3,13 +3,12 @@ import { sentences } from '../../parts/sentences.js';
 
 export const say = sentences('pointers.later', {
   point: 'Point',
-  pointIs: 'Point: the others see where (P)',
-  isOn: 'The others see where you point (P)',
+  pointIs: 'Point: the others see where',
+  isOn: 'The others see where you point',
   pointers: 'Pointers',
   pointersMore: 'Look here, pointers of the others',
   ask: 'Ask everybody to look here',
   askIs: 'Asks everybody to look where you point, else at the crosshair',
-  shiftP: 'Shift P',
   comeTo: 'Come to {name}’s point',
   askNoMore: 'Ask no more',
   ofOthers: 'Pointers of the others',

@@ -3,7 +3,7 @@ import { html, nothing } from '../../../lib/lit-html.js';
 import { effect, untracked } from '../../../lib/signals-core.js';
 import { crosshair, crosshairPatch, shownImage } from '../../room/plan.js';
 import { toPicture } from '../../parts/vec.js';
-import { checkbox } from '../../parts/fields.js';
+import { checkbox, keyMark } from '../../parts/fields.js';
 import { icon } from '../../parts/icons.js';
 import { say } from './later_words.js';
 
@@ -95,7 +95,7 @@ export function pointMenu(world, isDock) {
       ${
         pointers.mayPoint.value
           ? html`<button title=${say.askIs} @click=${act(() => askToLook(world))}>
-        ${icon('target')}<span>${say.ask}</span>${isDock ? nothing : html`<kbd>${say.shiftP}</kbd>`}</button>`
+        ${icon('target')}<span>${say.ask}</span>${isDock ? nothing : keyMark(ui.keys.text('askToLook'))}</button>`
           : nothing
       }
       ${look && look.by !== room.member.value ? comeButton() : nothing}

@@ -20,7 +20,7 @@ export function pointTools(world, isDock = false) {
   return html`<span class="anchor point-tools">
     ${
       pointers.mayPoint.value
-        ? html`<button class=${classMap({ tool: true, plain: true, on: isOn })} tabindex="-1" title=${isOn ? say.isOn : say.pointIs} aria-label=${say.point}
+        ? html`<button class=${classMap({ tool: true, plain: true, on: isOn })} tabindex="-1" title=${ui.keys.tip(isOn ? say.isOn : say.pointIs, 'point')} aria-label=${say.point}
       aria-pressed=${isOn} @click=${press}>${icon('point', isDock ? 20 : 16)}${isDock ? html`<span class="word">${say.point}</span>` : nothing}</button>`
         : nothing
     }

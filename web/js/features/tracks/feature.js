@@ -28,6 +28,6 @@ export const tracks = {
   ],
   kinds: { tracks: 'tracks', track: 'tracks' },
   blocks: later(() => import('./track_block.js')),
-  keys: { t: toggleTracks },
+  keys: { tracks: toggleTracks },
   pane: (world) => ({ layer: ({ plane, header, box }) => (plane ? null : ofTracks(world.room)?.chosenTrack(world, { header, box })) }),
 };

@@ -27,15 +27,23 @@ export function trackRows(world) {
 }
 
 function allRow(world) {
-  const { room } = world;
+  const { room, ui } = world;
   const { visible } = room.scene.value.tracks;
   const total = number(room.plan.value.nTracks);
   const toggle = (event) => toggleTracks(world, event.timeStamp);
   return treeRow(
     world,
-    { kind: 'tracks', id: '', words: [say.tracks, total], more: [say.segmentsMore], title: say.inSpace, isOn: visible, toggle },
+    {
+      kind: 'tracks',
+      id: '',
+      words: [say.tracks, total],
+      more: [say.segmentsMore],
+      title: ui.keys.tip(say.inSpace, 'tracks'),
+      isOn: visible,
+      toggle,
+    },
     html`
-    ${eye(visible, say.showTracks, visible ? say.hideKey : say.showKey, !room.canChange.value, toggle)}${name(say.tracks)} <span class="tail">${total}</span>`,
+    ${eye(visible, say.showTracks, ui.keys.tip(visible ? say.hideKey : say.showKey, 'tracks'), !room.canChange.value, toggle)}${name(say.tracks)} <span class="tail">${total}</span>`,
   );
 }
 

@@ -338,7 +338,7 @@ test('undo takes an acceptance back, and redo makes it again', async () => {
       done.push('made');
     },
   });
-  assert.equal(stepTitle('undo', undo.next.value, room), 'Undo: use of Dose “Boost” (Ctrl+Z)');
+  assert.equal(stepTitle('undo', undo.next.value, room), 'Undo: use of Dose “Boost”');
   undo.undo();
   await null;
   assert.equal(undo.next.value, null);

@@ -16,7 +16,7 @@ export function drawer(world) {
     ui.isDrawerRight.value = isOnRight;
   };
   const close = html`${size === 'wide' ? html`<button class="icon-button small" title=${isRight ? say.below : say.beside} aria-label=${isRight ? say.plotsBelow : say.plotsBeside} @click=${() => dock(!isRight)}>${icon(isRight ? 'drawer' : 'panel', 12)}</button>` : nothing}
-    <button class="icon-button small" title=${say.close} aria-label=${say.closePlots} @click=${() => ui.toggleDrawer()}>${icon('close', 12)}</button>`;
+    <button class="icon-button small" title=${ui.keys.tip(say.close, 'drawer')} aria-label=${say.closePlots} @click=${() => ui.toggleDrawer()}>${icon('close', 12)}</button>`;
   return html`${dvhPart(world, { isInline: isRight })}${profilePart(world, { isInline: isRight, close })}`;
 }
 

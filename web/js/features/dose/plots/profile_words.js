@@ -28,7 +28,7 @@ export const say = sentences('dose.plots.profile', {
   dosesAlong: 'Doses along the line',
   place: 'Place',
   noDose: 'There is no dose on this line.',
-  noBeam: 'The plan has no beam. Draw a distance measure (M): the profile runs along it.',
+  noBeam: 'The plan has no beam. Draw a distance measure: the profile runs along it.',
   phantom: "Reference curves were measured or computed in a phantom: they are not this patient's dose.",
   phantomAxis: "Reference curves were measured or computed in a phantom: they are not this patient's dose. Right axis: {unit}.",
   profile: 'Depth profile',

@@ -7,7 +7,7 @@ export const say = sentences('dose.plots', {
   beside: 'Beside the panes',
   plotsBelow: 'Plots below the panes',
   plotsBeside: 'Plots beside the panes',
-  close: 'Close (V)',
+  close: 'Close',
   closePlots: 'Close the plots',
   save: 'Save as a file',
   saveCsv: 'Save as comma-separated values',
