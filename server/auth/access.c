@@ -296,7 +296,8 @@ bool access_check(const struct access *access, const struct identity *identity, 
     if (right == ACCESS_EXPORT && identity->source == IDENTITY_NOBODY)
         return false; /* guests take no files away */
     struct access_subject of_grants = *subject;
-    if (subject->kind != ACCESS_SUBJECT_KIND_ROOM && right != ACCESS_LOOK && right != ACCESS_MEASURE)
+    if (subject->kind != ACCESS_SUBJECT_KIND_ROOM && subject->kind != ACCESS_SUBJECT_KIND_MEETING &&
+        right != ACCESS_LOOK && right != ACCESS_MEASURE)
         of_grants.room_role = ACCESS_ROLE_NONE; /* of a room's plan its members see what the room needs, and no more */
     bool sees_identity;
     const enum access_role role = role_on(access, identity, &of_grants, &sees_identity);

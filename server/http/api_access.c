@@ -8,6 +8,7 @@
 #include "server/front/address.h"
 #include "server/http/api_handlers.h"
 #include "server/http/api_jobs.h"
+#include "server/http/api_meetings.h"
 #include "server/http/api_queries.h"
 #include "server/http/api_rates.h"
 
@@ -175,6 +176,33 @@ static bool check_room(struct api *api, struct call *call, const struct access_r
     return false;
 }
 
+/* ---- meetings --------------------------------------------------------------------------------------------------- */
+
+static bool check_meeting(struct api *api, struct call *call, const struct access_route *need)
+{
+    static const enum access_role roles[] = {
+        [WIRE_MEMBER_ROLE_WALL] = ACCESS_ROLE_NONE,         [WIRE_MEMBER_ROLE_OBSERVER] = ACCESS_ROLE_OBSERVER,
+        [WIRE_MEMBER_ROLE_REVIEWER] = ACCESS_ROLE_REVIEWER, [WIRE_MEMBER_ROLE_PRESENTER] = ACCESS_ROLE_PRESENTER,
+        [WIRE_MEMBER_ROLE_PLANNER] = ACCESS_ROLE_PLANNER,
+    };
+    struct problem problem;
+    struct access_subject subject = { .kind = ACCESS_SUBJECT_KIND_MEETING, .is_closed = true };
+    const struct meeting *meeting = net_meeting_find(api->net, call->ids[0]);
+    enum wire_member_role role;
+    if (call->identity.source == IDENTITY_NOBODY)
+        return refuse_nobody(call);
+    if (meeting && api_meeting_role(api, call, meeting, &role))
+        subject.room_role = roles[role];
+    if (meeting && access_check(api->rights->access, &call->identity, need->right, &subject))
+        return true;
+    if (meeting && access_check(api->rights->access, &call->identity, ACCESS_LOOK, &subject))
+        return refuse_role(call, need);
+    if (net_rooms_are_known(api->net, &problem))
+        problem_set(&problem, PROBLEM_NOT_FOUND, "", "", "there is no meeting \"%.63s\"", call->ids[0]);
+    call_answer_problem(call, &problem);
+    return false;
+}
+
 /* ---- other subjects --------------------------------------------------------------------------------------------- */
 
 static bool check_job(struct api *api, struct call *call, const struct access_route *need)
@@ -224,6 +252,7 @@ static bool check_subject(struct api *api, struct call *call, const struct acces
     switch (need->subject) {
     case ACCESS_SUBJECT_KIND_PLAN: return check_plan(api, call, need, again);
     case ACCESS_SUBJECT_KIND_ROOM: return check_room(api, call, need);
+    case ACCESS_SUBJECT_KIND_MEETING: return check_meeting(api, call, need);
     case ACCESS_SUBJECT_KIND_JOB: return check_job(api, call, need);
     case ACCESS_SUBJECT_KIND_NONE:
     case ACCESS_SUBJECT_KIND_SERVER:

@@ -8,9 +8,11 @@
 #include "core/base/clock.h"
 #include "core/base/log.h"
 #include "core/base/mem.h"
+#include "server/net/can_write.h"
 #include "server/net/keep_audit.h"
 #include "server/net/keep_figures.h"
 #include "server/net/keep_recordings.h"
+#include "server/net/meeting_list.h"
 #include "server/net/schedule.h"
 #include "server/wire/json.h"
 
@@ -20,6 +22,8 @@ void keep_changed(void *context, struct room *room, unsigned parts)
     if (!entry)
         return;
     entry->keep.changed |= parts;
+    if (parts & ROOM_PRESENCE)
+        meetings_room_changed(entry->net, room_id(room));
     schedule_at(entry->net, 0);
 }
 
@@ -100,28 +104,6 @@ void keep_item_changed(void *context, struct room *room, const char *row, const 
         item_changed(entry, row, id);
 }
 
-/* Why nothing that must last is accepted. */
-static bool refuse_to_keep(const struct net *net, bool is_full, struct problem *problem)
-{
-    (void)net;
-    (void)problem_set(problem, PROBLEM_STORAGE, "", is_full ? "full" : "write",
-                      "%s: this was not kept and does not count; give it again when the disk can be written",
-                      is_full ? "the server's disk is full" : "the server cannot write to its disk, its log says why");
-    problem->retry_after_ms = 10000;
-    return false;
-}
-
-bool keep_can_write(void *context, struct problem *problem)
-{
-    const struct net *net = context;
-    return !net->store || !net->store_fails || refuse_to_keep(net, net->store_is_full, problem);
-}
-
-bool net_can_write(struct net *net, struct problem *problem)
-{
-    return keep_can_write(net, problem);
-}
-
 static struct store_room *make_row(const struct net_room *room, unsigned parts);
 
 /* Fills the write with the item, its record and its row for the audit. */
@@ -176,7 +158,7 @@ bool keep_item_first(void *context, struct room *room, uint64_t number, const st
     if (!row || !fill_prompt(row, write, audit) || (!write->record && !store_write(net->store, row, prompt->ticket))) {
         store_room_free(row);
         free(prompt);
-        return refuse_to_keep(net, false, problem);
+        return keep_refuse(false, problem);
     }
     net->n_audit_waiting++;
     entry->keep.prompts = prompt;
@@ -206,7 +188,7 @@ static void write_waiting(struct net_room *entry, struct prompt_write *prompt, s
     struct store_room *row = prompt->row;
     prompt->row = NULL;
     if (problem->type == PROBLEM_NONE && !store_write(net->store, row, prompt->ticket))
-        (void)refuse_to_keep(net, false, problem);
+        (void)keep_refuse(false, problem);
     if (problem->type == PROBLEM_NONE) {
         prompt->next = entry->keep.prompts;
         entry->keep.prompts = prompt;
@@ -265,8 +247,9 @@ static bool prompt_written(struct net *net, const struct store_answer *answer)
             *at = prompt->next;
             free(prompt);
             if (is_refused)
-                (void)refuse_to_keep(net, answer->error.code == ERROR_LIMIT, &problem);
+                (void)keep_refuse(answer->error.code == ERROR_LIMIT, &problem);
             room_item_written(net->rooms[i]->room, number, is_refused ? &problem : NULL, clock_now_us());
+            meetings_room_changed(net, room_id(net->rooms[i]->room)); /* it may have been decided */
             schedule_room(net->rooms[i]);
             return true;
         }
@@ -385,6 +368,8 @@ void keep_write_due(struct net *net, bool is_last)
         net->n_undeleted--;
     if (net->store && net->n_audit)
         keep_audit_write(net);
+    if (net->store)
+        meetings_write_due(net, is_last);
     for (size_t i = 0; net->store && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];
         if (!is_changed(room) || (!is_last && room->keep.ticket))
@@ -421,7 +406,7 @@ void keep_delete(struct net *net, const char *id)
 void keep_written(struct net *net, const struct store_answer *answer)
 {
     keep_audit_written(net, answer);
-    if (answer->ticket && prompt_written(net, answer))
+    if (answer->ticket && (prompt_written(net, answer) || meetings_written(net, answer)))
         return;
     for (size_t i = 0; answer->ticket && i < net->n_rooms; i++) {
         struct net_room *room = net->rooms[i];

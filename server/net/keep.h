@@ -16,7 +16,6 @@ bool keep_item_first(void *context, struct room *room, uint64_t number, const st
                      struct problem *problem);
 /* The plan's files were looked at: decisions that waited for that are written, or refused where they have changed. */
 void keep_files_looked(struct net_room *entry, const struct fleet_plan *plan);
-bool keep_can_write(void *context, struct problem *problem);
 void keep_item_changed(void *context, struct room *room, const char *row, const char *id);
 /* Hands over what is due. is_last: all that changed, whatever is under way. */
 void keep_write_due(struct net *net, bool is_last);

@@ -21,6 +21,8 @@
 #include "server/net/keep_audit_read.h"
 #include "server/net/keep_recordings.h"
 #include "server/net/keep_records.h"
+#include "server/net/meeting_doors.h"
+#include "server/net/meeting_list.h"
 #include "server/net/net_state.h"
 #include "server/net/often.h"
 #include "server/net/rooms.h"
@@ -342,6 +344,7 @@ static void handle_answer(struct net *net, void *argument)
         net->store_was_open = true;
         keep_audit_written(net, answer);
         asleep_add_all(net, answer->rooms, answer->n_rooms);
+        meetings_add_all(net, answer);
         if (answer->is_new)
             keep_all_again(net);
         break;
@@ -499,6 +502,7 @@ static void *work(void *context)
     keep_record_readers_finish(net);
     keep_audit_readers_finish(net);
     erase_end(net);
+    meetings_end(net);
     tell_listed(net, UINT64_MAX);
     while (net->n_rooms) {
         room_end_because(net->rooms[0]->room, "the server is being stopped");
@@ -524,6 +528,7 @@ struct net *net_create(const struct net_options *options, struct error *err)
 {
     struct net *net = mem_new(sizeof *net);
     net->files_looked = keep_files_looked;
+    net->meeting_doors = &meeting_doors;
     net->max_rooms = options->max_rooms > 0 ? options->max_rooms : 200;
     net->room_idle_close_s = options->room_idle_close_s;
     net->limits = options->room;
@@ -582,6 +587,7 @@ void net_destroy(struct net *net)
     ws_destroy(net->ws);
     queue_destroy(net->tasks);
     asleep_finish(net);
+    meetings_finish(net);
     for (size_t i = 0; i < net->n_audit; i++)
         free(net->audit[i]);
     free(net->audit);

@@ -11,9 +11,11 @@
 #include "core/base/mem.h"
 #include "server/net/asleep.h"
 #include "server/net/bridge.h"
+#include "server/net/can_write.h"
 #include "server/net/keep.h"
 #include "server/net/keep_audit.h"
 #include "server/net/keep_recordings.h"
+#include "server/net/meeting_list.h"
 #include "server/net/net.h"
 #include "server/net/schedule.h"
 #include "server/wire/random.h"
@@ -140,7 +142,8 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
                                               .is_saved = keep_is_saved,
                                               .recorded = net->store ? keep_recorded : NULL,
                                               .recording_deleted = keep_recording_deleted,
-                                              .replay_read = keep_replay_read };
+                                              .replay_read = keep_replay_read,
+                                              .meeting = net->meeting_doors };
     struct net_room *room = mem_new(sizeof *room);
     *room = (struct net_room){ .net = net,
                                .room = room_create(id, plan_id, &callbacks, &net->limits),
@@ -152,6 +155,7 @@ static struct net_room *add_room(struct net *net, const char *id, const char *pl
 static void close_because(struct net *net, size_t index, const char *reason)
 {
     struct net_room *room = net->rooms[index];
+    meetings_look_at_room(net, room_id(room->room)); /* for the last time */
     room_end_because(room->room, reason);
     room_audit_flush(room->room, clock_now_us());
     net->rooms[index] = net->rooms[--net->n_rooms];
@@ -447,7 +451,8 @@ bool net_asleep_is_listed_to(const struct net *net, size_t index, const struct i
     if (who->source == IDENTITY_MACHINE)
         return true;
     const bool has_role = plan_rights_role(&net->plan_rights, net->fleet, who, facts->plan, &role);
-    if (room_people_name(facts->owner, facts->people, who, has_role))
+    if (room_people_name(facts->owner, facts->people, who, has_role) ||
+        (has_role && meetings_ask_in(net, facts->id, who)))
         return true;
     return has_role && (facts->is_open || (!facts->owner[0] && role == WIRE_MEMBER_ROLE_PLANNER));
 }

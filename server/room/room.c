@@ -26,6 +26,7 @@
 #include "server/room/people/links.h"
 #include "server/room/people/look.h"
 #include "server/room/people/member.h"
+#include "server/room/people/moving.h"
 #include "server/room/people/naming.h"
 #include "server/room/people/pointers.h"
 #include "server/room/people/presenter.h"
@@ -342,6 +343,8 @@ static const struct {
     { MESSAGE_CONTROL_TAKE, control_take },
     { MESSAGE_CONTROL_LOCK, control_lock },
     { MESSAGE_MEMBER_REMOVE, member_remove },
+    { MESSAGE_MEETING_NEXT, meeting_next_case },
+    { MESSAGE_MEETING_GO, meeting_go_along },
     { MESSAGE_SCENE_PATCH, member_scene_patch },
     { MESSAGE_FRAME_SHOWN, member_frame_shown },
     { MESSAGE_ITEM_PUT, items_put },
@@ -379,8 +382,8 @@ void room_audit_refused(struct room *room, const struct member *member, const ch
 
 /* Messages to a newcomer after welcome, in this order. */
 static void (*const shown_to_newcomer[])(struct room *room, struct member *member) = {
-    acceptances_tell, send_renderer_state, control_send, saved_show,     files_show,  members_show,
-    name_show,        pointers_show,       look_show,    recording_show, replay_show, walls_show,
+    acceptances_tell, send_renderer_state, control_send,   saved_show,  files_show, members_show, name_show,
+    pointers_show,    look_show,           recording_show, replay_show, walls_show, meeting_show,
 };
 
 static void greet(struct room *room, void *connection, const struct message_hello *hello)

@@ -5,6 +5,7 @@
 #include "server/room/log/room_recordings.h"
 #include "server/room/out/room_listeners.h"
 #include "server/room/people/room_links.h"
+#include "server/room/people/room_moving.h"
 #include "server/room/people/room_people.h"
 #include "server/room/state/room_types.h"
 #include "server/room/streams/room_displays.h"

@@ -305,6 +305,16 @@ static bool delete_owner(const struct erasing *erasing)
     return ok;
 }
 
+/* Meetings keep their cases: that there was one, how long it took and who was there, not of whom. */
+static bool strike_cases(const struct erasing *erasing)
+{
+    sqlite3_stmt *row =
+        prepare_of_plan(erasing, "UPDATE meeting_cases SET plan = '', room = '' WHERE plan IN (?1, ?2)");
+    const bool ok = row && sql_step(row, "erasing a case of a meeting", erasing->err);
+    (void)sqlite3_finalize(row);
+    return ok;
+}
+
 static bool erase_rows(const struct erasing *erasing)
 {
     if (!sql_run(erasing->db, "PRAGMA secure_delete = ON", erasing->err) ||
@@ -312,7 +322,8 @@ static bool erase_rows(const struct erasing *erasing)
         return false;
     if (was_done(erasing))
         return sql_run(erasing->db, "COMMIT", erasing->err);
-    const bool ok = delete_rooms(erasing) && strike_records(erasing) && delete_owner(erasing) && append_row(erasing) &&
+    const bool ok = delete_rooms(erasing) && strike_records(erasing) && delete_owner(erasing) &&
+                    strike_cases(erasing) && append_row(erasing) &&
                     erasing->err->code == ERROR_NONE && /* else rows that cannot be read would stay unseen */
                     sql_run(erasing->db, "COMMIT", erasing->err);
     if (!ok && !sqlite3_get_autocommit(erasing->db))

@@ -24,6 +24,7 @@ void store_room_free(struct store_room *room)
     for (size_t i = 0; i < room->n_audit; i++)
         free(room->audit[i]);
     free(room->audit);
+    store_meeting_free(room->meeting);
     free(room->items);
     free(room->members);
     free(room->links);

@@ -89,6 +89,10 @@ static const char *const steps[] = {
     /* 9: names of rooms; whether a person changed something in them: of earlier ones it is not known, and they stay */
     "ALTER TABLE rooms ADD COLUMN name TEXT NOT NULL DEFAULT '';"
     "ALTER TABLE rooms ADD COLUMN is_changed INTEGER NOT NULL DEFAULT 1;",
+    /* 10: meetings of many cases */
+    "CREATE TABLE meetings(id TEXT PRIMARY KEY, owner TEXT NOT NULL, body TEXT NOT NULL) STRICT;"
+    "CREATE TABLE meeting_cases(meeting TEXT NOT NULL REFERENCES meetings(id) ON DELETE CASCADE, place INTEGER NOT NULL,"
+    " id TEXT NOT NULL, plan TEXT NOT NULL, room TEXT NOT NULL, body TEXT NOT NULL, PRIMARY KEY(meeting, place)) STRICT;",
 };
 const int schema_version = (int)(sizeof steps / sizeof steps[0]);
 

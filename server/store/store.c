@@ -18,6 +18,7 @@
 #include "server/store/database.h"
 #include "server/store/erase.h"
 #include "server/store/heads.h"
+#include "server/store/meetings.h"
 #include "server/store/recordings.h"
 #include "server/store/records.h"
 #include "server/store/rows.h"
@@ -80,6 +81,7 @@ void store_answer_free(struct store_answer *answer)
         store_record_finish(&answer->records[i]);
     free(answer->records);
     audit_rows_free(answer->audit, answer->n_audit_rows);
+    meetings_free(answer->meetings, answer->n_meetings);
     free(answer);
 }
 
@@ -197,8 +199,10 @@ static bool open_database(struct store *store, struct error *err)
         return false;
     opened.rooms = rows_list_rooms(store->db, STORE_MAX_ROOMS, &opened.n_rooms, err);
     opened.accounts = opened.rooms ? accounts_read(store->db, err) : NULL;
-    if (!opened.accounts) {
+    opened.meetings = opened.accounts ? meetings_read(store->db, &opened.n_meetings, err) : NULL;
+    if (!opened.meetings) {
         store_summaries_free(opened.rooms, opened.n_rooms);
+        store_accounts_free(opened.accounts);
         database_close(store->db);
         store->db = NULL;
         return false;
@@ -221,6 +225,7 @@ static bool apply(struct store *store, const struct request *request, struct err
         return accounts_write(store->db, request->accounts, err);
     return (request->room->id[0] == 0 || (request->room->is_prompt ? rows_write_prompt(store->db, request->room, err)
                                                                    : rows_write_room(store->db, request->room, err))) &&
+           (!request->room->meeting || meetings_write(store->db, request->room->meeting, err)) &&
            audit_append(store->db, request->room->audit, request->room->n_audit, err);
 }
 

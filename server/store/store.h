@@ -42,7 +42,8 @@ struct store_answer {
     struct store_part *part;         /* the receiver's */
     struct store_summary *rooms;     /* the receiver's */
     struct store_accounts *accounts; /* the receiver's */
-    size_t n_rooms;
+    struct store_meeting **meetings; /* of STORE_OPENED; the receiver's */
+    size_t n_rooms, n_meetings;
     struct store_record *records; /* the receiver's */
     size_t n_records;
     struct store_audit_row *audit; /* the receiver's */
@@ -71,8 +72,8 @@ NODISCARD struct store *store_create(const struct store_options *options, struct
 void store_destroy(struct store *store);
 
 /* False: too many wait, and room stays the caller's; ask again later. Else takes room. ticket comes back. Any thread. A
- * room with an empty id is no room: its rows for the audit alone are written. They are also written when the room they
- * came with can never be. */
+ * room with an empty id is no room: its meeting and its rows for the audit alone are written. They are also written
+ * when the room they came with can never be. */
 bool store_write(struct store *store, struct store_room *room, uint64_t ticket);
 /* Like store_write; takes accounts. Those whose commit fails wait for the disk as rooms do. */
 bool store_write_accounts(struct store *store, struct store_accounts *accounts, uint64_t ticket);

@@ -17,7 +17,8 @@ enum {
     STORE_ROOM_NAME = 321,           /* of the name of a room */
     STORE_PERSON = 164,              /* of a name as people read it */
     STORE_GROUPS = 2113,             /* of a list of groups */
-    STORE_MAX_ACCOUNTS = 10000       /* users, tokens, sessions or owners that are read */
+    STORE_MAX_ACCOUNTS = 10000,      /* users, tokens, sessions or owners that are read */
+    STORE_MAX_MEETINGS = 1000        /* that are read; a caller keeps no more */
 };
 
 struct store_member {
@@ -111,6 +112,20 @@ struct store_part {
 };
 void store_part_free(struct store_part *part);
 
+/* A case of a meeting: a plan and its room. body: JSON. */
+struct store_meeting_case {
+    char id[64], plan[64], room[64]; /* plan "": it was erased; room "": none yet */
+    char *body;
+};
+
+struct store_meeting {
+    char id[64], owner[STORE_USER];   /* owner "": nobody's */
+    char *body;                       /* JSON; NULL in a write: the meeting is deleted */
+    struct store_meeting_case *cases; /* all, in their order */
+    size_t n_cases;
+};
+void store_meeting_free(struct store_meeting *meeting);
+
 /* A room as it is on disk, or a write: in a write, what is NULL or absent stays as it is. */
 struct store_room {
     char id[64], plan[64], presenter[64]; /* presenter "": nobody */
@@ -134,6 +149,7 @@ struct store_room {
     size_t n_recordings;
     struct store_record *records; /* in a write: to be added; not read */
     size_t n_records;
+    struct store_meeting *meeting; /* in a write without id: it is written, with the audit; not read */
     bool is_prompt; /* in a write: items, records and audit alone, now or never: where this cannot be, it is answered
                        with the error and dropped */
     char **audit;   /* in a write: rows for the audit (audit.h), committed with the rest or not at all; not read */

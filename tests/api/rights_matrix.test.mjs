@@ -57,11 +57,11 @@ function expected({ path, needs: [right, subject] }, kind, which) {
   const allowed = ['allowed', 'absent'];
   if (right === 'free') return /session|signin/.test(path) ? [...allowed, 'signed-out'] : allowed; // signing in may say so itself
   if (right === 'signed-in') return isSignedIn(kind) ? allowed : ['signed-out'];
-  if (['job', 'record', 'saved', 'named'].includes(subject) && !isSignedIn(kind)) return ['signed-out'];
+  if (['job', 'record', 'saved', 'named', 'meeting'].includes(subject) && !isSignedIn(kind)) return ['signed-out'];
   if (['job', 'record', 'saved'].includes(subject)) return ['absent']; // made up
   if (subject === 'named') return ['allowed']; // an empty body is told what is missing; rooms on plans: below
   const whole = subject === 'server' ? may.server : subject === 'uploads' ? (may.uploads ?? 'none') : may[which];
-  const role = subject === 'room' && whole === 'reader' ? 'observer' : whole; // in rooms such a token looks
+  const role = ['room', 'meeting'].includes(subject) && whole === 'reader' ? 'observer' : whole; // in rooms such a token looks
   if (path === '/metrics' && !kinds[kind].bySocket) return allowed; // this machine's own
   if (rightsOf[role].includes(right)) return allowed;
   if (right === 'measure' && subject === 'plan' && role === 'guest') return allowed; // what a reviewer's page asks for
@@ -72,8 +72,8 @@ function expected({ path, needs: [right, subject] }, kind, which) {
 
 /** Routes that must not be used for real while others are still to be asked. */
 const ends = ({ method, path }) =>
-  (method === 'DELETE' && /^\/api\/v1\/(rooms\/\{room\}|plans\/\{plan\})$/.test(path)) ||
-  /\/(close|erase)$/.test(path) ||
+  (method === 'DELETE' && /^\/api\/v1\/(rooms\/\{room\}|plans\/\{plan\}|meetings\/\{meeting\})$/.test(path)) ||
+  /\/(close|erase|end)$/.test(path) ||
   path.includes('/session') ||
   path.endsWith('/people');
 
@@ -81,6 +81,7 @@ describe('The matrix of rights', { concurrency: false }, () => {
   let folder, socketPath, daemon;
   const plans = {};
   const rooms = { own: {} };
+  const meetings = { own: {} };
   const callers = {};
   const seats = [];
 
@@ -168,6 +169,14 @@ describe('The matrix of rights', { concurrency: false }, () => {
     rooms.granted = (await made('planner', '/api/v1/rooms', { plan: plans.granted })).id;
     assert.equal((await ask('planner', `/api/v1/rooms/${rooms.granted}/people`, 'PATCH', { is_open: true })).status, 200);
     rooms.foreign = (await made('admin', '/api/v1/rooms', { plan: plans.foreign })).id;
+    const agenda = (plan, people = []) => ({ name: 'Board', cases: [{ plan }], people });
+    for (const kind of ['presenter', 'planner', 'admin'])
+      meetings.own[kind] = (await made(kind, '/api/v1/meetings', agenda(plans.granted))).id;
+    meetings.own['token plan'] = meetings.own['token read'] = meetings.own.planner;
+    meetings.own.reviewer = (await made('planner', '/api/v1/meetings', agenda(plans.granted, [{ who: 'reviewer' }]))).id; // makes none
+    const named = ['observer', 'reviewer', 'presenter'].map((who) => ({ who }));
+    meetings.granted = (await made('planner', '/api/v1/meetings', agenda(plans.granted, named))).id;
+    meetings.foreign = (await made('admin', '/api/v1/meetings', agenda(plans.foreign))).id;
     for (const [kind, role] of [
       ['guest', 'reviewer'],
       ['wall', 'wall'],
@@ -189,6 +198,7 @@ describe('The matrix of rights', { concurrency: false }, () => {
     path
       .replace('{plan}', which === 'own' ? plans.granted : plans[which])
       .replace('{room}', which === 'own' ? rooms.own[kind] : rooms[which])
+      .replace('{meeting}', (which === 'own' ? meetings.own[kind] : meetings[which]) ?? 'x')
       .replace(/\{\w+\}/g, 'x');
 
   /** Cells of the matrix whose answer is not as the routes say. */
@@ -197,7 +207,7 @@ describe('The matrix of rights', { concurrency: false }, () => {
     for (const route of routes)
       for (const kind of Object.keys(kinds))
         for (const which of ['own', 'granted', 'foreign']) {
-          const isAbout = ['plan', 'room'].includes(route.needs[1]) || /\{(plan|room)\}/.test(route.path);
+          const isAbout = ['plan', 'room', 'meeting'].includes(route.needs[1]) || /\{(plan|room|meeting)\}/.test(route.path);
           if (isAbout ? kinds[kind][which] === null : which !== 'granted') continue;
           if (which === 'granted' && route.needs[1] === 'plan' && ['guest', 'wall'].includes(kind)) continue; // it is that of their room
           const should = expected(route, kind, which);
@@ -221,11 +231,12 @@ describe('The matrix of rights', { concurrency: false }, () => {
     assert.notEqual((await wrongCells(planted('GET', '/api/v1/plans/{plan}', ['free', 'none']))).length, 0);
     assert.notEqual((await wrongCells(planted('GET', '/api/v1/rooms/{room}/scene', ['control', 'room']))).length, 0);
     assert.notEqual((await wrongCells(planted('GET', '/api/v1/audit', ['signed-in', 'none']))).length, 0);
+    assert.notEqual((await wrongCells(planted('GET', '/api/v1/meetings/{meeting}', ['control', 'meeting']))).length, 0);
   });
 
   test('what may not be seen is byte for byte as what is not there', async () => {
-    const absent = { plan: '0123456789abcdef', room: 'zzzz-zzzz' };
-    for (const route of described.filter(({ needs }) => ['plan', 'room'].includes(needs[1])))
+    const absent = { plan: '0123456789abcdef', room: 'zzzz-zzzz', meeting: 'm-zzzz-zzzz' };
+    for (const route of described.filter(({ needs }) => ['plan', 'room', 'meeting'].includes(needs[1])))
       for (const kind of ['planner', 'token read']) {
         const body = ['GET', 'DELETE'].includes(route.method) ? undefined : {};
         const plain = ({ status, headers, text }, id) => {
@@ -234,7 +245,7 @@ describe('The matrix of rights', { concurrency: false }, () => {
         };
         const subject = route.needs[1];
         const at = (id) => route.path.replace(`{${subject}}`, id).replace(/\{\w+\}/g, 'x');
-        const foreign = { plan: plans.foreign, room: rooms.foreign }[subject];
+        const foreign = { plan: plans.foreign, room: rooms.foreign, meeting: meetings.foreign }[subject];
         assert.deepEqual(
           plain(await ask(kind, at(foreign), route.method, body), foreign),
           plain(await ask(kind, at(absent[subject]), route.method, body), absent[subject]),

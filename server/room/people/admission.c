@@ -92,6 +92,17 @@ static const struct person *find_person(const struct admission *admission, const
     return found;
 }
 
+/* Whether the meeting that the room is a case of lets this user in. */
+static bool is_asked_to_meeting(const struct room *room, const struct identity *who, enum wire_member_role *role)
+{
+    const struct room_meeting_callbacks *meeting = room->callbacks.meeting;
+    enum wire_member_role most;
+    if (!meeting || !meeting->role(room->callbacks.context, room, who, &most))
+        return false;
+    *role = role_lower(*role, most);
+    return true;
+}
+
 /* Like admission_role, and true of who was removed. */
 static bool has_own_right(const struct room *room, const struct identity *who, enum wire_member_role *role)
 {
@@ -105,7 +116,8 @@ static bool has_own_right(const struct room *room, const struct identity *who, e
     if (person && person->has_role)
         *role = role_lower(*role, person->role);
     /* a room of before there was sign-in is nobody's */
-    return person || admission->is_open || (!admission->owner[0] && *role == WIRE_MEMBER_ROLE_PLANNER);
+    return person || admission->is_open || is_asked_to_meeting(room, who, role) ||
+           (!admission->owner[0] && *role == WIRE_MEMBER_ROLE_PLANNER);
 }
 
 /* ---- removed ---------------------------------------------------------------------------------------------------- */
@@ -142,7 +154,7 @@ static bool refuses(struct room *room, const char *key, const struct link *link)
         return false;
     const struct removed *removed = &room->admission->removed[index];
     char digits[MAX_DIGITS];
-    bool is_old = !link;
+    bool is_old = !link || link->is_of_meeting; /* which stands as long as the meeting */
     if (link)
         link_digits(link, digits);
     for (int i = 0; link && i < removed->n_links; i++)
@@ -185,6 +197,8 @@ static void drop_person(struct admission *admission, const char *user)
 void admission_ban(struct room *room, const struct member *member)
 {
     room_event(room, ROOM_PEOPLE, NULL);
+    if (room->callbacks.meeting)
+        room->callbacks.meeting->barred(room->callbacks.context, room, member->user, member->link);
     if (member->user[0])
         drop_person(room->admission, member->user);
     else if (member->link[0]) /* who has not signed in can be another person each time */
@@ -213,7 +227,7 @@ static bool admits_guest(const struct room *room, const struct link *link)
 static struct admitted by_link(struct room *room, const struct identity *who, const char *token, struct admitted in)
 {
     const bool is_machine = who_is_machine(who);
-    const char *refusal = link_find(room, token, in.key, &in.link);
+    const char *refusal = link_find(room, who, token, in.key, &in.link);
     if (refusal) {
         in.link = NULL;
         return refuse(in, "", refusal == link_is_unknown && !is_machine ? is_closed : refusal);
@@ -232,8 +246,11 @@ static struct admitted by_link(struct room *room, const struct identity *who, co
 static struct admitted by_seat(const struct room *room, const struct identity *who, const struct member *seat,
                                struct admitted in)
 {
+    const struct room_meeting_callbacks *meeting = room->callbacks.meeting;
     in.role = seat->role;
     in.is_guest = seat->is_guest && !who_is_user(who);
+    if (seat->link[0] && meeting && meeting->link_is_over(room->callbacks.context, room, seat->link))
+        return refuse(in, "", is_closed);
     if (who_is_machine(who) || (seat->link[0] && who_is_user(who)) || seat->role == WIRE_MEMBER_ROLE_WALL)
         return in;
     if (!who_is_user(who))

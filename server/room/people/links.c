@@ -20,6 +20,7 @@ static_assert(SECRET_TEXT == 33, "room.h tells the size of a token");
 
 struct links {
     struct link list[ROOM_MAX_LINKS];
+    struct link of_meeting; /* as link_find found it last */
     int n;
     bool were_made; /* there was one, perhaps none any more */
 };
@@ -77,12 +78,32 @@ bool link_create(struct room *room, const struct room_link *wanted, char token[3
     return true;
 }
 
-const char *link_find(struct room *room, const char *token, const char *person, struct link **found)
+/* The link of the room's meeting, good until the next is looked for. NULL: it is none. */
+static struct link *find_of_meeting(struct room *room, const struct identity *who, const char *token)
+{
+    const struct room_meeting_callbacks *meeting = room->callbacks.meeting;
+    struct room_meeting_link of;
+    if (!meeting || !meeting->link(room->callbacks.context, room, who, token, &of))
+        return NULL;
+    struct link *link = &room->links->of_meeting;
+    *link = (struct link){
+        .role = of.role, .expires_us = INT64_MAX, .allows_guests = of.allows_guests, .is_of_meeting = true
+    };
+    memcpy(link->token_hash, of.token_hash, sizeof link->token_hash);
+    (void)snprintf(link->maker, sizeof link->maker, "%s", of.maker);
+    (void)snprintf(link->name, sizeof link->name, "%s", of.name);
+    return link;
+}
+
+const char *link_find(struct room *room, const struct identity *who, const char *token, const char *person,
+                      struct link **found)
 {
     struct link *link = NULL;
     for (int i = 0; i < room->links->n; i++) /* all of them, whichever it is */
         if (secret_matches(token, room->links->list[i].token_hash))
             link = &room->links->list[i];
+    if (!link)
+        link = find_of_meeting(room, who, token);
     if (!link)
         return link_is_unknown;
     if (is_over(room, link))

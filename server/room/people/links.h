@@ -9,6 +9,7 @@ struct link { /* lets new members in */
     enum wire_member_role role;
     int64_t expires_us, expires_ms; /* the same moment on the room's clock and on the wall's */
     bool is_one_use, is_used, allows_guests;
+    bool is_of_meeting;                /* of the meeting that the room is a case of; it is not kept here */
     char maker[STORE_USER], name[161]; /* the user who made it; what it is for. "": not known */
 };
 extern const char link_is_unknown[]; /* of link_find */
@@ -30,7 +31,8 @@ bool link_end(struct room *room, const char *digits);
 /* Forgets the link with these digits. False: there is none. */
 NODISCARD bool link_revoke(struct room *room, const char *digits, const struct member *by, const char *address);
 /* Finds the link that the token opens for this person. Returns NULL, or the sentence why it opens nothing. */
-const char *link_find(struct room *room, const char *token, const char *person, struct link **found);
+const char *link_find(struct room *room, const struct identity *who, const char *token, const char *person,
+                      struct link **found);
 /* The member came in by it. */
 void link_used(struct room *room, struct link *link, const struct member *member, const char *person);
 /* To what is kept and back. False: no memory. */

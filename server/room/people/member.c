@@ -60,7 +60,8 @@ int64_t members_settle_away(struct room *room)
         if (member->connection)
             continue;
         const bool is_wall = member->role == WIRE_MEMBER_ROLE_WALL; /* has no seat that would wait for it */
-        int64_t due_us = member->away_us + (is_wall ? 0 : kept_us);
+        const int64_t wall_us = member->is_expected ? ROOM_SEAT_KEPT_S * INT64_C(1000000) : 0;
+        int64_t due_us = member->away_us + (is_wall ? wall_us : kept_us);
         if (room->now_us >= due_us) {
             if (!is_wall)
                 known_add_member(room, member);
@@ -166,6 +167,11 @@ static struct member *member_create(struct room *room, const char *name, enum wi
     secret_hash(member->secret, member->secret_hash);
     room->members.list[room->members.n++] = member;
     return member;
+}
+
+struct member *member_seat(struct room *room, const char *name, enum wire_member_role role)
+{
+    return make_place(room, role) ? member_create(room, name, role) : NULL;
 }
 
 /* as: "new", "back", or "link" for a new one who came by a link. */
@@ -402,6 +408,7 @@ struct member *member_hello(struct room *room, void *connection, const struct me
         return NULL;
     }
     name_member(room, member, who, hello, &in);
+    member->is_expected = member->waits_outside = false;
     member->connection = connection;
     (void)snprintf(member->address, sizeof member->address, "%s", address_of(room, connection));
     audit_entered(room, member, as);

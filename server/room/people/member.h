@@ -5,6 +5,8 @@
 
 /* Makes the connection a member; returns false when it was refused with bye. */
 struct member *member_hello(struct room *room, void *connection, const struct message_hello *hello);
+/* A new member, away; NULL: the room is full. */
+struct member *member_seat(struct room *room, const char *name, enum wire_member_role role);
 /* Says bye to a connection that has said something else than hello and could not enter by what it is: nothing tells it
  * whether there is the room. False: it could. */
 bool member_refuse_stranger(struct room *room, void *connection);

@@ -112,8 +112,10 @@ struct member {
     bool is_guest;         /* has not signed in, where others do; came by a link that allows it */
     char address[46];      /* of its connection, also when that has ended; "": not known */
     enum wire_member_role role;
-    int color;        /* color_rgb(color) */
-    void *connection; /* NULL: away */
+    int color;          /* color_rgb(color) */
+    void *connection;   /* NULL: away */
+    bool is_expected;   /* a seat was made for it (moving.h), on which it has not come yet */
+    bool waits_outside; /* the meeting is in a case that is not open to it */
     bool is_lost; /* a message to it found no memory and its connection was closed; its views are still to be closed */
     int64_t away_us; /* when the connection was lost */
     uint32_t number; /* counts members from 1, never the same twice */

@@ -16,6 +16,7 @@ enum {
     ROOM_MAX_UNSHOWN = 2,
     ROOM_STILL_AFTER_MS = 150,
     ROOM_MEMBER_KEPT_S = 300,
+    ROOM_SEAT_KEPT_S = 60,          /* of a wall, for which a seat was made, until it comes */
     ROOM_PRESENTER_KEPT_S = 30,     /* how long a presenter without a connection still presents */
     ROOM_MAX_ITEMS = 1000,          /* notes, replies and bookmarks together */
     ROOM_MAX_ITEM_BYTES = 61440,    /* of the body of a bookmark, as JSON; a note may have less (note_body.h) */
@@ -120,6 +121,36 @@ struct room_item_write {
     const struct room_audit *audit; /* the row that is committed with it */
 };
 
+/* A link of the meeting that a room is a case of. */
+struct room_meeting_link {
+    unsigned char token_hash[STORE_HASH_BYTES];
+    enum wire_member_role role; /* what it gives in this room */
+    bool allows_guests;
+    char maker[STORE_USER], name[161];
+};
+
+/* A room as the room of a case of a meeting. Each is asked of every room; of one that is in no meeting it says false or
+ * does nothing. */
+struct room_meeting_callbacks {
+    /* The token is that of a link of the meeting, which opens the case of now, and this is the room of that case. */
+    bool (*link)(void *context, const struct room *room, const struct identity *who, const char *token,
+                 struct room_meeting_link *found);
+    /* The link with these digits was one of the meeting, and was ended. */
+    bool (*link_is_over)(void *context, const struct room *room, const char *digits);
+    /* This user may come to the rooms of the meeting, with at most this role. */
+    bool (*role)(void *context, const struct room *room, const struct identity *who, enum wire_member_role *role);
+    void (*barred)(void *context, const struct room *room, const char *user,
+                   const char *link); /* a member is removed */
+    /* A member has come in: it is told how the meeting stands. */
+    void (*entered)(void *context, struct room *room, void *connection);
+    /* The member at this connection has the meeting go to a case; `to` "": the next one. from: as in meeting_is_at.
+     * False with problem: nothing changes; true: answered by messages, later. */
+    bool (*next)(void *context, struct room *room, void *connection, const char *to, const char *from,
+                 struct problem *problem);
+    /* The member at this connection goes along to the case of now. */
+    bool (*go)(void *context, struct room *room, void *connection, struct problem *problem);
+};
+
 struct room_callbacks {
     /* requests a picture; answered later by room_picture_came or room_picture_failed with the same request number */
     void (*render)(void *context, struct room *room, const struct room_render *request);
@@ -176,6 +207,7 @@ struct room_callbacks {
      * the next such one, are to be read; answered by room_replay_came, later. False with problem: not now. */
     bool (*replay_read)(void *context, struct room *room, const char *of_room, const char *recording, int64_t t_ms,
                         struct problem *problem);
+    const struct room_meeting_callbacks *meeting; /* NULL: there are no meetings */
 };
 
 /* An act in a room by a call over HTTP: a message of a page (proto/messages.json), as if a member had sent it.

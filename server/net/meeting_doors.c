@@ -1,0 +1,139 @@
+/* Answers of the meeting to its rooms: meeting_doors.h. */
+#include "server/net/meeting_doors.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/mem.h"
+#include "server/net/meeting_list.h"
+#include "server/net/meeting_moves.h"
+#include "server/net/rooms.h"
+
+static const struct identity *identity_at(void *connection)
+{
+    const struct visitor *visitor = ws_owner(connection);
+    return &visitor->identity;
+}
+
+static enum wire_member_role lower(enum wire_member_role a, enum wire_member_role b)
+{
+    return a == WIRE_MEMBER_ROLE_WALL || a < b ? a : b; /* a wall is nothing else */
+}
+
+static bool find_link(void *context, const struct room *room, const struct identity *who, const char *token,
+                      struct room_meeting_link *found)
+{
+    struct meeting_case *one;
+    const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    if (!meeting || strcmp(meeting->now, one->id) != 0 || meeting_is_barred(meeting, who->user))
+        return false;
+    const struct meeting_link *link = meeting_link_of(meeting, token, clock_wall_ms());
+    if (!link)
+        return false;
+    *found = (struct room_meeting_link){ .role = lower(link->role, one->cap), .allows_guests = link->allows_guests };
+    memcpy(found->token_hash, link->token_hash, sizeof found->token_hash);
+    (void)snprintf(found->maker, sizeof found->maker, "%s", link->maker);
+    (void)snprintf(found->name, sizeof found->name, "%s", link->name);
+    return true;
+}
+
+static bool link_is_over(void *context, const struct room *room, const char *digits)
+{
+    struct meeting_case *one;
+    struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    const struct meeting_link *link = meeting ? meeting_link_find(meeting, digits) : NULL;
+    return link && link->is_ended;
+}
+
+static bool role_of(void *context, const struct room *room, const struct identity *who, enum wire_member_role *role)
+{
+    struct meeting_case *one;
+    const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    return meeting && meeting_allows(meeting, who, role);
+}
+
+static void barred(void *context, const struct room *room, const char *user, const char *link)
+{
+    struct meeting_case *one;
+    const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    if (meeting)
+        meetings_bar(context, meeting, user, link);
+}
+
+static void entered(void *context, struct room *room, void *connection)
+{
+    struct meeting_case *one;
+    struct room_present present;
+    const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    if (!meeting || !room_present_of(room, connection, &present))
+        return;
+    if (present.link[0] && present.user[0] && meeting_link_find((struct meeting *)meeting, present.link))
+        meetings_came(context, meeting, present.user);
+    meeting_moves_tell(context, meeting, one, room, connection);
+    /* a wall that was started anew begins at the address that it was given, whatever case is now */
+    if (present.role == WIRE_MEMBER_ROLE_WALL && meeting->now[0] && strcmp(meeting->now, one->id) != 0)
+        meeting_moves_send(context, meeting, room, connection, false, "");
+}
+
+struct asking { /* of a member who has the meeting go on */
+    struct net *net;
+    char room[64], member[64];
+};
+
+static void has_gone(void *context, const struct meeting *meeting, const struct problem *problem)
+{
+    struct asking *asking = context;
+    const struct net_room *room = rooms_find(asking->net, asking->room);
+    (void)meeting;
+    if (problem && room)
+        room_refuse_next(room->room, asking->member, problem);
+    free(asking);
+}
+
+static bool next(void *context, struct room *room, void *connection, const char *to, const char *from,
+                 struct problem *problem)
+{
+    struct meeting_case *one;
+    struct room_present present;
+    const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    if (!meeting || meeting->ended_ms || !room_present_of(room, connection, &present))
+        return problem_set(problem, PROBLEM_CONFLICT, "", "meeting", "this room is in no meeting that runs");
+    struct asking *asking = mem_new(sizeof *asking);
+    asking->net = context;
+    (void)snprintf(asking->room, sizeof asking->room, "%s", room_id(room));
+    (void)snprintf(asking->member, sizeof asking->member, "%s", present.id);
+    const struct net_meeting_go go = { .meeting = meeting->id,
+                                       .to = to[0] ? to : "next",
+                                       .from = from,
+                                       .who = identity_at(connection),
+                                       .address = ws_client(connection),
+                                       .name = present.name,
+                                       .room = asking->room,
+                                       .member = asking->member };
+    if (net_meeting_go(context, &go, has_gone, asking, problem))
+        return true;
+    free(asking);
+    return false;
+}
+
+static bool go_along(void *context, struct room *room, void *connection, struct problem *problem)
+{
+    struct meeting_case *one;
+    const struct meeting *meeting = meetings_of_room(context, room_id(room), &one);
+    if (!meeting || !meeting->now[0])
+        return problem_set(problem, PROBLEM_CONFLICT, "", "meeting", "this room is in no meeting that runs");
+    if (strcmp(meeting->now, one->id) == 0)
+        return problem_set(problem, PROBLEM_CONFLICT, "", "here", "the meeting is in this room");
+    meeting_moves_send(context, meeting, room, connection, false, "");
+    return true;
+}
+
+const struct room_meeting_callbacks meeting_doors = { .link = find_link,
+                                                      .link_is_over = link_is_over,
+                                                      .role = role_of,
+                                                      .barred = barred,
+                                                      .entered = entered,
+                                                      .next = next,
+                                                      .go = go_along };
